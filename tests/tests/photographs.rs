@@ -129,7 +129,7 @@ fn a_picture_in_a_drawing_bends_with_it() {
     ];
     let cage = "M 5,115 C 70,130 120,90 195,118 C 180,80 210,40 190,10 C 140,-10 80,30 10,5 C 25,40 -5,80 5,115 Z";
     let run = |input: &str, out: &str, more: &[&str]| {
-        let mut args = vec!["shaper", input, "-o", out, "--shaper", cage];
+        let mut args = vec!["shaper", input, "-o", out, "--shaper", cage, "--fit", "none"];
         args.extend(frame);
         args.extend(more);
         let output = pathwarp_in(dir.path(), &args, b"");

@@ -9,8 +9,8 @@
 //! }
 //! ```
 //!
-//! Exit codes: 0 success; 1 done, but something was left unchanged or, of several inputs, left out (the messages and the report
-//! say why); 2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
+//! Exit codes: 0 success; 1 done, but something was left unchanged or, of several inputs, left out, or nothing is on the page of the
+//! result (the messages and the report say why); 2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
 //! On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.
 
 mod advice;
@@ -29,6 +29,7 @@ mod input;
 mod leftovers;
 mod options;
 mod output;
+mod page;
 mod pipeline;
 mod plugins;
 mod readable;

@@ -23,6 +23,9 @@ pub(crate) struct FileReport {
     /// The height of the lettering's baseline, if the frame has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) baseline: Option<f64>,
+    /// The visible part of the plane, x, y, width and height in user units, if `--fit` has changed it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) page: Option<[f64; 4]>,
     pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
@@ -39,6 +42,7 @@ impl FileReport {
             frame: None,
             selections: Vec::new(),
             baseline: None,
+            page: None,
             shapes: Vec::new(),
             skipped: Vec::new(),
             warnings: Vec::new(),

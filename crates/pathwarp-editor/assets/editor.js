@@ -1720,6 +1720,8 @@
     isFitted = false;
     /** The first picture of a drawing has not arrived yet. */
     isFresh = true;
+    /** The page of the last picture, as saving would have it; null for the drawing's own. */
+    grown = null;
     /** Set while the page shows the drawing as it was. */
     isBefore = false;
     showsNodes = false;
@@ -1753,7 +1755,7 @@
       if (over >= width) return { left: 0, width, height: Math.max(height - panel.clientHeight, height / 4), margin };
       return { left: left > 0 ? 0 : over, width: width - over, height, margin };
     }
-    /** Shows the whole page, as far as it holds the artwork. */
+    /** Shows the whole page. */
     fit() {
       const { left, width, height, margin } = this.view;
       if (!this.app.state || width === 0 || height === 0) return;
@@ -1800,26 +1802,25 @@
       this.grow();
     }
     show(answer) {
-      if (answer.picture) this.drawing.show(answer.picture);
-      if (answer.summary) {
-        const { isFresh } = this;
-        this.isFresh = false;
+      if (answer.picture) {
+        this.drawing.show(answer.picture);
+        this.grown = answer.page;
         this.grow();
-        if (isFresh) this.reveal();
+      }
+      if (answer.summary && this.isFresh) {
+        this.isFresh = false;
+        this.reveal();
       }
       if (this.showsNodes) this.drawNodes();
       this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
     }
-    /** The page, as far as it holds the artwork, as two corners in px of the drawing: saving makes it larger where needed. */
+    /** The page as saving makes it, as two corners in px of the drawing. */
     get page() {
       const { state } = this.app;
       if (!state) return [0, 0, 0, 0];
-      const [x, y, w, h2] = state.page;
+      const [x, y, w, h2] = this.grown ?? state.page;
       const [[ax, ay], [bx, by]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h2])];
-      const page = [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
-      const art = this.art.getBBox();
-      if (state.program || this.isFresh || art.width === 0) return page;
-      return [Math.min(page[0], art.x), Math.min(page[1], art.y), Math.max(page[2], art.x + art.width), Math.max(page[3], art.y + art.height)];
+      return [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
     }
     /** Draws the sheet as large as the page. */
     grow() {
@@ -1854,6 +1855,7 @@
     forget() {
       this.beforeArt.replaceChildren();
       this.isFresh = true;
+      this.grown = null;
     }
     drawNodes() {
       const { nodes, arms } = this.showsNodes ? nodesOf(this.drawing.paths()) : { nodes: "", arms: "" };

@@ -68,9 +68,9 @@ mod tests {
                 Step { inverse: true, ..step("shaper", &[("reverse-shaper", "true"), ("shaper", "M0,0 H9")]) },
             ],
         };
-        let options = [("fit".to_owned(), "grow".to_owned())];
+        let options = [("fit".to_owned(), "page".to_owned())];
         let line = command_line(&Registry::builtin(), &recipe, &options, Path::new("it's.svg"), Path::new("out.svg"));
-        let expected = r"pathwarp warp 'it'\''s.svg' --bend -40% --style flag --fit grow -o out.svg + shaper --reverse-shaper --shaper 'M0,0 H9' --inverse";
+        let expected = r"pathwarp warp 'it'\''s.svg' --bend -40% --style flag --fit page -o out.svg + shaper --reverse-shaper --shaper 'M0,0 H9' --inverse";
         assert_eq!(line, expected);
     }
 }

@@ -107,6 +107,8 @@ pub enum Fineness {
 pub struct Bent {
     /// The text of the result.
     pub svg: String,
+    /// The page that the saved result has, if that is not the source's, in user units.
+    pub page: Option<Rect>,
     /// The recipe with its references looked up.
     pub resolved: Recipe,
     /// The recipe, built.

@@ -181,6 +181,7 @@ impl Session {
             "grips": grips(self.host.registry(), &bent.resolved, &bent.built),
             "guides": guides(&bent.built),
             "warnings": bent.warnings,
+            "page": bent.page.map(|p| [p.x0, p.y0, p.width(), p.height()]),
         });
         if let Some(s) = &bent.summary {
             let image = |p: Point| bent.built.map.point(p);

@@ -1,6 +1,6 @@
 //! Sets text in lines of clusters: itemized, shaped, spaced, aligned.
 
-use crate::align::{align, is_space};
+use crate::align::{align, is_space, stack};
 use crate::error::{Error, guarded};
 use crate::font::Font;
 use crate::itemize::{self, Run};
@@ -9,7 +9,7 @@ use crate::limits::TextLimits;
 use crate::painter::{GlyphPainter, SpacedCluster};
 use crate::setting::Feature;
 use crate::shape::{self, RunShaper};
-use crate::style::{Direction, Ligatures, TextStyle, check};
+use crate::style::{Align, Direction, Ligatures, TextStyle, check};
 use std::collections::{BTreeSet, HashMap};
 
 /// Sets text within the default limits. Lines end at newlines; a tab or other control character becomes a space. Characters that the first font lacks are
@@ -66,6 +66,9 @@ pub fn layout_within(
             out.push(painter.line(line, clusters, y)?);
         }
         align(&mut out, style.align, rtl);
+        if style.align == Align::Fill || style.gap.is_some() {
+            stack(&mut out, style, &metrics);
+        }
         Ok(out)
     };
     let lines = guarded(set_lines)?;

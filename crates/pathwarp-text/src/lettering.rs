@@ -45,8 +45,19 @@ pub struct LetteringLine {
     pub start: Point,
     /// Right end of the baseline: the end of the last advance.
     pub end: Point,
+    /// Size of its em relative to the style's: 1, but for [`Align::Fill`](crate::Align::Fill), where the line's ends are those of its ink.
+    pub scale: f64,
     /// The clusters from left to right.
     pub clusters: Vec<Cluster>,
+}
+
+impl LetteringLine {
+    /// Returns the bounding box of the line's outlines; `None` if all are empty.
+    #[must_use]
+    pub fn ink(&self) -> Option<Rect> {
+        let outlines = self.clusters.iter().map(|c| &c.outline).filter(|o| !o.is_empty());
+        outlines.map(kurbo::Shape::bounding_box).reduce(|a, b| a.union(b))
+    }
 }
 
 /// Text as outlines. The longest line starts at x = 0, and the ascent of the first line is at y = 0; y points down.
@@ -55,7 +66,7 @@ pub struct LetteringLine {
 pub struct OutlinedText {
     /// The text with newlines between lines; control characters are replaced by spaces.
     pub text: String,
-    /// Heights of the first font.
+    /// Heights of the first font, in lines of scale 1.
     pub metrics: FontMetrics,
     /// `true` if the base direction is right to left.
     pub rtl: bool,
@@ -69,15 +80,15 @@ impl OutlinedText {
     /// Returns the bounding box of all outlines; `None` if all are empty.
     #[must_use]
     pub fn ink(&self) -> Option<Rect> {
-        let outlines = self.lines.iter().flat_map(|l| &l.clusters).map(|c| &c.outline).filter(|o| !o.is_empty());
-        outlines.map(kurbo::Shape::bounding_box).reduce(|a, b| a.union(b))
+        self.lines.iter().filter_map(LetteringLine::ink).reduce(|a, b| a.union(b))
     }
 
     /// Returns the bounding box of all lines: the baselines horizontally, from the first ascent to the last descent vertically.
     #[must_use]
     pub fn line_box(&self) -> Rect {
         let of = |l: &LetteringLine| {
-            Rect::new(l.start.x, l.start.y - self.metrics.ascent, l.end.x, l.end.y + self.metrics.descent).abs()
+            let FontMetrics { ascent, descent, .. } = self.metrics.scaled(l.scale);
+            Rect::new(l.start.x, l.start.y - ascent, l.end.x, l.end.y + descent).abs()
         };
         self.lines.iter().map(of).reduce(|a, b| a.union(b)).unwrap_or_default()
     }

@@ -17,7 +17,9 @@ pub struct FontMetrics {
 }
 
 impl FontMetrics {
-    pub(crate) fn scaled(self, by: f64) -> Self {
+    /// The heights in a size that is larger by this factor.
+    #[must_use]
+    pub fn scaled(self, by: f64) -> Self {
         Self {
             ascent: self.ascent * by,
             descent: self.descent * by,

@@ -47,7 +47,13 @@ impl GlyphPainter<'_, '_> {
                 glyphs: cluster.glyphs,
             });
         }
-        Ok(LetteringLine { text: text.to_owned(), start: Point::new(0.0, y), end: Point::new(x, y), clusters })
+        Ok(LetteringLine {
+            text: text.to_owned(),
+            start: Point::new(0.0, y),
+            end: Point::new(x, y),
+            scale: 1.0,
+            clusters,
+        })
     }
 
     /// Appends a glyph to an outline.

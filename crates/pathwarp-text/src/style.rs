@@ -32,6 +32,8 @@ pub enum Align {
     Right,
     /// Justified: widens the spaces of every line that has any.
     Justify,
+    /// Sized: every line is as large as makes its ink as wide as the widest line's.
+    Fill,
 }
 
 /// Use of optional ligatures (`liga`, `clig`).
@@ -57,9 +59,12 @@ pub struct TextStyle {
     pub letter_spacing: f64,
     /// Space added to every space character. Positive or negative, at most a thousand times the size.
     pub word_spacing: f64,
-    /// Distance between baselines; `None` for the font's (ascent + descent + line gap). At least 0, at most a thousand times the
-    /// size.
+    /// Distance between baselines, of lines that are sized by [`Align::Fill`] at their size; `None` for the font's (ascent + descent +
+    /// line gap). At least 0, at most a thousand times the size.
     pub line_height: Option<f64>,
+    /// Distance from the lower end of a line's ink to the upper end of the next one's, instead of a distance between baselines. Positive or
+    /// negative, at most a thousand times the size.
+    pub gap: Option<f64>,
     /// Alignment of lines.
     pub align: Align,
     /// Base direction of all lines.
@@ -84,6 +89,7 @@ impl Default for TextStyle {
             letter_spacing: 0.0,
             word_spacing: 0.0,
             line_height: None,
+            gap: None,
             align: Align::Start,
             direction: Direction::Auto,
             script: None,
@@ -114,6 +120,9 @@ pub(crate) fn check(style: &TextStyle) -> Result<(Option<Script>, Option<harfrus
     }
     if let Some(h) = style.line_height.filter(|h| far(*h) || *h < 0.0) {
         return out_of_range("line height", h, "at least 0 and at most 1000 times the size");
+    }
+    if let Some(gap) = style.gap.filter(|g| far(*g)) {
+        return out_of_range("gap", gap, "at most 1000 times the size");
     }
     let script = style.script.as_deref().map(|code| {
         let mut letters = code.chars();

@@ -276,3 +276,68 @@ proptest! {
         prop_assert_eq!(&set, &layout(&text, &font(), &em()).unwrap());
     }
 }
+
+/// The box of a line's ink.
+fn ink(line: &LetteringLine) -> kurbo::Rect {
+    line.clusters
+        .iter()
+        .filter(|c| !c.outline.is_empty())
+        .map(|c| c.outline.bounding_box())
+        .reduce(|a, b| a.union(b))
+        .unwrap()
+}
+
+#[test]
+fn every_line_fills_the_width_of_the_widest() {
+    let plain = set("by\nLOVE MUSIC\n\nI\nyes, it is", &em());
+    let style = TextStyle { align: Align::Fill, ..em() };
+    let filled = set("by\nLOVE MUSIC\n\nI\nyes, it is", &style);
+    let widest = ink(&plain.lines[1]).width();
+    for i in [0, 1, 3, 4] {
+        let (before, after, line) = (ink(&plain.lines[i]), ink(&filled.lines[i]), &filled.lines[i]);
+        near(after.x0, 0.0);
+        near(after.x1, widest);
+        near(line.start.x, 0.0);
+        near(line.end.x, widest);
+        // The proportion stays: letters are as much larger as the line is wider.
+        near(line.scale, widest / before.width());
+        near(after.height() / before.height(), line.scale);
+        for (a, b) in plain.lines[i].clusters.iter().zip(&line.clusters) {
+            near(b.advance, line.scale * a.advance);
+            near(b.origin.x, line.scale * (a.origin.x - before.x0));
+            near(b.origin.y, line.start.y);
+        }
+    }
+    // Boxes of lines follow one another, each at its own size; the font has no gap between them.
+    let mut top = 0.0;
+    for line in &filled.lines {
+        near(line.start.y, top + ASCENT * line.scale);
+        top = line.start.y + DESCENT * line.scale;
+    }
+    near(filled.page().y1, top);
+    let fixed = set("by\nLOVE MUSIC", &TextStyle { line_height: Some(900.0), ..style.clone() });
+    near(fixed.lines[1].start.y - fixed.lines[0].start.y, 900.0 * fixed.lines[1].scale);
+    // One word fills its own width.
+    let one = set("MUSIC", &style);
+    near(one.lines[0].scale, 1.0);
+    near(ink(&one.lines[0]).x0, 0.0);
+}
+
+#[test]
+fn gaps_are_from_ink_to_ink() {
+    for align in [Align::Start, Align::Center, Align::Justify, Align::Fill] {
+        for gap in [0.0, 60.0, -100.0] {
+            let text = set("yearly\nLOVE\nMUSIC, guys\na", &TextStyle { align, gap: Some(gap), ..em() });
+            text.lines.windows(2).for_each(|l| near(ink(&l[1]).y0 - ink(&l[0]).y1, gap));
+            near(text.lines[0].start.y, ASCENT * text.lines[0].scale);
+            text.lines
+                .iter()
+                .flat_map(|l| &l.clusters)
+                .for_each(|c| assert!(text.lines.iter().any(|l| l.start.y == c.origin.y)));
+        }
+    }
+    // A line without ink has no height of its own.
+    let empty = set("A\n\nB", &TextStyle { gap: Some(50.0), ..em() });
+    near(ink(&empty.lines[2]).y0 - ink(&empty.lines[0]).y1, 100.0);
+    assert!(layout("a", &[Font::new(&bundled(), 0).unwrap()], &TextStyle { gap: Some(f64::NAN), ..em() }).is_err());
+}

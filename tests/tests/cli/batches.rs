@@ -53,8 +53,8 @@ fn bad_files_do_not_stop_a_batch() {
     }
     assert_eq!([&report["totals"]["inputs"], &report["totals"]["failed"]], [5, 3]);
 
-    // The good files come out as they do alone.
-    let alone = pathwarp_in(dir.path(), &["warp", "--style", "flag", "a.svg"], b"");
+    // The good files come out as they do alone, on the pages that they have.
+    let alone = pathwarp_in(dir.path(), &["warp", "--style", "flag", "--fit", "none", "a.svg"], b"");
     assert_eq!(alone.stdout, fs::read(dir.path().join("out/a.svg")).unwrap());
 }
 
@@ -206,7 +206,8 @@ fn an_interrupted_batch_leaves_whole_files_only() {
         assert!(left.len() >= 5 && left.len() < FILES, "{signal}: {} of {FILES}", left.len());
         assert!(said.contains(&format!("interrupted; the results of {} inputs are written", left.len())), "{said}");
         assert!(!dir.path().join("r.json").exists());
-        let whole = pathwarp_in(dir.path(), &["warp", "--style", "flag", "art/0000.svg", "-q"], b"").stdout;
+        let whole =
+            pathwarp_in(dir.path(), &["warp", "--style", "flag", "--fit", "none", "art/0000.svg", "-q"], b"").stdout;
         for file in &left {
             assert!(!file.contains(".pathwarp-"), "{signal} leaves {file}");
             assert!(fs::read(out.join(file)).unwrap() == whole, "{signal}: {file} is not whole");

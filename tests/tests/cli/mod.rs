@@ -13,6 +13,7 @@ mod faults;
 mod first_words;
 mod fonts;
 mod overwriting;
+mod page;
 mod parts;
 mod readme;
 mod report;

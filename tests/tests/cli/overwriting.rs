@@ -66,7 +66,7 @@ fn an_output_that_is_a_source_is_refused() {
 fn in_place_overwrites_the_inputs_and_keeps_links() {
     let dir = tempfile::tempdir().unwrap();
     drawings(dir.path());
-    let swirled = pathwarp_in(dir.path(), &["swirl", "a.svg"], b"").stdout;
+    let swirled = pathwarp_in(dir.path(), &["swirl", "--fit", "none", "a.svg"], b"").stdout;
     assert!(swirled != SQUARE.as_bytes());
     for args in [&["swirl", "link.svg", "b.svg", "--in-place"][..], &["swirl", "a.svg", "-o", "link.svg", "--in-place"]]
     {

@@ -17,13 +17,13 @@ fn artwork_that_extends_past_the_page_causes_one_warning() {
         let report: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
         (text(&out.stderr), report["inputs"][0]["warnings"].as_array().unwrap().clone())
     };
-    let (said, warnings) = run(&[]);
+    let (said, warnings) = run(&["--fit", "none"]);
     assert_eq!(said.lines().count(), 1, "{said}");
     for part in ["extends past the page by up to 30 units", "30 %; top, right", "--fit grow", "--fit page"] {
         assert!(said.contains(part) && warnings[0].as_str().unwrap().contains(part), "{part} not in {said}");
     }
     assert_eq!(warnings.len(), 1);
-    let (said, warnings) = run(&["--quiet"]);
+    let (said, warnings) = run(&["--quiet", "--fit", "none"]);
     assert!(said.is_empty() && warnings.len() == 1, "{said} {warnings:?}");
     for fit in ["grow", "page"] {
         let (said, warnings) = run(&["--fit", fit]);

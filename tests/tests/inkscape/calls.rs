@@ -87,14 +87,16 @@ fn what_is_selected_is_bent_and_nothing_else() {
     for ids in [&["a"][..], &["b", "a"], &["g"], &["u"], &["t"], &["layer"], &["r", "t"]] {
         let got = desk.result(&svg, ids, &FLAG);
         let select: Vec<String> = ids.iter().map(|id| format!("--select=#{id}")).collect();
-        let words: Vec<&str> =
-            ["warp", "--style=flag", "--bend=40%"].into_iter().chain(select.iter().map(String::as_str)).collect();
+        let words: Vec<&str> = ["warp", "--style=flag", "--bend=40%", "--fit=none"]
+            .into_iter()
+            .chain(select.iter().map(String::as_str))
+            .collect();
         assert_eq!(forgetful(&got), desk.command_line(&svg, &words), "{ids:?}");
         assert_eq!(got.matches(MEMORY).count(), ids.len(), "{ids:?}");
     }
     // Nothing is selected: the page, but not what is locked.
     let whole = desk.result(&svg, &[], &FLAG);
-    let wanted = desk.command_line(&svg, &["warp", "--style=flag", "--bend=40%", "--exclude=#locked"]);
+    let wanted = desk.command_line(&svg, &["warp", "--style=flag", "--bend=40%", "--fit=none", "--exclude=#locked"]);
     assert_eq!(forgetful(&whole), wanted);
     assert!(whole.contains("d='M 150,150 h 30 v 30 z'"));
 }
@@ -277,6 +279,9 @@ fn clones_follow_and_pages_stay_with_the_artwork() {
     assert!(got.contains("<inkscape:page x='0' y='0' width='250' height='225' id='p1'/>"), "{got}");
     assert!(got.contains("x='260' y='0' width='100' height='200' id='p2'"), "{got}");
     assert!(got.contains("position='80,65'"), "{got}");
+    // Without the option, and so by default, the page stays.
+    let got = desk.result(&document(&format!("{view}{body}")), &["r"], &move_left[..4]);
+    assert!(got.contains("viewBox='0 0 200 200'") && !got.contains("--fit"), "{got}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::decimals::three_figures;
 use pathwarp::budget::Exceeded;
 use pathwarp::kurbo::Rect;
 use pathwarp::{Error, GeometryError};
-use pathwarp_svg::{LetteringFrameError, Overhang, UnreadImages, Warning};
+use pathwarp_svg::{LetteringFrameError, UnreadImages, Warning};
 
 /// The message of an error of the libraries: parameters as flags, with the options that help.
 pub(crate) fn error(e: &Error, flags: &Flags) -> String {
@@ -64,25 +64,6 @@ pub(crate) fn surface(e: &pathwarp_mesh::Error) -> String {
     }
 }
 
-/// Describes artwork that extends past the page, with the options that change it.
-pub(crate) fn overhang(o: Overhang) -> String {
-    let names = ["left", "top", "right", "bottom"];
-    let sides: Vec<&str> = names.iter().zip(o.by).filter(|(_, by)| *by > 0.0).map(|(name, _)| *name).collect();
-    let most = o.by.into_iter().fold(0.0, f64::max);
-    if o.gone {
-        return format!(
-            "nothing is left on the page: all artwork lies past its {}; --fit page makes the page follow",
-            sides.join(", ")
-        );
-    }
-    format!(
-        "the artwork extends past the page by up to {} units ({} %; {}); --fit grow enlarges the page, --fit page fits it to the artwork",
-        three_figures(most),
-        three_figures(100.0 * o.share),
-        sides.join(", ")
-    )
-}
-
 /// Describes artwork that the page cuts off and the map stretches, with the frame that prevents it.
 pub(crate) fn stretched(uncut: Rect, stretch: f64) -> String {
     // Three figures, rounded outwards.
@@ -126,15 +107,6 @@ fn unread(unread: &UnreadImages) -> Vec<String> {
     let unreadable = unread.unreadable.iter().map(|link| format!("the image {link} cannot be read"));
     let outside_links = unread.outside.iter().map(|link| format!("the image {link} was not read"));
     unreadable.chain(outside_links).chain(outside(unread)).collect()
-}
-
-/// Describes inputs of a batch whose artwork extends past the page; `file` is the one with the largest `share` of its page.
-pub(crate) fn overhangs(count: usize, inputs: usize, share: f64, file: &str) -> String {
-    format!(
-        "the artwork of {count} of {inputs} inputs extends past the page, most that of {file} ({} %); --fit grow enlarges \
-         the pages, --fit page fits them to the artwork",
-        three_figures(100.0 * share)
-    )
 }
 
 /// Describes why there is no frame around lettering, with the options that help.

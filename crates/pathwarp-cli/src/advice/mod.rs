@@ -6,7 +6,5 @@ pub(crate) mod mistakes;
 mod names;
 
 pub(crate) use flags::Flags;
-pub(crate) use messages::{
-    error, lacking, lettering_frame, outside, overhang, overhangs, picture, raise, stretched, surface,
-};
+pub(crate) use messages::{error, lacking, lettering_frame, outside, picture, raise, stretched, surface};
 pub(crate) use names::unknown;

@@ -51,10 +51,8 @@ pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Res
     };
     // Ctrl-C is the usual end of this command.
     temporaries::on_interruption_end_quietly();
-    // A point dragged past the page takes artwork there, which is to be kept.
-    let mut usual = Given::default();
-    usual.set("fit", "grow").map_err(Failure::Usage)?;
-    let host = Arc::new(EditorHost::new(registry.clone(), usual, Given::options(m)).with_plugins(&plugins.given));
+    let host =
+        Arc::new(EditorHost::new(registry.clone(), Given::default(), Given::options(m)).with_plugins(&plugins.given));
     let announce = |news: &News<'_>| match news {
         News::Address(address) => drop(output::to_stdout(format!("{address}\n").as_bytes())),
         News::NoBrowser(e) => terminal::warning(&format!("no browser can be started ({e}); open the address in one")),

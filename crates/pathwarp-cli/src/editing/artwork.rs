@@ -11,7 +11,7 @@ use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe, Recipe, Step};
 use pathwarp_editor::{Artwork, Bent, Fineness, Summary};
-use pathwarp_svg::{Document, PageFit};
+use pathwarp_svg::Document;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -21,8 +21,6 @@ pub(super) struct EditedArtwork {
     registry: Arc<Registry>,
     given: Given,
     options: CommonOptions,
-    /// The options of what the page shows: on the source's page, whatever becomes of it.
-    shown: CommonOptions,
     flags: Arc<Flags>,
     /// The files of plug-ins that a command line has to name.
     plugins: Vec<String>,
@@ -54,13 +52,11 @@ impl EditedArtwork {
         options: CommonOptions,
         flags: &Arc<Flags>,
     ) -> Self {
-        let shown = CommonOptions { page: PageFit::None, ..options.clone() };
         Self {
             svg,
             registry: Arc::clone(registry),
             given,
             options,
-            shown,
             flags: Arc::clone(flags),
             plugins: Vec::new(),
             folder: PathBuf::new(),
@@ -111,13 +107,14 @@ impl EditedArtwork {
         let text = || recipe_file::write(&*self.registry, recipe, &self.given, &self.folder);
         let embedded_recipe = (fineness == Fineness::Finished { embedded: true }).then(text).transpose()?;
         let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
-        let options = if let Fineness::Finished { .. } = fineness { &self.options } else { &self.shown };
-        let request = WarpRequest { built: &built, options, tolerance, embedded_recipe };
+        let same_view = !matches!(fineness, Fineness::Finished { .. });
+        let options = &self.options;
+        let request = WarpRequest { recipe, built: &built, options, tolerance, embedded_recipe, same_view };
         if let Fineness::Draft(_) = fineness {
             let svg = self.svg.draft(&request);
             sound(&built)?;
-            let svg = svg?;
-            return Ok(Bent { svg, resolved, built: built.whole, summary: None, warnings: Vec::new() });
+            let (svg, page) = svg?;
+            return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
         }
         let warped = self.svg.warp(&request);
         sound(&built)?;
@@ -137,8 +134,10 @@ impl EditedArtwork {
         };
         let own = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
         let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
+        warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
         warnings.extend(warped.skipped.iter().map(|s| format!("{} is not bent: {}", s.id, s.why)));
-        Ok(Bent { svg, resolved, built: built.whole, summary: Some(summary), warnings })
+        let page = warped.page.change.map(|[_, after]| after);
+        Ok(Bent { svg, page, resolved, built: built.whole, summary: Some(summary), warnings })
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {

@@ -226,7 +226,7 @@ impl Warper {
     }
 
     /// Warps a drawing (SVG, also compressed) or a picture (PNG, JPEG, WebP). `name` is its name in messages; linked pictures are
-    /// looked up beside it. Without a name there are none.
+    /// looked up beside it. Without a name there are none. The page stays unless the option `fit` is given.
     ///
     /// # Errors
     /// The drawing cannot be read, a value is wrong, or the geometry does not allow the deformation.

@@ -93,7 +93,7 @@ fn edited(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -
         port: None,
         open: true,
     };
-    let host = Arc::new(EditorHost::new(stage.registry.clone(), Given::default(), given));
+    let host = Arc::new(EditorHost::new(stage.registry.clone(), Given::default().keeping_pages(), given));
     watch::rest();
     pathwarp_editor::serve(host, &options, |_| ()).map_err(Failure::Input)
 }

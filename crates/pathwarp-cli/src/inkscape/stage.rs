@@ -91,6 +91,10 @@ impl Stage<'_> {
         if let Some(folder) = folder() {
             all.extend(["--base-dir".into(), folder.into()]);
         }
+        // The drawing is open on the page that it has.
+        if !rest.iter().any(|word| word.starts_with("--fit=")) {
+            all.push("--fit=none".into());
+        }
         all.extend(scope.ids.iter().map(|id| format!("--select=[id={id}]").into()));
         all.extend(rest.iter().map(OsString::from));
         let status = (self.dispatch)(self.registry, &all).map_err(|f| self.without_file(&f, source.path()))?;

@@ -3,7 +3,7 @@
 use super::call::Call;
 use super::line::CHAIN;
 use super::names::{FILE, NONE, PERCENT, UNIT, UNITS};
-use crate::options::OPTIONS;
+use crate::options::{CommonOption, OPTIONS};
 use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param};
 
@@ -16,7 +16,9 @@ pub(super) fn of_deformation(info: &Info, call: &Call) -> Vec<String> {
 pub(super) fn of_options(call: &Call) -> Vec<String> {
     let given = |name: &str| call.value(name).filter(|v| *v != NONE);
     let set = OPTIONS.iter().filter_map(|o| Some((o, given(o.name)?)));
-    set.filter(|(o, v)| o.default != Some(*v)).map(|(o, v)| word(o.name, v)).collect()
+    // Pages stay in Inkscape unless a dialog says otherwise.
+    let default = |o: &CommonOption| if o.name == "fit" { Some("none") } else { o.default };
+    set.filter(|(o, v)| default(o) != Some(*v)).map(|(o, v)| word(o.name, v)).collect()
 }
 
 /// One word for an option with its value.
@@ -140,6 +142,8 @@ mod tests {
             ["--shaper=#cage", "--reverse-shaper"]
         );
         assert_eq!(of_options(&call(&["--fit=grow", "--text=outline", "--tolerance="])), ["--fit=grow"]);
+        assert_eq!(of_options(&call(&["--fit=auto"])), ["--fit=auto"]);
+        assert!(of_options(&call(&["--fit=none"])).is_empty());
     }
 
     #[test]

@@ -3,13 +3,13 @@
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
+use crate::page::PageNews;
 use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
-use pathwarp::recipe::{BuiltParts, Step};
+use pathwarp::recipe::{BuiltParts, Recipe, Step};
 use pathwarp::{Error, Outline};
-use pathwarp_svg::Overhang;
 use std::sync::Arc;
 
 /// Which of the artwork is meant.
@@ -86,6 +86,7 @@ pub(crate) enum Baseline {
 
 /// A warp of one input.
 pub(crate) struct WarpRequest<'a> {
+    pub(crate) recipe: &'a Recipe,
     /// One for each part of the artwork.
     pub(crate) built: &'a BuiltParts,
     pub(crate) options: &'a CommonOptions,
@@ -93,6 +94,8 @@ pub(crate) struct WarpRequest<'a> {
     pub(crate) tolerance: f64,
     /// The recipe file's text, to be embedded in the result.
     pub(crate) embedded_recipe: Option<String>,
+    /// Show the result on the page of the source.
+    pub(crate) same_view: bool,
 }
 
 /// The outcome of a warp. Nothing is written yet.
@@ -101,8 +104,7 @@ pub(crate) struct WarpedArtwork {
     pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
-    /// The artwork extends past the page and did not before.
-    pub(crate) overhang: Option<Overhang>,
+    pub(crate) page: PageNews,
     /// Files besides the result.
     pub(crate) files: Vec<PendingFile>,
     /// The picture of `--preview`.

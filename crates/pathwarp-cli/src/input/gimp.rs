@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
+use crate::page::PageNews;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{Orientation, Survey};
@@ -201,7 +202,7 @@ impl Artwork for GimpArtwork {
         let preview = options.preview.as_deref().map(|file| self.preview(&warped, built, (file, options.quality)));
         Ok(WarpedArtwork {
             result,
-            overhang: None,
+            page: PageNews::default(),
             files: Vec::new(),
             preview: preview.transpose()?,
             shapes: warped.shapes,

@@ -8,6 +8,7 @@ use crate::bitmap::{ROUNDING, count_decoded, count_warped, inverse};
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use crate::options::{CommonOptions, FrameChoice};
+use crate::page::PageNews;
 use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
@@ -139,7 +140,7 @@ impl Artwork for PictureArtwork {
             shapes: Vec::new(),
             skipped: Vec::new(),
             warnings,
-            overhang: None,
+            page: PageNews::default(),
             files: Vec::new(),
             preview: None,
             partial: undefined.is_some(),

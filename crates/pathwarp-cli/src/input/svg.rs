@@ -11,6 +11,7 @@ use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
 use crate::options::{CommonOptions, FrameChoice, GradientChoice};
 use crate::output::PendingFile;
+use crate::page::{self, PageNews};
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use crate::units::units_per_px;
 use pathwarp::budget::{Budget, Limit};
@@ -22,7 +23,7 @@ use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::refit;
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_svg::{
-    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions,
+    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, WarpOptions,
     WarpedDocument,
 };
 use rayon::prelude::*;
@@ -81,7 +82,8 @@ impl SvgArtwork {
 
     /// The result for a look at it while something is dragged: within the tolerance, but not merged into few nodes, and with gradients
     /// and bitmaps in the coarse.
-    pub(crate) fn draft(&self, request: &WarpRequest<'_>) -> Result<String, Failure> {
+    /// Returns it with the page that it would have.
+    pub(crate) fn draft(&self, request: &WarpRequest<'_>) -> Result<(String, Option<Rect>), Failure> {
         let draft = |k: usize, built: &BuiltRecipe| {
             let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
             options.refit = options.refit.with_merge(false);
@@ -91,7 +93,8 @@ impl SvgArtwork {
             }
             options
         };
-        Ok(self.bent(&request.built.parts, draft)?.1.svg)
+        let warped = self.bent(&request.built.parts, draft)?.1;
+        Ok((warped.svg, warped.page.map(|[_, after]| after)))
     }
 
     /// The selection that is meant.
@@ -141,11 +144,18 @@ impl SvgArtwork {
             .with_on_error(options.on_failure.of_shapes())
             .with_gradients(gradients)
             .with_patterns(options.patterns)
-            .with_page(options.page)
+            .with_page(if self.stays(request).is_some() { PageFit::None } else { options.page })
+            .with_same_view(request.same_view)
             .with_clones(options.clones)
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep })
+    }
+
+    /// The reason why the page stays although it could grow.
+    fn stays(&self, request: &WarpRequest<'_>) -> Option<&'static str> {
+        let may_grow = request.options.page == PageFit::Auto;
+        may_grow.then(|| page::stays(&self.doc, request.options, request.recipe)).flatten()
     }
 
     /// The orientation under the map of every shape of a part.
@@ -373,6 +383,7 @@ impl Artwork for SvgArtwork {
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options: common, .. } = request;
         let (options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        let page = PageNews::of(&mut warped, common.page, self.stays(request));
         if let Some(recipe) = &request.embedded_recipe {
             let origin = Origin { recipe: recipe.clone(), source: self.doc.source().to_vec() };
             warped.svg = origin.embed(&warped.svg)?;
@@ -401,10 +412,10 @@ impl Artwork for SvgArtwork {
             shapes,
             skipped: warped.skipped.into_iter().map(|s| SkippedShape { id: s.id, why: s.why }).collect(),
             warnings,
-            overhang: warped.overhang,
             files,
             preview: preview.transpose()?,
             partial: empty,
+            page,
         })
     }
 }

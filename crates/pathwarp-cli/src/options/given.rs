@@ -85,6 +85,14 @@ impl Given {
         Ok(())
     }
 
+    /// Leaves pages as they are unless `fit` is given: for programs that have drawings of their own open.
+    pub(crate) fn keeping_pages(&self) -> Self {
+        let mut kept = Self::default();
+        // The option and its value are in the table.
+        let _ = kept.set("fit", "none");
+        kept.overridden_by(self)
+    }
+
     pub(crate) fn inputs(&self) -> &[PathBuf] {
         &self.inputs
     }

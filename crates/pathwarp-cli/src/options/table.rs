@@ -272,16 +272,19 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         )
     },
     CommonOption {
-        default: Some("none"),
+        default: Some("auto"),
         ..stored(
             "fit",
             OptionValue::Choice(&[
+                ("auto", |o| o.page = PageFit::Auto),
                 ("none", |o| o.page = PageFit::None),
                 ("grow", |o| o.page = PageFit::Grow),
                 ("page", |o| o.page = PageFit::PageWithMargin),
             ]),
-            "Page: leave it unchanged, grow it to hold the warped artwork, or make it the bounding box of the \
-             artwork with the margin of the original; artwork that extends past the page causes a warning",
+            "Page: leave it unchanged (none), grow it to hold the warped artwork, or make it the bounding box of the \
+             artwork with the margin of the original (page). auto grows it, to whole units, where artwork leaves it, and says \
+             so; the pages of icons (square, up to 64 units), of paper sizes, of batches, and those that steps refer to stay, with \
+             a warning if artwork extends past them",
         )
     },
     CommonOption {

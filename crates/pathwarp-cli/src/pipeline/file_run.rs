@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::input::{Artwork, Baseline, Input, WarpRequest, WarpedResult, Which};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
+use crate::page::PageNews;
 use crate::report::{FileReport, ReportedShape, StepSelection};
 use crate::units::MM_PER_PX;
 use crate::{recipe_file, references};
@@ -29,8 +30,7 @@ pub(super) struct Batch<'a> {
 pub(super) struct WarpedInput {
     pub(super) result: WarpedResult,
     pub(super) report: FileReport,
-    /// As in [`FileRun`].
-    past_page: Option<f64>,
+    page: PageNews,
     pub(super) notes: Vec<String>,
     partial: bool,
     /// Files that deformations save.
@@ -44,8 +44,8 @@ pub(super) struct WarpedInput {
 pub(super) struct FileRun {
     pub(super) report: FileReport,
     pub(super) files: Vec<PendingFile>,
-    /// Share of the page's size by which the artwork extends past it; the last warning says so.
-    pub(super) past_page: Option<f64>,
+    /// What became of the page; the last warnings say so.
+    pub(super) page: PageNews,
     /// The lines of `--explain`.
     pub(super) notes: Vec<String>,
     pub(super) partial: bool,
@@ -56,7 +56,7 @@ impl Batch<'_> {
     pub(super) fn run(&self, job: &Job) -> Result<FileRun, Failure> {
         let target = job.target.as_deref();
         let mut input = Input::open(&job.input, self.options, target)?;
-        let WarpedInput { result, mut report, past_page, notes, partial, saves, preview, files: others } =
+        let WarpedInput { result, mut report, page, notes, partial, saves, preview, files: others } =
             self.warp(&mut input)?;
         report.output = target.or(self.options.into.as_deref()).map(|t| t.display().to_string());
         let mut files = Vec::new();
@@ -72,7 +72,7 @@ impl Batch<'_> {
         if let (Some(file), Some(png)) = (&job.preview, preview) {
             files.push(PendingFile::new(file, &png)?);
         }
-        Ok(FileRun { report, files, past_page, notes, partial })
+        Ok(FileRun { report, files, page, notes, partial })
     }
 
     /// Warps one input and writes nothing. The report names no output.
@@ -104,14 +104,15 @@ impl Batch<'_> {
 
         let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
-        let request = WarpRequest { built: &built, options, tolerance, embedded_recipe };
+        let request =
+            WarpRequest { recipe: self.recipe, built: &built, options, tolerance, embedded_recipe, same_view: false };
         let warped = artwork.warp(&request);
         sound()?;
         let warped = warped.map_err(|f| explained(f, &built))?;
 
         let mut warnings: Vec<String> = self.in_flags(whole, |e| &e.warnings).chain(warped.warnings).collect();
         warnings.extend(stretched.into_iter().map(|(uncut, stretch)| advice::stretched(uncut, stretch)));
-        warnings.extend(warped.overhang.map(advice::overhang));
+        warnings.extend(warped.page.warnings());
         let frame = first.rect;
         let report = FileReport {
             file: artwork.file_name(),
@@ -121,6 +122,7 @@ impl Batch<'_> {
             frame: Some([frame.x0, frame.y0, frame.width(), frame.height()]),
             selections: selections(&recipe, whole),
             baseline: first.baseline,
+            page: warped.page.change.map(|[_, r]| [r.x0, r.y0, r.width(), r.height()]),
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings,
@@ -129,7 +131,7 @@ impl Batch<'_> {
         let notes = self.notes(whole, &frames(options.frame, &recipe, &starts, bounds.is_some()), &report.shapes);
         Ok(WarpedInput {
             result: warped.result,
-            past_page: warped.overhang.map(|o| o.share),
+            page: warped.page,
             saves: built.whole.steps.into_iter().flat_map(|s| s.saves).collect(),
             files: warped.files,
             preview: warped.preview,

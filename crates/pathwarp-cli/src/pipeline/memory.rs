@@ -27,7 +27,7 @@ pub(crate) fn warp_bytes(
     name: &Path,
     bytes: &[u8],
 ) -> Result<InMemory, Failure> {
-    let options = given.read()?;
+    let options = given.keeping_pages().read()?;
     let batch = Batch { registry, recipe, options: &options, given, flags: Flags::of(registry) };
     let warped = Input::of_bytes(bytes, name, &options, None).and_then(|mut input| batch.warp(&mut input));
     let warped = warped.map_err(|f| f.about(&display(name)))?;

@@ -1,7 +1,5 @@
-//! Warnings on the terminal: about one input, and those that are counted over a batch.
+//! Warnings about one input on the terminal.
 
-use super::file_run::FileRun;
-use crate::advice;
 use crate::report::FileReport;
 use crate::terminal;
 
@@ -28,32 +26,5 @@ pub(super) fn warn(r: &FileReport, count: usize) {
     let more = count.saturating_sub(SHOWN) + r.skipped.len().saturating_sub(SHOWN);
     if more > 0 {
         terminal::warning(&of_file(&format!("and {more} more; --report FILE lists them all")));
-    }
-}
-
-/// The inputs of a batch whose artwork extends past the page: one warning for all.
-#[derive(Default)]
-pub(super) struct PastPage {
-    count: usize,
-    /// The largest share of the page's size, and the input that has it.
-    most: Option<(f64, String)>,
-}
-
-impl PastPage {
-    /// Counts an input if its last warning is about the page.
-    pub(super) fn count(&mut self, run: &FileRun) -> bool {
-        let Some(share) = run.past_page else { return false };
-        self.count += 1;
-        if self.most.as_ref().is_none_or(|(most, _)| share > *most) {
-            self.most = Some((share, run.report.file.clone()));
-        }
-        true
-    }
-
-    /// Prints the warning.
-    pub(super) fn warn(&self, inputs: usize) {
-        if let Some((share, file)) = &self.most {
-            terminal::warning(&advice::overhangs(self.count, inputs, *share, file));
-        }
     }
 }

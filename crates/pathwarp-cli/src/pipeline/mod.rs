@@ -28,6 +28,7 @@ pub(crate) use inputs::InputFile;
 pub(crate) use memory::warp_bytes;
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
+use pathwarp_svg::PageFit;
 pub(crate) use plan::{Inputs, Job};
 use rayon::prelude::*;
 use report_file::ReportFile;
@@ -47,13 +48,18 @@ const MOST_THREADS_PER_CORE: usize = 4;
 /// Warps all inputs by a recipe, which was read from the file `from` if there is one.
 pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Option<&Path>) -> Result<Status, Failure> {
     let started = Instant::now();
-    let options = given.read()?;
+    let mut options = given.read()?;
     watch::begin(options.reading.limits);
     let inputs = inputs::inputs(&options)?;
     options.reading.check()?;
     let kind = Inputs { files: &inputs, kind: "input", replaceable: true, result: convert::identity };
     let jobs = kind.plan(registry, recipe, &options, from)?;
     drop(inputs);
+    // The files of a batch belong together and keep their pages.
+    let is_batch = jobs.len() > 1 || options.out_dir.is_some() || options.in_place || options.recursive;
+    if options.page == PageFit::Auto && is_batch {
+        options.page = PageFit::None;
+    }
     if let Some(preview) = &options.preview {
         PREVIEW.format(Some(preview), None)?;
     }

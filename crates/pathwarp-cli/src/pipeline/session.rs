@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::input::display;
 use crate::options::CommonOptions;
 use crate::output::PendingFile;
+use crate::page::PageCounts;
 use crate::report::FileReport;
 use crate::status::Status;
 use crate::terminal;
@@ -30,7 +31,7 @@ pub(super) struct Session<'a> {
     done: usize,
     failed: usize,
     failures: Vec<String>,
-    past_page: messages::PastPage,
+    pages: PageCounts,
 }
 
 impl<'a> Session<'a> {
@@ -45,7 +46,7 @@ impl<'a> Session<'a> {
             done: 0,
             failed: 0,
             failures: Vec::new(),
-            past_page: messages::PastPage::default(),
+            pages: PageCounts::default(),
         }
     }
 
@@ -61,12 +62,12 @@ impl<'a> Session<'a> {
             terminal::note(&if several { format!("{}: {note}", run.report.file) } else { note.clone() });
         }
         if !self.options.quiet {
-            let counted = several && self.past_page.count(&run);
-            messages::warn(
-                &run.report,
-                if counted { run.report.warnings.len() - 1 } else { run.report.warnings.len() },
-            );
+            run.page.note().iter().for_each(|note| terminal::note(note));
+            // The warnings about pages come last.
+            let counted = if several { run.page.warnings().len() } else { 0 };
+            messages::warn(&run.report, run.report.warnings.len() - counted);
         }
+        self.pages.add(&run.page, &run.report.file);
         self.done += 1;
         if run.partial {
             self.partial.push(run.report.file.clone());
@@ -92,10 +93,10 @@ impl<'a> Session<'a> {
         }
         PendingFile::commit_all(std::mem::take(&mut self.pending))?;
         if !self.options.quiet {
-            self.past_page.warn(self.inputs);
+            self.pages.warnings(self.inputs).iter().filter(|_| self.inputs > 1).for_each(|w| terminal::warning(w));
         }
         self.summarise();
-        Ok(Status::partial_if(!self.partial.is_empty() || self.failed > 0))
+        Ok(Status::partial_if(!self.partial.is_empty() || self.failed > 0 || self.pages.are_blank()))
     }
 
     /// Names the inputs of which something was left out, as the exit code tells of them.

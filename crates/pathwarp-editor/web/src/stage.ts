@@ -44,6 +44,8 @@ export class Stage {
   private isFitted = false;
   /** The first picture of a drawing has not arrived yet. */
   private isFresh = true;
+  /** The page of the last picture, as saving would have it; null for the drawing's own. */
+  private grown: Answer["page"] = null;
   /** Set while the page shows the drawing as it was. */
   isBefore = false;
   showsNodes = false;
@@ -97,7 +99,7 @@ export class Stage {
     return { left: left > 0 ? 0 : over, width: width - over, height, margin };
   }
 
-  /** Shows the whole page, as far as it holds the artwork. */
+  /** Shows the whole page. */
   fit(): void {
     const { left, width, height, margin } = this.view;
     if (!this.app.state || width === 0 || height === 0) return;
@@ -151,27 +153,27 @@ export class Stage {
   }
 
   private show(answer: Answer): void {
-    if (answer.picture) this.drawing.show(answer.picture);
-    if (answer.summary) {
-      const { isFresh } = this;
-      this.isFresh = false;
+    if (answer.picture) {
+      this.drawing.show(answer.picture);
+      // While something is dragged, the sheet grows under the view as it is.
+      this.grown = answer.page;
       this.grow();
-      if (isFresh) this.reveal();
+    }
+    if (answer.summary && this.isFresh) {
+      this.isFresh = false;
+      this.reveal();
     }
     if (this.showsNodes) this.drawNodes();
     this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
   }
 
-  /** The page, as far as it holds the artwork, as two corners in px of the drawing: saving makes it larger where needed. */
+  /** The page as saving makes it, as two corners in px of the drawing. */
   private get page(): Box {
     const { state } = this.app;
     if (!state) return [0, 0, 0, 0];
-    const [x, y, w, h] = state.page;
+    const [x, y, w, h] = this.grown ?? state.page;
     const [[ax, ay], [bx, by]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h])];
-    const page: Box = [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
-    const art = this.art.getBBox();
-    if (state.program || this.isFresh || art.width === 0) return page;
-    return [Math.min(page[0], art.x), Math.min(page[1], art.y), Math.max(page[2], art.x + art.width), Math.max(page[3], art.y + art.height)];
+    return [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
   }
 
   /** Draws the sheet as large as the page. */
@@ -211,6 +213,7 @@ export class Stage {
   forget(): void {
     this.beforeArt.replaceChildren();
     this.isFresh = true;
+    this.grown = null;
   }
 
   drawNodes(): void {

@@ -125,6 +125,8 @@ export interface Answer {
   grips?: StepGrips[];
   guides?: string[];
   warnings?: string[];
+  /** The page that saving gives the result, if that is not the drawing's. */
+  page?: [number, number, number, number] | null;
   summary?: Summary;
   state?: State;
   catalogue?: Deformation[];

@@ -250,12 +250,19 @@ export const steps_are_added_moved_and_removed = () => within(null, async ({ pag
   void middle;
 });
 
-/** Artwork that leaves the page takes it along, on show and in the file; the command line says so. */
+/** Artwork that leaves the page takes it along, on show, also during the drag, and in the file. */
 export const the_page_grows = () => within(null, async ({ dir, page }) => {
-  const sheet = () => page.$eval("#stage .sheet", (s) => s.getBoundingClientRect().top);
-  const [top, [, y]] = [await sheet(), await middle(page, "shaper/0.0/2")];
-  await drag(page, "shaper/0.0/2", 0, -90);
-  check((await sheet()) < top - 20, "the sheet does not grow");
+  const sheet = () => page.$eval("#stage .sheet", (s) => { const b = s.getBoundingClientRect(); return [b.top, b.bottom, b.left, b.right]; });
+  const [before, [x, y]] = [await sheet(), await middle(page, "shaper/0.0/2")];
+  const grown = (now) => now[0] < before[0] - 20 && now.slice(1).every((v, i) => Math.abs(v - before[i + 1]) < 0.5);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y - 90, { steps: 12 });
+  await page.waitForFunction((top) => document.querySelector("#stage .sheet").getBoundingClientRect().top < top - 20, before[0]);
+  check(grown(await sheet()), `the sheet does not grow at one side: ${before} to ${await sheet()}`);
+  await page.mouse.up();
+  await quiet(page);
+  check(grown(await sheet()), "the view has changed with the sheet");
   check(Math.abs((await middle(page, "shaper/0.0/2"))[1] - y + 90) < 9, "the view has moved");
   await page.click("#save");
   await page.waitForSelector("#toast.on");
@@ -265,7 +272,7 @@ export const the_page_grows = () => within(null, async ({ dir, page }) => {
   await page.click("#save-as");
   await page.click("#copy-command");
   await page.waitForFunction(() => window.copied);
-  check(/ --fit grow -o /.test(await page.evaluate(() => window.copied)), await page.evaluate(() => window.copied));
+  check(!/ --fit /.test(await page.evaluate(() => window.copied)), await page.evaluate(() => window.copied));
 });
 
 /** The nodes of the result are shown with their control points, also while it is dragged. */

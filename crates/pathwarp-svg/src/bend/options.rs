@@ -105,6 +105,9 @@ pub enum PageFit {
     /// Leave it unchanged.
     #[default]
     None,
+    /// If artwork that lay on it leaves it, extend it to hold that, outwards to whole user units; if nothing is left on it, set it to
+    /// the bounding box of the warped artwork with the margin of the original, outwards to whole user units.
+    Auto,
     /// Extend it to hold all of the warped artwork.
     Grow,
     /// Set it to the bounding box of the warped artwork.
@@ -183,7 +186,10 @@ pub struct WarpOptions {
     pub images: Images,
     /// Treatment of `use` elements that are not warped themselves but show something that is.
     pub clones: Clones,
-    /// Measure how far the result extends past its page. That takes a look at every path.
+    /// Leave viewBox, width and height as they are, for a look at the result on the page of the source;
+    /// [`WarpedDocument::page`](crate::WarpedDocument::page) tells what the page would be.
+    pub same_view: bool,
+    /// Measure how far the result extends past its page, and what has come onto it. That takes a look at every path.
     pub overhang: bool,
 }
 
@@ -206,6 +212,7 @@ impl WarpOptions {
             letters: LetterPlaces::default(),
             images: Images::default(),
             clones: Clones::default(),
+            same_view: false,
             overhang: true,
         }
     }
@@ -260,5 +267,6 @@ setters! {
     letters: LetterPlaces, with_letters;
     images: Images, with_images;
     clones: Clones, with_clones;
+    same_view: bool, with_same_view;
     overhang: bool, with_overhang;
 }

@@ -4,7 +4,7 @@ use super::paint::PaintFit;
 use super::picture::{BentImage, PictureError};
 use super::warning::Warning;
 use crate::source::number::path_data;
-use pathwarp::kurbo::{BezPath, Point};
+use pathwarp::kurbo::{BezPath, Point, Rect};
 use pathwarp::refit::{Assurance, PathReport};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,6 +23,10 @@ pub struct WarpedDocument {
     /// Distance by which the artwork extends past the page. `None` if it does not, the original does as well, or the page is
     /// adapted (see [`PageFit`](crate::PageFit)).
     pub overhang: Option<Overhang>,
+    /// The visible area before and after, in root user units, if the page is adapted.
+    pub page: Option<[Rect; 2]>,
+    /// Nothing of the result lies on its page.
+    pub blank: bool,
 }
 
 /// Report on a warped shape.
@@ -75,8 +79,6 @@ pub struct Overhang {
     pub by: [f64; 4],
     /// The largest overhang as a fraction of the page's width (left, right) or height (top, bottom).
     pub share: f64,
-    /// Nothing of the artwork is left on the page.
-    pub gone: bool,
 }
 
 impl WarpedDocument {

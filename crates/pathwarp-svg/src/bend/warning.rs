@@ -31,6 +31,8 @@ pub enum Warning {
     SharedImages,
     /// Text uses another font, as these are missing.
     MissingFonts(Vec<String>),
+    /// Artwork that lay off the page has moved onto it: these elements, in the order of the file.
+    Arrivals(Vec<String>),
     /// Something else that is lost or changed.
     Note {
         /// The sentence.
@@ -42,8 +44,6 @@ pub enum Warning {
 
 impl Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        /// Number of names listed; a few are enough to find the place.
-        const NAMED: usize = 4;
         match self {
             Self::Flattened(why) => write!(f, "the file is flattened, as its structure cannot be kept: {why}"),
             Self::FittedGradient { id, why } => {
@@ -64,14 +64,30 @@ impl Display for Warning {
             }
             Self::Note { text, names } => {
                 f.write_str(text)?;
-                if let Some((first, others)) = names.split_first() {
-                    write!(f, ": {first}")?;
-                    others.iter().take(NAMED - 1).try_for_each(|name| write!(f, ", {name}"))?;
-                }
-                if names.len() > NAMED { write!(f, " and {} more", names.len() - NAMED) } else { Ok(()) }
+                write_names(f, names)
+            }
+            Self::Arrivals(names) => {
+                let shapes = if names.len() == 1 {
+                    "shape that lay off the page has"
+                } else {
+                    "shapes that lay off the page have"
+                };
+                write!(f, "{} {shapes} moved onto it", names.len())?;
+                write_names(f, names)
             }
         }
     }
+}
+
+/// Writes the names that a warning is about.
+fn write_names(f: &mut fmt::Formatter<'_>, names: &[String]) -> fmt::Result {
+    /// Number of names listed; a few are enough to find the place.
+    const NAMED: usize = 4;
+    if let Some((first, others)) = names.split_first() {
+        write!(f, ": {first}")?;
+        others.iter().take(NAMED - 1).try_for_each(|name| write!(f, ", {name}"))?;
+    }
+    if names.len() > NAMED { write!(f, " and {} more", names.len() - NAMED) } else { Ok(()) }
 }
 
 #[cfg(test)]

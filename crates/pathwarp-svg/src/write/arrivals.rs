@@ -2,62 +2,48 @@
 
 use super::boxes::{bound, painted_box};
 use super::input::WriteInput;
-use super::page::shown;
-use crate::bend::outcome::Notes;
+use super::page::{image_boxes, warped_clip};
 use crate::scene::model::{Group, Node, PartRole};
-use crate::scene::seen::{clip_box, is_seen, overlap};
+use crate::scene::seen::{is_seen, overlap};
+use crate::source::tags::ElementId;
 use pathwarp::kurbo::Rect;
-use std::cell::LazyCell;
+use std::collections::BTreeSet;
 
 /// Extent of an arrival on the page to be seen, as a fraction of the page.
 const VISIBLE: f64 = 1e-3;
 
-/// Notes the elements that have come onto the page.
-pub(super) fn note(input: &WriteInput<'_>, notes: &mut Notes) {
-    let Some(page) = input.drawing.specified_area() else { return };
-    let shown = LazyCell::new(|| shown(input));
-    in_group(input, &input.scene.root, &mut Vec::new(), &mut |i, clips| {
-        let p = input.part(i);
-        if overlap(bound(p, None, p.frame), page).is_some() {
-            return;
-        }
-        let clipped = clips.iter().try_fold(*shown, |room, clip| overlap(room, warped_clip(input, *clip)?));
-        let after = painted_box(p, input.warped(i), input.written(p.slot, p.frame));
-        let came = clipped.and_then(|room| overlap(after, room)).is_some_and(|o| {
-            let deep = VISIBLE * shown.width().max(shown.height());
-            o.width().max(o.height()) > deep
-        });
-        if let Some(e) = p.owner.or(p.source).filter(|_| came) {
-            notes.add("artwork that lay off the page has moved onto it", &input.source.display_name(e));
-        }
-    });
+/// The names of the elements that have come onto the page `shown` of the result.
+pub(super) fn arrivals(input: &WriteInput<'_>, shown: Rect) -> Vec<String> {
+    let Some(page) = input.drawing.specified_area() else { return Vec::new() };
+    let mut found = BTreeSet::new();
+    in_group(input, &input.scene.root, (page, shown), &mut found);
+    found.into_iter().map(|e| input.source.display_name(e)).collect()
 }
 
-/// Visits the warped parts that are seen, with the clip paths around them.
-fn in_group(input: &WriteInput<'_>, g: &Group, clips: &mut Vec<usize>, visit: &mut dyn FnMut(usize, &[usize])) {
+/// Finds the elements of a group that lay off the page and now show in an area.
+fn in_group(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), found: &mut BTreeSet<ElementId>) {
     if g.opacity <= 0.0 || g.mask.is_some() {
         return;
     }
-    clips.extend(g.clip);
+    let Some(room) = g.clip.map_or(Some(shown), |i| overlap(shown, warped_clip(input, i)?)) else { return };
+    let deep = VISIBLE * page.width().max(page.height());
+    let shows = |after| overlap(after, room).is_some_and(|o| o.width().max(o.height()) > deep);
     for n in &g.children {
         match n {
-            Node::Group(g) => in_group(input, g, clips, visit),
-            Node::Text { content, .. } => in_group(input, content, clips, visit),
-            Node::Image(_) => {}
+            Node::Group(g) => in_group(input, g, (page, room), found),
+            Node::Text { content, .. } => in_group(input, content, (page, room), found),
+            Node::Image(i) => {
+                let came = image_boxes(input, *i).is_some_and(|(b, after)| overlap(b, page).is_none() && shows(after));
+                found.extend(input.scene.bitmaps[*i].owner.filter(|_| came));
+            }
             Node::Part(i) => {
                 let p = input.part(*i);
-                if is_seen(p) && p.role == PartRole::Paint && input.warped(*i).is_some() {
-                    visit(*i, clips);
-                }
+                let cheap = bound(p, None, p.frame);
+                let off = || overlap(cheap, page).is_none() || overlap(painted_box(p, None, p.frame), page).is_none();
+                let after = || painted_box(p, input.warped(*i), input.written(p.slot, p.frame));
+                let paints = is_seen(p) && p.role == PartRole::Paint && page.union(cheap) != page;
+                found.extend(p.owner.or(p.source).filter(|_| paints && off() && shows(after())));
             }
         }
     }
-    clips.truncate(clips.len() - usize::from(g.clip.is_some()));
-}
-
-fn warped_clip(input: &WriteInput<'_>, clip: usize) -> Option<Rect> {
-    clip_box(input.scene, clip, &|i| {
-        let p = input.part(i);
-        Some(painted_box(p, input.warped(i), input.written(p.slot, p.frame)))
-    })
 }

@@ -4,9 +4,11 @@ use super::values::stroke_scale;
 use crate::bend::outcome::{StrokeOutcome, WarpedPart};
 use crate::scene::expand::stroke_outline;
 use crate::scene::model::Part;
+use crate::scene::seen::overlap;
 use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
 use pathwarp::{Outline, Seg};
 use std::borrow::Cow;
+use usvg::FillRule;
 
 /// Relative tolerance of outlines that are measured.
 const FINE: f64 = 1e-4;
@@ -67,5 +69,23 @@ pub(super) fn painted_box(p: &Part, warped: Option<&WarpedPart>, frame: Affine) 
             let outline = stroke_outline(&back, s, (FINE * size).max(1e-9)).transformed(frame * Affine::scale(scale));
             outline.bounding_box().map_or(inside, |b| inside.union(b))
         }
+    }
+}
+
+/// Returns `true` if a part paints anything in an area, up to the boxes of its segments and the reach of its stroke.
+pub(super) fn paints_in(p: &Part, warped: Option<&WarpedPart>, frame: Affine, area: Rect) -> bool {
+    if overlap(bound(p, warped, frame), area).is_none() || overlap(painted_box(p, warped, frame), area).is_none() {
+        return false;
+    }
+    let fills = |path: &BezPath, rule: FillRule| {
+        let placed = frame * path;
+        let winding = placed.winding(area.center());
+        let is_inside = if rule == FillRule::EvenOdd { winding % 2 != 0 } else { winding != 0 };
+        is_inside || placed.segments().any(|s| overlap(s.bounding_box(), area).is_some())
+    };
+    match (&p.stroke, warped.map(|d| &d.stroke)) {
+        (Some(_), Some(StrokeOutcome::Outlined(o))) if fills(o, FillRule::NonZero) => true,
+        (Some(_), None | Some(StrokeOutcome::Scaled(_))) => true,
+        _ => p.fill.as_ref().is_some_and(|f| fills(&path(p, warped), f.rule())),
     }
 }

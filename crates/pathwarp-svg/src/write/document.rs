@@ -21,10 +21,12 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
     for prefix in &input.source.undeclared {
         notes.add("the file used namespace prefixes without declaring them; the result declares them", prefix);
     }
+    let change = page::change(input);
+    let written = change.filter(|_| !input.options.same_view);
     let patched = match (structure, &input.scene.unpatchable) {
         (Structure::Flatten, _) => None,
         (_, Some(why)) => Some(Err(why.clone())),
-        _ => Some(keep::write(input, &mut out.skipped, &mut notes)),
+        _ => Some(keep::write(input, written, &mut out.skipped, &mut notes)),
     };
     out.svg = match (patched, structure) {
         (Some(Ok(svg)), _) => {
@@ -39,15 +41,21 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
                 out.warnings.push(Warning::Flattened(why.to_string()));
             }
             out.skipped.extend(unread.map(|s| Skipped { why: s.why + "; it is left out", ..s }));
-            flat::write(input, &mut out.skipped, &mut notes)
+            flat::write(input, written, &mut out.skipped, &mut notes)
         }
     };
     out.skipped.extend(unsupported::styles(input));
-    arrivals::note(input, &mut notes);
     unsupported::note_private(input, &mut notes);
     unsupported::note_style_sheets(input, &mut notes);
     out.warnings.extend(notes.warnings());
-    out.overhang = page::overhang(input);
+    if input.options.overhang {
+        let shown = change.map_or_else(|| input.drawing.visible_area(), |(_, after)| after);
+        let arrived = arrivals::arrivals(input, shown);
+        out.warnings.extend((!arrived.is_empty()).then_some(Warning::Arrivals(arrived)));
+        out.overhang = page::overhang(input);
+        out.blank = page::is_blank(input, shown);
+    }
+    out.page = change.map(|(before, after)| [before, after]);
     Ok(())
 }
 

@@ -5,11 +5,17 @@ use super::input::WriteInput;
 use super::page;
 use crate::bend::outcome::{Notes, Skipped};
 use pathwarp_reader::xml::escape;
+use pathwarp::kurbo::Rect;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// Writes the file.
-pub(super) fn write(input: &WriteInput<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes) -> String {
+/// Writes the file; `change` is the visible area before and after, if that changes.
+pub(super) fn write(
+    input: &WriteInput<'_>,
+    change: Option<(Rect, Rect)>,
+    skipped: &mut Vec<Skipped>,
+    notes: &mut Notes,
+) -> String {
     let source = input.source;
     let mut w = Writer::new(*input, false, skipped, notes);
     if source.animated {
@@ -17,7 +23,7 @@ pub(super) fn write(input: &WriteInput<'_>, skipped: &mut Vec<Skipped>, notes: &
     }
     let mut out =
         String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"");
-    let page = page::change(input).map_or_else(Vec::new, |change| page::attributes(input.source, change));
+    let page = change.map_or_else(Vec::new, |change| page::attributes(input.source, change));
     for name in ["id", "class", "width", "height", "viewBox", "preserveAspectRatio"] {
         let new = page.iter().find(|p| p.0 == name).map(|p| Cow::Borrowed(p.1.as_str()));
         if let Some(v) = new.or_else(|| source.attr(0, name)) {

@@ -41,7 +41,7 @@ const DIGITS: i32 = 10;
 ///
 /// The text is a group with an `aria-label` and the font's heights in user units: `data-ascent` and `data-descent` (both
 /// measured from the baseline, both positive), `data-cap-height`, `data-x-height`. It contains a group for every line with
-/// `data-baseline="x0 y0 x1 y1"`, from the line's left end to its right end. That contains a path for every cluster with an
+/// `data-baseline="x0 y0 x1 y1"`, from the line's left end to its right end, and with heights of its own if it is scaled. That contains a path for every cluster with an
 /// outline: its text as `aria-label`, and its origin on the baseline and its advance width as `data-glyph="x y advance"`.
 ///
 /// ```
@@ -60,19 +60,22 @@ const DIGITS: i32 = 10;
 /// Returns [`Error::Usage`] if the fill is not a colour, or the margin is negative or not finite.
 pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> Result<String, Error> {
     let mut sheet = Sheet::new(lettering.page(), &lettering.text, options)?;
-    let number = |v: f64| sheet.numbers(&[v]);
-    let m = &lettering.metrics;
-    let heights = format!(
-        " data-ascent=\"{}\" data-descent=\"{}\" data-cap-height=\"{}\" data-x-height=\"{}\"",
-        number(m.ascent),
-        number(m.descent),
-        number(m.cap_height),
-        number(m.x_height),
-    );
-    sheet.begin(&lettering.text, &heights);
+    let decimals = sheet.decimals;
+    let heights = |scale: f64| {
+        let number = |v: f64| {
+            let mut out = String::new();
+            push(&mut out, v, decimals);
+            out
+        };
+        let m = lettering.metrics.scaled(scale);
+        let [ascent, descent, cap, x] = [m.ascent, m.descent, m.cap_height, m.x_height].map(number);
+        format!(" data-ascent=\"{ascent}\" data-descent=\"{descent}\" data-cap-height=\"{cap}\" data-x-height=\"{x}\"")
+    };
+    sheet.begin(&lettering.text, &heights(1.0));
     for line in &lettering.lines {
+        let own = if line.scale == 1.0 { String::new() } else { heights(line.scale) };
         let baseline = sheet.numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]);
-        let _ = writeln!(sheet.out, "<g data-baseline=\"{baseline}\">");
+        let _ = writeln!(sheet.out, "<g data-baseline=\"{baseline}\"{own}>");
         for c in line.clusters.iter().filter(|c| !c.outline.is_empty()) {
             let place = format!(" data-glyph=\"{}\"", sheet.numbers(&[c.origin.x, c.origin.y, c.advance]));
             sheet.letter(&c.text, &place, &path_data(&c.outline, sheet.decimals));

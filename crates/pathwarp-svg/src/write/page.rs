@@ -1,13 +1,12 @@
 //! The page and the warped artwork: overhang, and the root's viewBox, width and height to fit it.
 
-use super::boxes::{bound, box_under, painted_box, path};
+use super::boxes::{bound, box_under, painted_box, paints_in, path};
 use super::filter_region;
 use super::input::WriteInput;
 use crate::bend::bends::Bend;
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::options::PageFit;
 use crate::bend::outcome::{Overhang, PartOutcome};
-use crate::scene::affine::stretch;
 use crate::scene::filter_area;
 use crate::scene::model::{Group, Node, PartRole};
 use crate::scene::seen::{clip_box, is_seen, overlap};
@@ -20,6 +19,8 @@ use svgtypes::{Length, LengthUnit};
 
 /// Smallest visible overhang as a fraction of the page: one pixel in a thousand.
 const VISIBLE: f64 = 1e-3;
+/// Less than this fraction of the page beyond its edge, as icons have it for rounding, makes no visible difference.
+const SLIVER: f64 = 0.1 * VISIBLE;
 
 /// Rules for measuring the artwork's bounding box.
 #[derive(Clone, Copy)]
@@ -37,6 +38,7 @@ fn adapted(input: &WriteInput<'_>) -> Option<Rect> {
     let page = input.drawing.visible_area();
     let shown = match input.options.page {
         PageFit::None => return None,
+        PageFit::Auto => held(input, page)?,
         PageFit::Grow => page.union(artwork(input, Some(page))?),
         PageFit::Page => artwork(input, None)?,
         PageFit::PageWithMargin => {
@@ -47,9 +49,50 @@ fn adapted(input: &WriteInput<'_>) -> Option<Rect> {
     (shown.width() > 0.0 && shown.height() > 0.0 && shown.is_finite() && shown != page).then_some(shown)
 }
 
-/// The visible area of the result.
-pub(super) fn shown(input: &WriteInput<'_>) -> Rect {
-    adapted(input).unwrap_or_else(|| input.drawing.visible_area())
+/// The page of [`PageFit::Auto`]. `None` if it stays.
+fn held(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
+    if !moved(input) || input.drawing.specified_area().is_none() {
+        return None;
+    }
+    let all = artwork(input, Some(page))?;
+    let slack = SLIVER * page.width().max(page.height());
+    let outwards = |r: Rect| {
+        let [x0, y0] = [r.x0, r.y0].map(|v| (v + slack).floor());
+        let [x1, y1] = [r.x1, r.y1].map(|v| (v - slack).ceil());
+        Rect::new(x0, y0, x1, y1)
+    };
+    if !shows(input, &input.scene.root, seen_part(page)) {
+        let margin = margin(input, page);
+        return Some(outwards(artwork(input, None)?.inflate(margin, margin)));
+    }
+    // Curves are off by up to the tolerance.
+    let near = slack + input.options.refit.tolerance;
+    let whole = outwards(all);
+    let out = Rect::new(
+        if all.x0 < page.x0 - near { whole.x0 } else { page.x0 },
+        if all.y0 < page.y0 - near { whole.y0 } else { page.y0 },
+        if all.x1 > page.x1 + near { whole.x1 } else { page.x1 },
+        if all.y1 > page.y1 + near { whole.y1 } else { page.y1 },
+    );
+    Some(out)
+}
+
+/// The part of a page in which something has to lie to be seen.
+fn seen_part(page: Rect) -> Rect {
+    let edge = VISIBLE * page.width().min(page.height());
+    page.inflate(-edge, -edge)
+}
+
+/// Returns `true` if nothing of the drawing lies on its page `shown`, if it specifies one.
+pub(super) fn is_blank(input: &WriteInput<'_>, shown: Rect) -> bool {
+    input.drawing.specified_area().is_some() && !shows(input, &input.scene.root, seen_part(shown))
+}
+
+/// Returns `true` if anything of the result has moved.
+fn moved(input: &WriteInput<'_>) -> bool {
+    input.outcomes.iter().any(|o| o.warped().is_some())
+        || input.slots.iter().any(|s| s.fit != Affine::IDENTITY)
+        || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent(_)))
 }
 
 /// Returns new attributes of the root for a [`change`] of the page.
@@ -76,28 +119,19 @@ pub(super) fn change(input: &WriteInput<'_>) -> Option<(Rect, Rect)> {
 /// Measures the overhang over a page that is not adapted, compared to the original.
 pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     // Measuring needs every outline, so skip it if nothing has moved.
-    let moved = input.outcomes.iter().any(|o| o.warped().is_some())
-        || input.slots.iter().any(|s| s.fit != Affine::IDENTITY)
-        || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent(_)));
-    if !input.options.overhang
-        || input.options.page != PageFit::None
-        || !moved
-        || input.drawing.specified_area().is_none()
-    {
+    if input.options.page != PageFit::None || !moved(input) || input.drawing.specified_area().is_none() {
         return None;
     }
     let page = input.drawing.visible_area();
     let sides = [page.width(), page.height(), page.width(), page.height()];
     let beyond = |b: Rect| [page.x0 - b.x0, page.y0 - b.y0, b.x1 - page.x1, b.y1 - page.y1];
     let is_visible = |by: &[f64; 4]| by.iter().zip(sides).any(|(by, side)| *by > VISIBLE * side);
-    let all = artwork(input, Some(page))?;
-    let after = beyond(all);
+    let after = beyond(artwork(input, Some(page))?);
     if !is_visible(&after) {
         return None;
     }
     let before = original(input, Some(page)).map_or([0.0; 4], beyond);
-    let gone = |b: Rect| overlap(b, page).is_none_or(|seen| seen.width() <= 0.0 && seen.height() <= 0.0);
-    let mut out = Overhang { gone: gone(all) && !original(input, Some(page)).is_none_or(gone), ..Overhang::default() };
+    let mut out = Overhang::default();
     for i in 0..4 {
         if after[i] > before[i].max(0.0) + VISIBLE * sides[i] {
             out.by[i] = after[i];
@@ -125,24 +159,47 @@ fn original(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
 
 /// Bounding box of everything painted, strokes included, in root user space. Guides do not count.
 fn artwork(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
-    let guides = Selection { guides: input.options.selection.guides.clone(), ..Selection::default() };
-    let counts = guides.resolve(input.source);
+    let counts = guideless(input);
     group_box(input, &input.scene.root, Measure { counts: &counts, room, page: input.drawing.specified_area() })
 }
 
-/// Bounds the image of what the page showed of a part; unbounded if it showed all that can be seen. `None` if it showed nothing.
-fn from_page(input: &WriteInput<'_>, i: usize, page: Rect) -> Option<Rect> {
-    /// Less than this fraction of the page beyond its edge, as icons have it for rounding, makes no visible difference.
-    const SLIVER: f64 = 0.1 * VISIBLE;
-    let everything = Rect::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
+/// For every element, `true` unless it is a guide.
+fn guideless(input: &WriteInput<'_>) -> Vec<bool> {
+    Selection { guides: input.options.selection.guides.clone(), ..Selection::default() }.resolve(input.source)
+}
+
+/// Bounds the image of what the page showed of a part, `frame` being its frame in the result; unbounded if it showed all that can be seen.
+/// `None` if it showed nothing.
+fn from_page(input: &WriteInput<'_>, i: usize, frame: Affine, page: Rect) -> Option<Rect> {
     let p = input.part(i);
-    let Some(all) = p.outline().bounding_box() else { return Some(everything) };
-    let reach = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get()) * stretch(p.frame));
-    let shown = overlap(all.inflate(reach, reach), page)?;
+    let nearly = nearly(page);
+    let cheap = bound(p, None, p.frame);
+    let painted = if holds(nearly, cheap) { cheap } else { painted_box(p, None, p.frame) };
     // Letters placed one by one do not go through the whole map.
-    let nearly = page.inflate(SLIVER * page.width(), SLIVER * page.height());
-    let bend = input.bend(i..i + 1).filter(|b| nearly.union(all) != nearly && b.options.letters.places.is_empty());
-    bend.map_or(Some(everything), |bend| image_box(bend, shown))
+    let bend = input.bend(i..i + 1).filter(|_| input.warped(i).is_some());
+    let whole = holds(nearly, painted) || bend.is_some_and(|b| !b.options.letters.places.is_empty());
+    image_from_page(bend, painted, whole, page, frame * p.frame.inverse())
+}
+
+/// Does the same for anything whose box before the warp is `painted` and that the page shows as a `whole` or not. It goes through the
+/// map of `bend`, or else by `fit`.
+fn image_from_page(bend: Option<&Bend<'_>>, painted: Rect, whole: bool, page: Rect, fit: Affine) -> Option<Rect> {
+    let everything = Rect::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
+    let shown = overlap(painted, page)?;
+    match bend {
+        _ if whole => Some(everything),
+        Some(bend) => image_box(bend, shown),
+        None => Some(fit.transform_rect_bbox(shown)),
+    }
+}
+
+/// The page with the slivers around it that make no difference.
+fn nearly(page: Rect) -> Rect {
+    page.inflate(SLIVER * page.width(), SLIVER * page.height())
+}
+
+fn holds(outer: Rect, inner: Rect) -> bool {
+    outer.union(inner) == outer
 }
 
 /// Bounding box of the image of an area of root user space.
@@ -169,6 +226,54 @@ fn image_box(bend: &Bend<'_>, area: Rect) -> Option<Rect> {
     images.into_iter().filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
 }
 
+/// The boxes of a visible bitmap before and after the warp.
+pub(super) fn image_boxes(input: &WriteInput<'_>, i: usize) -> Option<(Rect, Rect)> {
+    let b = &input.scene.bitmaps[i];
+    let pixels = b.image.size();
+    let own = Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into());
+    let frame = input.written(b.slot, b.frame);
+    let after = match &input.images[i] {
+        EmbeddedImage::Bent(bent) => (frame * b.placing.inverse()).transform_rect_bbox(bent.area),
+        _ => frame.transform_rect_bbox(own),
+    };
+    b.image.is_visible().then(|| (b.frame.transform_rect_bbox(own), after))
+}
+
+/// Returns `true` if anything of a group is seen in an area.
+fn shows(input: &WriteInput<'_>, g: &Group, area: Rect) -> bool {
+    let counts = guideless(input);
+    shows_within(input, g, area, &counts)
+}
+
+fn shows_within(input: &WriteInput<'_>, g: &Group, area: Rect, counts: &[bool]) -> bool {
+    if g.opacity <= 0.0 {
+        return false;
+    }
+    if !g.filters.is_empty() || g.mask.is_some() {
+        let all = group_box(input, g, Measure { counts, room: None, page: None });
+        return all.is_some_and(|b| overlap(b, area).is_some());
+    }
+    let Some(area) = g.clip.map_or(Some(area), |i| overlap(area, warped_clip(input, i)?)) else { return false };
+    g.children.iter().any(|n| match n {
+        Node::Group(g) => shows_within(input, g, area, counts),
+        Node::Text { content, .. } => shows_within(input, content, area, counts),
+        Node::Image(i) => image_boxes(input, *i).is_some_and(|(_, after)| overlap(after, area).is_some()),
+        Node::Part(i) => {
+            let p = input.part(*i);
+            let paints = is_seen(p) && p.role == PartRole::Paint && p.owner.or(p.source).is_none_or(|e| counts[e]);
+            paints && paints_in(p, input.warped(*i), input.written(p.slot, p.frame), area)
+        }
+    })
+}
+
+/// Bounding box of a clip path in the result.
+pub(super) fn warped_clip(input: &WriteInput<'_>, clip: usize) -> Option<Rect> {
+    clip_box(input.scene, clip, &|i| {
+        let p = input.part(i);
+        Some(box_under(input.written(p.slot, p.frame), &path(p, input.warped(i))))
+    })
+}
+
 fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> {
     let scene = input.scene;
     if g.opacity <= 0.0 {
@@ -184,20 +289,16 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
             let warped = input.warped(*i);
             let near = |r: Rect| Some(bound(p, warped, frame)).filter(|b| r.union(*b) == r);
             let all = seen.then(|| m.room.and_then(near).unwrap_or_else(|| painted_box(p, warped, frame)))?;
-            match (m.page, warped) {
-                (Some(page), Some(_)) => overlap(all, from_page(input, *i, page)?),
-                (Some(page), None) => overlap(all, page),
-                (None, _) => Some(all),
-            }
+            m.page.map_or(Some(all), |page| overlap(all, from_page(input, *i, frame, page)?))
         }
         Node::Image(i) => {
+            let (before, after) = image_boxes(input, *i)?;
+            let Some(page) = m.page else { return Some(after) };
+            let is_bent = matches!(input.images[*i], EmbeddedImage::Bent(_));
             let b = &scene.bitmaps[*i];
-            let frame = input.written(b.slot, b.frame);
-            let pixels = b.image.size();
-            b.image.is_visible().then(|| match &input.images[*i] {
-                EmbeddedImage::Bent(bent) => (frame * b.placing.inverse()).transform_rect_bbox(bent.area),
-                _ => frame.transform_rect_bbox(Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into())),
-            })
+            let bend = input.bends.of(b.owner).map(|k| &input.bends.each[k]).filter(|_| is_bent);
+            let fit = input.written(b.slot, b.frame) * b.frame.inverse();
+            overlap(after, image_from_page(bend, before, holds(nearly(page), before), page, fit)?)
         }
     };
     let mut all: Option<Rect> = None;
@@ -218,11 +319,7 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         }
     }
     if let Some(i) = g.clip {
-        let part_box = |i| {
-            let p = input.part(i);
-            Some(box_under(input.written(p.slot, p.frame), &path(p, input.warped(i))))
-        };
-        all = overlap(all, clip_box(scene, i, &part_box)?)?;
+        all = overlap(all, warped_clip(input, i)?)?;
     }
     if let Some(m) = g.mask.map(|i| &scene.masks[i]) {
         let boxes = m.parts.clone().map(|i| {

@@ -100,10 +100,10 @@ fn what_comes_onto_the_page_is_reported() {
         all.iter().map(ToString::to_string).filter(|w| w.contains("lay off the page")).collect::<Vec<_>>()
     };
     let note = "<rect id='n' x='20' y='110' width='50' height='10'/>";
-    assert_eq!(came(note), ["artwork that lay off the page has moved onto it: n"]);
+    assert_eq!(came(note), ["1 shape that lay off the page has moved onto it: n"]);
     let text =
         "<text id='t' x='20' y='125' font-size='12'>note</text><rect id='far' x='20' y='190' width='9' height='9'/>";
-    assert_eq!(came(text), ["artwork that lay off the page has moved onto it: t"]);
+    assert_eq!(came(text), ["1 shape that lay off the page has moved onto it: t"]);
     // On the page before, still off the page, invisible, or clipped away.
     for hidden in [
         "<rect x='20' y='60' width='50' height='60'/>",

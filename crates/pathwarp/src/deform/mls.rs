@@ -141,7 +141,7 @@ it can, similar also lets them grow and shrink, affine lets them shear as well (
         },
         Example {
             what: "The anchors of one path to those of another",
-            command: "mls samples/grid.svg --from samples/anchors.svg#base4 --to samples/anchors.svg#target4 --kind affine --fit grow -o out.svg",
+            command: "mls samples/grid.svg --from samples/anchors.svg#base4 --to samples/anchors.svg#target4 --kind affine -o out.svg",
         },
     ])
     .laws(&[

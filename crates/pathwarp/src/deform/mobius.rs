@@ -113,7 +113,7 @@ points and their images (--from, --to), or give the coefficients of w = (a·z + 
     ])
     .demo(&[("pole", "60,250")])
     .examples(&[
-        Example { what: "As it comes", command: "mobius samples/logo.svg --fit grow -o out.svg" },
+        Example { what: "As it comes", command: "mobius samples/logo.svg -o out.svg" },
         Example {
             what: "Both ends of a word up, its middle kept",
             command: "mobius samples/lettering.svg --from '0%,50% 50%,50% 100%,50%' --to '5%,10% 50%,50% 95%,10%' -o out.svg",

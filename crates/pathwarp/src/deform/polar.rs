@@ -204,12 +204,12 @@ lettering, none for other artwork.")
     ])
     .demo(&[("turn", "15")])
     .examples(&[
-        Example { what: "An arch", command: "polar samples/lettering.svg --fit grow -o out.svg" },
+        Example { what: "An arch", command: "polar samples/lettering.svg -o out.svg" },
         Example {
             what: "A whole ring about the middle",
             command: "polar samples/grid.svg --sweep 360 --inner 15% --outer 50% --center 50%,50% -o out.svg",
         },
-        Example { what: "A smile", command: "polar samples/logo.svg --sweep -90 --fit grow -o out.svg" },
+        Example { what: "A smile", command: "polar samples/logo.svg --sweep -90 -o out.svg" },
     ])
     .laws(&[
         Law::Identity(&[("sweep", "0")]),

@@ -99,7 +99,7 @@ themselves, no area changes, and outside the radius nothing moves (with --fallof
     ])
     .demo(&[("angle", "120"), ("radius", "40"), ("falloff", "sharp")])
     .examples(&[
-        Example { what: "As it comes", command: "swirl samples/logo.svg --fit grow -o out.svg" },
+        Example { what: "As it comes", command: "swirl samples/logo.svg -o out.svg" },
         Example {
             what: "A whole turn of the middle only",
             command: "swirl samples/grid.svg --angle 1turn --radius 30% -o out.svg",

@@ -17,12 +17,13 @@ font has is drawn as the first font draws missing characters; a warning names it
 Examples:
   pathwarp text Welcome -o word.svg
   pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg
+  pathwarp text LOVE MUSIC --align fill --gap 6% -o poster.svg
   pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
   pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
   pathwarp text Welcome --size 40mm -o sign.dxf
   pathwarp text 'HARBOUR COFFEE' --below 'SINCE 1887' --on circle:r=60mm --letter-spacing 8% -o badge.svg
   pathwarp text 'Round and round it goes' --on spiral:turns=2,inner=20mm,outer=60mm --size 8mm -o spiral.svg
-  pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' --fit grow -o arc.svg";
+  pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' -o arc.svg";
 
 /// An option with a value that is parsed later, and may start with a minus.
 fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
@@ -100,10 +101,13 @@ fn spacing() -> impl Iterator<Item = Arg> {
             "LENGTH",
             "Distance between baselines; percentages refer to the size [default: the font's line height]",
         ),
+        value("gap", "LENGTH", "Distance between lines from ink to ink, instead of a line height; percentages refer to the size")
+            .conflicts_with("line-height"),
         choice(
             "align",
-            &["start", "left", "center", "right", "justify"],
-            "Alignment of lines, also on an open path; justify widens the word spaces of shorter lines [default: start, on a path center]",
+            &["start", "left", "center", "right", "justify", "fill"],
+            "Alignment of lines; justify widens the word spaces of shorter lines, fill sizes every line until its ink is as wide as \
+             that of the widest [default: start, on a path center]",
         ),
     ]
     .into_iter()

@@ -57,11 +57,13 @@ pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
         letter_spacing: em.length(m, "letter-spacing")?.unwrap_or(0.0),
         word_spacing: em.length(m, "word-spacing")?.unwrap_or(0.0),
         line_height: em.length(m, "line-height")?,
+        gap: em.length(m, "gap")?,
         align: match word("align") {
             Some("left") => Align::Left,
             Some("center") => Align::Center,
             Some("right") => Align::Right,
             Some("justify") => Align::Justify,
+            Some("fill") => Align::Fill,
             None if m.contains_id("on") => Align::Center,
             _ => Align::Start,
         },

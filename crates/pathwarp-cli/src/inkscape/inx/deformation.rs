@@ -12,8 +12,8 @@ use std::fmt::Write as _;
 const SHOWN: [&str; 11] =
     ["fit", "clones", "strokes", "text", "gradients", "patterns", "images", "merge", "on-error", "tolerance", "frame"];
 
-/// Other defaults than the command line has: in Inkscape, clones show what happens to their original.
-const DEFAULTS: [(&str, &str); 1] = [("clones", "follow")];
+/// Other defaults than the command line has: in Inkscape, clones show what happens to their original, and pages stay.
+const DEFAULTS: [(&str, &str); 2] = [("clones", "follow"), ("fit", "none")];
 
 /// Describes the effect.
 pub(super) fn inx(info: &Info, program: &Program) -> String {

@@ -49,7 +49,7 @@ mod tests {
         }
         // Inkscape 1.2 takes the first option of a choice.
         let bend = &all.iter().find(|(name, _)| name == "pathwarp-bend.inx").unwrap().1;
-        for (choice, first) in [("align", "middle"), ("clones", "follow"), ("offset_unit", "user")] {
+        for (choice, first) in [("align", "middle"), ("clones", "follow"), ("fit", "none"), ("offset_unit", "user")] {
             let options = bend.split(&format!("name=\"{choice}\"")).nth(1).unwrap();
             assert!(options.split("<option value=\"").nth(1).unwrap().starts_with(first), "{choice}");
         }

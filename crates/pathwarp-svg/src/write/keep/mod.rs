@@ -23,18 +23,18 @@ use crate::source::number::matrix;
 use crate::source::text::SourceText;
 use crate::source::unpatchable::Unpatchable;
 use keeper::Keeper;
-use pathwarp::kurbo::Affine;
+use pathwarp::kurbo::{Affine, Rect};
 use warped::Warped;
 
-/// Patches the text.
+/// Patches the text; `change` is the visible area before and after, if that changes.
 pub(super) fn write(
     input: &WriteInput<'_>,
+    change: Option<(Rect, Rect)>,
     skipped: &mut Vec<Skipped>,
     notes: &mut Notes,
 ) -> Result<String, Unpatchable> {
     let mut writer = Writer::new(*input, true, skipped, notes);
     let mut k = Keeper::new(*input, &mut writer);
-    let change = page::change(input);
     if let Some((_, after)) = change {
         percentages::hold(&mut k, after.size());
     }

@@ -110,7 +110,7 @@ a fixed side: the first side of a triangle, the edge of a box if --local.",
         },
         Example {
             what: "Swell a word away from an eye below it",
-            command: "anamorph samples/lettering.svg --eye 50%,250% --degree 2x1 --push 1,0:140% --fit grow -o out.svg",
+            command: "anamorph samples/lettering.svg --eye 50%,250% --degree 2x1 --push 1,0:140% -o out.svg",
         },
     ])
     .laws(&[

@@ -89,11 +89,11 @@ omitted). A handle is the image of the artwork's height.")
         },
         Example {
             what: "On an arc of a circle, scaled to its length",
-            command: "bend samples/logo.svg --along 'M60,190 A400,400 0 0 1 604,190' --stretch scale --baseline 0 --fit grow -o out.svg",
+            command: "bend samples/logo.svg --along 'M60,190 A400,400 0 0 1 604,190' --stretch scale --baseline 0 -o out.svg",
         },
         Example {
             what: "On an arc of 60 mm radius about the middle, from 200° to 340°",
-            command: "bend samples/lettering.svg --along arc:r=60mm,from=200,to=340 --fit grow -o out.svg",
+            command: "bend samples/lettering.svg --along arc:r=60mm,from=200,to=340 -o out.svg",
         },
         Example {
             what: "A border of logos round a circle",
@@ -109,7 +109,7 @@ omitted). A handle is the image of the artwork's height.")
         },
         Example {
             what: "A grid along a winding path, by the paper's polynomial map",
-            command: "bend samples/grid.svg --along 'M10,120 C60,20 90,20 120,120 S180,220 230,120' --by parameter --stretch fit --width 40% --fit grow -o out.svg",
+            command: "bend samples/grid.svg --along 'M10,120 C60,20 90,20 120,120 S180,220 230,120' --by parameter --stretch fit --width 40% -o out.svg",
         },
     ])
     .laws(&[

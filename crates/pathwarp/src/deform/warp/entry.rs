@@ -65,7 +65,7 @@ transformation from 16 control points, equation (7)")
     ])
     .demo(&[("style", "arc"), ("bend", "40%"), ("horizontal", "15%"), ("vertical", "-20%")])
     .examples(&[
-        Example { what: "A word on an arc", command: "warp samples/lettering.svg --style arc --bend 50% --fit grow -o out.svg" },
+        Example { what: "A word on an arc", command: "warp samples/lettering.svg --style arc --bend 50% -o out.svg" },
         Example { what: "A logo on a flag", command: "warp samples/logo.svg --style flag --bend -30% -o out.svg" },
         Example {
             what: "A badge seen through a fisheye, leaning away to the right",
@@ -73,11 +73,11 @@ transformation from 16 control points, equation (7)")
         },
         Example {
             what: "Lettering in a bulge whose verticals stay vertical",
-            command: "warp samples/lettering.svg --style bulge --bend 40% --keep verticals --fit grow -o out.svg",
+            command: "warp samples/lettering.svg --style bulge --bend 40% --keep verticals -o out.svg",
         },
         Example {
             what: "A style from a file",
-            command: "warp samples/lettering.svg --style samples/roof.toml --bend 80% --fit grow -o out.svg",
+            command: "warp samples/lettering.svg --style samples/roof.toml --bend 80% -o out.svg",
         },
     ])
     .laws(&[
