@@ -29,6 +29,7 @@ use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Map, NewtonInverse, metered};
 use crate::meter::Meter;
 use crate::outline::Outline;
+use crate::outline::Seg;
 use crate::param::{Args, Frame, Kind, Param};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::collections::HashSet;
@@ -309,6 +310,10 @@ impl Recipe {
                 let image = images.reduce(|a, b| a.union(b));
                 frame = image.map_or(frame, |b| Frame::new(b).with_units_per_px(units_per_px));
             }
+            if entry.info().letters {
+                let dots = all().flat_map(|(part, portion)| ink(portion.outlines.iter().copied(), &part.map));
+                frame.ink = dots.collect();
+            }
             let mut built = entry.build_from(&step.args, &frame)?;
             let is_first = all().all(|(part, _)| part.steps.is_empty());
             check_placement(&built.placement, i, is_first, step)?;
@@ -507,6 +512,28 @@ fn images<'a>(
         map.points(&ps, &mut image);
         image
     })
+}
+
+/// Returns points of the artwork's image, evenly from the artwork.
+fn ink<'a>(artwork: impl Iterator<Item = &'a Outline> + Clone, map: &dyn Map) -> Vec<Point> {
+    /// Their number, about.
+    const POINTS: f64 = 1000.0;
+    let length = |s: &Seg| {
+        let ps = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| s.eval(t));
+        ps.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>()
+    };
+    let step = artwork.clone().flat_map(Outline::segs).map(length).sum::<f64>() / POINTS;
+    let (mut out, mut at) = (Vec::new(), 0.5 * step);
+    for s in artwork.flat_map(Outline::segs) {
+        let here = length(s);
+        while at < here {
+            out.push(map.point(s.eval(at / here)));
+            at += step;
+        }
+        at -= here;
+    }
+    out.retain(|p| p.is_finite());
+    out
 }
 
 /// Returns the bounding box of the artwork's image.

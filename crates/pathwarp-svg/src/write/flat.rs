@@ -4,8 +4,8 @@ use super::fragment::Writer;
 use super::input::WriteInput;
 use super::page;
 use crate::bend::outcome::{Notes, Skipped};
-use pathwarp_reader::xml::escape;
 use pathwarp::kurbo::Rect;
+use pathwarp_reader::xml::escape;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 

@@ -79,5 +79,5 @@ pub use projective::AffineMap;
 pub use rational_bezier::RationalBezier;
 pub use traits::Map;
 
-pub(crate) use curves::{Along, Guide};
+pub(crate) use curves::{Along, Guide, increasing_root};
 pub(crate) use piecewise::{Local, TileRow, Tiled, ruled};

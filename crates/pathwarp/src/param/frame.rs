@@ -17,13 +17,16 @@ pub struct Frame {
     pub units_per_px: [f64; 2],
     /// The known letters of the artwork. Empty if there are none, or if their baseline is not horizontal.
     pub letters: Arc<[Letter]>,
+    /// Points along the artwork, for deformations that ask for [letters](Self::letters): where distortion is visible. Empty if
+    /// they are not known.
+    pub ink: Arc<[Point]>,
 }
 
 impl Frame {
     /// A frame without lettering.
     #[must_use]
     pub fn new(rect: Rect) -> Self {
-        Self { rect: rect.abs(), baseline: None, units_per_px: [1.0; 2], letters: Arc::new([]) }
+        Self { rect: rect.abs(), baseline: None, units_per_px: [1.0; 2], letters: Arc::new([]), ink: Arc::new([]) }
     }
 
     /// Adds letters.

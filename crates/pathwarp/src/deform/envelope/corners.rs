@@ -1,5 +1,6 @@
 //! A closed path divided into four sides: its corners and its bottom, given or found.
 
+use super::columns::part;
 use super::ring::{Corners, Ring, SAMPLES, area, mirrored, reversed};
 use crate::anchors;
 use crate::error::{Error, show};
@@ -16,6 +17,25 @@ const MAX_PIECES: usize = 2000;
 /// A location on the path: piece and parameter.
 type Location = (usize, f64);
 
+/// Returns the box of a closed path.
+pub(super) fn bounds(sub: &Subpath) -> Rect {
+    sub.segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
+}
+
+/// Reads a closed path that encloses something.
+pub(super) fn closed(path: &NamedPath) -> Result<Subpath, Error> {
+    let sub = anchors::closed_subpath(path, "a single closed run of them", |lines| lines >= 2)?;
+    if sub.segs.len() > MAX_PIECES {
+        let problem = format!("has {} pieces; the limit is {MAX_PIECES}: simplify it", sub.segs.len());
+        return Err(Error::usage("envelope", path.name.clone(), problem));
+    }
+    let bounds = bounds(&sub);
+    if !(bounds.width() > 0.0 && bounds.height() > 0.0) {
+        return Err(Error::usage("envelope", path.name.clone(), "is flat: it encloses nothing"));
+    }
+    Ok(sub)
+}
+
 /// Divides a closed path into four sides. Corners and bottom are found unless given; nothing is mirrored unless `reverse`.
 pub(super) fn ring(
     path: &NamedPath,
@@ -23,15 +43,8 @@ pub(super) fn ring(
     bottom_side: Option<usize>,
     reverse: bool,
 ) -> Result<Ring, Error> {
-    let sub = anchors::closed_subpath(path, "a single closed run of them", |lines| lines >= 2)?;
-    if sub.segs.len() > MAX_PIECES {
-        let problem = format!("has {} pieces; the limit is {MAX_PIECES}: simplify it", sub.segs.len());
-        return Err(Error::usage("envelope", path.name.clone(), problem));
-    }
-    let bounds = sub.segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
-    if !(bounds.width() > 0.0 && bounds.height() > 0.0) {
-        return Err(Error::usage("envelope", path.name.clone(), "is flat: it encloses nothing"));
-    }
+    let sub = closed(path)?;
+    let bounds = bounds(&sub);
     let (locations, how) = match corners {
         Some(corners) => (given(&sub, corners, bounds)?, "as given"),
         None => found(&path.name, &sub, bounds)?,
@@ -95,11 +108,6 @@ fn lowest(sides: &[Vec<Seg>; 4]) -> usize {
 
 /// Cuts the path at its corners.
 fn cut(segs: &[Seg], locations: [Location; 4]) -> [Vec<Seg>; 4] {
-    let part = |s: &Seg, a: f64, b: f64| match s {
-        _ if a == 0.0 && b == 1.0 => *s,
-        Seg::Arc(arc) => Seg::Arc(arc.subsegment(a, b)),
-        other => other.part(a, b).unwrap_or(*other),
-    };
     std::array::from_fn(|i| {
         let ((from, a), (to, b)) = (locations[i], locations[(i + 1) % 4]);
         let mut out = Vec::new();
@@ -153,7 +161,7 @@ fn given(sub: &Subpath, corners: &Corners, bounds: Rect) -> Result<[Location; 4]
 /// span at least as much as the last choice; the points nearest to the box's corners.
 fn found(name: &str, sub: &Subpath, bounds: Rect) -> Result<([Location; 4], &'static str), Error> {
     let n = sub.segs.len();
-    let sharp: Vec<usize> = (0..n).filter(|&i| turn(&sub.segs[(i + n - 1) % n], &sub.segs[i]) >= CORNER).collect();
+    let sharp: Vec<usize> = (0..n).filter(|&i| turn(sub, i).abs() >= CORNER).collect();
     let four = <[usize; 4]>::try_from(sharp.clone()).ok().map(|c| c.map(|i| (i, 0.0)));
     let boxed = by_box(sub, bounds, &sharp);
     let span = |locations: &[Location; 4]| {
@@ -218,8 +226,15 @@ fn by_box(sub: &Subpath, bounds: Rect, sharp: &[usize]) -> Option<[Location; 4]>
     (sorted.windows(2).all(apart) && (round(1) || round(3))).then_some(sorted)
 }
 
-/// Returns the angle by which the path turns from one piece to the next, degrees.
-fn turn(a: &Seg, b: &Seg) -> f64 {
+/// Returns the nodes of a path that runs around its area with this sign at which it turns sharply outwards.
+pub(super) fn sharp(sub: &Subpath, around: f64) -> impl Iterator<Item = usize> {
+    (0..sub.segs.len()).filter(move |i| turn(sub, *i) * around >= CORNER)
+}
+
+/// Returns the angle by which the path turns at a node, degrees.
+fn turn(sub: &Subpath, node: usize) -> f64 {
+    let n = sub.segs.len();
+    let (a, b) = (&sub.segs[(node + n - 1) % n], &sub.segs[node]);
     /// The direction is taken this much further in where a piece has no speed.
     const ASIDE: f64 = 1e-4;
     let direction = |s: &Seg, t: f64, aside: f64| {
@@ -228,7 +243,7 @@ fn turn(a: &Seg, b: &Seg) -> f64 {
         if v.hypot() <= 1e-9 * (size.width() + size.height()) { s.deriv(aside) } else { v }
     };
     let (v, w) = (direction(a, 1.0, 1.0 - ASIDE), direction(b, 0.0, ASIDE));
-    v.cross(w).atan2(v.dot(w)).to_degrees().abs()
+    v.cross(w).atan2(v.dot(w)).to_degrees()
 }
 
 /// Returns the location nearest to `c`, both axes scaled: the best sample, refined to where the distance's slope vanishes. Ends

@@ -1,17 +1,19 @@
 //! The registry's entry: reads an [`Envelope`] from text.
 
 use super::ring::{Corners, SIDES};
-use super::{Envelope, Keep, Spread};
+use super::{Envelope, Keep, Room, Spread};
 use crate::deform::built::Built;
 use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
 use crate::error::Error;
 use crate::param::{Axis, Kind, NamedPath, Param, Settings};
+use std::sync::Arc;
 
 pub(in crate::deform) struct Entry;
 
 pub(super) static INFO: Info = Info::new("envelope", "put artwork into any closed shape, or between curves")
     .group("Envelopes")
     .guides(&["envelope"], 1)
+    .with_letters()
     .about("The artwork's box is laid onto a shape with four sides, which may have any number of pieces, and the artwork \
 follows. Name a closed path (--envelope, for instance an object of the drawing itself), or draw the sides one by one: --bottom and \
 --top, with --left and --right if they are to be curves as well, or --bottom alone with a --height.\n\nA closed path's corners are its \
@@ -42,8 +44,12 @@ the same for horizontals. Both need the two other sides to be straight. --keep l
         Param::new("bottom-side", Kind::Count, "The closed path's side that is the bottom: 1 to 4, from its first corner on as drawn. Default: the lowest.")
             .within(1.0, 4.0),
         Param::flag("reverse", "Run the bottom the other way: the result is mirrored."),
-        Param::new("keep", Kind::Choice(&["nothing", "verticals", "horizontals", "lines"]), "Lines that stay straight.")
-            .default("nothing"),
+        Param::new("keep", Kind::Choice(&["auto", "nothing", "verticals", "horizontals", "lines"]), "Lines that stay straight.")
+            .default("auto"),
+        Param::number("ends", "In columns or rows: the artwork ends where the shape is still this share of its greatest height (width). Default: 15% for lettering, else 0.")
+            .within(0.0, 0.99)
+            .slider(0.0, 0.5),
+        Param::length("padding", Axis::Y, "Distance that the artwork keeps from the shape's outline.").default("0").within(0.0, 1e9).slider(0.0, 50.0),
     ])
     .demo(&[("envelope", "M8,78 Q30,96 50,84 T95,85 C85,60 105,40 90,15 L70,6 C50,-5 30,30 5,10 C15,40 0,60 8,78 Z"), ("corners", "1,3,4,6")])
     .examples(&[
@@ -136,6 +142,9 @@ impl Deformation for Entry {
             bottom_side: s.number_if("bottom-side")?.map(|n| n as usize),
             reverse: s.flag("reverse")?,
             keep: Keep::named(s.choice("keep")?),
+            room: Room { ends: s.number_if("ends")?, padding: s.number("padding")? },
+            lettering: !s.frame().letters.is_empty(),
+            ink: Arc::clone(&s.frame().ink),
         };
         envelope.build()
     }

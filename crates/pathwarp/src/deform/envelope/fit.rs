@@ -1,5 +1,6 @@
 //! The map of a box into a ring of four sides.
 
+use super::choice::{Room, filled};
 use super::faults;
 use super::ring::{Ring, SIDES, reversed};
 use crate::anchors;
@@ -20,11 +21,14 @@ const VISIBLE_LEAN: f64 = 0.05;
 /// The lines of the artwork that stay straight in an envelope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
+    /// What suits the shape and the artwork: verticals for lettering unless the shape has four corners of its own, and else whatever
+    /// distorts the artwork less.
+    Auto,
     /// None in particular.
     Nothing,
-    /// Verticals, by the ruled map between bottom and top. The left and right side must be straight.
+    /// Verticals, by the ruled map between bottom and top; a closed shape is filled in columns.
     Verticals,
-    /// Horizontals, by the ruled map between left and right. The bottom and top side must be straight.
+    /// Horizontals, by the ruled map between left and right; a closed shape is filled in rows.
     Horizontals,
     /// All, by a projective map. All sides must be straight.
     Lines,
@@ -33,6 +37,7 @@ pub enum Keep {
 impl Keep {
     pub(in crate::deform) fn named(name: &str) -> Self {
         match name {
+            "auto" => Self::Auto,
             "verticals" => Self::Verticals,
             "horizontals" => Self::Horizontals,
             "lines" => Self::Lines,
@@ -42,6 +47,7 @@ impl Keep {
 
     pub(in crate::deform) fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::Nothing => "nothing",
             Self::Verticals => "verticals",
             Self::Horizontals => "horizontals",
@@ -87,14 +93,13 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
     let anchors::Anchors::Four(from) = anchors::frame_corners(&Frame::new(frame))? else {
         return Err(no_length("frame"));
     };
-    let pre = Affine::new([
-        1.0 / frame.width(),
-        0.0,
-        0.0,
-        -1.0 / frame.height(),
-        -frame.x0 / frame.width(),
-        frame.y1 / frame.height(),
-    ]);
+    let (upright, between) = (keep == Keep::Verticals, [(1, 3), (0, 2)]);
+    let curved = |k: usize| demand_straight(&ring.sides[k], SIDES[k], "").is_err();
+    let (a, b) = between[usize::from(!upright)];
+    if matches!(keep, Keep::Verticals | Keep::Horizontals) && (curved(a) || curved(b)) {
+        return filled(frame, &ring.closed(), upright, &Room::default());
+    }
+    let pre = to_unit(frame);
     let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
     built.explanation.notes.clone_from(&ring.notes);
     built.explanation.warnings.clone_from(&ring.warnings);
@@ -121,6 +126,12 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
     Ok(built)
 }
 
+/// Returns the map of a box to the unit square, with v upwards.
+pub(super) fn to_unit(frame: Rect) -> Affine {
+    let (w, h) = (frame.width(), frame.height());
+    Affine::new([1.0 / w, 0.0, 0.0, -1.0 / h, -frame.x0 / w, frame.y1 / h])
+}
+
 /// Returns the sides at their pace, and straight ones where `keep` needs them.
 pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut Built) -> Result<Sides, Error> {
     let [bottom, right, top, left] = &ring.sides;
@@ -135,12 +146,12 @@ pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut 
             format!("`keep {}` needs the {} and the {} side straight", keep.name(), SIDES[(k + 2) % 4], SIDES[k]);
         demand_straight(c, SIDES[k], &what)?;
         let ends = c.first().zip(c.last()).map(|(a, b)| (a.start(), b.end()));
-        ends.and_then(|(a, b)| Side::straight(a, b)).ok_or_else(|| no_length(SIDES[k]))
+        ends.map(|(a, b)| Side::straight(a, b)).ok_or_else(|| no_length(SIDES[k]))
     };
     let (lying, axis) = match keep {
         Keep::Verticals => (true, Pace::Width),
         Keep::Horizontals => (false, Pace::Height),
-        Keep::Nothing | Keep::Lines => {
+        Keep::Auto | Keep::Nothing | Keep::Lines => {
             return Ok(Sides {
                 bottom: side(bottom, 0, true)?,
                 right: side(right, 1, false)?,
@@ -164,7 +175,7 @@ pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut 
     ));
     if given.is_none() && !is_exact && lean >= VISIBLE_LEAN {
         built.warn(format!(
-            "envelope: {what} stay straight but lean by up to {lean:.1}°: a curve turns back, or is too steep for even steps across the screen"
+            "envelope: {what} stay straight but lean by up to {lean:.1}°: a curve turns back, or the curves do not span the same range"
         ));
     }
     Ok(if lying {
@@ -186,16 +197,16 @@ fn lean(a: &Side, b: &Side, lying: bool) -> f64 {
     (0..=SAMPLES).map(one).fold(0.0, f64::max)
 }
 
-/// Refuses a curved side; `what` begins the message.
+/// Refuses a curved side, not one without length; `what` begins the message.
 fn demand_straight(c: &[Seg], name: &str, what: &str) -> Result<(), Error> {
-    let side = Side::new(c, Pace::Length).ok_or_else(|| no_length(name))?;
+    let Some(side) = Side::new(c, Pace::Length) else { return Ok(()) };
     let (off, at) = side.off_straight();
     if off <= STRAIGHT * side.length() {
         return Ok(());
     }
     let problem = format!(
         "{what}; the {name} side is curved: near {} it is {off:.6} off the line between its ends. No map keeps such lines then: \
-draw two curves only (`bottom` and `top` keep verticals, `left` and `right` keep horizontals), or omit `keep`",
+omit `keep`",
         show(at)
     );
     Err(Error::usage("keep", "the envelope", problem))

@@ -3,6 +3,8 @@
 //! The map is the Coons patch of the sides ([`Coons`](crate::map::Coons)), which for sides of one cubic is the shaper's
 //! (Koppinen, *A plane transformation from 16 control points*, equation 7).
 
+mod choice;
+mod columns;
 mod corners;
 mod curves;
 mod entry;
@@ -20,9 +22,14 @@ pub(super) use ring::Ring;
 
 use super::built::Built;
 use crate::error::{Error, within};
-use crate::outline::Outline;
+use crate::outline::{Outline, Subpath};
 use crate::param::NamedPath;
+use choice::Room;
 use kurbo::{Point, Rect};
+use std::sync::Arc;
+
+/// The share of the greatest height at which lettering ends.
+const ENDS: f64 = 0.15;
 
 /// An envelope: the artwork's box put into a shape with four sides, each a curve of any number of pieces.
 ///
@@ -50,6 +57,9 @@ pub struct Envelope {
     bottom_side: Option<usize>,
     reverse: bool,
     keep: Keep,
+    room: Room,
+    lettering: bool,
+    ink: Arc<[Point]>,
 }
 
 impl Envelope {
@@ -74,7 +84,10 @@ impl Envelope {
             corners: None,
             bottom_side: None,
             reverse: false,
-            keep: Keep::Nothing,
+            keep: Keep::Auto,
+            room: Room::default(),
+            lettering: false,
+            ink: Arc::new([]),
         }
     }
 
@@ -150,10 +163,35 @@ impl Envelope {
         Self { reverse, ..self }
     }
 
-    /// Sets the lines that stay straight.
+    /// Sets the lines that stay straight. Default: [`Keep::Auto`].
     #[must_use]
     pub fn keep(self, keep: Keep) -> Self {
         Self { keep, ..self }
+    }
+
+    /// In columns or rows, ends the artwork where the shape is still this share of its greatest height (width), 0 to below 1.
+    /// Default: 0.15 for lettering, else 0.
+    #[must_use]
+    pub fn ends(self, ends: f64) -> Self {
+        Self { room: Room { ends: Some(ends), ..self.room }, ..self }
+    }
+
+    /// Keeps the artwork this far off the outline, user units. Default: 0.
+    #[must_use]
+    pub fn padding(self, padding: f64) -> Self {
+        Self { room: Room { padding, ..self.room }, ..self }
+    }
+
+    /// Says that the artwork is lettering, which has stems to be kept upright.
+    #[must_use]
+    pub fn lettering(self, lettering: bool) -> Self {
+        Self { lettering, ..self }
+    }
+
+    /// Gives points of the artwork, where its distortion is visible. Default: the whole box.
+    #[must_use]
+    pub fn artwork(self, ink: impl Into<Arc<[Point]>>) -> Self {
+        Self { ink: ink.into(), ..self }
     }
 
     /// Builds the map. Sides that cross, and folds, give warnings.
@@ -162,7 +200,23 @@ impl Envelope {
     /// [`Error::Geometry`] for a shape that is not closed or a flat box; [`Error::Usage`] for curves that do not meet, corners
     /// that cannot be found, sides too curved for the lines to be kept, and values that contradict each other.
     pub fn build(&self) -> Result<Built, Error> {
-        fit(self.frame, &self.ring()?, self.keep, self.spread)
+        within("ends", self.room.ends.unwrap_or(0.0), 0.0, 0.99)?;
+        within("padding", self.room.padding, 0.0, 1e9)?;
+        choice::Choice {
+            frame: self.frame,
+            keep: self.keep,
+            spread: self.spread,
+            room: Room { ends: Some(self.room.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })), ..self.room },
+            lettering: self.lettering,
+            ink: &self.ink,
+        }
+        .build(self.closed()?, self.ring())
+    }
+
+    /// Returns the closed path, unless it is divided or spaced as the user says.
+    fn closed(&self) -> Result<Option<Subpath>, Error> {
+        let divided = self.corners.is_some() || self.bottom_side.is_some() || self.reverse || self.spread.is_some();
+        self.shape.as_ref().filter(|_| !divided).map(corners::closed).transpose()
     }
 
     /// Returns the four sides as drawn.

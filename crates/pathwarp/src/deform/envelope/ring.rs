@@ -26,14 +26,29 @@ pub(super) enum Corners {
 }
 
 impl Ring {
-    /// Returns the sides as one closed path, for a preview.
-    pub(super) fn path(&self) -> BezPath {
+    /// Returns the sides as one closed path.
+    pub(super) fn closed(&self) -> Subpath {
         let segs: Vec<Seg> = self.sides.iter().flatten().copied().collect();
-        let start = segs.first().map_or(Point::ORIGIN, Seg::start);
-        let all = Outline { subpaths: vec![Subpath { start, segs, closed: true }] };
-        let size = all.bounding_box().map_or(1.0, |b| b.width() + b.height());
-        all.to_bez_path(1e-4 * size)
+        Subpath { start: segs.first().map_or(Point::ORIGIN, Seg::start), segs, closed: true }
     }
+
+    /// Returns `true` if the bottom and the top meet at an end.
+    pub(super) fn meets(&self) -> bool {
+        let point = |side: &[Seg]| side.iter().all(|s| s.bounding_box().size().max_side() == 0.0);
+        point(&self.sides[1]) || point(&self.sides[3])
+    }
+
+    /// Returns the sides for a preview.
+    pub(super) fn path(&self) -> BezPath {
+        shown(&self.closed())
+    }
+}
+
+/// Returns a closed path for a preview.
+pub(super) fn shown(path: &Subpath) -> BezPath {
+    let all = Outline { subpaths: vec![path.clone()] };
+    let size = all.bounding_box().map_or(1.0, |b| b.width() + b.height());
+    all.to_bez_path(1e-4 * size)
 }
 
 /// Reverses a side.

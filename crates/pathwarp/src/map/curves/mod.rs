@@ -8,4 +8,5 @@ mod side;
 pub(crate) use arc_length::ArcLength;
 pub(super) use guide::GuidePiece;
 pub(crate) use guide::{Along, Guide};
+pub(crate) use root::increasing_root;
 pub use side::{Pace, Side};

@@ -5,7 +5,7 @@ const MAX_STEPS: usize = 60;
 
 /// Finds the root of an increasing function between `lo` and `hi`, from `start`, by Newton iteration that halves the bracket where a step
 /// would leave it. `f` returns the value and the slope; `is_close` is asked with the place, the value there and the next step.
-pub(super) fn increasing_root(
+pub(crate) fn increasing_root(
     (mut lo, mut hi): (f64, f64),
     start: f64,
     f: impl Fn(f64) -> (f64, f64),

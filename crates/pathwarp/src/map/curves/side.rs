@@ -16,9 +16,9 @@ pub enum Pace {
     Length,
     /// Equal steps of each segment's own parameter; segments share the side in proportion to their lengths.
     Parameter,
-    /// Equal horizontal steps, for a curve that is nowhere vertical.
+    /// Equal horizontal steps, for a curve that never turns back from left to right; it may be vertical at single points.
     Width,
-    /// Equal vertical steps, for a curve that is nowhere horizontal.
+    /// Equal vertical steps, for a curve that never turns back upwards or downwards.
     Height,
 }
 
@@ -42,14 +42,16 @@ struct SidePiece {
 const MIN_SPEED: f64 = 1e-9;
 /// Distance of that point, in the parameter of the segment.
 const INWARD: f64 = 1e-5;
-/// A curve can be parametrised along an axis if at least this share of its speed is along the axis everywhere.
-const MIN_SLOPE: f64 = 1e-3;
+/// A curve that runs against an axis by less than this share of its speed does so by rounding.
+const BACKWARDS: f64 = 1e-9;
+/// Beyond its ends, a curve at a pace along an axis runs on no steeper than this: it may be vertical there.
+const STEEPEST: f64 = 4.0;
 /// Pieces shorter than this share of the side are dropped.
 const MIN_LENGTH: f64 = 1e-12;
 
 impl Side {
     /// A side of these segments, each starting at the end of the previous one. `None` if they have no length, or if they turn
-    /// back or are too steep for a pace along an axis.
+    /// back from the axis of a pace along one.
     #[must_use]
     pub fn new(segs: &[Seg], pace: Pace) -> Option<Self> {
         let measured: Vec<_> = segs.iter().map(|s| (*s, ArcLength::of(s))).collect();
@@ -81,9 +83,17 @@ impl Side {
         Some(Self { pieces, knots, length })
     }
 
-    /// A straight side.
-    pub(crate) fn straight(from: Point, to: Point) -> Option<Self> {
-        Self::new(&[Seg::Line(Line::new(from, to))], Pace::Parameter)
+    /// A straight side, or a single point.
+    pub(crate) fn straight(from: Point, to: Point) -> Self {
+        let seg = Seg::Line(Line::new(from, to));
+        let table = ArcLength::of(&seg);
+        let length = table.length();
+        Self { pieces: vec![SidePiece { seg, table, pace: Pace::Parameter }], knots: vec![0.0, 1.0], length }
+    }
+
+    /// The meaning of equal steps.
+    pub(crate) fn pace(&self) -> Pace {
+        self.pieces[0].pace
     }
 
     /// The arc length.
@@ -169,13 +179,13 @@ impl Side {
     }
 }
 
-/// Returns `true` if a segment runs in one direction along the axis and is nowhere too steep.
+/// Returns `true` if a segment runs in one direction along the axis.
 fn runs_along(s: &Seg, along: impl Fn(Vec2) -> f64, extent: f64) -> bool {
     const SAMPLES: u32 = 256;
     (0..=SAMPLES).all(|i| {
         let v = s.deriv(f64::from(i) / f64::from(SAMPLES));
-        along(v) * extent.signum() > MIN_SLOPE * v.hypot()
-    })
+        along(v) * extent.signum() >= -BACKWARDS * v.hypot()
+    }) && along(s.end() - s.start()) * extent > 0.0
 }
 
 impl SidePiece {
@@ -192,19 +202,30 @@ impl SidePiece {
     fn at(&self, t: f64) -> (Point, Vec2) {
         let inside = t.clamp(0.0, 1.0);
         let Some(u) = self.parameter(inside) else { return (self.seg.eval(t), self.seg.deriv(t)) };
-        let mut v = self.seg.deriv(u);
+        let inward = if u < 0.5 { u + INWARD } else { u - INWARD };
+        let (mut v, length) = (self.seg.deriv(u), self.table.length());
         if self.pace == Pace::Length {
-            let length = self.table.length();
-            let mut speed = v.hypot();
-            if speed <= MIN_SPEED * length {
-                v = self.seg.deriv(if u < 0.5 { u + INWARD } else { u - INWARD });
-                speed = v.hypot();
+            if v.hypot() <= MIN_SPEED * length {
+                v = self.seg.deriv(inward);
             }
-            v *= length / speed;
+            v *= length / v.hypot();
         } else {
+            if self.along(v).abs() <= MIN_SPEED * length {
+                v = self.seg.deriv(inward);
+            }
             v *= self.along(self.seg.end() - self.seg.start()) / self.along(v);
+            if t != inside {
+                v = self.flattened(v);
+            }
         }
         (self.seg.eval(u) + v * (t - inside), v)
+    }
+
+    /// The direction in which a curve at a pace along an axis runs on.
+    fn flattened(&self, v: Vec2) -> Vec2 {
+        let most = STEEPEST * self.along(v).abs();
+        let limited = |x: f64| x.clamp(-most, most);
+        if self.pace == Pace::Width { Vec2::new(v.x, limited(v.y)) } else { Vec2::new(limited(v.x), v.y) }
     }
 
     /// The point of [`at`](Self::at).

@@ -10,7 +10,7 @@
 //! Lines u = k and v = k through the joints of facing sides cut the box into cells. If all four pieces of a cell are polynomials
 //! (lines, or Bézier curves at their own pace), the map of the cell is a bicubic net, with exact images.
 
-use crate::map::curves::Side;
+use crate::map::curves::{Pace, Side};
 use crate::map::nets::BicubicNet;
 use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map};
 use kurbo::{Affine, Point, Vec2};
@@ -66,6 +66,9 @@ pub struct Sides {
 /// Distance of the outer creases from the box, relative to its size, so that rounding does not split artwork that touches the
 /// edge of the box. Between the edge and the crease the map deviates by the square of this.
 const OUTSIDE: f64 = 1e-9;
+
+/// Ends closer than this share of a curve's extent are the same.
+const SAME: f64 = 1e-12;
 
 /// The net, or the affine map if it is one.
 fn simplest(net: BicubicNet) -> Arc<dyn Map> {
@@ -149,6 +152,20 @@ impl Coons {
         [a, b, c, d]
     }
 
+    /// The axis along which both curves of a pair run at even steps between the same ends: verticals stay vertical (`true`) or
+    /// horizontals horizontal, and the inverse has a closed form.
+    fn kept(&self) -> Option<bool> {
+        let s = self.sides();
+        [(true, Pace::Width, &s.bottom, &s.top), (false, Pace::Height, &s.left, &s.right)].into_iter().find_map(
+            |(upright, pace, a, b)| {
+                let along = |p: Point| if upright { p.x } else { p.y };
+                let ([a0, a1], [b0, b1]) = (a.ends().map(along), b.ends().map(along));
+                let same = (a0 - b0).abs().max((a1 - b1).abs()) <= SAME * (a1 - a0).abs();
+                (same && a.pace() == pace && b.pace() == pace).then_some(upright)
+            },
+        )
+    }
+
     /// The bicubic net of a cell; `None` if one of its pieces is not polynomial.
     fn net(&self, cell: Cell) -> Option<BicubicNet> {
         let s = self.sides();
@@ -219,6 +236,80 @@ impl Map for Coons {
             Some(net) => simplest(net),
             None => Arc::new(OnCell { whole: self.clone(), cell }),
         })
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        let upright = self.kept()?;
+        Some(Arc::new(Back { whole: self.clone(), upright, cell: None }))
+    }
+}
+
+/// The inverse where verticals (or horizontals) are kept: (x, y) ↦ (u, (y − b(u)) / (t(u) − b(u))).
+struct Back {
+    whole: Coons,
+    upright: bool,
+    /// The only cell, of a branch.
+    cell: Option<Cell>,
+}
+
+impl Back {
+    /// The even parameter of a point.
+    fn share(&self, q: Point) -> f64 {
+        let (s, Point { x, y }) = (self.whole.sides(), q);
+        let [a, b] = if self.upright { s.bottom.ends().map(|p| p.x) } else { s.left.ends().map(|p| p.y) };
+        ((if self.upright { x } else { y }) - a) / (b - a)
+    }
+
+    fn cell(&self, k: f64) -> Cell {
+        let s = self.whole.sides();
+        let of = |side: &Side, on: bool| if on { side.piece(k) } else { 0 };
+        let up = self.upright;
+        self.cell.unwrap_or_else(|| [of(&s.bottom, up), of(&s.right, !up), of(&s.top, up), of(&s.left, !up)])
+    }
+}
+
+impl Map for Back {
+    fn jet(&self, q: Point) -> Jet {
+        let k = self.share(q);
+        let cell = self.cell(k);
+        let (s, [b, r, t, l]) = (self.whole.sides(), cell);
+        let unit = if self.upright {
+            let (from, to) = (s.bottom.point_on(b, k).y, s.top.point_on(t, k).y);
+            Point::new(k, (q.y - from) / (to - from))
+        } else {
+            let (from, to) = (s.left.point_on(l, k).x, s.right.point_on(r, k).x);
+            Point::new((q.x - from) / (to - from), k)
+        };
+        let p = self.whole.pre.inverse() * unit;
+        let Jet { dx, dy, .. } = self.whole.on(cell, p);
+        let det = dx.cross(dy);
+        Jet { p, dx: Vec2::new(dy.y, -dx.y) / det, dy: Vec2::new(-dy.x, dx.x) / det }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let s = self.whole.sides();
+        let (mut ks, [a, b], pair) = if self.upright {
+            (self.whole.cut.us.clone(), s.bottom.ends().map(|p| p.x), [&s.bottom, &s.top])
+        } else {
+            (self.whole.cut.vs.clone(), s.left.ends().map(|p| p.y), [&s.left, &s.right])
+        };
+        if !pair.iter().all(|s| s.runs_on()) {
+            ks.extend([-OUTSIDE, 1.0 + OUTSIDE]);
+        }
+        for k in ks {
+            let c = -(a + k * (b - a));
+            let (x, y) = if self.upright { (1.0, 0.0) } else { (0.0, 1.0) };
+            out.push(Crease::kink(Level::Line { a: x, b: y, c }));
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        let cell = Some(self.cell(self.share(inside)));
+        Some(Arc::new(Self { whole: self.whole.clone(), upright: self.upright, cell }))
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.whole.clone()))
     }
 }
 

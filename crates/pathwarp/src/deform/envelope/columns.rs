@@ -1,0 +1,401 @@
+//! A closed path filled in columns: verticals stay vertical between its lower and its upper outline.
+//!
+//! > (u, v) ↦ (x, b(x) + v·(t(x) − b(x))), x linear in u between the ends
+//!
+//! Every vertical line meets the inside in intervals; the columns are those that follow one another from left to right with the largest
+//! area. Where the outline jumps from one height to another, a slope leads into the higher part. Rows are the columns of the path with
+//! x and y exchanged.
+
+use super::ring::SAMPLES;
+use crate::map::increasing_root;
+use crate::outline::{Outline, Seg, Subpath};
+use kurbo::{Affine, Line, Point, Rect, StrokeOpts, common::solve_quadratic};
+use std::f64::consts::PI;
+
+/// Columns that are looked at, at least.
+const COLUMNS: f64 = 600.0;
+/// The slope into the higher part after a jump, in heights of the shape per width.
+const RAMP: f64 = 4.0;
+/// Jumps below this share of the height are rounding.
+const JUMP: f64 = 1e-6;
+/// Exchanges x and y.
+const TRANSPOSED: Affine = Affine::new([0.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+
+/// A shape in columns, or in rows: two curves that face one another over one range.
+pub(super) struct Columns {
+    /// The curves: bottom and top from left to right, or left and right upwards.
+    pub(super) curves: [Vec<Seg>; 2],
+    /// The range of the artwork, as shares of the curves' range.
+    pub(super) range: [f64; 2],
+    /// Places where the outline jumps, in the order found.
+    pub(super) jumps: Vec<Point>,
+    /// The part of the shape's area that the columns hold.
+    pub(super) coverage: f64,
+}
+
+/// A piece of an outline that runs to the right.
+struct Piece {
+    seg: Seg,
+    from: f64,
+    to: f64,
+    /// As drawn it ran to the left.
+    turned: bool,
+    /// Belongs to the band that `padding` keeps free.
+    band: bool,
+}
+
+/// A part of a piece: its number and its range.
+#[derive(Clone, Copy)]
+struct Span {
+    piece: usize,
+    from: f64,
+    to: f64,
+}
+
+/// An interval of a vertical line: the pieces at its ends, by y, and their heights.
+#[derive(Clone, Copy)]
+struct Interval {
+    ends: [usize; 2],
+    ys: [f64; 2],
+}
+
+impl Interval {
+    fn height(&self) -> f64 {
+        self.ys[1] - self.ys[0]
+    }
+
+    fn overlaps(&self, o: &Self) -> bool {
+        self.ys[1].min(o.ys[1]) > self.ys[0].max(o.ys[0])
+    }
+}
+
+/// A vertical line: its x, the events on both sides of it, the width it stands for and its intervals.
+struct Line1 {
+    x: f64,
+    between: [f64; 2],
+    width: f64,
+    intervals: Vec<Interval>,
+}
+
+impl Columns {
+    /// Fills a closed path, `padding` off its outline, from where its height is `ends` of the largest. `None` if that leaves nothing.
+    pub(super) fn new(shape: &Subpath, upright: bool, padding: f64, ends: f64) -> Option<Self> {
+        let turn = if upright { Affine::IDENTITY } else { TRANSPOSED };
+        let segs: Vec<Seg> = shape.segs.iter().map(|s| s.transformed(turn)).collect();
+        let bounds = segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b))?;
+        let mut all = Region { pieces: Vec::new(), bounds };
+        all.add(&segs, false);
+        if padding > 0.0 {
+            all.add(&band(&segs, padding, bounds), true);
+        }
+        let lines = all.lines();
+        let chosen = largest(&lines)?;
+        let area: f64 = lines.iter().map(|l| l.width * l.intervals.iter().map(Interval::height).sum::<f64>()).sum();
+        let mut jumps = Vec::new();
+        let mut curves = [0, 1].map(|end| all.traced(&chosen, end));
+        for (end, curve) in curves.iter_mut().enumerate() {
+            all.smooth(curve, if end == 0 { -1.0 } else { 1.0 }, &mut jumps);
+        }
+        let [low, high] = &curves;
+        let (from, to) = (low.first()?.from, low.last()?.to);
+        let heights = all.heights(low, high, from, to);
+        let most = heights.iter().map(|h| h.1).fold(0.0, f64::max);
+        if heights.iter().any(|h| h.1 <= 0.0) {
+            return None;
+        }
+        let held: f64 = heights.iter().map(|h| h.1).sum::<f64>() * (to - from) / heights.len() as f64;
+        let height = |x: f64| all.at(high, x) - all.at(low, x) - ends * most;
+        let inner = |a: f64, b: f64| if height(a) >= 0.0 { a } else { bisected(a, b, height) };
+        let first = heights.iter().find(|h| h.1 >= ends * most)?.0;
+        let last = heights.iter().rfind(|h| h.1 >= ends * most)?.0;
+        let range = [inner(from, first), inner(to, last)].map(|x| (x - from) / (to - from));
+        let back = |c: &[Span]| -> Vec<Seg> { all.cut(c).iter().map(|s| s.transformed(turn)).collect() };
+        let (low, high) = (back(low), back(high));
+        Some(Self {
+            curves: if upright { [high, low] } else { [low, high].map(|c| super::ring::reversed(&c)) },
+            range: if upright { range } else { [1.0 - range[1], 1.0 - range[0]] },
+            jumps: jumps.into_iter().map(|p| turn * p).collect(),
+            coverage: held / area,
+        })
+    }
+}
+
+/// Pieces of outlines.
+struct Region {
+    pieces: Vec<Piece>,
+    bounds: Rect,
+}
+
+impl Region {
+    /// Adds an outline, cut where it turns back.
+    fn add(&mut self, segs: &[Seg], band: bool) {
+        for s in segs {
+            let mut ts = turns(s);
+            ts.retain(|t| *t > 1e-9 && *t < 1.0 - 1e-9);
+            ts.sort_by(f64::total_cmp);
+            ts.insert(0, 0.0);
+            ts.push(1.0);
+            for t in ts.windows(2) {
+                let part = part(s, t[0], t[1]);
+                let (a, b) = (part.start().x, part.end().x);
+                if (b - a).abs() > 1e-12 * self.bounds.width() {
+                    let turned = b < a;
+                    let seg = if turned { part.reversed() } else { part };
+                    self.pieces.push(Piece { seg, from: a.min(b), to: a.max(b), turned, band });
+                }
+            }
+        }
+    }
+
+    /// The vertical lines that are looked at, from left to right: some between any two ends of pieces.
+    fn lines(&self) -> Vec<Line1> {
+        let mut events: Vec<f64> = self.pieces.iter().flat_map(|p| [p.from, p.to]).collect();
+        events.sort_by(f64::total_cmp);
+        events.dedup_by(|b, a| *b - *a <= 1e-11 * self.bounds.width());
+        let mut out = Vec::new();
+        for e in events.windows(2) {
+            let middle = 0.5 * (e[0] + e[1]);
+            let here: Vec<usize> = (0..self.pieces.len())
+                .filter(|i| (self.pieces[*i].from..self.pieces[*i].to).contains(&middle))
+                .collect();
+            let n = (COLUMNS * (e[1] - e[0]) / self.bounds.width()).ceil().max(1.0);
+            let width = (e[1] - e[0]) / n;
+            for i in 0..n as u32 {
+                let x = e[0] + (f64::from(i) + 0.5) * width;
+                out.push(Line1 { x, between: [e[0], e[1]], width, intervals: self.intervals(&here, x) });
+            }
+        }
+        out
+    }
+
+    /// The intervals of a vertical line that are inside the shape, and not in the band.
+    fn intervals(&self, here: &[usize], x: f64) -> Vec<Interval> {
+        let mut crossed: Vec<(f64, usize)> = here.iter().map(|i| (self.pieces[*i].y(x), *i)).collect();
+        crossed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let (mut shape, mut band, mut start, mut out) = (0, 0, None, Vec::new());
+        for (y, i) in crossed {
+            let p = &self.pieces[i];
+            let winding = if p.band { &mut band } else { &mut shape };
+            *winding += if p.turned { -1 } else { 1 };
+            match (shape != 0 && band == 0, start) {
+                (true, None) => start = Some((y, i)),
+                (false, Some((from, first))) => {
+                    out.push(Interval { ends: [first, i], ys: [from, y] });
+                    start = None;
+                }
+                _ => {}
+            }
+        }
+        out.retain(|v| v.height() > 0.0);
+        out
+    }
+
+    /// The low (0) or high (1) end of the chosen intervals as parts of pieces.
+    fn traced(&self, chosen: &[(&Line1, Interval)], end: usize) -> Vec<Span> {
+        let mut out: Vec<Span> = Vec::new();
+        let (first, last) = (&chosen[0], &chosen[chosen.len() - 1]);
+        let mut from = self.outer_end(first, first.0.between[0]);
+        for w in chosen.windows(2) {
+            let ((l, a), (m, b)) = (&w[0], &w[1]);
+            let (i, j) = (a.ends[end], b.ends[end]);
+            if i != j {
+                let event = l.between[1];
+                let near = |x: f64| (x - event).abs() <= 1e-10 * self.bounds.width();
+                let over = |x: f64| self.pieces[i].y(x) - self.pieces[j].y(x);
+                let ends_here = l.between != m.between && (near(self.pieces[i].to) || near(self.pieces[j].from));
+                let to = if ends_here { event } else { bisected(l.x, m.x, |x| over(x) * over(m.x)) };
+                out.push(Span { piece: i, from, to });
+                from = to;
+            }
+        }
+        out.push(Span { piece: last.1.ends[end], from, to: self.outer_end(last, last.0.between[1]) });
+        out
+    }
+
+    /// Where an outermost interval ends: at the event beside it, or before that if its ends cross.
+    fn outer_end(&self, (line, v): &(&Line1, Interval), event: f64) -> f64 {
+        let height = |x: f64| self.pieces[v.ends[1]].y(x) - self.pieces[v.ends[0]].y(x);
+        if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
+    }
+
+    /// Leads slopes over jumps of a curve; `out` is −1 for the low and 1 for the high one.
+    fn smooth(&mut self, curve: &mut Vec<Span>, out: f64, jumps: &mut Vec<Point>) {
+        /// A slope may meet another jump.
+        const MOST: usize = 100;
+        for _ in 0..MOST {
+            let g = |me: &Self, s: &Span, x: f64| out * me.pieces[s.piece].y(x);
+            let jump = curve.windows(2).enumerate().find_map(|(i, w)| {
+                let (a, b) = (g(self, &w[0], w[0].to), g(self, &w[1], w[1].from));
+                ((a - b).abs() > JUMP * self.bounds.height()).then_some((i, w[0].to, a, b))
+            });
+            let Some((i, x, a, b)) = jump else { return };
+            let start = Point::new(x, out * a.min(b));
+            jumps.push(start);
+            // Outwards into the higher part, until the slope leaves it.
+            let (right, slope) = (b > a, RAMP * self.bounds.height() / self.bounds.width());
+            let mut rest: Vec<Span> = if right { curve.split_off(i + 1) } else { curve.drain(..=i).rev().collect() };
+            let line = |x1: f64| out * start.y + slope * (x1 - x).abs();
+            let mut met = rest.last().map_or(x, |s| if right { s.to } else { s.from });
+            let mut kept = rest.len();
+            for (k, s) in rest.iter_mut().enumerate() {
+                let (near, far) = if right { (s.from, s.to) } else { (s.to, s.from) };
+                let over = |x1: f64| g(self, s, x1) - line(x1);
+                let at = |n: u32| near + (far - near) * f64::from(n) / f64::from(SAMPLES);
+                let first = u32::from(k == 0);
+                let Some(n) = (first..=SAMPLES).find(|n| over(at(*n)) <= 0.0) else { continue };
+                met = if n == 0 { near } else { bisected(at(n - 1), at(n), over) };
+                if right {
+                    s.from = met
+                } else {
+                    s.to = met
+                }
+                kept = k;
+                break;
+            }
+            let seg = Seg::Line(Line::new(start, (met, out * line(met))));
+            let seg = if right { seg } else { seg.reversed() };
+            let (from, to) = (x.min(met), x.max(met));
+            let ramp = Span { piece: self.pieces.len(), from, to };
+            self.pieces.push(Piece { seg, from, to, turned: false, band: false });
+            let rest = rest.into_iter().skip(kept).filter(|s| s.to > s.from);
+            if right {
+                curve.push(ramp);
+                curve.extend(rest);
+            } else {
+                let mut left: Vec<Span> = rest.collect();
+                left.reverse();
+                left.push(ramp);
+                left.append(curve);
+                *curve = left;
+            }
+        }
+    }
+
+    /// Heights between two curves in the middles of equal parts of their range.
+    fn heights(&self, low: &[Span], high: &[Span], from: f64, to: f64) -> Vec<(f64, f64)> {
+        let xs = (0..COLUMNS as u32).map(|i| from + (to - from) * (f64::from(i) + 0.5) / COLUMNS);
+        xs.map(|x| (x, self.at(high, x) - self.at(low, x))).collect()
+    }
+
+    /// The y of a curve.
+    fn at(&self, curve: &[Span], x: f64) -> f64 {
+        let k = curve.partition_point(|s| s.to < x).min(curve.len() - 1);
+        self.pieces[curve[k].piece].y(x)
+    }
+
+    /// The segments of a curve.
+    fn cut(&self, curve: &[Span]) -> Vec<Seg> {
+        let one = |s: &Span| {
+            let p = &self.pieces[s.piece];
+            part(&p.seg, p.parameter(s.from), p.parameter(s.to))
+        };
+        let mut out: Vec<Seg> = curve.iter().filter(|s| s.to > s.from).map(one).collect();
+        // Neighbours meet to the last bit.
+        for k in 1..out.len() {
+            out[k - 1] = crate::anchors::ending_at(&out[k - 1], out[k].start());
+        }
+        out
+    }
+}
+
+impl Piece {
+    /// The parameter at `x`.
+    fn parameter(&self, x: f64) -> f64 {
+        if x <= self.from || x >= self.to {
+            return if x <= self.from { 0.0 } else { 1.0 };
+        }
+        let share = (x - self.from) / (self.to - self.from);
+        match self.seg {
+            Seg::Line(_) => share,
+            s => increasing_root(
+                (0.0, 1.0),
+                share,
+                |t| (s.eval(t).x - x, s.deriv(t).x),
+                |t, _, step: f64| step.abs() <= f64::EPSILON * t,
+            ),
+        }
+    }
+
+    fn y(&self, x: f64) -> f64 {
+        self.seg.eval(self.parameter(x)).y
+    }
+}
+
+/// Returns the intervals from left to right, each meeting the next, with the largest area.
+fn largest(lines: &[Line1]) -> Option<Vec<(&Line1, Interval)>> {
+    // Of every interval: the largest area from it on, and the next interval.
+    let mut best: Vec<Vec<(f64, Option<usize>)>> = vec![Vec::new(); lines.len()];
+    for k in (0..lines.len()).rev() {
+        let follow = |v: &Interval| {
+            let next = lines.get(k + 1).into_iter().flat_map(|l| l.intervals.iter().enumerate());
+            let next = next.filter(|(_, w)| v.overlaps(w)).map(|(j, _)| (best[k + 1][j].0, j));
+            next.max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let here = lines[k].intervals.iter().map(|v| {
+            let next = follow(v);
+            (lines[k].width * v.height() + next.map_or(0.0, |n| n.0), next.map(|n| n.1))
+        });
+        let here = here.collect();
+        best[k] = here;
+    }
+    let starts = best.iter().enumerate().flat_map(|(k, b)| b.iter().enumerate().map(move |(i, v)| (v.0, k, i)));
+    let (_, mut k, i) = starts.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (mut out, mut at) = (Vec::new(), Some(i));
+    while let Some(i) = at {
+        out.push((&lines[k], lines[k].intervals[i]));
+        at = best[k][i].1;
+        k += 1;
+    }
+    Some(out)
+}
+
+/// Returns the outline of the band around an outline that `padding` keeps free.
+fn band(segs: &[Seg], padding: f64, bounds: Rect) -> Vec<Seg> {
+    let tolerance = 1e-5 * (bounds.width() + bounds.height());
+    let start = segs.first().map_or(Point::ORIGIN, Seg::start);
+    let outline = Outline { subpaths: vec![Subpath { start, segs: segs.to_vec(), closed: true }] };
+    let style = kurbo::Stroke::new(2.0 * padding);
+    let stroke = kurbo::stroke(outline.to_bez_path(tolerance), &style, &StrokeOpts::default(), tolerance);
+    Outline::from(&stroke).segs().copied().collect()
+}
+
+/// Returns the parameters where a segment may turn back along x.
+fn turns(s: &Seg) -> Vec<f64> {
+    match s {
+        Seg::Line(_) => Vec::new(),
+        Seg::Quad(q) => {
+            let (a, b) = (q.p1.x - q.p0.x, q.p2.x - q.p1.x);
+            vec![a / (a - b)]
+        }
+        Seg::Cubic(c) => {
+            let (a, b, d) = (c.p1.x - c.p0.x, c.p2.x - c.p1.x, c.p3.x - c.p2.x);
+            solve_quadratic(a, 2.0 * (b - a), a - 2.0 * b + d).to_vec()
+        }
+        Seg::Arc(e) => {
+            let angle = e.b.x.atan2(e.a.x);
+            // Half turns on both sides of the start.
+            let halves = ((e.start - angle) / PI).floor() as i32;
+            (-3..=4).map(|k| (angle + PI * f64::from(halves + k) - e.start) / e.sweep).collect()
+        }
+    }
+}
+
+/// Returns a part of a segment.
+pub(super) fn part(s: &Seg, a: f64, b: f64) -> Seg {
+    match s {
+        _ if a == 0.0 && b == 1.0 => *s,
+        Seg::Arc(arc) => Seg::Arc(arc.subsegment(a, b)),
+        other => other.part(a, b).unwrap_or(*other),
+    }
+}
+
+/// Returns the zero between `a` and `b` of a function that is positive at one end only.
+fn bisected(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let rising = f(b) > 0.0;
+    // Sixty halvings exhaust double precision.
+    for _ in 0..60 {
+        let middle = 0.5 * (a + b);
+        if (f(middle) > 0.0) == rising { b = middle } else { a = middle }
+    }
+    0.5 * (a + b)
+}
