@@ -240,7 +240,8 @@ fn errors_say_what_is_wrong_and_nothing_else_warns() {
     assert!(!said(&right, SQUARE).contains("lies below"));
     // The page is empty, not merely passed.
     assert!(said(&["affine", "--move-x", "500"], SQUARE).contains("nothing is left on the page"));
-    assert!(said(&["affine", "--move-x", "50"], SQUARE).contains("extends past the page"));
+    assert!(said(&["affine", "--move-x", "500", "--fit", "none"], SQUARE).contains("nothing is on the page"));
+    assert!(said(&["affine", "--move-x", "50", "--fit", "none"], SQUARE).contains("extends past the page"));
     // A neighbouring weight is not taken silently.
     let weight = said(&["text", "A", "--weight", "500", "--no-system-fonts"], "");
     assert!(weight.contains("--weight 500: the bundled font has no such weight; 400 is used"), "{weight}");
