@@ -17,6 +17,9 @@ use std::cell::Cell;
 const VALUE: usize = 32;
 const ATTRIBUTES: usize = 64;
 
+/// Comparisons that can be made in the time of trying a selector.
+const TRIED: usize = 2;
+
 /// Counts what matching looks at, up to a limit.
 pub(super) struct Looks {
     pub(super) done: Cell<u64>,
@@ -50,7 +53,7 @@ pub(super) fn matcher<'b>(
         MatchingForInvalidation::No,
     );
     let element = Counted { node, looks };
-    move |selector| looks.add(1) && matches_selector(selector, 0, None, element, &mut context)
+    move |selector| looks.add(TRIED) && matches_selector(selector, 0, None, element, &mut context)
 }
 
 /// An element that counts what is looked at, and has no neighbours once that is too much.

@@ -101,7 +101,7 @@ impl Limit {
         match self {
             Self::Bytes => 16e6,
             Self::Elements => 30e3,
-            Self::Letters => 100e3,
+            Self::Letters => 60e3,
             Self::Comparisons => 15e6,
             Self::Segments => 2e6,
             Self::Pixels => 80e6,

@@ -83,7 +83,10 @@ fn style_sheets_are_matched_within_bounds() {
     let deep = format!("x {}{{fill:red}}", "* ".repeat(500));
     let groups = ("<g>".repeat(60), "</g>".repeat(60));
     expect(&format!("<style>{deep}</style>{}{RECT}{}", groups.0, groups.1), [3, 3], "comparisons");
-    let rules: String = (0..20_000).map(|i| format!(".c{i}{{fill:red}}")).collect();
+    // Rules for classes are looked up.
+    let classes: String = (0..20_000).map(|i| format!(".c{i}{{fill:red}}")).collect();
+    expect(&format!("<style>{classes}</style>{}", RECT.repeat(500)), [0, 0], "");
+    let rules: String = (0..20_000).map(|i| format!("[c{i}]{{fill:red}}")).collect();
     expect(&format!("<style>{rules}</style>{}", RECT.repeat(9000)), [3, 3], "comparisons");
     expect(&format!("<rect width='3' height='4' style='{}'/>", "fill:red;".repeat(90_000)), [3, 3], "comparisons");
     let attributes: String = (0..100_000).map(|i| format!(" a{i}=''")).collect();

@@ -163,6 +163,7 @@ fn spans(xml: &roxmltree::Document<'_>, quoted: &Quoted<'_>, budget: &Budget) ->
             }
             letters += quoted::letters(n) + quoted.letters(n);
         }
+        budget.check(Limit::Letters, letters as f64)?;
         // The text itself is no span. Its letters are also compared with each other, some at a time.
         let compared = letters.min(budget.limits().of(Limit::Letters) as u64);
         budget.spend(Limit::Comparisons, (spans - 1) * letters + compared * compared / AT_A_TIME)?;

@@ -40,7 +40,7 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
         let data: Arc<dyn AsRef<[u8]> + Send + Sync> = Arc::new(face.data);
         let mut ids = all.load_font_source(Source::Binary(data.clone())).to_vec();
         if ids.is_empty() {
-            ids.extend(load_unnamed(all, data, face.family.clone()));
+            ids.extend(load_unnamed(all, &data, face.family.clone()));
         }
         for id in ids {
             let Some(info) = all.face(id).cloned() else { continue };

@@ -71,13 +71,13 @@ pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
     if db.len() == before && !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ttc")) {
         let data = fs::read(path).map_err(unreadable)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let _ = load_unnamed(db, Arc::new(data), name);
+        let _ = load_unnamed(db, &(Arc::new(data) as Bytes), name);
     }
     Ok(())
 }
 
 /// Loads a font without names, as subsets are, by a name from elsewhere. `None` for what is no font.
-pub(super) fn load_unnamed(db: &mut Database, data: Bytes, family: String) -> Option<ID> {
+pub(super) fn load_unnamed(db: &mut Database, data: &Bytes, family: String) -> Option<ID> {
     let font = FontRef::new(data.as_ref().as_ref()).ok()?;
     let about = font.attributes();
     let style = match about.style {
