@@ -245,9 +245,9 @@ impl Region {
                 let Some(n) = (first..=SAMPLES).find(|n| over(at(*n)) <= 0.0) else { continue };
                 met = if n == 0 { near } else { bisected(at(n - 1), at(n), over) };
                 if right {
-                    s.from = met
+                    s.from = met;
                 } else {
-                    s.to = met
+                    s.to = met;
                 }
                 kept = k;
                 break;
