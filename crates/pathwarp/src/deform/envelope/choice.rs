@@ -84,21 +84,26 @@ impl Choice<'_> {
     /// Returns the mean over the artwork of how far it is stretched and squeezed beside what the shape's box does to it: the squares of
     /// the logarithms of both stretches.
     fn distortion(&self, map: &dyn Map, shape: Rect) -> f64 {
-        /// For a place that is folded over or squeezed to nothing.
-        const MOST: f64 = 20.0;
         let f = self.frame;
-        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(GRID);
-        let grid = (0..GRID * GRID)
-            .map(|k| Point::new(f.x0 + at(k % GRID) * f.width(), f.y0 + at(k / GRID) * f.height()))
-            .collect::<Vec<_>>();
+        let grid: Vec<Point> = grid(GRID).map(|p| f.origin() + Vec2::new(p.x * f.width(), p.y * f.height())).collect();
         let points = if self.ink.is_empty() { &grid } else { self.ink };
-        let one = |p: &Point| {
-            let [a, b] = stretches(&map.jet(*p), f, shape);
-            let d = a.ln().powi(2) + b.ln().powi(2);
-            if a > 0.0 && b > 0.0 && d < MOST { d } else { MOST }
-        };
-        points.iter().map(one).sum::<f64>() / points.len() as f64
+        points.iter().map(|p| stretched(&map.jet(*p), f, shape)).sum::<f64>() / points.len() as f64
     }
+}
+
+/// Returns places of the unit square.
+pub(super) fn grid(n: u32) -> impl Iterator<Item = Point> {
+    let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+    (0..n * n).map(move |k| Point::new(at(k % n), at(k / n)))
+}
+
+/// Returns how far a map stretches and squeezes beside what the boxes ask for: the squares of the logarithms of both stretches.
+pub(super) fn stretched(jet: &Jet, frame: Rect, shape: Rect) -> f64 {
+    /// For a place that is folded over or squeezed to nothing.
+    const MOST: f64 = 20.0;
+    let [a, b] = stretches(jet, frame, shape);
+    let d = a.ln().powi(2) + b.ln().powi(2);
+    if a > 0.0 && b > 0.0 && d < MOST { d } else { MOST }
 }
 
 /// Returns the largest and the smallest stretch of a map at a point, in shares of both boxes; the smallest is negative where it mirrors.
@@ -111,10 +116,12 @@ fn stretches(jet: &Jet, frame: Rect, shape: Rect) -> [f64; 2] {
 }
 
 /// Returns `true` if a shape has four corners of its own: no other sharp node points outwards, its bottom runs to the right and its
-/// sides upwards, and nothing folds.
+/// sides upwards, and nothing folds or is stretched much more one way than the other.
 fn honest(shape: &Subpath, ring: &Ring) -> bool {
     /// The largest angle of the bottom and of the sides with the screen's axes, as a tangent.
     const TURNED: f64 = 0.9;
+    /// The largest ratio of both stretches, beside that of the boxes.
+    const UNEVEN: f64 = 6.0;
     let around: f64 = shape.segs.iter().map(area).sum();
     let pointed: Vec<Point> = corners::sharp(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
     let size = corners::bounds(shape).size().max_side();
@@ -133,11 +140,15 @@ fn honest(shape: &Subpath, ring: &Ring) -> bool {
         return false;
     };
     let map = Coons::new(Sides { bottom, right, top, left }, Affine::IDENTITY);
-    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(GRID);
-    let jets: Vec<Jet> = (0..GRID * GRID).map(|k| map.jet(Point::new(at(k % GRID), at(k / GRID)))).collect();
+    let jets: Vec<Jet> = grid(GRID).map(|p| map.jet(p)).collect();
     let [right, up] = [jets.iter().map(|j| j.dx).sum::<Vec2>(), jets.iter().map(|j| j.dy).sum::<Vec2>()];
     let level = right.y.abs() <= TURNED * right.x && up.x.abs() <= -TURNED * up.y;
-    level && jets.iter().all(|j| j.det() < 0.0)
+    let (unit, bounds) = (Rect::new(0.0, 0.0, 1.0, 1.0), corners::bounds(shape));
+    let even = |j: &Jet| {
+        let [a, b] = stretches(&Jet { dy: -j.dy, ..*j }, unit, bounds);
+        b > 0.0 && a <= UNEVEN * b
+    };
+    level && jets.iter().all(even)
 }
 
 /// Returns a box wider than `frame`, whose map into the sides keeps the frame `padding` off them.

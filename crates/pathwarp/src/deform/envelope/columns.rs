@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 /// Columns that are looked at, at least.
 const COLUMNS: f64 = 600.0;
 /// The slope into the higher part after a jump, in heights of the shape per width.
-const RAMP: f64 = 4.0;
+const RAMP: f64 = 2.0;
 /// Jumps below this share of the height are rounding.
 const JUMP: f64 = 1e-6;
 /// Exchanges x and y.

@@ -219,6 +219,15 @@ impl Envelope {
         self.shape.as_ref().filter(|_| !divided).map(corners::closed).transpose()
     }
 
+    /// Returns where the artwork is, in the unit square with v upwards: a few places, as every choice of corners looks at all.
+    fn places(&self) -> Vec<Point> {
+        /// Places along an axis, and in all.
+        const PLACES: u32 = 5;
+        let step = (self.ink.len() / (2 * PLACES * PLACES) as usize).max(1);
+        let places: Vec<Point> = self.ink.iter().step_by(step).map(|p| fit::to_unit(self.frame) * *p).collect();
+        if places.is_empty() { choice::grid(PLACES).collect() } else { places }
+    }
+
     /// Returns the four sides as drawn.
     fn ring(&self) -> Result<Ring, Error> {
         if let Some(height) = self.height {
@@ -237,7 +246,7 @@ impl Envelope {
                 if let Some(n) = self.bottom_side {
                     within("bottom-side", n as f64, 1.0, 4.0)?;
                 }
-                corners::ring(path, self.corners.as_ref(), self.bottom_side, self.reverse)
+                corners::ring(path, self.corners.as_ref(), self.bottom_side, self.reverse, &self.places())
             }
             None if drawn => {
                 let given = [("corners", self.corners.is_some()), ("bottom-side", self.bottom_side.is_some())];
