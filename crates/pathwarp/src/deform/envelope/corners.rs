@@ -1,6 +1,6 @@
 //! A closed path divided into four sides: its corners and its bottom, given or found.
 
-use super::choice::stretched;
+use super::choice::distortion;
 use super::columns::part;
 use super::ring::{Corners, Ring, SAMPLES, area, mirrored, reversed};
 use crate::anchors;
@@ -12,7 +12,7 @@ use kurbo::{Point, Rect, Vec2};
 
 /// A joint that turns by at least this angle (degrees) looks like a corner.
 const CORNER: f64 = 20.0;
-/// The cost of a corner on a smooth curve, in units of [`stretched`].
+/// The cost of a corner on a smooth curve, in units of [`distortion`].
 const SMOOTH: f64 = 0.1;
 /// The further cost where a sharp node is near.
 const NEAR_SHARP: f64 = 0.2;
@@ -52,17 +52,17 @@ pub(super) fn closed(path: &NamedPath) -> Result<Subpath, Error> {
 
 /// Divides a closed path into four sides. Corners and bottom are found unless given; nothing is mirrored unless `reverse`.
 pub(super) fn ring(
-    path: &NamedPath,
+    name: &str,
+    sub: &Subpath,
     corners: Option<&Corners>,
     bottom_side: Option<usize>,
     reverse: bool,
     places: &[Point],
 ) -> Result<Ring, Error> {
-    let sub = closed(path)?;
-    let bounds = bounds(&sub);
+    let bounds = bounds(sub);
     let Found { corners: locations, how, rival } = match corners {
-        Some(corners) => Found { corners: given(&sub, corners, bounds)?, how: "as given", rival: None },
-        None => found(&path.name, &sub, bounds, places)?,
+        Some(corners) => Found { corners: given(sub, corners, bounds)?, how: "as given", rival: None },
+        None => found(name, sub, bounds, places)?,
     };
     let drawn = cut(&sub.segs, locations);
     let area: f64 = drawn.iter().flatten().map(area).sum();
@@ -79,8 +79,7 @@ pub(super) fn ring(
     let corners: Vec<String> = sides.iter().filter_map(|s| s.first()).map(|s| show(s.start())).collect();
     let mut notes = vec![
         format!(
-            "corners of {} ({how}): {} (bottom left, bottom right, top right, top left)",
-            path.name,
+            "corners of {name} ({how}): {} (bottom left, bottom right, top right, top left)",
             corners.join(" ")
         ),
         format!(
@@ -94,7 +93,7 @@ pub(super) fn ring(
         notes.push("reverse: the bottom side runs the other way, so that the result is mirrored".into());
     }
     let doubt = |rival: String| {
-        format!("envelope: the corners of {} are in doubt: `--corners '{rival}'` would do as well, or `--keep verticals`", path.name)
+        format!("envelope: the corners of {name} are in doubt: `--corners '{rival}'` would do as well, or `--keep verticals`")
     };
     Ok(Ring { sides, notes, warnings: rival.map(doubt).into_iter().collect() })
 }
@@ -205,7 +204,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     }
     candidates.sort_by(|a, b| a.0.0.cmp(&b.0.0).then(a.0.1.total_cmp(&b.0.1)));
     candidates.dedup_by(|a, b| a.0 == b.0);
-    let flat = Flat::new(sub, bounds);
+    let flat = Flat::new(sub);
     let at: Vec<f64> = candidates.iter().map(|c| flat.length_at(c.0)).collect();
     let mut scored: Vec<(f64, [usize; 4])> = Vec::new();
     let m = candidates.len();
@@ -253,14 +252,13 @@ struct Found {
 struct Flat {
     points: Vec<Point>,
     lengths: Vec<f64>,
-    bounds: Rect,
 }
 
 /// Lines of a piece.
 const LINES: u32 = 16;
 
 impl Flat {
-    fn new(sub: &Subpath, bounds: Rect) -> Self {
+    fn new(sub: &Subpath) -> Self {
         let at = |s: &Seg| (0..LINES).map(|i| s.eval(f64::from(i) / f64::from(LINES))).collect::<Vec<_>>();
         let mut points: Vec<Point> = sub.segs.iter().flat_map(at).collect();
         points.push(points[0]);
@@ -268,7 +266,7 @@ impl Flat {
         for w in points.windows(2) {
             lengths.push(lengths[lengths.len() - 1] + w[0].distance(w[1]));
         }
-        Self { points, lengths, bounds }
+        Self { points, lengths }
     }
 
     fn length_at(&self, (i, t): Location) -> f64 {
@@ -316,19 +314,16 @@ impl Flat {
             let corner = p[0].lerp(p[1], u).to_vec2() * (1.0 - v) + p[2].lerp(p[3], u).to_vec2() * v;
             b * (1.0 - v) + t * v + l * (1.0 - u) + r * u - corner
         };
-        let unit = Rect::new(0.0, 0.0, 1.0, 1.0);
-        let (mut sum, mut mean) = (0.0, [Vec2::ZERO; 2]);
-        for q in places {
+        let jet = |q: &Point| {
             let (u, v) = (q.x.clamp(STEP, 1.0 - STEP), q.y.clamp(STEP, 1.0 - STEP));
             let dx = (patch(u + STEP, v) - patch(u - STEP, v)) / (2.0 * STEP);
             let dy = (patch(u, v - STEP) - patch(u, v + STEP)) / (2.0 * STEP);
-            mean = [mean[0] + dx, mean[1] + dy];
-            sum += stretched(&Jet { p: *q, dx, dy }, unit, self.bounds);
-        }
-        let n = places.len() as f64;
-        let [dx, dy] = mean.map(|m| Vec2::new(m.x / self.bounds.width(), m.y / self.bounds.height()) / n);
-        let turned = (dx.y - dy.x).atan2(dx.x + dy.y);
-        Some(sum / n + TURNED * turned * turned)
+            Jet { p: *q, dx, dy }
+        };
+        let jets: Vec<Jet> = places.iter().map(jet).collect();
+        let [dx, dy] = [jets.iter().map(|j| j.dx).sum::<Vec2>(), jets.iter().map(|j| j.dy).sum::<Vec2>()];
+        let turned = [dx.y.atan2(dx.x), (-dy.x).atan2(dy.y)].map(|a| a * a).iter().sum::<f64>();
+        Some(distortion(&jets) + TURNED * turned)
     }
 }
 
@@ -338,6 +333,41 @@ fn quarter(p: Point, bounds: Rect) -> Option<(bool, bool)> {
     const MIDDLE: f64 = 0.05;
     let (x, y) = ((p.x - bounds.x0) / bounds.width() - 0.5, (p.y - bounds.y0) / bounds.height() - 0.5);
     (x.abs() > MIDDLE && y.abs() > MIDDLE).then_some((x > 0.0, y > 0.0))
+}
+
+/// Replaces tails and teeth of a closed path, which lettering leaves free, by straight lines: what sticks out with a sharp tip between
+/// two notches near one another. Returns the tips, too.
+pub(super) fn trimmed(sub: &Subpath) -> (Subpath, Vec<Point>) {
+    /// The largest area, as a share of the path's.
+    const SMALL: f64 = 0.08;
+    /// The least area against the square over the notches' distance.
+    const DEEP: f64 = 0.15;
+    let whole: f64 = sub.segs.iter().map(area).sum();
+    let n = sub.segs.len();
+    let notches: Vec<usize> = sharp(sub, -whole.signum()).collect();
+    let tips: Vec<usize> = sharp(sub, whole.signum()).collect();
+    let (mut gone, mut found) = (vec![false; n], Vec::new());
+    let mut lines: Vec<(usize, Seg)> = Vec::new();
+    for (k, a) in notches.iter().enumerate().filter(|_| notches.len() > 1) {
+        let c = notches[(k + 1) % notches.len()];
+        let between: Vec<usize> = (0..(c + n - a) % n).map(|i| (a + i) % n).collect();
+        let (from, to) = (sub.segs[*a].start(), sub.segs[c].start());
+        let chord = Seg::Line(kurbo::Line::new(to, from));
+        let part = between.iter().map(|i| area(&sub.segs[*i])).sum::<f64>() + area(&chord);
+        let tip = between.iter().skip(1).find(|i| tips.contains(i));
+        if let Some(tip) = tip
+            && part * whole > 0.0
+            && part / whole <= SMALL
+            && part.abs() >= DEEP * to.distance(from).powi(2)
+        {
+            found.push(sub.segs[*tip].start());
+            between.iter().for_each(|i| gone[*i] = true);
+            lines.push((*a, chord.reversed()));
+        }
+    }
+    let line = |i: usize| lines.iter().find(|l| l.0 == i).map(|l| l.1);
+    let segs: Vec<Seg> = (0..n).filter_map(|i| line(i).or_else(|| (!gone[i]).then_some(sub.segs[i]))).collect();
+    (Subpath { start: segs.first().map_or(sub.start, Seg::start), segs, closed: true }, found)
 }
 
 /// Returns the nodes of a path that runs around its area with this sign at which it turns sharply outwards.
