@@ -6,6 +6,7 @@
 //! area. Where the outline jumps from one height to another, a slope leads into the higher part. Rows are the columns of the path with
 //! x and y exchanged.
 
+use super::choice::Room;
 use super::ring::SAMPLES;
 use crate::map::increasing_root;
 use crate::outline::{Outline, Seg, Subpath};
@@ -15,7 +16,7 @@ use std::f64::consts::PI;
 /// Columns that are looked at, at least.
 const COLUMNS: f64 = 600.0;
 /// The slope into the higher part after a jump, in heights of the shape per width.
-const RAMP: f64 = 4.0;
+const RAMP: f64 = 2.0;
 /// Jumps below this share of the height are rounding.
 const JUMP: f64 = 1e-6;
 /// Exchanges x and y.
@@ -78,8 +79,9 @@ struct Line1 {
 }
 
 impl Columns {
-    /// Fills a closed path, `padding` off its outline, from where its height is `ends` of the largest. `None` if that leaves nothing.
-    pub(super) fn new(shape: &Subpath, upright: bool, padding: f64, ends: f64) -> Option<Self> {
+    /// Fills a closed path in columns, or in rows. `None` if `room` leaves nothing.
+    pub(super) fn new(shape: &Subpath, upright: bool, room: &Room) -> Option<Self> {
+        let (padding, ends) = (room.padding, room.ends.unwrap_or(0.0));
         let turn = if upright { Affine::IDENTITY } else { TRANSPOSED };
         let segs: Vec<Seg> = shape.segs.iter().map(|s| s.transformed(turn)).collect();
         let bounds = segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b))?;
@@ -93,6 +95,9 @@ impl Columns {
         let area: f64 = lines.iter().map(|l| l.width * l.intervals.iter().map(Interval::height).sum::<f64>()).sum();
         let mut jumps = Vec::new();
         let mut curves = [0, 1].map(|end| all.traced(&chosen, end));
+        if room.core {
+            all.trim(&mut curves);
+        }
         for (end, curve) in curves.iter_mut().enumerate() {
             all.smooth(curve, if end == 0 { -1.0 } else { 1.0 }, &mut jumps);
         }
@@ -216,6 +221,35 @@ impl Region {
     fn outer_end(&self, (line, v): &(&Line1, Interval), event: f64) -> f64 {
         let height = |x: f64| self.pieces[v.ends[1]].y(x) - self.pieces[v.ends[0]].y(x);
         if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
+    }
+
+    /// Cuts off what is beyond a jump at the ends of two curves, if it is short and thin.
+    fn trim(&self, curves: &mut [Vec<Span>; 2]) {
+        /// Longest, as a share of the range.
+        const SHORT: f64 = 0.25;
+        /// Highest, as a share of the height on the other side of the jump.
+        const THIN: f64 = 0.55;
+        let ends = |c: &[Vec<Span>; 2]| (c[0][0].from, c[0][c[0].len() - 1].to);
+        let (start, stop) = ends(curves);
+        for right in [false, true] {
+            let mut jumps: Vec<f64> = Vec::new();
+            for c in &*curves {
+                let y = |s: &Span, x: f64| self.pieces[s.piece].y(x);
+                let far = |w: &&[Span]| (y(&w[0], w[0].to) - y(&w[1], w[1].from)).abs() > JUMP * self.bounds.height();
+                jumps.extend(c.windows(2).filter(far).map(|w| w[0].to));
+            }
+            jumps.retain(|x| (if right { stop - x } else { x - start }) <= SHORT * (stop - start));
+            jumps.sort_by(|a, b| if right { a.total_cmp(b) } else { b.total_cmp(a) });
+            let aside = 1e-6 * (stop - start) * if right { 1.0 } else { -1.0 };
+            let height = |x: f64| self.at(&curves[1], x) - self.at(&curves[0], x);
+            let Some(x) = jumps.into_iter().find(|x| height(x + aside) <= THIN * height(x - aside)) else { continue };
+            for c in curves.iter_mut() {
+                c.retain(|s| if right { s.from < x } else { s.to > x });
+                for s in c.iter_mut() {
+                    (s.from, s.to) = if right { (s.from, s.to.min(x)) } else { (s.from.max(x), s.to) };
+                }
+            }
+        }
     }
 
     /// Leads slopes over jumps of a curve; `out` is −1 for the low and 1 for the high one.

@@ -1,17 +1,31 @@
 //! A closed path divided into four sides: its corners and its bottom, given or found.
 
+use super::choice::distortion;
 use super::columns::part;
 use super::ring::{Corners, Ring, SAMPLES, area, mirrored, reversed};
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::outline::{Seg, Subpath};
+use crate::map::Jet;
 use crate::param::NamedPath;
 use kurbo::{Point, Rect, Vec2};
 
 /// A joint that turns by at least this angle (degrees) looks like a corner.
 const CORNER: f64 = 20.0;
-/// A point this close to a corner by angle, as a share of the box, snaps to it.
-const SNAP: f64 = 0.15;
+/// The cost of a corner on a smooth curve, in units of [`distortion`].
+const SMOOTH: f64 = 0.1;
+/// The further cost where a sharp node is near.
+const NEAR_SHARP: f64 = 0.2;
+/// How near that is, as a share of the box.
+const AROUND: f64 = 0.15;
+/// The cost of a turn by one radian.
+const TURNED: f64 = 0.5;
+/// Sharp nodes that are considered as corners.
+const MOST_SHARP: usize = 14;
+/// Corners that are worse by less than this are hardly worse.
+const CLOSE: f64 = 0.03;
+/// Corners farther apart than this, as a share of the box, are different ones.
+const DIFFERENT: f64 = 0.1;
 /// Limit on a path's pieces: every joint is a crease of the map.
 const MAX_PIECES: usize = 2000;
 /// A location on the path: piece and parameter.
@@ -38,16 +52,17 @@ pub(super) fn closed(path: &NamedPath) -> Result<Subpath, Error> {
 
 /// Divides a closed path into four sides. Corners and bottom are found unless given; nothing is mirrored unless `reverse`.
 pub(super) fn ring(
-    path: &NamedPath,
+    name: &str,
+    sub: &Subpath,
     corners: Option<&Corners>,
     bottom_side: Option<usize>,
     reverse: bool,
+    places: &[Point],
 ) -> Result<Ring, Error> {
-    let sub = closed(path)?;
-    let bounds = bounds(&sub);
-    let (locations, how) = match corners {
-        Some(corners) => (given(&sub, corners, bounds)?, "as given"),
-        None => found(&path.name, &sub, bounds)?,
+    let bounds = bounds(sub);
+    let Found { corners: locations, how, rival } = match corners {
+        Some(corners) => Found { corners: given(sub, corners, bounds)?, how: "as given", rival: None },
+        None => found(name, sub, bounds, places)?,
     };
     let drawn = cut(&sub.segs, locations);
     let area: f64 = drawn.iter().flatten().map(area).sum();
@@ -64,8 +79,7 @@ pub(super) fn ring(
     let corners: Vec<String> = sides.iter().filter_map(|s| s.first()).map(|s| show(s.start())).collect();
     let mut notes = vec![
         format!(
-            "corners of {} ({how}): {} (bottom left, bottom right, top right, top left)",
-            path.name,
+            "corners of {name} ({how}): {} (bottom left, bottom right, top right, top left)",
             corners.join(" ")
         ),
         format!(
@@ -78,7 +92,10 @@ pub(super) fn ring(
         sides = mirrored(sides);
         notes.push("reverse: the bottom side runs the other way, so that the result is mirrored".into());
     }
-    Ok(Ring { sides, notes, warnings: Vec::new() })
+    let doubt = |rival: String| {
+        format!("envelope: the corners of {name} are in doubt: `--corners '{rival}'` would do as well, or `--keep verticals`")
+    };
+    Ok(Ring { sides, notes, warnings: rival.map(doubt).into_iter().collect() })
 }
 
 /// Returns the lowest side on the screen among those that run to the right.
@@ -157,39 +174,156 @@ fn given(sub: &Subpath, corners: &Corners, bounds: Rect) -> Result<[Location; 4]
     Ok(locations)
 }
 
-/// Finds corners: a path's only four nodes if each lies in another quarter of its box; four corners by angle if they do too, or
-/// span at least as much as the last choice; the points nearest to the box's corners.
-fn found(name: &str, sub: &Subpath, bounds: Rect) -> Result<([Location; 4], &'static str), Error> {
+/// Finds corners: a path's only four nodes if each lies in another quarter of its box; else, of all choices of four sharp nodes, and
+/// of points nearest to the corners of the box in whose quarter there is none, the one that distorts least. `places` are those of the
+/// artwork, in the unit square.
+fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Found, Error> {
     let n = sub.segs.len();
-    let sharp: Vec<usize> = (0..n).filter(|&i| turn(sub, i).abs() >= CORNER).collect();
-    let four = <[usize; 4]>::try_from(sharp.clone()).ok().map(|c| c.map(|i| (i, 0.0)));
-    let boxed = by_box(sub, bounds, &sharp);
-    let span = |locations: &[Location; 4]| {
-        let p = locations.map(|(i, t)| sub.segs[i].eval(t));
-        (p[2] - p[0]).cross(p[3] - p[1]).abs()
-    };
-    let quartered = |locations: &[Location; 4]| {
-        let mut seen: Vec<_> = locations.iter().filter_map(|p| quarter(sub.segs[p.0].eval(p.1), bounds)).collect();
-        seen.sort_unstable();
-        seen.dedup();
-        seen.len() == 4
-    };
+    let mut sharp: Vec<usize> = (0..n).filter(|&i| turn(sub, i).abs() >= CORNER).collect();
+    let mut seen: Vec<_> = (0..n).filter_map(|i| quarter(sub.segs[i].start(), bounds)).collect();
+    seen.sort_unstable();
+    seen.dedup();
     // Four nodes are meant as corners, unless they are those of a circle.
-    let nodes = [0, 1, 2, 3].map(|i| (i, 0.0));
-    if n == 4 && quartered(&nodes) {
-        return Ok((nodes, "its four nodes"));
+    if n == 4 && seen.len() == 4 {
+        return Ok(Found { corners: [0, 1, 2, 3].map(|i| (i, 0.0)), how: "its four nodes", rival: None });
     }
-    match (four, boxed) {
-        (Some(four), None) => Ok((four, "found by angle")),
-        (Some(four), Some(boxed)) if quartered(&four) || span(&four) >= span(&boxed) => Ok((four, "found by angle")),
-        (_, Some(boxed)) => Ok((boxed, "the points nearest to the corners of its box")),
-        (None, None) => {
-            let problem = format!(
-                "has {} corners by angle, and its box does not determine them: give `corners` (four node numbers, or four points)",
-                sharp.len()
-            );
-            Err(Error::usage("envelope", name, problem))
+    sharp.sort_by(|a, b| turn(sub, *b).abs().total_cmp(&turn(sub, *a).abs()).then(a.cmp(b)));
+    sharp.truncate(MOST_SHARP);
+    let share = |v: Vec2| Vec2::new(v.x / bounds.width(), v.y / bounds.height());
+    let mut candidates: Vec<(Location, f64)> = sharp.iter().map(|i| ((*i, 0.0), 0.0)).collect();
+    let nodes: Vec<Point> = sharp.iter().map(|i| sub.segs[*i].start()).collect();
+    for c in [(bounds.x0, bounds.y1), (bounds.x1, bounds.y1), (bounds.x1, bounds.y0), (bounds.x0, bounds.y0)] {
+        let c = Point::from(c);
+        if nodes.iter().any(|p| quarter(*p, bounds) == quarter(c, bounds)) {
+            continue;
         }
+        let location = nearest(sub, c, Vec2::new(1.0 / bounds.width(), 1.0 / bounds.height()), bounds);
+        let here = sub.segs[location.0].eval(location.1);
+        let off = nodes.iter().map(|p| share(*p - here).hypot()).fold(1.0, f64::min);
+        candidates.push((location, SMOOTH + NEAR_SHARP * (1.0 - off / AROUND).max(0.0)));
+    }
+    candidates.sort_by(|a, b| a.0.0.cmp(&b.0.0).then(a.0.1.total_cmp(&b.0.1)));
+    candidates.dedup_by(|a, b| a.0 == b.0);
+    let flat = Flat::new(sub);
+    let at: Vec<f64> = candidates.iter().map(|c| flat.length_at(c.0)).collect();
+    let mut scored: Vec<(f64, [usize; 4])> = Vec::new();
+    let m = candidates.len();
+    for (a, b) in (0..m).flat_map(|a| (a + 1..m).map(move |b| (a, b))) {
+        for (c, d) in (b + 1..m).flat_map(|c| (c + 1..m).map(move |d| (c, d))) {
+            let four = [a, b, c, d];
+            let cost: f64 = four.iter().map(|i| candidates[*i].1).sum();
+            scored.extend(flat.distortion(four.map(|i| at[i]), places).map(|s| (s + cost, four)));
+        }
+    }
+    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((score, best)) = scored.first() else {
+        let problem = format!(
+            "has {} corners by angle, and its box does not determine them: give `corners` (four node numbers, or four points)",
+            sharp.len()
+        );
+        return Err(Error::usage("envelope", name, problem));
+    };
+    let smooth = best.iter().filter(|i| candidates[**i].1 > 0.0).count();
+    let place = |i: usize| sub.segs[candidates[i].0.0].eval(candidates[i].0.1);
+    let differs = |four: &[usize; 4]| {
+        four.iter().any(|i| best.iter().all(|j| share(place(*i) - place(*j)).hypot() > DIFFERENT))
+    };
+    let rival = scored.iter().skip(1).find(|s| differs(&s.1)).filter(|s| s.0 <= score + CLOSE);
+    Ok(Found {
+        corners: best.map(|i| candidates[i].0),
+        how: match smooth {
+            0 => "found by angle, the least distortion",
+            4 => "the points nearest to the corners of its box",
+            _ => "found by angle, the others nearest to the corners of its box",
+        },
+        rival: rival.map(|s| s.1.map(|i| show(place(i))).join(" ")),
+    })
+}
+
+/// Corners found.
+struct Found {
+    corners: [Location; 4],
+    how: &'static str,
+    /// Others that are hardly worse.
+    rival: Option<String>,
+}
+
+/// A closed path as lines, with the length from its start to every point.
+struct Flat {
+    points: Vec<Point>,
+    lengths: Vec<f64>,
+}
+
+/// Lines of a piece.
+const LINES: u32 = 16;
+
+impl Flat {
+    fn new(sub: &Subpath) -> Self {
+        let at = |s: &Seg| (0..LINES).map(|i| s.eval(f64::from(i) / f64::from(LINES))).collect::<Vec<_>>();
+        let mut points: Vec<Point> = sub.segs.iter().flat_map(at).collect();
+        points.push(points[0]);
+        let mut lengths = vec![0.0];
+        for w in points.windows(2) {
+            lengths.push(lengths[lengths.len() - 1] + w[0].distance(w[1]));
+        }
+        Self { points, lengths }
+    }
+
+    fn length_at(&self, (i, t): Location) -> f64 {
+        let at = f64::from(LINES) * (i as f64 + t);
+        let k = (at as usize).min(self.points.len() - 2);
+        self.lengths[k] + (at - k as f64) * (self.lengths[k + 1] - self.lengths[k])
+    }
+
+    fn whole(&self) -> f64 {
+        self.lengths[self.lengths.len() - 1]
+    }
+
+    /// The point at a length, which may be more than once around.
+    fn at(&self, length: f64) -> Point {
+        let length = length.rem_euclid(self.whole());
+        let k = self.lengths.partition_point(|l| *l <= length).clamp(1, self.points.len() - 1);
+        let (a, b) = (self.lengths[k - 1], self.lengths[k]);
+        self.points[k - 1].lerp(self.points[k], if b > a { (length - a) / (b - a) } else { 0.0 })
+    }
+
+    /// The distortion of the patch between corners at these lengths; `None` if two are the same.
+    fn distortion(&self, corners: [f64; 4], places: &[Point]) -> Option<f64> {
+        /// The least length of a side, as a share of the path's.
+        const SHORTEST: f64 = 0.01;
+        const STEP: f64 = 0.05;
+        let area: f64 = self.points.windows(2).map(|w| w[0].to_vec2().cross(w[1].to_vec2())).sum();
+        let ends: [[f64; 2]; 4] = std::array::from_fn(|i| {
+            [corners[i], if i < 3 { corners[i + 1] } else { corners[0] + self.whole() }]
+        });
+        if ends.iter().any(|e| e[1] - e[0] < SHORTEST * self.whole()) {
+            return None;
+        }
+        let order = if area > 0.0 { [3, 2, 1, 0] } else { [0, 1, 2, 3] };
+        let sides = order.map(|i| if area > 0.0 { [ends[i][1], ends[i][0]] } else { ends[i] });
+        let on = |side: [f64; 2], t: f64| self.at(side[0] + t * (side[1] - side[0]));
+        let height = |s: [f64; 2]| (0..8).map(|i| on(s, (f64::from(i) + 0.5) / 8.0).y).sum::<f64>();
+        let bottom = (0..4)
+            .filter(|i| on(sides[*i], 1.0).x > on(sides[*i], 0.0).x)
+            .reduce(|a, b| if height(sides[b]) > height(sides[a]) + 1e-9 * self.whole() { b } else { a })?;
+        let [b, r, t, l]: [[f64; 2]; 4] = std::array::from_fn(|i| sides[(bottom + i) % 4]);
+        let p = [on(b, 0.0), on(b, 1.0), on(t, 1.0), on(t, 0.0)];
+        let patch = |u: f64, v: f64| {
+            let (b, t) = (on(b, u).to_vec2(), on(t, 1.0 - u).to_vec2());
+            let (l, r) = (on(l, 1.0 - v).to_vec2(), on(r, v).to_vec2());
+            let corner = p[0].lerp(p[1], u).to_vec2() * (1.0 - v) + p[2].lerp(p[3], u).to_vec2() * v;
+            b * (1.0 - v) + t * v + l * (1.0 - u) + r * u - corner
+        };
+        let jet = |q: &Point| {
+            let (u, v) = (q.x.clamp(STEP, 1.0 - STEP), q.y.clamp(STEP, 1.0 - STEP));
+            let dx = (patch(u + STEP, v) - patch(u - STEP, v)) / (2.0 * STEP);
+            let dy = (patch(u, v - STEP) - patch(u, v + STEP)) / (2.0 * STEP);
+            Jet { p: *q, dx, dy }
+        };
+        let jets: Vec<Jet> = places.iter().map(jet).collect();
+        let [dx, dy] = [jets.iter().map(|j| j.dx).sum::<Vec2>(), jets.iter().map(|j| j.dy).sum::<Vec2>()];
+        let turned = [dx.y.atan2(dx.x), (-dy.x).atan2(dy.y)].map(|a| a * a).iter().sum::<f64>();
+        Some(distortion(&jets) + TURNED * turned)
     }
 }
 
@@ -201,29 +335,39 @@ fn quarter(p: Point, bounds: Rect) -> Option<(bool, bool)> {
     (x.abs() > MIDDLE && y.abs() > MIDDLE).then_some((x > 0.0, y > 0.0))
 }
 
-/// Returns the points nearest to the corners of the path's box, or corners by angle near them; `None` if their order along the
-/// path is not the box's.
-fn by_box(sub: &Subpath, bounds: Rect, sharp: &[usize]) -> Option<[Location; 4]> {
-    // Relative to the box, so that an ellipse is treated like a circle.
-    let share = |v: Vec2| Vec2::new(v.x / bounds.width(), v.y / bounds.height());
-    let box_corners = [(bounds.x0, bounds.y1), (bounds.x1, bounds.y1), (bounds.x1, bounds.y0), (bounds.x0, bounds.y0)];
-    let locations = box_corners.map(Point::from).map(|c| {
-        let location = nearest(sub, c, Vec2::new(1.0 / bounds.width(), 1.0 / bounds.height()), bounds);
-        let here = sub.segs[location.0].eval(location.1);
-        let off = |i: &usize| share(sub.segs[*i].start() - here).hypot();
-        let corner = sharp.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|i| off(i) <= SNAP);
-        corner.map_or(location, |i| (*i, 0.0))
-    });
-    let mut sorted = locations;
-    sorted.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    // The box's corners must follow one another along the path, in either direction.
-    let at = |p: &Location| sorted.iter().position(|q| q == p).unwrap_or(0);
-    let [a, b, c, d] = locations.each_ref().map(at);
-    let apart =
-        |p: &[Location]| sub.segs[p[0].0].eval(p[0].1).distance(sub.segs[p[1].0].eval(p[1].1)) > 1e-9 * bounds.width();
-    let in_turn = [(a, b), (b, c), (c, d), (d, a)];
-    let round = |step: usize| in_turn.iter().all(|(x, y)| (x + step) % 4 == *y);
-    (sorted.windows(2).all(apart) && (round(1) || round(3))).then_some(sorted)
+/// Replaces tails and teeth of a closed path, which lettering leaves free, by straight lines: what sticks out with a sharp tip between
+/// two notches near one another. Returns the tips, too.
+pub(super) fn trimmed(sub: &Subpath) -> (Subpath, Vec<Point>) {
+    /// The largest area, as a share of the path's.
+    const SMALL: f64 = 0.08;
+    /// The least area against the square over the notches' distance.
+    const DEEP: f64 = 0.15;
+    let whole: f64 = sub.segs.iter().map(area).sum();
+    let n = sub.segs.len();
+    let notches: Vec<usize> = sharp(sub, -whole.signum()).collect();
+    let tips: Vec<usize> = sharp(sub, whole.signum()).collect();
+    let (mut gone, mut found) = (vec![false; n], Vec::new());
+    let mut lines: Vec<(usize, Seg)> = Vec::new();
+    for (k, a) in notches.iter().enumerate().filter(|_| notches.len() > 1) {
+        let c = notches[(k + 1) % notches.len()];
+        let between: Vec<usize> = (0..(c + n - a) % n).map(|i| (a + i) % n).collect();
+        let (from, to) = (sub.segs[*a].start(), sub.segs[c].start());
+        let chord = Seg::Line(kurbo::Line::new(to, from));
+        let part = between.iter().map(|i| area(&sub.segs[*i])).sum::<f64>() + area(&chord);
+        let tip = between.iter().skip(1).find(|i| tips.contains(i));
+        if let Some(tip) = tip
+            && part * whole > 0.0
+            && part / whole <= SMALL
+            && part.abs() >= DEEP * to.distance(from).powi(2)
+        {
+            found.push(sub.segs[*tip].start());
+            between.iter().for_each(|i| gone[*i] = true);
+            lines.push((*a, chord.reversed()));
+        }
+    }
+    let line = |i: usize| lines.iter().find(|l| l.0 == i).map(|l| l.1);
+    let segs: Vec<Seg> = (0..n).filter_map(|i| line(i).or_else(|| (!gone[i]).then_some(sub.segs[i]))).collect();
+    (Subpath { start: segs.first().map_or(sub.start, Seg::start), segs, closed: true }, found)
 }
 
 /// Returns the nodes of a path that runs around its area with this sign at which it turns sharply outwards.

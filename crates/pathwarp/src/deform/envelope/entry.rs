@@ -142,7 +142,7 @@ impl Deformation for Entry {
             bottom_side: s.number_if("bottom-side")?.map(|n| n as usize),
             reverse: s.flag("reverse")?,
             keep: Keep::named(s.choice("keep")?),
-            room: Room { ends: s.number_if("ends")?, padding: s.number("padding")? },
+            room: Room { ends: s.number_if("ends")?, padding: s.number("padding")?, core: false },
             lettering: !s.frame().letters.is_empty(),
             ink: Arc::clone(&s.frame().ink),
         };

@@ -21,7 +21,7 @@ use ring::Corners;
 pub(super) use ring::Ring;
 
 use super::built::Built;
-use crate::error::{Error, within};
+use crate::error::{Error, show, within};
 use crate::outline::{Outline, Subpath};
 use crate::param::NamedPath;
 use choice::Room;
@@ -202,42 +202,60 @@ impl Envelope {
     pub fn build(&self) -> Result<Built, Error> {
         within("ends", self.room.ends.unwrap_or(0.0), 0.0, 0.99)?;
         within("padding", self.room.padding, 0.0, 1e9)?;
-        choice::Choice {
+        let shape = self.shape.as_ref().map(|path| Ok::<_, Error>((&*path.name, corners::closed(path)?))).transpose()?;
+        let divided = self.corners.is_some() || self.bottom_side.is_some() || self.reverse || self.spread.is_some();
+        let whole = divided || self.keep != Keep::Auto || !self.lettering;
+        let (shape, tips) = match shape {
+            Some((name, path)) if !whole => {
+                let (path, tips) = corners::trimmed(&path);
+                (Some((name, path)), tips)
+            }
+            shape => (shape, Vec::new()),
+        };
+        let choice = choice::Choice {
             frame: self.frame,
             keep: self.keep,
             spread: self.spread,
             room: Room { ends: Some(self.room.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })), ..self.room },
             lettering: self.lettering,
             ink: &self.ink,
+        };
+        let ring = self.ring(shape.as_ref());
+        let mut built = choice.build(shape.map(|s| s.1).filter(|_| !divided), ring)?;
+        if !tips.is_empty() {
+            built.note(format!("left free: what sticks out at {}", tips.into_iter().map(show).collect::<Vec<_>>().join(" ")));
         }
-        .build(self.closed()?, self.ring())
+        Ok(built)
     }
 
-    /// Returns the closed path, unless it is divided or spaced as the user says.
-    fn closed(&self) -> Result<Option<Subpath>, Error> {
-        let divided = self.corners.is_some() || self.bottom_side.is_some() || self.reverse || self.spread.is_some();
-        self.shape.as_ref().filter(|_| !divided).map(corners::closed).transpose()
+    /// Returns where the artwork is, in the unit square with v upwards: a few places, as every choice of corners looks at all.
+    fn places(&self) -> Vec<Point> {
+        /// Places along an axis, and in all.
+        const PLACES: u32 = 5;
+        let step = (self.ink.len() / (2 * PLACES * PLACES) as usize).max(1);
+        let places: Vec<Point> = self.ink.iter().step_by(step).map(|p| fit::to_unit(self.frame) * *p).collect();
+        if places.is_empty() { choice::grid(PLACES).collect() } else { places }
     }
 
     /// Returns the four sides as drawn.
-    fn ring(&self) -> Result<Ring, Error> {
+    fn ring(&self, shape: Option<&(&str, Subpath)>) -> Result<Ring, Error> {
         if let Some(height) = self.height {
             within("height", height, 1e-9, 1e9)?;
         }
         let drawn = self.curves.iter().any(Option::is_some);
-        match &self.shape {
-            Some(path) if drawn => {
+        match shape {
+            Some((name, _)) if drawn => {
                 let problem = "cannot go with `bottom`, `top`, `left` and `right`: a closed path has all four";
-                Err(Error::usage("envelope", path.name.clone(), problem))
+                Err(Error::usage("envelope", *name, problem))
             }
-            Some(path) => {
+            Some((name, path)) => {
                 if let Some(height) = self.height {
                     return Err(Error::usage("height", height.to_string(), "goes with `bottom` or `top` alone"));
                 }
                 if let Some(n) = self.bottom_side {
                     within("bottom-side", n as f64, 1.0, 4.0)?;
                 }
-                corners::ring(path, self.corners.as_ref(), self.bottom_side, self.reverse)
+                corners::ring(name, path, self.corners.as_ref(), self.bottom_side, self.reverse, &self.places())
             }
             None if drawn => {
                 let given = [("corners", self.corners.is_some()), ("bottom-side", self.bottom_side.is_some())];
