@@ -23,6 +23,11 @@ fn paste(folder: &Path, block: &str) -> String {
     said
 }
 
+/// Returns `true` if there are no warnings; notes, such as of a page that grew, are welcome.
+fn is_quiet(said: &str) -> bool {
+    said.lines().all(|l| l.starts_with("note: "))
+}
+
 /// The blocks of commands of a page that need no files but samples. The editor waits for its reader.
 fn blocks(page: &str) -> impl Iterator<Item = &str> {
     let blocks = page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
@@ -44,7 +49,7 @@ fn every_block_of_commands_runs() {
         let quiet = page.ends_with("README.md") || page.ends_with("docs/cookbook.md");
         for block in blocks(&fs::read_to_string(&page).unwrap()) {
             let said = paste(dir.path(), block);
-            assert!(said.is_empty() || !quiet, "{block}\n{said}");
+            assert!(is_quiet(&said) || !quiet, "{block}\n{said}");
             run += 1;
         }
     }
@@ -57,7 +62,8 @@ fn every_command_for_a_word_of_another_program_runs() {
     let dir = tempfile::tempdir().unwrap();
     for word in pathwarp_cli::coming_from::all() {
         if let Some(command) = word.command {
-            assert_eq!(paste(dir.path(), &format!("pathwarp {command}")), "", "{command}");
+            let said = paste(dir.path(), &format!("pathwarp {command}"));
+            assert!(is_quiet(&said), "{command}: {said}");
         }
     }
     let (said, _) = expect_code(0, &["help", "puppet", "warp"]);

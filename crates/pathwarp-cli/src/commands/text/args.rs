@@ -101,7 +101,7 @@ fn spacing() -> impl Iterator<Item = Arg> {
             "LENGTH",
             "Distance between baselines; percentages refer to the size [default: the font's line height]",
         ),
-        value("gap", "LENGTH", "Distance between lines from ink to ink, instead of a line height; percentages refer to the size")
+        value("gap", "LENGTH", "Distance between lines from ink to ink, instead of a line height, and between repeats on a path; percentages refer to the size")
             .conflicts_with("line-height"),
         choice(
             "align",

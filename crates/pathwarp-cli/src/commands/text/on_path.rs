@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 /// The deformation that sets the lines, and those of its parameters that are options here.
 const BEND: &str = "bend";
-const OF_BEND: [&str; 6] = ["glyphs", "stretch", "spacing", "offset", "gap", "reverse"];
+const OF_BEND: [&str; 5] = ["glyphs", "stretch", "spacing", "offset", "reverse"];
 
 const HEADING: &str = "On a path";
 const ON: &str = "on";
@@ -113,6 +113,9 @@ pub(super) fn set(
             if let Some(value) = m.get_one::<String>(name) {
                 args.push(name, value);
             }
+        }
+        if let Some(gap) = em.length(m, "gap")? {
+            args.push("gap", gap.to_string());
         }
         let shift = m.get_one::<String>("offset").map_or(Ok(0.0), |t| length(&frame, "offset", t))?;
         args.push("offset", (laid.shift + shift).to_string());
