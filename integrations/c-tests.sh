@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 compiler=${CC:-cc}
 if ! command -v "$compiler" >/dev/null; then
-    echo "No C compiler: the C library is not tested" >&2
+    echo "skipped: the C library is not tested without a C compiler" >&2
     exit 0
 fi
 # The whole workspace: with the features that the tests have built already.
@@ -24,7 +24,7 @@ if command -v valgrind >/dev/null; then
     # Presets are kept until the program ends, and threads keep their stacks.
     run=(valgrind --quiet --leak-check=full --errors-for-leak-kinds=definite,indirect --show-leak-kinds=definite,indirect --error-exitcode=9)
 else
-    echo "No valgrind: leaks of the C library are not looked for" >&2
+    echo "skipped: leaks of the C library are not looked for without valgrind" >&2
 fi
 for program in bend bend-static; do
     "${run[@]}" "$out/$program" >"$out/printed.txt"

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
 if ! "$python" -c 'import ensurepip, venv, sys; sys.exit(sys.version_info < (3, 9))' 2>/dev/null; then
-    echo "No Python 3.9 or newer with venv: the Python package is not tested" >&2
+    echo "skipped: the Python package is not tested without Python 3.9 or newer with venv" >&2
     exit 0
 fi
 env=target/python-tests
@@ -16,7 +16,7 @@ with_vpype=$("$env/bin/python" -c 'import sys; print(int(sys.version_info >= (3,
 [ "$with_vpype" = 0 ] || packages="$packages vpype>=1.15"
 # shellcheck disable=SC2086
 if ! "$env/bin/python" -m pip install --quiet --disable-pip-version-check $packages; then
-    echo "Python's packages cannot be fetched: the Python package is not tested" >&2
+    echo "skipped: the Python package is not tested, as its packages cannot be fetched" >&2
     exit 0
 fi
 # The profile of the other tests, whose crates are built already.
@@ -32,5 +32,5 @@ if [ "$with_vpype" = 1 ]; then
     "$env/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps --no-build-isolation target/vpype-pathwarp
     "$env/bin/python" -m pytest --quiet -p no:cacheprovider integrations/vpype/tests
 else
-    echo "vpype needs Python 3.11: its plug-in is not tested" >&2
+    echo "skipped: the plug-in for vpype is not tested without Python 3.11" >&2
 fi

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 wheel=$(ls target/python-wheels/*.whl 2>/dev/null || true)
 if [ -z "$wheel" ]; then
-    echo "There is no wheel: the pipelines for clusters are not tested" >&2
+    echo "skipped: the pipelines for clusters are not tested without the wheel for Python" >&2
     exit 0
 fi
 env=target/scale-out-tests
@@ -16,11 +16,11 @@ if command -v java >/dev/null; then
     systems="ray spark"
     packages="$packages pyspark"
 else
-    echo "No Java: the pipeline for Spark is not tested" >&2
+    echo "skipped: the pipeline for Spark is not tested without Java" >&2
 fi
 # shellcheck disable=SC2086
 if ! "$env/bin/python" -m pip install --quiet --disable-pip-version-check $packages; then
-    echo "Ray cannot be installed: the pipelines for clusters are not tested" >&2
+    echo "skipped: the pipelines for clusters are not tested, as Ray cannot be installed" >&2
     exit 0
 fi
 "$env/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$wheel"

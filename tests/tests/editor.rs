@@ -7,13 +7,14 @@ use std::process::Command;
 fn the_page_works_in_a_browser() {
     let web = root().join("crates/pathwarp-editor/web");
     if let Some(what) = browser::missing() {
-        println!("skipped: the page is not tested without {what}");
+        crate::support::skipped(format_args!("the editor's page is not tested without {what}"));
         return;
     }
     let out = Command::new("node").arg("tests/run.mjs").current_dir(&web).env("PATHWARP", pathwarp_program()).output();
     let out = out.unwrap();
     let said = String::from_utf8_lossy(&out.stdout);
     println!("{said}");
+    said.lines().filter_map(|l| l.trim().strip_prefix("skipped: ")).for_each(crate::support::skipped);
     assert!(out.status.success(), "{said}{}", String::from_utf8_lossy(&out.stderr));
 }
 

@@ -166,7 +166,7 @@ fn differences(a: &Pixmap, b: &Pixmap, drawings: usize) -> Vec<f64> {
 #[test]
 fn style_is_read_as_browsers_read_it() {
     if chromium().is_none() {
-        eprintln!("skipped: Chromium is not installed");
+        crate::support::skipped("style is not compared with browsers without Chromium");
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -72,14 +72,34 @@ fn xz(plain: &[u8]) -> Option<Vec<u8>> {
         .stdin(std::process::Stdio::piped())
         .stdout(std::process::Stdio::piped())
         .spawn()
-        .inspect_err(|_| eprintln!("skipped: `xz` is not installed"))
+        .inspect_err(|_| {
+            // Past the captured output: the gate lists such lines.
+            let _ = std::io::stderr().write_all(b"skipped: compressed XCF files are not tested without `xz`\n");
+        })
         .ok()?;
     child.stdin.take()?.write_all(plain).ok()?;
     Some(child.wait_with_output().ok()?.stdout)
 }
 
+/// A file, and the number of bytes that were read from it.
+struct Counted(std::fs::File, usize);
+
+impl Read for Counted {
+    fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
+        let n = self.0.read(to)?;
+        self.1 += n;
+        Ok(n)
+    }
+}
+
+impl Seek for Counted {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
 #[test]
-fn a_file_of_two_gigabytes_is_read_in_no_time() {
+fn little_is_read_of_a_file_of_two_gigabytes() {
     const SIZE: u64 = 2 << 30;
     let folder = tempfile::tempdir().unwrap();
     let paths = rich_paths();
@@ -103,12 +123,9 @@ fn a_file_of_two_gigabytes_is_read_in_no_time() {
         late.write_all(&item(p)).unwrap();
     }
     for name in ["early.xcf", "late.xcf"] {
-        let file = std::fs::File::open(folder.path().join(name)).unwrap();
-        let started = Instant::now();
-        let found = open(&file).unwrap().paths;
-        let took = started.elapsed();
-        assert_eq!(found, paths);
-        assert!(took.as_secs_f64() < 0.1, "{name}: {took:?}");
+        let mut file = Counted(std::fs::File::open(folder.path().join(name)).unwrap(), 0);
+        assert_eq!(open(&mut file).unwrap().paths, paths);
+        assert!(file.1 < 1 << 20, "{name}: {} bytes are read", file.1);
     }
 }
 
@@ -174,7 +191,7 @@ fn impossible_rewrites_are_errors() {
     let started = Instant::now();
     let strokes = vec![(0, rich_paths()[1].strokes.clone())];
     rewrite(Cursor::new(&looped), &mut Vec::new(), &strokes).unwrap_err();
-    assert!(started.elapsed().as_secs_f64() < 1.0);
+    assert!(started.elapsed().as_secs() < 60);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The workspace's chores, run as `cargo xtask NAME`.
 
+mod browser;
 mod chore;
 mod corpus;
 mod docs;
@@ -19,7 +20,7 @@ use clap::Command;
 use std::process::ExitCode;
 
 /// Every chore, declared with its options in a separate file.
-const CHORES: [Chore; 10] = [
+const CHORES: [Chore; 11] = [
     new_deformation::CHORE,
     corpus::CHORE,
     refit_report::CHORE,
@@ -30,6 +31,7 @@ const CHORES: [Chore; 10] = [
     package::REPRODUCIBLE,
     semver::CHORE,
     docs::CHORE,
+    browser::CHORE,
 ];
 
 fn main() -> ExitCode {

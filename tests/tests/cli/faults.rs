@@ -9,8 +9,8 @@ use crate::support::{pathwarp_in, pathwarp_program, sample, start_in};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
-use std::time::{Duration, Instant};
+use std::process::{Child, Command};
+use std::time::Duration;
 
 /// Batches that are disturbed, each at its own moment, unless the environment asks for more.
 const MOMENTS: u32 = 12;
@@ -43,16 +43,25 @@ fn artwork(folder: &Path) {
     }
 }
 
-/// The files of an undisturbed batch, and the time it took.
-fn undisturbed(folder: &Path) -> (BTreeMap<String, Vec<u8>>, Duration) {
-    let started = Instant::now();
+/// The files of an undisturbed batch.
+fn undisturbed(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let out = pathwarp_in(folder, &BATCH, b"");
     assert!(out.status.success(), "{}", text(&out.stderr));
-    let took = started.elapsed();
     let all = contents(&folder.join("out"));
     assert_eq!(all.len(), 2 * FILES + 1);
     fs::remove_dir_all(folder.join("out")).unwrap();
-    (all, took)
+    all
+}
+
+/// Waits until a batch has written a part of its files, and a little longer. The golden ratio spreads the moments evenly.
+fn wait_for(moment: u32, batch: &mut Child, folder: &Path) {
+    let part = (f64::from(moment) * 0.618_033_988_749_895).fract();
+    let (wanted, out) = (((2 * FILES) as f64 * part) as usize, folder.join("out"));
+    let written = || if out.exists() { files_below(&out) } else { Vec::new() };
+    while written().iter().filter(|f| !f.starts_with('.')).count() < wanted && batch.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    std::thread::sleep(Duration::from_millis(u64::from(moment % 16)));
 }
 
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -82,13 +91,12 @@ fn assert_whole(folder: &Path, whole: &BTreeMap<String, Vec<u8>>, when: &str) ->
 fn killed_batches_leave_whole_files() {
     let dir = tempfile::tempdir().unwrap();
     artwork(dir.path());
-    let (whole, took) = undisturbed(dir.path());
+    let whole = undisturbed(dir.path());
     let (mut some, mut left_over) = (0, 0);
     for moment in 0..moments() {
         let signal = ["KILL", "TERM", "INT"][moment as usize % 3];
         let mut child = start_in(dir.path(), &BATCH);
-        // The golden ratio spreads the moments evenly.
-        std::thread::sleep(took.mul_f64((f64::from(moment) * 0.618_033_988_749_895).fract()));
+        wait_for(moment, &mut child, dir.path());
         let _ = Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status();
         child.wait().unwrap();
         let (named, temporary) = assert_whole(dir.path(), &whole, &format!("{signal} at moment {moment}"));
@@ -112,11 +120,11 @@ fn killed_batches_leave_whole_files() {
 fn inputs_may_vanish() {
     let dir = tempfile::tempdir().unwrap();
     artwork(dir.path());
-    let (whole, took) = undisturbed(dir.path());
+    let whole = undisturbed(dir.path());
     for moment in 0..moments().div_ceil(4) {
         artwork(dir.path());
-        let child = start_in(dir.path(), &BATCH);
-        std::thread::sleep(took.mul_f64((f64::from(moment) * 0.618_033_988_749_895).fract()));
+        let mut child = start_in(dir.path(), &BATCH);
+        wait_for(moment, &mut child, dir.path());
         for i in (0..FILES).filter(|i| i % 3 == moment as usize % 3) {
             let _ = fs::remove_file(dir.path().join(format!("art/{i:03}.svg")));
         }
@@ -133,7 +141,7 @@ fn inputs_may_vanish() {
 fn a_write_that_fails_leaves_nothing_of_its_file() {
     let dir = tempfile::tempdir().unwrap();
     artwork(dir.path());
-    let (whole, _) = undisturbed(dir.path());
+    let whole = undisturbed(dir.path());
     // In blocks of 512 bytes (POSIX sh).
     for blocks in [0, 1, 3, 6, 40] {
         let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
@@ -158,7 +166,7 @@ fn a_write_that_fails_leaves_nothing_of_its_file() {
 fn full_and_read_only_file_systems() {
     let dir = tempfile::tempdir().unwrap();
     artwork(dir.path());
-    let (whole, _) = undisturbed(dir.path());
+    let whole = undisturbed(dir.path());
     fs::create_dir_all(dir.path().join("out")).unwrap();
     fs::create_dir_all(dir.path().join("copy")).unwrap();
     // Only this process sees the mount, so its files are copied out.
@@ -171,7 +179,7 @@ fn full_and_read_only_file_systems() {
         .current_dir(dir.path())
         .output();
     let Some(end) = unshared.ok().filter(|o| o.status.success()) else {
-        eprintln!("skipped: this machine has no user namespaces");
+        crate::support::skipped("a full disk is not tested without user namespaces");
         return;
     };
     assert_eq!(text(&end.stdout).lines().last(), Some("5 1"), "{} {}", text(&end.stdout), text(&end.stderr));

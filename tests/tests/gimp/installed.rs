@@ -17,7 +17,7 @@ fn gimp(variable: &str, usual: &str, folder: &Path, args: &[&str]) -> Option<Str
         Ok(out) => Some(String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned()),
         Err(e) if named.is_some() => panic!("{variable} names no program that runs: {e}"),
         Err(_) => {
-            eprintln!("skipped: there is no program `{usual}` here, and {variable} names none");
+            crate::support::skipped(format_args!("there is no program `{usual}`, and {variable} names none"));
             None
         }
     }

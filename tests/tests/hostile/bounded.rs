@@ -1,20 +1,16 @@
 //! Runs the program under limits of the operating system, and measures it.
 
 use crate::support::pathwarp_program;
-use cpu_time::ThreadTime;
 use pathwarp::budget::{Limit, Limits};
-use pathwarp::kurbo::{CubicBez, ParamCurveArclen as _};
 use std::fs;
-use std::hint::black_box;
 use std::io::Read as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
-use std::time::Duration;
 use tempfile::TempDir;
 use wait4::Wait4 as _;
 
-/// The promise: seconds of processor time on the reference machine, and bytes of memory in use.
+/// The promise: seconds of processor time on the machine for which the limits on work were chosen, and bytes of memory in use.
 const SECONDS: f64 = 5.0;
 const MEMORY: u64 = 500_000_000;
 /// The limits that take longest to reach. Runs get a part of them, and must have refused after the same part of the time.
@@ -24,28 +20,15 @@ const PART: f64 = 0.3;
 const READING: f64 = 1.0;
 /// The seconds after which the program ends by itself.
 const LAST_RESORT: f64 = 4.5;
+/// Processor time depends on the machine and on what else it runs, work does not. A run gets this many times the time promised, so that
+/// only work that nobody counts takes too long. `PATHWARP_PROMISE=1` asks for the promise itself, on a quiet machine.
+const MARGIN: f64 = 10.0;
 /// Address space may be reserved without being used, for the stacks of threads.
 const ADDRESSES: u64 = 2 * MEMORY;
 
-/// Compares this machine with the reference machine, on which the limits on work were chosen: 2 if it is half as fast, 1 if it is as fast
-/// or faster. The tests check that work is counted, so they multiply the seconds that a run may take by this.
-fn slowness() -> f64 {
-    /// Processor time of one call of `measuring` on the reference machine.
-    const REFERENCE: Duration = Duration::from_micros(10_500);
+fn margin() -> f64 {
     static FOUND: OnceLock<f64> = OnceLock::new();
-    *FOUND.get_or_init(|| {
-        // Nothing of pathwarp's own, which would hide it becoming slower.
-        let measuring = || {
-            let start = ThreadTime::now();
-            for k in 0..20_000 {
-                let curve = CubicBez::new((0.0, 0.0), (9.0, f64::from(k % 90)), (9.0, -90.0), (1.0, 1.0));
-                black_box(curve.arclen(1e-9));
-            }
-            start.elapsed().as_secs_f64()
-        };
-        // Speed varies with what else is running.
-        (0..5).map(|_| measuring() / REFERENCE.as_secs_f64()).fold(1.0, f64::max)
-    })
+    *FOUND.get_or_init(|| if std::env::var_os("PATHWARP_PROMISE").is_some() { 1.0 } else { MARGIN })
 }
 
 /// A folder with files.
@@ -78,13 +61,13 @@ impl Folder {
     /// Runs the program here. It must end by itself, within the promise.
     #[track_caller]
     pub fn run(&self, args: &[&str]) -> (i32, String) {
-        let slowness = slowness();
+        let margin = margin();
         // The shell sets the limits before the program begins, in kilobytes and seconds.
-        let (kilobytes, seconds) = (ADDRESSES / 1024, (SECONDS * slowness).ceil());
+        let (kilobytes, seconds) = (ADDRESSES / 1024, (SECONDS * margin).ceil());
         let limited = format!("ulimit -v {kilobytes} && ulimit -t {seconds} && exec \"$0\" \"$@\"");
         let mut command = Command::new("sh");
         command.arg("-c").arg(limited).arg(pathwarp_program()).args(args).current_dir(self.path());
-        command.args(["--limit", &format!("seconds={}", LAST_RESORT * slowness)]);
+        command.args(["--limit", &format!("seconds={}", LAST_RESORT * margin)]);
         if let Some(part) = self.part {
             for limit in PARTLY {
                 command.args(["--limit", &format!("{limit}={}", part * Limits::default().of(limit))]);
@@ -99,7 +82,7 @@ impl Folder {
         let code = done.status.code().unwrap_or_else(|| panic!("{args:?} was killed after {time:?}: {said}"));
         let refused = PARTLY.iter().any(|limit| said.contains(&format!("--limit {limit}=")));
         let promised = self.part.filter(|_| refused).map_or(SECONDS, |part| part * SECONDS + READING);
-        assert!(time.as_secs_f64() < promised * slowness, "{args:?} took {time:?}: {said}");
+        assert!(time.as_secs_f64() < promised * margin, "{args:?} took {time:?}: {said}");
         assert!(memory < MEMORY, "{args:?} took {memory} bytes: {said}");
         assert!([0, 1, 2, 3, 4, 5].contains(&code), "{args:?} ended with {code}: {said}");
         assert!(!said.contains("panicked"), "{args:?}: {said}");

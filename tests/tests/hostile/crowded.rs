@@ -53,7 +53,8 @@ fn outlines_of_strokes_are_counted() {
 fn letters_are_counted() {
     let dashed = "<text y='50' font-size='50' stroke='red' stroke-width='3' stroke-dasharray='.1'>";
     let folder = Folder::with(&[("a.svg", &svg(&format!("{dashed}{}</text>", "aé&amp;@".repeat(2500))))]).whole();
-    refused(&folder, &["swirl", "a.svg", "-o", "o.svg"], &["segments"]);
+    // Which of the two comes first depends on the outlines of the font.
+    refused(&folder, &["swirl", "a.svg", "-o", "o.svg"], &["segments", "evaluations"]);
     refused(&folder, &FLAT, &["segments", "evaluations"]);
     let many: String = (0..14_000).map(|i| format!("<text y='{i}'>ab</text>")).collect();
     let vertical = format!("<text y='9' writing-mode='tb'>{}</text>", "aあ".repeat(12_000));

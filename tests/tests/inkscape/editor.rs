@@ -26,7 +26,7 @@ pub fn is_installed() -> bool {
         }
         Err(e) if std::env::var_os(VARIABLE).is_some() => panic!("{VARIABLE} names no program that runs: {e}"),
         Err(_) => {
-            eprintln!("skipped: there is no program `inkscape` here, and {VARIABLE} names none");
+            crate::support::skipped(format_args!("there is no program `inkscape`, and {VARIABLE} names none"));
             false
         }
     }
@@ -79,7 +79,7 @@ pub fn edit(folder: &Path, names: &[String]) {
 pub fn has_screen() -> bool {
     let found = Command::new("xvfb-run").arg("--help").output().is_ok();
     if !found {
-        eprintln!("skipped: there is no program `xvfb-run` here");
+        crate::support::skipped("there is no program `xvfb-run`, in which Inkscape is tested");
     }
     found
 }

@@ -28,7 +28,7 @@ fn bending_by_hand_comes_back_to_inkscape() {
         return;
     }
     if let Some(what) = browser::missing() {
-        println!("skipped: bending by hand is not tested without {what}");
+        crate::support::skipped(format_args!("bending by hand in Inkscape is not tested without {what}"));
         return;
     }
     let (dir, source) = workplace(BODY);

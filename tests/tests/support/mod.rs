@@ -12,6 +12,12 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
+/// Says that a check is skipped, past the test's own captured output: the gate lists such lines at the end.
+pub fn skipped(why: impl std::fmt::Display) {
+    use std::io::Write as _;
+    let _ = std::io::stderr().write_all(format!("skipped: {why}\n").as_bytes());
+}
+
 /// A file of `samples/`.
 pub fn sample(name: &str) -> PathBuf {
     root().join("samples").join(name)

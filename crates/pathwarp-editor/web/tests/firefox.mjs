@@ -7,7 +7,7 @@ const program = ["/usr/bin/firefox-esr", "/usr/bin/firefox"].find((p) => existsS
 const PATHS = 'Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) path"), (p) => p.getAttribute("d")).join("|")';
 
 export async function firefox_opens_drags_and_saves() {
-  if (!program) return "skipped: Firefox is not installed";
+  if (!program) return "skipped: the editor is not tested in Firefox";
   const dir = folder({ "logo.svg": sample("logo.svg") });
   const editor = await edit(`${dir}/logo.svg`);
   const page = await firefox(program, editor.address);

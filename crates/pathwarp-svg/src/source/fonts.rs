@@ -4,7 +4,7 @@ use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of
 use super::fontguard::{FontGuard, listing};
 use super::images::Missing;
 use skrifa::{FontRef, MetadataProvider as _};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs;
 use std::io::Read as _;
 use std::ops::RangeInclusive;
@@ -105,6 +105,7 @@ pub(super) fn load_unnamed(db: &mut Database, data: &Bytes, family: String) -> O
 pub(super) fn resolver(generic: GenericFamilies, missing: Missing, guard: FontGuard) -> FontResolver<'static> {
     let held = Arc::new((Held::default(), guard));
     let also_held = held.clone();
+    let absent = Mutex::default();
     let admitted = |(held, guard): &(Held, FontGuard), face: ID, db: &mut Arc<Database>| {
         let face = guard.admits(face, db).then(|| held.face(face, db))?;
         guard.trust(face);
@@ -116,7 +117,7 @@ pub(super) fn resolver(generic: GenericFamilies, missing: Missing, guard: FontGu
             admitted(&held, face, db)
         }),
         select_fallback: Box::new(move |c, used, db| {
-            let face = fallback(c, used, db)?;
+            let face = fallback(c, used, db, &absent)?;
             let face = admitted(&also_held, face, db)?;
             (!used.contains(&face)).then_some(face)
         }),
@@ -124,8 +125,12 @@ pub(super) fn resolver(generic: GenericFamilies, missing: Missing, guard: FontGu
 }
 
 /// The font for a letter that the fonts `used` so far lack: one that looks like the first of them, if there is one. usvg's own choice
-/// may be bold in a text that is not.
-fn fallback(letter: char, used: &[ID], db: &Database) -> Option<ID> {
+/// may be bold in a text that is not. `absent` are the letters that no font has: there may be hundreds of fonts to ask.
+fn fallback(letter: char, used: &[ID], db: &Database, absent: &Mutex<HashSet<char>>) -> Option<ID> {
+    let mut absent = absent.lock().unwrap_or_else(PoisonError::into_inner);
+    if absent.contains(&letter) {
+        return None;
+    }
     let first = db.face(*used.first()?)?;
     let off = |f: &fontdb::FaceInfo| {
         (f.style != first.style, f.stretch != first.stretch, f.weight.0.abs_diff(first.weight.0))
@@ -133,7 +138,11 @@ fn fallback(letter: char, used: &[ID], db: &Database) -> Option<ID> {
     let mut others: Vec<_> = db.faces().filter(|f| !used.contains(&f.id)).map(|f| (off(f), f.id)).collect();
     // The sort is stable: of equals, the first counts.
     others.sort_by_key(|(off, _)| *off);
-    others.into_iter().map(|(_, id)| id).find(|id| has_letter(*id, letter, db))
+    let found = others.into_iter().map(|(_, id)| id).find(|id| has_letter(*id, letter, db));
+    if found.is_none() && !used.iter().any(|id| has_letter(*id, letter, db)) {
+        absent.insert(letter);
+    }
+    found
 }
 
 /// Ranges of the letters that a font has, in order.

@@ -1,0 +1,339 @@
+//! `cargo xtask browser FOLDER…`: compares drawings with their results as Chromium shows both, under maps whose exact picture is known.
+//!
+//! Every drawing is warped by [`Bend`]: a shift that is not affine to the program, so that each element goes the whole road, with strokes as
+//! they come and outlined; and a curved map with an exact inverse, through which the picture of the original is looked up. What was read
+//! otherwise than browsers read it shows, and so does what was left unbent. A drawing that Chromium cannot parse does not count.
+//!
+//! Not seen: the frame, how sharp bitmaps are, what is outside of the page.
+
+mod chromium;
+mod measure;
+#[cfg(test)]
+mod tests;
+
+use crate::chore::{Chore, ChoreError, at, path_option, program_option, workspace};
+use crate::{files, parallel, shell};
+use chromium::{Browsers, Shown};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use measure::{Bend, Gap, Picture, ToPixels, compare};
+use pathwarp_raster::encode_png;
+use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use tempfile::TempDir;
+
+/// See the module.
+pub(crate) const CHORE: Chore = Chore { command, run };
+
+/// The share of a page's pixels that may differ.
+const WORST: f64 = 1e-3;
+/// The larger side of the pictures in pixels, however large a drawing says it is; a page of few px is not magnified further than this.
+const SIDE: f64 = 1200.0;
+const MOST_MAGNIFIED: f64 = 64.0;
+/// The largest page, in px, that is shown whole.
+const LARGEST_PAGE: f64 = 8000.0;
+/// How far the shift goes, as a share of the page's width.
+const SHIFT: f64 = 0.04;
+/// The seconds that the program has for a drawing, of any machine.
+const PATIENCE: &str = "60";
+
+/// The ways in which a drawing is tried: a name, and the options of the program beside the map.
+const WAYS: [(&str, &str); 3] = [("shift", "auto"), ("outline", "outline"), ("curve", "auto")];
+
+fn command() -> Command {
+    Command::new("browser")
+        .about("Compare drawings with their results as Chromium shows both")
+        .arg(Arg::new("inputs").required(true).num_args(1..).value_name("FOLDER").value_parser(value_parser!(PathBuf)))
+        .arg(program_option())
+        .arg(path_option("sheet", "FOLDER").help("Write a contact sheet of what differs: before, after, difference"))
+        .arg(path_option("json", "FILE").help("Write what was found for every drawing"))
+        .arg(
+            Arg::new("only")
+                .long("only")
+                .action(ArgAction::Append)
+                .value_parser(WAYS.map(|(name, _)| name))
+                .help("Try this way only [default: all]"),
+        )
+        .after_help("Needs node, and `npm ci` in crates/pathwarp-editor/web.")
+}
+
+fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
+    let program = shell::program(&workspace(), arguments)?;
+    let inputs: Vec<PathBuf> = crate::chore::paths(arguments, "inputs");
+    let only: Vec<&String> = arguments.get_many("only").unwrap_or_default().collect();
+    let ways: Vec<_> = WAYS.into_iter().filter(|(name, _)| only.is_empty() || only.iter().any(|o| o == name)).collect();
+    let sheet: Option<&PathBuf> = arguments.get_one("sheet");
+    let judge = Judge::new(program, ways, sheet.cloned())?;
+    let found = judge.all(&inputs)?;
+    if let Some(file) = arguments.get_one::<PathBuf>("json") {
+        let all: Vec<_> = found.iter().map(Finding::json).collect();
+        fs::write(file, serde_json::Value::from(all).to_string()).map_err(at(file))?;
+    }
+    if let Some(folder) = sheet {
+        judge.contact_sheet(folder, &found)?;
+    }
+    let report = report(&found);
+    if found.iter().any(Finding::differs) { Err(report) } else { Ok(report) }
+}
+
+/// What was found for a drawing tried in one way.
+struct Finding {
+    file: PathBuf,
+    way: &'static str,
+    /// The exit code of the program; `None` if it was killed.
+    code: Option<i32>,
+    /// Its first message.
+    said: String,
+    /// How far the pictures are apart, or why there are none. A drawing that Chromium cannot parse has neither.
+    gap: Option<Result<Gap, String>>,
+    /// The picture of the difference.
+    picture: Option<String>,
+}
+
+impl Finding {
+    fn differs(&self) -> bool {
+        self.gap.as_ref().is_some_and(|gap| gap.as_ref().map_or(true, |gap| gap.differs(WORST)))
+    }
+
+    fn line(&self) -> String {
+        let share = match &self.gap {
+            Some(Ok(gap)) => format!("{:.2} %", 100.0 * gap.share),
+            Some(Err(why)) => why.clone(),
+            None => "not XML".into(),
+        };
+        let code = self.code.map_or_else(|| "killed".to_owned(), |c| format!("exit {c}"));
+        format!("{share}\t{}\t{}\t{code}\t{}", self.way, self.file.display(), self.said)
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let gap = self.gap.as_ref().and_then(|g| g.as_ref().ok());
+        serde_json::json!({
+            "file": self.file.display().to_string(), "way": self.way, "exit": self.code, "said": self.said,
+            "counts": self.gap.is_some(), "differs": self.differs(), "share": gap.map(|g| g.share), "ofInk": gap.map(|g| g.of_ink),
+            "problem": self.gap.as_ref().and_then(|g| g.as_ref().err()), "picture": self.picture,
+        })
+    }
+}
+
+fn report(found: &[Finding]) -> String {
+    let mut out = String::new();
+    for finding in found.iter().filter(|f| f.differs()) {
+        let _ = writeln!(out, "{}", finding.line());
+    }
+    for (way, _) in WAYS {
+        let all: Vec<&Finding> = found.iter().filter(|f| f.way == way && f.gap.is_some()).collect();
+        if !all.is_empty() {
+            let _ = writeln!(out, "{way}: {} of {} differ", all.iter().filter(|f| f.differs()).count(), all.len());
+        }
+    }
+    out.trim_end().to_owned()
+}
+
+/// Tries drawings.
+struct Judge {
+    program: PathBuf,
+    ways: Vec<(&'static str, &'static str)>,
+    /// Where pictures of what differs go.
+    sheet: Option<PathBuf>,
+    browsers: Browsers,
+    /// Copies of the drawings' folders: links work there, and nothing is written beside the originals.
+    scratch: TempDir,
+    copies: Mutex<HashMap<PathBuf, PathBuf>>,
+    count: AtomicUsize,
+}
+
+impl Judge {
+    fn new(
+        program: PathBuf,
+        ways: Vec<(&'static str, &'static str)>,
+        sheet: Option<PathBuf>,
+    ) -> Result<Self, ChoreError> {
+        if let Some(folder) = &sheet {
+            fs::create_dir_all(folder).map_err(at(folder))?;
+        }
+        let scratch = tempfile::tempdir().map_err(|e| e.to_string())?;
+        let browsers = Browsers::default();
+        Ok(Self { program, ways, sheet, browsers, scratch, copies: Mutex::default(), count: AtomicUsize::new(0) })
+    }
+
+    /// Tries all drawings of files and folders.
+    fn all(&self, inputs: &[PathBuf]) -> Result<Vec<Finding>, ChoreError> {
+        let mut drawings = Vec::new();
+        for input in inputs {
+            if input.is_dir() {
+                drawings.extend(files::below(input, |f| files::ends_in(f, &["svg"]))?);
+            } else {
+                drawings.push(input.clone());
+            }
+        }
+        if drawings.is_empty() {
+            return Err("there is no drawing".into());
+        }
+        let found = parallel::map(&drawings, |file| self.one(file));
+        Ok(found.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+    }
+
+    /// The drawing in a copy of its folder. Folders `images` and `resources` beside it come along.
+    fn copied(&self, file: &Path) -> Result<PathBuf, ChoreError> {
+        let file = file.canonicalize().map_err(at(file))?;
+        let (folder, name) = file.parent().zip(file.file_name()).ok_or("a drawing has a name and a folder")?;
+        let mut copies = self.copies.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(copy) = copies.get(folder) {
+            return Ok(copy.join(name));
+        }
+        let around = self.scratch.path().join(copies.len().to_string());
+        let copy = around.join(folder.file_name().unwrap_or_default());
+        copy_folder(folder, &copy)?;
+        for beside in ["images", "resources"] {
+            if let Some(from) = folder.parent().map(|p| p.join(beside)).filter(|p| p.is_dir()) {
+                copy_folder(&from, &around.join(beside))?;
+            }
+        }
+        copies.insert(folder.to_owned(), copy.clone());
+        Ok(copy.join(name))
+    }
+
+    /// Tries a drawing in all ways.
+    fn one(&self, original: &Path) -> Result<Vec<Finding>, ChoreError> {
+        let file = self.copied(original)?;
+        let finding =
+            |way, gap| Finding { file: original.to_owned(), way, code: None, said: String::new(), gap, picture: None };
+        let shown = self.browsers.show(&file, None).and_then(|size| {
+            let pages = |length: f64| if length > 0.0 { length.ceil().min(LARGEST_PAGE) } else { 600.0 };
+            let size_px = [pages(size.right), pages(size.bottom)];
+            let scale = (SIDE / size_px[0].max(size_px[1])).min(MOST_MAGNIFIED);
+            Ok((size.broken, size_px, scale, self.browsers.show(&file, Some((size_px, scale)))?))
+        });
+        let (broken, size, scale, before) = match shown {
+            Ok(shown) => shown,
+            Err(why) => return Ok(self.ways.iter().map(|(way, _)| finding(*way, Some(Err(why.clone())))).collect()),
+        };
+        if broken {
+            return Ok(self.ways.iter().map(|(way, _)| finding(*way, None)).collect());
+        }
+        let mut found = Vec::new();
+        for (way, strokes) in &self.ways {
+            let mut finding = finding(*way, None);
+            finding.gap = Some(self.tried(&file, strokes, (size, scale), &before, &mut finding));
+            found.push(finding);
+        }
+        Ok(found)
+    }
+
+    /// Warps a drawing and compares the pictures.
+    fn tried(
+        &self,
+        file: &Path,
+        strokes: &str,
+        (size, scale): ([f64; 2], f64),
+        before: &Shown,
+        finding: &mut Finding,
+    ) -> Result<Gap, String> {
+        let original = before.picture.as_ref().ok_or("there is no picture")?;
+        // A root without a matrix from user units, or a turned one, can only be left where it is.
+        let upright = before.matrix.filter(|[a, b, c, d, ..]| *a > 0.0 && *d > 0.0 && *b == 0.0 && *c == 0.0);
+        let [a, _, _, d, e, f] = upright.unwrap_or([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+        let to_pixels = ToPixels { scale: [a * scale, d * scale], offset: [e * scale, f * scale] };
+        let by = if upright.is_some() { (SHIFT * size[0] * scale).round() as usize } else { 0 };
+        let bend = match finding.way {
+            "curve" if upright.is_some() => Bend::curve(original.width, original.height),
+            _ => Bend::Shift(by),
+        };
+        let number = self.count.fetch_add(1, Ordering::Relaxed);
+        let result = file.with_file_name(format!(".bent-{number}.svg"));
+        let [x, y] = bend.formulas(to_pixels);
+        let mut command = std::process::Command::new(&self.program);
+        command
+            .arg("expr")
+            .arg(file)
+            .args(["--x", &x, "--y", &y, "--strokes", strokes, "--fit", "none", "-o"])
+            .arg(&result);
+        let out = command.args(["--limit", &format!("seconds={PATIENCE}")]).output().map_err(at(&self.program))?;
+        finding.code = out.status.code();
+        let said = String::from_utf8_lossy(&out.stderr).replace(&file.display().to_string(), "");
+        finding.said = said.lines().find(|l| !l.is_empty()).unwrap_or_default().chars().take(150).collect();
+        if !result.exists() {
+            return Err("no result".into());
+        }
+        let after = self.browsers.show(&result, Some((size, scale)));
+        let _ = fs::remove_file(&result);
+        let after = after?;
+        if after.broken {
+            return Err("the result is not XML".into());
+        }
+        let picture = after.picture.ok_or("there is no picture")?;
+        if (picture.width, picture.height) != (original.width, original.height) {
+            return Err("its page has another size".into());
+        }
+        let page = [before.right, before.bottom].map(|c| if c > 0.0 { (c * scale) as usize } else { usize::MAX });
+        let (gap, marks) = compare(original, &picture, bend, page);
+        if let Some(folder) = self.sheet.as_ref().filter(|_| gap.differs(WORST)) {
+            let stem = finding.file.file_stem().unwrap_or_default().to_string_lossy();
+            let name = format!("{stem}-{}-{number}.png", finding.way);
+            let to = folder.join(&name);
+            fs::write(&to, side_by_side(original, &picture, &marks)?).map_err(at(&to))?;
+            finding.picture = Some(name);
+        }
+        Ok(gap)
+    }
+
+    /// Writes a page with everything that differs, and its picture.
+    fn contact_sheet(&self, folder: &Path, found: &[Finding]) -> Result<(), ChoreError> {
+        let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;");
+        let mut page = "<!doctype html><meta charset=utf-8><title>What differs</title><style>body{font:13px sans-serif;width:1180px}\
+                        figure{margin:0 0 20px}img{width:1180px;border:1px solid #ccc}</style>\n"
+            .to_owned();
+        let differing: Vec<&Finding> = found.iter().filter(|f| f.differs()).collect();
+        for finding in &differing {
+            let image = finding.picture.as_ref().map(|p| format!("<img src='{}'>", escaped(p).replace('\'', "&#39;")));
+            let _ = writeln!(page, "<figure>{}{}</figure>", escaped(&finding.line()), image.unwrap_or_default());
+        }
+        let (html, png) = (folder.join("index.html"), folder.join("sheet.png"));
+        fs::write(&html, page).map_err(at(&html))?;
+        let height = self.browsers.show(&html, None)?.bottom;
+        // Browsers draw no taller pictures.
+        let shown = self.browsers.show(&html, Some(([1200.0, height.ceil().clamp(100.0, 16_000.0)], 1.0)))?;
+        let picture = shown.picture.ok_or("there is no sheet")?;
+        fs::write(&png, encode_png(&picture.pixmap()?).map_err(|e| e.to_string())?).map_err(at(&png))
+    }
+}
+
+fn copy_folder(from: &Path, to: &Path) -> Result<(), ChoreError> {
+    for file in files::below(from, |_| true)? {
+        let copy = to.join(file.strip_prefix(from).unwrap_or(&file));
+        fs::create_dir_all(copy.parent().unwrap_or(to)).map_err(at(to))?;
+        fs::copy(&file, &copy).map_err(at(&file))?;
+    }
+    Ok(())
+}
+
+/// Before, after and difference on grey, at half their size.
+fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec<u8>, ChoreError> {
+    let (w, h) = (before.width.div_ceil(2), before.height.div_ceil(2));
+    let mut out = Pixmap::new(3 * w as u32, h as u32).ok_or("there is no picture")?;
+    for (i, pixel) in out.pixels_mut().iter_mut().enumerate() {
+        let (column, x, y) = (i / w % 3, i % w * 2, i / (3 * w) * 2);
+        let at = y * before.width + x;
+        let ground = |data: &[u8]| {
+            [0, 1, 2].map(|k| data[4 * at + k].saturating_add((u16::from(255 - data[4 * at + 3]) * 3 / 4) as u8))
+        };
+        let near = [at, (at + 1).min(marks.len() - 1), (at + before.width).min(marks.len() - 1)];
+        let [r, g, b] = match column {
+            0 => ground(&before.data),
+            1 => ground(&after.data),
+            _ => {
+                if near.iter().any(|i| marks[*i]) {
+                    [200, 0, 0]
+                } else {
+                    [255; 3]
+                }
+            }
+        };
+        *pixel = PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap_or(*pixel);
+    }
+    encode_png(&out).map_err(|e| e.to_string())
+}

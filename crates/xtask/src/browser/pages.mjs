@@ -1,0 +1,44 @@
+// Shows drawings in headless Chromium. Each line of standard input is a request as JSON: {file, size: [width, height], scale}; without a
+// size, the drawing is only asked how large it is. Each is answered by a line: {broken, right, bottom, matrix, png} or {error}.
+import { createRequire } from "node:module";
+import { createInterface } from "node:readline";
+import { existsSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+
+const { chromium } = createRequire(new URL("../../../pathwarp-editor/web/package.json", import.meta.url))("playwright-core");
+const executablePath = ["/usr/bin/chromium-headless-shell", "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((p) => existsSync(p));
+// Letters have their exact places and no coloured edges, and linked files are read.
+const args = ["--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--allow-file-access-from-files", "--font-render-hinting=none", "--disable-lcd-text"];
+const TIMEOUT = 60000;
+
+/** The page's extent in px, and the matrix from user units to px. */
+const asked = () => {
+  const root = document.documentElement;
+  const box = root.getBoundingClientRect();
+  const m = root.getScreenCTM?.();
+  return {
+    broken: document.getElementsByTagName("parsererror").length > 0,
+    right: box.right, bottom: box.bottom, matrix: m ? [m.a, m.b, m.c, m.d, m.e, m.f] : null,
+  };
+};
+
+const browser = await chromium.launch({ executablePath, headless: true, args });
+for await (const line of createInterface({ input: process.stdin })) {
+  const { file, size, scale } = JSON.parse(line);
+  let page, answer;
+  try {
+    const [width, height] = size ?? [600, 600];
+    page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: scale ?? 1 });
+    await page.goto(pathToFileURL(file).href, { waitUntil: "load", timeout: TIMEOUT });
+    answer = await page.evaluate(asked);
+    if (size) {
+      const png = await page.screenshot({ animations: "disabled", omitBackground: true, timeout: TIMEOUT });
+      answer.png = png.toString("base64");
+    }
+  } catch (e) {
+    answer = { error: String(e.message).split("\n")[0] };
+  }
+  console.log(JSON.stringify(answer));
+  await page?.close();
+}
+await browser.close();
