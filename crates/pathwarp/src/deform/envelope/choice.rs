@@ -155,7 +155,6 @@ fn honest(shape: &Subpath, ring: &Ring) -> bool {
     let mut ratios: Vec<f64> =
         stretches(&screen).iter().map(|[a, b]| if *b > 0.0 { a / b } else { f64::INFINITY }).collect();
     ratios.sort_by(f64::total_cmp);
-    if std::env::var("TRIAL").is_ok() { eprintln!("level {level} {right:?} {up:?} ratios {} {}", ratios[ratios.len() * 9 / 10], ratios[ratios.len()-1]); }
     level && ratios[ratios.len() - 1] < f64::INFINITY && ratios[ratios.len() * 9 / 10] <= UNEVEN
 }
 

@@ -5,8 +5,8 @@ use super::columns::part;
 use super::ring::{Corners, Ring, SAMPLES, area, mirrored, reversed};
 use crate::anchors;
 use crate::error::{Error, show};
-use crate::outline::{Seg, Subpath};
 use crate::map::Jet;
+use crate::outline::{Seg, Subpath};
 use crate::param::NamedPath;
 use kurbo::{Point, Rect, Vec2};
 
@@ -78,10 +78,7 @@ pub(super) fn ring(
     let mut sides: [Vec<Seg>; 4] = std::array::from_fn(|i| sides[(bottom + i) % 4].clone());
     let corners: Vec<String> = sides.iter().filter_map(|s| s.first()).map(|s| show(s.start())).collect();
     let mut notes = vec![
-        format!(
-            "corners of {name} ({how}): {} (bottom left, bottom right, top right, top left)",
-            corners.join(" ")
-        ),
+        format!("corners of {name} ({how}): {} (bottom left, bottom right, top right, top left)", corners.join(" ")),
         format!(
             "bottom side: side {} as drawn, run {}, so that nothing is mirrored; `bottom-side` and `reverse` override that",
             order[bottom] + 1,
@@ -93,7 +90,9 @@ pub(super) fn ring(
         notes.push("reverse: the bottom side runs the other way, so that the result is mirrored".into());
     }
     let doubt = |rival: String| {
-        format!("envelope: the corners of {name} are in doubt: `--corners '{rival}'` would do as well, or `--keep verticals`")
+        format!(
+            "envelope: the corners of {name} are in doubt: `--corners '{rival}'` would do as well, or `--keep verticals`"
+        )
     };
     Ok(Ring { sides, notes, warnings: rival.map(doubt).into_iter().collect() })
 }
@@ -225,9 +224,8 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     };
     let smooth = best.iter().filter(|i| candidates[**i].1 > 0.0).count();
     let place = |i: usize| sub.segs[candidates[i].0.0].eval(candidates[i].0.1);
-    let differs = |four: &[usize; 4]| {
-        four.iter().any(|i| best.iter().all(|j| share(place(*i) - place(*j)).hypot() > DIFFERENT))
-    };
+    let differs =
+        |four: &[usize; 4]| four.iter().any(|i| best.iter().all(|j| share(place(*i) - place(*j)).hypot() > DIFFERENT));
     let rival = scored.iter().skip(1).find(|s| differs(&s.1)).filter(|s| s.0 <= score + CLOSE);
     Ok(Found {
         corners: best.map(|i| candidates[i].0),
@@ -293,9 +291,8 @@ impl Flat {
         const SHORTEST: f64 = 0.01;
         const STEP: f64 = 0.05;
         let area: f64 = self.points.windows(2).map(|w| w[0].to_vec2().cross(w[1].to_vec2())).sum();
-        let ends: [[f64; 2]; 4] = std::array::from_fn(|i| {
-            [corners[i], if i < 3 { corners[i + 1] } else { corners[0] + self.whole() }]
-        });
+        let ends: [[f64; 2]; 4] =
+            std::array::from_fn(|i| [corners[i], if i < 3 { corners[i + 1] } else { corners[0] + self.whole() }]);
         if ends.iter().any(|e| e[1] - e[0] < SHORTEST * self.whole()) {
             return None;
         }

@@ -202,7 +202,8 @@ impl Envelope {
     pub fn build(&self) -> Result<Built, Error> {
         within("ends", self.room.ends.unwrap_or(0.0), 0.0, 0.99)?;
         within("padding", self.room.padding, 0.0, 1e9)?;
-        let shape = self.shape.as_ref().map(|path| Ok::<_, Error>((&*path.name, corners::closed(path)?))).transpose()?;
+        let shape =
+            self.shape.as_ref().map(|path| Ok::<_, Error>((&*path.name, corners::closed(path)?))).transpose()?;
         let divided = self.corners.is_some() || self.bottom_side.is_some() || self.reverse || self.spread.is_some();
         let whole = divided || self.keep != Keep::Auto || !self.lettering;
         let (shape, tips) = match shape {
@@ -223,7 +224,10 @@ impl Envelope {
         let ring = self.ring(shape.as_ref());
         let mut built = choice.build(shape.map(|s| s.1).filter(|_| !divided), ring)?;
         if !tips.is_empty() {
-            built.note(format!("left free: what sticks out at {}", tips.into_iter().map(show).collect::<Vec<_>>().join(" ")));
+            built.note(format!(
+                "left free: what sticks out at {}",
+                tips.into_iter().map(show).collect::<Vec<_>>().join(" ")
+            ));
         }
         Ok(built)
     }
