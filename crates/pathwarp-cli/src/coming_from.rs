@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn words_are_found_as_people_type_them() {
         let commands = |word: &str| found(word).iter().map(ForeignWord::subcommand).collect::<Vec<_>>();
-        assert_eq!(commands("puppet-warp tool"), [Some("mls")]);
+        assert_eq!(commands("puppet-warp tool"), [Some("mls"); 2]);
         assert_eq!(commands("Free Distort"), [Some("projective")]);
         assert_eq!(commands("make with top object"), [Some("envelope")]);
         assert_eq!(commands("Pattern along Path LPE"), [Some("bend")]);

@@ -46,8 +46,6 @@ fn words_of_other_programs_name_the_command() {
             ("mug a.svg", 2, "anamorph IN.svg"),
             ("trace a.svg", 2, "Trace Bitmap"),
             ("png a.svg", 2, "render IN.svg -o OUT.png"),
-            ("help flag", 2, "--style flag"),
-            ("help skew", 2, "affine IN.svg --skew-x"),
             ("a.svg", 2, "a.svg is a drawing, not a command"),
             ("gone.svg", 2, "is a drawing, not a command"),
             ("art", 2, "is a folder"),
@@ -71,8 +69,16 @@ fn words_of_other_programs_name_the_command() {
     );
     assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
     assert_eq!(fs::read(dir.path().join("p.svg")).unwrap(), fs::read(dir.path().join("q.svg")).unwrap());
-    let help = text(&pathwarp_in(dir.path(), &["help", "perspective"], b"").stdout);
-    assert!(help.contains("projective"), "{help}");
+    for (word, part) in [
+        ("perspective", "projective"),
+        ("flag", "--style flag"),
+        ("skew", "affine IN.svg --skew-x"),
+        ("liquify", "swirl samples/badge.svg"),
+    ] {
+        let out = pathwarp_in(dir.path(), &["help", word], b"");
+        assert_eq!(out.status.code(), Some(0), "{word}: {}", text(&out.stderr));
+        assert!(text(&out.stdout).contains(part), "{word}: {}", text(&out.stdout));
+    }
 }
 
 #[test]

@@ -199,7 +199,9 @@ fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     }
     let entries = coming_from::found(&wanted);
     let title = |name: &str| known(name)?.get_about().map(ToString::to_string);
-    (!entries.is_empty()).then(|| coming_from::help(&entries, title))
+    let own = mistakes::command(registry, &wanted).map(|meant| format!("{meant}\n\n")).unwrap_or_default();
+    let foreign = if entries.is_empty() { String::new() } else { coming_from::help(&entries, title) };
+    Some(own + &foreign).filter(|text| !text.is_empty())
 }
 
 /// The error that the deformation that `args` begin with is a broken plug-in.

@@ -21,8 +21,8 @@ Examples:
   pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
   pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
   pathwarp text Welcome --size 40mm -o sign.dxf
-  pathwarp text 'HARBOUR COFFEE' --below 'SINCE 1887' --on circle:r=60mm --letter-spacing 8% -o badge.svg
-  pathwarp text 'Round and round it goes' --on spiral:turns=2,inner=20mm,outer=60mm --size 8mm -o spiral.svg
+  pathwarp text 'HARBOUR COFFEE' --below 'SINCE 1887' --on circle:r=60mm -o badge.svg
+  pathwarp text 'Round and round' --on spiral:turns=2,inner=9mm,outer=40mm --size 8mm -o out.svg
   pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' -o arc.svg";
 
 /// An option with a value that is parsed later, and may start with a minus.
