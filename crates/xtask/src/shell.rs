@@ -57,13 +57,15 @@ pub(crate) fn feed(command: &mut Command, input: &[u8]) -> io::Result<Output> {
     child.wait_with_output()
 }
 
-/// Runs the program on `input` and returns its standard output. Any message on standard error is a failure.
+/// Runs the program on `input` and returns its standard output. Any message on standard error is a failure, but for notes, such as
+/// of a page that grew.
 pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, ChoreError> {
     let out = feed(Command::new(program).args(args).current_dir(root), input).map_err(at(program))?;
-    if out.status.success() && out.stderr.is_empty() {
+    let said = String::from_utf8_lossy(&out.stderr);
+    if out.status.success() && said.lines().all(|line| line.starts_with("note: ")) {
         return Ok(out.stdout);
     }
-    Err(format!("pathwarp {}: {}", args.join(" "), String::from_utf8_lossy(&out.stderr)))
+    Err(format!("pathwarp {}: {said}", args.join(" ")))
 }
 
 /// Renders the preview of a command, given without its leading `pathwarp`, to a PNG file.
