@@ -88,7 +88,7 @@ impl Bend {
                 let (to_x, to_y) = (x as f64 + 0.5, y as f64 + 0.5);
                 let from_y = to_y - amplitude * (wave * to_x).sin();
                 let from_x = to_x - amplitude * (wave * from_y).sin();
-                (from_x >= 0.0 && from_y >= 0.0).then(|| (from_x as usize, from_y as usize))
+                (from_x >= 0.0 && from_y >= 0.0).then_some((from_x as usize, from_y as usize))
             }
         }
     }

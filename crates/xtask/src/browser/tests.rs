@@ -85,7 +85,7 @@ fn formulas_are_the_map_of_the_pictures() {
         for i in 0..100 {
             let p = Point::new(f64::from(i % 10) * 31.0, f64::from(i / 10) * 17.0);
             let pixel = |p: Point| Point::new(2.5 * p.x - 30.0, 4.0 * p.y + 7.0);
-            let (from, to) = (pixel(p), pixel(map.point(p).unwrap()));
+            let (from, to) = (pixel(p), pixel(map.point(p)));
             let back = match bend {
                 Bend::Shift(by) => Point::new(to.x - by as f64, to.y),
                 Bend::Curve { .. } => {
