@@ -6,6 +6,7 @@ mod deformations;
 mod guides;
 mod lettering;
 mod page;
+mod shapes;
 
 use crate::chore::{Chore, ChoreError, program_option, workspace};
 use crate::shell;
@@ -42,6 +43,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     shell::pipe(root, program, &["gallery", SHEET_ARTWORK, "-o", SHEET].map(str::to_owned), &[])?;
     guides::draw(root, program)?;
     coming_from::write(root, program)?;
+    shapes::write(root, program)?;
     for page in COOKBOOK_PAGES {
         write_cookbook(page, root, program)?;
     }

@@ -3,24 +3,40 @@
 //! > (u, v) ↦ (x, b(x) + v·(t(x) − b(x))), x linear in u between the ends
 //!
 //! Every vertical line meets the inside in intervals; the columns are those that follow one another from left to right with the largest
-//! area. Where the outline jumps from one height to another, a slope leads into the higher part. Rows are the columns of the path with
+//! area, without short thin ends beyond a jump. Where the outline jumps from one height to another, the columns go on level, or a slope
+//! leads into the higher part. Rows are the columns of the path with
 //! x and y exchanged.
 
-use super::choice::Room;
-use super::ring::SAMPLES;
-use crate::map::increasing_root;
+use super::corners;
+use super::fit::to_unit;
+use super::ring::{SAMPLES, shown};
+use crate::deform::built::{Built, Role};
+use crate::error::{Error, show};
+use crate::map::{AffineMap, Coons, Pace, Side, Sides, increasing_root};
 use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{Affine, Line, Point, Rect, StrokeOpts, common::solve_quadratic};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Columns that are looked at, at least.
 const COLUMNS: f64 = 600.0;
 /// The slope into the higher part after a jump, in heights of the shape per width.
 const RAMP: f64 = 2.0;
+/// Curves go on level after a jump, where letters stand better, if that leaves at least this part of what slopes would.
+const LEVEL: f64 = 0.75;
 /// Jumps below this share of the height are rounding.
 const JUMP: f64 = 1e-6;
 /// Exchanges x and y.
 const TRANSPOSED: Affine = Affine::new([0.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+
+/// The room that artwork leaves in a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(in crate::deform) struct Room {
+    /// The share of the greatest height at which it ends, in columns.
+    pub(super) ends: Option<f64>,
+    /// Its distance from the outline.
+    pub(super) padding: f64,
+}
 
 /// A shape in columns, or in rows: two curves that face one another over one range.
 pub(super) struct Columns {
@@ -93,22 +109,14 @@ impl Columns {
         let lines = all.lines();
         let chosen = largest(&lines)?;
         let area: f64 = lines.iter().map(|l| l.width * l.intervals.iter().map(Interval::height).sum::<f64>()).sum();
-        let mut jumps = Vec::new();
         let mut curves = [0, 1].map(|end| all.traced(&chosen, end));
-        if room.core {
-            all.trim(&mut curves);
-        }
-        for (end, curve) in curves.iter_mut().enumerate() {
-            all.smooth(curve, if end == 0 { -1.0 } else { 1.0 }, &mut jumps);
-        }
-        let [low, high] = &curves;
+        all.trim(&mut curves);
+        let sloping = all.smoothed(curves.clone(), RAMP)?;
+        let level = all.smoothed(curves, 0.0).filter(|l| l.area >= LEVEL * sloping.area);
+        let best = level.unwrap_or(sloping);
+        let Smooth { curves: [low, high], jumps, heights, area: held } = &best;
         let (from, to) = (low.first()?.from, low.last()?.to);
-        let heights = all.heights(low, high, from, to);
         let most = heights.iter().map(|h| h.1).fold(0.0, f64::max);
-        if heights.iter().any(|h| h.1 <= 0.0) {
-            return None;
-        }
-        let held: f64 = heights.iter().map(|h| h.1).sum::<f64>() * (to - from) / heights.len() as f64;
         let height = |x: f64| all.at(high, x) - all.at(low, x) - ends * most;
         let inner = |a: f64, b: f64| if height(a) >= 0.0 { a } else { bisected(a, b, height) };
         let first = heights.iter().find(|h| h.1 >= ends * most)?.0;
@@ -119,10 +127,20 @@ impl Columns {
         Some(Self {
             curves: if upright { [high, low] } else { [low, high].map(|c| super::ring::reversed(&c)) },
             range: if upright { range } else { [1.0 - range[1], 1.0 - range[0]] },
-            jumps: jumps.into_iter().map(|p| turn * p).collect(),
+            jumps: jumps.iter().map(|p| turn * *p).collect(),
             coverage: held / area,
         })
     }
+}
+
+/// Two curves without jumps: low and high.
+struct Smooth {
+    curves: [Vec<Span>; 2],
+    /// Where slopes begin.
+    jumps: Vec<Point>,
+    /// Heights between the curves, at even places.
+    heights: Vec<(f64, f64)>,
+    area: f64,
 }
 
 /// Pieces of outlines.
@@ -223,26 +241,38 @@ impl Region {
         if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
     }
 
-    /// Cuts off what is beyond a jump at the ends of two curves, if it is short and thin.
+    /// Cuts off what is beyond a jump or a steep step at the ends of two curves, if it is short and thin.
     fn trim(&self, curves: &mut [Vec<Span>; 2]) {
         /// Longest, as a share of the range.
         const SHORT: f64 = 0.25;
-        /// Highest, as a share of the height on the other side of the jump.
+        /// Highest, as a share of the height on the other side of the jump, and of the step.
         const THIN: f64 = 0.55;
-        let ends = |c: &[Vec<Span>; 2]| (c[0][0].from, c[0][c[0].len() - 1].to);
-        let (start, stop) = ends(curves);
+        const LOW: f64 = 0.85;
+        /// A step is looked at this share of its distance from the end on both sides.
+        const BESIDE: f64 = 0.25;
+        let (start, stop) = (curves[0][0].from, curves[0][curves[0].len() - 1].to);
         for right in [false, true] {
-            let mut jumps: Vec<f64> = Vec::new();
-            for c in &*curves {
+            let mut steps: Vec<(f64, bool)> = Vec::new();
+            for w in curves.iter().flat_map(|c| c.windows(2)) {
                 let y = |s: &Span, x: f64| self.pieces[s.piece].y(x);
-                let far = |w: &&[Span]| (y(&w[0], w[0].to) - y(&w[1], w[1].from)).abs() > JUMP * self.bounds.height();
-                jumps.extend(c.windows(2).filter(far).map(|w| w[0].to));
+                let jump = (y(&w[0], w[0].to) - y(&w[1], w[1].from)).abs() > JUMP * self.bounds.height();
+                let outer = if right { (&w[1], w[1].from) } else { (&w[0], w[0].to) };
+                let p = &self.pieces[outer.0.piece];
+                let v = p.seg.deriv(p.parameter(outer.1));
+                if jump || v.x.abs() <= 1e-6 * v.y.abs() {
+                    steps.push((w[0].to, jump));
+                }
             }
-            jumps.retain(|x| (if right { stop - x } else { x - start }) <= SHORT * (stop - start));
-            jumps.sort_by(|a, b| if right { a.total_cmp(b) } else { b.total_cmp(a) });
-            let aside = 1e-6 * (stop - start) * if right { 1.0 } else { -1.0 };
+            let beyond = |x: f64| if right { stop - x } else { x - start };
+            steps.retain(|s| beyond(s.0) <= SHORT * (stop - start));
+            steps.sort_by(|a, b| beyond(b.0).total_cmp(&beyond(a.0)));
             let height = |x: f64| self.at(&curves[1], x) - self.at(&curves[0], x);
-            let Some(x) = jumps.into_iter().find(|x| height(x + aside) <= THIN * height(x - aside)) else { continue };
+            let cut = steps.into_iter().find(|(x, jump)| {
+                let aside = if *jump { 1e-6 * (stop - start) } else { BESIDE * beyond(*x) };
+                let aside = if right { aside } else { -aside };
+                height(x + aside) <= if *jump { THIN } else { LOW } * height(x - aside)
+            });
+            let Some((x, _)) = cut else { continue };
             for c in curves.iter_mut() {
                 c.retain(|s| if right { s.from < x } else { s.to > x });
                 for s in c.iter_mut() {
@@ -252,8 +282,21 @@ impl Region {
         }
     }
 
+    /// Leads slopes over the jumps of two curves. `None` if the curves meet.
+    fn smoothed(&mut self, mut curves: [Vec<Span>; 2], ramp: f64) -> Option<Smooth> {
+        let mut jumps = Vec::new();
+        for (curve, out) in curves.iter_mut().zip([-1.0, 1.0]) {
+            self.smooth(curve, out, ramp, &mut jumps);
+        }
+        let [low, high] = &curves;
+        let (from, to) = (low.first()?.from, low.last()?.to);
+        let heights = self.heights(low, high, from, to);
+        let area = heights.iter().map(|h| h.1).sum::<f64>() * (to - from) / heights.len() as f64;
+        heights.iter().all(|h| h.1 > 0.0).then_some(Smooth { curves, jumps, heights, area })
+    }
+
     /// Leads slopes over jumps of a curve; `out` is −1 for the low and 1 for the high one.
-    fn smooth(&mut self, curve: &mut Vec<Span>, out: f64, jumps: &mut Vec<Point>) {
+    fn smooth(&mut self, curve: &mut Vec<Span>, out: f64, ramp: f64, jumps: &mut Vec<Point>) {
         /// A slope may meet another jump.
         const MOST: usize = 100;
         for _ in 0..MOST {
@@ -266,7 +309,7 @@ impl Region {
             let start = Point::new(x, out * a.min(b));
             jumps.push(start);
             // Outwards into the higher part, until the slope leaves it.
-            let (right, slope) = (b > a, RAMP * self.bounds.height() / self.bounds.width());
+            let (right, slope) = (b > a, ramp * self.bounds.height() / self.bounds.width());
             let mut rest: Vec<Span> = if right { curve.split_off(i + 1) } else { curve.drain(..=i).rev().collect() };
             let line = |x1: f64| out * start.y + slope * (x1 - x).abs();
             let mut met = rest.last().map_or(x, |s| if right { s.to } else { s.from });
@@ -424,7 +467,7 @@ pub(super) fn part(s: &Seg, a: f64, b: f64) -> Seg {
 }
 
 /// Returns the zero between `a` and `b` of a function that is positive at one end only.
-fn bisected(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn bisected(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rising = f(b) > 0.0;
     // Sixty halvings exhaust double precision.
     for _ in 0..60 {
@@ -432,4 +475,62 @@ fn bisected(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
         if (f(middle) > 0.0) == rising { b = middle } else { a = middle }
     }
     0.5 * (a + b)
+}
+
+pub(super) fn nothing(shape: &Subpath) -> Error {
+    let b = corners::bounds(shape);
+    let problem = format!(
+        "leaves no room: the shape is {:.6} × {:.6}; take less `padding` or smaller `ends`",
+        b.width(),
+        b.height()
+    );
+    Error::usage("envelope", "the shape", problem)
+}
+
+/// Builds the map of a box into the columns (or the rows) of a closed path.
+pub(super) fn filled(frame: Rect, shape: &Subpath, upright: bool, room: &Room) -> Result<Built, Error> {
+    let ends = room.ends.unwrap_or(0.0);
+    let c = Columns::new(shape, upright, room).ok_or_else(|| nothing(shape))?;
+    let pace = if upright { Pace::Width } else { Pace::Height };
+    let [a, b] = c.curves.each_ref().map(|s| Side::new(s, pace));
+    let (Some(a), Some(b)) = (a, b) else { return Err(nothing(shape)) };
+    let ([a0, a1], [b0, b1]) = (a.ends(), b.ends());
+    let (first, last) = (Side::straight(a0, b0), Side::straight(a1, b1));
+    let [from, to] = c.range;
+    let unit = to_unit(frame);
+    let (pre, sides) = if upright {
+        let pre = Affine::new([to - from, 0.0, 0.0, 1.0, from, 0.0]);
+        (pre * unit, Sides { bottom: a, top: b, left: first, right: last })
+    } else {
+        let pre = Affine::new([1.0, 0.0, 0.0, to - from, 0.0, from]);
+        (pre * unit, Sides { left: a, right: b, bottom: first, top: last })
+    };
+    let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
+    let (what, lines) = if upright { ("columns", "verticals") } else { ("rows", "horizontals") };
+    let (length, place) = if upright { ("height", "x") } else { ("width", "y") };
+    let corner = |p: Point| if upright { p.x } else { p.y };
+    let at = |s: f64| corner(a0) + s * (corner(a1) - corner(a0));
+    built.note(format!(
+        "filled in {what}, {lines} kept: from {place} = {:.6} to {:.6}, where the shape is still {:.0} % of its greatest {length}",
+        at(from),
+        at(to),
+        100.0 * ends
+    ));
+    if room.padding == 0.0 && c.coverage < 1.0 - 1e-3 {
+        built.note(format!(
+            "the {what} hold {:.0} % of the shape: elsewhere such lines would leave it",
+            100.0 * c.coverage
+        ));
+    }
+    if !c.jumps.is_empty() {
+        let places: Vec<String> = c.jumps.iter().map(|p| show(*p)).collect();
+        built.warn(format!(
+            "envelope: the outline jumps at {}, where no {what} can follow it: part of the shape stays empty there; `--keep nothing` bends the \
+artwork round instead",
+            places.join(" and ")
+        ));
+    }
+    built.overlay(Role::Cage, shown(shape));
+    built.map = Coons::new(sides, pre).simplest();
+    Ok(built)
 }

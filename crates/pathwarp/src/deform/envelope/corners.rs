@@ -1,6 +1,6 @@
 //! A closed path divided into four sides: its corners and its bottom, given or found.
 
-use super::choice::distortion;
+use super::distortion::{distortion, turned};
 use super::columns::part;
 use super::ring::{Corners, Ring, SAMPLES, area, mirrored, reversed};
 use crate::anchors;
@@ -18,8 +18,6 @@ const SMOOTH: f64 = 0.1;
 const NEAR_SHARP: f64 = 0.2;
 /// How near that is, as a share of the box.
 const AROUND: f64 = 0.15;
-/// The cost of a turn by one radian.
-const TURNED: f64 = 0.5;
 /// Sharp nodes that are considered as corners.
 const MOST_SHARP: usize = 14;
 /// Corners that are worse by less than this are hardly worse.
@@ -188,6 +186,11 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     }
     sharp.sort_by(|a, b| turn(sub, *b).abs().total_cmp(&turn(sub, *a).abs()).then(a.cmp(b)));
     sharp.truncate(MOST_SHARP);
+    let in_quarter = |i: &usize| quarter(sub.segs[*i].start(), bounds).is_some();
+    // A triangle's tip is the middle of a side.
+    if sharp.len() == 3 && sharp.iter().filter(|i| in_quarter(i)).count() == 2 {
+        sharp.retain(in_quarter);
+    }
     let share = |v: Vec2| Vec2::new(v.x / bounds.width(), v.y / bounds.height());
     let mut candidates: Vec<(Location, f64)> = sharp.iter().map(|i| ((*i, 0.0), 0.0)).collect();
     let nodes: Vec<Point> = sharp.iter().map(|i| sub.segs[*i].start()).collect();
@@ -318,9 +321,7 @@ impl Flat {
             Jet { p: *q, dx, dy }
         };
         let jets: Vec<Jet> = places.iter().map(jet).collect();
-        let [dx, dy] = [jets.iter().map(|j| j.dx).sum::<Vec2>(), jets.iter().map(|j| j.dy).sum::<Vec2>()];
-        let turned = [dx.y.atan2(dx.x), (-dy.x).atan2(dy.y)].map(|a| a * a).iter().sum::<f64>();
-        Some(distortion(&jets) + TURNED * turned)
+        Some(distortion(&jets) + turned([p[0], p[1], p[3], p[2]]))
     }
 }
 

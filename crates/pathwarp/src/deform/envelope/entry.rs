@@ -1,7 +1,8 @@
 //! The registry's entry: reads an [`Envelope`] from text.
 
 use super::ring::{Corners, SIDES};
-use super::{Envelope, Keep, Room, Spread};
+use super::columns::Room;
+use super::{Envelope, Keep, Spread};
 use crate::deform::built::Built;
 use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
 use crate::error::Error;
@@ -14,18 +15,21 @@ pub(super) static INFO: Info = Info::new("envelope", "put artwork into any close
     .group("Envelopes")
     .guides(&["envelope"], 1)
     .with_letters()
-    .about("The artwork's box is laid onto a shape with four sides, which may have any number of pieces, and the artwork \
-follows. Name a closed path (--envelope, for instance an object of the drawing itself), or draw the sides one by one: --bottom and \
---top, with --left and --right if they are to be curves as well, or --bottom alone with a --height.\n\nA closed path's corners are its \
-nodes, if it has just four and one lies in each quarter of its box; or its nodes that turn by 20° or more, if that is so of them. \
-Otherwise they are the points nearest to the corners of the box, measured in shares of it, or a node with such an angle within \
-15 % of such a point; of four angles and four such points those that span more are taken. So circles, hearts, shields and rounded boxes have \
-corners too. --corners overrules that. The bottom is the lowest side on the screen among those that can be read from left to right with the inside above them, so that \
-lettering is never mirrored; --bottom-side and --reverse overrule that. --explain says what was chosen.\n\nAlong a side the artwork is spread \
-evenly by length. --by parameter follows the curve's parameter instead (pieces share a side by their lengths); \
-with one cubic for every side that is the shaper's map. --by extent goes by even steps across the screen.\n\n--keep verticals makes \
-verticals straight lines between bottom and top, exactly vertical where both curves span the same width; --keep horizontals does \
-the same for horizontals. Both need the two other sides to be straight. --keep lines keeps every line, which needs four straight sides: a projective map.")
+    .about("The artwork's box is laid onto a shape, and the artwork follows. Name a closed path (--envelope, for instance an object of \
+the drawing itself), or draw the sides one by one: --bottom and --top, with --left and --right if they are to be curves as well, or \
+--bottom alone with a --height.\n\nHow a closed path is filled is chosen (--keep auto). A path with four corners of its own (a flag, a \
+banner, a trapezoid) bends the artwork between its four sides. Lettering in any other shape stands in columns between the lower and \
+the upper outline, its stems upright; other artwork takes whatever distorts it less: columns, rows or four sides. Tails, such as a speech \
+bubble's, and thin ends stay free. In columns, lettering ends where the shape is still a quarter of its greatest height (--ends). \
+--explain says what was chosen.\n\nA closed path's corners are its nodes, if it has just four and one lies in each quarter of its box. \
+Otherwise they are those of its nodes that turn by 20° or more which distort the artwork least; for a quarter of the box without such \
+a node, the point nearest to its corner stands in. --corners overrules that; where another choice is hardly worse, a warning names it. \
+The bottom is the lowest side on the screen that can be read from left to right, so that lettering is never mirrored; --bottom-side and \
+--reverse overrule that.\n\nAlong a side the artwork is spread evenly by length. --by parameter follows the curve's parameter instead \
+(pieces share a side by their lengths); with one cubic for every side that is the shaper's map. --by extent goes by even steps across the \
+screen.\n\n--keep verticals fills a closed path in columns, and makes verticals straight lines between --bottom and --top, exactly vertical \
+where both span the same width; --keep horizontals does the same in rows. --keep lines keeps every line, which needs four straight sides: \
+a projective map. --keep nothing bends artwork between four sides, whatever the shape.")
     .source("S. A. Coons, Surfaces for Computer-Aided Design of Space Forms, MIT 1967; Markku Koppinen, A plane transformation from 16 control points, equation (7)")
     .params(&[
         Param::path("envelope", "The closed path to put the artwork into."),
@@ -46,7 +50,7 @@ the same for horizontals. Both need the two other sides to be straight. --keep l
         Param::flag("reverse", "Run the bottom the other way: the result is mirrored."),
         Param::new("keep", Kind::Choice(&["auto", "nothing", "verticals", "horizontals", "lines"]), "Lines that stay straight.")
             .default("auto"),
-        Param::number("ends", "In columns or rows: the artwork ends where the shape is still this share of its greatest height (width). Default: 15% for lettering, else 0.")
+        Param::number("ends", "In columns or rows: the artwork ends where the shape is still this share of its greatest height (width). Default: 25% for lettering, else 0.")
             .within(0.0, 0.99)
             .slider(0.0, 0.5),
         Param::length("padding", Axis::Y, "Distance that the artwork keeps from the shape's outline.").default("0").within(0.0, 1e9).slider(0.0, 50.0),
@@ -70,8 +74,8 @@ the same for horizontals. Both need the two other sides to be straight. --keep l
             command: "envelope samples/headline.svg --frame baseline-capheight --bottom 'M30,200 Q240,90 450,200' --height 80 -o out.svg",
         },
         Example {
-            what: "A circle has no corners: the points nearest to those of its box are taken",
-            command: "envelope samples/monogram.svg --envelope 'M200,100 A100,100 0 1 1 0,100 A100,100 0 1 1 200,100 Z' -o out.svg",
+            what: "A word in a leaf: its stems stay upright",
+            command: "envelope samples/headline.svg --envelope samples/shapes.svg#leaf -o out.svg",
         },
     ])
     .laws(&[
@@ -142,7 +146,7 @@ impl Deformation for Entry {
             bottom_side: s.number_if("bottom-side")?.map(|n| n as usize),
             reverse: s.flag("reverse")?,
             keep: Keep::named(s.choice("keep")?),
-            room: Room { ends: s.number_if("ends")?, padding: s.number("padding")?, core: false },
+            room: Room { ends: s.number_if("ends")?, padding: s.number("padding")? },
             lettering: !s.frame().letters.is_empty(),
             ink: Arc::clone(&s.frame().ink),
         };

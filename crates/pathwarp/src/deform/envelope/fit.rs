@@ -1,6 +1,5 @@
 //! The map of a box into a ring of four sides.
 
-use super::choice::{Room, filled};
 use super::faults;
 use super::ring::{Ring, SIDES, reversed};
 use crate::anchors;
@@ -93,12 +92,6 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
     let anchors::Anchors::Four(from) = anchors::frame_corners(&Frame::new(frame))? else {
         return Err(no_length("frame"));
     };
-    let (upright, between) = (keep == Keep::Verticals, [(1, 3), (0, 2)]);
-    let curved = |k: usize| demand_straight(&ring.sides[k], SIDES[k], "").is_err();
-    let (a, b) = between[usize::from(!upright)];
-    if matches!(keep, Keep::Verticals | Keep::Horizontals) && (curved(a) || curved(b)) {
-        return filled(frame, &ring.closed(), upright, &Room::default());
-    }
     let pre = to_unit(frame);
     let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
     built.explanation.notes.clone_from(&ring.notes);
@@ -163,7 +156,6 @@ pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut 
     // The kept lines run between a pair of curves; the other two sides are kept lines themselves.
     let (pair, names) = if lying { ([bottom, &top], [0, 2]) } else { ([&left, right], [3, 1]) };
     let exact = if given.is_some() { None } else { Side::new(pair[0], axis).zip(Side::new(pair[1], axis)) };
-    let is_exact = exact.is_some();
     let (a, b) = match exact {
         Some(pair) => pair,
         None => (side(pair[0], names[0], lying)?, side(pair[1], names[1], lying)?),
@@ -173,7 +165,7 @@ pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut 
     built.note(format!(
         "kept: {what} are straight and lean by at most {lean:.3}°, by the ruled map between the two curves"
     ));
-    if given.is_none() && !is_exact && lean >= VISIBLE_LEAN {
+    if given.is_none() && lean >= VISIBLE_LEAN {
         built.warn(format!(
             "envelope: {what} stay straight but lean by up to {lean:.1}°: a curve turns back, or the curves do not span the same range"
         ));
@@ -195,6 +187,11 @@ fn lean(a: &Side, b: &Side, lying: bool) -> f64 {
         off.abs().atan2(along.abs()).to_degrees()
     };
     (0..=SAMPLES).map(one).fold(0.0, f64::max)
+}
+
+/// Returns `true` if a side of a ring is not straight.
+pub(super) fn is_curved(ring: &Ring, k: usize) -> bool {
+    demand_straight(&ring.sides[k], SIDES[k], "").is_err()
 }
 
 /// Refuses a curved side, not one without length; `what` begins the message.

@@ -7,6 +7,7 @@ mod choice;
 mod columns;
 mod corners;
 mod curves;
+mod distortion;
 mod entry;
 mod faults;
 mod fit;
@@ -24,12 +25,12 @@ use super::built::Built;
 use crate::error::{Error, show, within};
 use crate::outline::{Outline, Subpath};
 use crate::param::NamedPath;
-use choice::Room;
+use columns::Room;
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
 /// The share of the greatest height at which lettering ends.
-const ENDS: f64 = 0.15;
+const ENDS: f64 = 0.25;
 
 /// An envelope: the artwork's box put into a shape with four sides, each a curve of any number of pieces.
 ///
@@ -170,7 +171,7 @@ impl Envelope {
     }
 
     /// In columns or rows, ends the artwork where the shape is still this share of its greatest height (width), 0 to below 1.
-    /// Default: 0.15 for lettering, else 0.
+    /// Default: 0.25 for lettering, else 0.
     #[must_use]
     pub fn ends(self, ends: f64) -> Self {
         Self { room: Room { ends: Some(ends), ..self.room }, ..self }
@@ -202,10 +203,11 @@ impl Envelope {
     pub fn build(&self) -> Result<Built, Error> {
         within("ends", self.room.ends.unwrap_or(0.0), 0.0, 0.99)?;
         within("padding", self.room.padding, 0.0, 1e9)?;
+        self.check()?;
         let shape =
             self.shape.as_ref().map(|path| Ok::<_, Error>((&*path.name, corners::closed(path)?))).transpose()?;
         let divided = self.corners.is_some() || self.bottom_side.is_some() || self.reverse || self.spread.is_some();
-        let whole = divided || self.keep != Keep::Auto || !self.lettering;
+        let whole = divided || matches!(self.keep, Keep::Nothing | Keep::Lines);
         let (shape, tips) = match shape {
             Some((name, path)) if !whole => {
                 let (path, tips) = corners::trimmed(&path);
@@ -217,7 +219,10 @@ impl Envelope {
             frame: self.frame,
             keep: self.keep,
             spread: self.spread,
-            room: Room { ends: Some(self.room.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })), ..self.room },
+            room: Room {
+                ends: Some(self.room.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })),
+                ..self.room
+            },
             lettering: self.lettering,
             ink: &self.ink,
         };
@@ -238,43 +243,31 @@ impl Envelope {
         const PLACES: u32 = 5;
         let step = (self.ink.len() / (2 * PLACES * PLACES) as usize).max(1);
         let places: Vec<Point> = self.ink.iter().step_by(step).map(|p| fit::to_unit(self.frame) * *p).collect();
-        if places.is_empty() { choice::grid(PLACES).collect() } else { places }
+        if places.is_empty() { distortion::grid(PLACES).collect() } else { places }
     }
 
-    /// Returns the four sides as drawn.
-    fn ring(&self, shape: Option<&(&str, Subpath)>) -> Result<Ring, Error> {
+    /// Refuses values that contradict each other.
+    fn check(&self) -> Result<(), Error> {
+        let drawn = self.curves.iter().any(Option::is_some);
         if let Some(height) = self.height {
             within("height", height, 1e-9, 1e9)?;
         }
-        let drawn = self.curves.iter().any(Option::is_some);
-        match shape {
-            Some((name, _)) if drawn => {
+        if let Some(n) = self.bottom_side {
+            within("bottom-side", n as f64, 1.0, 4.0)?;
+        }
+        match &self.shape {
+            Some(path) if drawn => {
                 let problem = "cannot go with `bottom`, `top`, `left` and `right`: a closed path has all four";
-                Err(Error::usage("envelope", *name, problem))
+                Err(Error::usage("envelope", path.name.clone(), problem))
             }
-            Some((name, path)) => {
-                if let Some(height) = self.height {
-                    return Err(Error::usage("height", height.to_string(), "goes with `bottom` or `top` alone"));
-                }
-                if let Some(n) = self.bottom_side {
-                    within("bottom-side", n as f64, 1.0, 4.0)?;
-                }
-                corners::ring(name, path, self.corners.as_ref(), self.bottom_side, self.reverse, &self.places())
-            }
+            Some(_) => match self.height {
+                Some(height) => Err(Error::usage("height", height.to_string(), "goes with `bottom` or `top` alone")),
+                None => Ok(()),
+            },
             None if drawn => {
                 let given = [("corners", self.corners.is_some()), ("bottom-side", self.bottom_side.is_some())];
-                if let Some((name, _)) = given.iter().find(|g| g.1) {
-                    let problem = "goes with `envelope`: here the sides are drawn one by one";
-                    return Err(Error::usage(name, "", problem));
-                }
-                let curves = curves::Curves {
-                    drawn: &self.curves,
-                    height: self.height,
-                    frame_height: self.frame.height(),
-                    square: self.square,
-                    reverse: self.reverse,
-                };
-                curves.ring()
+                let problem = "goes with `envelope`: here the sides are drawn one by one";
+                given.iter().find(|g| g.1).map_or(Ok(()), |g| Err(Error::usage(g.0, "", problem)))
             }
             None => {
                 let hint =
@@ -282,5 +275,20 @@ impl Envelope {
                 Err(Error::missing("envelope", hint))
             }
         }
+    }
+
+    /// Returns the four sides as drawn.
+    fn ring(&self, shape: Option<&(&str, Subpath)>) -> Result<Ring, Error> {
+        if let Some((name, path)) = shape {
+            return corners::ring(name, path, self.corners.as_ref(), self.bottom_side, self.reverse, &self.places());
+        }
+        let curves = curves::Curves {
+            drawn: &self.curves,
+            height: self.height,
+            frame_height: self.frame.height(),
+            square: self.square,
+            reverse: self.reverse,
+        };
+        curves.ring()
     }
 }

@@ -58,7 +58,7 @@ transformation from 16 control points, equation (7)")
             .within(-1.0, 1.0),
         Param::new(
             "keep",
-            Kind::Choice(&["nothing", "auto", "verticals", "horizontals", "lines"]),
+            Kind::Choice(&["nothing", "verticals", "horizontals", "lines"]),
             "Lines that stay straight: the artwork is put between the style's sides by a map that keeps them, as `envelope --keep` does.",
         )
         .default("nothing"),

@@ -1,0 +1,45 @@
+//! How much a map distorts: its stretches at places of the artwork.
+
+use crate::map::Jet;
+use kurbo::{Point, Vec2};
+
+/// Returns places of the unit square.
+pub(super) fn grid(n: u32) -> impl Iterator<Item = Point> {
+    let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+    (0..n * n).map(move |k| Point::new(at(k % n), at(k / n)))
+}
+
+/// Returns the mean of how far a map stretches and squeezes, beside its mean stretches to the right and upwards: the squares of the
+/// logarithms of both stretches.
+pub(super) fn distortion(jets: &[Jet]) -> f64 {
+    /// For a place that is folded over or squeezed to nothing.
+    const MOST: f64 = 100.0;
+    let one = |[a, b]: [f64; 2]| {
+        let d = a.ln().powi(2) + b.ln().powi(2);
+        if b > 0.0 && d < MOST { d } else { MOST }
+    };
+    stretches(jets).into_iter().map(one).sum::<f64>() / jets.len() as f64
+}
+
+/// Returns the cost of turning a box: by the directions between its corners (bottom left, bottom right, top right, top left), with y
+/// downwards.
+pub(super) fn turned([a, b, c, d]: [Point; 4]) -> f64 {
+    /// The cost of a radian.
+    const RADIAN: f64 = 2.0;
+    let (right, down) = ((b - a) + (c - d), (a - d) + (b - c));
+    RADIAN * (right.y.atan2(right.x).powi(2) + down.x.atan2(down.y).powi(2))
+}
+
+/// Returns the largest and the smallest stretch at every place, beside the mean stretches along both axes; the smallest is negative
+/// where the map mirrors.
+pub(super) fn stretches(jets: &[Jet]) -> Vec<[f64; 2]> {
+    let mean = |v: fn(&Jet) -> Vec2| jets.iter().map(|j| v(j).hypot()).sum::<f64>() / jets.len() as f64;
+    let (x, y) = (mean(|j| j.dx), mean(|j| j.dy));
+    let one = |j: &Jet| {
+        let (dx, dy) = (j.dx / x, j.dy / y);
+        // Singular values by the sums of the conformal and the anticonformal part.
+        let (c, a) = ((dx.x + dy.y).hypot(dx.y - dy.x), (dx.x - dy.y).hypot(dx.y + dy.x));
+        [0.5 * (c + a), 0.5 * (c - a)]
+    };
+    jets.iter().map(one).collect()
+}

@@ -1,0 +1,173 @@
+//! docs/shapes.md: words and a logo in every shape of the samples, as pictures and as figures.
+
+use crate::chore::{ChoreError, at};
+use crate::shell::pipe;
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use pathwarp::deform::Envelope;
+use pathwarp::kurbo::{Point, Rect, Vec2};
+use pathwarp::Outline;
+use pathwarp::map::Jet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+/// The page, and the folder of its pictures.
+const PAGE: &str = "docs/shapes.md";
+const PICTURES: &str = "docs/images/shapes";
+/// The shapes.
+const SAMPLE: &str = "samples/shapes.svg";
+/// What is put into them: a name, and the command that writes it to standard output, or a drawing.
+const ARTWORK: [(&str, &[&str]); 3] = [
+    ("word", &["text", "OPEN", "-o", "-"]),
+    ("lines", &["text", "LOVE", "MUSIC", "--align", "fill", "--gap", "6%", "-o", "-"]),
+    ("logo", &["affine", "samples/logo.svg", "-o", "-"]),
+];
+/// The box that the figures are for: that of a short word.
+const FRAME: Rect = Rect::new(0.0, 0.0, 300.0, 100.0);
+/// Places along an axis of that box.
+const PLACES: u32 = 41;
+
+/// The shapes: an id and path data.
+fn shapes(root: &Path) -> Result<Vec<(String, String)>, ChoreError> {
+    let file = root.join(SAMPLE);
+    let text = fs::read_to_string(&file).map_err(at(&file))?;
+    let attribute = |line: &str, name: &str| Some(line.split_once(name)?.1.split_once('"')?.0.to_owned());
+    Ok(text.lines().filter_map(|l| Some((attribute(l, "<path id=\"")?, attribute(l, " d=\"")?))).collect())
+}
+
+/// Figures of a word in a shape.
+struct Figures {
+    columns: bool,
+    /// The share of places that are mirrored.
+    folded: f64,
+    /// Degrees.
+    lean: f64,
+    /// The 95th percentile of the ratio of the largest and the smallest stretch, beside the mean stretches along both axes.
+    uneven: f64,
+}
+
+impl Figures {
+    fn of(path: &str) -> Result<Self, ChoreError> {
+        let outline = Outline::from_svg(path).map_err(|e| e.to_string())?;
+        let built = Envelope::new(FRAME, &outline).lettering(true).build().map_err(|e| e.to_string())?;
+        let place = |k: u32| {
+            let share = |i: u32| f64::from(i) / f64::from(PLACES - 1);
+            Point::new(FRAME.x0 + share(k % PLACES) * FRAME.width(), FRAME.y0 + share(k / PLACES) * FRAME.height())
+        };
+        let jets: Vec<Jet> = (0..PLACES * PLACES).map(|k| built.map.jet(place(k))).collect();
+        let count = jets.len() as f64;
+        let mean = |of: fn(&Jet) -> Vec2| jets.iter().map(|j| of(j).hypot()).sum::<f64>() / count;
+        let (x, y) = (mean(|j| j.dx), mean(|j| j.dy));
+        let mut ratios: Vec<f64> = jets
+            .iter()
+            .map(|j| {
+                let (dx, dy) = (j.dx / x, j.dy / y);
+                // σ₁² + σ₂² and σ₁·σ₂ of the Jacobian.
+                let (sum, product) = (dx.hypot2() + dy.hypot2(), dx.cross(dy).abs());
+                let root = (sum * sum - 4.0 * product * product).max(0.0).sqrt();
+                ((sum + root) / (sum - root)).sqrt()
+            })
+            .collect();
+        ratios.sort_by(f64::total_cmp);
+        Ok(Self {
+            columns: built.explanation.notes.iter().any(|n| n.contains("columns")),
+            folded: jets.iter().filter(|j| j.dx.cross(j.dy) <= 0.0).count() as f64 / count,
+            lean: jets.iter().map(|j| j.dy.x.abs().atan2(j.dy.y).to_degrees()).fold(0.0, f64::max),
+            uneven: ratios[ratios.len() * 95 / 100],
+        })
+    }
+}
+
+/// The page's text.
+fn text(root: &Path) -> Result<String, ChoreError> {
+    let mut out = String::from(
+        "# A word in a shape\n\n<!-- Written by `cargo xtask docs`; edit crates/xtask/src/docs/shapes.rs. -->\n\n\
+```sh\npathwarp text OPEN | pathwarp envelope - --envelope 'samples/shapes.svg#leaf' -o leaf.svg\n```\n\n\
+Any closed path is a shape: path data, or an object of a drawing. A shape with four corners of its own, such as a flag or a banner, bends \
+the word between its four sides. Every other shape is filled as letterers do it: in columns, so that stems stay upright, between the lower \
+and the upper outline. The letters end where the shape is still a quarter of its greatest height (`--ends`), and `--padding 3` keeps them \
+off the outline. `--explain` says what was chosen; `--keep verticals` or `--keep nothing` overrules it.\n\n\
+`text LOVE MUSIC --align fill --gap 6%` sizes every line to the width of the block. Artwork without letters takes whatever distorts it \
+less, and goes from end to end.\n",
+    );
+    let titles = ["One word", "Two lines", "A logo"];
+    for ((name, _), title) in ARTWORK.iter().zip(titles) {
+        let _ = write!(out, "\n![{title} in 24 shapes](images/shapes/{name}.png)\n");
+    }
+    out.push_str(
+        "\n## Figures\n\nFor a word three times as wide as high: the share of it that is folded over, the largest lean of a stem, and the \
+95th percentile of how much more a place is stretched one way than the other, beside the mean of both.\n\n\
+| shape | filled | folded | stems lean | stretch |\n|---|---|---|---|---|\n",
+    );
+    for (name, path) in shapes(root)? {
+        let f = Figures::of(&path)?;
+        let how = if f.columns { "in columns" } else { "between four sides" };
+        let _ = writeln!(out, "| {name} | {how} | {:.0} % | {:.0}° | {:.1} |", 100.0 * f.folded, f.lean, f.uneven);
+    }
+    Ok(out)
+}
+
+/// Writes the page and its pictures.
+pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
+    let page = root.join(PAGE);
+    fs::write(&page, text(root)?).map_err(at(&page))?;
+    let folder = root.join(PICTURES);
+    fs::create_dir_all(&folder).map_err(at(&folder))?;
+    for (name, command) in ARTWORK {
+        let command: Vec<String> = command.iter().map(|w| (*w).to_owned()).collect();
+        let artwork = pipe(root, program, &command, &[])?;
+        let file = root.join(SAMPLE);
+        let mut sheet = fs::read_to_string(&file).map_err(at(&file))?.replace("</svg>", "");
+        for (id, _) in shapes(root)? {
+            let shape = format!("{SAMPLE}#{id}");
+            let put = ["envelope", "-", "--envelope", &shape, "--fit", "none", "--quiet", "-o", "-"].map(str::to_owned);
+            let bent = String::from_utf8_lossy(&pipe(root, program, &put, &artwork)?).into_owned();
+            let _ = write!(sheet, "<image {} href=\"data:image/svg+xml;base64,", WHOLE);
+            sheet.push_str(&BASE64_STANDARD.encode(on_the_sheet(&bent)));
+            sheet.push_str("\"/>");
+        }
+        sheet.push_str("</svg>");
+        let png = folder.join(format!("{name}.png")).display().to_string();
+        let render = ["render", "-", "--width", "1440", "--background", "white", "-o", &png].map(str::to_owned);
+        pipe(root, program, &render, sheet.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// The page of the samples.
+const WHOLE: &str = "width=\"1440\" height=\"960\"";
+
+/// Gives a drawing the page of the samples.
+fn on_the_sheet(drawing: &str) -> String {
+    let Some((before, rest)) = drawing.split_once("<svg ") else { return drawing.to_owned() };
+    let (tag, content) = rest.split_once('>').unwrap_or((rest, ""));
+    let kept = |part: &&str| !["width=", "height=", "viewBox="].iter().any(|name| part.starts_with(name));
+    let tag: Vec<&str> = tag.split_inclusive("\" ").filter(kept).collect();
+    format!("{before}<svg {WHOLE} viewBox=\"0 0 1440 960\" {}>{content}", tag.concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chore::workspace;
+
+    /// Every shape is filled without folds; in columns stems are upright.
+    #[test]
+    fn shapes_are_filled_well() {
+        let all = shapes(&workspace()).unwrap();
+        assert_eq!(all.len(), 24);
+        for (name, path) in all {
+            let f = Figures::of(&path).unwrap();
+            assert_eq!(f.folded, 0.0, "{name} folds");
+            assert!(!f.columns || f.lean < 1e-6, "{name}: stems lean by {}°", f.lean);
+        }
+    }
+
+    #[test]
+    fn the_page_is_up_to_date() {
+        let root = workspace();
+        let stored = fs::read_to_string(root.join(PAGE)).unwrap_or_default();
+        assert!(stored == text(&root).unwrap(), "{PAGE} is out of date: run `cargo xtask docs`");
+    }
+}
