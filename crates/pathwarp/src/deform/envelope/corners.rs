@@ -186,10 +186,21 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     }
     sharp.sort_by(|a, b| turn(sub, *b).abs().total_cmp(&turn(sub, *a).abs()).then(a.cmp(b)));
     sharp.truncate(MOST_SHARP);
-    let in_quarter = |i: &usize| quarter(sub.segs[*i].start(), bounds).is_some();
-    // A triangle's tip is the middle of a side.
-    if sharp.len() == 3 && sharp.iter().filter(|i| in_quarter(i)).count() == 2 {
-        sharp.retain(in_quarter);
+    // A lone tip between two empty quarters, as of a heart, is the middle of a side, unless there are four, as of a diamond.
+    let held: Vec<_> = sharp.iter().filter_map(|i| quarter(sub.segs[*i].start(), bounds)).collect();
+    let beside = |p: Point| {
+        let (to, d) = (bounds.center(), 0.25 * bounds.size().to_vec2());
+        let lies = (p.x - to.x).abs() / bounds.width() > (p.y - to.y).abs() / bounds.height();
+        let side = if lies { Vec2::new(d.x.copysign(p.x - to.x), 0.0) } else { Vec2::new(0.0, d.y.copysign(p.y - to.y)) };
+        let across = if lies { Vec2::new(0.0, d.y) } else { Vec2::new(d.x, 0.0) };
+        [1.0, -1.0].map(|s| quarter(to + side + across * s, bounds))
+    };
+    let lone = |i: &usize| {
+        let p = sub.segs[*i].start();
+        quarter(p, bounds).is_none() && beside(p).into_iter().flatten().all(|q| !held.contains(&q))
+    };
+    if sharp.iter().filter(|i| lone(i)).count() < 4 {
+        sharp.retain(|i| !lone(i));
     }
     let share = |v: Vec2| Vec2::new(v.x / bounds.width(), v.y / bounds.height());
     let mut candidates: Vec<(Location, f64)> = sharp.iter().map(|i| ((*i, 0.0), 0.0)).collect();
