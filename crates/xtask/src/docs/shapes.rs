@@ -52,7 +52,7 @@ impl Figures {
         let outline = Outline::from_svg(path).map_err(|e| e.to_string())?;
         let built = Envelope::new(FRAME, &outline).lettering(true).build().map_err(|e| e.to_string())?;
         let place = |k: u32| {
-            let share = |i: u32| f64::from(i) / f64::from(PLACES - 1);
+            let share = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES);
             Point::new(FRAME.x0 + share(k % PLACES) * FRAME.width(), FRAME.y0 + share(k / PLACES) * FRAME.height())
         };
         let jets: Vec<Jet> = (0..PLACES * PLACES).map(|k| built.map.jet(place(k))).collect();
@@ -121,7 +121,7 @@ pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
         let mut sheet = fs::read_to_string(&file).map_err(at(&file))?.replace("</svg>", "");
         for (id, _) in shapes(root)? {
             let shape = format!("{SAMPLE}#{id}");
-            let put = ["envelope", "-", "--envelope", &shape, "--fit", "none", "--quiet", "-o", "-"].map(str::to_owned);
+            let put = ["envelope", "-", "--envelope", &shape, "--fit", "grow", "--quiet", "-o", "-"].map(str::to_owned);
             let bent = String::from_utf8_lossy(&pipe(root, program, &put, &artwork)?).into_owned();
             let _ = write!(sheet, "<image {} href=\"data:image/svg+xml;base64,", WHOLE);
             sheet.push_str(&BASE64_STANDARD.encode(on_the_sheet(&bent)));
