@@ -1,74 +1,14 @@
 //! Words that new users type: commands and options of other programs, values apart from their units, names without quotes.
 
 use crate::catalogue::Catalogue;
+use crate::coming_from;
 use crate::format::Format;
 use crate::input::split_reference;
-use pathwarp::param::Kind;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// Other names of commands.
 const ALIASES: [(&str, &str); 1] = [("perspective", "projective")];
-
-/// Words for what a command does, and that command on a drawing.
-const WORDS: [(&[&str], &str); 22] = [
-    (&["rotate", "turn", "spin"], "affine IN.svg --rotate 15 -o OUT.svg"),
-    (&["skew", "shear", "lean", "slant", "oblique", "italic"], "affine IN.svg --skew-x -12 -o OUT.svg"),
-    (
-        &["scale", "resize", "size", "zoom", "enlarge", "shrink", "stretch"],
-        "affine IN.svg --scale-x 2 --scale-y 2 -o OUT.svg",
-    ),
-    (&["move", "translate", "shift", "offset"], "affine IN.svg --move-x 10mm -o OUT.svg"),
-    (&["mirror", "flip", "reflect"], "affine IN.svg --scale-x -1 -o OUT.svg"),
-    (
-        &["circle", "round", "curve", "textpath", "text-on-path", "text-on-circle", "path", "badge"],
-        "bend IN.svg --along circle:r=60mm -o OUT.svg",
-    ),
-    (
-        &["distort", "free-distort", "keystone", "corners", "trapezoid", "quad"],
-        "projective IN.svg --target '0%,100% 100%,100% 75%,0% 25%,0%' -o OUT.svg",
-    ),
-    (&["twirl", "twist", "vortex", "whirl", "spiral"], "swirl IN.svg -o OUT.svg"),
-    (&["ripple", "waves", "sine", "wobble", "zigzag"], "wave IN.svg -o OUT.svg"),
-    (&["pinch", "punch", "bloat", "pucker", "spherize"], "bulge IN.svg -o OUT.svg"),
-    (
-        &["puppet", "puppet-warp", "pin", "pins", "liquify"],
-        "mls IN.svg --pin 0%,100% --pin 100%,100% --pair 50%,0%:55%,-20% -o OUT.svg",
-    ),
-    (&["cage", "distort-mesh", "bezier"], "shaper IN.svg --shaper CAGE.svg -o OUT.svg"),
-    (&["grid", "lattice", "gridwarp"], "ffd IN.svg -o OUT.svg"),
-    (
-        &["cylinder", "mug", "bottle", "can", "label", "cone", "sphere"],
-        "anamorph IN.svg --distance 50cm --onto cylinder:radius=42mm -o OUT.svg",
-    ),
-    (&["formula", "equation", "function"], "expr IN.svg --x 'x + 4*sin(y/16)' -o OUT.svg"),
-    (
-        &["png", "jpg", "jpeg", "webp", "rasterize", "draw", "picture", "preview", "thumbnail"],
-        "render IN.svg -o OUT.png",
-    ),
-    (&["pdf", "dxf", "svg", "export", "save", "save-as", "print"], "affine IN.svg -o OUT.pdf"),
-    (&["open", "gui", "ui", "view", "editor", "interactive", "browser"], "edit IN.svg"),
-    (&["info", "inspect", "ls", "show", "query"], "paths IN.svg"),
-    (&["styles", "presets", "samples", "sheet"], "gallery IN.svg -o SHEET.png"),
-    (&["undo", "unbend", "restore", "revert", "original"], "unwarp WARPED.svg -o OUT.svg"),
-    (&["font", "fonts", "word", "words", "letter", "letters", "lettering", "type"], "text 'WORDS' -o OUT.svg"),
-];
-
-/// Words for what pathwarp does not do, and who does.
-const ELSEWHERE: [(&[&str], &str); 3] = [
-    (
-        &["trace", "vectorize", "vectorise", "image-trace", "potrace"],
-        "pathwarp warps pictures as they are and traces none; Inkscape does: Path › Trace Bitmap",
-    ),
-    (
-        &["simplify", "smooth", "clean", "optimize", "optimise", "svgo"],
-        "pathwarp writes few nodes where it bends, and has no command that only simplifies",
-    ),
-    (
-        &["union", "join", "merge", "combine", "unite", "boolean"],
-        "pathwarp joins no drawings; open one in an editor and paste the other",
-    ),
-];
 
 /// Other names of options; the last of them that the command has is meant.
 const OPTIONS: [(&[&str], &str); 10] = [
@@ -104,26 +44,7 @@ pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
             "{word} is a folder, not a command; `pathwarp warp -r {word} --style flag --out-dir OUT` warps the drawings in it"
         ));
     }
-    let named: Vec<String> = catalogue
-        .infos()
-        .into_iter()
-        .flat_map(|info| info.params.iter().map(move |p| (info, p)))
-        .filter(|(_, p)| matches!(p.kind, Kind::NameOrFile(names) if names.contains(&lower.as_str())))
-        .map(|(info, p)| {
-            format!("a {} of {}: pathwarp {} IN.svg --{} {lower} -o OUT.svg", p.name, info.name, info.name, p.name)
-        })
-        .collect();
-    let plain = lower.replace(['_', ' '], "-");
-    let is = |words: &&[&str]| words.contains(&plain.as_str());
-    let known = WORDS.iter().find(|(words, _)| is(words)).map(|(_, command)| command);
-    if !named.is_empty() {
-        let other = known.map(|command| format!("; or use `pathwarp {command}`")).unwrap_or_default();
-        return Some(format!("{word} is {}{other}", named.join("; or ")));
-    }
-    if let Some(command) = known {
-        return Some(format!("there is no command {word}; use `pathwarp {command}`"));
-    }
-    ELSEWHERE.iter().find(|(words, _)| is(words)).map(|(_, text)| format!("there is no command {word}; {text}"))
+    coming_from::meant(catalogue, word)
 }
 
 /// The options that an unknown one may mean, of those that the command has: those that begin with it, or are its synonyms.
@@ -165,32 +86,30 @@ fn is_measure(word: &str) -> bool {
     word.split([',', ':']).all(one)
 }
 
+/// Returns `true` for a letter of path data, or one with numbers after it.
+fn is_data(word: &str) -> bool {
+    let numbers = word.trim_start_matches(|c| "MLHVCSQTAZmlhvcsqtaz".contains(c));
+    numbers.len() < word.len() && (numbers.is_empty() || is_measure(numbers))
+}
+
 /// Finds the words of a command line that belong to the value of an option before them: `--size 40 mm`, `--target 0,0 9,0 9,9`.
 fn torn(words: &[String]) -> Option<Torn> {
-    for (i, option) in words.iter().enumerate().filter(|(_, w)| w.len() > 2 && w.starts_with("--")) {
-        let (option, first) = match option.split_once('=') {
-            Some((option, value)) => (option, value),
-            None => (option.as_str(), words.get(i + 1)?.as_str()),
+    for (i, word) in words.iter().enumerate().filter(|(_, w)| w.len() > 2 && w.starts_with("--")) {
+        let (option, first, rest) = match (word.split_once('='), &words[i + 1..]) {
+            (Some((option, first)), rest) => (option, first, rest),
+            (None, [first, rest @ ..]) => (word.as_str(), first.as_str(), rest),
+            (None, []) => continue,
         };
-        let rest = i + 1 + usize::from(!words[i].contains('='));
-        let Some(next) = words.get(rest) else { continue };
+        let Some(next) = rest.first() else { continue };
         if is_number(first) && is_unit(next) {
             return Some(Torn { word: next.clone(), whole: format!("{option} {first}{next}") });
         }
-        let points = words[rest..].iter().take_while(|w| is_measure(w) && !Path::new(w).exists());
-        let points: Vec<&str> = points.map(String::as_str).collect();
-        if is_measure(first) && points.iter().any(|p| p.contains(',')) && first.contains(',') {
-            return Some(Torn {
-                word: points[0].to_owned(),
-                whole: format!("{option} '{first} {}'", points.join(" ")),
-            });
-        }
-        // Path data: M 0,0 C 1,2 …
-        let is_data = |w: &str| w.starts_with(['M', 'm']) && (w.len() == 1 || is_measure(&w[1..]));
-        if is_data(first)
-            && (is_measure(next) || next.starts_with(['L', 'C', 'Q', 'A', 'H', 'V', 'l', 'c', 'q', 'a', 'h', 'v']))
-        {
-            return Some(Torn { word: next.clone(), whole: format!("{option} '{first} {next} …'") });
+        // Points, or path data: M 0,0 C 1,2 …
+        let is_begun = is_data(first) || first.contains(',') && is_measure(first);
+        let more = rest.iter().take_while(|w| (is_measure(w) || is_data(w)) && !Path::new(w).exists());
+        let more: Vec<&str> = more.map(String::as_str).collect();
+        if is_begun && !more.is_empty() {
+            return Some(Torn { word: next.clone(), whole: format!("{option} '{first} {}'", more.join(" ")) });
         }
     }
     None
@@ -230,14 +149,13 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
             return Some(format!("{name}: there is no such file; a name with spaces needs quotes: '{joined}'"));
         }
     }
-    let is_last = missing + 1 == inputs.len() && inputs[..missing].iter().all(|p| exists(p));
-    if is_last && !has_out && Format::of(&inputs[missing]).is_some() {
-        return Some(format!("{name}: there is no such file; if the result is to be written there: -o {name}"));
+    if ["to", "into", "as", "->", "=>"].contains(&name.as_str()) {
+        let to = inputs.get(missing + 1).map_or("OUT.svg".into(), |to| to.display().to_string());
+        return Some(format!("{name} is no file; the result is named with -o {to}"));
     }
-    if is_last && matches!(inputs[missing].to_str(), Some("to" | "into" | "as" | "->" | "=>")) {
-        return Some(format!("{name} is no file; the result is named with -o OUT.svg"));
-    }
-    None
+    let is_last = missing + 1 == inputs.len();
+    (is_last && !has_out && Format::of(&inputs[missing]).is_some())
+        .then(|| format!("{name}: there is no such file; if the result is to be written there: -o {name}"))
 }
 
 /// A tip for a word that a command takes no more of.
@@ -267,8 +185,8 @@ mod tests {
             ("warp a.svg --bend -40 %", "--bend -40%"),
             ("warp a.svg --bend=-40 %", "--bend -40%"),
             ("projective --target 0%,100% 100%,100% 75%,0% a.svg", "--target '0%,100% 100%,100% 75%,0%'"),
-            ("bend a.svg --along M0,100 Q150,20 300,100", "--along 'M0,100 Q150,20 …'"),
-            ("bend a.svg --along M 0,100", "--along 'M 0,100 …'"),
+            ("bend a.svg --along M0,100 Q150,20 300,100", "--along 'M0,100 Q150,20 300,100'"),
+            ("bend a.svg --along M 0,100", "--along 'M 0,100'"),
         ] {
             assert_eq!(whole(line).as_deref(), Some(expected), "{line}");
         }

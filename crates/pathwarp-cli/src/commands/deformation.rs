@@ -2,7 +2,7 @@
 
 use crate::advice::mistakes;
 use crate::failure::Failure;
-use crate::options::{self, Given, OPTIONS};
+use crate::options::{self, Given};
 use crate::pipeline;
 use crate::status::Status;
 use crate::steps::{self, ChainPart};
@@ -12,37 +12,8 @@ use pathwarp::recipe::Recipe;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
-/// The common options that `-h` shows.
-const COMMON: [&str; 6] = ["out", "out-dir", "select", "tolerance", "fit", "preview"];
-
 pub(super) fn command(info: &Info) -> Command {
-    let whole = described(info).args(options::args()).mut_args(|arg| {
-        let hidden = OPTIONS.iter().any(|o| *arg.get_id() == o.name) && !COMMON.contains(&arg.get_id().as_str());
-        let full = arg.get_help().map(ToString::to_string).unwrap_or_default();
-        arg.help(brief(&full)).long_help(full).hide_short_help(hidden)
-    });
-    let Some(first) = info.examples.first() else { return whole };
-    let rest = format!("All options and examples: pathwarp {} --help", info.name);
-    whole.after_help(format!("{}:\n  pathwarp {}\n\n{rest}", first.what, first.command))
-}
-
-/// The beginning of a help text, for a line, with its default.
-fn brief(help: &str) -> String {
-    const LINE: usize = 60;
-    let (text, default) = match help.split_once(" [default: ") {
-        Some((text, default)) => (text, format!(" [{}", default.trim_end_matches(']'))),
-        None => (help, String::new()),
-    };
-    let default = if default.is_empty() || default.len() > LINE / 2 { String::new() } else { default + "]" };
-    let ends = text
-        .char_indices()
-        .filter(|(i, c)| ".;:,(".contains(*c) && text[i + c.len_utf8()..].starts_with([' ', 'a']))
-        .map(|(i, _)| i);
-    let end = ends.chain([text.len()]).take_while(|i| *i <= LINE).last();
-    let first = end.or_else(|| text.find([';', ':', '.', ',']).filter(|i| *i > 0)).unwrap_or(text.len());
-    // Not within brackets.
-    let open = text[..first].rfind('(').filter(|i| !text[*i..first].contains(')'));
-    text[..open.unwrap_or(first)].trim_end().to_owned() + &default
+    described(info).args(options::args())
 }
 
 /// The subcommand of a deformation, of the plane or of space, with its help and its own parameters.
@@ -55,8 +26,7 @@ pub(super) fn described(info: &Info) -> Command {
     Command::new(info.name)
         .about(info.title)
         .long_about(format!("{} — {}\n\n{}", info.name, info.title, info.about))
-        .after_help(examples.clone())
-        .after_long_help(examples)
+        .after_help(examples)
         .args(steps::args(info))
 }
 

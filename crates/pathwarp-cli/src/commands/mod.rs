@@ -19,6 +19,7 @@ mod points;
 mod render;
 mod run;
 mod schema;
+mod short_help;
 mod solid;
 mod text;
 mod unwarp;
@@ -80,7 +81,8 @@ fn root() -> Command {
     Command::new("pathwarp")
         .version(env!("CARGO_PKG_VERSION"))
         .about(ABOUT)
-        .after_help(AFTER)
+        .after_help("Paths in options, chains, exit codes: pathwarp --help. A word of another program: pathwarp help WORD")
+        .after_long_help(AFTER)
         .subcommand_required(true)
         .arg_required_else_help(true)
         .infer_subcommands(false)
@@ -133,7 +135,11 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         output::to_stdout(text.as_bytes())?;
         return Ok(Status::Complete);
     }
-    let matches = build_for(registry, first.get(1))
+    let mut command = build_for(registry, first.get(1));
+    if first.iter().any(|a| a == "-h") {
+        command = short_help::shortened(command, &first[1..], "pathwarp");
+    }
+    let matches = command
         .try_get_matches_from(first)
         .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
     let Some((name, m)) = matches.subcommand() else {
@@ -189,7 +195,7 @@ fn joined(words: &[OsString]) -> String {
     words.iter().map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-/// What `help WORD` says about a word of another program, which may be several words.
+/// What `help WORD` says about a word that is no command, and which may be several words.
 fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     let [_, help, words @ ..] = args else { return None };
     let known = |name: &str| build_for(registry, Some(&name.into())).find_subcommand(name).cloned();
@@ -197,11 +203,7 @@ fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     if help != "help" || wanted.starts_with('-') || known(&wanted).is_some() || wanted == "help" {
         return None;
     }
-    let entries = coming_from::found(&wanted);
-    let title = |name: &str| known(name)?.get_about().map(ToString::to_string);
-    let own = mistakes::command(registry, &wanted).map(|meant| format!("{meant}\n\n")).unwrap_or_default();
-    let foreign = if entries.is_empty() { String::new() } else { coming_from::help(&entries, title) };
-    Some(own + &foreign).filter(|text| !text.is_empty())
+    coming_from::help(registry, &wanted, |name| known(name)?.get_about().map(ToString::to_string))
 }
 
 /// The error that the deformation that `args` begin with is a broken plug-in.
@@ -220,16 +222,13 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
     };
     let is_help = args.get(1).is_some_and(|a| a == "help");
     let tip = match error.kind() {
-        ErrorKind::InvalidSubcommand => {
+        ErrorKind::InvalidSubcommand if args.get(1).is_none_or(|a| a != solid::NAME) => {
             let asked = args.get(2..).filter(|words| is_help && !words.is_empty()).map(joined);
             let word = asked.or_else(|| context(ContextKind::InvalidSubcommand)).unwrap_or_default();
             if let Some(meant) = mistakes::command(registry, &word) {
                 return Failure::usage(meant);
             }
             let whole = build(registry);
-            if let Some(meant) = coming_from::meant(&word) {
-                return Failure::usage(meant);
-            }
             let foreign: Vec<String> = coming_from::all().map(|w| w.words[0].to_lowercase()).collect();
             let known = whole.get_subcommands().map(Command::get_name).chain(foreign.iter().map(String::as_str));
             let word = word.to_lowercase();

@@ -29,6 +29,9 @@ pub struct Affine {
     about: Point,
 }
 
+/// Determinants below this part of their two products are zero.
+const FLAT: f64 = 1e-14;
+
 impl Default for Affine {
     fn default() -> Self {
         Self::new()
@@ -120,7 +123,9 @@ impl Affine {
                 * Matrix::scale_non_uniform(self.scale.x, self.scale.y)
                 * Matrix::translate(-o)
         });
-        if m.determinant() == 0.0 {
+        // Skews of 45° both ways are flat but for rounding.
+        let [a, b, c, d, ..] = m.as_coeffs();
+        if m.determinant().abs() <= FLAT * ((a * d).abs() + (b * c).abs()) {
             return Err(self.flat(m));
         }
         Ok(Built::new(Arc::new(AffineMap(m))))
