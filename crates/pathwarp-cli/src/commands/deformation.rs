@@ -8,7 +8,6 @@ use crate::status::Status;
 use crate::steps::{self, ChainPart};
 use clap::{ArgMatches, Command};
 use pathwarp::deform::{Info, Registry};
-use pathwarp::recipe::Recipe;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
@@ -41,12 +40,9 @@ pub(super) fn run(
     let first = ChainPart { step: steps::step(registry, name, m), options: Given::inputs_and_options(m) };
     let mut parts = vec![first];
     parts.extend(steps::parts(registry, later, &options::options_without_inputs().collect::<Vec<_>>())?);
-    steps::assign(parts.iter_mut().map(|p| (std::slice::from_mut(&mut p.step), &mut p.options)));
-    // The first part's options come last, as its inputs do.
-    let mut options = parts.iter().skip(1).chain(parts.first()).map(|p| &p.options);
-    let given = options.try_fold(Given::default(), |all, options| all.joined(options))?;
+    let (recipe, given) = steps::chained(parts)?;
     mistaken(words, &given)?;
-    pipeline::run(registry, &Recipe { steps: parts.into_iter().map(|p| p.step).collect() }, &given, None)
+    pipeline::run(registry, &recipe, &given, None)
 }
 
 /// Refuses inputs that are parts of something else.

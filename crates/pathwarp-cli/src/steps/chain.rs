@@ -5,7 +5,7 @@ use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::options::Given;
 use clap::{Arg, Command};
-use pathwarp::recipe::Step;
+use pathwarp::recipe::{Recipe, Step};
 use std::ffi::OsString;
 
 /// A part of a chain.
@@ -33,6 +33,15 @@ pub(crate) fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mu
             steps.iter_mut().for_each(|step| of(step).extend(values.iter().cloned()));
         }
     }
+}
+
+/// The steps of all parts, and the options that hold for the whole chain.
+pub(crate) fn chained(mut parts: Vec<ChainPart>) -> Result<(Recipe, Given), Failure> {
+    assign(parts.iter_mut().map(|p| (std::slice::from_mut(&mut p.step), &mut p.options)));
+    // The first part's options come last, as its inputs do.
+    let mut options = parts.iter().skip(1).chain(parts.first()).map(|p| &p.options);
+    let given = options.try_fold(Given::default(), |all, options| all.joined(options))?;
+    Ok((Recipe { steps: parts.into_iter().map(|p| p.step).collect() }, given))
 }
 
 /// Parses the parts after each `+`, which take these common options.
