@@ -95,11 +95,14 @@ fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
 pub(crate) fn meant(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let entry = named(word).into_iter().find(|w| w.program.is_none() || w.command.is_some());
     let line = entry.as_ref().and_then(ForeignWord::line);
-    match (presets(catalogue, word), entry) {
-        (Some(preset), None) => Some(preset),
-        (Some(preset), Some(_)) => Some(preset + &line.map(|l| format!("; or use {l}")).unwrap_or_default()),
-        (None, Some(entry)) => Some(format!("there is no command {word}; {}", line.map_or(entry.text.to_owned(), |l| format!("use {l}")))),
-        (None, None) => None,
+    match (presets(catalogue, word), line, entry) {
+        (Some(preset), Some(line), _) => Some(format!("{preset}; or use {line}")),
+        (Some(preset), None, _) => Some(preset),
+        (None, Some(line), _) => Some(format!("there is no command {word}; use {line}")),
+        (None, None, Some(entry)) => {
+            Some(format!("there is no command {word}: {}", entry.text.trim_start_matches("Not there: ")))
+        }
+        (None, None, None) => None,
     }
 }
 

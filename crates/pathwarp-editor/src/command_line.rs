@@ -82,11 +82,17 @@ mod tests {
 
     #[test]
     fn steps_for_parts_are_told_from_those_for_all() {
-        let step = |select: &[&str]| Step { select: select.iter().map(|s| (*s).to_owned()).collect(), ..Step::new("wave", Args::new()) };
+        let step = |select: &[&str]| Step {
+            select: select.iter().map(|s| (*s).to_owned()).collect(),
+            ..Step::new("wave", Args::new())
+        };
         let line = |steps: Vec<Step>| {
             command_line(&Registry::builtin(), &Recipe { steps }, &[], Path::new("a.svg"), Path::new("b.svg"))
         };
-        assert_eq!(line(vec![step(&[".a"]), step(&[])]), "pathwarp wave a.svg --select .a -o b.svg + wave --select svg");
+        assert_eq!(
+            line(vec![step(&[".a"]), step(&[])]),
+            "pathwarp wave a.svg --select .a -o b.svg + wave --select svg"
+        );
         assert_eq!(line(vec![step(&[]), step(&[])]), "pathwarp wave a.svg -o b.svg + wave");
     }
 }

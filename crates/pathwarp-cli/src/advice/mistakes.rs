@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 /// Other names of commands.
 const ALIASES: [(&str, &str); 1] = [("perspective", "projective")];
 
-/// Other names of options; the last of them that the command has is meant.
-const OPTIONS: [(&[&str], &str); 10] = [
+/// Other names of options, and what to write if the command has that option.
+const OPTIONS: [(&[&str], &str); 12] = [
     (&["output", "outfile", "out-file", "export-filename", "to", "o"], "out"),
     (&["angle", "rotation", "turn", "degrees"], "rotate"),
     (&["amount", "strength", "intensity", "curve", "percent"], "bend"),
@@ -22,6 +22,8 @@ const OPTIONS: [(&[&str], &str); 10] = [
     (&["only", "id", "layer", "object", "ids"], "select"),
     (&["dpi", "resolution"], "image-dpi"),
     (&["amplitude", "amp"], "height"),
+    (&["width", "size", "zoom", "factor"], "scale-x 1.5 (a factor; also --scale-y)"),
+    (&["height"], "scale-y 1.5 (a factor)"),
 ];
 
 /// The command that an alias stands for.
@@ -47,16 +49,22 @@ pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     coming_from::meant(catalogue, word)
 }
 
-/// The options that an unknown one may mean, of those that the command has: those that begin with it, or are its synonyms.
-pub(crate) fn options<'a>(unknown: &str, known: &[&'a str]) -> Vec<&'a str> {
-    let unknown = unknown.trim_start_matches('-').to_lowercase();
-    let longer = |k: &&&str| k.strip_prefix(unknown.as_str()).is_some_and(|rest| rest.starts_with('-'));
+/// What to write for an unknown option: those of the known ones that begin with it, or a synonym. `words` is the command line, where
+/// an option may have one dash for two.
+pub(crate) fn option(unknown: &str, words: &[OsString], known: &[&str]) -> Option<String> {
+    let name = unknown.trim_start_matches('-').to_lowercase();
+    let long = |w: &OsString| Some(w.to_str()?.strip_prefix(unknown)?.split('=').next()?.to_lowercase());
+    let undashed = words.iter().filter_map(long).map(|rest| name.clone() + &rest).find(|w| known.contains(&w.as_str()));
+    let longer = |k: &&&str| k.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('-'));
     let longer: Vec<&str> = known.iter().filter(longer).copied().collect();
-    if !longer.is_empty() {
-        return longer;
-    }
-    let synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&unknown.as_str()));
-    synonyms.filter_map(|(_, name)| known.iter().copied().find(|k| k == name)).take(1).collect()
+    let synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&name.as_str())).map(|(_, text)| *text);
+    let synonym = synonyms.filter(|text| text.split(' ').next().is_some_and(|option| known.contains(&option))).next();
+    let meant = match (undashed, &longer[..]) {
+        (Some(undashed), _) => undashed,
+        (None, []) => synonym?.to_owned(),
+        (None, longer) => longer.join(" or --"),
+    };
+    Some(format!("use --{meant}"))
 }
 
 /// A value that a space has torn from its option: the option with the whole value.
@@ -204,9 +212,15 @@ mod tests {
     #[test]
     fn options_by_their_beginning_and_other_names() {
         let known = ["scale-x", "scale-y", "skew-x", "rotate", "out"];
-        assert_eq!(options("--scale", &known), ["scale-x", "scale-y"]);
-        assert_eq!(options("--angle", &known), ["rotate"]);
-        assert_eq!(options("--output", &known), ["out"]);
-        assert!(options("--wobble", &known).is_empty());
+        let meant = |unknown: &str, line: &str| {
+            let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+            option(unknown, &words, &known)
+        };
+        assert_eq!(meant("--scale", "").unwrap(), "use --scale-x or --scale-y");
+        assert_eq!(meant("--angle", "").unwrap(), "use --rotate");
+        assert_eq!(meant("--output", "").unwrap(), "use --out");
+        assert_eq!(meant("-r", "affine -rotate=20").unwrap(), "use --rotate");
+        assert_eq!(meant("--height", "").unwrap(), "use --scale-y 1.5 (a factor)");
+        assert!(meant("--wobble", "").is_none() && meant("-r", "affine -r").is_none());
     }
 }

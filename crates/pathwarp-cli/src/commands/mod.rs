@@ -81,7 +81,9 @@ fn root() -> Command {
     Command::new("pathwarp")
         .version(env!("CARGO_PKG_VERSION"))
         .about(ABOUT)
-        .after_help("Paths in options, chains, exit codes: pathwarp --help. A word of another program: pathwarp help WORD")
+        .after_help(
+            "Paths in options, chains, exit codes: pathwarp --help. A word of another program: pathwarp help WORD",
+        )
         .after_long_help(AFTER)
         .subcommand_required(true)
         .arg_required_else_help(true)
@@ -232,7 +234,11 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             let foreign: Vec<String> = coming_from::all().map(|w| w.words[0].to_lowercase()).collect();
             let known = whole.get_subcommands().map(Command::get_name).chain(foreign.iter().map(String::as_str));
             let word = word.to_lowercase();
-            return if is_help { Failure::usage(advice::unknown("command", &word, known)) } else { error.into() };
+            return if is_help {
+                Failure::usage(advice::unknown("command", &word, known) + "; `pathwarp list` shows all deformations")
+            } else {
+                error.into()
+            };
         }
         ErrorKind::InvalidValue if context(ContextKind::InvalidArg).is_some_and(|arg| arg.contains(PATHREF)) => {
             Some("shells take a word that starts with # for a comment; quote it: '#NAME'".to_owned())
@@ -243,12 +249,14 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             if !arg.starts_with('-') {
                 return mistakes::surplus(&arg, &known);
             }
-            let meant = mistakes::options(&arg, &known);
-            let tip = (!meant.is_empty()).then(|| format!("use --{}", meant.join(" or --")));
-            if tip.is_some() {
+            let meant = mistakes::option(&arg, args, &known);
+            if meant.is_some() {
                 error.insert(ContextKind::SuggestedArg, ContextValue::None);
             }
-            tip
+            // A similar option may be known; that a dash may begin a value helps nobody.
+            meant.or_else(|| {
+                error.get(ContextKind::SuggestedArg).is_none().then(|| "--help lists the options".to_owned())
+            })
         }),
         _ => None,
     };

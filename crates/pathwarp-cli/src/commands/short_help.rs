@@ -25,12 +25,14 @@ pub(super) fn shortened(command: Command, words: &[OsString], line: &str) -> Com
 fn fitted(command: Command, line: &str) -> Command {
     let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let lines: Vec<&str> = after.lines().map(str::trim).collect();
-    let example = lines.iter().position(|l| l.starts_with("pathwarp ")).map(|i| {
-        let what = lines[..i].last().filter(|l| l.ends_with(':')).unwrap_or(&"Example:");
+    let example = lines.iter().position(|l| l.starts_with("pathwarp ") && !l.contains(" = ")).map(|i| {
+        let what = lines[..i].last().filter(|l| l.ends_with(':') && **l != "Examples:").unwrap_or(&"Example:");
         format!("{what}\n  {}\n\n", lines[i])
     });
-    let mut shown: Vec<String> = command.get_arguments().filter(|a| is_wanted(a)).map(|a| a.get_id().to_string()).collect();
-    let mut short = command.term_width(COLUMNS).after_help(format!("{}All options: {line} --help", example.unwrap_or_default()));
+    let mut shown: Vec<String> =
+        command.get_arguments().filter(|a| is_wanted(a)).map(|a| a.get_id().to_string()).collect();
+    let mut short =
+        command.term_width(COLUMNS).after_help(format!("{}All options: {line} --help", example.unwrap_or_default()));
     loop {
         let values = |a: &Arg| value(a).map_or(0, |v| v.len() + 3);
         let width = |a: &Arg| a.get_long().map_or(0, |l| "      --".len() + l.len() + values(a));
@@ -47,7 +49,8 @@ fn fitted(command: Command, line: &str) -> Command {
             a.help(help).hide_short_help(hidden)
         });
         let too_long = short.render_help().to_string().lines().count() > LINES;
-        match shown.iter().rposition(|s| !COMMON.contains(&s.as_str())).filter(|_| too_long) {
+        let stays = |s: &str| COMMON.contains(&s) || short.get_positionals().any(|a| *a.get_id() == s);
+        match shown.iter().rposition(|s| !stays(s)).filter(|_| too_long) {
             Some(last) => drop(shown.remove(last)),
             None => return short,
         }
@@ -81,15 +84,16 @@ fn brief(arg: &Arg, room: usize) -> String {
     if let Some(words) = words.map(|n| n.replace('|', ", ")).filter(|w| w.len() <= room) {
         return words + &default;
     }
-    let columns = |end: usize| text[..end].chars().count();
-    let ends = |sign: fn(char) -> bool| text.match_indices(sign).map(|(i, _)| i).filter(|i| columns(*i) < room).next_back();
-    let text = if columns(text.len()) <= room {
+    let ends = |signs: &[&str]| {
+        let all = signs.iter().flat_map(|s| text.match_indices(s)).map(|(i, _)| i);
+        all.filter(|i| text[..*i].chars().count() < room).max().unwrap_or_default()
+    };
+    let text = if text.chars().count() <= room {
         text.trim_end_matches('.').to_owned()
-    } else if let Some(end) = ends(|c| ".;:".contains(c)).filter(|end| columns(*end) > room / 2) {
-        text[..end].to_owned()
+    } else if ends(&[". ", "; ", ": "]) > room / 2 {
+        text[..ends(&[". ", "; ", ": "])].to_owned()
     } else {
-        let end = ends(|c| c == ' ').unwrap_or_default();
-        text[..end].trim_end_matches([',', '(']).to_owned() + "…"
+        text[..ends(&[" "])].trim_end_matches([',', ':', '(']).to_owned() + "…"
     };
     text + &default
 }

@@ -112,8 +112,14 @@ impl Affine {
     /// Builds the map.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a singular matrix.
+    /// [`Error::Usage`] for a singular matrix, or a skew of 90°.
     pub fn build(&self) -> Result<Built, Error> {
+        for (name, angle) in [("skew-x", self.skew.x), ("skew-y", self.skew.y)] {
+            if angle.to_radians().cos().abs() < FLAT {
+                let endless = "makes the artwork endlessly long; write an angle between -90 and 90";
+                return Err(Error::usage(name, angle.to_string(), endless));
+            }
+        }
         let m = self.matrix.unwrap_or_else(|| {
             let o = self.about.to_vec2();
             let skew = Matrix::skew(self.skew.x.to_radians().tan(), self.skew.y.to_radians().tan());
