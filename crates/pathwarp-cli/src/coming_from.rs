@@ -93,9 +93,12 @@ fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
 
 /// What a word may mean that was typed as a command.
 pub(crate) fn meant(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
-    let entry = named(word).into_iter().find(|w| w.program.is_none() || w.command.is_some());
+    let preset = presets(catalogue, word);
+    // Programs call by the name of a preset what it is.
+    let is_meant = |w: &ForeignWord| w.program.is_none() || preset.is_none() && w.command.is_some();
+    let entry = named(word).into_iter().find(is_meant);
     let line = entry.as_ref().and_then(ForeignWord::line);
-    match (presets(catalogue, word), line, entry) {
+    match (preset, line, entry) {
         (Some(preset), Some(line), _) => Some(format!("{preset}; or use {line}")),
         (Some(preset), None, _) => Some(preset),
         (None, Some(line), _) => Some(format!("there is no command {word}; use {line}")),

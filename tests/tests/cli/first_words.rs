@@ -65,6 +65,17 @@ fn words_of_other_programs_name_the_command() {
             ("text A --on arc", 2, "write arc:r=60mm,from=180,to=360"),
             ("help zzzz", 2, "`pathwarp list` shows all"),
             ("solid twist b.stl", 2, "unrecognized subcommand"),
+            ("polar a.svg --angle 90", 2, "use --sweep"),
+            ("affine a.svg --slant 12", 2, "use --skew-x"),
+            ("expr a.svg --formula x+y", 2, "use --x 'x + 4*sin(y/16)'"),
+            ("text A --curve 40", 2, "use --on circle:r=60mm"),
+            ("warp --input a.svg", 2, "files are named without an option"),
+            ("warp a.svg --force", 2, "use --in-place"),
+            ("warp a.svg --tolerence 1", 2, "use --tolerance"),
+            ("sphere a.svg", 2, "--onto sphere:"),
+            ("dxf a.svg", 2, "convert IN.svg -o OUT.dxf"),
+            ("offset a.svg 2mm", 2, "outlines are not moved in or out"),
+            ("inkscape", 2, "install inkscape"),
         ],
     );
     let out = pathwarp_in(
@@ -342,7 +353,6 @@ fn pictures_do_not_go_to_a_terminal() {
     for (args, part) in [
         (&["render", "a.svg"][..], "-o"),
         (&["render", "a.svg", "--format", "jpg"], "-o"),
-        (&["gallery", "a.svg"], "-o"),
         (&["warp"], "no drawing is named"),
     ] {
         let Some((code, said)) = on_a_terminal(args) else {

@@ -1,5 +1,6 @@
 //! Words that new users type: commands and options of other programs, values apart from their units, names without quotes.
 
+use super::names::likely;
 use crate::catalogue::Catalogue;
 use crate::coming_from;
 use crate::format::Format;
@@ -11,16 +12,24 @@ use std::path::{Path, PathBuf};
 const ALIASES: [(&str, &str); 1] = [("perspective", "projective")];
 
 /// Other names of options, and what to write if the command has that option.
-const OPTIONS: [(&[&str], &str); 12] = [
+const OPTIONS: [(&[&str], &str); 20] = [
     (&["output", "outfile", "out-file", "export-filename", "to", "o"], "out"),
     (&["angle", "rotation", "turn", "degrees"], "rotate"),
+    (&["angle", "degrees", "arc"], "sweep"),
+    (&["slant", "lean", "italic", "oblique", "shear"], "skew-x"),
+    (&["formula", "function", "expression", "f"], "x 'x + 4*sin(y/16)'"),
     (&["amount", "strength", "intensity", "curve", "percent"], "bend"),
     (&["preset", "shape", "type", "name", "kind", "effect"], "style"),
     (&["path", "curve", "on", "circle", "onto"], "along"),
+    (&["along", "path", "curve", "circle", "arc", "spiral"], "on circle:r=60mm"),
     (&["to", "corners", "destination", "dst", "quad"], "target"),
     (&["cage", "mesh", "path"], "shaper"),
     (&["only", "id", "layer", "object", "ids"], "select"),
     (&["dpi", "resolution"], "image-dpi"),
+    (&["verbose", "v", "debug"], "explain"),
+    (&["force", "overwrite", "replace"], "in-place"),
+    (&["json", "log"], "report FILE.json"),
+    (&["recurse", "folder"], "recursive"),
     (&["amplitude", "amp"], "height"),
     (&["width", "size", "zoom", "factor"], "scale-x 1.5 (a factor; also --scale-y)"),
     (&["height"], "scale-y 1.5 (a factor)"),
@@ -51,7 +60,7 @@ pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
 
 /// What to write for an unknown option: those of the known ones that begin with it, or a synonym. `words` is the command line, where
 /// an option may have one dash for two.
-pub(crate) fn option(unknown: &str, words: &[OsString], known: &[&str]) -> Option<String> {
+pub(crate) fn option(unknown: &str, words: &[OsString], known: &[&str]) -> String {
     let name = unknown.trim_start_matches('-').to_lowercase();
     let long = |w: &OsString| Some(w.to_str()?.strip_prefix(unknown)?.split('=').next()?.to_lowercase());
     let undashed = words.iter().filter_map(long).map(|rest| name.clone() + &rest).find(|w| known.contains(&w.as_str()));
@@ -60,11 +69,14 @@ pub(crate) fn option(unknown: &str, words: &[OsString], known: &[&str]) -> Optio
     let synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&name.as_str())).map(|(_, text)| *text);
     let synonym = synonyms.filter(|text| text.split(' ').next().is_some_and(|option| known.contains(&option))).next();
     let meant = match (undashed, &longer[..]) {
-        (Some(undashed), _) => undashed,
-        (None, []) => synonym?.to_owned(),
-        (None, longer) => longer.join(" or --"),
+        (Some(undashed), _) => Some(undashed),
+        (None, []) => synonym.or_else(|| likely(&name, known.iter().copied())).map(str::to_owned),
+        (None, longer) => Some(longer.join(" or --")),
     };
-    Some(format!("use --{meant}"))
+    if ["i", "in", "input", "file", "infile"].contains(&name.as_str()) {
+        return "files are named without an option".to_owned();
+    }
+    meant.map_or_else(|| "--help lists the options".to_owned(), |meant| format!("use --{meant}"))
 }
 
 /// A value that a space has torn from its option: the option with the whole value.
@@ -166,16 +178,17 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
         .then(|| format!("{name}: there is no such file; if the result is to be written there: -o {name}"))
 }
 
-/// A tip for a word that a command takes no more of.
-pub(crate) fn surplus(word: &str, known: &[&str]) -> Option<String> {
-    let is_output = known.contains(&"out") && Path::new(word).extension().is_some();
-    if is_output {
-        return Some(format!("to write to {word}: -o {word}; a name with spaces needs quotes"));
+/// What to do about a word that a command takes no more of.
+pub(crate) fn surplus(word: &str, known: &[&str]) -> &'static str {
+    if known.contains(&"out") && Path::new(word).extension().is_some() {
+        "write -o before the name of a result; a name with spaces needs quotes"
+    } else if is_unit(word) {
+        "a number and its unit are one word, such as 40mm"
+    } else if is_measure(word) {
+        "a value with spaces needs quotes"
+    } else {
+        "a value or a name with spaces needs quotes; --help says what the command takes"
     }
-    if is_unit(word) {
-        return Some("a number and its unit are one word, such as 40mm".to_owned());
-    }
-    is_measure(word).then(|| "a value with spaces needs quotes".to_owned())
 }
 
 #[cfg(test)]
@@ -216,11 +229,12 @@ mod tests {
             let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
             option(unknown, &words, &known)
         };
-        assert_eq!(meant("--scale", "").unwrap(), "use --scale-x or --scale-y");
-        assert_eq!(meant("--angle", "").unwrap(), "use --rotate");
-        assert_eq!(meant("--output", "").unwrap(), "use --out");
-        assert_eq!(meant("-r", "affine -rotate=20").unwrap(), "use --rotate");
-        assert_eq!(meant("--height", "").unwrap(), "use --scale-y 1.5 (a factor)");
-        assert!(meant("--wobble", "").is_none() && meant("-r", "affine -r").is_none());
+        assert_eq!(meant("--scale", ""), "use --scale-x or --scale-y");
+        assert_eq!(meant("--angle", ""), "use --rotate");
+        assert_eq!(meant("--output", ""), "use --out");
+        assert_eq!(meant("-r", "affine -rotate=20"), "use --rotate");
+        assert_eq!(meant("--height", ""), "use --scale-y 1.5 (a factor)");
+        assert_eq!(meant("--skwe-x", ""), "use --skew-x");
+        assert_eq!([meant("--wobble", ""), meant("-r", "affine -r")], ["--help lists the options"; 2]);
     }
 }

@@ -234,30 +234,24 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             let foreign: Vec<String> = coming_from::all().map(|w| w.words[0].to_lowercase()).collect();
             let known = whole.get_subcommands().map(Command::get_name).chain(foreign.iter().map(String::as_str));
             let word = word.to_lowercase();
-            return if is_help {
-                Failure::usage(advice::unknown("command", &word, known) + "; `pathwarp list` shows all deformations")
-            } else {
-                error.into()
-            };
+            let unknown = advice::unknown("command", &word, known);
+            let join = if unknown.ends_with('?') { " " } else { "; " };
+            let unknown = unknown + join + "`pathwarp list` shows all deformations";
+            return if is_help { Failure::usage(unknown) } else { error.into() };
         }
         ErrorKind::InvalidValue if context(ContextKind::InvalidArg).is_some_and(|arg| arg.contains(PATHREF)) => {
             Some("shells take a word that starts with # for a comment; quote it: '#NAME'".to_owned())
         }
-        ErrorKind::UnknownArgument => context(ContextKind::InvalidArg).and_then(|arg| {
+        ErrorKind::UnknownArgument => {
+            let arg = context(ContextKind::InvalidArg).unwrap_or_default();
             let known = options_of(registry, args);
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            if !arg.starts_with('-') {
-                return mistakes::surplus(&arg, &known);
-            }
-            let meant = mistakes::option(&arg, args, &known);
-            if meant.is_some() {
-                error.insert(ContextKind::SuggestedArg, ContextValue::None);
-            }
-            // A similar option may be known; that a dash may begin a value helps nobody.
-            meant.or_else(|| {
-                error.get(ContextKind::SuggestedArg).is_none().then(|| "--help lists the options".to_owned())
-            })
-        }),
+            return Failure::usage(if arg.starts_with('-') {
+                format!("there is no option {arg}; {}", mistakes::option(&arg, args, &known))
+            } else {
+                format!("{arg} is one word too many; {}", mistakes::surplus(&arg, &known))
+            });
+        }
         _ => None,
     };
     if let Some(tip) = tip {
