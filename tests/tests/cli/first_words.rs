@@ -59,6 +59,8 @@ fn words_of_other_programs_name_the_command() {
             ("warp a.svg -style flag", 2, "use --style"),
             ("warp a.svg -bend=40%", 2, "use --bend"),
             ("warp a.svg + affine -rotate 5", 2, "use --rotate"),
+            // Not the letters -r and -o.
+            ("affine a.svg -rotate=5", 2, "use --rotate"),
             ("warp a.svg -b 40%", 2, "--help lists the options"),
             ("bend a.svg --along circle", 2, "write circle:r=60mm"),
             ("bend a.svg --along circle:60mm", 2, "write circle:r=60mm"),

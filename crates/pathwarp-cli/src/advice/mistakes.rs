@@ -58,20 +58,26 @@ pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     coming_from::meant(catalogue, word)
 }
 
-/// What to write for an unknown option: those of the known ones that begin with it, or a synonym. `words` is the command line, where
-/// an option may have one dash for two.
-pub(crate) fn option(unknown: &str, words: &[OsString], known: &[&str]) -> String {
+/// The first option with one dash for two, which would be read as letters: `-rotate 5` as `-r -o tate 5`.
+pub(crate) fn single_dashed(words: &[OsString], known: impl FnOnce() -> Vec<String>) -> Option<String> {
+    let name = |w: &OsString| w.to_str()?.strip_prefix('-')?.split('=').next().map(str::to_owned);
+    let is_name =
+        |n: &String| n.len() > 2 && n.chars().all(|c| c.is_ascii_lowercase() || c == '-') && !n.starts_with('-');
+    let names: Vec<String> = words.iter().filter_map(name).filter(is_name).collect();
+    let known = if names.is_empty() { Vec::new() } else { known() };
+    names.into_iter().find(|n| known.contains(n)).map(|n| format!("-{n} is no option; use --{n}"))
+}
+
+/// What to write for an unknown option: those of the known ones that begin with it, a synonym, or one that is like it.
+pub(crate) fn option(unknown: &str, known: &[&str]) -> String {
     let name = unknown.trim_start_matches('-').to_lowercase();
-    let long = |w: &OsString| Some(w.to_str()?.strip_prefix(unknown)?.split('=').next()?.to_lowercase());
-    let undashed = words.iter().filter_map(long).map(|rest| name.clone() + &rest).find(|w| known.contains(&w.as_str()));
     let longer = |k: &&&str| k.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('-'));
     let longer: Vec<&str> = known.iter().filter(longer).copied().collect();
     let synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&name.as_str())).map(|(_, text)| *text);
     let synonym = synonyms.filter(|text| text.split(' ').next().is_some_and(|option| known.contains(&option))).next();
-    let meant = match (undashed, &longer[..]) {
-        (Some(undashed), _) => Some(undashed),
-        (None, []) => synonym.or_else(|| likely(&name, known.iter().copied())).map(str::to_owned),
-        (None, longer) => Some(longer.join(" or --")),
+    let meant = match &longer[..] {
+        [] => synonym.or_else(|| likely(&name, known.iter().copied())).map(str::to_owned),
+        longer => Some(longer.join(" or --")),
     };
     if ["i", "in", "input", "file", "infile"].contains(&name.as_str()) {
         return "files are named without an option".to_owned();
@@ -179,16 +185,14 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
 }
 
 /// What to do about a word that a command takes no more of.
-pub(crate) fn surplus(word: &str, known: &[&str]) -> &'static str {
+pub(crate) fn surplus(word: &str, known: &[&str]) -> String {
     if known.contains(&"out") && Path::new(word).extension().is_some() {
-        "write -o before the name of a result; a name with spaces needs quotes"
-    } else if is_unit(word) {
-        "a number and its unit are one word, such as 40mm"
-    } else if is_measure(word) {
-        "a value with spaces needs quotes"
-    } else {
-        "a value or a name with spaces needs quotes; --help says what the command takes"
+        return format!("to write to it: -o {word}; a name with spaces needs quotes");
     }
+    if is_unit(word) {
+        return "a number and its unit are one word, such as 40mm".to_owned();
+    }
+    "a value or a name with spaces needs quotes; --help says what the command takes".to_owned()
 }
 
 #[cfg(test)]
@@ -225,16 +229,12 @@ mod tests {
     #[test]
     fn options_by_their_beginning_and_other_names() {
         let known = ["scale-x", "scale-y", "skew-x", "rotate", "out"];
-        let meant = |unknown: &str, line: &str| {
-            let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
-            option(unknown, &words, &known)
-        };
-        assert_eq!(meant("--scale", ""), "use --scale-x or --scale-y");
-        assert_eq!(meant("--angle", ""), "use --rotate");
-        assert_eq!(meant("--output", ""), "use --out");
-        assert_eq!(meant("-r", "affine -rotate=20"), "use --rotate");
-        assert_eq!(meant("--height", ""), "use --scale-y 1.5 (a factor)");
-        assert_eq!(meant("--skwe-x", ""), "use --skew-x");
-        assert_eq!([meant("--wobble", ""), meant("-r", "affine -r")], ["--help lists the options"; 2]);
+        let meant = |unknown: &str| option(unknown, &known);
+        assert_eq!(meant("--scale"), "use --scale-x or --scale-y");
+        assert_eq!(meant("--angle"), "use --rotate");
+        assert_eq!(meant("--output"), "use --out");
+        assert_eq!(meant("--height"), "use --scale-y 1.5 (a factor)");
+        assert_eq!(meant("--skwe-x"), "use --skew-x");
+        assert_eq!(meant("--wobble"), "--help lists the options");
     }
 }

@@ -137,6 +137,9 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         output::to_stdout(text.as_bytes())?;
         return Ok(Status::Complete);
     }
+    if let Some(said) = mistakes::single_dashed(args, || options_of(registry, args)) {
+        return Err(Failure::Usage(said));
+    }
     let mut command = build_for(registry, first.get(1));
     if first.iter().any(|a| a == "-h") {
         command = short_help::shortened(command, &first[1..], "pathwarp");
@@ -247,7 +250,7 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             let known = options_of(registry, args);
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
             return Failure::usage(if arg.starts_with('-') {
-                format!("there is no option {arg}; {}", mistakes::option(&arg, args, &known))
+                format!("there is no option {arg}; {}", mistakes::option(&arg, &known))
             } else {
                 format!("{arg} is one word too many; {}", mistakes::surplus(&arg, &known))
             });
