@@ -8,8 +8,8 @@ use crate::input::split_reference;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Other names of commands.
-const ALIASES: [(&str, &str); 1] = [("perspective", "projective")];
+#[cfg(test)]
+mod tests;
 
 /// Other names of options, and what to write if the command has that option.
 const OPTIONS: [(&[&str], &str); 20] = [
@@ -34,11 +34,6 @@ const OPTIONS: [(&[&str], &str); 20] = [
     (&["width", "size", "zoom", "factor"], "scale-x 1.5 (a factor; also --scale-y)"),
     (&["height"], "scale-y 1.5 (a factor)"),
 ];
-
-/// The command that an alias stands for.
-pub(crate) fn alias(word: &str) -> Option<&'static str> {
-    ALIASES.iter().find(|(alias, _)| *alias == word).map(|(_, name)| *name)
-}
 
 /// What an unknown command may mean.
 pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
@@ -73,8 +68,8 @@ pub(crate) fn option(unknown: &str, known: &[&str]) -> String {
     let name = unknown.trim_start_matches('-').to_lowercase();
     let longer = |k: &&&str| k.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('-'));
     let longer: Vec<&str> = known.iter().filter(longer).copied().collect();
-    let synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&name.as_str())).map(|(_, text)| *text);
-    let synonym = synonyms.filter(|text| text.split(' ').next().is_some_and(|option| known.contains(&option))).next();
+    let mut synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&name.as_str())).map(|(_, text)| *text);
+    let synonym = synonyms.find(|text| text.split(' ').next().is_some_and(|option| known.contains(&option)));
     let meant = match &longer[..] {
         [] => synonym.or_else(|| likely(&name, known.iter().copied())).map(str::to_owned),
         longer => Some(longer.join(" or --")),
@@ -193,48 +188,4 @@ pub(crate) fn surplus(word: &str, known: &[&str]) -> String {
         return "a number and its unit are one word, such as 40mm".to_owned();
     }
     "a value or a name with spaces needs quotes; --help says what the command takes".to_owned()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_put_together_again() {
-        let whole = |line: &str| {
-            let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
-            torn(&words).map(|t| t.whole)
-        };
-        for (line, expected) in [
-            ("text A --size 40 mm", "--size 40mm"),
-            ("warp a.svg --bend -40 %", "--bend -40%"),
-            ("warp a.svg --bend=-40 %", "--bend -40%"),
-            ("projective --target 0%,100% 100%,100% 75%,0% a.svg", "--target '0%,100% 100%,100% 75%,0%'"),
-            ("bend a.svg --along M0,100 Q150,20 300,100", "--along 'M0,100 Q150,20 300,100'"),
-            ("bend a.svg --along M 0,100", "--along 'M 0,100'"),
-        ] {
-            assert_eq!(whole(line).as_deref(), Some(expected), "{line}");
-        }
-        for line in [
-            "text 40 mm",
-            "warp a.svg --bend 40% b.svg",
-            "affine --scale-x 2 a.svg",
-            "mls --pin 0,0 a.svg",
-            "text A --size",
-        ] {
-            assert_eq!(whole(line), None, "{line}");
-        }
-    }
-
-    #[test]
-    fn options_by_their_beginning_and_other_names() {
-        let known = ["scale-x", "scale-y", "skew-x", "rotate", "out"];
-        let meant = |unknown: &str| option(unknown, &known);
-        assert_eq!(meant("--scale"), "use --scale-x or --scale-y");
-        assert_eq!(meant("--angle"), "use --rotate");
-        assert_eq!(meant("--output"), "use --out");
-        assert_eq!(meant("--height"), "use --scale-y 1.5 (a factor)");
-        assert_eq!(meant("--skwe-x"), "use --skew-x");
-        assert_eq!(meant("--wobble"), "--help lists the options");
-    }
 }

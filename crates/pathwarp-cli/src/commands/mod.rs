@@ -127,7 +127,6 @@ const OTHERS: [(&str, Declare); 18] = [
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
     let (args, plugins) = plugins::load(registry, args, &OTHERS.map(|(name, _)| name))?;
     let registry = &plugins.added_to(registry);
-    let args = without_aliases(registry, args);
     let args = args.as_slice();
     // Each part after a lone `+` is a command line of its own.
     let mut parts = args.split(|a| a == "+");
@@ -273,16 +272,4 @@ fn options_of(registry: &Registry, args: &[OsString]) -> Vec<String> {
         longs.collect::<Vec<_>>()
     });
     names.collect()
-}
-
-/// The arguments with other names of commands replaced.
-fn without_aliases(registry: &Registry, mut args: Vec<OsString>) -> Vec<OsString> {
-    for i in 1..args.len() {
-        let is_command = i == 1 || args[i - 1] == "+" || i == 2 && (args[1] == "help" || args[1] == "map");
-        let meant = args[i].to_str().filter(|w| is_command && registry.get(w).is_none()).and_then(mistakes::alias);
-        if let Some(name) = meant {
-            args[i] = name.into();
-        }
-    }
-    args
 }

@@ -31,16 +31,16 @@ fn fitted(command: Command, line: &str) -> Command {
     });
     let mut shown: Vec<String> =
         command.get_arguments().filter(|a| is_wanted(a)).map(|a| a.get_id().to_string()).collect();
-    let mut short =
+    let command =
         command.term_width(COLUMNS).after_help(format!("{}All options: {line} --help", example.unwrap_or_default()));
     loop {
         let values = |a: &Arg| value(a).map_or(0, |v| v.len() + 3);
         let width = |a: &Arg| a.get_long().map_or(0, |l| "      --".len() + l.len() + values(a));
         let is_shown = |a: &Arg| shown.iter().any(|s| *a.get_id() == s.as_str());
-        let widest = short.get_arguments().filter(|a| is_shown(a)).map(width).max().unwrap_or_default();
+        let widest = command.get_arguments().filter(|a| is_shown(a)).map(width).max().unwrap_or_default();
         // The parser of command lines puts a help that has less room on a line of its own.
         let room = COLUMNS - widest.min(COLUMNS / 2) - 12;
-        short = short.mut_args(|a| {
+        let mut short = command.clone().mut_args(|a| {
             let (hidden, help) = (!is_shown(&a), brief(&a, room));
             let a = match value(&a) {
                 Some(name) if !a.is_positional() => a.value_name(name).hide_possible_values(true),
@@ -49,7 +49,7 @@ fn fitted(command: Command, line: &str) -> Command {
             a.help(help).hide_short_help(hidden)
         });
         let too_long = short.render_help().to_string().lines().count() > LINES;
-        let stays = |s: &str| COMMON.contains(&s) || short.get_positionals().any(|a| *a.get_id() == s);
+        let stays = |s: &str| COMMON.contains(&s) || command.get_positionals().any(|a| *a.get_id() == s);
         match shown.iter().rposition(|s| !stays(s)).filter(|_| too_long) {
             Some(last) => drop(shown.remove(last)),
             None => return short,

@@ -15,6 +15,11 @@ pub(crate) struct ChainPart {
     pub(crate) options: Given,
 }
 
+/// Other names of a deformation.
+pub(crate) fn aliases(name: &str) -> Option<&'static str> {
+    (name == "projective").then_some("perspective")
+}
+
 /// Where a step keeps the values of an option.
 type OfStep = fn(&mut Step) -> &mut Vec<String>;
 
@@ -60,7 +65,9 @@ fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Resul
         .disable_help_subcommand(true)
         .subcommand_required(true);
     for info in catalogue.infos() {
-        c = c.subcommand(Command::new(info.name).about(info.title).args(args(info)).args(options));
+        c = c.subcommand(
+            Command::new(info.name).aliases(aliases(info.name)).about(info.title).args(args(info)).args(options),
+        );
     }
     let mut m = c.try_get_matches_from(words)?;
     let (name, sub) = m.remove_subcommand().ok_or_else(|| Failure::usage("a deformation must follow `+`"))?;
