@@ -74,6 +74,7 @@ fn words_of_other_programs_name_the_command() {
             ("warp --input a.svg", 2, "files are named without an option"),
             ("warp a.svg --force", 2, "use --in-place"),
             ("warp a.svg --tolerence 1", 2, "use --tolerance"),
+            ("perspective a.svg --scale 2", 2, "--help lists the options"),
             ("sphere a.svg", 2, "--onto sphere:"),
             ("dxf a.svg", 2, "convert IN.svg -o OUT.dxf"),
             ("offset a.svg 2mm", 2, "outlines are not moved in or out"),

@@ -65,13 +65,18 @@ pub(crate) fn single_dashed(words: &[OsString], known: impl FnOnce() -> Vec<Stri
 
 /// What to write for an unknown option: those of the known ones that begin with it, a synonym, or one that is like it.
 pub(crate) fn option(unknown: &str, known: &[&str]) -> String {
+    /// The least likeness of a mistyped option.
+    const NEAR: f64 = 0.6;
     let name = unknown.trim_start_matches('-').to_lowercase();
     let longer = |k: &&&str| k.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('-'));
     let longer: Vec<&str> = known.iter().filter(longer).copied().collect();
     let mut synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&name.as_str())).map(|(_, text)| *text);
     let synonym = synonyms.find(|text| text.split(' ').next().is_some_and(|option| known.contains(&option)));
     let meant = match &longer[..] {
-        [] => synonym.or_else(|| likely(&name, known.iter().copied())).map(str::to_owned),
+        [] => {
+            let near = |k: &&str| strsim::normalized_damerau_levenshtein(&name, k) > NEAR;
+            synonym.or_else(|| likely(&name, known.iter().copied()).filter(near)).map(str::to_owned)
+        }
         longer => Some(longer.join(" or --")),
     };
     if ["i", "in", "input", "file", "infile"].contains(&name.as_str()) {

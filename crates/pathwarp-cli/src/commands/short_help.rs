@@ -1,6 +1,6 @@
 //! `-h`: as much of a command's help as fits a screen. `--help` says all.
 
-use clap::{Arg, Command};
+use clap::{Arg, ArgAction, Command};
 use std::ffi::OsString;
 
 /// The screen.
@@ -31,8 +31,10 @@ fn fitted(command: Command, line: &str) -> Command {
     });
     let mut shown: Vec<String> =
         command.get_arguments().filter(|a| is_wanted(a)).map(|a| a.get_id().to_string()).collect();
-    let command =
-        command.term_width(COLUMNS).after_help(format!("{}All options: {line} --help", example.unwrap_or_default()));
+    // Who has found `-h` needs no line about it.
+    let help = Arg::new("help").short('h').long("help").action(ArgAction::HelpShort).hide(true);
+    let after = format!("{}All options: {line} --help", example.unwrap_or_default());
+    let command = command.disable_help_flag(true).arg(help).term_width(COLUMNS).after_help(after);
     loop {
         let values = |a: &Arg| value(a).map_or(0, |v| v.len() + 3);
         let width = |a: &Arg| a.get_long().map_or(0, |l| "      --".len() + l.len() + values(a));
