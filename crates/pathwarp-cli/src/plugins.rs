@@ -1,6 +1,7 @@
 //! Plug-ins that are programs: those of the user's folder and those named by `--plugin`, added to the registry.
 
 use crate::failure::Failure;
+use crate::format::Format;
 use crate::options::OPTIONS;
 use crate::steps::INVERSE;
 use crate::temporaries;
@@ -79,7 +80,7 @@ pub(crate) fn load(
     plugins.given = files;
     // `check FILE` needs no `--plugin`.
     let checked = args.get(2).map(Path::new).filter(|_| args.get(1).is_some_and(|a| a == "check"));
-    if let Some(file) = checked.filter(|f| is_file_name(f)) {
+    if let Some(file) = checked.filter(|f| is_file_name(f) && Format::of(f).is_none()) {
         plugins.add(file, reserved)?;
     }
     Ok((args, plugins))

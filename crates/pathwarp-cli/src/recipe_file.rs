@@ -18,7 +18,7 @@
 use crate::advice;
 use crate::catalogue::Catalogue;
 use crate::failure::Failure;
-use crate::input::split_reference;
+use crate::input::{split_reference, unreadable};
 use crate::options::Given;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
@@ -56,7 +56,12 @@ pub(crate) struct SavedRecipe {
 
 /// Reads a recipe file. Relative paths in it refer to the file's folder; absolute ones are allowed only if `external`.
 pub(crate) fn read(catalogue: &dyn Catalogue, file: &Path, external: bool) -> Result<SavedRecipe, Failure> {
-    let text = std::fs::read_to_string(file).map_err(|e| Failure::file(file, format!("cannot be read: {e}")))?;
+    let bytes = std::fs::read(file).map_err(|e| Failure::file(file, unreadable(file, &e)))?;
+    if bytes.trim_ascii_start().starts_with(b"<") {
+        let name = file.display();
+        return Err(Failure::Input(format!("{name} is a drawing, not a recipe; write: run RECIPE.toml {name}")));
+    }
+    let text = String::from_utf8(bytes).map_err(|_| Failure::file(file, "is no recipe: it is not text"))?;
     let place = Folder { path: file.parent().unwrap_or(Path::new("")), external };
     parse(catalogue, &text, &place).map_err(|e| Failure::file(file, e))
 }

@@ -1,7 +1,7 @@
 //! The command line with the same effect as the steps.
 
 use pathwarp::deform::Registry;
-use pathwarp::recipe::Recipe;
+use pathwarp::recipe::{Recipe, Step};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -30,8 +30,7 @@ pub(crate) fn command_line(
         if step.inverse {
             line.push_str(" --inverse");
         }
-        let selectors = step.select.iter().map(|s| ("select", s)).chain(step.exclude.iter().map(|s| ("exclude", s)));
-        for (name, selector) in selectors {
+        for (name, selector) in selectors(recipe, step) {
             let _ = write!(line, " --{name} {}", quoted(selector));
         }
         if first {
@@ -42,6 +41,14 @@ pub(crate) fn command_line(
         }
     }
     line
+}
+
+/// The options `select` and `exclude` for a step of a recipe. Beside steps for parts, one for the whole drawing says so: a selection in a
+/// single part of a command line holds for all.
+pub fn selectors<'a>(recipe: &'a Recipe, step: &'a Step) -> impl Iterator<Item = (&'static str, &'a str)> {
+    let of_all = step.select.is_empty() && recipe.steps.iter().any(|s| !s.select.is_empty());
+    let select = step.select.iter().map(String::as_str).chain(of_all.then_some("svg"));
+    select.map(|s| ("select", s)).chain(step.exclude.iter().map(|s| ("exclude", s.as_str())))
 }
 
 /// A word as a shell reads it.
@@ -57,7 +64,6 @@ fn quoted(word: &str) -> String {
 mod tests {
     use super::*;
     use pathwarp::param::Args;
-    use pathwarp::recipe::Step;
 
     #[test]
     fn chains_flags_and_quotes() {
@@ -72,5 +78,21 @@ mod tests {
         let line = command_line(&Registry::builtin(), &recipe, &options, Path::new("it's.svg"), Path::new("out.svg"));
         let expected = r"pathwarp warp 'it'\''s.svg' --bend -40% --style flag --fit page -o out.svg + shaper --reverse-shaper --shaper 'M0,0 H9' --inverse";
         assert_eq!(line, expected);
+    }
+
+    #[test]
+    fn steps_for_parts_are_told_from_those_for_all() {
+        let step = |select: &[&str]| Step {
+            select: select.iter().map(|s| (*s).to_owned()).collect(),
+            ..Step::new("wave", Args::new())
+        };
+        let line = |steps: Vec<Step>| {
+            command_line(&Registry::builtin(), &Recipe { steps }, &[], Path::new("a.svg"), Path::new("b.svg"))
+        };
+        assert_eq!(
+            line(vec![step(&[".a"]), step(&[])]),
+            "pathwarp wave a.svg --select .a -o b.svg + wave --select svg"
+        );
+        assert_eq!(line(vec![step(&[]), step(&[])]), "pathwarp wave a.svg -o b.svg + wave");
     }
 }

@@ -31,6 +31,7 @@ mod shared;
 mod socket;
 mod stretch;
 
+pub use command_line::selectors;
 pub use host::{Artwork, Bent, Fineness, Host, Opened, Summary};
 pub use purpose::Purpose;
 pub use server::{News, Options, serve};

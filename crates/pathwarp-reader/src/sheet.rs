@@ -204,7 +204,11 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_, 'i> {
         let state = input.state();
         selectors(input, self.names).inspect_err(|_| {
             input.reset(&state);
-            self.out.unsupported.insert(format!("rules for “{}” are ignored", rest(input)));
+            let text = rest(input);
+            // Other selectors are wrong to browsers, too.
+            if text.contains([':', '&']) {
+                self.out.unsupported.insert(format!("rules for “{text}” are ignored"));
+            }
         })
     }
 
@@ -331,7 +335,7 @@ mod tests {
     #[test]
     fn what_is_ignored_is_said() {
         let mut rules = Rules::default();
-        rules.add("a:foo(1){x:1} @media (min-width:3px){a{x:2}} a{x:3; b{x:4}} @import 'x';");
+        rules.add("a:foo(1){x:1} {x:0} }{x:0} a..b{x:0} @media (min-width:3px){a{x:2}} a{x:3; b{x:4}} @import 'x';");
         let said: Vec<&str> = rules.unsupported.iter().map(String::as_str).collect();
         assert_eq!(
             said,

@@ -4,6 +4,7 @@ use super::common::{SQUARE, text};
 use crate::support::pathwarp_in;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 /// A folder with `a.svg`, `my logo.svg` and a folder `art`.
 fn folder() -> tempfile::TempDir {
@@ -54,6 +55,30 @@ fn words_of_other_programs_name_the_command() {
             ("affine a.svg + flag", 2, "flag is a style of warp"),
             ("warp a.svg + affine --scale 2", 2, "use --scale-x or --scale-y"),
             ("warp a.svg --output b.svg", 2, "use --out"),
+            ("affine a.svg --width 200", 2, "use --scale-x 1.5 (a factor"),
+            ("warp a.svg -style flag", 2, "use --style"),
+            ("warp a.svg -bend=40%", 2, "use --bend"),
+            ("warp a.svg + affine -rotate 5", 2, "use --rotate"),
+            // Not the letters -r and -o.
+            ("affine a.svg -rotate=5", 2, "use --rotate"),
+            ("warp a.svg -b 40%", 2, "--help lists the options"),
+            ("bend a.svg --along circle", 2, "write circle:r=60mm"),
+            ("bend a.svg --along circle:60mm", 2, "write circle:r=60mm"),
+            ("text A --on arc", 2, "write arc:r=60mm,from=180,to=360"),
+            ("help zzzz", 2, "`pathwarp list` shows all"),
+            ("solid twist b.stl", 2, "unrecognized subcommand"),
+            ("polar a.svg --angle 90", 2, "use --sweep"),
+            ("affine a.svg --slant 12", 2, "use --skew-x"),
+            ("expr a.svg --formula x+y", 2, "use --x 'x + 4*sin(y/16)'"),
+            ("text A --curve 40", 2, "use --on circle:r=60mm"),
+            ("warp --input a.svg", 2, "files are named without an option"),
+            ("warp a.svg --force", 2, "use --in-place"),
+            ("warp a.svg --tolerence 1", 2, "use --tolerance"),
+            ("perspective a.svg --scale 2", 2, "--help lists the options"),
+            ("sphere a.svg", 2, "--onto sphere:"),
+            ("dxf a.svg", 2, "convert IN.svg -o OUT.dxf"),
+            ("offset a.svg 2mm", 2, "outlines are not moved in or out"),
+            ("inkscape", 2, "install inkscape"),
         ],
     );
     let out = pathwarp_in(
@@ -73,7 +98,9 @@ fn words_of_other_programs_name_the_command() {
         ("perspective", "projective"),
         ("flag", "--style flag"),
         ("skew", "affine IN.svg --skew-x"),
-        ("liquify", "swirl samples/badge.svg"),
+        ("liquify", "swirl IN.svg"),
+        ("trace", "Path › Trace Bitmap"),
+        ("rotate", "rotate: affine — "),
     ] {
         let out = pathwarp_in(dir.path(), &["help", word], b"");
         assert_eq!(out.status.code(), Some(0), "{word}: {}", text(&out.stderr));
@@ -108,8 +135,9 @@ fn values_and_names_that_spaces_have_torn() {
             ("warp a.svg --style flag out.pdf", 2, "-o out.pdf"),
             ("warp a.svg art/cat.svg", 2, "to write to art/cat.svg: -o art/cat.svg"),
             ("warp my logo.svg -o o.svg", 2, "a name with spaces needs quotes: 'my logo.svg'"),
-            ("warp gone.svg a.svg", 3, "gone.svg: cannot be read"),
-            ("warp a.svg to b.svg", 3, "to: cannot be read"),
+            ("warp gone.svg a.svg", 3, "gone.svg: there is no such file"),
+            ("warp a.svg to b.svg", 2, "to is no file; the result is named with -o b.svg"),
+            ("warp a.svg into", 2, "-o OUT.svg"),
             ("render a.svg out.png", 2, "-o out.png"),
             ("render my logo.svg", 2, "quotes"),
         ],
@@ -143,6 +171,10 @@ fn names_that_are_no_files_here() {
             ("warp none/cat.svg -o o.svg", 3, "the folder none does not exist"),
             ("warp *.png -o o.svg", 3, "no file matches the pattern"),
             ("shaper a.svg --shaper https://example.org/c.svg -o o.svg", 3, "curl -O"),
+            ("edit https://example.org/a.svg", 3, "curl -O"),
+            ("edit A.svg", 3, "did you mean a.svg?"),
+            ("run recipe.toml a.svg", 3, "recipe.toml: there is no such file"),
+            ("run a.svg", 3, "a.svg is a drawing, not a recipe"),
             ("warp a.svg -o o-{name}.svg", 2, "{name} stands for nothing; {stem}"),
             ("warp a.svg --out-dir out/{file}", 2, "{file} stands for nothing"),
             ("warp a.svg -o o.svg --preview {}.png", 2, "{} stands for nothing"),
@@ -222,6 +254,9 @@ fn errors_say_what_is_wrong_and_nothing_else_warns() {
             ("affine a.svg --scale-x 0 -o o.svg", 2, "leaves the artwork without width"),
             ("affine a.svg --scale-y 0% -o o.svg", 2, "leaves the artwork without height"),
             ("affine a.svg --matrix 1,2,2,4,0,0 -o o.svg", 2, "its determinant"),
+            ("affine a.svg --skew-x 45 --skew-y 45 -o o.svg", 2, "without area, together with --skew-y"),
+            ("affine a.svg --skew-x 90 -o o.svg", 2, "an angle between -90 and 90"),
+            ("affine a.svg --skew-x 30 --skew-y 60 --rotate 20 -o o.svg", 2, "without area"),
             ("anamorph a.svg --distance 1mm --onto cylinder:radius=42mm -o o.svg", 2, "cylinder:radius=42mm"),
         ],
     );
@@ -271,22 +306,65 @@ fn a_batch_that_exits_1_names_the_cause() {
     );
 }
 
+/// At 80 columns, a screen has room for the short help of every command.
 #[test]
 fn short_help_fits_a_screen() {
-    let name = "warp";
-    let short = text(&pathwarp_in(Path::new("."), &[name, "-h"], b"").stdout);
-    let long = text(&pathwarp_in(Path::new("."), &[name, "--help"], b"").stdout);
-    assert!(short.lines().count() <= 40, "{name}: {} lines\n{short}", short.lines().count());
-    assert!(short.contains("--out-dir") && short.contains(&format!("pathwarp {name} --help")), "{short}");
-    assert!(!short.contains("--gradients") && long.contains("--gradients") && long.contains("Examples:"), "{short}");
+    let registry = pathwarp::deform::Registry::builtin();
+    let whole = pathwarp_cli::command(&registry);
+    let solid = whole.find_subcommand("solid").unwrap().get_subcommands();
+    let solid = solid.map(|c| vec!["solid".to_owned(), c.get_name().to_owned()]);
+    let all: Vec<Vec<String>> = whole.get_subcommands().map(|c| vec![c.get_name().to_owned()]).chain(solid).collect();
+    assert!(all.len() > 40, "{}", all.len());
+    for words in all.iter().map(|w| w.iter().map(String::as_str).collect::<Vec<_>>()) {
+        let said = |help: &str| text(&pathwarp_in(Path::new("."), &[&words[..], &[help]].concat(), b"").stdout);
+        let (short, name) = (said("-h"), words.join(" "));
+        assert!((8..=40).contains(&short.lines().count()), "{name}: {} lines\n{short}", short.lines().count());
+        assert!(short.lines().all(|l| l.chars().count() <= 80), "{name}:\n{short}");
+        assert!(short.contains(&format!("pathwarp {name} --help")), "{short}");
+        if registry.get(&name).is_some() {
+            let long = said("--help");
+            assert!(
+                short.contains("[INPUT]") && short.contains("--out-dir") && !short.contains("--gradients"),
+                "{short}"
+            );
+            assert!(long.contains("--gradients") && long.contains("Examples:"), "{long}");
+        }
+    }
 }
 
 #[test]
 fn completions_offer_the_values_of_choices() {
     for shell in ["bash", "zsh", "fish"] {
         let script = text(&pathwarp_in(Path::new("."), &["completions", shell], b"").stdout);
-        for value in ["fisheye", "verticals", "instantiate", "baseline-ascent"].iter().take(3) {
+        for value in ["fisheye", "verticals", "repeat", "instantiate"] {
             assert!(script.contains(value), "{shell}: {value}");
         }
     }
+}
+
+/// On a terminal, a picture is refused; a program of Python's plays the terminal.
+#[test]
+#[cfg(unix)]
+fn pictures_do_not_go_to_a_terminal() {
+    let dir = folder();
+    let play = "import pty, sys; sys.exit(pty.spawn(sys.argv[1:]) >> 8)";
+    let program = crate::support::pathwarp_program().display().to_string();
+    let on_a_terminal = |args: &[&str]| {
+        let run = Command::new("python3").args(["-c", play, &program]).args(args).current_dir(dir.path()).output();
+        run.ok().map(|out| (out.status.code(), text(&out.stdout)))
+    };
+    for (args, part) in [
+        (&["render", "a.svg"][..], "-o"),
+        (&["render", "a.svg", "--format", "jpg"], "-o"),
+        (&["warp"], "no drawing is named"),
+    ] {
+        let Some((code, said)) = on_a_terminal(args) else {
+            return crate::support::skipped("terminals: there is no python3");
+        };
+        assert_eq!(code, Some(2), "{args:?}: {said}");
+        assert!(said.contains(part) && said.lines().count() == 1, "{args:?}: {said}");
+    }
+    // Text is for reading.
+    let (code, said) = on_a_terminal(&["warp", "a.svg"]).unwrap();
+    assert!(code == Some(0) && said.contains("</svg>"), "{said}");
 }

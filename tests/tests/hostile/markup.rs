@@ -79,10 +79,10 @@ fn what_references_show_is_counted() {
 
 #[test]
 fn style_sheets_are_matched_within_bounds() {
-    // The first part never matches, after all ways to choose the others.
+    // Each part takes the nearest ancestor, and none is left for the first: other ways to choose them are not tried.
     let deep = format!("x {}{{fill:red}}", "* ".repeat(500));
     let groups = ("<g>".repeat(60), "</g>".repeat(60));
-    expect(&format!("<style>{deep}</style>{}{RECT}{}", groups.0, groups.1), [3, 3], "comparisons");
+    expect(&format!("<style>{deep}</style>{}{RECT}{}", groups.0, groups.1), [0, 0], "");
     // Rules for classes are looked up.
     let classes: String = (0..20_000).map(|i| format!(".c{i}{{fill:red}}")).collect();
     expect(&format!("<style>{classes}</style>{}", RECT.repeat(500)), [0, 0], "");

@@ -192,6 +192,41 @@ fn warps_are_edited_and_released() {
     assert!(wrong.contains("has no `bnd`") && wrong.contains("bend"), "{wrong}");
 }
 
+/// Each step of a recipe holds for its own part of what is selected, and for nothing beside that.
+#[test]
+fn steps_for_parts_stay_within_the_selection() {
+    let desk = Desk::new();
+    let body = "<g id='one'><path id='a' class='x' d='M 20,20 H 60 V 60 H 20 Z'/><path id='b' class='y' d='M 80,20 H 120 V 60 Z'/></g>\
+                <g id='two'><path id='c' class='x' d='M 20,120 H 60 V 160 Z'/><path id='d' class='y' d='M 80,120 H 120 V 160 Z'/></g>";
+    let svg = document(body);
+    let warped = desk.result(&svg, &["one"], &FLAG);
+    let own = attribute(&element(&warped, "one"), "recipe");
+    let frame = frame_of(&warped, "one");
+    let edited = |recipe: &str| {
+        let asked = warped.replace(&own, recipe);
+        assert_ne!(asked, warped);
+        desk.result(&asked, &["one"], &["--inkscape-action=edit"])
+    };
+    for (recipe, line) in [
+        (
+            format!("warp --style=flag --select=.x {frame} + swirl --select=.y"),
+            vec!["warp", "--style=flag", "--select=#a", "+", "swirl", "--select=#b"],
+        ),
+        // A selection in one part holds for all of them.
+        (
+            format!("warp --style=flag {frame} + swirl --select=.y"),
+            vec!["warp", "--style=flag", "--select=#b", "+", "swirl"],
+        ),
+        (format!("warp --style=flag {frame} + swirl"), vec!["warp", "--style=flag", "--select=#one", "+", "swirl"]),
+    ] {
+        let got = edited(&recipe);
+        let wanted = desk.command_line(&svg, &[&line[..], &["--fit=none", &frame]].concat());
+        for id in ["a", "b", "c", "d"] {
+            assert_eq!(attribute(&element(&got, id), "d"), attribute(&element(&wanted, id), "d"), "{recipe}: {id}");
+        }
+    }
+}
+
 #[test]
 fn what_was_done_by_hand_is_kept_or_asked_about() {
     let desk = Desk::new();

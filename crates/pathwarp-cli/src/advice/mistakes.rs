@@ -1,93 +1,39 @@
 //! Words that new users type: commands and options of other programs, values apart from their units, names without quotes.
 
+use super::names::likely;
 use crate::catalogue::Catalogue;
+use crate::coming_from;
 use crate::format::Format;
 use crate::input::split_reference;
-use pathwarp::param::Kind;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Other names of commands.
-const ALIASES: [(&str, &str); 1] = [("perspective", "projective")];
+#[cfg(test)]
+mod tests;
 
-/// Words for what a command does, and that command on a drawing.
-const WORDS: [(&[&str], &str); 22] = [
-    (&["rotate", "turn", "spin"], "affine IN.svg --rotate 15 -o OUT.svg"),
-    (&["skew", "shear", "lean", "slant", "oblique", "italic"], "affine IN.svg --skew-x -12 -o OUT.svg"),
-    (
-        &["scale", "resize", "size", "zoom", "enlarge", "shrink", "stretch"],
-        "affine IN.svg --scale-x 2 --scale-y 2 -o OUT.svg",
-    ),
-    (&["move", "translate", "shift", "offset"], "affine IN.svg --move-x 10mm -o OUT.svg"),
-    (&["mirror", "flip", "reflect"], "affine IN.svg --scale-x -1 -o OUT.svg"),
-    (
-        &["circle", "round", "curve", "textpath", "text-on-path", "text-on-circle", "path", "badge"],
-        "bend IN.svg --along circle:r=60mm -o OUT.svg",
-    ),
-    (
-        &["distort", "free-distort", "keystone", "corners", "trapezoid", "quad"],
-        "projective IN.svg --target '0%,100% 100%,100% 75%,0% 25%,0%' -o OUT.svg",
-    ),
-    (&["twirl", "twist", "vortex", "whirl", "spiral"], "swirl IN.svg -o OUT.svg"),
-    (&["ripple", "waves", "sine", "wobble", "zigzag"], "wave IN.svg -o OUT.svg"),
-    (&["pinch", "punch", "bloat", "pucker", "spherize"], "bulge IN.svg -o OUT.svg"),
-    (
-        &["puppet", "puppet-warp", "pin", "pins", "liquify"],
-        "mls IN.svg --pin 0%,100% --pin 100%,100% --pair 50%,0%:55%,-20% -o OUT.svg",
-    ),
-    (&["cage", "distort-mesh", "bezier"], "shaper IN.svg --shaper CAGE.svg -o OUT.svg"),
-    (&["grid", "lattice", "gridwarp"], "ffd IN.svg -o OUT.svg"),
-    (
-        &["cylinder", "mug", "bottle", "can", "label", "cone", "sphere"],
-        "anamorph IN.svg --distance 50cm --onto cylinder:radius=42mm -o OUT.svg",
-    ),
-    (&["formula", "equation", "function"], "expr IN.svg --x 'x + 4*sin(y/16)' -o OUT.svg"),
-    (
-        &["png", "jpg", "jpeg", "webp", "rasterize", "draw", "picture", "preview", "thumbnail"],
-        "render IN.svg -o OUT.png",
-    ),
-    (&["pdf", "dxf", "svg", "export", "save", "save-as", "print"], "affine IN.svg -o OUT.pdf"),
-    (&["open", "gui", "ui", "view", "editor", "interactive", "browser"], "edit IN.svg"),
-    (&["info", "inspect", "ls", "show", "query"], "paths IN.svg"),
-    (&["styles", "presets", "samples", "sheet"], "gallery IN.svg -o SHEET.png"),
-    (&["undo", "unbend", "restore", "revert", "original"], "unwarp WARPED.svg -o OUT.svg"),
-    (&["font", "fonts", "word", "words", "letter", "letters", "lettering", "type"], "text 'WORDS' -o OUT.svg"),
-];
-
-/// Words for what pathwarp does not do, and who does.
-const ELSEWHERE: [(&[&str], &str); 3] = [
-    (
-        &["trace", "vectorize", "vectorise", "image-trace", "potrace"],
-        "pathwarp warps pictures as they are and traces none; Inkscape does: Path › Trace Bitmap",
-    ),
-    (
-        &["simplify", "smooth", "clean", "optimize", "optimise", "svgo"],
-        "pathwarp writes few nodes where it bends, and has no command that only simplifies",
-    ),
-    (
-        &["union", "join", "merge", "combine", "unite", "boolean"],
-        "pathwarp joins no drawings; open one in an editor and paste the other",
-    ),
-];
-
-/// Other names of options; the last of them that the command has is meant.
-const OPTIONS: [(&[&str], &str); 10] = [
+/// Other names of options, and what to write if the command has that option.
+const OPTIONS: [(&[&str], &str); 20] = [
     (&["output", "outfile", "out-file", "export-filename", "to", "o"], "out"),
     (&["angle", "rotation", "turn", "degrees"], "rotate"),
+    (&["angle", "degrees", "arc"], "sweep"),
+    (&["slant", "lean", "italic", "oblique", "shear"], "skew-x"),
+    (&["formula", "function", "expression", "f"], "x 'x + 4*sin(y/16)'"),
     (&["amount", "strength", "intensity", "curve", "percent"], "bend"),
     (&["preset", "shape", "type", "name", "kind", "effect"], "style"),
     (&["path", "curve", "on", "circle", "onto"], "along"),
+    (&["along", "path", "curve", "circle", "arc", "spiral"], "on circle:r=60mm"),
     (&["to", "corners", "destination", "dst", "quad"], "target"),
     (&["cage", "mesh", "path"], "shaper"),
     (&["only", "id", "layer", "object", "ids"], "select"),
     (&["dpi", "resolution"], "image-dpi"),
+    (&["verbose", "v", "debug"], "explain"),
+    (&["force", "overwrite", "replace"], "in-place"),
+    (&["json", "log"], "report FILE.json"),
+    (&["recurse", "folder"], "recursive"),
     (&["amplitude", "amp"], "height"),
+    (&["width", "size", "zoom", "factor"], "scale-x 1.5 (a factor; also --scale-y)"),
+    (&["height"], "scale-y 1.5 (a factor)"),
 ];
-
-/// The command that an alias stands for.
-pub(crate) fn alias(word: &str) -> Option<&'static str> {
-    ALIASES.iter().find(|(alias, _)| *alias == word).map(|(_, name)| *name)
-}
 
 /// What an unknown command may mean.
 pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
@@ -104,38 +50,39 @@ pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
             "{word} is a folder, not a command; `pathwarp warp -r {word} --style flag --out-dir OUT` warps the drawings in it"
         ));
     }
-    let named: Vec<String> = catalogue
-        .infos()
-        .into_iter()
-        .flat_map(|info| info.params.iter().map(move |p| (info, p)))
-        .filter(|(_, p)| matches!(p.kind, Kind::NameOrFile(names) if names.contains(&lower.as_str())))
-        .map(|(info, p)| {
-            format!("a {} of {}: pathwarp {} IN.svg --{} {lower} -o OUT.svg", p.name, info.name, info.name, p.name)
-        })
-        .collect();
-    let plain = lower.replace(['_', ' '], "-");
-    let is = |words: &&[&str]| words.contains(&plain.as_str());
-    let known = WORDS.iter().find(|(words, _)| is(words)).map(|(_, command)| command);
-    if !named.is_empty() {
-        let other = known.map(|command| format!("; or use `pathwarp {command}`")).unwrap_or_default();
-        return Some(format!("{word} is {}{other}", named.join("; or ")));
-    }
-    if let Some(command) = known {
-        return Some(format!("there is no command {word}; use `pathwarp {command}`"));
-    }
-    ELSEWHERE.iter().find(|(words, _)| is(words)).map(|(_, text)| format!("there is no command {word}; {text}"))
+    coming_from::meant(catalogue, word)
 }
 
-/// The options that an unknown one may mean, of those that the command has: those that begin with it, or are its synonyms.
-pub(crate) fn options<'a>(unknown: &str, known: &[&'a str]) -> Vec<&'a str> {
-    let unknown = unknown.trim_start_matches('-').to_lowercase();
-    let longer = |k: &&&str| k.strip_prefix(unknown.as_str()).is_some_and(|rest| rest.starts_with('-'));
+/// The first option with one dash for two, which would be read as letters: `-rotate 5` as `-r -o tate 5`.
+pub(crate) fn single_dashed(words: &[OsString], known: impl FnOnce() -> Vec<String>) -> Option<String> {
+    let name = |w: &OsString| w.to_str()?.strip_prefix('-')?.split('=').next().map(str::to_owned);
+    let is_name =
+        |n: &String| n.len() > 2 && n.chars().all(|c| c.is_ascii_lowercase() || c == '-') && !n.starts_with('-');
+    let names: Vec<String> = words.iter().filter_map(name).filter(is_name).collect();
+    let known = if names.is_empty() { Vec::new() } else { known() };
+    names.into_iter().find(|n| known.contains(n)).map(|n| format!("-{n} is no option; use --{n}"))
+}
+
+/// What to write for an unknown option: those of the known ones that begin with it, a synonym, or one that is like it.
+pub(crate) fn option(unknown: &str, known: &[&str]) -> String {
+    /// The least likeness of a mistyped option.
+    const NEAR: f64 = 0.6;
+    let name = unknown.trim_start_matches('-').to_lowercase();
+    let longer = |k: &&&str| k.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('-'));
     let longer: Vec<&str> = known.iter().filter(longer).copied().collect();
-    if !longer.is_empty() {
-        return longer;
+    let mut synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&name.as_str())).map(|(_, text)| *text);
+    let synonym = synonyms.find(|text| text.split(' ').next().is_some_and(|option| known.contains(&option)));
+    let meant = match &longer[..] {
+        [] => {
+            let near = |k: &&str| strsim::normalized_damerau_levenshtein(&name, k) > NEAR;
+            synonym.or_else(|| likely(&name, known.iter().copied()).filter(near)).map(str::to_owned)
+        }
+        longer => Some(longer.join(" or --")),
+    };
+    if ["i", "in", "input", "file", "infile"].contains(&name.as_str()) {
+        return "files are named without an option".to_owned();
     }
-    let synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&unknown.as_str()));
-    synonyms.filter_map(|(_, name)| known.iter().copied().find(|k| k == name)).take(1).collect()
+    meant.map_or_else(|| "--help lists the options".to_owned(), |meant| format!("use --{meant}"))
 }
 
 /// A value that a space has torn from its option: the option with the whole value.
@@ -165,32 +112,30 @@ fn is_measure(word: &str) -> bool {
     word.split([',', ':']).all(one)
 }
 
+/// Returns `true` for a letter of path data, or one with numbers after it.
+fn is_data(word: &str) -> bool {
+    let numbers = word.trim_start_matches(|c| "MLHVCSQTAZmlhvcsqtaz".contains(c));
+    numbers.len() < word.len() && (numbers.is_empty() || is_measure(numbers))
+}
+
 /// Finds the words of a command line that belong to the value of an option before them: `--size 40 mm`, `--target 0,0 9,0 9,9`.
 fn torn(words: &[String]) -> Option<Torn> {
-    for (i, option) in words.iter().enumerate().filter(|(_, w)| w.len() > 2 && w.starts_with("--")) {
-        let (option, first) = match option.split_once('=') {
-            Some((option, value)) => (option, value),
-            None => (option.as_str(), words.get(i + 1)?.as_str()),
+    for (i, word) in words.iter().enumerate().filter(|(_, w)| w.len() > 2 && w.starts_with("--")) {
+        let (option, first, rest) = match (word.split_once('='), &words[i + 1..]) {
+            (Some((option, first)), rest) => (option, first, rest),
+            (None, [first, rest @ ..]) => (word.as_str(), first.as_str(), rest),
+            (None, []) => continue,
         };
-        let rest = i + 1 + usize::from(!words[i].contains('='));
-        let Some(next) = words.get(rest) else { continue };
+        let Some(next) = rest.first() else { continue };
         if is_number(first) && is_unit(next) {
             return Some(Torn { word: next.clone(), whole: format!("{option} {first}{next}") });
         }
-        let points = words[rest..].iter().take_while(|w| is_measure(w) && !Path::new(w).exists());
-        let points: Vec<&str> = points.map(String::as_str).collect();
-        if is_measure(first) && points.iter().any(|p| p.contains(',')) && first.contains(',') {
-            return Some(Torn {
-                word: points[0].to_owned(),
-                whole: format!("{option} '{first} {}'", points.join(" ")),
-            });
-        }
-        // Path data: M 0,0 C 1,2 …
-        let is_data = |w: &str| w.starts_with(['M', 'm']) && (w.len() == 1 || is_measure(&w[1..]));
-        if is_data(first)
-            && (is_measure(next) || next.starts_with(['L', 'C', 'Q', 'A', 'H', 'V', 'l', 'c', 'q', 'a', 'h', 'v']))
-        {
-            return Some(Torn { word: next.clone(), whole: format!("{option} '{first} {next} …'") });
+        // Points, or path data: M 0,0 C 1,2 …
+        let is_begun = is_data(first) || first.contains(',') && is_measure(first);
+        let more = rest.iter().take_while(|w| (is_measure(w) || is_data(w)) && !Path::new(w).exists());
+        let more: Vec<&str> = more.map(String::as_str).collect();
+        if is_begun && !more.is_empty() {
+            return Some(Torn { word: next.clone(), whole: format!("{option} '{first} {}'", more.join(" ")) });
         }
     }
     None
@@ -230,65 +175,22 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
             return Some(format!("{name}: there is no such file; a name with spaces needs quotes: '{joined}'"));
         }
     }
-    let is_last = missing + 1 == inputs.len() && inputs[..missing].iter().all(|p| exists(p));
-    if is_last && !has_out && Format::of(&inputs[missing]).is_some() {
-        return Some(format!("{name}: there is no such file; if the result is to be written there: -o {name}"));
+    if ["to", "into", "as", "->", "=>"].contains(&name.as_str()) {
+        let to = inputs.get(missing + 1).map_or("OUT.svg".into(), |to| to.display().to_string());
+        return Some(format!("{name} is no file; the result is named with -o {to}"));
     }
-    if is_last && matches!(inputs[missing].to_str(), Some("to" | "into" | "as" | "->" | "=>")) {
-        return Some(format!("{name} is no file; the result is named with -o OUT.svg"));
-    }
-    None
+    let is_last = missing + 1 == inputs.len();
+    (is_last && !has_out && Format::of(&inputs[missing]).is_some())
+        .then(|| format!("{name}: there is no such file; if the result is to be written there: -o {name}"))
 }
 
-/// A tip for a word that a command takes no more of.
-pub(crate) fn surplus(word: &str, known: &[&str]) -> Option<String> {
-    let is_output = known.contains(&"out") && Path::new(word).extension().is_some();
-    if is_output {
-        return Some(format!("to write to {word}: -o {word}; a name with spaces needs quotes"));
+/// What to do about a word that a command takes no more of.
+pub(crate) fn surplus(word: &str, known: &[&str]) -> String {
+    if known.contains(&"out") && Path::new(word).extension().is_some() {
+        return format!("to write to it: -o {word}; a name with spaces needs quotes");
     }
     if is_unit(word) {
-        return Some("a number and its unit are one word, such as 40mm".to_owned());
+        return "a number and its unit are one word, such as 40mm".to_owned();
     }
-    is_measure(word).then(|| "a value with spaces needs quotes".to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_put_together_again() {
-        let whole = |line: &str| {
-            let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
-            torn(&words).map(|t| t.whole)
-        };
-        for (line, expected) in [
-            ("text A --size 40 mm", "--size 40mm"),
-            ("warp a.svg --bend -40 %", "--bend -40%"),
-            ("warp a.svg --bend=-40 %", "--bend -40%"),
-            ("projective --target 0%,100% 100%,100% 75%,0% a.svg", "--target '0%,100% 100%,100% 75%,0%'"),
-            ("bend a.svg --along M0,100 Q150,20 300,100", "--along 'M0,100 Q150,20 …'"),
-            ("bend a.svg --along M 0,100", "--along 'M 0,100 …'"),
-        ] {
-            assert_eq!(whole(line).as_deref(), Some(expected), "{line}");
-        }
-        for line in [
-            "text 40 mm",
-            "warp a.svg --bend 40% b.svg",
-            "affine --scale-x 2 a.svg",
-            "mls --pin 0,0 a.svg",
-            "text A --size",
-        ] {
-            assert_eq!(whole(line), None, "{line}");
-        }
-    }
-
-    #[test]
-    fn options_by_their_beginning_and_other_names() {
-        let known = ["scale-x", "scale-y", "skew-x", "rotate", "out"];
-        assert_eq!(options("--scale", &known), ["scale-x", "scale-y"]);
-        assert_eq!(options("--angle", &known), ["rotate"]);
-        assert_eq!(options("--output", &known), ["out"]);
-        assert!(options("--wobble", &known).is_empty());
-    }
+    "a value or a name with spaces needs quotes; --help says what the command takes".to_owned()
 }

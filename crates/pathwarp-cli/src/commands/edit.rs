@@ -4,10 +4,9 @@ use super::file_args;
 use crate::editing::EditorHost;
 use crate::failure::Failure;
 use crate::options::{self, Given};
-use crate::output;
 use crate::plugins::Plugins;
 use crate::status::Status;
-use crate::{temporaries, terminal};
+use crate::{input, output, temporaries, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
 use pathwarp_editor::{News, Options, Purpose};
@@ -43,6 +42,7 @@ pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Res
     if output::is_stdout(file) {
         return Err(Failure::usage("edit needs a file: its results are saved beside it"));
     }
+    file.metadata().map_err(|e| Failure::file(file, input::unreadable(file, &e)))?;
     let options = Options {
         file: file.to_owned(),
         purpose: Purpose::Files { out: file_args::target(m, [file])?.map(ToOwned::to_owned) },

@@ -40,6 +40,7 @@ pub(super) fn command(registry: &Registry) -> Command {
         c =
             c.subcommand(
                 Command::new(e.info().name)
+                    .aliases(steps::aliases(e.info().name))
                     .about(e.info().title)
                     .args(steps::args(e.info()))
                     .arg(

@@ -19,6 +19,7 @@ mod points;
 mod render;
 mod run;
 mod schema;
+mod short_help;
 mod solid;
 mod text;
 mod unwarp;
@@ -80,7 +81,10 @@ fn root() -> Command {
     Command::new("pathwarp")
         .version(env!("CARGO_PKG_VERSION"))
         .about(ABOUT)
-        .after_help(AFTER)
+        .after_help(
+            "Paths in options, chains, exit codes: pathwarp --help. A word of another program: pathwarp help WORD",
+        )
+        .after_long_help(AFTER)
         .subcommand_required(true)
         .arg_required_else_help(true)
         .infer_subcommands(false)
@@ -123,7 +127,6 @@ const OTHERS: [(&str, Declare); 18] = [
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
     let (args, plugins) = plugins::load(registry, args, &OTHERS.map(|(name, _)| name))?;
     let registry = &plugins.added_to(registry);
-    let args = without_aliases(registry, args);
     let args = args.as_slice();
     // Each part after a lone `+` is a command line of its own.
     let mut parts = args.split(|a| a == "+");
@@ -133,7 +136,14 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         output::to_stdout(text.as_bytes())?;
         return Ok(Status::Complete);
     }
-    let matches = build_for(registry, first.get(1))
+    if let Some(said) = mistakes::single_dashed(args, || options_of(registry, args)) {
+        return Err(Failure::Usage(said));
+    }
+    let mut command = build_for(registry, first.get(1));
+    if first.iter().any(|a| a == "-h") {
+        command = short_help::shortened(command, &first[1..], "pathwarp");
+    }
+    let matches = command
         .try_get_matches_from(first)
         .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
     let Some((name, m)) = matches.subcommand() else {
@@ -189,7 +199,7 @@ fn joined(words: &[OsString]) -> String {
     words.iter().map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-/// What `help WORD` says about a word of another program, which may be several words.
+/// What `help WORD` says about a word that is no command, and which may be several words.
 fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     let [_, help, words @ ..] = args else { return None };
     let known = |name: &str| build_for(registry, Some(&name.into())).find_subcommand(name).cloned();
@@ -197,11 +207,7 @@ fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     if help != "help" || wanted.starts_with('-') || known(&wanted).is_some() || wanted == "help" {
         return None;
     }
-    let entries = coming_from::found(&wanted);
-    let title = |name: &str| known(name)?.get_about().map(ToString::to_string);
-    let own = mistakes::command(registry, &wanted).map(|meant| format!("{meant}\n\n")).unwrap_or_default();
-    let foreign = if entries.is_empty() { String::new() } else { coming_from::help(&entries, title) };
-    Some(own + &foreign).filter(|text| !text.is_empty())
+    coming_from::help(registry, &wanted, |name| known(name)?.get_about().map(ToString::to_string))
 }
 
 /// The error that the deformation that `args` begin with is a broken plug-in.
@@ -220,37 +226,34 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
     };
     let is_help = args.get(1).is_some_and(|a| a == "help");
     let tip = match error.kind() {
-        ErrorKind::InvalidSubcommand => {
+        ErrorKind::InvalidSubcommand if args.get(1).is_none_or(|a| a != solid::NAME) => {
             let asked = args.get(2..).filter(|words| is_help && !words.is_empty()).map(joined);
             let word = asked.or_else(|| context(ContextKind::InvalidSubcommand)).unwrap_or_default();
             if let Some(meant) = mistakes::command(registry, &word) {
                 return Failure::usage(meant);
             }
             let whole = build(registry);
-            if let Some(meant) = coming_from::meant(&word) {
-                return Failure::usage(meant);
-            }
             let foreign: Vec<String> = coming_from::all().map(|w| w.words[0].to_lowercase()).collect();
             let known = whole.get_subcommands().map(Command::get_name).chain(foreign.iter().map(String::as_str));
             let word = word.to_lowercase();
-            return if is_help { Failure::usage(advice::unknown("command", &word, known)) } else { error.into() };
+            let unknown = advice::unknown("command", &word, known);
+            let join = if unknown.ends_with('?') { " " } else { "; " };
+            let unknown = unknown + join + "`pathwarp list` shows all deformations";
+            return if is_help { Failure::usage(unknown) } else { error.into() };
         }
         ErrorKind::InvalidValue if context(ContextKind::InvalidArg).is_some_and(|arg| arg.contains(PATHREF)) => {
             Some("shells take a word that starts with # for a comment; quote it: '#NAME'".to_owned())
         }
-        ErrorKind::UnknownArgument => context(ContextKind::InvalidArg).and_then(|arg| {
+        ErrorKind::UnknownArgument => {
+            let arg = context(ContextKind::InvalidArg).unwrap_or_default();
             let known = options_of(registry, args);
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            if !arg.starts_with('-') {
-                return mistakes::surplus(&arg, &known);
-            }
-            let meant = mistakes::options(&arg, &known);
-            let tip = (!meant.is_empty()).then(|| format!("use --{}", meant.join(" or --")));
-            if tip.is_some() {
-                error.insert(ContextKind::SuggestedArg, ContextValue::None);
-            }
-            tip
-        }),
+            return Failure::usage(if arg.starts_with('-') {
+                format!("there is no option {arg}; {}", mistakes::option(&arg, &known))
+            } else {
+                format!("{arg} is one word too many; {}", mistakes::surplus(&arg, &known))
+            });
+        }
         _ => None,
     };
     if let Some(tip) = tip {
@@ -269,16 +272,4 @@ fn options_of(registry: &Registry, args: &[OsString]) -> Vec<String> {
         longs.collect::<Vec<_>>()
     });
     names.collect()
-}
-
-/// The arguments with other names of commands replaced.
-fn without_aliases(registry: &Registry, mut args: Vec<OsString>) -> Vec<OsString> {
-    for i in 1..args.len() {
-        let is_command = i == 1 || args[i - 1] == "+" || i == 2 && (args[1] == "help" || args[1] == "map");
-        let meant = args[i].to_str().filter(|w| is_command && registry.get(w).is_none()).and_then(mistakes::alias);
-        if let Some(name) = meant {
-            args[i] = name.into();
-        }
-    }
-    args
 }

@@ -9,6 +9,7 @@ use crate::steps::INVERSE;
 use crate::temporaries::Temporary;
 use pathwarp::param::{Kind, Param, is_inline};
 use pathwarp::recipe::Recipe;
+use pathwarp_editor::selectors;
 use pathwarp_svg::objects::Object;
 
 /// The word between two steps.
@@ -31,6 +32,7 @@ pub(super) fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {
         if step.inverse {
             line.push(format!("--{INVERSE}"));
         }
+        line.extend(selectors(recipe, step).map(|(name, selector)| format!("--{name}={selector}")));
     }
     line
 }

@@ -2,13 +2,14 @@
 
 use super::call::Call;
 use super::inx::labelled;
+use super::line::CHAIN;
 use super::names::WARNINGS;
 use crate::advice::Flags;
 use crate::failure::Failure;
-use crate::input;
+use crate::options::{Given, options_without_inputs};
 use crate::status::Status;
 use crate::temporaries::Temporary;
-use crate::terminal;
+use crate::{input, pipeline, steps, terminal, watch};
 use pathwarp::budget::Limits;
 use pathwarp::deform::Registry;
 use serde::Deserialize;
@@ -83,21 +84,28 @@ impl Stage<'_> {
     pub(super) fn warp(&self, svg: &str, words: &[String], scope: &Scope<'_>) -> Result<Outcome, Failure> {
         let source = temporary(svg.as_bytes())?;
         let (result, report) = (temporary(b"")?, temporary(b"")?);
-        let (name, rest) = words.split_first().ok_or_else(|| Failure::usage("the recipe is empty"))?;
-        let mut all: Vec<OsString> = vec!["pathwarp".into(), name.into(), source.path().into()];
-        all.extend(["--quiet", "--format=svg", "--out"].map(OsString::from));
-        all.push(result.path().into());
-        all.extend(["--report".into(), report.path().into()]);
-        if let Some(folder) = folder() {
-            all.extend(["--base-dir".into(), folder.into()]);
-        }
+        let words: Vec<OsString> = words.iter().map(OsString::from).collect();
+        let parts: Vec<&[OsString]> = words.split(|w| w == CHAIN).collect();
+        let parts = steps::parts(self.registry, &parts, &options_without_inputs().collect::<Vec<_>>())?;
+        let (mut recipe, mut own) = steps::chained(parts)?;
+        // What the recipe selects, it selects in this scope.
+        let selected = own.take("select");
+        recipe.steps.iter_mut().for_each(|step| step.select.extend(selected.iter().cloned()));
         // The drawing is open on the page that it has.
-        if !rest.iter().any(|word| word.starts_with("--fit=")) {
-            all.push("--fit=none".into());
+        let mut given = Given::default().keeping_pages().of_file(source.path());
+        let mut set = |name: &str, value: &str| given.set(name, value).map_err(Failure::Usage);
+        set("quiet", "true")?;
+        set("format", "svg")?;
+        set("out", &result.path().display().to_string())?;
+        set("report", &report.path().display().to_string())?;
+        if let Some(folder) = folder() {
+            set("base-dir", &folder.display().to_string())?;
         }
-        all.extend(scope.ids.iter().map(|id| format!("--select=[id={id}]").into()));
-        all.extend(rest.iter().map(OsString::from));
-        let status = (self.dispatch)(self.registry, &all).map_err(|f| self.without_file(&f, source.path()))?;
+        scope.ids.iter().try_for_each(|id| set("select", &format!("[id={id}]")))?;
+        let given = given.overridden_by(&own);
+        watch::begin(given.read()?.reading.limits);
+        let status = pipeline::run(self.registry, &recipe, &given, None);
+        let status = status.map_err(|f| self.without_file(&f, source.path()))?;
         let svg = text(result.path())?;
         let report: Report =
             serde_json::from_str(&text(report.path())?).map_err(|e| Failure::Input(format!("the report: {e}")))?;

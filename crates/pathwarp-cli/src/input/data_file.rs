@@ -1,5 +1,6 @@
 //! Files that deformations read. The core takes JSON; TOML and Photoshop files are converted here.
 
+use super::foreign::unreadable;
 use pathwarp::Error;
 use std::path::Path;
 
@@ -7,7 +8,7 @@ use std::path::Path;
 /// any other text unchanged.
 pub(crate) fn read_data_file(file: &str) -> Result<String, Error> {
     let wrong = |what: String| Error::input(file, what);
-    let bytes = std::fs::read(file).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+    let bytes = std::fs::read(file).map_err(|e| wrong(unreadable(Path::new(file), &e)))?;
     let extension = Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     if matches!(extension.as_deref(), Some("psd" | "psb")) {
         let warps = pathwarp_psd::warps(&bytes).map_err(|e| wrong(e.to_string()))?;

@@ -112,11 +112,10 @@ const HEAD: usize = 200;
 
 /// The problem with a name that cannot be opened as a file.
 pub(crate) fn unreadable(name: &Path, e: &Error) -> String {
-    let advice = (e.kind() == ErrorKind::NotFound).then(|| absent(name)).flatten();
-    match advice {
-        Some(advice) => format!("there is no such file; {advice}"),
-        None => format!("cannot be read: {e}"),
+    if e.kind() != ErrorKind::NotFound {
+        return format!("cannot be read: {e}");
     }
+    "there is no such file".to_owned() + &absent(name).map(|advice| format!("; {advice}")).unwrap_or_default()
 }
 
 /// What may be meant by a name that is no file.

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use std::ffi::{OsStr, OsString};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Common options with their values as given.
 #[derive(Clone, Default)]
@@ -91,6 +91,11 @@ impl Given {
         // The option and its value are in the table.
         let _ = kept.set("fit", "none");
         kept.overridden_by(self)
+    }
+
+    /// These options for a file.
+    pub(crate) fn of_file(self, file: &Path) -> Self {
+        Self { inputs: vec![file.to_owned()], ..self }
     }
 
     pub(crate) fn inputs(&self) -> &[PathBuf] {

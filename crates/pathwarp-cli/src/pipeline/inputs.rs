@@ -3,6 +3,7 @@
 use super::naming::fixed_folder;
 use crate::failure::Failure;
 use crate::options::CommonOptions;
+use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use walkdir::{DirEntry, WalkDir};
 
@@ -26,6 +27,11 @@ impl InputFile {
 /// The inputs that the options name, in order; folders are replaced by the files in them, sorted by name.
 pub(super) fn inputs(options: &CommonOptions) -> Result<Vec<InputFile>, Failure> {
     if options.inputs.is_empty() {
+        if std::io::stdin().is_terminal() {
+            return Err(Failure::usage(
+                "no drawing is named: write the file's name after the command; - reads what is typed",
+            ));
+        }
         return Ok(vec![InputFile::named("-")]);
     }
     let mut out = Vec::with_capacity(options.inputs.len());

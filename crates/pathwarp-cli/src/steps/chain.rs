@@ -5,7 +5,7 @@ use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::options::Given;
 use clap::{Arg, Command};
-use pathwarp::recipe::Step;
+use pathwarp::recipe::{Recipe, Step};
 use std::ffi::OsString;
 
 /// A part of a chain.
@@ -13,6 +13,11 @@ pub(crate) struct ChainPart {
     pub(crate) step: Step,
     /// The common options in this part; they apply to the whole chain.
     pub(crate) options: Given,
+}
+
+/// Other names of a deformation.
+pub(crate) fn aliases(name: &str) -> Option<&'static str> {
+    (name == "projective").then_some("perspective")
 }
 
 /// Where a step keeps the values of an option.
@@ -35,6 +40,15 @@ pub(crate) fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mu
     }
 }
 
+/// The steps of all parts, and the options that hold for the whole chain.
+pub(crate) fn chained(mut parts: Vec<ChainPart>) -> Result<(Recipe, Given), Failure> {
+    assign(parts.iter_mut().map(|p| (std::slice::from_mut(&mut p.step), &mut p.options)));
+    // The first part's options come last, as its inputs do.
+    let mut options = parts.iter().skip(1).chain(parts.first()).map(|p| &p.options);
+    let given = options.try_fold(Given::default(), |all, options| all.joined(options))?;
+    Ok((Recipe { steps: parts.into_iter().map(|p| p.step).collect() }, given))
+}
+
 /// Parses the parts after each `+`, which take these common options.
 pub(crate) fn parts(
     catalogue: &dyn Catalogue,
@@ -51,7 +65,9 @@ fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Resul
         .disable_help_subcommand(true)
         .subcommand_required(true);
     for info in catalogue.infos() {
-        c = c.subcommand(Command::new(info.name).about(info.title).args(args(info)).args(options));
+        c = c.subcommand(
+            Command::new(info.name).aliases(aliases(info.name)).about(info.title).args(args(info)).args(options),
+        );
     }
     let mut m = c.try_get_matches_from(words)?;
     let (name, sub) = m.remove_subcommand().ok_or_else(|| Failure::usage("a deformation must follow `+`"))?;

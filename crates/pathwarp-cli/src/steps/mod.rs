@@ -3,5 +3,5 @@
 mod chain;
 mod params;
 
-pub(crate) use chain::{ChainPart, assign, parts};
+pub(crate) use chain::{ChainPart, aliases, assign, chained, parts};
 pub(crate) use params::{INVERSE, args, in_lower_case, step};

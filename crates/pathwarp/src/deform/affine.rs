@@ -29,6 +29,9 @@ pub struct Affine {
     about: Point,
 }
 
+/// Determinants below this part of their two products are zero.
+const FLAT: f64 = 1e-14;
+
 impl Default for Affine {
     fn default() -> Self {
         Self::new()
@@ -109,8 +112,14 @@ impl Affine {
     /// Builds the map.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a singular matrix.
+    /// [`Error::Usage`] for a singular matrix, or a skew of 90°.
     pub fn build(&self) -> Result<Built, Error> {
+        for (name, angle) in [("skew-x", self.skew.x), ("skew-y", self.skew.y)] {
+            if angle.to_radians().cos().abs() < FLAT {
+                let endless = "makes the artwork endlessly long; write an angle between -90 and 90";
+                return Err(Error::usage(name, angle.to_string(), endless));
+            }
+        }
         let m = self.matrix.unwrap_or_else(|| {
             let o = self.about.to_vec2();
             let skew = Matrix::skew(self.skew.x.to_radians().tan(), self.skew.y.to_radians().tan());
@@ -120,7 +129,9 @@ impl Affine {
                 * Matrix::scale_non_uniform(self.scale.x, self.scale.y)
                 * Matrix::translate(-o)
         });
-        if m.determinant() == 0.0 {
+        // Skews of 45° both ways are flat but for rounding.
+        let [a, b, c, d, ..] = m.as_coeffs();
+        if m.determinant().abs() <= FLAT * ((a * d).abs() + (b * c).abs()) {
             return Err(self.flat(m));
         }
         Ok(Built::new(Arc::new(AffineMap(m))))

@@ -68,7 +68,7 @@ with the side that lies lowest on the screen, left to right, unless --base-as-dr
     .source("G. Wolberg, Digital Image Warping, 1990, section 3.6")
     .params(&[
         Param::path("base", "Four anchors in the source. Default: the corners of the artwork's box."),
-        Param::path("target", "Four anchors: the images of the base's.").default("0%,100% 100%,80% 100%,20% 0%,0%"),
+        Param::path("target", "Where the four anchors go: for those of the box from its bottom left over the right, such as 0%,100% 100%,85% 100%,15% 0%,0%.").default("0%,100% 100%,80% 100%,20% 0%,0%"),
         Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
         Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
     ])

@@ -60,7 +60,7 @@ unless --base-as-drawn or --target-as-drawn say otherwise.")
     .source("P. Heckbert, Fundamentals of Texture Mapping and Image Warping, 1989, section 2.2")
     .params(&[
         Param::path("base", "Four anchors in the source. Default: the corners of the artwork's box."),
-        Param::path("target", "Four anchors: the images of the base's.").needed(),
+        Param::path("target", "Where the four anchors go: for those of the box from its bottom left over the right, such as 0%,100% 100%,85% 100%,15% 0%,0%.").needed(),
         Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
         Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
     ])

@@ -60,7 +60,7 @@ turned, scaled evenly and shifted; nothing is bent, and no node is added.")
     .source("elementary; the wrapper of M. Koppinen, A plane transformation from 16 control points")
     .params(&[
         Param::path("base", "Two anchors in the source.").default("0%,100% 100%,100%"),
-        Param::path("target", "Two anchors: the images of the base's.").needed(),
+        Param::path("target", "Where the two anchors go, such as 20,200 420,90.").needed(),
     ])
     .demo(&[("target", "20,90 80,70")])
     .examples(&[

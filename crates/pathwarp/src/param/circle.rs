@@ -35,7 +35,17 @@ pub(crate) fn is_spiral(text: &str) -> bool {
 
 /// The word before the colon, and the values after it.
 fn split(text: &str) -> Option<(&str, &str)> {
-    text.trim().split_once(':').filter(|(word, _)| matches!(*word, "circle" | "arc" | "spiral"))
+    let split = text.trim().split_once(':').unwrap_or((text.trim(), ""));
+    Some(split).filter(|(word, _)| matches!(*word, "circle" | "arc" | "spiral"))
+}
+
+/// What a word needs.
+fn example(word: &str) -> &'static str {
+    match word {
+        "arc" => "arc:r=60mm,from=180,to=360",
+        "spiral" => "spiral:turns=3,inner=20mm,outer=80mm",
+        _ => "circle:r=60mm",
+    }
 }
 
 /// Reads a circle, an arc or a spiral; `None` if the text is none of them. The error continues a sentence about the text.
@@ -65,10 +75,10 @@ impl<'a> Typed<'a> {
             let (name, value) = match part.split_once('=').map(|(n, v)| (n.trim(), v.trim())) {
                 Some(pair) => pair,
                 None if word == "spiral" && matches!(part, "cw" | "ccw") => (WAY, part),
-                None if word == "spiral" => {
-                    return Err(format!("contains `{part}`, which is not NAME=VALUE, cw or ccw"));
+                None => {
+                    let or = if word == "spiral" { ", cw or ccw" } else { "" };
+                    return Err(format!("contains `{part}`, which is not NAME=VALUE{or}: write {}", example(word)));
                 }
-                None => return Err(format!("contains `{part}`, which is not NAME=VALUE")),
             };
             if !names.contains(&name) && (name != WAY || part.contains('=')) {
                 return Err(format!("has a value for `{name}`; {word} takes {}", names.join(", ")));
@@ -87,12 +97,7 @@ impl<'a> Typed<'a> {
 
     /// Reads a value that may not be missing.
     fn needed(&self, name: &str, read: impl Fn(&str) -> Result<f64, ValueError>) -> Result<f64, String> {
-        let example = match self.word {
-            "arc" => "r=60mm,from=180,to=360",
-            "spiral" => "turns=3,inner=20mm,outer=80mm",
-            _ => "r=60mm",
-        };
-        let text = self.text(name).ok_or_else(|| format!("has no {name}: write {}:{example}", self.word))?;
+        let text = self.text(name).ok_or_else(|| format!("has no {name}: write {}", example(self.word)))?;
         read(text).map_err(|e| format!("has a wrong {name}: `{text}` {e}"))
     }
 

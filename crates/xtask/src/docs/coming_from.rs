@@ -25,8 +25,8 @@ pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
     let folder = root.join("docs").join(PICTURES);
     fs::create_dir_all(&folder).map_err(at(&folder))?;
     for word in all() {
-        if let Some(command) = word.command {
-            shell::preview(root, program, command, &folder.join(picture(&word)))?;
+        if let (Some(command), Some(picture)) = (word.command, picture(&word)) {
+            shell::preview(root, program, command, &folder.join(picture))?;
         }
     }
     Ok(())
@@ -35,28 +35,29 @@ pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
 /// The page as Markdown.
 fn text() -> String {
     let mut out = String::from(INTRO);
-    let mut program = "";
+    let mut program = Some("");
     for word in all() {
         if word.program != program {
             program = word.program;
-            let _ = write!(out, "\n## {program}\n\n| there | here | |\n|---|---|---|\n");
+            let title = program.unwrap_or("Plain words");
+            let _ = write!(out, "\n## {title}\n\n| there | here | |\n|---|---|---|\n");
         }
         let ForeignWord { words, text, command, .. } = &word;
         let more = words[1..].iter().fold(String::new(), |all, w| format!("{all}<br>{w}"));
         let space = if text.is_empty() || command.is_none() { "" } else { "<br>" };
         let code = command.map(|c| format!("{space}`pathwarp {c}`")).unwrap_or_default();
         let image =
-            command.map(|_| format!("<img src=\"{PICTURES}/{}\" alt=\"{}\" width=\"360\">", picture(&word), words[0]));
+            picture(&word).map(|file| format!("<img src=\"{PICTURES}/{file}\" alt=\"{}\" width=\"360\">", words[0]));
         let _ = writeln!(out, "| **{}**{more} | {text}{code} | {} |", words[0], image.unwrap_or_default());
     }
     out
 }
 
-/// The file name of an entry's picture.
-fn picture(word: &ForeignWord) -> String {
-    let name = format!("{} {}", word.program, word.words[0]).to_lowercase();
+/// The file name of an entry's picture. Plain words have none.
+fn picture(word: &ForeignWord) -> Option<String> {
+    let name = format!("{} {}", word.program.filter(|_| word.command.is_some())?, word.words[0]).to_lowercase();
     let parts = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|p| !p.is_empty());
-    format!("{}.png", parts.collect::<Vec<_>>().join("-"))
+    Some(format!("{}.png", parts.collect::<Vec<_>>().join("-")))
 }
 
 #[cfg(test)]
@@ -72,7 +73,7 @@ mod tests {
             fs::read_to_string(root.join(PAGE)).unwrap() == text(),
             "{PAGE} is out of date: run `cargo xtask docs`"
         );
-        let expected: Vec<String> = all().filter(|w| w.command.is_some()).map(|w| picture(&w)).collect();
+        let expected: Vec<String> = all().filter_map(|w| picture(&w)).collect();
         let files = fs::read_dir(root.join("docs").join(PICTURES)).unwrap();
         let found: BTreeSet<String> = files.map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
         assert_eq!(expected.iter().cloned().collect::<BTreeSet<_>>(), found);

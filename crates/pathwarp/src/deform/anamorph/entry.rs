@@ -290,7 +290,7 @@ impl<'t> Words<'t> {
                 let all: Vec<String> =
                     switches.iter().map(|s| (*s).to_owned()).chain(values.iter().map(|v| format!("{v}=…"))).collect();
                 return Err(self.wrong(format!(
-                    "has `{name}`, which a {} does not have; it has {}",
+                    "has “{name}”, which a {} does not have; it has {}",
                     self.kind,
                     all.join(", ")
                 )));
