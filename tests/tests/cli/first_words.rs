@@ -304,6 +304,7 @@ fn a_batch_that_exits_1_names_the_cause() {
         "{}",
         text(&out.stderr)
     );
+    assert!(!text(&out.stderr).contains("horizon") && !text(&out.stderr).contains("anchors"), "{}", text(&out.stderr));
 }
 
 /// At 80 columns, a screen has room for the short help of every command.
