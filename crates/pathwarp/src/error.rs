@@ -142,7 +142,7 @@ pub enum GeometryError {
     },
     /// The map is infinite or undefined at a point of a shape.
     #[error(
-        "{shape} hits infinity at {}: the map has no finite value there; move the anchors so that the artwork stays on one side of the horizon, or leave this shape out",
+        "{shape} hits infinity at {}: the map has no finite value there; change the values of the deformation, move the artwork away from there, or leave this shape out",
         show(*at)
     )]
     Infinity {

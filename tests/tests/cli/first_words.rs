@@ -139,7 +139,9 @@ fn values_and_names_that_spaces_have_torn() {
             ("warp a.svg to b.svg", 2, "to is no file; the result is named with -o b.svg"),
             ("warp a.svg into", 2, "-o OUT.svg"),
             ("render a.svg out.png", 2, "-o out.png"),
-            ("render my logo.svg", 2, "quotes"),
+            ("render my logo.svg", 2, "a name with spaces needs quotes: 'my logo.svg'"),
+            ("paths my logo.svg", 2, "'my logo.svg'"),
+            ("mls a.svg --pair 5,5 6,6 -o o.svg", 2, "a pair has a colon: --pair 5,5:6,6"),
         ],
     );
     let out = pathwarp_in(dir.path(), &["text", "A", "--size", "40", "mm", "--no-system-fonts"], b"");
@@ -222,6 +224,7 @@ fn files_that_are_no_drawings_are_named() {
             fs::write(dir.path().join(file), bytes).unwrap();
             for args in [
                 vec!["warp", file, "-o", "o.svg"],
+                vec!["warp", file, "-o", "o.png"],
                 vec!["render", file, "-o", "o.png"],
                 vec!["paths", file],
                 vec!["shaper", "--shaper", file, "-o", "o.svg"],
@@ -304,6 +307,7 @@ fn a_batch_that_exits_1_names_the_cause() {
         "{}",
         text(&out.stderr)
     );
+    assert!(!text(&out.stderr).contains("horizon") && !text(&out.stderr).contains("anchors"), "{}", text(&out.stderr));
 }
 
 /// At 80 columns, a screen has room for the short help of every command.
@@ -318,7 +322,7 @@ fn short_help_fits_a_screen() {
     for words in all.iter().map(|w| w.iter().map(String::as_str).collect::<Vec<_>>()) {
         let said = |help: &str| text(&pathwarp_in(Path::new("."), &[&words[..], &[help]].concat(), b"").stdout);
         let (short, name) = (said("-h"), words.join(" "));
-        assert!((8..=40).contains(&short.lines().count()), "{name}: {} lines\n{short}", short.lines().count());
+        assert!((5..=40).contains(&short.lines().count()), "{name}: {} lines\n{short}", short.lines().count());
         assert!(short.lines().all(|l| l.chars().count() <= 80), "{name}:\n{short}");
         assert!(short.contains(&format!("pathwarp {name} --help")), "{short}");
         if registry.get(&name).is_some() {

@@ -91,6 +91,7 @@ struct Torn {
     word: String,
     /// As it has to be written.
     whole: String,
+    why: &'static str,
 }
 
 /// Returns `true` for a unit alone.
@@ -128,14 +129,22 @@ fn torn(words: &[String]) -> Option<Torn> {
         };
         let Some(next) = rest.first() else { continue };
         if is_number(first) && is_unit(next) {
-            return Some(Torn { word: next.clone(), whole: format!("{option} {first}{next}") });
+            let why = "a number and its unit are one word";
+            return Some(Torn { word: next.clone(), whole: format!("{option} {first}{next}"), why });
         }
         // Points, or path data: M 0,0 C 1,2 …
         let is_begun = is_data(first) || first.contains(',') && is_measure(first);
         let more = rest.iter().take_while(|w| (is_measure(w) || is_data(w)) && !Path::new(w).exists());
         let more: Vec<&str> = more.map(String::as_str).collect();
         if is_begun && !more.is_empty() {
-            return Some(Torn { word: next.clone(), whole: format!("{option} '{first} {}'", more.join(" ")) });
+            let (whole, why) = match option {
+                "--pair" if !first.contains(':') => (format!("{option} {first}:{next}"), "a pair has a colon"),
+                "--pair" | "--pin" | "--move" => {
+                    (format!("{option} {first} {option} {next}"), "the option is given for each value")
+                }
+                _ => (format!("{option} '{first} {}'", more.join(" ")), "a value with spaces needs quotes"),
+            };
+            return Some(Torn { word: next.clone(), whole, why });
         }
     }
     None
@@ -144,7 +153,7 @@ fn torn(words: &[String]) -> Option<Torn> {
 /// A unit that is set as text: the warning about it.
 pub(crate) fn unit_as_text(words: &[OsString], text: &[&str]) -> Option<String> {
     let words: Vec<String> = words.iter().map(|w| w.to_string_lossy().into_owned()).collect();
-    let Torn { word, whole } = torn(&words).filter(|t| text.contains(&t.word.as_str()))?;
+    let Torn { word, whole, .. } = torn(&words).filter(|t| text.contains(&t.word.as_str()))?;
     Some(format!("“{word}” is set as a line of text; if it is the unit, write it without a space: {whole}"))
 }
 
@@ -154,13 +163,8 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
     let missing = inputs.iter().position(|p| !exists(p))?;
     let name = inputs[missing].display().to_string();
     let words: Vec<String> = words.iter().map(|w| w.to_string_lossy().into_owned()).collect();
-    if let Some(Torn { whole, .. }) = torn(&words).filter(|t| inputs.iter().any(|i| *i == *t.word)) {
-        let quotes = if whole.contains('\'') {
-            "a value with spaces needs quotes"
-        } else {
-            "a number and its unit are one word"
-        };
-        return Some(format!("{name} is no file; {quotes}: {whole}"));
+    if let Some(Torn { whole, why, .. }) = torn(&words).filter(|t| inputs.iter().any(|i| *i == *t.word)) {
+        return Some(format!("{name} is no file; {why}: {whole}"));
     }
     if inputs.len() < 2 {
         return None;
@@ -185,7 +189,12 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
 }
 
 /// What to do about a word that a command takes no more of.
-pub(crate) fn surplus(word: &str, known: &[&str]) -> String {
+pub(crate) fn surplus(word: &str, words: &[OsString], known: &[&str]) -> String {
+    let last = words.iter().position(|w| w == word).and_then(|i| words.get(i.checked_sub(1)?));
+    let joined = format!("{} {word}", last.map_or_else(String::new, |w| w.to_string_lossy().into_owned()));
+    if Path::new(&joined).exists() {
+        return format!("a name with spaces needs quotes: '{joined}'");
+    }
     if known.contains(&"out") && Path::new(word).extension().is_some() {
         return format!("to write to it: -o {word}; a name with spaces needs quotes");
     }

@@ -251,7 +251,7 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             return Failure::usage(if arg.starts_with('-') {
                 format!("there is no option {arg}; {}", mistakes::option(&arg, &known))
             } else {
-                format!("{arg} is one word too many; {}", mistakes::surplus(&arg, &known))
+                format!("{arg} is one word too many; {}", mistakes::surplus(&arg, args, &known))
             });
         }
         _ => None,

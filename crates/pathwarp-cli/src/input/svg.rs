@@ -58,7 +58,7 @@ impl SvgArtwork {
         options: &CommonOptions,
         target: Option<&Path>,
     ) -> Result<Self, Failure> {
-        let format = format(options, input, target)?;
+        let format = format(options, input, target).map_err(|e| not_a_drawing(bytes, input, e))?;
         let (name, read) = (display(input), read_options(input, &options.reading));
         let doc = Document::read(bytes, &name, &read).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
         let selection = selection(options);

@@ -13,6 +13,8 @@ fn values_are_put_together_again() {
         ("projective --target 0%,100% 100%,100% 75%,0% a.svg", "--target '0%,100% 100%,100% 75%,0%'"),
         ("bend a.svg --along M0,100 Q150,20 300,100", "--along 'M0,100 Q150,20 300,100'"),
         ("bend a.svg --along M 0,100", "--along 'M 0,100'"),
+        ("mls --pair 5,5 6,6 a.svg", "--pair 5,5:6,6"),
+        ("mls --pair 5,5:6,6 7,7:8,8", "--pair 5,5:6,6 --pair 7,7:8,8"),
     ] {
         assert_eq!(whole(line).as_deref(), Some(expected), "{line}");
     }
