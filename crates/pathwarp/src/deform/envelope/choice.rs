@@ -4,7 +4,7 @@ use super::columns::{Columns, Room, bisected, filled, nothing};
 use super::corners;
 use super::distortion::{distortion, grid, stretches, turned};
 use super::fit::{Keep, Spread, fit, is_curved};
-use super::ring::{Ring, area, reversed};
+use super::ring::{Ring, area, bounds, reversed};
 use crate::deform::built::Built;
 use crate::error::{Error, show};
 use crate::map::{Coons, Jet, Map, Pace, Side, Sides};
@@ -106,7 +106,7 @@ fn honest(shape: &Subpath, ring: &Ring) -> bool {
     const UNEVEN: f64 = 2.2;
     let around: f64 = shape.segs.iter().map(area).sum();
     let pointed: Vec<Point> = corners::sharp(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
-    let size = corners::bounds(shape).size().max_side();
+    let size = bounds(shape).size().max_side();
     let is_corner =
         |p: &Point| ring.sides.iter().flat_map(|s| s.first()).any(|s| s.start().distance(*p) <= 1e-9 * size);
     if pointed.len() != 4 || !pointed.iter().all(is_corner) {

@@ -7,9 +7,8 @@
 //! leads into the higher part. Rows are the columns of the path with
 //! x and y exchanged.
 
-use super::corners;
 use super::fit::to_unit;
-use super::ring::{SAMPLES, shown};
+use super::ring::{SAMPLES, bounds, part, shown};
 use crate::deform::built::{Built, Role};
 use crate::error::{Error, show};
 use crate::map::{AffineMap, Coons, Pace, Side, Sides, increasing_root};
@@ -457,15 +456,6 @@ fn turns(s: &Seg) -> Vec<f64> {
     }
 }
 
-/// Returns a part of a segment.
-pub(super) fn part(s: &Seg, a: f64, b: f64) -> Seg {
-    match s {
-        _ if a == 0.0 && b == 1.0 => *s,
-        Seg::Arc(arc) => Seg::Arc(arc.subsegment(a, b)),
-        other => other.part(a, b).unwrap_or(*other),
-    }
-}
-
 /// Returns the zero between `a` and `b` of a function that is positive at one end only.
 pub(super) fn bisected(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rising = f(b) > 0.0;
@@ -478,7 +468,7 @@ pub(super) fn bisected(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 pub(super) fn nothing(shape: &Subpath) -> Error {
-    let b = corners::bounds(shape);
+    let b = bounds(shape);
     let problem = format!(
         "leaves no room: the shape is {:.6} × {:.6}; take less `padding` or smaller `ends`",
         b.width(),

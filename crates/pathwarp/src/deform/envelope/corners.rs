@@ -1,8 +1,7 @@
 //! A closed path divided into four sides: its corners and its bottom, given or found.
 
 use super::distortion::{distortion, turned};
-use super::columns::part;
-use super::ring::{Corners, Ring, SAMPLES, area, mirrored, reversed};
+use super::ring::{Corners, Ring, SAMPLES, area, bounds, mirrored, part, reversed};
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::map::Jet;
@@ -28,11 +27,6 @@ const DIFFERENT: f64 = 0.1;
 const MAX_PIECES: usize = 2000;
 /// A location on the path: piece and parameter.
 type Location = (usize, f64);
-
-/// Returns the box of a closed path.
-pub(super) fn bounds(sub: &Subpath) -> Rect {
-    sub.segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
-}
 
 /// Reads a closed path that encloses something.
 pub(super) fn closed(path: &NamedPath) -> Result<Subpath, Error> {

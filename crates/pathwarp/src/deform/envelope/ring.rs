@@ -1,7 +1,7 @@
 //! Four sides of an envelope, in the order in which the map uses them.
 
 use crate::outline::{Outline, Seg, Subpath};
-use kurbo::{BezPath, Point};
+use kurbo::{BezPath, Point, Rect};
 
 /// The sides' names, in the order of [`Ring::sides`].
 pub(super) const SIDES: [&str; 4] = ["bottom", "right", "top", "left"];
@@ -65,4 +65,18 @@ pub(super) fn mirrored([bottom, right, top, left]: [Vec<Seg>; 4]) -> [Vec<Seg>; 
 pub(super) fn area(s: &Seg) -> f64 {
     let at = |i: u32| s.eval(f64::from(i) / f64::from(SAMPLES)).to_vec2();
     (0..SAMPLES).map(|i| at(i).cross(at(i + 1))).sum()
+}
+
+/// Returns the box of a closed path.
+pub(super) fn bounds(sub: &Subpath) -> Rect {
+    sub.segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
+}
+
+/// Returns a part of a segment.
+pub(super) fn part(s: &Seg, a: f64, b: f64) -> Seg {
+    match s {
+        _ if a == 0.0 && b == 1.0 => *s,
+        Seg::Arc(arc) => Seg::Arc(arc.subsegment(a, b)),
+        other => other.part(a, b).unwrap_or(*other),
+    }
 }
