@@ -29,7 +29,7 @@ pub fn artwork() -> Vec<String> {
         .unwrap()
         .map(|e| e.unwrap().file_name().into_string().unwrap())
         .filter(|n| {
-            let guides = ["cages.svg", "anchors.svg", "banner.svg", "envelopes.svg", "meshes.svg"];
+            let guides = ["cages.svg", "anchors.svg", "banner.svg", "envelopes.svg", "shapes.svg", "meshes.svg"];
             n.ends_with(".svg") && !guides.contains(&n.as_str())
         })
         .collect();
