@@ -1,8 +1,8 @@
 //! A deformation, applied from its dialog.
 
 use super::guides::sorted;
-use super::line::{CHAIN, by_id, exclusions, referred, settled};
-use super::names::{ADD, AGAIN, DISCARD, REPLACE};
+use super::line::{by_id, exclusions, referred, settled};
+use super::names::{ADD, AGAIN, CHAIN, DISCARD, REPLACE};
 use super::restoring::{Restoration, as_by_hand, remembering, restored};
 use super::stage::{Scope, Stage};
 use super::{quoting, words};

@@ -1,5 +1,6 @@
 //! A recipe as the words of a command line: what it refers to, and the frame that makes it independent of the selection.
 
+use super::names::CHAIN;
 use super::stage::{Outcome, Stage};
 use crate::advice;
 use crate::failure::Failure;
@@ -11,9 +12,6 @@ use pathwarp::param::{Kind, Param, is_inline};
 use pathwarp::recipe::Recipe;
 use pathwarp_editor::selectors;
 use pathwarp_svg::objects::Object;
-
-/// The word between two steps.
-pub(super) const CHAIN: &str = "+";
 
 /// The words of a recipe's steps.
 pub(super) fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {

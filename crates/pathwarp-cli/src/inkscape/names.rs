@@ -1,6 +1,9 @@
 //! Names of parameters in the dialogs, beside those of deformations and common options. Those are in kebab case, so an underscore
 //! is free to mark what belongs to one of them.
 
+/// The word between two steps.
+pub(super) const CHAIN: &str = "+";
+
 /// The deformation to apply.
 pub(super) const DEFORMATION: &str = "inkscape-deformation";
 /// Another thing to do.

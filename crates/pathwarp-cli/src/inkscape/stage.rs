@@ -2,8 +2,7 @@
 
 use super::call::Call;
 use super::inx::labelled;
-use super::line::CHAIN;
-use super::names::WARNINGS;
+use super::names::{CHAIN, WARNINGS};
 use crate::advice::Flags;
 use crate::failure::Failure;
 use crate::options::{Given, options_without_inputs};

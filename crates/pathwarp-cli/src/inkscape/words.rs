@@ -1,8 +1,7 @@
 //! Parameters of a dialog as the words of a command line. Values that are the defaults are left out, so that recipes stay short.
 
 use super::call::Call;
-use super::line::CHAIN;
-use super::names::{FILE, NONE, PERCENT, UNIT, UNITS};
+use super::names::{CHAIN, FILE, NONE, PERCENT, UNIT, UNITS};
 use crate::options::{CommonOption, OPTIONS};
 use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param};
