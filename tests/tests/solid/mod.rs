@@ -275,7 +275,7 @@ fn warnings_and_exit_codes() {
     );
     assert!(warning(&["anamorph", "in.obj"], 2).contains("--eye is needed"));
     assert!(warning(&["ffd", "in.obj", "-o", "in.obj"], 2).contains("overwritten"));
-    assert!(warning(&["ffd", "missing.obj"], 3).contains("missing.obj: cannot be read"));
+    assert!(warning(&["ffd", "missing.obj"], 3).contains("missing.obj: there is no such file"));
     for (file, part) in [("v 0 0 0\nf 1 2 3\n", "line 2: an index"), ("v 0 0 nan\n", "line 1"), ("", "no vertices")] {
         let said = fails(dir.path(), &["ffd"], file, 3);
         assert!(said.contains(part), "{said}");
