@@ -4,9 +4,9 @@ use crate::chore::{ChoreError, at};
 use crate::shell::pipe;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
+use pathwarp::Outline;
 use pathwarp::deform::Envelope;
 use pathwarp::kurbo::{Point, Rect, Vec2};
-use pathwarp::Outline;
 use pathwarp::map::Jet;
 use std::fmt::Write as _;
 use std::fs;
@@ -123,7 +123,7 @@ pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
             let shape = format!("{SAMPLE}#{id}");
             let put = ["envelope", "-", "--envelope", &shape, "--fit", "grow", "--quiet", "-o", "-"].map(str::to_owned);
             let bent = String::from_utf8_lossy(&pipe(root, program, &put, &artwork)?).into_owned();
-            let _ = write!(sheet, "<image {} href=\"data:image/svg+xml;base64,", WHOLE);
+            let _ = write!(sheet, "<image {WHOLE} href=\"data:image/svg+xml;base64,");
             sheet.push_str(&BASE64_STANDARD.encode(on_the_sheet(&bent)));
             sheet.push_str("\"/>");
         }

@@ -86,7 +86,7 @@ impl Interval {
 }
 
 /// A vertical line: its x, the events on both sides of it, the width it stands for and its intervals.
-struct Line1 {
+struct Upright {
     x: f64,
     between: [f64; 2],
     width: f64,
@@ -117,10 +117,18 @@ impl Columns {
         let (from, to) = (low.first()?.from, low.last()?.to);
         let most = heights.iter().map(|h| h.1).fold(0.0, f64::max);
         let height = |x: f64| all.at(high, x) - all.at(low, x) - ends * most;
-        let inner = |a: f64, b: f64| if height(a) >= 0.0 { a } else { bisected(a, b, height) };
-        let first = heights.iter().find(|h| h.1 >= ends * most)?.0;
-        let last = heights.iter().rfind(|h| h.1 >= ends * most)?.0;
-        let range = [inner(from, first), inner(to, last)].map(|x| (x - from) / (to - from));
+        let step = (to - from) / heights.len() as f64;
+        // From an end of a run to where it is as high, on the way outwards.
+        let inner = |end: f64, by: f64| {
+            let beyond = (end + by).clamp(from, to);
+            if height(beyond) >= 0.0 { beyond } else { bisected(beyond, end, height) }
+        };
+        // Lettering does not run through a waist.
+        let runs = heights.chunk_by(|a, b| (a.1 >= ends * most) == (b.1 >= ends * most));
+        let size = |run: &[(f64, f64)]| run.iter().map(|h| h.1).sum::<f64>();
+        let run = runs.filter(|r| r[0].1 >= ends * most).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let (first, last) = (run[0].0, run[run.len() - 1].0);
+        let range = [inner(first, -step), inner(last, step)].map(|x| (x - from) / (to - from));
         let back = |c: &[Span]| -> Vec<Seg> { all.cut(c).iter().map(|s| s.transformed(turn)).collect() };
         let (low, high) = (back(low), back(high));
         Some(Self {
@@ -170,7 +178,7 @@ impl Region {
     }
 
     /// The vertical lines that are looked at, from left to right: some between any two ends of pieces.
-    fn lines(&self) -> Vec<Line1> {
+    fn lines(&self) -> Vec<Upright> {
         let mut events: Vec<f64> = self.pieces.iter().flat_map(|p| [p.from, p.to]).collect();
         events.sort_by(f64::total_cmp);
         events.dedup_by(|b, a| *b - *a <= 1e-11 * self.bounds.width());
@@ -184,7 +192,7 @@ impl Region {
             let width = (e[1] - e[0]) / n;
             for i in 0..n as u32 {
                 let x = e[0] + (f64::from(i) + 0.5) * width;
-                out.push(Line1 { x, between: [e[0], e[1]], width, intervals: self.intervals(&here, x) });
+                out.push(Upright { x, between: [e[0], e[1]], width, intervals: self.intervals(&here, x) });
             }
         }
         out
@@ -213,7 +221,7 @@ impl Region {
     }
 
     /// The low (0) or high (1) end of the chosen intervals as parts of pieces.
-    fn traced(&self, chosen: &[(&Line1, Interval)], end: usize) -> Vec<Span> {
+    fn traced(&self, chosen: &[(&Upright, Interval)], end: usize) -> Vec<Span> {
         let mut out: Vec<Span> = Vec::new();
         let (first, last) = (&chosen[0], &chosen[chosen.len() - 1]);
         let mut from = self.outer_end(first, first.0.between[0]);
@@ -235,7 +243,7 @@ impl Region {
     }
 
     /// Where an outermost interval ends: at the event beside it, or before that if its ends cross.
-    fn outer_end(&self, (line, v): &(&Line1, Interval), event: f64) -> f64 {
+    fn outer_end(&self, (line, v): &(&Upright, Interval), event: f64) -> f64 {
         let height = |x: f64| self.pieces[v.ends[1]].y(x) - self.pieces[v.ends[0]].y(x);
         if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
     }
@@ -398,7 +406,7 @@ impl Piece {
 }
 
 /// Returns the intervals from left to right, each meeting the next, with the largest area.
-fn largest(lines: &[Line1]) -> Option<Vec<(&Line1, Interval)>> {
+fn largest(lines: &[Upright]) -> Option<Vec<(&Upright, Interval)>> {
     // Of every interval: the largest area from it on, and the next interval.
     let mut best: Vec<Vec<(f64, Option<usize>)>> = vec![Vec::new(); lines.len()];
     for k in (0..lines.len()).rev() {
