@@ -15,10 +15,6 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::rc::Rc;
 
-/// The shift of subscripts and superscripts in parts of the font size: half of ascent and descent in Chromium, which are 1.12 to 1.17
-/// in the usual fonts.
-const SHIFT: f64 = 0.57;
-
 const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
 
 /// What an element hands on to its children.
@@ -229,13 +225,7 @@ impl Values<'_, '_, '_> {
             },
             Kind::Words => (!raw.is_empty()).then(|| lower(raw)),
             Kind::FontWeight => text::is_weight(raw).then(|| lower(raw)),
-            Kind::BaselineShift if raw.eq_ignore_ascii_case("sub") => {
-                Some(format!("{}px", -SHIFT * self.units.font).into())
-            }
-            Kind::BaselineShift if raw.eq_ignore_ascii_case("super") => {
-                Some(format!("{}px", SHIFT * self.units.font).into())
-            }
-            Kind::BaselineShift => word(&["baseline"], raw)
+            Kind::BaselineShift => word(&["baseline", "sub", "super"], raw)
                 .or_else(|| self.length(&Property { kind: Kind::Length(Sign::Any), ..*p }, raw, Sign::Any, false)),
             Kind::Link => link(raw),
             Kind::Filter => Some(self.filter(raw)),

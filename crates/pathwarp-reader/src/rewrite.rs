@@ -2,6 +2,7 @@
 
 use super::letters::{Rewritten, rewritten};
 use super::sheet::declarations;
+use super::structure;
 use super::text::Letters;
 use super::tree::{Styled, Tree, styled};
 use super::value::{percent_decoded, safe_id};
@@ -231,6 +232,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
     let mut out: Vec<Edit> =
         attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
     out.extend(names(node, renamed));
+    out.extend(structure::attributes(node).map(|(name, value)| Edit { name, value, kept: None }));
     // The origin of what only an animation turns stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
     let frozen =

@@ -112,10 +112,10 @@ fn at_root(doc: &Document<'_>) -> Inherited {
 }
 
 /// The rules of a drawing, the elements that are sheets, and what is not supported of them, in words.
-type Sheets<'a> = (Rules<'a>, BTreeSet<usize>, BTreeSet<String>);
+pub(super) type Sheets<'a> = (Rules<'a>, BTreeSet<usize>, BTreeSet<String>);
 
 /// Reads the style sheets of a drawing.
-fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exceeded> {
+pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exceeded> {
     let mut rules = Rules::default();
     let mut sheets = BTreeSet::new();
     for (e, node) in nodes.iter().enumerate().filter(|(_, n)| is_sheet(n)) {

@@ -122,8 +122,9 @@ impl<'a> Edits<'a> {
         properties.push((name, value));
     }
 
-    /// Applies all edits to the text. Edits inside a replaced element are dropped.
-    pub(crate) fn apply(self) -> String {
+    /// Applies all edits to the text. Edits inside a replaced element are dropped. Returns where elements begin that are not
+    /// replaced, too.
+    pub(crate) fn apply(self) -> (String, Vec<(ElementId, usize)>) {
         let source = self.source;
         let mut patches: Vec<(usize, usize, String)> = Vec::new();
         let changes = &self.changes;
@@ -144,16 +145,21 @@ impl<'a> Edits<'a> {
         let text = &source.text;
         let mut out = String::with_capacity(text.len() * 2);
         let mut done = 0;
+        let mut places = Vec::new();
+        let mut elements = source.elements.iter().map(|e| e.range.start).enumerate().peekable();
+        patches.push((text.len(), text.len(), String::new()));
         for (from, to, new) in patches {
             if from < done {
                 continue;
+            }
+            while let Some((e, start)) = elements.next_if(|(_, start)| *start < from) {
+                places.extend((start >= done).then(|| (e, out.len() + start - done)));
             }
             out.push_str(&text[done..from]);
             out.push_str(&new);
             done = to;
         }
-        out.push_str(&text[done..]);
-        out
+        (out, places)
     }
 }
 
@@ -264,7 +270,7 @@ mod tests {
         let s = SourceText::parse(format!("{head}{shape}</svg>"), "t").unwrap();
         let mut e = Edits::new(&s);
         edit(&mut e);
-        e.apply().strip_prefix(head).unwrap().strip_suffix("</svg>").unwrap().to_owned()
+        e.apply().0.strip_prefix(head).unwrap().strip_suffix("</svg>").unwrap().to_owned()
     }
 
     #[test]

@@ -14,6 +14,7 @@ pub(crate) mod fonts;
 pub(crate) mod images;
 pub(crate) mod live;
 mod marks;
+mod metrics;
 pub(crate) mod number;
 pub(crate) mod parallel;
 mod prefixes;

@@ -28,7 +28,7 @@ for await (const line of createInterface({ input: process.stdin })) {
   let page, answer;
   try {
     const [width, height] = size ?? [600, 600];
-    page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: scale ?? 1 });
+    page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: scale ?? 1, locale: "en-US" });
     await page.goto(pathToFileURL(file).href, { waitUntil: "load", timeout: TIMEOUT });
     answer = await page.evaluate(asked);
     if (size) {
