@@ -15,6 +15,8 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::rc::Rc;
 
+pub(super) const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
+
 const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
 
 /// What an element hands on to its children.
@@ -333,7 +335,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 }
             }
             "marker" => {
-                for p in ["marker-start", "marker-mid", "marker-end"].into_iter().filter_map(property) {
+                for p in MARKERS.into_iter().filter_map(property) {
                     self.set(p, &Declaration { name: p.name.into(), ..d.clone() });
                 }
             }
@@ -472,8 +474,14 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
             own.or_else(|| out.value(node, name)).filter(|v| *v != "inherit").map(|v| v != "none")
         };
-        let markers: Vec<bool> = ["marker-start", "marker-mid", "marker-end"].into_iter().filter_map(marker).collect();
+        let markers: Vec<bool> = MARKERS.into_iter().filter_map(marker).collect();
         inherited.marked = markers.contains(&true) || inherited.marked && markers.len() < 3;
+        if inherited.marked && matches!(tag, "rect" | "circle" | "ellipse") {
+            // usvg takes them for paths.
+            out.attributes.retain(|a| !MARKERS.contains(&a.0));
+            style.retain(|s| !MARKERS.contains(&s.0.as_ref()));
+            style.extend(MARKERS.map(|name| (name.into(), "none".into())));
+        }
         if inherited.marked
             && tag == "path"
             && let Some(new) = out.value(node, "d").and_then(off_nodes)

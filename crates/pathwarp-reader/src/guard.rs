@@ -1,6 +1,7 @@
 //! Keeps the style of an edited drawing what it was: rules of its sheets that now hit other elements are overridden.
 
 use super::cascade::applying;
+use super::computed::MARKERS;
 use super::element::Looks;
 use super::rewrite::ReadError;
 use super::sheet::{Declaration, declarations};
@@ -12,8 +13,6 @@ use roxmltree::Node;
 use selectors::context::SelectorCaches;
 use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap};
-
-const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
 
 /// Adds declarations to an edited drawing so that no rule of its style sheets gives an element what it did not have before. `kept` tells
 /// where elements of the drawing, by their numbers in document order, begin in the edited text; all others are new, and mean what their

@@ -1,6 +1,6 @@
 //! Rewrites the words of a text: in the case that its style asks for, and with marks for its direction.
 
-use super::text::{Letters, separated};
+use super::text::{Letters, SEPARATOR, separated};
 use roxmltree::{Node, NodeId};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -64,6 +64,14 @@ fn mark(line: &mut [Run<'_>]) {
     let is_letter = |c: char| !c.is_whitespace();
     for run in line.iter_mut().filter(|r| r.style.separate) {
         run.new.text = separated(&run.new.text);
+    }
+    // Browsers shape what stands in each element by itself.
+    let mut joins = false;
+    for run in line.iter_mut() {
+        if joins && run.old.starts_with(is_letter) {
+            run.new.text.insert(0, SEPARATOR);
+        }
+        joins = run.old.ends_with(is_letter) || joins && run.old.is_empty();
     }
     if let Some(last) = line.iter_mut().rfind(|r| r.old.contains(is_letter)).filter(|r| r.style.separate) {
         let at = last.new.text.trim_end().len();

@@ -29,6 +29,8 @@ pub struct Plain {
     pub unsupported: Vec<(Option<usize>, String)>,
     /// The elements with numbers out of range, which the text has not, each with the first of them.
     pub far: Vec<(usize, String)>,
+    /// The animations of style sheets that move what they animate, or change its geometry.
+    pub moving: Vec<String>,
     /// Elements that entities hold are written out, which no change tells.
     pub expanded: bool,
 }
@@ -130,8 +132,9 @@ pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
 fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>, Plain), Exceeded> {
     let text = doc.input_text();
     let nodes: Vec<Node<'_, '_>> = doc.descendants().filter(Node::is_element).collect();
-    let Tree { styles, sheets, unsupported } = styled(doc, &nodes, budget)?;
-    let mut out = Plain { unsupported: unsupported.into_iter().map(|why| (None, why)).collect(), ..Plain::default() };
+    let Tree { styles, sheets, unsupported, moving } = styled(doc, &nodes, budget)?;
+    let unsupported = unsupported.into_iter().map(|why| (None, why)).collect();
+    let mut out = Plain { unsupported, moving, ..Plain::default() };
     let mut all: Vec<(Change, String)> = Vec::new();
     let mut paths = String::new();
     // Ids that are no names: then all references stay as they are written here, also in an edited drawing.
@@ -213,7 +216,8 @@ fn words(
 ) -> Option<impl Iterator<Item = (Change, String)>> {
     let letters = styles.iter().map(|s| s.computed.letters).take(node.descendants().filter(Node::is_element).count());
     let letters: Vec<Letters> = letters.collect();
-    let new = if letters.iter().all(|l| *l == Letters::default()) { Vec::new() } else { rewritten(node, &letters)? };
+    let plain = letters.len() == 1 && letters[0] == Letters::default();
+    let new = if plain { Vec::new() } else { rewritten(node, &letters)? };
     let start = node.range().start;
     // Words of an entity stand in its declaration.
     let own = new.into_iter().filter(move |r| r.range.start > start);

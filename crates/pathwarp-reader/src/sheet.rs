@@ -48,7 +48,29 @@ pub(super) struct Rules<'a> {
     layers: HashMap<String, usize>,
     /// What is not supported, in words.
     pub(super) unsupported: BTreeSet<String>,
+    /// The animations that move what they animate, or change its geometry.
+    pub(super) moving: BTreeSet<String>,
 }
+
+/// Properties that move an element, or change its geometry.
+const MOVING: [&str; 16] = [
+    "transform",
+    "translate",
+    "rotate",
+    "scale",
+    "offset-path",
+    "offset-distance",
+    "d",
+    "x",
+    "y",
+    "width",
+    "height",
+    "cx",
+    "cy",
+    "r",
+    "rx",
+    "ry",
+];
 
 impl<'a> Rules<'a> {
     /// Adds a sheet.
@@ -129,6 +151,8 @@ pub(super) fn declarations(style: &str) -> Vec<Declaration<'_>> {
 enum Prelude {
     /// Its rules count, in this layer.
     Inside(usize),
+    /// An animation of this name.
+    Keyframes(String),
     Ignored,
 }
 
@@ -171,6 +195,7 @@ impl<'i> AtRuleParser<'i> for Sheet<'_, 'i> {
                 self.names.declare(text);
                 Prelude::Ignored
             }
+            "keyframes" | "-webkit-keyframes" => Prelude::Keyframes(text.to_owned()),
             known @ ("import" | "container" | "scope") => {
                 self.out.unsupported.insert(format!("“@{known} {text}” is ignored"));
                 Prelude::Ignored
@@ -188,6 +213,12 @@ impl<'i> AtRuleParser<'i> for Sheet<'_, 'i> {
             Prelude::Inside(layer) => {
                 let mut inner = Sheet { out: self.out, layer, names: self.names };
                 StyleSheetParser::new(input, &mut inner).for_each(drop);
+            }
+            Prelude::Keyframes(name) => {
+                let names = rest(input).split(['{', '}', ';']).filter_map(|d| Some(d.split_once(':')?.0.trim()));
+                if { names }.any(|name| MOVING.iter().any(|m| m.eq_ignore_ascii_case(name))) {
+                    self.out.moving.insert(name);
+                }
             }
             Prelude::Ignored => drop(rest(input)),
         }

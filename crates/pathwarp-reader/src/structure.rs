@@ -16,7 +16,10 @@ pub(super) fn attributes(node: Node<'_, '_>) -> impl Iterator<Item = (&'static s
     let tref = (node.tag_name().name() == "tref" && link(node).is_some()).then_some("href");
     let aspect = (node.tag_name().name() == "image").then(|| picture_aspect(node)).flatten();
     let aspect = aspect.map(|value| ("preserveAspectRatio", Some(value)));
-    let gone: Vec<_> = root.chain(tref).map(|name| (name, None)).collect();
+    // A list with anything else draws nothing.
+    let damaged =
+        node.attribute("points").is_some_and(|list| list.contains(|c: char| !"0123456789+-.,eE \t\r\n".contains(c)));
+    let gone: Vec<_> = root.chain(tref).chain(damaged.then_some("points")).map(|name| (name, None)).collect();
     gone.into_iter().chain(aspect)
 }
 

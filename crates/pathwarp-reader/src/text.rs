@@ -370,10 +370,11 @@ fn case(value: &str) -> Case {
     }
 }
 
+/// Not seen, and not passed over when ligatures and kerning are looked for. usvg adds no space after it, as it does after U+200C.
+pub(super) const SEPARATOR: char = '\u{180b}';
+
 /// Separates letters that fonts join.
 pub(super) fn separated(text: &str) -> String {
-    /// Not seen, and not passed over when ligatures are looked for. usvg adds no space after it, as it does after U+200C.
-    const SEPARATOR: char = '\u{180b}';
     let mut out = String::with_capacity(text.len() + 8);
     let mut last = ' ';
     for c in text.chars() {

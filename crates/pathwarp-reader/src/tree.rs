@@ -43,6 +43,8 @@ pub(super) struct Tree<'a> {
     pub(super) sheets: BTreeSet<usize>,
     /// What is not supported of them, in words.
     pub(super) unsupported: BTreeSet<String>,
+    /// The animations that move what they animate.
+    pub(super) moving: Vec<String>,
 }
 
 /// Computes the style of all elements.
@@ -102,7 +104,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     budget.spend_cut(Limit::Comparisons, looks.done.get())?;
     let matrices = matrices(nodes, &out);
     let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
-    Ok(Tree { styles: all.collect(), sheets, unsupported })
+    Ok(Tree { styles: all.collect(), sheets, unsupported, moving: rules.moving.into_iter().collect() })
 }
 
 /// What the root element inherits.
@@ -134,7 +136,12 @@ pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheet
             rules.add(text);
         }
     }
-    let unsupported = std::mem::take(&mut rules.unsupported);
+    let mut unsupported = std::mem::take(&mut rules.unsupported);
+    let outside = nodes.iter().take(1).flat_map(|root| root.document().root().children()).filter_map(|n| n.pi());
+    unsupported.extend(outside.filter(|pi| pi.target == "xml-stylesheet").map(|pi| {
+        let link = pi.value.unwrap_or_default().split("href=").nth(1).unwrap_or_default();
+        format!("the style sheet {} is not read", link.split(' ').next().unwrap_or_default())
+    }));
     Ok((rules, sheets, unsupported))
 }
 

@@ -40,6 +40,8 @@ pub(crate) struct SourceText {
     pub(crate) far: Vec<(ElementId, String)>,
     /// Unsupported style: the element, or `None` for style sheets, and a message.
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
+    /// Animations of style sheets that move what they animate.
+    pub(crate) moving: Vec<String>,
     marks: Marks,
     /// Outlines of `path` elements. A large drawing has them.
     pub(crate) ahead: Ahead,
@@ -69,6 +71,7 @@ impl SourceText {
             originals: plain.changes,
             far: plain.far,
             unsupported_style: plain.unsupported,
+            moving: plain.moving,
             unpatchable: read.unpatchable.clone().or(plain.expanded.then_some(Unpatchable::Entities)),
             ..read
         };
@@ -121,6 +124,7 @@ impl SourceText {
             originals: Vec::new(),
             far: Vec::new(),
             unsupported_style: Vec::new(),
+            moving: Vec::new(),
             marks,
             ahead: Ahead::default(),
             by_id: OnceLock::new(),

@@ -17,7 +17,7 @@ const asked = () => {
   const box = root.getBoundingClientRect();
   const m = root.getScreenCTM?.();
   return {
-    broken: document.getElementsByTagName("parsererror").length > 0,
+    broken: document.getElementsByTagName("parsererror").length > 0 || !/\/svg$|xhtml$/.test(root.namespaceURI ?? ""),
     right: box.right, bottom: box.bottom, matrix: m ? [m.a, m.b, m.c, m.d, m.e, m.f] : null,
   };
 };
@@ -32,6 +32,8 @@ for await (const line of createInterface({ input: process.stdin })) {
     await page.goto(pathToFileURL(file).href, { waitUntil: "load", timeout: TIMEOUT });
     answer = await page.evaluate(asked);
     if (size) {
+      // What moves is shown as it begins.
+      await page.evaluate(() => { document.documentElement.pauseAnimations?.(); document.documentElement.setCurrentTime?.(0); });
       const png = await page.screenshot({ animations: "disabled", omitBackground: true, timeout: TIMEOUT });
       answer.png = png.toString("base64");
     }

@@ -181,7 +181,8 @@ fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
     let angle = |v: Vec2| v.y.atan2(v.x);
     let between = |a: Vec2, b: Vec2| {
         let (a, b) = (angle(a), angle(b));
-        (if (a - b).abs() > PI { a + 2.0 * PI } else { a }).midpoint(b)
+        // Half a turn is taken to the left.
+        a.midpoint(a + (b - a + PI).rem_euclid(2.0 * PI) - PI)
     };
     let mut out = Vec::new();
     for subpath in steps {
