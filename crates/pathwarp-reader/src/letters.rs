@@ -1,6 +1,6 @@
 //! Rewrites the words of a text: in the case that its style asks for, and with marks for its direction.
 
-use super::text::{Letters, SEPARATOR, separated};
+use super::text::{Letters, separated};
 use roxmltree::{Node, NodeId};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -65,14 +65,6 @@ fn mark(line: &mut [Run<'_>]) {
     for run in line.iter_mut().filter(|r| r.style.separate) {
         run.new.text = separated(&run.new.text);
     }
-    // Browsers shape what stands in each element by itself.
-    let mut joins = false;
-    for run in line.iter_mut() {
-        if joins && run.old.starts_with(is_letter) {
-            run.new.text.insert(0, SEPARATOR);
-        }
-        joins = run.old.ends_with(is_letter) || joins && run.old.is_empty();
-    }
     if let Some(last) = line.iter_mut().rfind(|r| r.old.contains(is_letter)).filter(|r| r.style.separate) {
         let at = last.new.text.trim_end().len();
         last.new.text.insert(at, END);
@@ -86,6 +78,21 @@ fn mark(line: &mut [Run<'_>]) {
 
 fn is_part(node: Node<'_, '_>) -> bool {
     matches!(node.tag_name().name(), "tspan" | "textPath" | "a" | "tref")
+}
+
+/// Whether letters of different elements touch: usvg kerns them, and browsers do not.
+pub(super) fn joined(text: Node<'_, '_>) -> bool {
+    let mut ends = false;
+    text.descendants().skip(1).any(|node| {
+        if node.is_element() {
+            ends &= is_part(node) && !begins_line(node);
+            return false;
+        }
+        let letters = node.text().filter(|_| node.is_text()).unwrap_or_default();
+        let joins = ends && letters.starts_with(char::is_alphanumeric);
+        ends = letters.ends_with(char::is_alphanumeric);
+        joins
+    })
 }
 
 /// usvg sets text on a path, and text from another place on, as a line of its own.

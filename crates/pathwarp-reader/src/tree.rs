@@ -21,6 +21,8 @@ use std::rc::Rc;
 /// Size of a drawing that does not tell (CSS 2.1, section 10.3.2).
 const REPLACED: (f64, f64) = (300.0, 150.0);
 
+const MOVING: &str = "animations of style sheets (@keyframes) go the same ways as before";
+
 /// Bytes of a style sheet that are parsed in the time of a comparison.
 const PARSED: usize = 16;
 
@@ -43,8 +45,8 @@ pub(super) struct Tree<'a> {
     pub(super) sheets: BTreeSet<usize>,
     /// What is not supported of them, in words.
     pub(super) unsupported: BTreeSet<String>,
-    /// The animations that move what they animate.
-    pub(super) moving: Vec<String>,
+    /// What browsers show a little otherwise.
+    pub(super) notes: BTreeSet<(&'static str, String)>,
 }
 
 /// Computes the style of all elements.
@@ -104,7 +106,8 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     budget.spend_cut(Limit::Comparisons, looks.done.get())?;
     let matrices = matrices(nodes, &out);
     let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
-    Ok(Tree { styles: all.collect(), sheets, unsupported, moving: rules.moving.into_iter().collect() })
+    let notes = rules.moving.into_iter().map(|name| (MOVING, name)).collect();
+    Ok(Tree { styles: all.collect(), sheets, unsupported, notes })
 }
 
 /// What the root element inherits.

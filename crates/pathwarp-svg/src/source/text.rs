@@ -13,7 +13,7 @@ use pathwarp::Error;
 use pathwarp::budget::Budget;
 use pathwarp_reader::{Change, Plain, ReadError, resolve, xml};
 use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::OnceLock;
 use usvg::roxmltree;
@@ -40,8 +40,8 @@ pub(crate) struct SourceText {
     pub(crate) far: Vec<(ElementId, String)>,
     /// Unsupported style: the element, or `None` for style sheets, and a message.
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
-    /// Animations of style sheets that move what they animate.
-    pub(crate) moving: Vec<String>,
+    /// What browsers show a little otherwise: a sentence, and what it is about.
+    pub(crate) notes: BTreeSet<(&'static str, String)>,
     marks: Marks,
     /// Outlines of `path` elements. A large drawing has them.
     pub(crate) ahead: Ahead,
@@ -71,7 +71,7 @@ impl SourceText {
             originals: plain.changes,
             far: plain.far,
             unsupported_style: plain.unsupported,
-            moving: plain.moving,
+            notes: plain.notes,
             unpatchable: read.unpatchable.clone().or(plain.expanded.then_some(Unpatchable::Entities)),
             ..read
         };
@@ -124,7 +124,7 @@ impl SourceText {
             originals: Vec::new(),
             far: Vec::new(),
             unsupported_style: Vec::new(),
-            moving: Vec::new(),
+            notes: BTreeSet::new(),
             marks,
             ahead: Ahead::default(),
             by_id: OnceLock::new(),

@@ -52,8 +52,8 @@ pub(super) fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
     for (_, why) in input.source.unsupported_style.iter().filter(|(element, _)| element.is_none()) {
         notes.add("the style sheets ask for more than is supported", why);
     }
-    for name in &input.source.moving {
-        notes.add("animations of style sheets (@keyframes) go the same ways as before", name);
+    for (what, name) in &input.source.notes {
+        notes.add(what, name);
     }
 }
 

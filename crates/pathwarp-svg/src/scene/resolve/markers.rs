@@ -198,7 +198,9 @@ fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
         let closed = subpath.last().is_some_and(|s| s.0 == Element::Close);
         let at_start = if closed { between(last[1], first[0]) } else { angle(first[0]) };
         out.push(at_start);
-        out.extend(ends.windows(2).map(|w| between(w[0][1], w[1][0])));
+        // A close without length leaves as the subpath begins.
+        let out_of = |v: Vec2| if v == Vec2::ZERO { first[0] } else { v };
+        out.extend(ends.windows(2).map(|w| between(w[0][1], out_of(w[1][0]))));
         out.push(if closed { at_start } else { angle(last[1]) });
     }
     out

@@ -26,7 +26,9 @@ pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
         k.edits.rename(e, "path");
         k.remove_geometry(e);
         // Only what was a line or a polygon before has markers.
-        if matches!(tag, "rect" | "circle" | "ellipse") && k.writer.markup.may_inherit("marker") {
+        if matches!(tag, "rect" | "circle" | "ellipse")
+            && k.source.attr(e, "style").is_some_and(|s| s.contains("marker-"))
+        {
             for name in MARKERS {
                 k.edits.set_property(e, name, "none".into());
             }
