@@ -1,7 +1,6 @@
 //! Computes the style of one element: declarations that usvg reads, attributes, and the declarations of the transform.
 
 use super::color;
-use super::handles::off_nodes;
 use super::ids::{Ids, attribute};
 use super::range;
 use super::shapes::shape_length;
@@ -481,13 +480,6 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             out.attributes.retain(|a| !MARKERS.contains(&a.0));
             style.retain(|s| !MARKERS.contains(&s.0.as_ref()));
             style.extend(MARKERS.map(|name| (name.into(), "none".into())));
-        }
-        if inherited.marked
-            && tag == "path"
-            && let Some(new) = out.value(node, "d").and_then(off_nodes)
-        {
-            out.attributes.retain(|a| a.0 != "d");
-            out.attributes.push(("d", Some(new)));
         }
         if tag == "use"
             && let Some(symbol) = self.values.ids.target(node).filter(|n| n.tag_name().name() == "symbol")

@@ -22,7 +22,6 @@ mod color;
 mod computed;
 mod element;
 mod guard;
-mod handles;
 mod ids;
 mod letters;
 mod media;

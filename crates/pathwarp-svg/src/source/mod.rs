@@ -18,7 +18,6 @@ mod metrics;
 pub(crate) mod number;
 pub(crate) mod parallel;
 mod prefixes;
-mod quoted;
 pub(crate) mod read;
 pub(crate) mod select;
 pub(crate) mod stack;
