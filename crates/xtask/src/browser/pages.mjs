@@ -17,7 +17,7 @@ const asked = () => {
   const box = root.getBoundingClientRect();
   const m = root.getScreenCTM?.();
   return {
-    broken: document.getElementsByTagName("parsererror").length > 0 || !/\/svg$|xhtml$/.test(root.namespaceURI ?? ""),
+    broken: document.getElementsByTagName("parsererror").length > 0 || document.contentType.includes("svg") && root.namespaceURI != "http://www.w3.org/2000/svg",
     right: box.right, bottom: box.bottom, matrix: m ? [m.a, m.b, m.c, m.d, m.e, m.f] : null,
   };
 };

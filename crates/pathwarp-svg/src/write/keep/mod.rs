@@ -24,7 +24,6 @@ use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::source::unpatchable::Unpatchable;
 use keeper::Keeper;
-use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::guarded;
 use warped::Warped;
@@ -64,9 +63,7 @@ pub(super) fn write(
     if !input.source.has_css() {
         return Ok(text);
     }
-    // The style of the drawing has been read within the limits; what is written has a budget of its own.
-    let budget = Budget::new(*input.drawing.budget.limits());
-    let guarded = guarded(&input.source.as_in_file(), &text, &places, &budget);
+    let guarded = guarded(&input.source.as_in_file(), &text, &places, &input.drawing.budget);
     Ok(guarded.ok().flatten().unwrap_or(text))
 }
 
