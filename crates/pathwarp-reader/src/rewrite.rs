@@ -21,14 +21,13 @@ const WRITTEN: usize = 16;
 const KERNED: &str = "letters of different elements of a text are kerned, which browsers do not do";
 
 /// Words that style and attributes are searched for, whether they are units, and what is done otherwise.
-const HINTS: [(&str, bool, &str); 9] = [
+const HINTS: [(&str, bool, &str); 8] = [
     ("vw", true, WINDOW),
     ("vh", true, WINDOW),
     ("vmin", true, WINDOW),
     ("vmax", true, WINDOW),
     ("ex", true, "ex and ch are half an em in every font"),
     ("ch", true, "ex and ch are half an em in every font"),
-    ("systemLanguage", false, "its reader is taken to read English (systemLanguage)"),
     ("<tref", false, "tref shows nothing, as in browsers"),
     ("font-variation-settings", false, "font-variation-settings apply to installed fonts, too"),
 ];
