@@ -481,6 +481,22 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             style.retain(|s| !MARKERS.contains(&s.0.as_ref()));
             style.extend(MARKERS.map(|name| (name.into(), "none".into())));
         }
+        if matches!(tag, "tspan" | "textPath") {
+            // It is a property of whole texts.
+            style.retain(|s| s.0 != "writing-mode");
+            out.attributes.retain(|a| a.0 != "writing-mode");
+            out.attributes.extend(node.has_attribute("writing-mode").then_some(("writing-mode", None)));
+            let own = |name: &str| {
+                let value = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
+                value.or_else(|| out.value(node, name)).is_some_and(|v| !matches!(v, "none" | "inherit"))
+            };
+            let effect = ["clip-path", "mask", "filter"].into_iter().find(|name| own(name));
+            out.unsupported
+                .extend(effect.map(|name| format!("only without its {name}, which parts of texts cannot have")));
+            if tag == "textPath" && self.values.ids.target(node).is_some_and(|n| n.tag_name().name() != "path") {
+                out.attributes.push(("href", None));
+            }
+        }
         if tag == "use"
             && let Some(symbol) = self.values.ids.target(node).filter(|n| n.tag_name().name() == "symbol")
         {

@@ -17,8 +17,9 @@ pub(super) fn attributes(node: Node<'_, '_>) -> impl Iterator<Item = (&'static s
     let aspect = (node.tag_name().name() == "image").then(|| picture_aspect(node)).flatten();
     let aspect = aspect.map(|value| ("preserveAspectRatio", Some(value)));
     // A list with anything else draws nothing.
-    let damaged =
-        node.attribute("points").is_some_and(|list| list.contains(|c: char| !"0123456789+-.,eE \t\r\n".contains(c)));
+    let is_list =
+        |b: u8| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b',' | b'e' | b'E') || b.is_ascii_whitespace();
+    let damaged = node.attribute("points").is_some_and(|list| !list.bytes().all(is_list));
     let gone: Vec<_> = root.chain(tref).chain(damaged.then_some("points")).map(|name| (name, None)).collect();
     gone.into_iter().chain(aspect)
 }

@@ -6,13 +6,14 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// The longhands that `font` sets, with their initial values.
-const FONT: [(&str, &str); 6] = [
+const FONT: [(&str, &str); 7] = [
     ("font-style", "normal"),
     ("font-variant", "normal"),
     ("font-weight", "normal"),
     ("font-stretch", "normal"),
     ("font-size", "medium"),
     ("font-family", "serif"),
+    ("font-kerning", "auto"),
 ];
 
 /// Widths by their keywords, in percent.

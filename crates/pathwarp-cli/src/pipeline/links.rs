@@ -1,5 +1,6 @@
 //! Relative links of a drawing that is written to another folder: they lead to the same files as before.
 
+use memchr::memmem;
 use std::borrow::Cow;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -45,7 +46,7 @@ fn way(from: &Path, to: &Path) -> Option<String> {
 
 /// Where relative links to files begin: in attributes and in `url()`.
 fn links(text: &str) -> Vec<usize> {
-    let after = |mark: &'static str| text.match_indices(mark).map(move |(at, _)| at + mark.len());
+    let after = |mark: &'static str| memmem::find_iter(text.as_bytes(), mark).map(move |at| at + mark.len());
     let attributes = after("href").filter_map(|at| {
         let value = text[at..].trim_start().strip_prefix('=')?.trim_start();
         Some(text.len() - value.strip_prefix(['"', '\''])?.trim_start().len())

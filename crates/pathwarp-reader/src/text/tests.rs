@@ -4,14 +4,14 @@ use super::*;
 fn fonts() {
     let of = |v: &str| font(v).map(|all| all.into_iter().map(|(_, v)| v).collect::<Vec<_>>().join("|"));
     for (from, to) in [
-        ("12px/1.5 Arial", "normal|normal|normal|normal|12px|Arial"),
+        ("12px/1.5 Arial", "normal|normal|normal|normal|12px|Arial|auto"),
         (
             "italic small-caps bold condensed 1.5em / 2 'A b', serif",
-            "italic|small-caps|bold|condensed|1.5em|'A b', serif",
+            "italic|small-caps|bold|condensed|1.5em|'A b', serif|auto",
         ),
-        ("oblique 10deg 350 larger x", "oblique|normal|350|normal|larger|x"),
-        ("120% \"Lucida Grande\"", "normal|normal|normal|normal|120%|\"Lucida Grande\""),
-        ("inherit", "inherit|inherit|inherit|inherit|inherit|inherit"),
+        ("oblique 10deg 350 larger x", "oblique|normal|350|normal|larger|x|auto"),
+        ("120% \"Lucida Grande\"", "normal|normal|normal|normal|120%|\"Lucida Grande\"|auto"),
+        ("inherit", "inherit|inherit|inherit|inherit|inherit|inherit|inherit"),
     ] {
         assert_eq!(of(from).as_deref(), Some(to), "{from}");
     }
