@@ -1,7 +1,6 @@
 //! Computes the style of one element: declarations that usvg reads, attributes, and the declarations of the transform.
 
 use super::color;
-use super::handles::off_nodes;
 use super::ids::{Ids, attribute};
 use super::range;
 use super::shapes::shape_length;
@@ -15,9 +14,7 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::rc::Rc;
 
-/// The shift of subscripts and superscripts in parts of the font size: half of ascent and descent in Chromium, which are 1.12 to 1.17
-/// in the usual fonts.
-const SHIFT: f64 = 0.57;
+pub(super) const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
 
 const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
 
@@ -229,13 +226,7 @@ impl Values<'_, '_, '_> {
             },
             Kind::Words => (!raw.is_empty()).then(|| lower(raw)),
             Kind::FontWeight => text::is_weight(raw).then(|| lower(raw)),
-            Kind::BaselineShift if raw.eq_ignore_ascii_case("sub") => {
-                Some(format!("{}px", -SHIFT * self.units.font).into())
-            }
-            Kind::BaselineShift if raw.eq_ignore_ascii_case("super") => {
-                Some(format!("{}px", SHIFT * self.units.font).into())
-            }
-            Kind::BaselineShift => word(&["baseline"], raw)
+            Kind::BaselineShift => word(&["baseline", "sub", "super"], raw)
                 .or_else(|| self.length(&Property { kind: Kind::Length(Sign::Any), ..*p }, raw, Sign::Any, false)),
             Kind::Link => link(raw),
             Kind::Filter => Some(self.filter(raw)),
@@ -343,7 +334,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 }
             }
             "marker" => {
-                for p in ["marker-start", "marker-mid", "marker-end"].into_iter().filter_map(property) {
+                for p in MARKERS.into_iter().filter_map(property) {
                     self.set(p, &Declaration { name: p.name.into(), ..d.clone() });
                 }
             }
@@ -482,14 +473,29 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
             own.or_else(|| out.value(node, name)).filter(|v| *v != "inherit").map(|v| v != "none")
         };
-        let markers: Vec<bool> = ["marker-start", "marker-mid", "marker-end"].into_iter().filter_map(marker).collect();
+        let markers: Vec<bool> = MARKERS.into_iter().filter_map(marker).collect();
         inherited.marked = markers.contains(&true) || inherited.marked && markers.len() < 3;
-        if inherited.marked
-            && tag == "path"
-            && let Some(new) = out.value(node, "d").and_then(off_nodes)
-        {
-            out.attributes.retain(|a| a.0 != "d");
-            out.attributes.push(("d", Some(new)));
+        if inherited.marked && matches!(tag, "rect" | "circle" | "ellipse") {
+            // usvg takes them for paths.
+            out.attributes.retain(|a| !MARKERS.contains(&a.0));
+            style.retain(|s| !MARKERS.contains(&s.0.as_ref()));
+            style.extend(MARKERS.map(|name| (name.into(), "none".into())));
+        }
+        if matches!(tag, "tspan" | "textPath") {
+            // It is a property of whole texts.
+            style.retain(|s| s.0 != "writing-mode");
+            out.attributes.retain(|a| a.0 != "writing-mode");
+            out.attributes.extend(node.has_attribute("writing-mode").then_some(("writing-mode", None)));
+            let own = |name: &str| {
+                let value = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
+                value.or_else(|| out.value(node, name)).is_some_and(|v| !matches!(v, "none" | "inherit"))
+            };
+            let effect = ["clip-path", "mask", "filter"].into_iter().find(|name| own(name));
+            out.unsupported
+                .extend(effect.map(|name| format!("only without its {name}, which parts of texts cannot have")));
+            if tag == "textPath" && self.values.ids.target(node).is_some_and(|n| n.tag_name().name() != "path") {
+                out.attributes.push(("href", None));
+            }
         }
         if tag == "use"
             && let Some(symbol) = self.values.ids.target(node).filter(|n| n.tag_name().name() == "symbol")

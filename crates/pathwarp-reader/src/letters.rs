@@ -80,6 +80,21 @@ fn is_part(node: Node<'_, '_>) -> bool {
     matches!(node.tag_name().name(), "tspan" | "textPath" | "a" | "tref")
 }
 
+/// Whether letters of different elements touch: usvg kerns them, and browsers do not.
+pub(super) fn joined(text: Node<'_, '_>) -> bool {
+    let mut ends = false;
+    text.descendants().skip(1).any(|node| {
+        if node.is_element() {
+            ends &= is_part(node) && !begins_line(node);
+            return false;
+        }
+        let letters = node.text().filter(|_| node.is_text()).unwrap_or_default();
+        let joins = ends && letters.starts_with(char::is_alphanumeric);
+        ends = letters.ends_with(char::is_alphanumeric);
+        joins
+    })
+}
+
 /// usvg sets text on a path, and text from another place on, as a line of its own.
 fn begins_line(node: Node<'_, '_>) -> bool {
     ["x", "y"].iter().any(|a| node.has_attribute(*a)) || node.tag_name().name() == "textPath"

@@ -1,19 +1,49 @@
 //! Writes computed style into the text.
 
-use super::letters::{Rewritten, rewritten};
+use super::letters::{Rewritten, joined, rewritten};
 use super::sheet::declarations;
+use super::structure;
 use super::text::Letters;
 use super::tree::{Styled, Tree, styled};
 use super::value::{percent_decoded, safe_id};
 use super::xml::{self, escape};
+use memchr::memmem;
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp::kurbo::Affine;
 use roxmltree::{Document, NS_XML_URI, Node};
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// Bytes of style that are written in the time of a comparison.
 const WRITTEN: usize = 16;
+
+const KERNED: &str = "letters of different elements of a text are kerned, which browsers do not do";
+
+/// Words that style and attributes are searched for, whether they are units, and what is done otherwise.
+const HINTS: [(&str, bool, &str); 8] = [
+    ("vw", true, WINDOW),
+    ("vh", true, WINDOW),
+    ("vmin", true, WINDOW),
+    ("vmax", true, WINDOW),
+    ("ex", true, "ex and ch are half an em in every font"),
+    ("ch", true, "ex and ch are half an em in every font"),
+    ("<tref", false, "tref shows nothing, as in browsers"),
+    ("font-variation-settings", false, "font-variation-settings apply to installed fonts, too"),
+];
+const WINDOW: &str = "lengths in vw and vh refer to the drawing, not to a window around it";
+
+/// What is done otherwise, by the words of a drawing.
+fn hints(text: &str) -> impl Iterator<Item = &'static str> {
+    let is_unit = |at: usize, word: &str| {
+        let (before, after) = (text.as_bytes().get(at.wrapping_sub(1)), text.as_bytes().get(at + word.len()));
+        before.is_some_and(u8::is_ascii_digit) && after.is_none_or(|b| b";)}\"', \n\t".contains(b))
+    };
+    let found = move |&&(word, unit, _): &&(&str, bool, &str)| {
+        memmem::find_iter(text.as_bytes(), word).any(|at| !unit || is_unit(at, word))
+    };
+    HINTS.iter().filter(found).map(|h| h.2)
+}
 
 const SINGLE_LETTERS: &str = "only from left to right, as its letters have positions of their own";
 
@@ -28,6 +58,8 @@ pub struct Plain {
     pub unsupported: Vec<(Option<usize>, String)>,
     /// The elements with numbers out of range, which the text has not, each with the first of them.
     pub far: Vec<(usize, String)>,
+    /// What browsers show a little otherwise: a sentence, and what it is about.
+    pub notes: BTreeSet<(&'static str, String)>,
     /// Elements that entities hold are written out, which no change tells.
     pub expanded: bool,
 }
@@ -129,8 +161,10 @@ pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
 fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>, Plain), Exceeded> {
     let text = doc.input_text();
     let nodes: Vec<Node<'_, '_>> = doc.descendants().filter(Node::is_element).collect();
-    let Tree { styles, sheets, unsupported } = styled(doc, &nodes, budget)?;
-    let mut out = Plain { unsupported: unsupported.into_iter().map(|why| (None, why)).collect(), ..Plain::default() };
+    let Tree { styles, sheets, unsupported, mut notes } = styled(doc, &nodes, budget)?;
+    let unsupported = unsupported.into_iter().map(|why| (None, why)).collect();
+    notes.extend(hints(text).map(|hint| (hint, String::new())));
+    let mut out = Plain { unsupported, notes, ..Plain::default() };
     let mut all: Vec<(Change, String)> = Vec::new();
     let mut paths = String::new();
     // Ids that are no names: then all references stay as they are written here, also in an edited drawing.
@@ -142,6 +176,9 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
             all.push(Edit { name: "type", value: Some("text/plain".to_owned()), kept: None }.of(text, e, *node));
         }
         if node.tag_name().name() == "text" {
+            if joined(*node) {
+                out.notes.insert((KERNED, node.attribute("id").unwrap_or_default().to_owned()));
+            }
             match words(text, e, *node, &styles[e..]) {
                 Some(new) => all.extend(new),
                 None => out.unsupported.push((Some(e), SINGLE_LETTERS.to_owned())),
@@ -231,6 +268,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
     let mut out: Vec<Edit> =
         attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
     out.extend(names(node, renamed));
+    out.extend(structure::attributes(node).map(|(name, value)| Edit { name, value, kept: None }));
     // The origin of what only an animation turns stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
     let frozen =

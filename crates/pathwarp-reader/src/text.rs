@@ -6,13 +6,14 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// The longhands that `font` sets, with their initial values.
-const FONT: [(&str, &str); 6] = [
+const FONT: [(&str, &str); 7] = [
     ("font-style", "normal"),
     ("font-variant", "normal"),
     ("font-weight", "normal"),
     ("font-stretch", "normal"),
     ("font-size", "medium"),
     ("font-family", "serif"),
+    ("font-kerning", "auto"),
 ];
 
 /// Widths by their keywords, in percent.
@@ -370,10 +371,11 @@ fn case(value: &str) -> Case {
     }
 }
 
+/// Not seen, and not passed over when ligatures and kerning are looked for. usvg adds no space after it, as it does after U+200C.
+pub(super) const SEPARATOR: char = '\u{180b}';
+
 /// Separates letters that fonts join.
 pub(super) fn separated(text: &str) -> String {
-    /// Not seen, and not passed over when ligatures are looked for. usvg adds no space after it, as it does after U+200C.
-    const SEPARATOR: char = '\u{180b}';
     let mut out = String::with_capacity(text.len() + 8);
     let mut last = ' ';
     for c in text.chars() {
@@ -413,47 +415,4 @@ impl Case {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fonts() {
-        let of = |v: &str| font(v).map(|all| all.into_iter().map(|(_, v)| v).collect::<Vec<_>>().join("|"));
-        for (from, to) in [
-            ("12px/1.5 Arial", "normal|normal|normal|normal|12px|Arial"),
-            (
-                "italic small-caps bold condensed 1.5em / 2 'A b', serif",
-                "italic|small-caps|bold|condensed|1.5em|'A b', serif",
-            ),
-            ("oblique 10deg 350 larger x", "oblique|normal|350|normal|larger|x"),
-            ("120% \"Lucida Grande\"", "normal|normal|normal|normal|120%|\"Lucida Grande\""),
-            ("inherit", "inherit|inherit|inherit|inherit|inherit|inherit"),
-        ] {
-            assert_eq!(of(from).as_deref(), Some(to), "{from}");
-        }
-        for bad in ["caption", "12px", "bold Arial", "", "12px/", "red 12px Arial"] {
-            assert_eq!(of(bad), None, "{bad}");
-        }
-    }
-
-    #[test]
-    fn weights_and_widths() {
-        let of = |v: &str, parent| weight(v, parent).unwrap();
-        assert_eq!([of("bolder", 100), of("bolder", 400), of("bolder", 700), of("bolder", 900)], [400, 700, 900, 900]);
-        assert_eq!([of("lighter", 300), of("lighter", 600), of("lighter", 900)], [100, 400, 700]);
-        assert_eq!([of("350", 400), of("1000", 400), of("bold", 100)], [400, 900, 700]);
-        assert_eq!(weight("0", 400), None);
-        assert_eq!(
-            [width("75%"), width("95%"), width("300%"), width("wide")],
-            [Some("condensed"), Some("normal"), Some("ultra-expanded"), None]
-        );
-    }
-
-    #[test]
-    fn cases() {
-        assert_eq!(Case::Upper.of("straße é", None), "STRASSE É");
-        assert_eq!(Case::Capitalized.of("it's a d-day ünder", Some('x')), "it's A D-Day Ünder");
-        assert_eq!(Case::Capitalized.of("ab", None), "Ab");
-        assert_eq!(separated("office fit Th"), "of\u{180b}f\u{180b}ice f\u{180b}it T\u{180b}h");
-    }
-}
+mod tests;

@@ -21,6 +21,8 @@ use std::rc::Rc;
 /// Size of a drawing that does not tell (CSS 2.1, section 10.3.2).
 const REPLACED: (f64, f64) = (300.0, 150.0);
 
+const MOVING: &str = "animations of style sheets (@keyframes) go the same ways as before";
+
 /// Bytes of a style sheet that are parsed in the time of a comparison.
 const PARSED: usize = 16;
 
@@ -43,6 +45,8 @@ pub(super) struct Tree<'a> {
     pub(super) sheets: BTreeSet<usize>,
     /// What is not supported of them, in words.
     pub(super) unsupported: BTreeSet<String>,
+    /// What browsers show a little otherwise.
+    pub(super) notes: BTreeSet<(&'static str, String)>,
 }
 
 /// Computes the style of all elements.
@@ -102,7 +106,8 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     budget.spend_cut(Limit::Comparisons, looks.done.get())?;
     let matrices = matrices(nodes, &out);
     let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
-    Ok(Tree { styles: all.collect(), sheets, unsupported })
+    let notes = rules.moving.into_iter().map(|name| (MOVING, name)).collect();
+    Ok(Tree { styles: all.collect(), sheets, unsupported, notes })
 }
 
 /// What the root element inherits.
@@ -112,10 +117,10 @@ fn at_root(doc: &Document<'_>) -> Inherited {
 }
 
 /// The rules of a drawing, the elements that are sheets, and what is not supported of them, in words.
-type Sheets<'a> = (Rules<'a>, BTreeSet<usize>, BTreeSet<String>);
+pub(super) type Sheets<'a> = (Rules<'a>, BTreeSet<usize>, BTreeSet<String>);
 
 /// Reads the style sheets of a drawing.
-fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exceeded> {
+pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exceeded> {
     let mut rules = Rules::default();
     let mut sheets = BTreeSet::new();
     for (e, node) in nodes.iter().enumerate().filter(|(_, n)| is_sheet(n)) {
@@ -134,7 +139,12 @@ fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exce
             rules.add(text);
         }
     }
-    let unsupported = std::mem::take(&mut rules.unsupported);
+    let mut unsupported = std::mem::take(&mut rules.unsupported);
+    let outside = nodes.iter().take(1).flat_map(|root| root.document().root().children()).filter_map(|n| n.pi());
+    unsupported.extend(outside.filter(|pi| pi.target == "xml-stylesheet").map(|pi| {
+        let link = pi.value.unwrap_or_default().split("href=").nth(1).unwrap_or_default();
+        format!("the style sheet {} is not read", link.split(' ').next().unwrap_or_default())
+    }));
     Ok((rules, sheets, unsupported))
 }
 

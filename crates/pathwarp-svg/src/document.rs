@@ -129,19 +129,33 @@ impl Document {
         self.drawing.shapes()
     }
 
-    /// Bounding box of the selected painted shapes, without stroke widths.
+    /// Bounding box of the selected painted shapes, without stroke widths, and of pictures.
     #[must_use]
     pub fn artwork_box(&self, selection: &Selection) -> Option<Rect> {
-        let boxes = self.selected(selection).filter_map(|s| s.outline.bounding_box());
-        boxes.filter(Rect::is_finite).reduce(|a, b| a.union(b))
+        let shapes = self.selected(selection).filter_map(|s| s.outline.bounding_box());
+        let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection));
+        let pictures = bitmaps.filter(|b| b.1).filter_map(|b| seen::picture_box(b.0));
+        shapes.chain(pictures).filter(Rect::is_finite).reduce(|a, b| a.union(b))
     }
 
-    /// Bounding box of what is seen of the selected shapes, without stroke widths: not what clip paths, masks and zero opacity
+    /// Which bitmaps are selected.
+    fn selected_bitmaps(&self, selection: &Selection) -> Vec<bool> {
+        let elements = selection.resolve(&self.drawing.source);
+        let bitmaps = self.drawing.scene().bitmaps.iter();
+        bitmaps.map(|b| b.bends && b.owner.map_or(selection.is_everything(), |e| elements[e])).collect()
+    }
+
+    fn counted(&self, selection: &Selection) -> seen::Counted {
+        let parts = self.drawing.selected_parts(selection).to_vec();
+        seen::Counted { parts, bitmaps: self.selected_bitmaps(selection) }
+    }
+
+    /// Bounding box of what is seen of the selected shapes, without stroke widths, and pictures: not what clip paths, masks and zero opacity
     /// hide, nor what lies off the page. If nothing is seen, the same as [`Document::artwork_box`].
     #[must_use]
     pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
-        let selected = self.drawing.selected_parts(selection);
-        let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &|i| selected[i]);
+        let counted = self.counted(selection);
+        let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
         seen.or_else(|| self.artwork_box(selection))
     }
 
@@ -152,8 +166,7 @@ impl Document {
         if seen.x0 > page.x0 && seen.y0 > page.y0 && seen.x1 < page.x1 && seen.y1 < page.y1 {
             return None;
         }
-        let selected = self.drawing.selected_parts(selection);
-        seen::uncut_box(self.drawing.scene(), page, &|i| selected[i]).filter(|b| *b != seen)
+        seen::uncut_box(self.drawing.scene(), page, &self.counted(selection)).filter(|b| *b != seen)
     }
 
     /// The selected painted shapes, in painting order.
@@ -165,10 +178,7 @@ impl Document {
     /// Returns `true` if the selection holds a painted shape or a bitmap.
     #[must_use]
     pub fn has_artwork(&self, selection: &Selection) -> bool {
-        let elements = selection.resolve(&self.drawing.source);
-        let mut bitmaps = self.drawing.scene().bitmaps.iter();
-        self.selected(selection).next().is_some()
-            || bitmaps.any(|b| b.owner.map_or(selection.is_everything(), |e| elements[e]))
+        self.selected(selection).next().is_some() || self.selected_bitmaps(selection).contains(&true)
     }
 
     /// Checks that every selector matches something.

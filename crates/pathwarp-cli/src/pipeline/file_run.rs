@@ -1,7 +1,7 @@
 //! The run of one input: open, look up references, choose the frame, build, warp, report.
 
-use super::beyond;
 use super::plan::Job;
+use super::{beyond, links};
 use crate::advice::{self, Flags};
 use crate::failure::Failure;
 use crate::input::{Artwork, Baseline, Input, WarpRequest, WarpedResult, Which};
@@ -62,7 +62,9 @@ impl Batch<'_> {
         let mut files = Vec::new();
         match (result, target) {
             (WarpedResult::File(file), _) => files.push(file),
-            (WarpedResult::Bytes(bytes), Some(t)) => files.push(PendingFile::new(t, &bytes)?),
+            (WarpedResult::Bytes(bytes), Some(t)) => {
+                files.push(PendingFile::new(t, &links::moved(&bytes, &job.input, t))?);
+            }
             (WarpedResult::Bytes(bytes), None) => files.push(PendingFile::stdout(bytes)),
         }
         files.extend(others);

@@ -5,6 +5,7 @@ mod beyond;
 mod file_run;
 mod folders;
 mod inputs;
+mod links;
 mod memory;
 mod messages;
 mod naming;

@@ -29,7 +29,7 @@ pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option
     let pixels = b.image.size();
     let area = Rect::new(0.0, 0.0, f64::from(pixels.width()), f64::from(pixels.height()));
     let write = written(scene, slots, b.slot, b.frame);
-    if !b.bends || !b.image.is_visible() || !is_invertible(b.frame) || !is_invertible(write) {
+    if !b.bends || b.is_unread() || !b.image.is_visible() || !is_invertible(b.frame) || !is_invertible(write) {
         return EmbeddedImage::Placed;
     }
     let fit = paint::fit(area, b.frame, write, *map);

@@ -1,6 +1,7 @@
 //! The drawing as it is painted: usvg's tree in f64. Each shape has its source element, its exact outline and its transform to
 //! root user space, the coordinate system inside the root `<svg>` (viewBox units).
 
+use crate::source::images::is_unread;
 use crate::source::tags::ElementId;
 use crate::source::unpatchable::Unpatchable;
 use pathwarp::Outline;
@@ -216,6 +217,13 @@ pub(crate) struct Bitmap {
     pub(crate) bends: bool,
     /// `true` if the image is cropped to its viewport.
     pub(crate) sliced: bool,
+}
+
+impl Bitmap {
+    /// Whether it stands for a picture that was not read.
+    pub(crate) fn is_unread(&self) -> bool {
+        is_unread(self.image.kind())
+    }
 }
 
 /// A clip path in one frame.

@@ -1,37 +1,50 @@
 //! The part of a drawing that is seen: not what clip paths, masks and zero opacity hide, nor what lies off the page.
 
-use super::model::{Group, Node, Part, PartRole, Scene};
+use super::model::{Bitmap, Group, Node, Part, PartRole, Scene};
 use pathwarp::kurbo::Rect;
 
-/// Bounding box, without stroke widths, of what is seen of the parts that count. `page` is the visible area, if there is one.
-pub(crate) fn seen_box(scene: &Scene, page: Option<Rect>, counts: &dyn Fn(usize) -> bool) -> Option<Rect> {
-    in_group(scene, &scene.root, page, counts, &|_| true)
+/// What counts: flags of parts and of bitmaps.
+pub(crate) struct Counted {
+    pub(crate) parts: Vec<bool>,
+    pub(crate) bitmaps: Vec<bool>,
 }
 
-/// The same, with what of those parts lies off the page.
-pub(crate) fn uncut_box(scene: &Scene, page: Rect, counts: &dyn Fn(usize) -> bool) -> Option<Rect> {
-    in_group(scene, &scene.root, None, counts, &|b| overlap(b, page).is_some())
+/// Bounding box, without stroke widths, of what is seen of what counts. `page` is the visible area, if there is one.
+pub(crate) fn seen_box(scene: &Scene, page: Option<Rect>, counted: &Counted) -> Option<Rect> {
+    in_group(scene, &scene.root, page, counted, &|_| true)
 }
 
-/// Bounding box of what `room` leaves of the parts that count, as far as the box of a part is `kept`.
+/// The same, with what of it lies off the page.
+pub(crate) fn uncut_box(scene: &Scene, page: Rect, counted: &Counted) -> Option<Rect> {
+    in_group(scene, &scene.root, None, counted, &|b| overlap(b, page).is_some())
+}
+
+/// The place of a bitmap in root user space. `None` if it is hidden, or stands for one that was not read.
+pub(crate) fn picture_box(b: &Bitmap) -> Option<Rect> {
+    let (size, shown) = (b.image.size(), b.image.is_visible() && !b.is_unread());
+    let pixels = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
+    shown.then(|| b.frame.transform_rect_bbox(pixels)).filter(Rect::is_finite)
+}
+
+/// Bounding box of what `room` leaves of what counts, as far as the box of each is `kept`.
 fn in_group(
     scene: &Scene,
     g: &Group,
     room: Option<Rect>,
-    counts: &dyn Fn(usize) -> bool,
+    counted: &Counted,
     kept: &dyn Fn(Rect) -> bool,
 ) -> Option<Rect> {
     let room = room_in(scene, g, room)?;
+    let left = |all: Rect| room.map_or(Some(all), |room| overlap(all, room)).filter(|b| kept(*b));
     let one = |n: &Node| match n {
-        Node::Group(g) => in_group(scene, g, room, counts, kept),
-        Node::Text { content, .. } => in_group(scene, content, room, counts, kept),
+        Node::Group(g) => in_group(scene, g, room, counted, kept),
+        Node::Text { content, .. } => in_group(scene, content, room, counted, kept),
         Node::Part(i) => {
             let p = &scene.parts[*i];
-            let seen = is_seen(p) && p.role == PartRole::Paint && counts(*i);
-            let all = p.outline().bounding_box().filter(|b| seen && b.is_finite())?;
-            room.map_or(Some(all), |room| overlap(all, room)).filter(|b| kept(*b))
+            let seen = is_seen(p) && p.role == PartRole::Paint && counted.parts[*i];
+            left(p.outline().bounding_box().filter(|b| seen && b.is_finite())?)
         }
-        Node::Image(_) => None,
+        Node::Image(i) => left(picture_box(&scene.bitmaps[*i]).filter(|_| counted.bitmaps[*i])?),
     };
     g.children.iter().filter_map(one).reduce(|a, b| a.union(b))
 }

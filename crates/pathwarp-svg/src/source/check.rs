@@ -1,6 +1,5 @@
 //! The check of a drawing before it is resolved: everything that references, style sheets and text make of it is counted.
 
-use super::quoted::{self, Quoted};
 use super::unfold;
 use memchr::{memchr2, memmem};
 use pathwarp::budget::{Budget, Exceeded, Limit};
@@ -43,17 +42,15 @@ impl Features {
 /// Returns [`Error::Input`] if it exceeds the budget or nests too deeply.
 pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<Features, Error> {
     let features = Features::of(xml);
-    let mut quoted = Quoted::default();
     if features.text {
         let too_much = |e| Error::limit(name, "its texts take", e);
-        quoted = Quoted::of(xml, budget).map_err(too_much)?;
-        spans(xml, &quoted, budget).and_then(|()| text_paths(xml, budget)).map_err(too_much)?;
+        spans(xml, budget).and_then(|()| text_paths(xml, budget)).map_err(too_much)?;
     }
     wide_strokes(xml, budget).map_err(|e| Error::limit(name, "with such wide strokes, its shapes take", e))?;
     if unfold::may_be_large(xml, features.markers, features.references) {
-        unfold::check(xml, &quoted, name, budget)?;
+        unfold::check(xml, name, budget)?;
     } else {
-        unfold::count_plain(xml, &quoted, name, budget)?;
+        unfold::count_plain(xml, name, budget)?;
     }
     wide_arcs(xml, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
     Ok(features)
@@ -152,7 +149,7 @@ fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Ex
 }
 
 /// Counts the letters that are compared with every span of their text.
-fn spans(xml: &roxmltree::Document<'_>, quoted: &Quoted<'_>, budget: &Budget) -> Result<(), Exceeded> {
+fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
     const AT_A_TIME: u64 = 64;
     let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
     for text in texts {
@@ -161,7 +158,7 @@ fn spans(xml: &roxmltree::Document<'_>, quoted: &Quoted<'_>, budget: &Budget) ->
             if n.is_element() {
                 spans += 1;
             }
-            letters += quoted::letters(n) + quoted.letters(n);
+            letters += unfold::letters(n);
         }
         budget.check(Limit::Letters, letters as f64)?;
         // The text itself is no span. Its letters are also compared with each other, some at a time.

@@ -3,6 +3,7 @@
 
 use super::fontguard::listing;
 use super::fonts::load_unnamed;
+use super::metrics;
 use super::style::declarations;
 use base64::Engine as _;
 use pathwarp::budget::{Budget, Exceeded, Limit};
@@ -37,7 +38,9 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
     let taken: Vec<_> = all.faces().filter(same).map(|f| f.id).collect();
     taken.into_iter().for_each(|id| all.remove_face(id));
     for face in faces {
-        let data: Arc<dyn AsRef<[u8]> + Send + Sync> = Arc::new(face.data);
+        let mut data = face.data;
+        metrics::adjust(&mut data, 0);
+        let data: Arc<dyn AsRef<[u8]> + Send + Sync> = Arc::new(data);
         let mut ids = all.load_font_source(Source::Binary(data.clone())).to_vec();
         if ids.is_empty() {
             ids.extend(load_unnamed(all, &data, face.family.clone()));

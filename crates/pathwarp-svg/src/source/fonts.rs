@@ -3,6 +3,7 @@
 use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of_interface};
 use super::fontguard::{FontGuard, listing};
 use super::images::Missing;
+use super::metrics;
 use skrifa::{FontRef, MetadataProvider as _};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs;
@@ -195,7 +196,8 @@ impl Held {
         let Some((Source::File(path), index)) = db.face(id).map(|f| (f.source.clone(), f.index)) else { return id };
         let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if !files.contains_key(&path) {
-            let Ok(data) = fs::read(&path) else { return id };
+            let Ok(mut data) = fs::read(&path) else { return id };
+            metrics::adjust(&mut data, index);
             files.insert(path.clone(), (Arc::new(data), Vec::new()));
         }
         let Some((data, faces)) = files.get_mut(&path) else { return id };

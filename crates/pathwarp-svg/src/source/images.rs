@@ -35,6 +35,23 @@ pub(super) struct Unread {
 
 /// Media type of data whose format is detected from its content.
 const ANY: &str = "text/plain";
+/// The same in the drawing itself.
+const EMBEDDED: &str = "";
+
+/// Stands for a picture that was not read, so that its place moves along: one transparent pixel.
+const NOTHING: &[u8] =
+    b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\x08\x06\x00\x00\
+    \x00\x1f\x15\xc4\x89\x00\x00\x00\x0b\x49\x44\x41\x54\x78\xda\x63\x60\x00\x02\x00\x00\x05\x00\x01\xe9\xfa\xdc\xd8\
+    \x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";
+
+/// Whether an image stands for one that was not read.
+pub(crate) fn is_unread(image: &usvg::ImageKind) -> bool {
+    matches!(image, usvg::ImageKind::PNG(data) if data.as_slice() == NOTHING)
+}
+
+fn nothing() -> usvg::ImageKind {
+    usvg::ImageKind::PNG(Arc::new(NOTHING.to_vec()))
+}
 
 /// The error of the first image that exceeds the limits.
 pub(super) type Rejected = Arc<Mutex<Option<Error>>>;
@@ -69,11 +86,13 @@ pub(super) fn resolver<'a>(
     let load_file = load.clone();
     usvg::ImageHrefResolver {
         resolve_data: Box::new(move |mime, data, usvg| {
-            let image = load(mime, data.clone(), "the picture in an image", usvg);
-            if image.is_none() {
+            // A drawing has to say that it is one.
+            let known = if mime == ANY { EMBEDDED } else { mime };
+            let image = load(known, data.clone(), "the picture in an image", usvg);
+            image.or_else(|| {
                 record(&unread_data.images, embedded(mime, &data));
-            }
-            image
+                Some(nothing())
+            })
         }),
         resolve_string: Box::new(move |link, usvg| {
             let found = allowed(Path::new(link), options);
@@ -82,10 +101,10 @@ pub(super) fn resolver<'a>(
             }
             let data = if let Place::Inside(file) = found { linked(&file, options) } else { None };
             let image = data.and_then(|data| load_file(ANY, Arc::new(data), link, usvg));
-            if image.is_none() {
+            image.or_else(|| {
                 record(&unread_files.images, link.to_owned());
-            }
-            image
+                Some(nothing())
+            })
         }),
     }
 }

@@ -3,7 +3,6 @@
 //! draw. usvg walks them all, so they are counted first.
 //! Style sheets have been resolved before.
 
-use super::quoted::{Quoted, letters};
 use super::tags::is_shape;
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Exceeded, Limit};
@@ -35,13 +34,8 @@ pub(crate) fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referr
 ///
 /// # Errors
 /// Returns [`Error::Input`] if it exceeds the budget as it is.
-pub(crate) fn count_plain(
-    doc: &roxmltree::Document<'_>,
-    quoted: &Quoted<'_>,
-    name: &str,
-    budget: &Budget,
-) -> Result<(), Error> {
-    let sizes = doc.descendants().filter(Node::is_element).map(|n| Size::of(n, quoted));
+pub(crate) fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
+    let sizes = doc.descendants().filter(Node::is_element).map(Size::of);
     let sum = sizes.fold(Size::default(), Size::plus);
     sum.exceeded(budget).map_err(|e| Error::limit(name, "it takes", e))?;
     sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))
@@ -51,13 +45,8 @@ pub(crate) fn count_plain(
 ///
 /// # Errors
 /// Returns [`Error::Input`] that names the element.
-pub(crate) fn check(
-    doc: &roxmltree::Document<'_>,
-    quoted: &Quoted<'_>,
-    name: &str,
-    budget: &Budget,
-) -> Result<(), Error> {
-    let counted = Unfolding::of(doc, quoted).count(budget).map_err(|(node, why)| {
+pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
+    let counted = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
         let which = node.attribute("id").map_or(format!("<{tag}>"), |id| format!("<{tag} id=\"{id}\">"));
@@ -93,13 +82,13 @@ struct Size {
 
 impl Size {
     /// The size of an element without its children.
-    fn of(node: Node<'_, '_>, quoted: &Quoted<'_>) -> Self {
+    fn of(node: Node<'_, '_>) -> Self {
         let tag = node.tag_name().name();
         let is_text = is_painted(tag) && !is_shape(tag);
         Self {
             elements: 1,
             segments: if is_shape(tag) { vertices(node) } else { 0 },
-            letters: if is_text { node.children().map(letters).sum::<u64>() + quoted.letters(node) } else { 0 },
+            letters: if is_text { node.children().map(letters).sum() } else { 0 },
         }
     }
 
@@ -175,21 +164,20 @@ struct Inside {
 
 struct Unfolding<'a, 'i> {
     doc: &'a roxmltree::Document<'i>,
-    quoted: &'a Quoted<'a>,
     by_id: HashMap<&'a str, Node<'a, 'i>>,
     /// Number of elements and depth by body; `None` while the body is being counted.
     known: HashMap<Body, Option<(Size, usize)>>,
 }
 
 impl<'a, 'i> Unfolding<'a, 'i> {
-    fn of(doc: &'a roxmltree::Document<'i>, quoted: &'a Quoted<'a>) -> Self {
+    fn of(doc: &'a roxmltree::Document<'i>) -> Self {
         let mut by_id = HashMap::new();
         for node in doc.descendants().filter(Node::is_element) {
             if let Some(id) = node.attribute("id") {
                 by_id.entry(id).or_insert(node);
             }
         }
-        Self { doc, quoted, by_id, known: HashMap::new() }
+        Self { doc, by_id, known: HashMap::new() }
     }
 
     /// Sums up everything with repetitions, and finds the deepest nesting.
@@ -241,7 +229,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         let placed = |node: NodeId| Body { node, inherited: None, context: [None; PAINTS] };
         let mut todo = vec![(top, body.inherited.unwrap_or_else(|| self.place(top)), 1)];
         while let Some((node, mut inherited, depth)) = todo.pop() {
-            out.size = out.size.plus(Size::of(node, self.quoted));
+            out.size = out.size.plus(Size::of(node));
             out.depth = out.depth.max(depth);
             let tag = node.tag_name().name();
             if node != top && is_defined(tag) {
@@ -351,6 +339,11 @@ impl<'a, 'i> Unfolding<'a, 'i> {
     }
 }
 
+/// The letters of a piece of text; none of an element.
+pub(super) fn letters(n: Node<'_, '_>) -> u64 {
+    n.text().filter(|_| n.is_text()).map_or(0, |t| t.chars().count()) as u64
+}
+
 /// Returns `true` for elements that are drawn only by reference.
 fn is_defined(tag: &str) -> bool {
     matches!(tag, "pattern" | "marker" | "clipPath" | "mask" | "filter" | "symbol" | "defs" | "style" | "metadata")
@@ -358,7 +351,7 @@ fn is_defined(tag: &str) -> bool {
 
 /// Returns `true` for elements with a fill and a stroke.
 fn is_painted(tag: &str) -> bool {
-    is_shape(tag) || matches!(tag, "text" | "tspan" | "textPath" | "tref")
+    is_shape(tag) || matches!(tag, "text" | "tspan" | "textPath")
 }
 
 /// Lists the ids in `url(#…)` references.
@@ -380,71 +373,4 @@ fn vertices(node: Node<'_, '_>) -> u64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use pathwarp::budget::Limits;
-
-    fn count(body: &str) -> Result<(u64, usize), String> {
-        let svg =
-            format!("<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink'>{body}</svg>");
-        let doc = roxmltree::Document::parse(&svg).unwrap();
-        let budget = Budget::new(Limits::default().with(Limit::Elements, 1e6));
-        let quoted = Quoted::default();
-        let counted = Unfolding::of(&doc, &quoted).count(&budget).map(|(size, depth)| (size.elements, depth));
-        counted.map_err(|(node, _)| node.attribute("id").unwrap_or("").to_owned())
-    }
-
-    /// Expected counts worked out by hand.
-    #[test]
-    fn what_shows_again_counts_again() {
-        let elements = |body: &str| count(body).unwrap().0;
-        assert_eq!(elements("<g><rect/><x/></g><defs><rect/></defs>"), 5);
-        // svg, defs, two copies of the group of two, each with its use.
-        let group = "<defs><g id='g'><rect/></g></defs>";
-        assert_eq!(elements(&format!("{group}<use xlink:href='#g'/><use href='#g'/>")), 2 + 2 * 3);
-        // A pattern of two elements, by attribute, style, style sheet, from the group around and through a use.
-        let pattern = "<pattern id='p'><rect/></pattern>";
-        assert_eq!(elements(&format!("{pattern}<rect fill='url(#p) red'/>")), 3 + 2);
-        assert_eq!(elements(&format!("{pattern}<rect style='fill:url( \"#p\" )' stroke='url(#p)'/>")), 3 + 4);
-        assert_eq!(elements(&format!("{pattern}<g fill='url(#p)'><rect/><rect fill='red'/><rect/></g>")), 6 + 4);
-        assert_eq!(elements(&format!("{pattern}{group}<use href='#g' fill='url(#p)'/>")), 4 + 2 + 2);
-        let context = "<defs><g id='c' fill='context-fill'><rect/><rect/></g></defs>";
-        assert_eq!(elements(&format!("{pattern}{context}<use href='#c' fill='url(#p)'/>")), 4 + 3 + 4);
-        // The content of a pattern inherits from the pattern's position, not from the shape.
-        assert_eq!(
-            elements(&format!("<g stroke='url(#q)'>{pattern}</g><pattern id='q'/><rect fill='url(#p)'/>")),
-            5 + 2 + 1
-        );
-        // A pattern without content uses another's; filters, masks and clip paths.
-        assert_eq!(elements(&format!("{pattern}<pattern id='q' href='#p'/><rect fill='url(#q)'/>")), 4 + 1 + 2);
-        let rest = "<clipPath id='c'><rect/></clipPath><mask id='m'><rect/><rect/></mask>\
-                    <filter id='f'><feImage href='#m'/></filter>";
-        assert_eq!(
-            elements(&format!("{rest}<g clip-path='url(#c)' mask='url(#m)' filter='url(#f) url(#f)'/>")),
-            5 + 2 + 3 + 2 * 5
-        );
-        // A marker of two elements on at most nine vertices.
-        let marker = "<marker id='m'><rect/></marker>";
-        assert_eq!(elements(&format!("{marker}<path marker-mid='url(#m)' d='M1,2L3 4zl-5-6'/>")), 3 + 9 * 2);
-        // Cycles terminate.
-        assert_eq!(elements("<g id='g'><use href='#g'/></g>"), 3 + 3 - 1);
-    }
-
-    #[test]
-    fn nests_of_references_are_bounded() {
-        let nest = |levels: usize, tag: &str, show: &dyn Fn(usize) -> String| -> String {
-            let level = |i| format!("<{tag} id='n{i}'>{}</{tag}>", (0..10).map(|_| show(i + 1)).collect::<String>());
-            (0..levels).map(level).chain([format!("<{tag} id='n{levels}'><rect/></{tag}>"), show(0)]).collect()
-        };
-        let fill = |i: usize| format!("<rect fill='url(#n{i})'/>");
-        assert!(count(&nest(4, "pattern", &fill)).is_ok());
-        assert_eq!(count(&nest(9, "pattern", &fill)), Err("n3".into()));
-        assert_eq!(count(&nest(50, "mask", &|i| format!("<g style='mask:url(#n{i})'/>"))).map_err(|e| e.len()), Err(3));
-        assert_eq!(count(&nest(50, "symbol", &|i| format!("<use href='#n{i}'/>"))).map_err(|e| e.len()), Err(3));
-        // A long chain of single references.
-        let chain: String =
-            (0..9000).map(|i| format!("<pattern id='n{i}'><rect fill='url(#n{})'/></pattern>", i + 1)).collect();
-        assert!(count(&format!("{chain}<rect fill='url(#n0)'/>")).is_err());
-        assert!(count(&format!("{chain}<rect fill='url(#n8900)'/>")).is_ok());
-    }
-}
+mod tests;

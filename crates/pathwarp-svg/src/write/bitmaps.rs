@@ -22,7 +22,7 @@ pub(super) fn bent(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String 
 pub(super) fn image(input: &WriteInput<'_>, markup: &Markup<'_>, skipped: &mut Vec<Skipped>, i: usize) -> String {
     let bitmap = &input.scene.bitmaps[i];
     let image = &bitmap.image;
-    if !image.is_visible() {
+    if !image.is_visible() || bitmap.is_unread() {
         return String::new();
     }
     match &input.images[i] {

@@ -12,7 +12,7 @@ use super::values::{color, part_data, stroke_scale};
 use super::{filter, filter_region, gradients, masks, patterns};
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::scene::model::{Group, Node, Part};
-use crate::source::number::{matrix, path_data, short};
+use crate::source::number::{matrix, outline_data, path_data, short};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
@@ -343,11 +343,12 @@ impl<'a> Writer<'a> {
         out
     }
 
-    fn clip_children(&mut self, g: &Group, t: Affine, clip: Option<usize>, out: &mut String) {
+    /// `clip` is a clip path of a group around, with the transform that leads out of that group.
+    fn clip_children(&mut self, g: &Group, t: Affine, clip: Option<(usize, Affine)>, out: &mut String) {
         if clip.is_some() && g.clip.is_some() {
             self.notes.add(CLIPPED_TWICE, "");
         }
-        let clip = g.clip.or(clip);
+        let clip = g.clip.map(|c| (c, t)).or(clip);
         for n in &g.children {
             match n {
                 Node::Group(g) => self.clip_children(g, t * g.transform, clip, out),
@@ -361,8 +362,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Writes a part of a clip path.
-    fn clip_part(&mut self, i: usize, t: Affine, clip: Option<usize>) -> String {
+    /// Writes a part of a clip path. Its own clip path refers to the coordinates in which the path is written.
+    fn clip_part(&mut self, i: usize, t: Affine, clip: Option<(usize, Affine)>) -> String {
         let p = self.input.part(i);
         let mut properties = Properties::new();
         let rule = p.fill.as_ref().map_or(FillRule::NonZero, usvg::Fill::rule);
@@ -371,15 +372,22 @@ impl<'a> Writer<'a> {
         } else if self.markup.may_inherit("clip-rule") {
             properties.push(("clip-rule", "nonzero".into()));
         }
-        if let Some(i) = clip {
+        let mut written = t;
+        if let Some((i, around)) = clip {
             let id = self.clip_id(i);
             properties.push(("clip-path", format!("url(#{id})")));
+            written = around;
         }
         let mut head = p.source.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
-        if t != Affine::IDENTITY {
-            let _ = write!(head, " transform=\"{}\"", matrix(t));
+        if written != Affine::IDENTITY {
+            let _ = write!(head, " transform=\"{}\"", matrix(written));
         }
-        let d = part_data(p, self.input.warped(i), self.input.source);
+        let warped = self.input.warped(i);
+        let d = match warped {
+            _ if written == t => part_data(p, warped, self.input.source),
+            Some(w) => path_data(&(written.inverse() * t * w.path.clone()), w.decimals),
+            None => outline_data(&p.local.transformed(written.inverse() * t)),
+        };
         self.markup.path(&d, &head, &properties)
     }
 

@@ -45,7 +45,9 @@ impl<'a> Markup<'a> {
 
     /// Name of the attribute for links.
     pub(super) fn link(&self) -> &'static str {
-        if self.in_source && !self.source.text.contains("xmlns:xlink=") { "href" } else { "xlink:href" }
+        let root = self.source.elements.first().map(|root| &self.source.text[root.range.start..root.open_end]);
+        let declared = root.is_some_and(|root| root.contains("xmlns:xlink="));
+        if self.in_source && !declared { "href" } else { "xlink:href" }
     }
 
     /// Writes a `<title>`.

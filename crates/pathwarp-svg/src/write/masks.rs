@@ -4,12 +4,15 @@ use super::input::WriteInput;
 use super::values::{part_box, stroke_scale};
 use crate::bend::bends::Bend;
 use crate::source::number::{path_data, short};
-use pathwarp::kurbo::{Rect, Shape as _};
+use pathwarp::kurbo::{Point, Rect, Shape as _};
 use pathwarp::outline::Builder;
 use pathwarp::refit;
 
 /// Decimals of a region's warped border.
 const DECIMALS: u8 = 9;
+
+/// Points on each side of a region whose images are looked at.
+const SAMPLES: usize = 16;
 
 /// Attributes for the region of a mask, which covers all of its content after the warp.
 pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, String)> {
@@ -31,6 +34,17 @@ pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, Str
                 (None, None) => part_box(p, warped),
             };
             area = area.union(to_frame.transform_rect_bbox(covered));
+        }
+        // A filter in the mask may fill the region.
+        if let Some(Bend { map, .. }) = input.bend(m.parts.clone()) {
+            let along = |i: usize, side: usize| {
+                let a = i as f64 / SAMPLES as f64;
+                let [x, y] = [[a, 0.0], [1.0, a], [a, 1.0], [0.0, a]][side];
+                Point::new(m.rect.x0 + x * m.rect.width(), m.rect.y0 + y * m.rect.height())
+            };
+            let border = (0..4).flat_map(|side| (0..=SAMPLES).map(move |i| (i, side)));
+            let seen = border.map(|(i, side)| from_root * map.point(m.frame * along(i, side)));
+            area = seen.filter(|p| p.is_finite()).fold(area, |area, p| area.union_pt(p));
         }
         // A region larger than necessary only costs rendering time.
         let margin = 0.01 * area.width().max(area.height());

@@ -46,9 +46,14 @@ pub(super) fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
 
 /// Notes what is not supported of the style sheets.
 pub(super) fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
-    let sheets = input.source.unsupported_style.iter().filter(|(element, _)| element.is_none());
-    for (_, why) in sheets.filter(|_| input.outcomes.iter().any(|o| o.warped().is_some())) {
+    if !input.outcomes.iter().any(|o| o.warped().is_some()) {
+        return;
+    }
+    for (_, why) in input.source.unsupported_style.iter().filter(|(element, _)| element.is_none()) {
         notes.add("the style sheets ask for more than is supported", why);
+    }
+    for (what, name) in &input.source.notes {
+        notes.add(what, name);
     }
 }
 

@@ -54,6 +54,25 @@ fn the_frame_is_what_is_seen() {
     assert_eq!(read(&all).seen_box(&Selection::default()).unwrap(), Rect::new(-200.0, -300.0, 700.0, 500.0));
 }
 
+/// A picture of 2 × 1 pixels counts where it is drawn: in the middle of its place, as wide as that.
+#[test]
+fn pictures_count() {
+    let picture = |attributes: &str| {
+        let data = "data:image/gif;base64,R0lGODdhAgABAIAAAP8AAAAA/ywAAAAAAgABAAACAkQKADs=";
+        format!("<image {attributes} width='40' height='40' href='{data}'/>")
+    };
+    let b = |body: &str| read(&drawing(body)).seen_box(&Selection::default()).unwrap();
+    assert_eq!(b(&picture("x='20' y='20'")), Rect::new(20.0, 30.0, 60.0, 50.0));
+    let caption = "<rect x='30' y='70' width='20' height='5'/>";
+    assert_eq!(b(&(picture("x='20' y='20'") + caption)), Rect::new(20.0, 30.0, 60.0, 75.0));
+    // Hidden ones, and those that cannot be read, do not.
+    assert_eq!(b(&(picture("visibility='hidden'") + caption)), Rect::new(30.0, 70.0, 50.0, 75.0));
+    assert_eq!(
+        b(&format!("<image width='40' height='40' href='none.png'/>{caption}")),
+        Rect::new(30.0, 70.0, 50.0, 75.0)
+    );
+}
+
 /// Shapes that the page cuts count whole, and no others; clip paths and masks still hide.
 #[test]
 fn the_uncut_box_holds_what_the_page_cuts_off() {

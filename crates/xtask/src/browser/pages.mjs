@@ -17,7 +17,7 @@ const asked = () => {
   const box = root.getBoundingClientRect();
   const m = root.getScreenCTM?.();
   return {
-    broken: document.getElementsByTagName("parsererror").length > 0,
+    broken: document.getElementsByTagName("parsererror").length > 0 || document.contentType.includes("svg") && root.namespaceURI != "http://www.w3.org/2000/svg",
     right: box.right, bottom: box.bottom, matrix: m ? [m.a, m.b, m.c, m.d, m.e, m.f] : null,
   };
 };
@@ -28,10 +28,12 @@ for await (const line of createInterface({ input: process.stdin })) {
   let page, answer;
   try {
     const [width, height] = size ?? [600, 600];
-    page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: scale ?? 1 });
+    page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: scale ?? 1, locale: "en-US" });
     await page.goto(pathToFileURL(file).href, { waitUntil: "load", timeout: TIMEOUT });
     answer = await page.evaluate(asked);
     if (size) {
+      // What moves is shown as it begins.
+      await page.evaluate(() => { document.documentElement.pauseAnimations?.(); document.documentElement.setCurrentTime?.(0); });
       const png = await page.screenshot({ animations: "disabled", omitBackground: true, timeout: TIMEOUT });
       answer.png = png.toString("base64");
     }

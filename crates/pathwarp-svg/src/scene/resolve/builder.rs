@@ -42,6 +42,8 @@ pub(super) struct SceneBuilder<'a> {
     pub(super) top: Option<*const usvg::Group>,
     /// Nesting depth in drawings shown as images, whose ids are not the source's.
     pub(super) foreign_depth: usize,
+    /// Transforms of markers, by the addresses of their groups; none for those that are not shown.
+    pub(super) markers: HashMap<usize, Option<Affine>>,
     /// Elements with `vector-effect: non-scaling-stroke`.
     pub(super) fixed_widths: HashSet<ElementId>,
 }
@@ -89,6 +91,7 @@ impl<'a> SceneBuilder<'a> {
             may_have_background: source.text.contains("background-color"),
             top: None,
             foreign_depth: 0,
+            markers: HashMap::new(),
             fixed_widths: fixed_widths(source),
         }
     }

@@ -1,7 +1,12 @@
 //! Shapes with markers in usvg's tree.
 
 use super::builder::SceneBuilder;
+use crate::scene::affine::affine;
 use crate::source::tags::{ElementId, is_shape};
+use pathwarp::kurbo::{Affine, Point, Vec2};
+use pathwarp::{Outline, Seg};
+use std::f64::consts::PI;
+use usvg::tiny_skia_path::{Path, PathSegment};
 
 /// Finds the children of a group that belong to shapes with markers: the shape and the group of marker instances next to it.
 /// Returns their indices with the shape's element.
@@ -29,6 +34,174 @@ pub(super) fn marked_children(b: &SceneBuilder<'_>, g: &usvg::Group) -> Vec<(usi
                 break;
             }
         }
+    }
+    out
+}
+
+/// Where the markers of a shape are, as browsers place them. usvg gives a start and an end that meet the directions of open ends, and
+/// arcs markers inside.
+pub(super) fn place_markers(b: &mut SceneBuilder<'_>, g: &usvg::Group, marked: &[(usize, ElementId)]) {
+    for &(i, e) in marked {
+        let Some(usvg::Node::Group(instances)) = g.children().get(i) else { continue };
+        let shape = [i.wrapping_sub(1), i + 1].into_iter().find_map(|j| match g.children().get(j) {
+            Some(usvg::Node::Path(p)) if marked.contains(&(j, e)) => Some(p),
+            _ => None,
+        });
+        let instances: Vec<&usvg::Group> = instances.children().iter().filter_map(group_of).collect();
+        if let Some(places) = shape.and_then(|p| places(b, e, p.data(), &instances)) {
+            b.markers.extend(instances.iter().map(|m| std::ptr::from_ref(*m) as usize).zip(places));
+        }
+    }
+}
+
+fn group_of(n: &usvg::Node) -> Option<&usvg::Group> {
+    match n {
+        usvg::Node::Group(g) => Some(g),
+        _ => None,
+    }
+}
+
+/// The transform of each marker, or `None` where browsers show none. `None` if the markers are not those expected.
+fn places(b: &SceneBuilder<'_>, e: ElementId, data: &Path, instances: &[&usvg::Group]) -> Option<Vec<Option<Affine>>> {
+    let outline = b.reader.outline(e)?;
+    let steps = steps(&outline, data);
+    let (angles, vertices) = (directions(&steps), vertices(&steps, data)?);
+    let source = b.reader.source;
+    let marker = |name: &str| {
+        let own = source.ancestors(e).filter_map(|a| source.property(a, name)).find(|v| v.trim() != "inherit")?;
+        let id = own.trim().strip_prefix("url(#")?.split(')').next()?.to_owned();
+        b.definition(&id, "marker")
+    };
+    let (last, is_node) = (vertices.len() - 1, |k: &usize| !matches!(vertices[*k].0, Element::Close));
+    let middle = (1..last).filter(is_node);
+    let kinds = [("marker-start", vec![0]), ("marker-mid", middle.collect()), ("marker-end", vec![last])];
+    let expected = kinds.into_iter().filter_map(|(name, at)| Some((marker(name)?, at)));
+    let expected: Vec<(ElementId, usize)> = expected.flat_map(|(m, at)| at.into_iter().map(move |k| (m, k))).collect();
+    if expected.len() != instances.len() {
+        return None;
+    }
+    let place = |(&(marker, k), instance): (&(ElementId, usize), &&usvg::Group)| {
+        let (_, at, number) = vertices[k];
+        let placed = affine(instance.transform());
+        let orient = source.attr(marker, "orient");
+        let turned = match orient.as_deref().map(str::trim) {
+            Some("auto") => 0.0,
+            Some("auto-start-reverse") => {
+                if k == 0 {
+                    PI
+                } else {
+                    0.0
+                }
+            }
+            _ => return number.map(|_| placed),
+        };
+        let [x, y, ..] = placed.as_coeffs();
+        Some(Affine::rotate_about(angles[number?] + turned - y.atan2(x), at) * placed)
+    };
+    Some(expected.iter().zip(instances).map(place).collect())
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Element {
+    Move,
+    Draw,
+    Close,
+}
+
+/// The elements of usvg's path with their ends, and the number of the step that ends there; none inside of an arc.
+fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Element, Point, Option<usize>)>> {
+    let mut expected = steps.iter().flatten().enumerate().peekable();
+    let (mut out, mut start) = (Vec::new(), Point::ZERO);
+    for segment in data.segments() {
+        let (kind, at) = match segment {
+            PathSegment::MoveTo(p) => (Element::Move, point(p)),
+            PathSegment::LineTo(p) | PathSegment::QuadTo(_, p) | PathSegment::CubicTo(.., p) => {
+                (Element::Draw, point(p))
+            }
+            PathSegment::Close => (Element::Close, start),
+        };
+        if kind == Element::Move {
+            start = at;
+        }
+        let (number, step) = expected.peek()?;
+        let reached = step.1.is_none_or(|seg| seg.eval(1.0).distance(at) <= NEAR * (1.0 + at.to_vec2().hypot()));
+        if step.0 != kind || !reached && !matches!(step.1, Some(Seg::Arc(_))) {
+            return None;
+        }
+        out.push((kind, at, reached.then_some(*number)));
+        if reached {
+            expected.next();
+        }
+    }
+    (expected.next().is_none() && !out.is_empty()).then_some(out)
+}
+
+/// Difference of numbers of single precision, as a share.
+const NEAR: f64 = 1e-5;
+
+fn point(p: usvg::tiny_skia_path::Point) -> Point {
+    Point::new(f64::from(p.x), f64::from(p.y))
+}
+
+/// An element of path data, and what it draws.
+type Step<'a> = (Element, Option<&'a Seg>);
+
+/// The elements of path data, subpath by subpath. An outline has no closing lines without length, which are in `data`.
+fn steps<'a>(outline: &'a Outline, data: &Path) -> Vec<Vec<Step<'a>>> {
+    let (mut explicit, mut start, mut last) = (Vec::new(), None, None);
+    for segment in data.segments() {
+        match segment {
+            PathSegment::MoveTo(p) => {
+                start = Some(p);
+                last = start;
+                explicit.push(false);
+            }
+            PathSegment::LineTo(p) | PathSegment::QuadTo(_, p) | PathSegment::CubicTo(.., p) => last = Some(p),
+            PathSegment::Close => explicit.last_mut().into_iter().for_each(|e| *e = last == start),
+        }
+    }
+    let subpaths = outline.subpaths.iter().enumerate();
+    let all = subpaths.map(|(k, s)| {
+        let mut out = vec![(Element::Move, None)];
+        out.extend(s.segs.iter().map(|seg| (Element::Draw, Some(seg))));
+        match out.last_mut() {
+            Some(closing) if s.closed && !explicit.get(k).unwrap_or(&true) => closing.0 = Element::Close,
+            _ => out.extend(s.closed.then_some((Element::Close, None))),
+        }
+        out
+    });
+    all.collect()
+}
+
+/// The direction of a marker at the end of every step (SVG 2, section 13.7.4): along open ends, and between the directions of what
+/// meets elsewhere, also where a subpath closes.
+fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
+    /// How far from its end the direction of a curve is looked at; handles may lie on their nodes.
+    const STEP: f64 = 1e-4;
+    let angle = |v: Vec2| v.y.atan2(v.x);
+    let between = |a: Vec2, b: Vec2| {
+        let (a, b) = (angle(a), angle(b));
+        // Half a turn is taken to the left.
+        a.midpoint(a + (b - a + PI).rem_euclid(2.0 * PI) - PI)
+    };
+    let mut out = Vec::new();
+    for subpath in steps {
+        let ends = subpath[1..].iter().map(|(_, seg)| match seg {
+            Some(seg) => [seg.eval(STEP) - seg.eval(0.0), seg.eval(1.0) - seg.eval(1.0 - STEP)],
+            None => [Vec2::ZERO; 2],
+        });
+        let ends: Vec<[Vec2; 2]> = ends.collect();
+        let (Some(first), Some(last)) = (ends.first(), ends.last()) else {
+            out.push(0.0);
+            continue;
+        };
+        let closed = subpath.last().is_some_and(|s| s.0 == Element::Close);
+        let at_start = if closed { between(last[1], first[0]) } else { angle(first[0]) };
+        out.push(at_start);
+        // A close without length leaves as the subpath begins.
+        let out_of = |v: Vec2| if v == Vec2::ZERO { first[0] } else { v };
+        out.extend(ends.windows(2).map(|w| between(w[0][1], out_of(w[1][0]))));
+        out.push(if closed { at_start } else { angle(last[1]) });
     }
     out
 }

@@ -1,7 +1,7 @@
 //! The walk over usvg's tree: groups, paths, images, texts, and the definitions that they refer to.
 
 use super::builder::{Context, SceneBuilder};
-use super::markers::marked_children;
+use super::markers::{marked_children, place_markers};
 use super::slots::{GroupAt, holds_drawing, slot};
 use super::tiles::{PaintOf, blends, tile_context, tiles};
 use super::trace::trace;
@@ -18,7 +18,11 @@ use usvg::{Fill, Stroke};
 pub(super) fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context: Context) -> Group {
     let source = b.element(g.id());
     let element = source.or_else(|| only_child(b, g));
-    let transform = if b.is_top(g) { Affine::IDENTITY } else { b.exact_transform(g.transform(), element) };
+    let transform = match b.markers.get(&address(g)) {
+        Some(Some(placed)) => *placed,
+        _ if b.is_top(g) => Affine::IDENTITY,
+        _ => b.exact_transform(g.transform(), element),
+    };
     let frame = parent * transform;
     let vector = holds_drawing(g);
     let owner = context.owner.or(source.filter(|&e| b.tag(e) == "use" || vector && b.tag(e) == "image"));
@@ -37,8 +41,12 @@ pub(super) fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, m
         }
     }
     let marked = if context.owner.is_none() { marked_children(b, g) } else { Vec::new() };
+    place_markers(b, g, &marked);
     let mut children = Vec::with_capacity(g.children().len());
     for (i, c) in g.children().iter().enumerate() {
+        if matches!(c, usvg::Node::Group(m) if matches!(b.markers.get(&address(m)), Some(None))) {
+            continue;
+        }
         let shape = marked.iter().find(|m| m.0 == i).map(|m| m.1);
         let context = Context { owner: context.owner.or(shape), ..context };
         children.push(match c {
@@ -64,6 +72,10 @@ pub(super) fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, m
         slot,
         children,
     }
+}
+
+fn address(g: &usvg::Group) -> usize {
+    std::ptr::from_ref(g) as usize
 }
 
 /// The element of a group without id: the only shape, text or image in it.

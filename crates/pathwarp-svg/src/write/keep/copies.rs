@@ -1,7 +1,7 @@
 //! Elements that show something else: `use` and `image`.
 
 use super::animations;
-use super::keeper::{Keeper, NO_EFFECTS};
+use super::keeper::Keeper;
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::options::Clones;
 use crate::bend::outcome::Skipped;
@@ -75,7 +75,7 @@ pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     let is_kept =
         |name: &str| name == "id" || name == "class" || name.starts_with("data-") || name.starts_with("aria-");
     let el = &source.elements[e];
-    let mut head: String = el
+    let head: String = el
         .attrs
         .iter()
         .filter(|a| is_kept(a.name(text)) || matches!(a.namespace, Namespace::Inkscape | Namespace::Sodipodi))
@@ -85,14 +85,6 @@ pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     let title = el.title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
     k.fragments.insert(e);
     let lead = title + &animations::kept(source, e);
-    let has_rules = source.has_css() && source.attr(e, "class").or(source.attr(e, "id")).is_some();
-    let text = if has_rules {
-        // The resolved group contains the effects of the class, which must not apply twice.
-        head.push_str(NO_EFFECTS);
-        let inner = k.writer.group(g, "");
-        format!("<{0}{head}>{lead}{inner}</{0}>", k.writer.markup.tag("g"))
-    } else {
-        k.writer.group_with(g, &head, &lead)
-    };
+    let text = k.writer.group_with(g, &head, &lead);
     k.edits.replace(e, text);
 }

@@ -20,9 +20,6 @@ pub(super) const GEOMETRY: [&str; 15] =
 const LETTERING: [&str; 6] =
     ["data-glyph", "data-baseline", "data-ascent", "data-descent", "data-cap-height", "data-x-height"];
 
-/// A style that cancels effects a class may set on a group, as the groups inside have them already.
-pub(super) const NO_EFFECTS: &str = " style=\"opacity:1;clip-path:none;mask:none;filter:none;mix-blend-mode:normal\"";
-
 pub(super) struct Keeper<'a, 'w> {
     pub(super) input: WriteInput<'a>,
     pub(super) source: &'a SourceText,

@@ -20,10 +20,12 @@ use crate::bend::outcome::{Notes, Skipped};
 use crate::source::edit::Edits;
 use crate::source::live::is_live;
 use crate::source::number::matrix;
+use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::source::unpatchable::Unpatchable;
 use keeper::Keeper;
 use pathwarp::kurbo::{Affine, Rect};
+use pathwarp_reader::guarded;
 use warped::Warped;
 
 /// Patches the text; `change` is the visible area before and after, if that changes.
@@ -54,7 +56,15 @@ pub(super) fn write(
     }
     let edits = k.edits;
     let defs = std::mem::take(&mut writer.defs.text);
-    finish(input.source, edits, &defs, &writer.markup.tag("defs"))
+    if edits.is_empty() && defs.is_empty() {
+        return Ok(input.source.as_in_file().into_owned());
+    }
+    let (text, places) = finish(input.source, edits, &defs, &writer.markup.tag("defs"))?;
+    if !input.source.has_css() {
+        return Ok(text);
+    }
+    let guarded = guarded(&input.source.as_in_file(), &text, &places, &input.drawing.budget);
+    Ok(guarded.ok().flatten().unwrap_or(text))
 }
 
 /// Applies the fits of filtered elements and images to their transforms.
@@ -83,9 +93,14 @@ fn regions(k: &mut Keeper<'_, '_>) {
 }
 
 /// Adds the new definitions to the file's `<defs>`, or else at its end, so that the title stays the first child.
-fn finish(source: &SourceText, mut edits: Edits<'_>, defs: &str, tag: &str) -> Result<String, Unpatchable> {
+fn finish(
+    source: &SourceText,
+    mut edits: Edits<'_>,
+    defs: &str,
+    tag: &str,
+) -> Result<(String, Vec<(ElementId, usize)>), Unpatchable> {
     if defs.is_empty() {
-        return Ok(if edits.is_empty() { source.as_in_file().into_owned() } else { edits.apply() });
+        return Ok(edits.apply());
     }
     let home = source.elements.iter().position(|e| e.tag == "defs" && e.parent == Some(0) && e.close.is_some());
     match home {

@@ -8,6 +8,8 @@ use crate::source::tags::ElementId;
 use crate::write::values::{dashes, part_data};
 use usvg::{Fill, Stroke};
 
+const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
+
 /// Patches a shape element with the image of part `i`.
 pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     let p = k.input.part(i);
@@ -23,17 +25,14 @@ pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     if tag != "path" {
         k.edits.rename(e, "path");
         k.remove_geometry(e);
-    }
-    // Rules for the old name no longer apply, and rules for `path` now do.
-    let css = &k.source.css;
-    let renamed = tag != "path" && (k.source.css_mentions(tag) || k.source.css_mentions("path") || css.contains('['));
-    // Neighbours become paths, too, and change what is the first of its type.
-    if renamed || css.contains("-of-type") {
-        for (name, value) in k.writer.properties(i) {
-            k.edits.set_style(e, name, value);
+        // Only what was a line or a polygon before has markers.
+        if matches!(tag, "rect" | "circle" | "ellipse")
+            && k.source.attr(e, "style").is_some_and(|s| s.contains("marker-"))
+        {
+            for name in MARKERS {
+                k.edits.set_property(e, name, "none".into());
+            }
         }
-        // The dashes among them are in user units.
-        k.edits.remove_attr(e, "pathLength");
     }
     k.edits.set_attr(e, "d", part_data(p, Some(warped), k.source));
     k.remove_lettering(e);
@@ -84,7 +83,7 @@ pub(super) fn marked_shape(k: &mut Keeper<'_, '_>, e: ElementId, nodes: &[&Node]
     }
     let content = nodes.iter().map(|n| k.writer.node(n)).collect();
     k.make_group(e, content);
-    for name in ["marker-start", "marker-mid", "marker-end"] {
+    for name in MARKERS {
         k.edits.set_style(e, name, "none".into());
     }
 }

@@ -1,7 +1,7 @@
 //! Texts: they become groups of outlines, with a group inside for every named element.
 
 use super::animations;
-use super::keeper::{Keeper, NO_EFFECTS};
+use super::keeper::Keeper;
 use crate::scene::letters::{inside, is_named, is_naming};
 use crate::scene::model::Group;
 use crate::source::live::is_live;
@@ -134,10 +134,7 @@ impl SpanWriter<'_, '_, '_, '_> {
         let text = &source.text;
         let kept =
             el.attrs.iter().filter(|a| is_naming(a, text) && !is_live(a, text) && !(again && a.name(text) == "id"));
-        let mut head: String = kept.map(|a| format!(" {}", &text[a.range.clone()])).collect();
-        if source.has_css() {
-            head.push_str(NO_EFFECTS);
-        }
+        let head: String = kept.map(|a| format!(" {}", &text[a.range.clone()])).collect();
         let title = el.title.as_ref().filter(|_| !again);
         let title = title.map_or(String::new(), |t| self.k.writer.markup.title(t));
         let inner = self.items(span);

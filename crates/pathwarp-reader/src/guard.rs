@@ -1,0 +1,139 @@
+//! Keeps the style of an edited drawing what it was: rules of its sheets that now hit other elements are overridden.
+
+use super::cascade::applying;
+use super::computed::MARKERS;
+use super::element::Looks;
+use super::rewrite::ReadError;
+use super::sheet::{Declaration, declarations};
+use super::table::of_attribute;
+use super::tree::rules;
+use super::xml::{self, escape};
+use pathwarp::budget::{Budget, Limit};
+use roxmltree::Node;
+use selectors::context::SelectorCaches;
+use std::cell::Cell;
+use std::collections::{BTreeSet, HashMap};
+
+/// Adds declarations to an edited drawing so that no rule of its style sheets gives an element what it did not have before. `kept` tells
+/// where elements of the drawing, by their numbers in document order, begin in the edited text; all others are new, and mean what their
+/// attributes say. Returns `None` if there is nothing to add.
+///
+/// # Errors
+/// One of the texts is not XML, or its style takes more work than the budget allows.
+pub fn guarded(
+    before: &str,
+    after: &str,
+    kept: &[(usize, usize)],
+    budget: &Budget,
+) -> Result<Option<String>, ReadError> {
+    let (was, is) = (xml::document(before).map_err(ReadError::Xml)?, xml::document(after).map_err(ReadError::Xml)?);
+    let elements = |doc: &'_ roxmltree::Document<'_>| {
+        doc.descendants().filter(Node::is_element).map(|n| n.id()).collect::<Vec<_>>()
+    };
+    let nodes = |doc| -> Vec<Node<'_, '_>> { elements(doc).into_iter().filter_map(|id| doc.get_node(id)).collect() };
+    let (was_nodes, is_nodes) = (nodes(&was), nodes(&is));
+    let (was_rules, ..) = rules(&was_nodes, budget)?;
+    let (is_rules, ..) = rules(&is_nodes, budget)?;
+    if is_rules.is_empty() {
+        return Ok(None);
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    let looks = Looks { done: Cell::new(0), most: budget.left(Limit::Comparisons) as u64 };
+    let (mut was_caches, mut is_caches) = (SelectorCaches::default(), SelectorCaches::default());
+    let origins: HashMap<usize, usize> = kept.iter().map(|(element, at)| (*at, *element)).collect();
+    let mut out = String::new();
+    let mut done = 0;
+    for node in is_nodes {
+        let origin = origins.get(&node.range().start).and_then(|e| was_nodes.get(*e)).copied();
+        let style = |n: Node<'_, '_>| n.attribute("style").map(str::to_owned).unwrap_or_default();
+        let (old, new) = (origin.map(style).unwrap_or_default(), style(node));
+        let (old, new) = (declarations(&old), declarations(&new));
+        let then = origin.map_or_else(Vec::new, |n| applying(&was_rules, &[], n, &looks, &mut was_caches));
+        let now = applying(&is_rules, &[], node, &looks, &mut is_caches);
+        if looks.exceeded() {
+            break;
+        }
+        if then == now {
+            continue;
+        }
+        let added = corrections(node, [&then, &old.iter().collect()], [&now, &new.iter().collect()]);
+        if added.is_empty() {
+            continue;
+        }
+        let (range, value) = match node.attribute_node("style") {
+            Some(a) => (
+                a.range_value(),
+                format!(
+                    "{}{}{added}",
+                    escape(a.value()),
+                    if a.value().trim_end().ends_with([';']) || new.is_empty() { "" } else { ";" }
+                ),
+            ),
+            None => {
+                let name = after[node.range().start..].find(|c: char| c.is_whitespace() || matches!(c, '/' | '>'));
+                let at = node.range().start + name.unwrap_or_default();
+                (at..at, format!(" style=\"{added}\""))
+            }
+        };
+        out.push_str(&after[done..range.start]);
+        out.push_str(&value);
+        done = range.end;
+    }
+    budget.spend_cut(Limit::Comparisons, looks.done.get())?;
+    out.push_str(&after[done..]);
+    Ok((done > 0).then_some(out))
+}
+
+/// The declarations that give an element what it is to have, as the text of an attribute. Each side has the rules that apply, weakest
+/// first, and the element's own declarations.
+fn corrections(node: Node<'_, '_>, then: [&Vec<&Declaration<'_>>; 2], now: [&Vec<&Declaration<'_>>; 2]) -> String {
+    let concerned = then[0].iter().chain(now[0]).flat_map(|d| match d.name.as_ref() {
+        "marker" => MARKERS.to_vec(),
+        name => vec![name],
+    });
+    let concerned: BTreeSet<&str> = concerned.filter(|name| !name.starts_with("--")).collect();
+    let mut out = Vec::new();
+    for name in concerned {
+        let last = |all: &[&Declaration<'_>]| {
+            let of = |d: &&&Declaration<'_>| d.name == name || d.name == "marker" && MARKERS.contains(&name);
+            all.iter().rev().find(of).map(|d| (d.value.to_string(), d.important))
+        };
+        let winner = |[rules, own]: [&Vec<&Declaration<'_>>; 2]| match (last(rules), last(own)) {
+            (Some(rule), Some(own)) => Some(if rule.1 && !own.1 { rule } else { own }),
+            (rule, own) => own.or(rule),
+        };
+        let (own_then, own_now) = (last(then[1]), last(now[1]));
+        let wanted = match own_now {
+            Some(own) if own_then.is_none_or(|then| then.0 != own.0) => Some(own.0),
+            _ => winner(then).map(|w| w.0),
+        };
+        if winner(now).map(|w| w.0) == wanted {
+            continue;
+        }
+        let value = wanted.or_else(|| from_attribute(node, name)).unwrap_or_else(|| "unset".to_owned());
+        let important = if last(now[0]).is_some_and(|rule| rule.1) { "!important" } else { "" };
+        out.push(format!("{name}:{value}{important}"));
+    }
+    escape(&out.join(";"))
+}
+
+/// What an attribute says, as a value of CSS.
+fn from_attribute(node: Node<'_, '_>, name: &str) -> Option<String> {
+    let value = node.attribute(name)?.trim();
+    match name {
+        "d" if node.tag_name().name() == "path" => Some(format!("path('{value}')")),
+        "transform" => {
+            let m: svgtypes::Transform = value.parse().ok()?;
+            Some(format!("matrix({},{},{},{},{},{})", m.a, m.b, m.c, m.d, m.e, m.f))
+        }
+        "x" | "y" | "width" | "height" | "r" | "rx" | "ry" | "cx" | "cy"
+            if value.ends_with(|c: char| c.is_ascii_digit()) =>
+        {
+            Some(format!("{value}px"))
+        }
+        _ => of_attribute(name).map(|_| value.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests;
