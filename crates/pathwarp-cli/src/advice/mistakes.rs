@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 mod tests;
 
 /// Other names of options, and what to write if the command has that option.
-const OPTIONS: [(&[&str], &str); 20] = [
+const OPTIONS: [(&[&str], &str); 22] = [
     (&["output", "outfile", "out-file", "export-filename", "to", "o"], "out"),
     (&["angle", "rotation", "turn", "degrees"], "rotate"),
     (&["angle", "degrees", "arc"], "sweep"),
@@ -33,6 +33,8 @@ const OPTIONS: [(&[&str], &str); 20] = [
     (&["amplitude", "amp"], "height"),
     (&["width", "size", "zoom", "factor"], "scale-x 1.5 (a factor; also --scale-y)"),
     (&["height"], "scale-y 1.5 (a factor)"),
+    (&["translate", "shift", "offset", "dx"], "move-x 10mm (a length; also --move-y)"),
+    (&["dy"], "move-y 10mm (a length)"),
 ];
 
 /// What an unknown command may mean.

@@ -394,6 +394,22 @@ fn columns_by_the_formula() {
     }
 }
 
+/// Two curves that meet at both ends enclose a shape, which is filled like the same closed path.
+#[test]
+fn curves_that_meet_enclose_a_shape() {
+    let drawn = map(&[
+        ("bottom", "M0,100 A100,100 0 0 0 200,100"),
+        ("top", "M0,100 A100,100 0 0 1 200,100"),
+        ("keep", "verticals"),
+    ]);
+    let closed = map(&[("envelope", "M200,100 A100,100 0 1 1 0,100 A100,100 0 1 1 200,100 Z"), ("keep", "verticals")]);
+    for p in grid(20, 0.0) {
+        assert!(drawn.point(p).distance(closed.point(p)) < 1e-9, "{p:?}");
+    }
+    let e = fault(&[("bottom", "0,9 9,9"), ("top", "0,9 9,9")]);
+    assert!(e.starts_with("envelope: "), "{e}");
+}
+
 /// What is chosen for lettering and for other artwork.
 #[test]
 fn what_suits_is_chosen() {
