@@ -16,6 +16,8 @@ use std::rc::Rc;
 
 pub(super) const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
 
+const SHARES: &str = "spacing in per cent is a share of the font's size, which Chromium takes on the screen";
+
 const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
 
 /// What an element hands on to its children.
@@ -44,6 +46,8 @@ pub(super) struct Computed<'a> {
     /// What is not supported, in words.
     pub(super) unsupported: Vec<String>,
     pub(super) letters: Letters,
+    /// What browsers show a little otherwise.
+    pub(super) notes: Vec<&'static str>,
     /// The first number out of range.
     pub(super) far: Option<String>,
 }
@@ -212,7 +216,7 @@ impl Values<'_, '_, '_> {
     fn plain<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
         match p.kind {
             Kind::Word(words) => word(words, raw),
-            Kind::Paint => color::paint(raw),
+            Kind::Paint => color::paint(self.seen_paint(raw)),
             Kind::Color => color::color(raw),
             Kind::Share => share(raw),
             Kind::Number => raw.parse::<f64>().ok().filter(|n| *n >= 0.0).map(|_| Cow::Borrowed(raw)),
@@ -238,6 +242,22 @@ impl Values<'_, '_, '_> {
     fn length<'v>(&self, p: &Property, raw: &'v str, sign: Sign, strict: bool) -> Option<Cow<'v, str>> {
         let relative = self.absolute || matches!(p.kind, Kind::FontSize | Kind::Spacing);
         value::known_length(raw, &self.units_for(p), relative.then(|| self.full(p)), sign == Sign::Positive, strict)
+    }
+
+    /// What is painted instead of a gradient or pattern that its transform flattens: the colour beside it, or nothing.
+    fn seen_paint<'v>(&self, raw: &'v str) -> &'v str {
+        /// Longest chain of references followed.
+        const LINKS: usize = 16;
+        let Some(link) = reference(raw) else { return raw };
+        let first = link.id.as_deref().and_then(|id| self.ids.get(id));
+        let mut chain = std::iter::successors(first, |n| self.ids.target(*n)).take(LINKS);
+        let given = chain.find_map(|n| n.attribute("gradientTransform").or_else(|| n.attribute("patternTransform")));
+        let t = given.and_then(|t| t.parse::<svgtypes::Transform>().ok());
+        match t.filter(|t| t.a * t.d == t.b * t.c) {
+            Some(_) if link.rest.trim().is_empty() => "none",
+            Some(_) => link.rest.trim(),
+            None => raw,
+        }
     }
 
     /// Filters. Where one of them is not there, browsers show the element without any.
@@ -354,6 +374,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         if self.seen.contains(p.name) {
             return;
         }
+        self.note_share(p, &d.value);
         let value = match wide(&d.value) {
             Some(wide) => match resolved(wide, p) {
                 Some(initial) => Cow::Borrowed(initial),
@@ -392,6 +413,11 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 self.style.push((d.name.clone(), value));
             }
         }
+    }
+
+    /// Notes what Chromium takes of the size on the screen.
+    fn note_share(&mut self, p: &Property, value: &str) {
+        self.out.notes.extend((matches!(p.kind, Kind::Spacing) && value.trim_end().ends_with('%')).then_some(SHARES));
     }
 
     /// A value with its numbers in range.
@@ -435,6 +461,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             }
             return;
         }
+        self.note_share(p, raw);
         let is_geometry = matches!(p.kind, Kind::Geometry(_));
         let new = match wide(raw.trim()) {
             Some(wide) => match resolved(wide, p) {
@@ -518,11 +545,12 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             || style.iter().any(|s| text::concerns(&s.0))
             || node.attributes().any(|a| text::concerns(a.name()))
         {
-            let (changes, letters) = inherited.text.declare(tag, |name| {
+            let (changes, letters) = inherited.text.declare(node, |name| {
                 let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
                 own.or_else(|| out.value(node, name).filter(|_| of_attribute(name).is_some()))
             });
             out.letters = letters;
+            out.notes.extend(changes.notes);
             let attributes = changes.attributes.into_iter().filter(|(name, v)| attribute(node, name) != Some(v));
             out.attributes.extend(attributes.map(|(name, v)| (name, Some(v))));
             out.unsupported.extend(changes.unsupported.iter().map(|d| ignored(d)));

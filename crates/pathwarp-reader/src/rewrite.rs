@@ -184,6 +184,8 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
                 None => out.unsupported.push((Some(e), SINGLE_LETTERS.to_owned())),
             }
         }
+        let id = node.attribute("id").unwrap_or_default();
+        out.notes.extend(style.computed.notes.iter().map(|note| (*note, id.to_owned())));
         out.unsupported.extend(style.computed.unsupported.iter().map(|why| (Some(e), why.clone())));
         if style.matrix.is_none() {
             out.unsupported.push((Some(e), "its transform is not supported".to_owned()));

@@ -1,7 +1,9 @@
 //! Properties of text that usvg reads otherwise, or not at all (CSS Fonts 4, Text 3 and 4, Writing Modes 3).
 
+use super::ids::attribute;
 use super::transform::factor;
 use cssparser::{Parser, Token};
+use roxmltree::Node;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -57,6 +59,10 @@ const WITHOUT_EFFECT: [(&str, &[&str]); 13] = [
     ("text-decoration-style", &["solid", "auto"]),
     ("text-decoration-thickness", &["auto", "from-font"]),
 ];
+
+const OVERLINE: &str = "overlines are a little nearer to the letters than in browsers";
+const SPACES: &str = "spaces where parts of a text keep them and others do not are not those of browsers";
+const LINES: &str = "a tspan with y and without x begins where the words before end, which centred or right-aligned lines of browsers do not";
 
 /// The case that `text-transform` asks for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -118,6 +124,8 @@ pub(super) struct TextChanges {
     pub(super) style: Vec<(String, String)>,
     pub(super) attributes: Vec<(&'static str, String)>,
     pub(super) unsupported: Vec<String>,
+    /// What browsers show a little otherwise.
+    pub(super) notes: Vec<&'static str>,
 }
 
 /// What is to be changed in the letters of an element.
@@ -138,7 +146,12 @@ impl TextStyle {
     }
 
     /// Takes over what an element declares: `value` gives the values of its properties.
-    pub(super) fn declare<'a>(&mut self, tag: &str, value: impl Fn(&str) -> Option<&'a str>) -> (TextChanges, Letters) {
+    pub(super) fn declare<'a>(
+        &mut self,
+        node: Node<'_, '_>,
+        value: impl Fn(&str) -> Option<&'a str>,
+    ) -> (TextChanges, Letters) {
+        let tag = node.tag_name().name();
         let value = |name: &str| value(name).map(str::trim).filter(|v| !v.eq_ignore_ascii_case("inherit"));
         let mut out = TextChanges::default();
         let mut set = |name: &str, v: String| out.style.push((name.to_owned(), v));
@@ -162,6 +175,7 @@ impl TextStyle {
             let end = v.find(|c: char| !c.is_ascii_digit() && !matches!(c, '.' | '-' | '+')).unwrap_or(v.len());
             v[..end].parse().is_ok_and(|n: f64| n != 0.0)
         });
+        let kept = self.keeps_space;
         self.keeps_space = value("white-space")
             .map_or(self.keeps_space, |v| Some(matches!(v, "pre" | "pre-wrap" | "break-spaces" | "-moz-pre-space")));
         let is_content = tag == "text" || self.fade.is_some() && matches!(tag, "tspan" | "textPath" | "a" | "tref");
@@ -179,6 +193,15 @@ impl TextStyle {
             out.attributes.push(("xml:space", if keeps { "preserve" } else { "default" }.to_owned()));
         }
         out.unsupported = self.without_effect(tag, is_content, &value);
+        let shift = value("baseline-shift").filter(|v| tag == "text" && !matches!(*v, "baseline" | "0" | "initial"));
+        out.unsupported.extend(shift.map(|v| format!("baseline-shift: {}", start(v))));
+        let overline = value("text-decoration").is_some_and(|v| v.contains("overline"));
+        let spaces = tag != "text"
+            && is_content
+            && keeps_space(self.keeps_space, Some(node)) != keeps_space(kept, node.parent());
+        let lines = tag != "text" && is_content && self.anchor != Anchor::Start && is_lower(node);
+        let notes = [(overline, OVERLINE), (spaces, SPACES), (lines, LINES)];
+        out.notes = notes.into_iter().filter(|n| n.0).map(|n| n.1).collect();
         let overrides = matches!(value("unicode-bidi"), Some("bidi-override" | "isolate-override"));
         let direction = match (self.rtl, overrides) {
             (true, true) => Some('\u{202e}'),
@@ -234,6 +257,20 @@ impl TextStyle {
             Vec::new()
         }
     }
+}
+
+/// Whether an element keeps its white space, as its style or else `xml:space` says.
+fn keeps_space(style: Option<bool>, node: Option<Node<'_, '_>>) -> bool {
+    let said = |n: Node<'_, '_>| n.ancestors().find_map(|a| attribute(a, "xml:space").map(|v| v == "preserve"));
+    style.or_else(|| said(node?)).unwrap_or(false)
+}
+
+/// Whether a part of a text begins below what comes before, wherever that ends.
+fn is_lower(part: Node<'_, '_>) -> bool {
+    /// As many as are looked at: white space and comments may be among them.
+    const NEAR: usize = 4;
+    let says = |n: Node<'_, '_>| n.descendants().filter_map(|d| d.text()).any(|t| !t.trim().is_empty());
+    part.has_attribute("y") && !part.has_attribute("x") && part.prev_siblings().skip(1).take(NEAR).any(says)
 }
 
 /// Whether a property is one that [`TextStyle`] follows.

@@ -4,7 +4,7 @@ use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
 use crate::bend::letters::placed_outlines;
 use crate::bend::options::{PageFit, Structure, WarpOptions};
-use crate::bend::outcome::WarpedDocument;
+use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::tiles;
 use crate::scene::drawing::Drawing;
 use crate::scene::lettering::selected::{Lettering, lettering};
@@ -121,6 +121,12 @@ impl Document {
     #[must_use]
     pub fn undrawn(&self) -> Vec<String> {
         undrawn(&self.drawing.source)
+    }
+
+    /// What browsers show a little otherwise, in words.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        Notes::in_words(&self.drawing.source.notes)
     }
 
     /// All shapes that are painted, clip or mask, in painting order. Texts and `use` copies have one shape per path.

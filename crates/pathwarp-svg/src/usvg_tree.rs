@@ -33,6 +33,8 @@ pub struct ReadTree {
     pub missing_fonts: Vec<String>,
     /// What else a picture of it lacks, in words: content and style that are not supported.
     pub undrawn: Vec<String>,
+    /// What browsers show a little otherwise, in words.
+    pub notes: Vec<String>,
 }
 
 /// Reads SVG or svgz data like [`parse_tree`], and lists what the tree lacks of the drawing.
@@ -42,7 +44,7 @@ pub struct ReadTree {
 pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadTree, Error> {
     let (tree, missed) = tree::parse(data, name, options)?;
     let unread = UnreadImages::of(&missed);
-    Ok(ReadTree { tree, unread, missing_fonts: missed.fonts, undrawn: missed.undrawn })
+    Ok(ReadTree { tree, unread, missing_fonts: missed.fonts, undrawn: missed.undrawn, notes: missed.notes })
 }
 
 /// Returns the tree of a document. Elements without id have temporary ones in it.

@@ -85,13 +85,15 @@ fn missing_fonts(families: &[String]) -> Option<String> {
     (!families.is_empty()).then(|| Warning::MissingFonts(families.to_vec()).to_string())
 }
 
-/// Lists what a picture of a drawing lacks: fonts, images, and what else is not drawn, of which the first are named.
-pub(crate) fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String]) -> Vec<String> {
+/// Lists what a picture of a drawing lacks: fonts, images, and what else is not drawn, of which the first are named; and what browsers
+/// show a little otherwise.
+pub(crate) fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String], notes: &[String]) -> Vec<String> {
     const NAMED: usize = 10;
     let mut out: Vec<String> = missing_fonts(fonts).into_iter().chain(unread(images)).collect();
     out.extend(undrawn.iter().take(NAMED).cloned());
     let more = undrawn.len().saturating_sub(NAMED);
     out.extend((more > 0).then(|| format!("and {more} more")));
+    out.extend_from_slice(notes);
     out
 }
 

@@ -107,7 +107,7 @@ fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOpt
         export::drawing(doc.text().to_owned(), format, &input::read_options(file, &options.reading), options, None)?;
     let (unread, undrawn) = (doc.unread_images(), doc.undrawn());
     let is_partial = !unread.is_empty() || !undrawn.is_empty();
-    let lacking = advice::lacking(doc.missing_fonts(), &unread, &undrawn).into_iter();
+    let lacking = advice::lacking(doc.missing_fonts(), &unread, &undrawn, &doc.notes()).into_iter();
     let warnings: Vec<String> = lacking.chain(warnings).collect();
     for warning in warnings.iter().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {warning}", input::display(file)));

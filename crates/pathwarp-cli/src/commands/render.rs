@@ -79,7 +79,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
     let picture = encode(drawn.map_err(|e| Failure::from(e).about(&name))?, format, options.quality)?;
     if !options.quiet {
-        let lacking = advice::lacking(&read.missing_fonts, &read.unread, &read.undrawn);
+        let lacking = advice::lacking(&read.missing_fonts, &read.unread, &read.undrawn, &read.notes);
         lacking.iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
     }
     output::write(target, &picture)?;

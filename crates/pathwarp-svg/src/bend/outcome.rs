@@ -131,6 +131,13 @@ impl Notes {
         self.0.entry(text).or_default().insert(name.to_owned());
     }
 
+    /// What the reader noted, in words.
+    pub(crate) fn in_words(read: &BTreeSet<(&'static str, String)>) -> Vec<String> {
+        let mut notes = Self::default();
+        read.iter().for_each(|(text, name)| notes.add(text, name));
+        notes.warnings().map(|w| w.to_string()).collect()
+    }
+
     pub(crate) fn warnings(self) -> impl Iterator<Item = Warning> {
         let named = |names: BTreeSet<String>| names.into_iter().filter(|n| !n.is_empty()).collect();
         self.0.into_iter().map(move |(text, names)| Warning::Note { text, names: named(names) })

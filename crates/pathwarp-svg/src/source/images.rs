@@ -88,7 +88,9 @@ pub(super) fn resolver<'a>(
         resolve_data: Box::new(move |mime, data, usvg| {
             // A drawing has to say that it is one.
             let known = if mime == ANY { EMBEDDED } else { mime };
-            let image = load(known, data.clone(), "the picture in an image", usvg);
+            // Browsers unpack no drawing in the drawing itself.
+            let packed = data.starts_with(read::GZIP);
+            let image = if packed { None } else { load(known, data.clone(), "the picture in an image", usvg) };
             image.or_else(|| {
                 record(&unread_data.images, embedded(mime, &data));
                 Some(nothing())

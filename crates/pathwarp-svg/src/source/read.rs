@@ -133,9 +133,12 @@ pub(crate) fn text(data: &[u8], name: &str, budget: &Budget) -> Result<String, E
     decoded(bytes).map_err(|(at, problem)| Error::input(format!("{name}: byte {at}"), problem))
 }
 
+/// What gzip data begins with.
+pub(super) const GZIP: &[u8] = &[0x1f, 0x8b];
+
 /// Unpacks gzip data up to one byte more than `most`. Returns `None` for other data.
 pub(crate) fn bytes_unpacked(data: &[u8], most: f64) -> std::io::Result<Option<Vec<u8>>> {
-    if !data.starts_with(&[0x1f, 0x8b]) {
+    if !data.starts_with(GZIP) {
         return Ok(None);
     }
     let mut out = Vec::new();

@@ -9,6 +9,7 @@ use super::read::{self, ReadOptions};
 use super::stack::with_stack;
 use super::text::{SourceText, plain};
 use super::undrawn::{may_be_unknown, undrawn};
+use crate::bend::outcome::Notes;
 use pathwarp::Error;
 use pathwarp_reader::{Plain, xml};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -26,6 +27,8 @@ pub(crate) struct Missed {
     pub(crate) outside: Vec<String>,
     /// What else a picture of it lacks, in words; of drawings that are read by [`parse`].
     pub(crate) undrawn: Vec<String>,
+    /// What browsers show a little otherwise, in words; of the same drawings.
+    pub(crate) notes: Vec<String>,
 }
 
 /// Resolves a drawing with usvg. `name` identifies it in errors.
@@ -115,10 +118,11 @@ pub(crate) fn parse_counted(
 ) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let text = read::text(data, name, &options.budget)?;
     xml::check(&text, name, &options.budget)?;
-    let Plain { text, unsupported, .. } = plain(text, name, &options.budget, None)?;
+    let Plain { text, unsupported, notes, .. } = plain(text, name, &options.budget, None)?;
     let xml = xml::parse_checked(&text, name)?;
     let (tree, mut missed) = with_stack(name, || tree(&xml, name, options))?;
     drop(xml);
+    missed.notes = Notes::in_words(&notes);
     if !unsupported.is_empty() || may_be_unknown(&text) {
         let mut source = SourceText::parse(text, name)?;
         source.unsupported_style = unsupported;

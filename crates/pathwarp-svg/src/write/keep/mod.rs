@@ -64,7 +64,11 @@ pub(super) fn write(
         return Ok(text);
     }
     let guarded = guarded(&input.source.as_in_file(), &text, &places, &input.drawing.budget);
-    Ok(guarded.ok().flatten().unwrap_or(text))
+    let Ok(guarded) = guarded else {
+        notes.add("the style sheets are too long to see whether their rules now apply to other elements (--limit comparisons=…)", "");
+        return Ok(text);
+    };
+    Ok(guarded.unwrap_or(text))
 }
 
 /// Applies the fits of filtered elements and images to their transforms.
