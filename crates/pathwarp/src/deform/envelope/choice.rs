@@ -64,7 +64,8 @@ impl Choice<'_> {
     fn suited(&self, shape: &Subpath, ring: Result<Ring, Error>) -> Result<Built, Error> {
         let patch = ring.and_then(|ring| {
             let honest = honest(shape, &ring);
-            let (ring, frame) = if honest && self.lettering { between_notches(ring, shape, self.frame) } else { (ring, self.frame) };
+            let (ring, frame) =
+                if honest && self.lettering { between_notches(ring, shape, self.frame) } else { (ring, self.frame) };
             Ok((honest, Choice { frame, ..*self }.patched(&ring, Keep::Nothing)?))
         });
         if let Ok((true, built)) = patch {

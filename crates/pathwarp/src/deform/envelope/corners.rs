@@ -1,7 +1,7 @@
 //! A closed path divided into four sides: its corners and its bottom, given or found.
 
-use super::distortion::{distortion, turned};
 use super::columns::part;
+use super::distortion::{distortion, turned};
 use super::ring::{Corners, Ring, SAMPLES, area, mirrored, reversed};
 use crate::anchors;
 use crate::error::{Error, show};
@@ -191,7 +191,8 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     let beside = |p: Point| {
         let (to, d) = (bounds.center(), 0.25 * bounds.size().to_vec2());
         let lies = (p.x - to.x).abs() / bounds.width() > (p.y - to.y).abs() / bounds.height();
-        let side = if lies { Vec2::new(d.x.copysign(p.x - to.x), 0.0) } else { Vec2::new(0.0, d.y.copysign(p.y - to.y)) };
+        let side =
+            if lies { Vec2::new(d.x.copysign(p.x - to.x), 0.0) } else { Vec2::new(0.0, d.y.copysign(p.y - to.y)) };
         let across = if lies { Vec2::new(0.0, d.y) } else { Vec2::new(d.x, 0.0) };
         [1.0, -1.0].map(|s| quarter(to + side + across * s, bounds))
     };

@@ -1,7 +1,7 @@
 //! The registry's entry: reads an [`Envelope`] from text.
 
-use super::ring::{Corners, SIDES};
 use super::columns::Room;
+use super::ring::{Corners, SIDES};
 use super::{Envelope, Keep, Spread};
 use crate::deform::built::Built;
 use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};

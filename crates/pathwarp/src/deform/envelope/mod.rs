@@ -219,10 +219,7 @@ impl Envelope {
             frame: self.frame,
             keep: self.keep,
             spread: self.spread,
-            room: Room {
-                ends: Some(self.room.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })),
-                ..self.room
-            },
+            room: Room { ends: Some(self.room.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })), ..self.room },
             lettering: self.lettering,
             ink: &self.ink,
         };

@@ -208,8 +208,9 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                 let mut turned = if reversed { sub.reversed() } else { sub.clone() };
                 turned.segs.rotate_left(start);
                 turned.start = turned.segs[0].start();
-                let ring = corners::ring("envelope", &turned, None, None, false, &distortion::grid(5).collect::<Vec<_>>())
-                    .unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
+                let ring =
+                    corners::ring("envelope", &turned, None, None, false, &distortion::grid(5).collect::<Vec<_>>())
+                        .unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
                 let sides = paced(&ring, None, Keep::Nothing, &mut Built::new(Arc::new(AffineMap::IDENTITY))).unwrap();
                 let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
                 // On both sides of the middle, where a heart has its notch.
@@ -228,9 +229,8 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
 
 #[test]
 fn corners_by_the_stated_rule() {
-    let note = |pairs: &[(&str, &str)]| {
-        built(&[pairs, &[("keep", "nothing")]].concat()).unwrap().explanation.notes.join("\n")
-    };
+    let note =
+        |pairs: &[(&str, &str)]| built(&[pairs, &[("keep", "nothing")]].concat()).unwrap().explanation.notes.join("\n");
     // A circle's are on its diagonals, an ellipse's on those of its box.
     let n = note(&[("envelope", "M200,100 A100,50 0 1 1 0,100 A100,50 0 1 1 200,100 Z")]);
     let (x, y) = (100.0 * FRAC_1_SQRT_2, 50.0 * FRAC_1_SQRT_2);
@@ -371,7 +371,10 @@ fn columns_by_the_formula() {
                 let wanted = Point::new(x, top + (bottom - top) * p.y / 100.0);
                 let got = m.point(p);
                 // The ends are known to a step, which is steep in the circle.
-                assert!(got.distance(wanted) < 0.02 * if ends == 0.0 { 1e-6 } else { 1.0 }, "{path} {p:?}: {got:?} {wanted:?}");
+                assert!(
+                    got.distance(wanted) < 0.02 * if ends == 0.0 { 1e-6 } else { 1.0 },
+                    "{path} {p:?}: {got:?} {wanted:?}"
+                );
                 assert!((m.point(Point::new(p.x, 0.0)).x - got.x).abs() < 1e-9, "{path} {p:?} is not upright");
             }
             let back = m.inverse().unwrap();
@@ -383,7 +386,8 @@ fn columns_by_the_formula() {
     // Rows are columns of the path with x and y exchanged.
     let heart = "M100,50 C118,0 200,0 200,65 C200,120 140,145 100,185 C60,145 0,120 0,65 C0,0 82,0 100,50 Z";
     let swapped = "M50,100 C0,118 0,200 65,200 C120,200 145,140 185,100 C145,60 120,0 65,0 C0,0 0,82 50,100 Z";
-    let (columns, rows) = (map(&[("envelope", heart), ("keep", "verticals")]), map(&[("envelope", swapped), ("keep", "horizontals")]));
+    let (columns, rows) =
+        (map(&[("envelope", heart), ("keep", "verticals")]), map(&[("envelope", swapped), ("keep", "horizontals")]));
     for p in grid(11, 0.0) {
         let (a, b) = (columns.point(p), rows.point(Point::new(p.y, p.x)));
         assert!(a.distance(Point::new(b.y, b.x)) < 1e-9, "{p:?}: {a:?} {b:?}");
@@ -430,7 +434,8 @@ fn what_suits_is_chosen() {
 /// Lettering in a swallow-tailed banner ends at the notches: its outermost uprights go through them.
 #[test]
 fn letters_end_at_notches() {
-    let outline = Outline::from_svg("M0,30 C60,10 140,10 200,30 L180,70 L200,110 C140,90 60,90 0,110 L20,70 Z").unwrap();
+    let outline =
+        Outline::from_svg("M0,30 C60,10 140,10 200,30 L180,70 L200,110 C140,90 60,90 0,110 L20,70 Z").unwrap();
     let built = Envelope::new(SQUARE, &outline).lettering(true).build().unwrap();
     assert!(built.explanation.notes.iter().any(|n| n.contains("end at 20,70")), "{:?}", built.explanation.notes);
     let off = |x: f64, notch: Point| {
