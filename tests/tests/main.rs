@@ -11,6 +11,7 @@ mod formats;
 mod gimp;
 mod gradient_colors;
 mod gradients;
+mod guarantee;
 mod hostile;
 mod inkscape;
 mod lettering;

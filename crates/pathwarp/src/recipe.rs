@@ -26,7 +26,7 @@ use crate::ambiguity::{SAMPLES, ambiguity};
 use crate::budget::{Budget, Limit, Limits};
 use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
-use crate::map::{Chain, Map, NewtonInverse, metered};
+use crate::map::{Chain, Class, Map, NewtonInverse, metered};
 use crate::meter::Meter;
 use crate::outline::Outline;
 use crate::outline::Seg;
@@ -499,19 +499,21 @@ const INVERTED: f64 = 150.0;
 /// The work of a sample, which is taken in a batch, in evaluations of the budget.
 const SAMPLE: f64 = 0.25;
 
-/// Samples the image of every segment of the artwork: accurate enough for percentages and warnings, not for proofs.
-fn images<'a>(
+/// Every segment of the artwork with every place where it has a copy.
+fn placed<'a>(
     artwork: impl Iterator<Item = &'a Outline>,
     copies: &[Affine],
-    map: &dyn Map,
-) -> impl Iterator<Item = [Point; PER_SEGMENT + 1]> {
+) -> impl Iterator<Item = (&'a Seg, Affine)> {
     let places = if copies.is_empty() { &[Affine::IDENTITY][..] } else { copies };
-    artwork.flat_map(Outline::segs).flat_map(|s| places.iter().map(move |m| (s, *m))).map(|(seg, place)| {
-        let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| place * seg.eval(i as f64 / PER_SEGMENT as f64));
-        let mut image = [Point::ORIGIN; PER_SEGMENT + 1];
-        map.points(&ps, &mut image);
-        image
-    })
+    artwork.flat_map(Outline::segs).flat_map(|s| places.iter().map(move |m| (s, *m)))
+}
+
+/// Samples of the image of a segment: accurate enough for warnings, not for proofs.
+fn image_of(seg: &Seg, place: Affine, map: &dyn Map) -> [Point; PER_SEGMENT + 1] {
+    let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| place * seg.eval(i as f64 / PER_SEGMENT as f64));
+    let mut image = [Point::ORIGIN; PER_SEGMENT + 1];
+    map.points(&ps, &mut image);
+    image
 }
 
 /// Returns points of the artwork's image, evenly from the artwork.
@@ -538,8 +540,44 @@ fn ink<'a>(artwork: impl Iterator<Item = &'a Outline> + Clone, map: &dyn Map) ->
 
 /// Returns the bounding box of the artwork's image.
 fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], map: &dyn Map) -> Option<Rect> {
-    let points = images(artwork, copies, map).flatten().filter(|p| p.is_finite());
-    points.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))
+    /// Right, left, down, up.
+    const WAYS: [Vec2; 4] = [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)];
+    if let Class::Affine(m) = map.class() {
+        let images = placed(artwork, copies).map(|(seg, place)| seg.transformed(m * place).bounding_box());
+        return images.filter(|b| b.is_finite()).reduce(|a, b| a.union(b));
+    }
+    let mut most = [f64::NEG_INFINITY; 4];
+    for (seg, place) in placed(artwork, copies) {
+        let samples = image_of(seg, place, map);
+        for (way, most) in WAYS.iter().zip(&mut most) {
+            let reach = samples.map(|p| if p.is_finite() { way.dot(p.to_vec2()) } else { f64::NEG_INFINITY });
+            *most = reach.iter().copied().fold(*most, f64::max);
+            for i in 0..=PER_SEGMENT {
+                let (before, after) = (i.saturating_sub(1), (i + 1).min(PER_SEGMENT));
+                // Twice what a parabola through three samples rises above them.
+                let k = i.clamp(1, PER_SEGMENT - 1);
+                let rise = 0.25 * (2.0 * reach[k] - reach[k - 1] - reach[k + 1]).abs();
+                if reach[i] >= reach[before] && reach[i] >= reach[after] && reach[i] + rise > *most {
+                    let f = |t: f64| way.dot(map.point(place * seg.eval(t)).to_vec2());
+                    let top = highest(f, [before, after].map(|k| k as f64 / PER_SEGMENT as f64));
+                    *most = if top.is_finite() { most.max(top) } else { *most };
+                }
+            }
+        }
+    }
+    let [x1, x0, y1, y0] = most;
+    x1.is_finite().then(|| Rect::new(-x0, -y0, x1, y1))
+}
+
+/// The highest value of a function with one maximum between two parameters.
+fn highest(f: impl Fn(f64) -> f64, [mut a, mut b]: [f64; 2]) -> f64 {
+    const GOLDEN: f64 = 0.381_966_011_250_105;
+    const STEPS: usize = 40;
+    for _ in 0..STEPS {
+        let (l, r) = (a + GOLDEN * (b - a), b - GOLDEN * (b - a));
+        if f(l) < f(r) { a = l } else { b = r }
+    }
+    f(0.5 * (a + b))
 }
 
 /// Returns the first point where the artwork's image crosses the ray from `end` in the direction `along`.
@@ -556,7 +594,8 @@ fn first_across<'a>(
         let at = a.lerp(b, s / (s - t));
         ((s < 0.0) != (t < 0.0) && along.dot(at - end) > 0.0).then_some(at)
     };
-    images(artwork, copies, map).find_map(|ps| ps.windows(2).find_map(|w| cross(w[0], w[1])))
+    let mut images = placed(artwork, copies).map(|(seg, place)| image_of(seg, place, map));
+    images.find_map(|ps| ps.windows(2).find_map(|w| cross(w[0], w[1])))
 }
 
 #[cfg(test)]
@@ -581,6 +620,27 @@ mod tests {
         let unknown = Recipe { steps: vec![step("wobble", &[])] };
         let e = unknown.build(&Registry::builtin(), Frame::new(Rect::ZERO), &std::iter::once(&art)).err().unwrap();
         assert!(e.to_string().contains("shaper"), "{e}");
+    }
+
+    /// A step that changes nothing, or nearly, leaves the box of the next one as it is.
+    #[test]
+    fn the_box_of_a_later_step_is_that_of_the_curves() {
+        let art = Outline::from_svg("M17 3A40 23 20 1 1 16 9C-20 60 -30 -70 40 20Q90 170 5 5").unwrap();
+        let step = |name: &str, pairs: &[(&str, &str)]| Step::new(name, Args::from_pairs(pairs));
+        let frame = |first: Step| {
+            let recipe = Recipe { steps: vec![first, step("expr", &[("x", "u*100"), ("y", "v*100")])] };
+            let frame = Frame::new(art.bounding_box().unwrap());
+            recipe.build(&Registry::builtin(), frame, &std::iter::once(&art)).unwrap().frames[1].rect
+        };
+        let exact = art.bounding_box().unwrap();
+        assert_eq!(frame(step("affine", &[("matrix", "1,0,0,1,0,0")])), exact);
+        for step in [step("affine", &[("matrix", "1,0,0,1,1e-9,0")]), step("expr", &[("x", "x+0*y"), ("y", "y")])] {
+            let found = frame(step);
+            assert!(
+                (found.origin() - exact.origin()).hypot() + (found.size() - exact.size()).to_vec2().hypot() < 2e-8,
+                "{found:?}"
+            );
+        }
     }
 
     #[test]

@@ -142,3 +142,17 @@ fn a_shape_beyond_the_horizon_can_be_skipped() {
     assert_eq!(report["inputs"][0]["skipped"][0]["id"], "far");
     assert_eq!(report["inputs"][0]["shapes"][0]["id"], "near");
 }
+
+/// Decimals that cannot keep the tolerance are said, with exit code 1, and following the advice helps.
+#[test]
+fn too_few_decimals_are_1_and_said() {
+    let run = |more: &[&str]| {
+        let args = [&["swirl", "--tolerance", "0.01", "-o", "-"][..], more].concat();
+        let out = pathwarp_in(tempfile::tempdir().unwrap().path(), &args, SQUARE.as_bytes());
+        (out.status.code(), text(&out.stderr))
+    };
+    let (code, said) = run(&["--precision", "0"]);
+    assert!(code == Some(1) && said.contains("--precision 0") && said.contains("more decimals"), "{said}");
+    assert_eq!(run(&["--precision", "4"]).0, Some(0));
+    assert_eq!(run(&[]).0, Some(0));
+}

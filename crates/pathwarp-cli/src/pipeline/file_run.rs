@@ -115,6 +115,9 @@ impl Batch<'_> {
         let mut warnings: Vec<String> = self.in_flags(whole, |e| &e.warnings).chain(warped.warnings).collect();
         warnings.extend(stretched.into_iter().map(|(uncut, stretch)| advice::stretched(uncut, stretch)));
         warnings.extend(warped.page.warnings());
+        let coarse = too_coarse(options.precision, &warped.shapes, tolerance);
+        let is_coarse = coarse.is_some();
+        warnings.extend(coarse);
         let frame = first.rect;
         let report = FileReport {
             file: artwork.file_name(),
@@ -129,7 +132,7 @@ impl Batch<'_> {
             skipped: warped.skipped,
             warnings,
         };
-        let partial = warped.partial || report.is_partial();
+        let partial = warped.partial || is_coarse || report.is_partial();
         let notes = self.notes(whole, &frames(options.frame, &recipe, &starts, bounds.is_some()), &report.shapes);
         Ok(WarpedInput {
             result: warped.result,
@@ -302,4 +305,15 @@ pub(crate) fn baseline(registry: &Registry, step: &Step) -> Baseline {
         Some(param) if step.args.get(param).is_empty() => Baseline::Open,
         Some(_) => Baseline::Given,
     }
+}
+
+/// Warns of decimals that are too few for the tolerance.
+fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape], tolerance: f64) -> Option<String> {
+    let (n, off) = (precision?, shapes.iter().map(|s| s.max_error).fold(0.0, f64::max));
+    (off > 1.001 * tolerance).then(|| {
+        format!(
+            "--precision {n} is too coarse for the tolerance of {tolerance:.3e}: with the rounding, shapes are off by up to {off:.3e}; \
+             give more decimals, or a larger --tolerance"
+        )
+    })
 }

@@ -298,7 +298,7 @@ fn edges_are_antialiased_even_where_the_inverse_ends() {
 #[test]
 fn nothing_is_drawn_beyond_the_horizon() {
     // The picture shrinks without bound towards the horizon; beyond it the inverse still has values.
-    let map = Homography { m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0 / 260.0, 1.0]] };
+    let map = Homography::new([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0 / 260.0, 1.0]]);
     let out = warped(&checkers(), &map, Rect::new(-500.0, -500.0, 500.0, 500.0), (400, 400));
     for (x, y) in (0..400).flat_map(|x| (0..150).map(move |y| (x, y))) {
         assert_eq!(out.pixel(x, y).unwrap().alpha(), 0, "{x},{y}");
@@ -331,7 +331,7 @@ fn an_extent_is_the_bounding_box_of_the_image() {
     )
     .unwrap();
     assert!((e.stretch - 3.0).abs() < 1e-12);
-    let cut = Homography { m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -0.01, 1.0]] };
+    let cut = Homography::new([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -0.01, 1.0]]);
     assert!(extent(area, Affine::IDENTITY, &cut, Affine::IDENTITY).unwrap().undefined.is_some_and(|p| p.y >= 100.0));
     assert_eq!(extent(area, Affine::IDENTITY, &Chain::default(), Affine::IDENTITY).unwrap().bounds, area);
 }

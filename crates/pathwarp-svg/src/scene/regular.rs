@@ -13,11 +13,23 @@ pub(crate) fn is_point(s: &Seg, at: Point) -> bool {
     [c.p0, c.p1, c.p2, c.p3].iter().all(|p| *p == at)
 }
 
+/// Share of the tolerance below which a segment has no shape.
+const TINY: f64 = 1e-3;
+
+/// Returns `true` if all of a segment is nearer to its start than this.
+fn is_tiny(s: &Seg, near: f64) -> bool {
+    let c = s.to_cubic();
+    [c.p1, c.p2, c.p3].iter().all(|p| p.distance(c.p0) < near)
+}
+
 /// The same outline, within `tolerance`, without segments of zero length and without derivatives that vanish at an end.
 pub(super) fn regular(s: &Subpath, tolerance: f64) -> Subpath {
     let mut segs = Vec::with_capacity(s.segs.len());
     for g in s.segs.iter().filter(|g| !is_point(g, g.start())) {
         match g {
+            _ if is_tiny(g, TINY * tolerance) => {
+                segs.extend((g.start() != g.end()).then(|| Seg::Line(Line::new(g.start(), g.end()))));
+            }
             Seg::Quad(q) if q.p1 == q.p0 || q.p1 == q.p2 => segs.push(Seg::Line(Line::new(q.p0, q.p2))),
             Seg::Cubic(c) => split(*c, tolerance, &mut segs),
             Seg::Line(_) | Seg::Quad(_) | Seg::Arc(_) => segs.push(*g),

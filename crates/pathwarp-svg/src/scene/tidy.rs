@@ -62,6 +62,14 @@ fn tidy_subpath(s: Subpath, half: f64, corners: &Corners) -> Subpath {
     let length = |g: &Seg| g.start().distance(g.end());
     let longest = (0..segs.len()).max_by(|i, j| length(&segs[*i]).total_cmp(&length(&segs[*j]))).unwrap_or(0);
     segs.rotate_left(longest);
+    // The only curve of an edge meets itself at its corner.
+    if let [only, rest @ ..] = &segs[..]
+        && rest.iter().all(|g| matches!(g, Seg::Line(_)))
+        && let Some(halves) = only.part(0.0, 0.5).zip(only.part(0.5, 1.0))
+        && !matches!(only, Seg::Line(_))
+    {
+        segs.splice(..1, [halves.0, halves.1]);
+    }
     let mut out: Vec<Seg> = Vec::with_capacity(segs.len() + 1);
     for g in segs {
         push(&mut out, g, half, corners);
@@ -70,7 +78,7 @@ fn tidy_subpath(s: Subpath, half: f64, corners: &Corners) -> Subpath {
     let first = out[0];
     let count = out.len();
     push(&mut out, first, half, corners);
-    if out.len() > 3 && count > 3 {
+    if out.len() > 2 {
         out.remove(0);
     } else {
         out.truncate(count);

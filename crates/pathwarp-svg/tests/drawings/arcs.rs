@@ -100,3 +100,23 @@ fn other_images_become_curves() {
         check(body, &Bend, |n| n == 0);
     }
 }
+
+/// A curve that ends where it starts, beside true arcs, and an arc to where the last one ended.
+#[test]
+fn loops_cost_no_arcs_and_no_precision() {
+    for d in [
+        "M90 50A40 40 0 1 1 10 50A40 40 0 1 1 90 50ZM50 45C40 30 60 30 50 45Z",
+        "M90 50A40 40 0 1 1 10 50A40 40 0 1 1 90 50ZC5 5 5 5 5 5",
+        "M90 50A40 40 0 1 1 10 50A40 40 0 1 1 90 50ZM50 45Q40 30 50 45",
+        "M44 8A30 25 0 0 0 50 90A22 10 30 1 0 50 90Z",
+    ] {
+        let source = Outline::from_svg(d).unwrap();
+        let arcs = source.segs().filter(|s| matches!(s, Seg::Arc(_))).count();
+        let turn = AffineMap(Affine::rotate_about(0.2, Point::new(50.0, 50.0)));
+        let svg = read(&drawing(&format!("<path d='{d}'/>"))).warp(&turn, &warp_options()).unwrap().svg;
+        assert!(data(&svg).matches(['A', 'a']).count() >= arcs, "{svg}");
+        let bent = read(&drawing(&format!("<path d='{d}'/>"))).warp(&Bend, &warp_options()).unwrap().svg;
+        let off = off(&source, &Bend, &Outline::from_svg(&data(&bent)).unwrap());
+        assert!(off <= 1.1e-4, "{d}: {off}");
+    }
+}

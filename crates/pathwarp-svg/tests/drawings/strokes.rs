@@ -268,3 +268,32 @@ fn the_measure_measures() {
     assert!((square(0.0, 1.0).apart(&square(0.3, 1.0)) - 0.3).abs() < 1e-12);
     assert!((square(0.0, 1.0).apart(&square(0.0, 2.0)) - 2.0_f64.sqrt()).abs() < 1e-12);
 }
+
+/// Closed strokes of one, two and three segments with corners: petals, lenses, leaves, drops.
+#[test]
+fn closed_strokes_of_few_segments_are_hollow() {
+    let paths = [
+        "M30 50C40 30 60 30 70 50C60 55 40 55 30 50Z",
+        "M20 50A40 40 0 0 1 80 50A40 40 0 0 1 20 50Z",
+        "M20 50Q50 10 80 50Q50 90 20 50Z",
+        "M20 50L80 50Q50 90 20 50Z",
+        "M50 20C3 31 20 88 50 20Z",
+        "M50 20C90 90 10 90 50 20Z",
+        "M50 20C90 40 90 80 50 80C20 80 30 40 50 20Z",
+        "M50 20Q90 80 50 80Q10 80 50 20Z",
+        "M20 30Q50 10 80 30Q70 60 50 80Q30 60 20 30Z",
+        "M20 30C50 60 50 60 80 30L50 80Z",
+        "M80 50C70 30 50 30 30 50C20 60 60 90 80 50",
+    ];
+    let outlines = tolerance(0.02).with_strokes(Strokes::Outline);
+    for d in paths {
+        for style in &STYLES[..5] {
+            for width in [0.5, 2.0, 7.0] {
+                let what = format!("<path d='{d}' fill='none' stroke='red' stroke-width='{width}' {style}/>");
+                let b = bent(&page(&what, ""), &Mild, &outlines);
+                // The renderer's miters are as sharp as its tangents are exact.
+                assert!(b.apart <= 0.06 + 0.03 * width, "{what}: {} off\n{}", b.apart, b.svg);
+            }
+        }
+    }
+}

@@ -34,8 +34,10 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mobius {
     frame: Rect,
-    /// a, b, c, d.
+    /// a, b, c, d, of points seen from `from` and images from `to`.
     m: [Vec2; 4],
+    from: Point,
+    to: Point,
     /// The parameter to blame for a map that does not exist.
     param: &'static str,
     overlays: Vec<Overlay>,
@@ -44,20 +46,30 @@ pub struct Mobius {
 impl Mobius {
     /// Creates the map that takes `pole` to infinity and leaves the middle of the artwork's box as it is.
     pub fn by_pole(frame: Rect, pole: impl Into<Point>) -> Self {
-        Self { frame, m: by_pole(frame.center(), pole.into()), param: "pole", overlays: Vec::new() }
+        let (z0, pole): (Point, Point) = (frame.center(), pole.into());
+        Self { frame, m: by_pole(pole - z0), from: z0, to: z0, param: "pole", overlays: Vec::new() }
     }
 
     /// Creates the map that takes three distinct points to three distinct points.
     pub fn by_points(frame: Rect, from: [impl Into<Point>; 3], to: [impl Into<Point>; 3]) -> Self {
         let (p, q) = (from.map(Into::into), to.map(Into::into));
         let shown = |role, p: &[Point]| Overlay { role, path: Outline::from_points(p, false).to_bez_path(0.0) };
-        Self { frame, m: by_points(p, q), param: "to", overlays: vec![shown(Role::Base, &p), shown(Role::Target, &q)] }
+        let overlays = vec![shown(Role::Base, &p), shown(Role::Target, &q)];
+        Self {
+            frame,
+            m: by_points(p.map(|z| z - p[0]), q.map(|w| w - q[0])),
+            from: p[0],
+            to: q[0],
+            param: "to",
+            overlays,
+        }
     }
 
     /// Creates the map with the coefficients a, b, c, d; x is the real part, y the imaginary one.
     #[must_use]
     pub fn by_coefficients(frame: Rect, coefficients: [Vec2; 4]) -> Self {
-        Self { frame, m: coefficients, param: "coefficients", overlays: Vec::new() }
+        let zero = Point::ORIGIN;
+        Self { frame, m: coefficients, from: zero, to: zero, param: "coefficients", overlays: Vec::new() }
     }
 
     /// Builds the map. It is undefined within 2 % of the box's diagonal from the pole.
@@ -65,7 +77,7 @@ impl Mobius {
     /// # Errors
     /// [`Error::Usage`] if ad = bc: points that coincide, or a pole in the middle of the box.
     pub fn build(&self) -> Result<Built, Error> {
-        let Self { frame, m, .. } = *self;
+        let Self { frame, m, from, to, .. } = *self;
         let [a, b, c, d] = m;
         let det = mul(a, d) - mul(b, c);
         let size = mul(a, d).hypot() + mul(b, c).hypot();
@@ -75,14 +87,15 @@ impl Mobius {
         // Artwork that is a point still needs a scale.
         let diagonal = frame.width().hypot(frame.height()).max(1e-9);
         let explanation = Explanation { overlays: self.overlays.clone(), ..Explanation::default() };
-        let pole = (c != Vec2::ZERO).then(|| div(-d, c).to_point());
+        let pole = (c != Vec2::ZERO).then(|| from + div(-d, c));
         let near = pole.filter(|p| p.distance(frame.center()) < FAR * diagonal);
         let Some(pole) = near else {
-            let (a, b) = (div(a, d), div(b, d));
+            let a = div(a, d);
+            let b = to.to_vec2() + div(b, d) - mul(a, from.to_vec2());
             let m = Affine::new([a.x, a.y, -a.y, a.x, b.x, b.y]);
             return Ok(Built::new(Arc::new(AffineMap(m))).explained(explanation));
         };
-        let mut built = Built::new(Arc::new(MobiusMap { m, clear: CLEAR * diagonal })).explained(explanation);
+        let mut built = Built::new(Arc::new(MobiusMap { m, from, to, clear: CLEAR * diagonal })).explained(explanation);
         built.note(format!("pole at {}", show(pole)));
         if frame.contains(pole) {
             built.warn(format!(
@@ -218,19 +231,14 @@ fn div(a: Vec2, b: Vec2) -> Vec2 {
 
 const ONE: Vec2 = Vec2::new(1.0, 0.0);
 
-/// z₀ + (z − z₀)/(1 − (z − z₀)/(P − z₀)), multiplied out over P − z₀.
-fn by_pole(z0: Point, pole: Point) -> [Vec2; 4] {
-    let (z0, p) = (z0.to_vec2(), pole.to_vec2());
-    let k = p - z0;
-    [k - z0, mul(z0, p) - mul(z0, k), -ONE, p]
+/// z/(1 − z/P), multiplied out, of points seen from the middle.
+fn by_pole(pole: Vec2) -> [Vec2; 4] {
+    [pole, Vec2::ZERO, -ONE, pole]
 }
 
 /// K⁻¹ ∘ H.
-fn by_points(p: [Point; 3], q: [Point; 3]) -> [Vec2; 4] {
-    let h = |p: [Point; 3]| {
-        let [p1, p2, p3] = p.map(Point::to_vec2);
-        [p2 - p3, -mul(p1, p2 - p3), p2 - p1, -mul(p3, p2 - p1)]
-    };
+fn by_points(p: [Vec2; 3], q: [Vec2; 3]) -> [Vec2; 4] {
+    let h = |[p1, p2, p3]: [Vec2; 3]| [p2 - p3, -mul(p1, p2 - p3), p2 - p1, -mul(p3, p2 - p1)];
     let ([a, b, c, d], [e, f, g, i]) = (h(q), h(p));
     // The inverse of (a b; c d) is (d −b; −c a) up to a factor.
     [mul(d, e) - mul(b, g), mul(d, f) - mul(b, i), mul(a, g) - mul(c, e), mul(a, i) - mul(c, f)]
@@ -239,8 +247,10 @@ fn by_points(p: [Point; 3], q: [Point; 3]) -> [Vec2; 4] {
 /// The map, with c ≠ 0.
 #[derive(Debug, Clone, Copy)]
 struct MobiusMap {
-    /// a, b, c, d.
+    /// a, b, c, d, of points seen from `from` and images from `to`.
     m: [Vec2; 4],
+    from: Point,
+    to: Point,
     /// Distance from the pole within which the map is undefined.
     clear: f64,
 }
@@ -248,10 +258,11 @@ struct MobiusMap {
 impl Formula for MobiusMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let [a, b, c, d] = self.m;
+        let (x, y) = (x - self.from.x, y - self.from.y);
         let (nx, ny) = (x * a.x - y * a.y + b.x, x * a.y + y * a.x + b.y);
         let (dx, dy) = (x * c.x - y * c.y + d.x, x * c.y + y * c.x + d.y);
         let n = dx * dx + dy * dy;
-        ((nx * dx + ny * dy) / n, (ny * dx - nx * dy) / n)
+        ((nx * dx + ny * dy) / n + self.to.x, (ny * dx - nx * dy) / n + self.to.y)
     }
 
     fn class(&self) -> Class {
@@ -259,13 +270,14 @@ impl Formula for MobiusMap {
     }
 
     fn creases(&self, out: &mut Creases) {
-        let (pole, clear) = (div(-self.m[3], self.m[2]).to_point(), self.clear);
+        let (pole, clear) = (self.from + div(-self.m[3], self.m[2]), self.clear);
         out.push(Crease::edge(Level::Field(Arc::new(move |p| p.distance(pole) - clear))));
     }
 
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [a, b, c, d] = self.m;
-        let part = |f: &dyn Fn([f64; 3]) -> f64| Scaled::new(curve.points.iter().map(|p| f(*p)));
+        let near = |[x, y, w]: [f64; 3]| [x - self.from.x * w, y - self.from.y * w, w];
+        let part = |f: &dyn Fn([f64; 3]) -> f64| Scaled::new(curve.points.iter().map(|p| f(near(*p))));
         let (nx, ny) = (part(&|[x, y, w]| x * a.x - y * a.y + w * b.x), part(&|[x, y, w]| x * a.y + y * a.x + w * b.y));
         let (dx, dy) = (part(&|[x, y, w]| x * c.x - y * c.y + w * d.x), part(&|[x, y, w]| x * c.y + y * c.x + w * d.y));
         let sum = |p: &Scaled, q: &Scaled, k: f64, r: &Scaled, s: &Scaled| {
@@ -275,7 +287,9 @@ impl Formula for MobiusMap {
         };
         let (x, y) = (sum(&nx, &dx, 1.0, &ny, &dy), sum(&ny, &dx, -1.0, &nx, &dy));
         let w = sum(&dx, &dx, 1.0, &dy, &dy);
-        Some(RationalBezier { points: x.into_iter().zip(y).zip(w).map(|((x, y), w)| [x, y, w]).collect() })
+        Some(RationalBezier {
+            points: x.into_iter().zip(y).zip(w).map(|((x, y), w)| [x + self.to.x * w, y + self.to.y * w, w]).collect(),
+        })
     }
 
     /// |F − a/c|·|z − pole| is the same everywhere: points far out in the source are those near the inverse's pole.
@@ -283,7 +297,7 @@ impl Formula for MobiusMap {
         let [a, b, c, d] = self.m;
         let product = ((mul(a, d) - mul(b, c)).hypot()) / c.hypot2();
         let far = self.clear / (CLEAR * CLEAR);
-        Some(Arc::new(Self { m: [d, -b, -c, a], clear: product / far }))
+        Some(Arc::new(Self { m: [d, -b, -c, a], from: self.to, to: self.from, clear: product / far }))
     }
 }
 
@@ -293,6 +307,27 @@ mod tests {
     use crate::check;
     use crate::outline::{EllipticArc, Seg};
     use crate::param::Args;
+
+    /// At 9e8 as at the origin, up to the rounding of the coordinates.
+    #[test]
+    fn far_from_the_origin_no_digits_are_lost() {
+        let far = Vec2::new(9e8, -9e8);
+        let frame = Rect::new(0.0, 0.0, 100.0, 60.0);
+        let three = [(0.0, 50.0), (50.0, 40.0), (100.0, 50.0)].map(Point::from);
+        let moved = [(5.0, 10.0), (50.0, 40.0), (95.0, 10.0)].map(Point::from);
+        let pair = |by: Vec2| {
+            let there = |p: [Point; 3]| p.map(|p| p + by);
+            let pole = Mobius::by_pole(frame + by, Point::new(60.0, 250.0) + by).build().unwrap().map;
+            [pole, Mobius::by_points(frame + by, there(three), there(moved)).build().unwrap().map]
+        };
+        for (near, away) in pair(Vec2::ZERO).iter().zip(pair(far)) {
+            for (near, away) in [(near.clone(), away.clone()), (near.inverse().unwrap(), away.inverse().unwrap())] {
+                for p in [(3.0, 4.0), (50.0, 20.0), (99.0, 59.0)].map(Point::from) {
+                    assert!((away.point(p + far) - far).distance(near.point(p)) < 1e-6);
+                }
+            }
+        }
+    }
 
     #[test]
     fn is_sound() {

@@ -1,7 +1,7 @@
 //! Composition of maps.
 
 use super::batch::{Lane, WIDTH};
-use super::{AffineMap, Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier, RationalDegree};
+use super::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
@@ -40,8 +40,8 @@ impl Chain {
         }
         let folded: Option<Arc<dyn Map>> = match (self.steps.last().map(Map::class), class) {
             (Some(Class::Affine(a)), Class::Affine(b)) => Some(Arc::new(AffineMap(b * a))),
-            (Some(Class::Affine(a)), Class::Projective(b)) => Some(Arc::new(b.after(&a.into()))),
-            (Some(Class::Projective(a)), Class::Affine(b)) => Some(Arc::new(Homography::from(b).after(&a))),
+            (Some(Class::Affine(a)), Class::Projective(b)) => Some(Arc::new(b.after_affine(a))),
+            (Some(Class::Projective(a)), Class::Affine(b)) => Some(Arc::new(a.then_affine(b))),
             (Some(Class::Projective(a)), Class::Projective(b)) => Some(Arc::new(b.after(&a))),
             _ => None,
         };
@@ -248,7 +248,7 @@ impl Map for Chain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Formula, Real};
+    use crate::map::{Formula, Homography, Real};
     use crate::outline::Seg;
     use kurbo::Line;
 
@@ -328,7 +328,7 @@ mod tests {
     #[test]
     fn a_later_horizon_is_found_in_the_source_plane() {
         // The horizon of the second step lies at x = 4 there, at x = 2 in the source, and at x = 2 − y²/20 with a shear first.
-        let far = Homography { m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.25, 0.0, 1.0]] };
+        let far = Homography::new([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.25, 0.0, 1.0]]);
         let scaled = Chain { steps: vec![affine([2.0, 0.0, 0.0, 1.0, 0.0, 0.0]), Arc::new(far)] };
         let seg = Seg::Line(Line::new((0.0, 1.0), (3.0, 1.0)));
         let mut cr = Creases::default();

@@ -5,8 +5,8 @@
 
 use crate::outline::Seg;
 use kurbo::{
-    Point, Rect,
-    common::{solve_cubic, solve_quadratic},
+    Point, Rect, Vec2,
+    common::{solve_itp, solve_quadratic},
 };
 use std::fmt;
 use std::sync::Arc;
@@ -49,7 +49,7 @@ impl fmt::Debug for Level {
     }
 }
 
-/// Samples per segment when crossings are bracketed. A crease touched and left again between two samples is missed.
+/// Samples per segment when crossings of a field are bracketed.
 const SAMPLES: u32 = 64;
 
 impl Level {
@@ -62,8 +62,8 @@ impl Level {
         }
     }
 
-    /// Adds the parameters in (0, 1) where `seg` meets the zero set. Straight levels and Bézier segments are solved exactly;
-    /// otherwise crossings are bracketed between samples.
+    /// Adds the parameters in (0, 1) where `seg` goes from one side of the zero set to the other. A segment that touches it, up to
+    /// rounding, stays on its side. Straight levels are solved exactly; others are bracketed between samples.
     pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) {
         let within = if let Self::Stretch { within, .. } = self {
             // Wider by the rounding error of a crossing.
@@ -72,101 +72,88 @@ impl Level {
         } else {
             None
         };
-        let mut add = |t: f64| {
-            if t > 0.0 && t < 1.0 && within.is_none_or(|b| b.contains(seg.eval(t))) {
-                out.push(t);
-            }
-        };
-        match (self, seg) {
-            (Self::Line { .. } | Self::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => {
-                straight_crossings(|p| self.at(p), seg).into_iter().for_each(add);
-            }
-            _ => {
-                let f = |t: f64| self.at(seg.eval(t));
-                let mut prev = (0.0, f(0.0));
-                for i in 1..=SAMPLES {
-                    let t = f64::from(i) / f64::from(SAMPLES);
-                    let here = (t, f(t));
-                    if here.1 == 0.0 {
-                        add(t);
-                    } else if prev.1 * here.1 < 0.0 {
-                        add(bisect(f, prev, here));
-                    }
-                    prev = here;
+        let (knots, noise) = self.knots(seg);
+        let mut last: Option<(f64, f64)> = None;
+        for here in knots.into_iter().filter(|k| k.1.abs() > noise) {
+            if let Some(before) = last.replace(here)
+                && before.1 * here.1 < 0.0
+            {
+                let sign = here.1.signum();
+                let f = |t: f64| sign * self.at(seg.eval(t));
+                let wide = here.0 - before.0;
+                let t = solve_itp(f, before.0, here.0, 1e-16, 1, 0.2 / wide, sign * before.1, sign * here.1);
+                if within.is_none_or(|b| b.contains(seg.eval(t))) {
+                    out.push(t);
                 }
             }
         }
     }
+
+    /// Parameters from 0 to 1, with the function there, between which it has one zero at most; and the size of its rounding errors.
+    /// Nothing if it has no zero on the segment.
+    fn knots(&self, seg: &Seg) -> (Vec<(f64, f64)>, f64) {
+        let f = |t: f64| (t, self.at(seg.eval(t)));
+        match self {
+            Self::Line { a, b, c } | Self::Stretch { a, b, c, .. } => {
+                let extremes = straight_extremes(|p| self.at(p), (*a, *b), seg);
+                let noise = 4.0 * f64::EPSILON * ((a.abs() + b.abs()) * seg.extent() + c.abs());
+                (extremes.into_iter().map(f).collect(), noise)
+            }
+            Self::Field(_) => sampled(seg, f),
+        }
+    }
 }
 
-/// The zeros of an affine function on a Bézier segment: roots of a polynomial of its degree.
-fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
-    /// A leading coefficient this small relative to the values is rounding noise, which the closed forms would amplify.
-    const NOISE: f64 = 1e-14;
-    // Bernstein coefficients, and from them the power basis.
-    let c = match seg {
-        Seg::Line(s) => {
-            let [a, b] = [s.p0, s.p1].map(level);
-            [a, b - a, 0.0, 0.0]
+/// The parameters between which an affine function with gradient `(a, b)` is monotonous on a segment, its ends included. None if it has
+/// no zero there.
+fn straight_extremes(level: impl Fn(Point) -> f64, (a, b): (f64, f64), seg: &Seg) -> Vec<f64> {
+    let one_side = |ps: &[Point]| {
+        let mut values = ps.iter().map(|p| level(*p));
+        values.clone().all(|v| v > 0.0) || values.all(|v| v < 0.0)
+    };
+    let along = |v: Vec2| a * v.x + b * v.y;
+    let mut ts: Vec<f64> = match seg {
+        Seg::Line(s) if one_side(&[s.p0, s.p1]) => return Vec::new(),
+        Seg::Line(_) => Vec::new(),
+        Seg::Quad(s) if one_side(&[s.p0, s.p1, s.p2]) => return Vec::new(),
+        Seg::Quad(s) => solve_quadratic(along(s.p1 - s.p0), along((s.p2 - s.p1) - (s.p1 - s.p0)), 0.0).to_vec(),
+        Seg::Cubic(s) if one_side(&[s.p0, s.p1, s.p2, s.p3]) => return Vec::new(),
+        Seg::Cubic(s) => {
+            let [d0, d1, d2] = [s.p1 - s.p0, s.p2 - s.p1, s.p3 - s.p2].map(along);
+            solve_quadratic(d0, 2.0 * (d1 - d0), d2 - 2.0 * d1 + d0).to_vec()
         }
-        Seg::Quad(s) => {
-            let [a, b, c] = [s.p0, s.p1, s.p2].map(level);
-            if same_sign(&[a, b, c]) {
-                return Vec::new();
-            }
-            [a, 2.0 * (b - a), c - 2.0 * b + a, 0.0]
-        }
-        _ => {
-            let s = seg.to_cubic();
-            let [a, b, c, d] = [s.p0, s.p1, s.p2, s.p3].map(level);
-            if same_sign(&[a, b, c, d]) {
-                return Vec::new();
-            }
-            [a, 3.0 * (b - a), 3.0 * (c - 2.0 * b + a), d - 3.0 * c + 3.0 * b - a]
+        // Within its circle: the centre's level, plus or minus the largest change.
+        Seg::Arc(s) if level(s.center).abs() > 1.000_001 * along(s.a).hypot(along(s.b)) => return Vec::new(),
+        Seg::Arc(s) => {
+            let first = along(s.b).atan2(along(s.a));
+            (-8..=8).map(|k| (first + f64::from(k) * std::f64::consts::PI - s.start) / s.sweep).collect()
         }
     };
-    let small = NOISE * c.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
-    let degree = (1..4).rev().find(|&k| c[k].abs() > small).unwrap_or(0);
-    let mut roots: Vec<f64> = match degree {
-        0 => Vec::new(),
-        1 => vec![-c[0] / c[1]],
-        2 => solve_quadratic(c[0], c[1], c[2]).into_iter().collect(),
-        _ => solve_cubic(c[0], c[1], c[2], c[3]).into_iter().collect(),
-    };
-    for t in &mut roots {
-        // Newton steps remove the cancellation error of the closed forms. Near a double root, keep only those that help.
-        for _ in 0..3 {
-            let value = |t: f64| ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
-            let slope = (3.0 * c[3] * *t + 2.0 * c[2]) * *t + c[1];
-            let next = *t - value(*t) / slope;
-            if next.is_finite() && value(next).abs() < value(*t).abs() {
-                *t = next;
+    ts.retain(|t| *t > 0.0 && *t < 1.0);
+    ts.extend([0.0, 1.0]);
+    ts.sort_by(f64::total_cmp);
+    ts
+}
+
+/// Samples of a function on a segment, with its extremes near zero between them; and the size of its rounding errors.
+fn sampled(seg: &Seg, f: impl Fn(f64) -> (f64, f64)) -> (Vec<(f64, f64)>, f64) {
+    let h = 1.0 / f64::from(SAMPLES);
+    let mut knots: Vec<(f64, f64)> = (0..=SAMPLES).map(|i| f64::from(i) * h).map(&f).collect();
+    for i in 1..SAMPLES as usize {
+        let [a, b, c] = [knots[i - 1].1, knots[i].1, knots[i + 1].1];
+        if b.abs() <= a.abs() && b.abs() <= c.abs() && a * c > 0.0 && a * b >= 0.0 {
+            // The vertex of the parabola through three samples.
+            let t = knots[i].0 + 0.5 * h * (a - c) / (a - 2.0 * b + c);
+            if t.is_finite() {
+                knots.push(f(t));
             }
         }
     }
-    roots
-}
-
-/// Returns `true` if a polynomial with these Bernstein coefficients has no zero between 0 and 1, as they all have the same sign.
-fn same_sign(coefficients: &[f64]) -> bool {
-    coefficients.iter().all(|c| *c > 0.0) || coefficients.iter().all(|c| *c < 0.0)
-}
-
-fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64 {
-    // Sixty halvings exhaust the precision of a unit interval.
-    for _ in 0..60 {
-        let t = 0.5 * (lo.0 + hi.0);
-        let v = f(t);
-        if v == 0.0 {
-            return t;
-        }
-        if (v < 0.0) == (lo.1 < 0.0) {
-            lo = (t, v);
-        } else {
-            hi = (t, v);
-        }
-    }
-    0.5 * (lo.0 + hi.0)
+    knots.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let most = knots.iter().map(|k| k.1.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let size = seg.bounding_box().size();
+    let ulps = seg.extent() / size.width.max(size.height).max(f64::MIN_POSITIVE);
+    (knots, most * (1e-14 + 4.0 * f64::EPSILON * ulps).min(1e-3))
 }
 
 /// The behaviour of a map at a crease.
@@ -266,9 +253,8 @@ impl Creases {
                     return Some(seg.start());
                 }
                 c.level.crossings(seg, &mut ts);
-                if c.level.at(seg.end()) <= 0.0 {
-                    ts.push(1.0);
-                }
+                let (knots, noise) = c.level.knots(seg);
+                ts.extend(knots.iter().filter(|k| k.1 <= noise).map(|k| k.0));
             }
         }
         ts.into_iter().min_by(f64::total_cmp).map(|t| seg.eval(t))

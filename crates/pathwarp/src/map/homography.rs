@@ -2,16 +2,26 @@
 
 use kurbo::{Affine, Point, Vec2};
 
-/// A projective map (collineation): (x, y) ↦ (X/W, Y/W) with (X, Y, W) = M·(x, y, 1).
+/// A projective map (collineation): (x, y) ↦ to + (X/W, Y/W) with (X, Y, W) = M·(x − from, 1).
+///
+/// The matrix acts on what is near the artwork, so that no digits are lost where coordinates are large.
 ///
 /// Defined where W > 0, on one side of its horizon W = 0. Artwork that crosses the horizon is an error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Homography {
     /// The matrix, row by row.
-    pub m: [[f64; 3]; 3],
+    m: [[f64; 3]; 3],
+    from: Point,
+    to: Point,
 }
 
 impl Homography {
+    /// The map with this matrix, row by row: (X, Y, W) = M·(x, y, 1).
+    #[must_use]
+    pub const fn new(m: [[f64; 3]; 3]) -> Self {
+        Self { m, from: Point::ORIGIN, to: Point::ORIGIN }
+    }
+
     /// The projective map that takes the corners (0,0), (1,0), (1,1), (0,1) of the unit square to `q`, in order, with W > 0 on
     /// all four. `None` if three of the points lie on a line, or if the quadrilateral is not convex: the horizon would cut the
     /// square.
@@ -24,9 +34,10 @@ impl Homography {
         let (d1, d2) = (q[1] - q[2], q[3] - q[2]);
         let det = d1.cross(d2);
         let (g, h) = if s == Vec2::ZERO { (0.0, 0.0) } else { (s.cross(d2) / det, d1.cross(s) / det) };
-        let (a, b) = ((q[1] - q[0]) + q[1].to_vec2() * g, (q[3] - q[0]) + q[3].to_vec2() * h);
-        let m = [[a.x, b.x, q[0].x], [a.y, b.y, q[0].y], [g, h, 1.0]];
-        let out = Self { m };
+        let (u, v) = (q[1] - q[0], q[3] - q[0]);
+        let (a, b) = (u * (1.0 + g), v * (1.0 + h));
+        let m = [[a.x, b.x, 0.0], [a.y, b.y, 0.0], [g, h, 1.0]];
+        let out = Self { m, from: Point::ORIGIN, to: q[0] };
         let positive = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].iter().all(|&c| out.w(c.into()) > 0.0);
         (positive && det != 0.0 && m.iter().flatten().all(|v| v.is_finite())).then_some(out)
     }
@@ -38,14 +49,14 @@ impl Homography {
         // Through a projective basis, which needs no convexity: the matrix whose columns are three of the points, scaled so
         // that their sum is the fourth.
         let basis = |q: [Point; 4]| -> Option<[[f64; 3]; 3]> {
+            let q = q.map(|p| p - q[0]);
             let m = [[q[0].x, q[1].x, q[3].x], [q[0].y, q[1].y, q[3].y], [1.0, 1.0, 1.0]];
             let k = mul_vec(&inverse(&m)?, [q[2].x, q[2].y, 1.0]);
             Some(m.map(|row| [row[0] * k[0], row[1] * k[1], row[2] * k[2]]))
         };
-        let mut m = mul(&basis(to)?, &inverse(&basis(from)?)?);
-        let scale = m[2][0] * from[0].x + m[2][1] * from[0].y + m[2][2];
-        m = m.map(|row| row.map(|v| v / scale));
-        let out = Self { m }.tidied(from);
+        let m = mul(&basis(to)?, &inverse(&basis(from)?)?);
+        let m = m.map(|row| row.map(|v| v / m[2][2]));
+        let out = Self { m, from: from[0], to: to[0] }.tidied(from);
         let positive = from.iter().all(|p| out.w(*p) > 0.0);
         (positive && m.iter().flatten().all(|v| v.is_finite())).then_some(out)
     }
@@ -63,42 +74,95 @@ impl Homography {
         self
     }
 
+    /// The homogeneous image of `p`, about `to`.
+    #[inline]
+    pub(super) fn near(&self, p: Point) -> [f64; 3] {
+        let v = p - self.from;
+        self.m.map(|row| row[0] * v.x + row[1] * v.y + row[2])
+    }
+
+    /// The point with a homogeneous image.
+    #[inline]
+    pub(super) fn point_of(&self, [x, y, w]: [f64; 3]) -> Point {
+        let r = 1.0 / w;
+        self.to + Vec2::new(x * r, y * r)
+    }
+
     /// The denominator W at `p`.
     #[inline]
     #[must_use]
     pub fn w(&self, p: Point) -> f64 {
-        self.m[2][0] * p.x + self.m[2][1] * p.y + self.m[2][2]
+        self.near(p)[2]
+    }
+
+    /// The coefficients of W = a·x + b·y + c.
+    pub(super) fn horizon(&self) -> [f64; 3] {
+        let [a, b, c] = self.m[2];
+        [a, b, c - a * self.from.x - b * self.from.y]
+    }
+
+    /// The derivatives by x and y where the homogeneous image is `[x, y, w]`.
+    #[inline]
+    pub(super) fn slopes(&self, [x, y, w]: [f64; 3]) -> [Vec2; 2] {
+        let (m, r) = (&self.m, 1.0 / w);
+        [0, 1].map(|k| Vec2::new((m[0][k] - x * r * m[2][k]) * r, (m[1][k] - y * r * m[2][k]) * r))
     }
 
     /// `self ∘ first`.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
-        Self { m: mul(&self.m, &first.m) }
+        let gap = first.to - self.from;
+        let shift = [[1.0, 0.0, gap.x], [0.0, 1.0, gap.y], [0.0, 0.0, 1.0]];
+        Self { m: mul(&mul(&self.m, &shift), &first.m), from: first.from, to: self.to }
+    }
+
+    /// `m` after this map.
+    #[must_use]
+    pub fn then_affine(&self, m: Affine) -> Self {
+        let [a, b, c, d, ..] = m.as_coeffs();
+        Self { m: mul(&[[a, c, 0.0], [b, d, 0.0], [0.0, 0.0, 1.0]], &self.m), from: self.from, to: m * self.to }
+    }
+
+    /// This map after `m`, which can be inverted.
+    #[must_use]
+    pub fn after_affine(&self, m: Affine) -> Self {
+        let near = m.inverse() * self.from;
+        if !near.is_finite() {
+            return self.after(&m.into());
+        }
+        let ([a, b, c, d, ..], gap) = (m.as_coeffs(), m * near - self.from);
+        Self { m: mul(&self.m, &[[a, c, gap.x], [b, d, gap.y], [0.0, 0.0, 1.0]]), from: near, to: self.to }
     }
 
     /// The same map as an affine one, if it is affine.
     #[must_use]
     pub fn as_affine(&self) -> Option<Affine> {
         let [[a, c, e], [b, d, f], [g, h, w]] = self.m;
-        (g == 0.0 && h == 0.0 && w != 0.0).then(|| Affine::new([a / w, b / w, c / w, d / w, e / w, f / w]))
+        (g == 0.0 && h == 0.0 && w != 0.0).then(|| {
+            let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|v| v / w);
+            let at = self.to + Vec2::new(e, f);
+            let back = Vec2::new(a * self.from.x + c * self.from.y, b * self.from.x + d * self.from.y);
+            Affine::new([a, b, c, d, at.x - back.x, at.y - back.y])
+        })
     }
 
     /// The inverse map; `None` if the matrix is singular.
     #[must_use]
     pub fn inverted(&self) -> Option<Self> {
-        inverse(&self.m).map(|m| Self { m })
+        inverse(&self.m).map(|m| Self { m, from: self.to, to: self.from })
     }
 
-    /// The matrix times a homogeneous point.
-    pub(super) fn times(&self, v: [f64; 3]) -> [f64; 3] {
-        mul_vec(&self.m, v)
+    /// The homogeneous image of a homogeneous point.
+    pub(super) fn times(&self, [x, y, w]: [f64; 3]) -> [f64; 3] {
+        let [x, y, w] = mul_vec(&self.m, [x - self.from.x * w, y - self.from.y * w, w]);
+        [x + self.to.x * w, y + self.to.y * w, w]
     }
 }
 
 impl From<Affine> for Homography {
     fn from(m: Affine) -> Self {
         let [a, b, c, d, e, f] = m.as_coeffs();
-        Self { m: [[a, c, e], [b, d, f], [0.0, 0.0, 1.0]] }
+        Self::new([[a, c, e], [b, d, f], [0.0, 0.0, 1.0]])
     }
 }
 
@@ -163,5 +227,28 @@ mod tests {
         let dx = (h.point((p.x + e, p.y).into()) - h.point((p.x - e, p.y).into())) / (2.0 * e);
         let dy = (h.point((p.x, p.y + e).into()) - h.point((p.x, p.y - e).into())) / (2.0 * e);
         assert!((dx - j.dx).hypot() < 1e-7 && (dy - j.dy).hypot() < 1e-7);
+    }
+
+    /// At 3.67e7 as at the origin, alone, back, and in a chain, up to the rounding of the coordinates.
+    #[test]
+    fn far_from_the_origin_no_digits_are_lost() {
+        let far = Vec2::new(3.67e7, -1.2e8);
+        let (near, there) =
+            (TRAPEZOID.map(|p| p + Vec2::new(3.0, 4.0)), TRAPEZOID.map(|p| p + Vec2::new(3.0, 4.0) + far));
+        let square = [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)].map(Point::from);
+        let small = Homography::from_points(square, near).unwrap();
+        let large = Homography::from_points(square.map(|p| p + far), there).unwrap();
+        let chain = |h: &Homography, by: Vec2| {
+            let m = Affine::translate(by) * Affine::new([0.9, 0.3, -0.2, 1.1, 5.0, 6.0]) * Affine::translate(-by);
+            h.after(h).then_affine(m).after_affine(m)
+        };
+        let back = [small.inverted().unwrap(), large.inverted().unwrap()];
+        for i in 0..100 {
+            let p = Point::new(f64::from(i % 10), f64::from(i / 10));
+            for (a, b) in [(small, large), (back[0], back[1]), (chain(&small, Vec2::ZERO), chain(&large, far))] {
+                let (q, r) = (a.point(p), b.point(p + far));
+                assert!((r - far).distance(q) < 1e-6, "{p:?}: {q:?} {r:?}");
+            }
+        }
     }
 }

@@ -63,22 +63,14 @@ impl Map for AffineMap {
 impl Map for Homography {
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let m = &self.m;
-        let r = 1.0 / self.w(p);
-        let x = (m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r;
-        let y = (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r;
-        Jet {
-            p: Point::new(x, y),
-            dx: Vec2::new((m[0][0] - x * m[2][0]) * r, (m[1][0] - y * m[2][0]) * r),
-            dy: Vec2::new((m[0][1] - x * m[2][1]) * r, (m[1][1] - y * m[2][1]) * r),
-        }
+        let image = self.near(p);
+        let [dx, dy] = self.slopes(image);
+        Jet { p: self.point_of(image), dx, dy }
     }
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        let m = &self.m;
-        let r = 1.0 / self.w(p);
-        Point::new((m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r, (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r)
+        self.point_of(self.near(p))
     }
 
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
@@ -93,7 +85,7 @@ impl Map for Homography {
     }
 
     fn creases(&self, out: &mut Creases) {
-        let [a, b, c] = self.m[2];
+        let [a, b, c] = self.horizon();
         if a != 0.0 || b != 0.0 {
             out.push(Crease::edge(Level::Line { a, b, c }));
         }

@@ -14,6 +14,7 @@ use crate::map::{Class, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use kurbo::{CubicBez, Line, Point};
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// Evaluations of the map for an attempt at a piece with its usual checks.
 const EVALUATIONS: usize = 32;
@@ -21,6 +22,9 @@ const EVALUATIONS: usize = 32;
 /// A part with more attempts may be one where the map oscillates faster than samples can tell, so that most need the thorough check:
 /// fewer are allowed from there on.
 const HARD: usize = 64;
+
+/// Creases of one segment that are found by comparing branches with the map.
+const MAX_FOUND: usize = 16;
 
 /// Fits the images of single segments.
 pub(super) struct SegmentFitter<'a> {
@@ -178,14 +182,28 @@ impl SegmentFitter<'_> {
     ) -> Result<(), Point> {
         let (seg, map) = (whole.seg, self.map);
         self.spend(self.creases.splits_work(seg, self.work));
-        let splits = self.creases.splits(seg);
+        let mut ends = self.creases.splits(seg);
+        ends.push(1.0);
+        ends.reverse();
+        let mut found = 0;
         let mut from = Node { t: 0.0, u: 0.0, p: jets[0].p, jet: Some(jets[0]) };
-        for i in 0..=splits.len() {
-            let to = match splits.get(i) {
-                Some(&t) => Node { t, u: whole.param(t), p: map.jet(seg.eval(t)).p, jet: None },
-                None => Node { t: 1.0, u: 1.0, p: jets[1].p, jet: Some(jets[1]) },
+        while let Some(&t) = ends.last() {
+            let u = if t == 1.0 { 1.0 } else { whole.param(t) };
+            let branch = match self.branch_between(seg, from.t, t) {
+                Ok(b) => b,
+                // A crease that the map does not tell, or that was missed.
+                Err(at) if found < MAX_FOUND => {
+                    found += 1;
+                    ends.push(from.t + (t - from.t) * at);
+                    continue;
+                }
+                Err(_) => map.branch(seg.eval(0.5 * (from.t + t))),
             };
-            let branch = map.branch(whole.at(0.5 * (from.u + to.u)));
+            ends.pop();
+            let to = match t == 1.0 {
+                false => Node { t, u, p: map.point(seg.eval(t)), jet: None },
+                true => Node { t, u, p: jets[1].p, jet: Some(jets[1]) },
+            };
             if let Some(Class::Affine(m)) = branch.as_ref().map(Map::class)
                 && let Some(part) = seg.part(from.t, to.t)
             {
@@ -204,6 +222,39 @@ impl SegmentFitter<'_> {
             from = to;
         }
         Ok(())
+    }
+
+    /// The branch that is the map between two parameters: that of a point inside, confirmed at others. `Err`: where, as a share of
+    /// the way, another branch begins.
+    fn branch_between(&self, seg: &Seg, from: f64, to: f64) -> Result<Option<Arc<dyn Map>>, f64> {
+        /// Places that symmetrical artwork avoids, the one near the middle first.
+        const PROBES: [f64; 5] = [0.483_7, 0.211_3, 0.788_9, 0.061_1, 0.939_1];
+        let place = |s: f64| seg.eval(from + (to - from) * s);
+        let at = PROBES.map(place);
+        let Some(first) = self.map.branch(at[0]) else { return Ok(None) };
+        let mut images = [[Point::ORIGIN; PROBES.len()]; 2];
+        self.map.points(&at, &mut images[0]);
+        let near = |p: Point, q: Point| {
+            let far = p.distance(q);
+            // Where the map is not finite, the fit says so.
+            !(far > TEAR * self.options.tolerance && far > 1e-11 * p.to_vec2().hypot())
+        };
+        let mut agrees = |b: &Arc<dyn Map>| {
+            b.points(&at, &mut images[1]);
+            (0..PROBES.len()).find(|&i| !near(images[0][i], images[1][i]))
+        };
+        let Some(off) = agrees(&first) else { return Ok(Some(first)) };
+        let other = self.map.branch(at[off]).filter(|b| agrees(b).is_none());
+        if other.is_some() {
+            return Ok(other);
+        }
+        let (mut inside, mut outside) = (PROBES[0], PROBES[off]);
+        while (inside - outside).abs() > 1e-12 {
+            let mid = 0.5 * (inside + outside);
+            let p = place(mid);
+            *if near(self.map.point(p), first.point(p)) { &mut inside } else { &mut outside } = mid;
+        }
+        Err(inside)
     }
 
     /// Covers the part between two nodes. If the map tears at a node, a line connects the node to the branch's own value.

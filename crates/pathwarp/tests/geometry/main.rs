@@ -16,3 +16,4 @@ mod report;
 mod shaper;
 #[path = "../../benches/support/mod.rs"]
 mod support;
+mod touching;

@@ -25,7 +25,7 @@ pub(super) struct Traced {
 pub(super) fn trace(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Traced {
     let candidates = b.elements(p.id());
     let only = b.element(p.id()).filter(|&e| b.tag(e) == "path");
-    if let Some((e, outline)) = only.and_then(|e| Some((e, path_outline(b, e, p.data())?))) {
+    if let Some((e, outline)) = only.and_then(|e| Some((e, path_outline(b, e)?))) {
         return Traced { source: Some(e), copied: None, drawn: Some(e), outline };
     }
     let shared = candidates.len() > 1;
@@ -33,7 +33,7 @@ pub(super) fn trace(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Traced {
         if !is_shape(b.tag(e)) || (shared && b.taken.contains(&e)) {
             continue;
         }
-        let exact = b.reader.outline(e).filter(|o| same_path(o, p.data()));
+        let exact = b.reader.outline(e).filter(|o| !shared || same_path(o, p.data()));
         if exact.is_some() || !shared {
             if shared {
                 b.taken.insert(e);
@@ -48,21 +48,19 @@ pub(super) fn trace(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Traced {
     Traced { source: None, copied, drawn: copied, outline }
 }
 
-/// The outline of a `path` element that usvg has resolved to `path`; computed on first use.
-fn path_outline(b: &SceneBuilder<'_>, e: ElementId, path: &ts::Path) -> Option<LazyOutline> {
+/// The outline of a `path` element; computed on first use.
+fn path_outline(b: &SceneBuilder<'_>, e: ElementId) -> Option<LazyOutline> {
     let d = b.reader.source.attr(e, "d")?.into_owned();
-    let (path, ahead) = (path.clone(), Arc::clone(&b.reader.source.ahead));
+    let ahead = Arc::clone(&b.reader.source.ahead);
     Some(LazyOutline::shared(move || {
         let known = ahead.get().and_then(|known| known.get(&e).cloned());
-        let exact = known.unwrap_or_else(|| Arc::new(Outline::from_svg_lossy(&d)));
-        if same_path(&exact, &path) { exact } else { Arc::new(from_usvg(&path)) }
+        known.unwrap_or_else(|| Arc::new(Outline::from_svg_lossy(&d)))
     }))
 }
 
 /// A path's outline, read from the source if possible.
 pub(super) fn known_outline(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Outline {
     let own = b.element(p.id()).filter(|&e| is_shape(b.tag(e))).and_then(|e| b.reader.outline(e));
-    let own = own.filter(|o| same_path(o, p.data()));
     own.or_else(|| copy_of(b, p.data()).map(|c| c.1)).unwrap_or_else(|| from_usvg(p.data()))
 }
 

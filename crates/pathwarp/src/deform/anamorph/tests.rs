@@ -247,7 +247,7 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
         [o.y * along.x, 1.0 + o.y * along.y, o.y * (d0 - along.dot(o.to_vec2())) - o.y],
         [along.x, along.y, d0 - along.dot(o.to_vec2())],
     ];
-    let (matrix, bezier) = (Homography { m }, d.about(FOOT, false));
+    let (matrix, bezier) = (Homography::new(m), d.about(FOOT, false));
     assert!(matches!(Map::class(&bezier), Class::Projective(_)));
     // A cubic stays a cubic, with weights.
     let cubic = Seg::Cubic(kurbo::CubicBez::new((5.0, 5.0), (90.0, 5.0), (20.0, 80.0), (60.0, 60.0)));

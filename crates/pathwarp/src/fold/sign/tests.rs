@@ -144,7 +144,7 @@ fn nothing_is_claimed_without_algebra_or_samples_or_beyond_a_pole() {
     assert_eq!(proven(&net, BOX, ENOUGH), Some(1.0));
     assert_eq!(proven(&net, BOX, 20), None);
     // The horizon x = 40 crosses the box; the determinant, 1/W³, is positive on one side only.
-    let horizon = Homography { m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.025, 0.0, 1.0]] };
+    let horizon = Homography::new([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.025, 0.0, 1.0]]);
     assert_eq!(proven(&horizon, BOX, ENOUGH), None);
     assert_eq!(proven(&horizon, Rect { x1: 30.0, ..BOX }, ENOUGH), Some(1.0));
     // A map onto a line has no orientation.

@@ -92,11 +92,11 @@ impl Quotient {
         let (x, y) = (row(&self.x), row(&self.y));
         if self.is_polynomial() {
             let plus = |r: [f64; 3], k: usize| std::array::from_fn(|i| r[i] + if i == k { 1.0 } else { 0.0 });
-            return Some(Homography { m: [plus(x, 0), plus(y, 1), [0.0, 0.0, 1.0]] });
+            return Some(Homography::new([plus(x, 0), plus(y, 1), [0.0, 0.0, 1.0]]));
         }
         let w = row(&self.w);
         let from = |r: [f64; 3], o: f64| std::array::from_fn(|i| r[i] + o * w[i]);
-        Some(Homography { m: [from(x, self.origin.x), from(y, self.origin.y), w] })
+        Some(Homography::new([from(x, self.origin.x), from(y, self.origin.y), w]))
     }
 
     /// The same map in its simplest form.

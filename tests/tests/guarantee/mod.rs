@@ -1,0 +1,223 @@
+//! The promise, measured from outside: the distance between the exact image of the source text and the output of the program as people
+//! run it, for many pairs of a path and a map. `PATHWARP_PAIRS=100000 cargo test -p pathwarp-tests guarantee -- --nocapture` measures as
+//! many as it says, and prints the table of docs/benchmarks.md.
+
+mod curves;
+mod measure;
+mod paths;
+
+use curves::Curve;
+use measure::{Sampled, far, kink, sampled};
+use paths::{Random, path};
+use pathwarp::Outline;
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp_cli::embed::Warper;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{LazyLock, Mutex};
+
+static REGISTRY: LazyLock<Registry> = LazyLock::new(Registry::builtin);
+
+/// A deformation with its parameters, or a chain of two.
+#[derive(Clone)]
+struct Maps {
+    name: String,
+    warper: Warper,
+}
+
+/// Deformations that need no more than a drawing, with parameters that put creases on symmetrical artwork.
+const MORE: [(&str, &[(&str, &str)]); 22] = [
+    ("bend", &[("along", "M20,170C180,60 356,60 516,170"), ("stretch", "fit")]),
+    ("bend", &[("along", "M60,190A400,400 0 0 1 604,190"), ("stretch", "scale")]),
+    ("bend", &[("along", "0,0 100,80 200,-40 300,60 400,0"), ("spline", "3"), ("stretch", "scale")]),
+    ("bend", &[("along", "M0,0Q50,-40 100,0"), ("stretch", "fit")]),
+    ("bend", &[("along", "M0,0C30,-40 70,-40 100,0S170,40 200,0"), ("stretch", "fit")]),
+    ("bend", &[("along", "M0,50A50,50 0 0 1 100,50A50,50 0 0 1 0,50Z"), ("stretch", "fit")]),
+    ("envelope", &[("bottom", "M0,160C120,100 260,220 400,150"), ("height", "90")]),
+    ("envelope", &[("top", "M0,0Q50,-40 100,0T200,0"), ("height", "90")]),
+    ("warp", &[("style", "arc"), ("bend", "50%")]),
+    ("warp", &[("style", "flag"), ("bend", "50%")]),
+    ("warp", &[("style", "fish"), ("bend", "60%"), ("keep", "verticals")]),
+    ("warp", &[("style", "shell-lower"), ("bend", "60%")]),
+    ("wordart", &[("preset", "chevron")]),
+    ("wordart", &[("preset", "stop")]),
+    ("wordart", &[("preset", "inflate")]),
+    ("wordart", &[("preset", "arch-down-pour")]),
+    ("wordart", &[("preset", "button")]),
+    ("expr", &[("x", "x+abs(x-w/2)/3"), ("y", "y+abs(y-h/2)/4+x/5")]),
+    ("expr", &[("x", "if(u<.5,x,x+(u-.5)^2*w)"), ("y", "y+abs(u-v)*h/3")]),
+    ("polar", &[]),
+    ("swirl", &[("angle", "200")]),
+    ("bulge", &[("amount", "60%")]),
+];
+
+/// All deformations with the parameters that show them, those above, chains of two, and inverses.
+fn maps() -> Vec<Maps> {
+    let one = |name: &str, values: &[(&str, &str)]| {
+        let warper = Warper::new(&REGISTRY, name, values).ok()?;
+        let text: String = values.iter().map(|(k, v)| format!(" --{k} '{v}'")).collect();
+        Some(Maps { name: format!("{name}{text}"), warper })
+    };
+    let mut all: Vec<Maps> = REGISTRY.entries().iter().filter_map(|e| one(e.info().name, e.info().demo)).collect();
+    all.extend(REGISTRY.entries().iter().filter_map(|e| one(e.info().name, &[])));
+    let more: Vec<Maps> = MORE.iter().filter_map(|(n, v)| one(n, v)).collect();
+    assert!(more.len() > MORE.len() - 4, "names and values of the list have changed");
+    all.extend(more.iter().cloned());
+    let inverses: Vec<Maps> =
+        all.iter().map(|m| Maps { name: format!("inverse of {}", m.name), warper: m.warper.inverted() }).collect();
+    let chains: Vec<Maps> = (0..more.len())
+        .map(|i| (&more[i], &all[(7 * i + 3) % all.len()]))
+        .map(|(a, b)| Maps { name: format!("{} + {}", a.name, b.name), warper: a.warper.then(&b.warper) })
+        .collect();
+    all.extend(inverses);
+    all.extend(chains);
+    all
+}
+
+/// What a pair gives: the largest distance in tolerances, the sharpest false turn in degrees.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    ratio: f64,
+    turn: f64,
+    near: Point,
+}
+
+fn all_finite(s: &[Sampled]) -> bool {
+    s.iter().flat_map(|s| &s.points).all(|p| p.is_finite())
+}
+
+/// Measures a pair. `None`: the program refuses it, or says that it misses the tolerance.
+fn measured(d: &str, maps: &Maps) -> Option<Found> {
+    let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d=\"{d}\"/></svg>");
+    let done = maps.warper.warp_drawing(text.as_bytes(), None).ok()?;
+    let report: Value = serde_json::from_str(&done.report).unwrap();
+    let of = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
+    let tolerance = of(&report["tolerance"]);
+    if report["shapes"].as_array()?.iter().any(|s| s["over_budget"].as_array().is_some_and(|o| !o.is_empty())) {
+        return None;
+    }
+    let frame: Vec<f64> = report["frame"].as_array()?.iter().map(of).collect();
+    let frame = Rect::new(frame[0], frame[1], frame[0] + frame[2], frame[1] + frame[3]);
+    let out = String::from_utf8(done.bytes).unwrap();
+    let written = out.split_once("<path d=\"")?.1.split_once('"')?.0;
+    let (source, written) = (curves::read(d), curves::read(written));
+    let points = maps.warper.point_map(|| Some(frame), || Outline::from_svg(d).unwrap_or_default()).ok()?;
+    let image = |ps: &[Point]| {
+        let mut out = vec![Point::ORIGIN; ps.len()];
+        points.points(ps, &mut out);
+        out
+    };
+    let same = |ps: &[Point]| ps.to_vec();
+    let mut found = Found { ratio: 0.0, turn: 0.0, near: Point::ORIGIN };
+    for (n, last) in [(32, false), (320, true)] {
+        let exact: Vec<Sampled> = source.iter().map(|s| sampled(s, &image, n, tolerance)).collect();
+        let ours: Vec<Sampled> = written.iter().map(|s| sampled(s, &same, n, tolerance)).collect();
+        if !all_finite(&exact) || exact.is_empty() || ours.is_empty() {
+            return None;
+        }
+        let good = 0.85 * tolerance;
+        let there = |s: usize, (i, t): (usize, f64)| image(&[source[s][i].at(t)])[0];
+        let here = |s: usize, (i, t): (usize, f64)| written[s][i].at(t);
+        let (a, b) = (far(&exact, &ours, &here, good), far(&ours, &exact, &there, good));
+        let worst = if a.0 > b.0 { a } else { b };
+        (found.ratio, found.near) = (worst.0 / tolerance, worst.1);
+        if last || found.ratio <= 1.0 {
+            if source.len() == written.len() {
+                for ((s, e), w) in source.iter().zip(&exact).zip(&written) {
+                    let closed = s[0].at(0.0) == s[s.len() - 1].at(1.0);
+                    let (turn, near) = kink(s, e, &image, w, (closed, 2.0 * tolerance));
+                    if turn > found.turn {
+                        found.turn = turn;
+                        if found.ratio <= 1.0 {
+                            found.near = near;
+                        }
+                    }
+                }
+            }
+            break;
+        }
+    }
+    Some(found)
+}
+
+/// Most of a tolerance that counts as kept: sampling exactly to the last digit is not possible.
+const KEPT: f64 = 1.005;
+
+/// The largest turn at a joint that is smooth in the exact image, in degrees.
+const SMOOTH: f64 = 0.5;
+
+#[derive(Default)]
+struct Tally {
+    pairs: usize,
+    refused: usize,
+    worst: f64,
+    beyond: usize,
+    turned: usize,
+}
+
+#[test]
+fn the_distance_is_kept_for_many_pairs() {
+    let wanted: usize = std::env::var("PATHWARP_PAIRS").ok().and_then(|n| n.parse().ok()).unwrap_or(4000);
+    let first: usize = std::env::var("PATHWARP_FIRST").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
+    let (maps, next) = (maps(), AtomicUsize::new(first));
+    let tallies: Mutex<BTreeMap<&'static str, Tally>> = Mutex::default();
+    let failures: Mutex<Vec<String>> = Mutex::default();
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(2, usize::from) {
+            scope.spawn(|| {
+                loop {
+                    let i = next.fetch_add(1, Ordering::Relaxed);
+                    if i >= first + wanted {
+                        break;
+                    }
+                    let mut random = Random::new(i as u64);
+                    let (kind, d) = path(&mut random);
+                    let map = &maps[random.below(maps.len())];
+                    let found = measured(&d, map);
+                    let mut tallies = tallies.lock().unwrap();
+                    let t = tallies.entry(kind).or_default();
+                    t.pairs += 1;
+                    let Some(f) = found else {
+                        t.refused += 1;
+                        continue;
+                    };
+                    t.worst = t.worst.max(f.ratio);
+                    let (beyond, turned) = (!(f.ratio <= KEPT), f.turn > SMOOTH);
+                    t.beyond += usize::from(beyond);
+                    t.turned += usize::from(turned);
+                    if beyond || turned {
+                        let what = format!(
+                            "{i}: {:.3} tolerances, {:.2}° near {:?}: {}\n   {d}",
+                            f.ratio, f.turn, f.near, map.name
+                        );
+                        failures.lock().unwrap().push(what);
+                    }
+                }
+            });
+        }
+    });
+    for (kind, t) in tallies.lock().unwrap().iter() {
+        println!("| {kind} | {} | {} | {:.3} | {} | {} |", t.pairs, t.refused, t.worst, t.beyond, t.turned);
+    }
+    let counted = tallies.lock().unwrap();
+    let pairs: usize = counted.values().map(|t| t.pairs).sum();
+    let refused: usize = counted.values().map(|t| t.refused).sum();
+    assert!(2 * refused < pairs, "{refused} of {pairs} are refused");
+    let mut failures = failures.into_inner().unwrap();
+    failures.sort();
+    assert!(failures.is_empty(), "{} pairs:\n{}", failures.len(), failures.join("\n"));
+}
+
+/// Curves of the measure itself: an arc and its cubics are as far apart as the textbook says.
+#[test]
+fn the_measure_finds_the_error_of_a_quarter_circle() {
+    let arc = curves::read("M1 0A1 1 0 0 1 0 1");
+    let k = 4.0 / 3.0 * (std::f64::consts::FRAC_PI_8).tan();
+    let cubic = curves::read(&format!("M1 0C1 {k} {k} 1 0 1"));
+    let same = |ps: &[Point]| ps.to_vec();
+    let of = |c: &[Vec<Curve>]| vec![sampled(&c[0], &same, 4000, 1.0)];
+    let (d, _) = far(&of(&arc), &of(&cubic), &|s, (i, t)| cubic[s][i].at(t), 1e-9);
+    assert!((d - 2.7253e-4).abs() < 1e-6, "{d}");
+}

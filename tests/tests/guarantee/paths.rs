@@ -1,0 +1,175 @@
+//! Paths for the measurement: symmetrical shapes, nodes on creases, loops, random curves, far from the origin or not.
+
+use std::fmt::Write as _;
+
+/// A generator that gives the same numbers on every machine.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5DEE_CE66)
+    }
+
+    fn next(&mut self) -> u64 {
+        // xorshift*
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    /// 0 to 1.
+    fn share(&mut self) -> f64 {
+        self.next() as f64 / (1u64 << 48) as f64
+    }
+
+    fn between(&mut self, a: f64, b: f64) -> f64 {
+        a + (b - a) * self.share()
+    }
+
+    /// Often a multiple of an eighth of the page.
+    fn coordinate(&mut self) -> f64 {
+        match self.below(3) {
+            0 => self.below(9) as f64 * 12.5,
+            1 => (self.between(0.0, 100.0) * 10.0).round() / 10.0,
+            _ => self.between(0.0, 100.0),
+        }
+    }
+}
+
+/// A path that is symmetrical about a vertical through `x` and reaches from `x − w` to `x + w`.
+fn symmetrical(r: &mut Random) -> String {
+    let (x, y, w) = (50.0, r.coordinate(), [50.0, 25.0, 12.5, 16.65, 33.3][r.below(5)]);
+    let h = r.between(0.2, 1.5) * w;
+    let (l, m) = (x - w, x + w);
+    match r.below(9) {
+        0 => format!(
+            "M{} {y}H{}a{h} {h} 0 0 1 0 {}H{}a{h} {h} 0 0 1 0 {}Z",
+            x - w / 2.0,
+            x + w / 2.0,
+            2.0 * h,
+            x - w / 2.0,
+            -2.0 * h
+        ),
+        1 => format!("M{m} {y}A{w} {h} 0 1 1 {l} {y}A{w} {h} 0 1 1 {m} {y}Z"),
+        2 => format!("M{x} {}A{w} {h} 0 0 1 {x} {}A{w} {h} 0 0 1 {x} {}Z", y - h, y + h, y - h),
+        3 => format!("M{l} {y}C{l} {} {m} {} {m} {y}L{x} {}Z", y - h, y - h, y + 2.0 * h),
+        4 => {
+            let k = 0.552_284_75;
+            let (a, b) = (k * w, k * h);
+            format!(
+                "M{x} {}C{} {} {m} {} {m} {y}S{} {} {x} {}S{l} {} {l} {y}S{} {} {x} {}Z",
+                y - h,
+                x + a,
+                y - h,
+                y - b,
+                x + a,
+                y + h,
+                y + h,
+                y + b,
+                x - a,
+                y - h,
+                y - h
+            )
+        }
+        5 => format!("M{l} {y}Q{x} {} {m} {y}Q{x} {} {l} {y}Z", y - h, y + h),
+        6 => format!("M{x} {y}L{m} {}V{}H{l}V{}Z", y + h, y + 2.0 * h, y + h),
+        7 => format!("M{x} {y}C{} {} {} {} {x} {y}Z", l - w, y - 2.0 * h, m + w, y - 2.0 * h),
+        _ => format!(
+            "M{m} {y}A{w} {w} 0 0 1 {l} {y}A{w} {w} 0 0 1 {m} {y}ZM{} {y}A{h} {h} 0 0 0 {} {y}A{h} {h} 0 0 0 {} {y}Z",
+            x + h,
+            x - h,
+            x + h
+        ),
+    }
+}
+
+/// Curves through nodes that often lie on creases, with smooth joints among them.
+fn random(r: &mut Random) -> String {
+    let mut d = format!("M{} {}", r.coordinate(), r.coordinate());
+    for _ in 0..1 + r.below(6) {
+        let mut numbers = |n: usize| (0..n).fold(String::new(), |s, _| s + &format!(" {}", r.coordinate()));
+        let next = match numbers(1).len() % 7 {
+            0 => format!("L{}", numbers(2)),
+            1 => format!("Q{}", numbers(4)),
+            2 => format!("T{}", numbers(2)),
+            3 => format!("S{}", numbers(4)),
+            _ => format!("C{}", numbers(6)),
+        };
+        d += &next;
+        if r.below(5) == 0 {
+            let (rx, ry) = (r.between(1.0, 60.0), r.between(1.0, 60.0));
+            let _ = write!(
+                d,
+                "A{rx} {ry} {} {} {} {} {}",
+                r.below(180),
+                r.below(2),
+                r.below(2),
+                r.coordinate(),
+                r.coordinate()
+            );
+        }
+    }
+    if r.below(2) == 0 { d + "Z" } else { d }
+}
+
+/// Loops: petals, whole turns, curves that end where they start.
+fn loops(r: &mut Random) -> String {
+    let (x, y) = (r.coordinate(), r.coordinate());
+    let mut d = format!("M0 0H100V100H0ZM{x} {y}");
+    for _ in 0..1 + r.below(3) {
+        let mut c = || r.coordinate();
+        let _ = write!(d, "C{} {} {} {} {x} {y}", c(), c(), c(), c());
+    }
+    d + "Z"
+}
+
+/// The same path elsewhere: relative commands after a first point far away.
+fn shifted(d: &str, by: [f64; 2]) -> String {
+    use svgtypes::PathSegment as S;
+    let mut out = String::new();
+    for s in svgtypes::PathParser::from(d).map_while(Result::ok) {
+        let p = |abs: bool, x: f64, y: f64| if abs { (x + by[0], y + by[1]) } else { (x, y) };
+        let name = |abs: bool, c: char| if abs { c } else { c.to_ascii_lowercase() };
+        let _ = match s {
+            S::MoveTo { abs, x, y } => write!(out, "{}{:?}", name(abs, 'M'), p(abs, x, y)),
+            S::LineTo { abs, x, y } => write!(out, "{}{:?}", name(abs, 'L'), p(abs, x, y)),
+            S::HorizontalLineTo { abs, x } => write!(out, "{}{:?}", name(abs, 'H'), p(abs, x, 0.0).0),
+            S::VerticalLineTo { abs, y } => write!(out, "{}{:?}", name(abs, 'V'), p(abs, 0.0, y).1),
+            S::CurveTo { abs, x1, y1, x2, y2, x, y } => {
+                write!(out, "{}{:?}{:?}{:?}", name(abs, 'C'), p(abs, x1, y1), p(abs, x2, y2), p(abs, x, y))
+            }
+            S::SmoothCurveTo { abs, x2, y2, x, y } => {
+                write!(out, "{}{:?}{:?}", name(abs, 'S'), p(abs, x2, y2), p(abs, x, y))
+            }
+            S::Quadratic { abs, x1, y1, x, y } => {
+                write!(out, "{}{:?}{:?}", name(abs, 'Q'), p(abs, x1, y1), p(abs, x, y))
+            }
+            S::SmoothQuadratic { abs, x, y } => write!(out, "{}{:?}", name(abs, 'T'), p(abs, x, y)),
+            S::EllipticalArc { abs, rx, ry, x_axis_rotation: r, large_arc, sweep, x, y } => {
+                let (l, w) = (u8::from(large_arc), u8::from(sweep));
+                write!(out, "{}{rx} {ry} {r} {l} {w} {:?}", name(abs, 'A'), p(abs, x, y))
+            }
+            S::ClosePath { .. } => write!(out, "Z"),
+        };
+    }
+    out.replace(['(', ')'], " ").replace(", ", " ")
+}
+
+/// A path, with the name of its kind.
+pub fn path(r: &mut Random) -> (&'static str, String) {
+    let (kind, d) = match r.below(4) {
+        0 | 1 => ("symmetrical", symmetrical(r)),
+        2 => ("random", random(r)),
+        _ => ("loops", loops(r)),
+    };
+    match r.below(8) {
+        0 => ("at 1e5", shifted(&d, [1e5, 3e5])),
+        1 => ("at 3e7", shifted(&d, [3e7, -3.67e7])),
+        _ => (kind, d),
+    }
+}
