@@ -142,3 +142,14 @@ pub fn read(d: &str) -> Vec<Vec<Curve>> {
     out.retain(|r| !r.is_empty());
     out
 }
+
+/// Subpaths as areas: an open one is closed by a line.
+pub fn closed(mut all: Vec<Vec<Curve>>) -> Vec<Vec<Curve>> {
+    for run in &mut all {
+        let ends = [run[run.len() - 1].at(1.0), run[0].at(0.0)];
+        if ends[0] != ends[1] {
+            run.push(Curve::Line(ends));
+        }
+    }
+    all
+}
