@@ -544,7 +544,7 @@ fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], 
     const WAYS: [Vec2; 4] = [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)];
     if let Class::Affine(m) = map.class() {
         let images = placed(artwork, copies).map(|(seg, place)| seg.transformed(m * place).bounding_box());
-        return images.filter(|b| b.is_finite()).reduce(|a, b| a.union(b));
+        return images.filter(Rect::is_finite).reduce(|a, b| a.union(b));
     }
     let mut most = [f64::NEG_INFINITY; 4];
     for (seg, place) in placed(artwork, copies) {
