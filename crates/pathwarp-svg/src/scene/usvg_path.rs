@@ -122,7 +122,7 @@ mod tests {
             let mut d = String::from("M10.1 20.7");
             for _ in 0..1 + next(8) {
                 let n = |next: &mut dyn FnMut(u64) -> u64| format!(" {}", next(5) as f64 * 33.3);
-                let mut list = |k: usize, next: &mut dyn FnMut(u64) -> u64| (0..k).map(|_| n(next)).collect::<String>();
+                let list = |k: usize, next: &mut dyn FnMut(u64) -> u64| (0..k).map(|_| n(next)).collect::<String>();
                 let (name, count) =
                     [("L", 2), ("C", 6), ("Q", 4), ("S", 4), ("T", 2), ("A", 2), ("Z", 0)][next(7) as usize];
                 if name == "A" {
