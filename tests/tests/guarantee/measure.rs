@@ -80,8 +80,7 @@ pub fn far(from: &[Sampled], to: &[Sampled], on: &dyn Fn(usize, (usize, f64)) ->
         }
         if best > good {
             // Beside a chord, the curve itself: over this chord and its neighbours.
-            for k in hint.saturating_sub(1)..=(hint + 1).min(n - 1) {
-                let (s, k) = chords[k];
+            for &(s, k) in &chords[hint.saturating_sub(1)..=(hint + 1).min(n - 1)] {
                 let (a, b) = (to[s].at[k], to[s].at[k + 1]);
                 if a.0 == b.0 {
                     best = best.min(beside(*p, &|t| on(s, (a.0, t)), a.1, b.1));

@@ -185,7 +185,7 @@ fn the_distance_is_kept_for_many_pairs() {
                         continue;
                     };
                     t.worst = t.worst.max(f.ratio);
-                    let (beyond, turned) = (!(f.ratio <= KEPT), f.turn > SMOOTH);
+                    let (beyond, turned) = (f.ratio.is_nan() || f.ratio > KEPT, f.turn > SMOOTH);
                     t.beyond += usize::from(beyond);
                     t.turned += usize::from(turned);
                     if turned {
