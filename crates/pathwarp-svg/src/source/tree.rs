@@ -8,7 +8,7 @@ use super::images::{self, Missing, Rejected, Unread};
 use super::read::{self, ReadOptions};
 use super::stack::with_stack;
 use super::text::{SourceText, plain};
-use super::undrawn::{may_be_unknown, undrawn};
+use super::undrawn::undrawn;
 use crate::bend::outcome::Notes;
 use pathwarp::Error;
 use pathwarp_reader::{Plain, xml};
@@ -123,10 +123,8 @@ pub(crate) fn parse_counted(
     let (tree, mut missed) = with_stack(name, || tree(&xml, name, options))?;
     drop(xml);
     missed.notes = Notes::in_words(&notes);
-    if !unsupported.is_empty() || may_be_unknown(&text) {
-        let mut source = SourceText::parse(text, name)?;
-        source.unsupported_style = unsupported;
-        missed.undrawn = undrawn(&source);
-    }
+    let mut source = SourceText::parse(text, name)?;
+    source.unsupported_style = unsupported;
+    missed.undrawn = undrawn(&source);
     Ok((Arc::new(tree), missed))
 }
