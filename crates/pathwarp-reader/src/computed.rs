@@ -490,11 +490,8 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         let tag = self.tag;
         let mut out = self.out;
         let mut style = std::mem::take(&mut self.style);
-        // usvg takes percentages of a `use` twice where it shows a symbol.
-        for name in ["width", "height"].into_iter().filter(|_| tag == "use") {
-            let share = node.attribute(name).filter(|v| v.trim().ends_with('%'));
-            let px = share.and_then(|v| value::length(v, &self.values.units, whole(name, &self.values.units)));
-            out.attributes.extend(px.map(|px| (name, Some(px.to_string()))));
+        if tag == "use" {
+            out.attributes.extend(size_of_use(node, &self.values.units));
         }
         let marker = |name: &str| {
             let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
@@ -567,6 +564,14 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         out.style = (!same).then_some(style);
         out
     }
+}
+
+/// The size of a `use` in px: usvg takes percentages twice where it shows a symbol.
+fn size_of_use(node: Node<'_, '_>, units: &Units) -> impl Iterator<Item = (&'static str, Option<String>)> {
+    ["width", "height"].into_iter().filter_map(move |name| {
+        let share = node.attribute(name).filter(|v| v.trim().ends_with('%'))?;
+        Some((name, Some(value::length(share, units, whole(name, units))?.to_string())))
+    })
 }
 
 /// The attributes of a `use` with which usvg, which knows no place, size and transform of symbols, shows one (SVG 2, section 5.5).

@@ -16,32 +16,11 @@ const INSTEAD: &str = "9e8";
 const DIGITS: usize = 10;
 
 /// Attributes that are no properties and no lengths, and hold numbers of geometry.
+#[rustfmt::skip]
 const CHECKED: [&str; 25] = [
-    "points",
-    "z",
-    "viewBox",
-    "gradientTransform",
-    "patternTransform",
-    "stdDeviation",
-    "radius",
-    "baseFrequency",
-    "surfaceScale",
-    "kernelUnitLength",
-    "pointsAtX",
-    "pointsAtY",
-    "pointsAtZ",
-    "limitingConeAngle",
-    "kernelMatrix",
-    "divisor",
-    "bias",
-    "k1",
-    "k2",
-    "k3",
-    "k4",
-    "pathLength",
-    "d",
-    "rotate",
-    "scale",
+    "points", "z", "viewBox", "gradientTransform", "patternTransform", "stdDeviation", "radius", "baseFrequency",
+    "surfaceScale", "kernelUnitLength", "pointsAtX", "pointsAtY", "pointsAtZ", "limitingConeAngle", "kernelMatrix", "divisor",
+    "bias", "k1", "k2", "k3", "k4", "pathLength", "d", "rotate", "scale",
 ];
 
 /// The name of an attribute that holds numbers of geometry.

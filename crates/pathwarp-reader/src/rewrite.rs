@@ -58,6 +58,8 @@ pub struct Plain {
     pub unsupported: Vec<(Option<usize>, String)>,
     /// The elements with numbers out of range, which the text has not, each with the first of them.
     pub far: Vec<(usize, String)>,
+    /// The properties that its style sheets declare.
+    pub declared: BTreeSet<String>,
     /// What browsers show a little otherwise: a sentence, and what it is about.
     pub notes: BTreeSet<(&'static str, String)>,
     /// Elements that entities hold are written out, which no change tells.
@@ -161,10 +163,10 @@ pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
 fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>, Plain), Exceeded> {
     let text = doc.input_text();
     let nodes: Vec<Node<'_, '_>> = doc.descendants().filter(Node::is_element).collect();
-    let Tree { styles, sheets, unsupported, mut notes } = styled(doc, &nodes, budget)?;
+    let Tree { styles, sheets, unsupported, declared, mut notes } = styled(doc, &nodes, budget)?;
     let unsupported = unsupported.into_iter().map(|why| (None, why)).collect();
     notes.extend(hints(text).map(|hint| (hint, String::new())));
-    let mut out = Plain { unsupported, notes, ..Plain::default() };
+    let mut out = Plain { unsupported, declared, notes, ..Plain::default() };
     let mut all: Vec<(Change, String)> = Vec::new();
     let mut paths = String::new();
     // Ids that are no names: then all references stay as they are written here, also in an edited drawing.

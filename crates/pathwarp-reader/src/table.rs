@@ -59,67 +59,21 @@ use Kind::{
     Share, Spacing, Transform, Word, Words,
 };
 
+#[rustfmt::skip]
 const DISPLAY: &[&str] = &[
-    "none",
-    "inline",
-    "block",
-    "inline-block",
-    "contents",
-    "flex",
-    "grid",
-    "inline-flex",
-    "inline-grid",
-    "list-item",
-    "flow-root",
-    "run-in",
-    "table",
-    "inline-table",
-    "table-row",
-    "table-cell",
-    "table-column",
-    "table-caption",
-    "table-row-group",
-    "table-column-group",
-    "table-header-group",
-    "table-footer-group",
+    "none", "inline", "block", "inline-block", "contents", "flex", "grid", "inline-flex", "inline-grid", "list-item",
+    "flow-root", "run-in", "table", "inline-table", "table-row", "table-cell", "table-column", "table-caption",
+    "table-row-group", "table-column-group", "table-header-group", "table-footer-group",
 ];
+#[rustfmt::skip]
 const BASELINES: &[&str] = &[
-    "auto",
-    "baseline",
-    "before-edge",
-    "text-before-edge",
-    "middle",
-    "central",
-    "after-edge",
-    "text-after-edge",
-    "ideographic",
-    "alphabetic",
-    "hanging",
-    "mathematical",
-    "use-script",
-    "no-change",
-    "reset-size",
-    "text-top",
-    "text-bottom",
+    "auto", "baseline", "before-edge", "text-before-edge", "middle", "central", "after-edge", "text-after-edge", "ideographic",
+    "alphabetic", "hanging", "mathematical", "use-script", "no-change", "reset-size", "text-top", "text-bottom",
 ];
+#[rustfmt::skip]
 const BLENDS: &[&str] = &[
-    "normal",
-    "multiply",
-    "screen",
-    "overlay",
-    "darken",
-    "lighten",
-    "color-dodge",
-    "color-burn",
-    "hard-light",
-    "soft-light",
-    "difference",
-    "exclusion",
-    "hue",
-    "saturation",
-    "color",
-    "luminosity",
-    "plus-lighter",
+    "normal", "multiply", "screen", "overlay", "darken", "lighten", "color-dodge", "color-burn", "hard-light", "soft-light",
+    "difference", "exclusion", "hue", "saturation", "color", "luminosity", "plus-lighter",
 ];
 /// An inherited property.
 const fn up(name: &'static str, initial: &'static str, kind: Kind) -> Property {
@@ -220,43 +174,18 @@ static PROPERTIES: [Property; 84] = [
 ];
 
 /// Attributes that are no properties and hold a length.
+#[rustfmt::skip]
 const LENGTHS: [&str; 15] = [
-    "dx",
-    "dy",
-    "fr",
-    "fx",
-    "fy",
-    "markerHeight",
-    "markerWidth",
-    "refX",
-    "refY",
-    "startOffset",
-    "textLength",
-    "x1",
-    "x2",
-    "y1",
+    "dx", "dy", "fr", "fx", "fy", "markerHeight", "markerWidth", "refX", "refY", "startOffset", "textLength", "x1", "x2", "y1",
     "y2",
 ];
 
 /// Properties that no attribute sets.
+#[rustfmt::skip]
 const STYLE_ONLY: [&str; 17] = [
-    "d",
-    "font-feature-settings",
-    "font-kerning",
-    "font-variant-caps",
-    "font-variant-east-asian",
-    "font-variant-ligatures",
-    "font-variant-numeric",
-    "font-variant-position",
-    "font-variation-settings",
-    "isolation",
-    "mix-blend-mode",
-    "rotate",
-    "scale",
-    "text-shadow",
-    "text-transform",
-    "translate",
-    "white-space",
+    "d", "font-feature-settings", "font-kerning", "font-variant-caps", "font-variant-east-asian", "font-variant-ligatures",
+    "font-variant-numeric", "font-variant-position", "font-variation-settings", "isolation", "mix-blend-mode", "rotate",
+    "scale", "text-shadow", "text-transform", "translate", "white-space",
 ];
 
 /// The property with a name in lower case.

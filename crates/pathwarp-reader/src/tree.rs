@@ -45,6 +45,8 @@ pub(super) struct Tree<'a> {
     pub(super) sheets: BTreeSet<usize>,
     /// What is not supported of them, in words.
     pub(super) unsupported: BTreeSet<String>,
+    /// The properties that they declare.
+    pub(super) declared: BTreeSet<String>,
     /// What browsers show a little otherwise.
     pub(super) notes: BTreeSet<(&'static str, String)>,
 }
@@ -106,8 +108,9 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     budget.spend_cut(Limit::Comparisons, looks.done.get())?;
     let matrices = matrices(nodes, &out);
     let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
+    let declared = rules.blocks.iter().flat_map(|b| &b.declarations).map(|d| d.name.to_string()).collect();
     let notes = rules.moving.into_iter().map(|name| (MOVING, name)).collect();
-    Ok(Tree { styles: all.collect(), sheets, unsupported, notes })
+    Ok(Tree { styles: all.collect(), sheets, unsupported, declared, notes })
 }
 
 /// What the root element inherits.

@@ -1,6 +1,7 @@
 //! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
 use crate::source::read::{bytes_unpacked, text};
+use crate::source::table::tag_end;
 use crate::source::tags::PATHWARP as NAMESPACE;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -41,8 +42,8 @@ impl Origin {
             return Ok(out);
         }
         let root = doc.root_element().range();
-        let start = &svg[root.clone()];
-        let end = root.start + opening_end(start).ok_or_else(|| Error::input("the drawing", "its root has no end"))?;
+        let end =
+            tag_end(svg, root.start, root.end).ok_or_else(|| Error::input("the drawing", "its root has no end"))?;
         if svg[..end].ends_with("/>") {
             return Err(Error::input("the drawing", "is empty; there is nothing to embed"));
         }
@@ -100,28 +101,13 @@ impl Origin {
 }
 
 fn parse(svg: &str) -> Result<roxmltree::Document<'_>, Error> {
-    let options = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
-    roxmltree::Document::parse_with_options(svg, options).map_err(|e| Error::input("the drawing", e.to_string()))
+    xml::document(svg).map_err(|e| Error::input("the drawing", e.to_string()))
 }
 
 /// Finds the embedded origin, in a `<metadata>`.
 fn own<'a>(doc: &'a roxmltree::Document<'a>) -> Option<roxmltree::Node<'a, 'a>> {
     let own = doc.root_element().descendants().find(|n| n.has_tag_name((NAMESPACE, "pathwarp")))?;
     own.parent().is_some_and(|p| p.tag_name().name() == "metadata").then_some(own)
-}
-
-/// Finds the end of an opening tag: the first `>` outside of quotes.
-fn opening_end(element: &str) -> Option<usize> {
-    let mut quote = None;
-    for (i, c) in element.char_indices() {
-        match (quote, c) {
-            (None, '>') => return Some(i + 1),
-            (None, '"' | '\'') => quote = Some(c),
-            (Some(q), c) if q == c => quote = None,
-            _ => {}
-        }
-    }
-    None
 }
 
 #[cfg(test)]

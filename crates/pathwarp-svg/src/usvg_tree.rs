@@ -3,6 +3,7 @@
 //! This module exposes types of the `usvg` crate, whose major version may change in any release. It is exempt from semantic
 //! versioning.
 
+use crate::bend::outcome::Notes;
 use crate::document::Document;
 use crate::scene::unread::UnreadImages;
 use crate::source::read::ReadOptions;
@@ -44,7 +45,13 @@ pub struct ReadTree {
 pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadTree, Error> {
     let (tree, missed) = tree::parse(data, name, options)?;
     let unread = UnreadImages::of(&missed);
-    Ok(ReadTree { tree, unread, missing_fonts: missed.fonts, undrawn: missed.undrawn, notes: missed.notes })
+    Ok(ReadTree {
+        tree,
+        unread,
+        missing_fonts: missed.fonts,
+        undrawn: missed.undrawn,
+        notes: Notes::in_words(&missed.notes),
+    })
 }
 
 /// Returns the tree of a document. Elements without id have temporary ones in it.

@@ -106,7 +106,7 @@ impl<'a> Edits<'a> {
     /// property, else as an attribute.
     pub(crate) fn set_property(&mut self, e: ElementId, name: &'static str, value: String) {
         let styled = self.source.attr(e, "style").is_some_and(|s| declared(&s, name).is_some());
-        if styled || self.source.css_mentions(name) {
+        if styled || self.source.css_declares(name) {
             let properties = &mut self.change(e).properties;
             properties.retain(|p| p.0 != name);
             properties.push((name, value));
@@ -128,7 +128,7 @@ impl<'a> Edits<'a> {
         let source = self.source;
         let mut patches: Vec<(usize, usize, String)> = Vec::new();
         let changes = &self.changes;
-        let has_data = |e| source.css_mentions("d") || declared(&source.written_style(e), "d").is_some();
+        let has_data = |e| source.css_declares("d") || declared(&source.written_style(e), "d").is_some();
         let decided = |o: &pathwarp_reader::Change| {
             changes.get(&o.element).is_some_and(|c| c.sets(o.name, o.name == "style" && has_data(o.element)))
         };
@@ -166,7 +166,7 @@ impl<'a> Edits<'a> {
 /// Declares new path data where a declaration would override the attribute.
 fn declare_data(source: &SourceText, e: ElementId, c: &mut Change) {
     if let Some((_, Some(data))) = c.attrs.iter().find(|a| a.0 == "d")
-        && (source.css_mentions("d") || declared(&source.written_style(e), "d").is_some())
+        && (source.css_declares("d") || declared(&source.written_style(e), "d").is_some())
     {
         c.properties.push(("d", format!("path('{data}')")));
     }

@@ -22,7 +22,7 @@ pub(crate) mod read;
 pub(crate) mod select;
 pub(crate) mod stack;
 pub(crate) mod style;
-mod table;
+pub(crate) mod table;
 pub(crate) mod tags;
 pub(crate) mod text;
 pub(crate) mod tree;

@@ -3,8 +3,6 @@
 //! simplecss's `DeclarationTokenizer` does not fit here: it stops at the first declaration it cannot parse and drops
 //! `!important` and comments, while an editor has to keep all of them.
 
-use std::collections::HashSet;
-
 /// Splits a style attribute, or the block of a rule, into declarations.
 pub(crate) fn declarations(style: &str) -> impl Iterator<Item = (&str, &str)> {
     // Quoted strings and url(data:…;base64,…) may contain semicolons.
@@ -48,46 +46,4 @@ pub(crate) fn with_declaration(style: &str, name: &str, value: &str) -> String {
         out.push(format!("{name}:{value}"));
     }
     out.join(";")
-}
-
-/// Lists the words of a style sheet in lower case, except class and id names: `.rect` does not mention `<rect>`.
-pub(crate) fn words(css: &str) -> HashSet<String> {
-    let mut out = HashSet::new();
-    let mut word = String::new();
-    let mut before = ' ';
-    let mut is_name = false;
-    let css: String = css
-        .split("/*")
-        .enumerate()
-        .map(|(i, s)| if i == 0 { s } else { s.split_once("*/").map_or("", |p| p.1) })
-        .collect();
-    for c in css.chars().chain(['\n']) {
-        if c.is_alphanumeric() || c == '-' || c == '_' {
-            if word.is_empty() {
-                is_name = before == '.' || before == '#';
-            }
-            word.push(c);
-        } else {
-            if !word.is_empty() && !is_name {
-                out.insert(word.to_ascii_lowercase());
-            }
-            word.clear();
-            if c == '*' {
-                out.insert("*".to_owned());
-            }
-            before = c;
-        }
-    }
-    out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_class_is_not_a_type_selector() {
-        let w = words("/* rect */ .circle, g > line:hover{fill:red}");
-        assert!(w.contains("line") && w.contains("fill") && !w.contains("circle") && !w.contains("*"));
-    }
 }

@@ -1,12 +1,10 @@
 //! Builds the table of elements, with their source positions, from a parsed document.
 
 use super::element::{Attr, Element};
-use super::marks::{self, TextPatch};
 use super::tags::{ElementId, Namespace, SVG};
 use super::unpatchable::Unpatchable;
 use memchr::memrchr;
 use std::borrow::Cow;
-use std::ops::Range;
 use usvg::roxmltree;
 
 /// The elements of a document.
@@ -19,9 +17,8 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Lists the elements of a document whose text differs from the source by `patches`. Returns `None` if the root is not
-    /// `<svg>`.
-    pub(crate) fn of(doc: &roxmltree::Document<'_>, patches: &[TextPatch]) -> Option<Self> {
+    /// Lists the elements of a document. Returns `None` if the root is not `<svg>`.
+    pub(crate) fn of(doc: &roxmltree::Document<'_>) -> Option<Self> {
         let root = doc.root_element();
         if root.tag_name().name() != "svg" || !matches!(root.tag_name().namespace(), Some(SVG) | None) {
             return None;
@@ -30,7 +27,6 @@ impl Table {
         let mut out = Self { elements: Vec::new(), css: String::new(), unpatchable: None };
         // The current element and its ancestors.
         let mut open: Vec<(Option<roxmltree::NodeId>, ElementId)> = Vec::new();
-        let mut next = 0;
         for node in doc.descendants().filter(roxmltree::Node::is_element) {
             let id = out.elements.len();
             let around = node.parent().map(|p| p.id());
@@ -39,12 +35,8 @@ impl Table {
             }
             let parent = open.last().map(|o| o.1);
             open.push((Some(node.id()), id));
-            let patch = patches.get(next).filter(|p| p.element == id);
-            let before = next.checked_sub(1).and_then(|i| patches.get(i)).map_or(0, TextPatch::shift);
-            next += usize::from(patch.is_some());
-            let places = Places { text: doc.input_text(), patches, patch, before };
             // The replacement text of an entity is in the DTD, before the root.
-            let element = (node.range().start >= start).then(|| element(&places, node, parent)).flatten();
+            let element = (node.range().start >= start).then(|| element(doc.input_text(), node, parent)).flatten();
             out.elements.push(element.unwrap_or_else(|| {
                 out.unpatchable.get_or_insert(Unpatchable::Entities);
                 Element {
@@ -67,20 +59,8 @@ impl Table {
     }
 }
 
-/// Translates positions in the parsed text to positions in the source.
-struct Places<'a> {
-    /// The parsed text.
-    text: &'a str,
-    patches: &'a [TextPatch],
-    /// The patch inside the current opening tag.
-    patch: Option<&'a TextPatch>,
-    /// Shift of the tag's start.
-    before: usize,
-}
-
 /// Locates an element in the source. Returns `None` if it comes from an entity.
-fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>) -> Option<Element> {
-    let text = places.text;
+fn element(text: &str, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>) -> Option<Element> {
     let range = node.range();
     let rest = text.as_bytes().get(range.clone())?.strip_prefix(b"<")?;
     let len = rest.iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'/' | b'>'))?;
@@ -92,12 +72,6 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
     if !matches!(before.last(), None | Some(b':')) {
         return None;
     }
-    let moved = |r: &Range<usize>, shift: usize| r.start.wrapping_sub(shift)..r.end.wrapping_sub(shift);
-    // An inserted attribute precedes all others.
-    let mut shift = match places.patch {
-        Some(p) if p.replaced().is_none() => p.shift(),
-        _ => places.before,
-    };
     let attributes = node.attributes();
     let mut attrs = Vec::with_capacity(attributes.len());
     let mut last = qname.end;
@@ -109,30 +83,18 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
         }
         last = last.max(r.end);
         let full = a.range_qname();
-        let mut attr = Attr {
-            name: moved(&(full.end.checked_sub(a.name().len())?..full.end), shift),
+        attrs.push(Attr {
+            name: full.end.checked_sub(a.name().len())?..full.end,
             namespace: Namespace::of(a.namespace()),
-            range: moved(&r, shift),
-            value_range: moved(&v, shift),
+            range: r,
             value: (raw != a.value()).then(|| a.value().to_owned()),
-        };
-        if let Some(p) = places.patch.filter(|p| p.is(&v)) {
-            let Some(old) = p.replaced() else { continue };
-            shift = p.shift();
-            attr.range.end = r.end.wrapping_sub(shift);
-            attr.value_range = old;
-        }
-        attrs.push(attr);
+            value_range: v,
+        });
     }
     // The parser does not list namespace declarations as attributes; their quoted values may contain `>`.
     let open_end = tag_end(text, last, range.end)?;
-    let close = if open_end < range.end {
-        let start = memrchr(b'<', text.as_bytes().get(..range.end)?)?;
-        let shift = range.end.wrapping_sub(marks::in_source(places.patches, range.end));
-        Some(moved(&(start..range.end), shift))
-    } else {
-        None
-    };
+    let close =
+        if open_end < range.end { Some(memrchr(b'<', text.as_bytes().get(..range.end)?)?..range.end) } else { None };
     let svg = matches!(name.namespace(), Some(SVG) | None);
     let title = node
         .children()
@@ -141,12 +103,11 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
         .map(|t| t.trim().to_owned())
         .filter(|t| !t.is_empty());
     let tag = if svg { known(local).map_or_else(|| Cow::Owned(local.to_owned()), Cow::Borrowed) } else { "".into() };
-    let open_end = open_end.wrapping_sub(places.patch.map_or(places.before, TextPatch::shift));
     Some(Element {
         parent,
         tag,
-        qname: moved(&qname, places.before),
-        range: range.start.wrapping_sub(places.before)..close.as_ref().map_or(open_end, |c| c.end),
+        qname,
+        range: range.start..close.as_ref().map_or(open_end, |c| c.end),
         open_end,
         close,
         attrs,
@@ -179,7 +140,8 @@ fn known(tag: &str) -> Option<&'static str> {
     })
 }
 
-fn tag_end(text: &str, from: usize, to: usize) -> Option<usize> {
+/// Finds the end of an opening tag: after the first `>` outside of quotes.
+pub(crate) fn tag_end(text: &str, from: usize, to: usize) -> Option<usize> {
     let mut quote = None;
     for (i, b) in text.as_bytes().get(from..to)?.iter().enumerate() {
         match (quote, b) {

@@ -13,7 +13,7 @@ use pathwarp::Error;
 use pathwarp::budget::Budget;
 use pathwarp_reader::{Change, Plain, ReadError, resolve, xml};
 use std::borrow::Cow;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 use std::sync::OnceLock;
 use usvg::roxmltree;
@@ -28,6 +28,8 @@ pub(crate) struct SourceText {
     pub(crate) elements: Vec<Element>,
     /// Concatenated text of all style sheets.
     pub(crate) css: String,
+    /// The properties that the style sheets declare.
+    declared: BTreeSet<String>,
     /// `true` if there are animations.
     pub(crate) animated: bool,
     /// Reason why the text cannot be patched in place.
@@ -48,7 +50,6 @@ pub(crate) struct SourceText {
     // The rest is computed on first use.
     by_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     by_tree_id: OnceLock<HashMap<String, Vec<ElementId>>>,
-    css_words: OnceLock<HashSet<String>>,
     line_starts: OnceLock<Vec<usize>>,
     /// Numbers of characters before evenly spaced places.
     characters: OnceLock<Vec<usize>>,
@@ -66,28 +67,14 @@ impl SourceText {
         xml::check(&text, name, budget)?;
         let mut undeclared = Vec::new();
         let plain = plain(text, name, budget, Some(&mut undeclared))?;
-        let complete = |read: Self| Self {
-            undeclared,
-            originals: plain.changes,
-            far: plain.far,
-            unsupported_style: plain.unsupported,
-            notes: plain.notes,
-            unpatchable: read.unpatchable.clone().or(plain.expanded.then_some(Unpatchable::Entities)),
-            ..read
-        };
-        let marked = marks::mark(&plain.text);
-        let doc = marked.as_ref().and_then(|m| Some((m, xml::document(&m.text).ok()?)));
-        let read = doc.and_then(|(m, doc)| {
-            let table = Table::of(&doc, &m.patches)?;
-            (table.unpatchable.is_none() && table.elements.len() == m.elements).then_some((table, doc))
-        });
-        if let Some((table, doc)) = read {
-            let marks = marked.as_ref().map(|m| m.marks.clone()).unwrap_or_default();
-            let source = complete(Self::new(plain.text, table, marks));
-            let result = then(&source, &doc)?;
-            return Ok((source, result));
-        }
-        let mut source = complete(Self::parse(plain.text, name)?);
+        let mut source = Self::parse(plain.text, name)?;
+        source.undeclared = undeclared;
+        source.originals = plain.changes;
+        source.far = plain.far;
+        source.unsupported_style = plain.unsupported;
+        source.declared = plain.declared;
+        source.notes = plain.notes;
+        source.unpatchable = source.unpatchable.or(plain.expanded.then_some(Unpatchable::Entities));
         let (marked, marks) = source.instrumented();
         source.marks = marks;
         // Without reliable positions, ids cannot be inserted.
@@ -100,7 +87,7 @@ impl SourceText {
     pub(crate) fn parse(text: String, name: &str) -> Result<Self, Error> {
         let doc = xml::parse_checked(&text, name)?;
         let root = doc.root_element();
-        let Some(table) = Table::of(&doc, &[]) else {
+        let Some(table) = Table::of(&doc) else {
             let at = doc.text_pos_at(root.range().start);
             return Err(Error::input(
                 format!("{name}:{}:{}", at.row, at.col),
@@ -108,16 +95,17 @@ impl SourceText {
             ));
         };
         drop(doc);
-        Ok(Self::new(text, table, Marks::default()))
+        Ok(Self::new(text, table))
     }
 
-    fn new(text: String, table: Table, marks: Marks) -> Self {
+    fn new(text: String, table: Table) -> Self {
         let Table { elements, css, unpatchable } = table;
         let animated = elements.iter().any(|e| is_animation(&e.tag));
         Self {
             text,
             elements,
             css,
+            declared: BTreeSet::new(),
             animated,
             unpatchable,
             undeclared: Vec::new(),
@@ -125,11 +113,10 @@ impl SourceText {
             far: Vec::new(),
             unsupported_style: Vec::new(),
             notes: BTreeSet::new(),
-            marks,
+            marks: Marks::default(),
             ahead: Ahead::default(),
             by_id: OnceLock::new(),
             by_tree_id: OnceLock::new(),
-            css_words: OnceLock::new(),
             line_starts: OnceLock::new(),
             characters: OnceLock::new(),
         }
@@ -319,9 +306,9 @@ impl SourceText {
         !self.css.trim().is_empty()
     }
 
-    /// Returns `true` if the style sheets mention `word` as an element or a property.
-    pub(crate) fn css_mentions(&self, word: &str) -> bool {
-        !self.css.is_empty() && self.css_words.get_or_init(|| style::words(&self.css)).contains(word)
+    /// Returns `true` if the style sheets declare a property.
+    pub(crate) fn css_declares(&self, property: &str) -> bool {
+        self.declared.contains(property)
     }
 
     /// Prefix of SVG elements with its colon; usually empty.

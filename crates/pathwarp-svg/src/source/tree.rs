@@ -8,10 +8,10 @@ use super::images::{self, Missing, Rejected, Unread};
 use super::read::{self, ReadOptions};
 use super::stack::with_stack;
 use super::text::{SourceText, plain};
-use super::undrawn::{may_be_unknown, undrawn};
-use crate::bend::outcome::Notes;
+use super::undrawn::undrawn;
 use pathwarp::Error;
 use pathwarp_reader::{Plain, xml};
+use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use usvg::roxmltree;
@@ -27,8 +27,8 @@ pub(crate) struct Missed {
     pub(crate) outside: Vec<String>,
     /// What else a picture of it lacks, in words; of drawings that are read by [`parse`].
     pub(crate) undrawn: Vec<String>,
-    /// What browsers show a little otherwise, in words; of the same drawings.
-    pub(crate) notes: Vec<String>,
+    /// What browsers show a little otherwise, as the reader notes it; of the same drawings.
+    pub(crate) notes: BTreeSet<(&'static str, String)>,
 }
 
 /// Resolves a drawing with usvg. `name` identifies it in errors.
@@ -122,11 +122,9 @@ pub(crate) fn parse_counted(
     let xml = xml::parse_checked(&text, name)?;
     let (tree, mut missed) = with_stack(name, || tree(&xml, name, options))?;
     drop(xml);
-    missed.notes = Notes::in_words(&notes);
-    if !unsupported.is_empty() || may_be_unknown(&text) {
-        let mut source = SourceText::parse(text, name)?;
-        source.unsupported_style = unsupported;
-        missed.undrawn = undrawn(&source);
-    }
+    missed.notes = notes;
+    let mut source = SourceText::parse(text, name)?;
+    source.unsupported_style = unsupported;
+    missed.undrawn = undrawn(&source);
     Ok((Arc::new(tree), missed))
 }

@@ -2,7 +2,6 @@
 
 use super::tags::ElementId;
 use super::text::SourceText;
-use memchr::memmem;
 
 /// Content that usvg does not know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,16 +32,7 @@ pub(crate) fn is_definition(source: &SourceText, e: ElementId) -> bool {
     source.ancestors(e).any(|a| source.elements[a].tag == "defs")
 }
 
-/// Returns `false` if nothing in a text is unknown, style aside.
-pub(super) fn may_be_unknown(text: &str) -> bool {
-    let values = memmem::find_iter(text.as_bytes(), "href").filter_map(|at| {
-        let value = text[at + "href".len()..].trim_start().strip_prefix('=')?;
-        value.trim_start().strip_prefix(['"', '\''])
-    });
-    ["flowRoot", "foreignObject"].iter().any(|tag| text.contains(tag)) || { values }.any(is_elsewhere)
-}
-
-/// Returns `true` if a link, or a text that begins with one, leads to another file.
+/// Returns `true` if a link leads to another file.
 fn is_elsewhere(link: &str) -> bool {
     let link = link.trim_start();
     !link.is_empty() && !link.starts_with('#')

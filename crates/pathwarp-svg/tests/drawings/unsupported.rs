@@ -103,3 +103,26 @@ fn lines_of_a_text_stay_words_apart() {
         assert!(w.svg.contains(&format!("aria-label=\"{words}\"")), "{words}: {}", w.svg);
     }
 }
+
+/// What Chromium shows a little otherwise is said of results, and of drawings that are only drawn or converted.
+#[test]
+fn what_browsers_show_otherwise_is_said() {
+    const LINES: &str = "a tspan with y";
+    for (text, note, is_said) in [
+        ("<text id='t' y='30' text-decoration='overline'>a</text>", "overlines", true),
+        ("<text y='30'>a<tspan id='t' xml:space='preserve'> b</tspan></text>", "spaces", true),
+        ("<text id='t' y='30' letter-spacing='5%'>a b</text>", "spacing in per cent", true),
+        ("<text y='30' text-anchor='end'>a<tspan id='t' y='60'>b</tspan></text>", LINES, true),
+        ("<text y='30'>a<tspan id='t' y='60'>b</tspan></text>", LINES, false),
+        ("<text y='30' text-anchor='end'>a<tspan id='t' x='9' y='60'>b</tspan></text>", LINES, false),
+    ] {
+        let body = format!("{text}{REST}");
+        let warnings: Vec<String> = bent(&body).warnings.iter().map(ToString::to_string).collect();
+        for all in [read(&drawing(&body)).notes(), warnings] {
+            let found = all.iter().any(|w| w.starts_with(note) && w.ends_with(": t"));
+            assert_eq!(found, is_said, "{text}: {all:?}");
+        }
+    }
+    let svg = drawing(&format!("<text id='t' y='30' baseline-shift='super'>a</text>{REST}"));
+    assert!(matches!(read(&svg).undrawn().as_slice(), [why] if why.starts_with("t: only without “baseline-shift")));
+}

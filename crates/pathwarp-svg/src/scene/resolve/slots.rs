@@ -62,7 +62,7 @@ fn takes_fit(b: &SceneBuilder<'_>, at: &GroupAt<'_>, is_image: bool) -> bool {
         b.tag(e) != "svg"
             && source.attr(e, "transform-origin").is_none()
             && !source.attr(e, "style").is_some_and(|s| s.contains("transform"))
-            && !source.css_mentions("transform")
+            && !source.css_declares("transform")
     };
     at.element.is_some_and(|e| {
         only_transform_attribute(e)

@@ -126,7 +126,7 @@ fn property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
             continue;
         }
         let style = k.source.attr(e, "style");
-        if k.source.css_mentions(name) || style.is_some_and(|s| declared(&s, name).is_some()) {
+        if k.source.css_declares(name) || style.is_some_and(|s| declared(&s, name).is_some()) {
             k.edits.set_style(e, name, new);
         } else {
             k.edits.set_attr(e, name, new);
