@@ -14,7 +14,7 @@
 //! assert_eq!(plain.restored(), svg);
 //! ```
 //!
-//! One table of properties says what each of them is ([`Kind`](table)); what usvg learns can be deleted there. It is written for usvg
+//! One table of properties says what each of them is (`table.rs`); what usvg learns can be deleted there. It is written for usvg
 //! 0.49.
 
 mod cascade;
