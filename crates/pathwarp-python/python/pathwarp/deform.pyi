@@ -36,7 +36,9 @@ def envelope(
     corners: Optional[str] = None,
     bottom_side: Optional[Union[int, str]] = None,
     reverse: Optional[bool] = None,
-    keep: Optional[Literal["nothing", "verticals", "horizontals", "lines"]] = None,
+    keep: Optional[Literal["auto", "nothing", "verticals", "horizontals", "lines"]] = None,
+    ends: Optional[Number] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def warp(
