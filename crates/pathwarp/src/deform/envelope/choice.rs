@@ -37,7 +37,7 @@ impl Choice<'_> {
             (Keep::Verticals | Keep::Horizontals, Some(shape)) => {
                 filled(self.frame, &shape, self.keep == Keep::Verticals, &self.room)
             }
-            (Keep::Auto, Some(shape)) => self.suited(&shape, ring),
+            (Keep::Auto, Some(shape)) => self.suited(&shape, ring.ok()),
             (keep, _) => {
                 let ring = ring?;
                 // No ruled map keeps lines between curved sides; columns and rows do.
@@ -61,18 +61,21 @@ impl Choice<'_> {
     }
 
     /// Builds what suits the shape and the artwork.
-    fn suited(&self, shape: &Subpath, ring: Result<Ring, Error>) -> Result<Built, Error> {
-        let patch = ring.and_then(|ring| {
-            let honest = honest(shape, &ring);
-            let (ring, frame) =
-                if honest && self.lettering { between_notches(ring, shape, self.frame) } else { (ring, self.frame) };
-            Ok((honest, Choice { frame, ..*self }.patched(&ring, Keep::Nothing)?))
-        });
-        if let Ok((true, built)) = patch {
+    fn suited(&self, shape: &Subpath, ring: Option<Ring>) -> Result<Built, Error> {
+        let is_honest = ring.as_ref().is_some_and(|ring| honest(shape, ring));
+        let (ring, frame) = match ring {
+            Some(ring) if is_honest && self.lettering => {
+                let (ring, frame) = between_notches(ring, shape, self.frame);
+                (Some(ring), frame)
+            }
+            ring => (ring, self.frame),
+        };
+        let patch = || Choice { frame, ..*self }.patched(ring.as_ref()?, Keep::Nothing).ok();
+        if is_honest && let Some(built) = patch() {
             return Ok(built);
         }
         if self.lettering {
-            return filled(self.frame, shape, true, &self.room).or_else(|e| patch.map(|p| p.1).map_err(|_| e));
+            return filled(self.frame, shape, true, &self.room).or_else(|e| patch().ok_or(e));
         }
         let fills = |upright: bool| Columns::new(shape, upright, &Room::default()).map_or(0.0, |c| c.coverage);
         let scored = |b: Built| {
@@ -80,7 +83,7 @@ impl Choice<'_> {
             (b, d)
         };
         let mut all: Vec<(Built, f64)> = Vec::new();
-        all.extend(patch.map(|p| scored(p.1)).ok());
+        all.extend(patch().map(scored));
         for upright in [true, false].into_iter().filter(|u| fills(*u) >= FILLS) {
             all.extend(filled(self.frame, shape, upright, &self.room).map(scored).ok());
         }
