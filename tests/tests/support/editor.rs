@@ -26,7 +26,9 @@ impl Drop for Editor {
 impl Editor {
     /// Opens a file of a folder; drafts go to the folder `state` in it.
     pub fn open(folder: &Path, file: &str) -> Self {
-        Self::with(folder, file, |command| drop(command.env("XDG_STATE_HOME", folder.join("state"))))
+        Self::with(folder, file, |command| {
+            command.env("XDG_STATE_HOME", folder.join("state"));
+        })
     }
 
     /// Opens a file of a folder, with variables of its own.
