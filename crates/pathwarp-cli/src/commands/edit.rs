@@ -31,7 +31,8 @@ pub(super) fn command() -> Command {
         .after_help(
             "The first line on standard output is the address of the page. Only this computer can open it, and only with the token \
              in the address. The program ends when the page is closed, or with Ctrl-C. Steps that are not saved yet are kept in \
-             a hidden file beside the drawing and are there again next time.\n\nExamples:\n  pathwarp edit logo.svg\n  pathwarp edit \
+             your folder for state ($XDG_STATE_HOME, %LOCALAPPDATA%) and are there again next time, and a page that is still \
+             open goes on.\n\nExamples:\n  pathwarp edit logo.svg\n  pathwarp edit \
              logo.svg -o flag.svg   # Save writes flag.svg\n  pathwarp edit flag.svg         # goes on: the source and the steps are in \
              the file\n  pathwarp edit logo.svg --no-open --port 8000",
         )
