@@ -75,10 +75,10 @@ fn drop_on(editor: &Editor, name: &str, text: &str) {
 
 /// The file on show, and the style of its step.
 fn shown(editor: &Editor) -> (String, Value) {
-    let mut state = state(editor);
+    let state = state(editor);
     let steps = state["steps"].as_array().unwrap().len();
     assert!(steps < 2 && state["restored"] == (steps == 1), "{state}");
-    (state["file"].as_str().unwrap().to_owned(), state["steps"][0]["args"]["style"][0].take())
+    (state["file"].as_str().unwrap().to_owned(), state.pointer("/steps/0/args/style/0").cloned().unwrap_or_default())
 }
 
 fn files(folder: &Path) -> Vec<String> {

@@ -34,10 +34,8 @@ fn of_user(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
 pub(crate) fn key(drawing: &Path, content: &[u8]) -> String {
     let folder = drawing.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     // A drawing that was dropped on the page may be no file here.
-    let place = drawing
-        .canonicalize()
-        .or_else(|_| Ok::<_, io::Error>(folder.canonicalize()?.join(drawing.file_name().unwrap_or_default())));
-    let place = place.unwrap_or_else(|_| drawing.to_owned());
+    let here = || folder.canonicalize().unwrap_or_default().join(drawing.file_name().unwrap_or_default());
+    let place = drawing.canonicalize().unwrap_or_else(|_| here());
     hex(&[place.as_os_str().as_encoded_bytes(), &[0], content])
 }
 

@@ -24,7 +24,7 @@ pub(super) fn command() -> Command {
                 .long("port")
                 .value_name("N")
                 .value_parser(value_parser!(u16).range(1..))
-                .help("Listen on this port of 127.0.0.1 [default: a free one]"),
+                .help("Listen on this port of 127.0.0.1 [default: that of the last run on the drawing, or a free one]"),
         )
         .arg(Arg::new("no-open").long("no-open").action(ArgAction::SetTrue).help("Only print the page's address"))
         .args(options::reading_args())

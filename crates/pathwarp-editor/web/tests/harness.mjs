@@ -56,10 +56,10 @@ process.once("exit", () => temporary.forEach((dir) => rmSync(dir, { recursive: t
 /** Starts the editor on a file. */
 export const edit = (file, ...args) => editWith({}, file, ...args);
 
-/** Starts the editor on a file with these variables. */
-export async function editWith(variables, file, ...args) {
-  const child = spawn(program, ["edit", basename(file), "--no-open", ...args], {
-    cwd: join(file, ".."), stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, ...OWN, ...variables },
+/** Starts the editor on a file with these variables, as the user `uid` if there is one. */
+export async function editWith({ uid, as = program, ...variables }, file, ...args) {
+  const child = spawn(as, ["edit", basename(file), "--no-open", ...args], {
+    cwd: join(file, ".."), stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, ...OWN, ...variables }, uid,
   });
   // A test that fails leaves no program behind.
   process.once("exit", () => child.kill("SIGKILL"));

@@ -1,20 +1,26 @@
 // Nothing is lost: drafts of several drawings, typed values, the end of the program and its return, folders that cannot be written.
 import { createServer } from "node:http";
-import { existsSync, readFileSync, readdirSync, rmSync, statSync } from "node:fs";
-import { becomes, check, choose, drag, editWith, emptyFolder, folder, open, paths, quiet, sample } from "./harness.mjs";
+import { chmodSync, copyFileSync, existsSync, readFileSync, readdirSync, rmSync, statSync } from "node:fs";
+import { becomes, check, choose, drag, editWith, emptyFolder, folder, open, paths, program, quiet, sample } from "./harness.mjs";
 
 /** Runs a test on a logo, with a folder for state of its own. `start` starts the program again. */
-async function within(test, variables = {}) {
+async function within(test, variables = {}, isReadOnly = false) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
   const state = emptyFolder();
+  if (isReadOnly) {
+    chmodSync(dir, 0o555);
+    chmodSync(state, 0o777);
+  }
+  let editor;
   const start = async () => (editor = await editWith({ XDG_STATE_HOME: state, ...variables }, `${dir}/logo.svg`));
-  let editor = await start();
+  await start();
   const page = await open(editor.address);
   try {
     await test({ dir, state, page, start, editor });
     check(page.problems.length === 0, page.problems.join("; "));
   } finally {
     editor.stop();
+    chmodSync(dir, 0o755);
     await page.context().close();
   }
 }
@@ -173,14 +179,25 @@ export const strangers_at_the_port_learn_no_token = () => within(async ({ page, 
   }
 });
 
-/** Stands in for a folder without permission to write, which the tests' user may have everywhere: the folder is gone. */
+/** Nobody in particular, who may write nothing of root's. */
+const NOBODY = 65534;
+
+/** A program for a user who must not write everywhere: of root's, a copy that anybody may run. */
+function restricted() {
+  if (process.getuid?.() !== 0) return {};
+  const dir = emptyFolder();
+  chmodSync(dir, 0o755);
+  copyFileSync(program, `${dir}/pathwarp`);
+  return { uid: NOBODY, as: `${dir}/pathwarp` };
+}
+
+/** The user may not write beside the drawing. */
 export const where_nothing_can_be_written_it_is_downloaded = () => within(async ({ dir, page }) => {
   await choose(page, "Flag");
-  rmSync(dir, { recursive: true });
   await page.keyboard.press("Control+s");
   await page.waitForSelector("#save-dialog[open]");
   const said = await page.textContent("#save-message");
-  check(said.includes(dir) && /Download/.test(said), said);
+  check(/logo-bent.svg: cannot be written: Permission denied.*Download/.test(said), said);
   for (const [format, start] of [["svg", "<svg"], ["pdf", "%PDF"]]) {
     if (format !== "svg") {
       await page.click("#save-as");
@@ -194,7 +211,7 @@ export const where_nothing_can_be_written_it_is_downloaded = () => within(async 
     check(bytes.startsWith(start) && (format !== "svg" || bytes.includes('style = "flag"')), bytes.slice(0, 40));
   }
   check((await page.textContent("#saved")) === "Downloaded", await page.textContent("#saved"));
-});
+}, restricted(), true);
 
 /** Where no draft can be written, leaving asks until everything is saved. */
 export const leaving_asks_where_nothing_is_kept = () => within(async ({ page }) => {
