@@ -58,12 +58,12 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>
     let waits = options.purpose.program().is_some();
     // Without a result, the program that waits has its drawing as it was.
     let state = if waits { None } else { folders::state() };
-    let session = Session::open(Arc::clone(&host), &options.file, &bytes, options.purpose.clone(), state.clone())?;
     let (listener, guard) = listen(options, state.as_deref())?;
     if let Some(state) = &state {
         // Without it, only a page that is open now would not find the next run.
         let _ = guard.keep(&*host, state, &options.file);
     }
+    let session = Session::open(host, &options.file, &bytes, options.purpose.clone(), state)?;
     let address = guard.address();
     announce(&News::Address(&address));
     if options.open && (waits || has_display()) {
