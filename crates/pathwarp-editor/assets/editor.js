@@ -2368,7 +2368,7 @@
       if (!isLive) for (const dialog of Array.from(document.querySelectorAll("dialog"))) dialog.close();
       gone.classList.toggle("done", isDone);
       show("gone-title", isDone ? `${state?.program} has the result.` : "pathwarp has ended.");
-      show("gone-kept", isDone ? "You can close this page." : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.` : `${kept(state)} To go on here, run “${state?.again ?? "pathwarp edit"}”${state ? ` in ${state.folder}` : ""}.`);
+      show("gone-kept", isDone ? "You can close this page." : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.` : `${kept(state)} To go on${state?.saved ? "" : " here"}, run “${state?.again ?? "pathwarp edit"}”.`);
     }
   };
   function kept(state) {

@@ -124,16 +124,19 @@ impl Session {
         let document = self.opened.artwork.document();
         let page = document.view_box();
         let name = |p: &Path| p.file_name().map(|n| n.to_string_lossy().into_owned());
+        let saved = self.saved.as_ref().filter(|(_, steps)| *steps == self.kept.steps);
+        let again = saved.map(|(p, _)| p).or(self.first.as_ref()).unwrap_or(&self.file);
+        let again = std::path::absolute(again).unwrap_or_else(|_| again.clone());
         let folder = self.file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         json!({
             "file": if let Purpose::Program { drawing, .. } = &self.purpose { Some(drawing.clone()) } else { name(&self.file) },
-            "again": format!("pathwarp edit {}", quoted(&name(self.first.as_ref().unwrap_or(&self.file)).unwrap_or_default())),
+            "again": format!("pathwarp edit {}", quoted(&again.display().to_string())),
             "program": self.purpose.program(),
             "folder": folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).display().to_string(),
             "steps": self.kept.steps,
             "undo": !self.kept.undo.is_empty(),
             "redo": !self.kept.redo.is_empty(),
-            "saved": self.saved.as_ref().is_some_and(|(_, steps)| *steps == self.kept.steps),
+            "saved": saved.is_some(),
             "savedTo": self.saved.as_ref().and_then(|(p, _)| name(p)),
             "target": name(&self.target()),
             "restored": self.restored,

@@ -94,7 +94,7 @@ export class Report {
     show("gone-title", isDone ? `${state?.program} has the result.` : "pathwarp has ended.");
     show("gone-kept", isDone ? "You can close this page."
       : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.`
-      : `${kept(state)} To go on here, run “${state?.again ?? "pathwarp edit"}”${state ? ` in ${state.folder}` : ""}.`);
+      : `${kept(state)} To go on${state?.saved ? "" : " here"}, run “${state?.again ?? "pathwarp edit"}”.`);
   }
 }
 

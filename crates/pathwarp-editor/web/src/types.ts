@@ -99,7 +99,7 @@ export interface State {
   saved: boolean;
   savedTo: string | null;
   target: string;
-  /** The command that starts the program again. */
+  /** The command that goes on with the steps. */
   again: string;
   /** The program that waits for the steps, if one does. */
   program: string | null;

@@ -104,7 +104,7 @@ export const without_the_program_nothing_changes = () => within(async ({ dir, pa
   editor.stop();
   await page.waitForSelector("#gone:not([hidden])");
   const said = await page.textContent("#gone");
-  check(said.includes("pathwarp edit logo.svg") && said.includes(dir) && said.includes("are kept"), said);
+  check(said.includes(`here, run “pathwarp edit ${dir}/logo.svg”`) && said.includes("are kept"), said);
   check(!(await page.$eval("#save-dialog", (d) => d.open)), "a dialog is left open");
   const before = [await paths(page), (await stepNames(page)).join()];
   await page.mouse.click(120, 300);
