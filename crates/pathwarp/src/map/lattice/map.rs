@@ -1,5 +1,6 @@
 //! The lattice as a map, and its inverse.
 
+use crate::budget::Budget;
 use super::Lattice;
 use crate::map::nets::Patch;
 use crate::map::{AffineMap, Class, Crease, CreaseKind, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
@@ -246,8 +247,8 @@ impl Map for LatticeInverse {
         2.0 * self.inner.work()
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        self.inner.take_overrun()
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Self { map: self.map.clone(), inner: Arc::new(self.inner.spending(budget)) }))
     }
 
     fn jet(&self, q: Point) -> Jet {
