@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::shape::{NamedShape, Point3, SurfaceFn};
 use pathwarp::Seg;
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::{Budget, cost};
 use pathwarp::kurbo::Point;
 
 /// Maximum number of halvings of a segment.
@@ -29,8 +29,7 @@ pub(crate) fn polygons(
         for seg in &sub.segs {
             let before = points.len();
             flatten(seg, &place, tolerance, &mut points)?;
-            let more = (points.len() - before) as u64;
-            let counted = budget.spend_cut(Limit::Segments, more);
+            let counted = budget.spend(cost::SEGMENT * (points.len() - before) as f64);
             counted.map_err(|exceeded| Error::TooMany { shape: shape.name.to_owned(), exceeded })?;
         }
         if sub.closed && points.len() > 1 && points.first() == points.last() {

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::flatten::chord_distance;
 use crate::shape::{Point3, SurfaceFn};
 use crate::tessellate::FlatMesh;
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::{Budget, cost};
 use pathwarp::kurbo::Point;
 use std::collections::{HashMap, HashSet};
 
@@ -35,8 +35,7 @@ pub(crate) fn to_surface(
     budget: &Budget,
 ) -> Result<TriangleMesh, Error> {
     let too_many = |exceeded| Error::TooMany { shape: name.to_owned(), exceeded };
-    let count =
-        |triangles: usize| budget.spend_cut(Limit::Segments, (SIDES * triangles as f64) as u64).map_err(too_many);
+    let count = |triangles: usize| budget.spend(cost::SEGMENT * SIDES * triangles as f64).map_err(too_many);
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: name.to_owned(), at: p });
     let mut plane = flat.points;
     let placed: Result<Vec<Point3>, Error> = plane.iter().map(|p| place(*p)).collect();

@@ -1,6 +1,7 @@
 //! Elements as the crate `selectors` looks at them. Every look is counted: a selector of many parts tries many ways to choose
 //! them among an element's ancestors and siblings.
 
+use pathwarp::budget::{Budget, Exceeded, cost};
 use super::names::{Name, State, Svg};
 use roxmltree::Node;
 use selectors::OpaqueElement;
@@ -22,11 +23,20 @@ const TRIED: usize = 2;
 
 /// Counts what matching looks at, up to a limit.
 pub(super) struct Looks {
-    pub(super) done: Cell<u64>,
-    pub(super) most: u64,
+    done: Cell<u64>,
+    most: f64,
 }
 
 impl Looks {
+    pub(super) fn within(budget: &Budget) -> Self {
+        Self { done: Cell::new(0), most: budget.left() / cost::COMPARISON }
+    }
+
+    /// Counts the looks in the budget.
+    pub(super) fn spend(&self, budget: &Budget) -> Result<(), Exceeded> {
+        budget.spend(cost::COMPARISON * self.done.get() as f64)
+    }
+
     /// Counts, and tells whether matching may go on.
     pub(super) fn add(&self, looks: usize) -> bool {
         self.done.set(self.done.get().saturating_add(looks as u64));
@@ -34,7 +44,7 @@ impl Looks {
     }
 
     pub(super) fn exceeded(&self) -> bool {
-        self.done.get() > self.most
+        self.done.get() as f64 > self.most
     }
 }
 

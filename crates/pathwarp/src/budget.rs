@@ -80,21 +80,22 @@ impl Limit {
     /// The value for inputs of up to a mebibyte. Together they keep a run below 5 seconds on one core and 500 MB.
     fn base(self) -> f64 {
         match self {
-            Self::Bytes => 32e6,
+            Self::Bytes => 64e6,
             Self::Elements => 30e3,
-            Self::Pixels => 128e6,
+            Self::Pixels => 256e6,
             Self::Work => 90e6,
             Self::Seconds => 4.5,
             Self::Memory => 450e6,
         }
     }
 
-    /// What a pixel of a picture adds: a second and 60 MB for each ten million, beside the decoded picture.
+    /// What a pixel of a picture adds. Half of them are the source's, half the result's: ten million of each are allowed a second, and 60 MB
+    /// beside the decoded picture.
     fn per_pixel(self) -> f64 {
         match self {
-            Self::Work => 2.0,
-            Self::Seconds => 1e-7,
-            Self::Memory => 10.0,
+            Self::Work => 1.6,
+            Self::Seconds => 0.5e-7,
+            Self::Memory => 5.0,
             _ => 0.0,
         }
     }
@@ -150,10 +151,10 @@ impl Limits {
         Self { scale: (bytes as f64 / BASE_SIZE).max(self.scale), ..self }
     }
 
-    /// The limits for an input with pictures of `pixels`, however they are compressed.
+    /// The limits for an input with further pictures of `pixels`, however they are compressed.
     #[must_use]
     pub fn for_pixels(self, pixels: f64) -> Self {
-        Self { pixels: pixels.max(self.pixels), ..self }
+        Self { pixels: self.pixels + pixels, ..self }
     }
 
     /// The value of a limit. Where other limits are raised, time and memory grow alike, unless they are set themselves.
@@ -208,7 +209,7 @@ impl Exceeded {
     #[must_use]
     pub fn enough(&self) -> f64 {
         if self.cut {
-            return 10.0 * self.most;
+            return 10.0 * self.most.max(self.needed);
         }
         let unit = 10_f64.powf(self.needed.max(1.0).log10().floor() - 1.0);
         (self.needed / unit).ceil() * unit
@@ -228,6 +229,8 @@ pub struct Budget {
     work: AtomicU64,
     /// Bytes, elements and pixels.
     sizes: [AtomicU64; 3],
+    /// Bytes of files that the input links to.
+    linked: AtomicU64,
 }
 
 impl Budget {
@@ -240,7 +243,18 @@ impl Budget {
     /// The limits, with what the pictures so far add.
     #[must_use]
     pub fn limits(&self) -> Limits {
-        self.limits.for_pixels(self.taken(Limit::Pixels))
+        self.sizes().for_pixels(self.taken(Limit::Pixels))
+    }
+
+    /// The limits, with what linked files add.
+    fn sizes(&self) -> Limits {
+        let linked = self.linked.load(Ordering::Relaxed) as f64 / BASE_SIZE;
+        Limits { scale: self.limits.scale + linked, ..self.limits }
+    }
+
+    /// Adds a file that the input links to: the limits are those of an input that holds it.
+    pub fn add_input(&self, bytes: u64) {
+        self.linked.fetch_add(bytes, Ordering::Relaxed);
     }
 
     /// Counts work.
@@ -272,7 +286,7 @@ impl Budget {
     /// The sum exceeds the limit.
     pub fn take(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
         let before = self.sizes.get(limit as usize).map_or(0, |n| n.fetch_add(amount as u64, Ordering::Relaxed));
-        self.limits.check(limit, before as f64 + amount)
+        self.sizes().check(limit, before as f64 + amount)
     }
 
     /// What is taken of a size.
@@ -284,7 +298,7 @@ impl Budget {
     /// What is left of a size.
     #[must_use]
     pub fn room(&self, limit: Limit) -> f64 {
-        (self.limits.of(limit) - self.taken(limit)).max(0.0)
+        (self.sizes().of(limit) - self.taken(limit)).max(0.0)
     }
 
     /// Checks a size that is not added up.
@@ -336,7 +350,7 @@ mod tests {
     #[test]
     fn limits_grow_with_the_pixels() {
         let budget = Budget::default();
-        budget.take(Limit::Pixels, 100e6).unwrap();
+        budget.take(Limit::Pixels, 200e6).unwrap();
         let more = |limit| budget.limits().of(limit) - Limits::default().of(limit);
         assert_eq!((more(Limit::Seconds).round(), more(Limit::Memory)), (10.0, 1e9));
         assert!(budget.take(Limit::Pixels, 100e6).is_err());

@@ -1,9 +1,9 @@
 //! [`Bender`]: warps the bitmaps in drawings and paints bent gradients.
 
-use super::counted::{count_decoded, count_warped};
 use super::inverse::{ROUNDING, inverse};
+use super::work::{self, Pixel};
 use crate::advice;
-use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
+use pathwarp::budget::{Budget, Exceeded, Limits};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
 use pathwarp_raster::{
@@ -21,8 +21,6 @@ const PX_PER_INCH: f64 = 96.0;
 const PICTURE: f64 = 40e3;
 const GRADIENT: f64 = 24e3;
 
-/// Work for a pixel of a gradient, in pixels painted.
-const SHADED: f64 = 40.0;
 /// Work to find the resolution of a gradient, in pixels of it; and where no difference may be visible.
 const SEARCHED: f64 = 500.0;
 const SEARCHED_STRICTLY: f64 = 2000.0;
@@ -48,11 +46,6 @@ impl Bender {
         self.with_budget(Arc::new(Budget::new(limits)))
     }
 
-    /// Counts evaluations of the map.
-    fn count(&self, evaluations: f64) -> Result<(), Exceeded> {
-        self.budget.spend(Limit::Evaluations, (evaluations * self.map.work()) as u64)
-    }
-
     /// Counts the work on all bitmaps in a budget.
     #[must_use]
     pub fn with_budget(self, budget: Arc<Budget>) -> Self {
@@ -66,10 +59,10 @@ impl ImageWarper for Bender {
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
         const MOST: f64 = 16e6;
-        self.count(PICTURE).map_err(too_much)?;
-        count_decoded(&self.budget, header_size(r.data).map_err(|e| e.to_string())?).map_err(too_much)?;
-        let picture = Picture::read_stored_within(r.data, &self.budget.limits().for_input(r.data.len()))
-            .map_err(|e| e.to_string())?;
+        work::evaluations(&self.budget, &*self.map, PICTURE).map_err(too_much)?;
+        let (width, height) = header_size(r.data).map_err(|e| e.to_string())?;
+        work::spend(&self.budget, Pixel::Decoded, f64::from(width) * f64::from(height)).map_err(too_much)?;
+        let picture = Picture::read_stored_within(r.data, &self.budget.limits()).map_err(|e| e.to_string())?;
         let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let nowhere = "the map is undefined on part of it";
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
@@ -88,8 +81,8 @@ impl ImageWarper for Bender {
         };
         let pixels = |length: f64| (length * wanted - ROUNDING).ceil().clamp(1.0, MOST);
         let size = (pixels(width), pixels(height));
+        work::picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
         let size = (size.0 as u32, size.1 as u32);
-        count_warped(&self.budget, size).map_err(too_much)?;
         let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area), &self.budget);
         let warp = ImageWarp {
             source: &picture.pixmap,
@@ -100,7 +93,7 @@ impl ImageWarper for Bender {
             size,
         };
         let pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
-        inverse.check().map_err(too_much)?;
+        self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
         let png = Picture { pixmap, profile: picture.profile }.write(PictureFormat::Png).map_err(|e| e.to_string())?;
         Ok(BentImage { png, area: e.bounds })
     }
@@ -145,13 +138,13 @@ impl GradientPainter for Bender {
             tolerance: if r.strict { ShadeTolerance::INVISIBLE } else { ShadeTolerance::UNNOTICED },
             finest,
         };
-        self.count(GRADIENT).map_err(too_much)?;
+        work::evaluations(&self.budget, &*self.map, GRADIENT).map_err(too_much)?;
         // The number of pixels follows from painting. Nothing is painted once the limit is reached.
         let search = if r.strict { SEARCHED_STRICTLY } else { SEARCHED };
-        self.budget.spend(Limit::Painting, (SHADED * search) as u64).map_err(too_much)?;
+        work::spend(&self.budget, Pixel::Shaded, search).map_err(too_much)?;
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
         let pixels = f64::from(pixmap.width()) * f64::from(pixmap.height());
-        self.budget.spend(Limit::Painting, (SHADED * pixels) as u64).map_err(too_much)?;
+        work::spend(&self.budget, Pixel::Shaded, pixels).map_err(too_much)?;
         Ok(BentImage { png: encode_smooth_png(&pixmap).map_err(|e| e.to_string())?, area })
     }
 }

@@ -14,14 +14,14 @@ use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use crate::units::units_per_px;
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::Budget;
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::refit;
-use pathwarp::{Error, GeometryError, Outline};
+use pathwarp::{Error, Outline};
 use pathwarp_svg::{
     Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, WarpOptions,
     WarpedDocument,
@@ -175,8 +175,7 @@ impl SvgArtwork {
         });
         let survey = Survey::new(&built.map, all_copies, segments * copies.len().max(1));
         let filled = shapes.iter().filter(|s| s.filled).count();
-        let work = survey.work(filled, segments) * copies.len().max(1) as f64;
-        self.doc.budget().spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)?;
+        survey.spend(filled, segments, copies.len(), self.doc.budget())?;
         // A letter that is placed on its own can fold only in a later step.
         let placed = self.doc.placed(options);
         let orientation = |(s, placed): (&'_ pathwarp_svg::Shape, &Option<Outline>)| match placed {

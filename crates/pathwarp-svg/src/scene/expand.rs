@@ -2,6 +2,7 @@
 
 use super::regular::{is_point, polygon, regular};
 use super::tidy::tidy;
+use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{self, Cap, Circle, Join, Rect, Shape as _, StrokeOpts};
 use pathwarp::{Outline, Seg};
 use usvg::{LineCap, LineJoin, Stroke};
@@ -78,15 +79,19 @@ const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 const MEASURED: f64 = 2.0;
 
 /// The work of expanding the dashes of a stroke, in segments. They are held only until the stroke is measured.
-pub(crate) fn dash_segments(local: &Outline, stroke: &Stroke) -> f64 {
-    MEASURED * drawn_dashes(local, stroke)
+pub(crate) fn spend_dashes(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
+    budget.spend(cost::SEGMENT * MEASURED * drawn_dashes(local, stroke))
 }
 
-/// A bound for the segments into which a stroke is expanded.
-pub(crate) fn stroke_segments(local: &Outline, stroke: &Stroke) -> f64 {
+/// Counts a bound for the segments into which a stroke is expanded.
+///
+/// # Errors
+/// It is more work than the limit allows.
+pub(crate) fn spend_stroke(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
     let dashes = drawn_dashes(local, stroke);
     let each = if stroke.linejoin() == LineJoin::Round { PER_ROUND_SEGMENT } else { PER_SEGMENT };
-    PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64
+    let segments = PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64;
+    budget.spend(cost::SEGMENT * segments)
 }
 
 /// A bound for the number of dashes that are drawn of a stroke.

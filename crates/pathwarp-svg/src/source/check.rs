@@ -2,7 +2,7 @@
 
 use super::unfold;
 use memchr::{memchr2, memmem};
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::{Error, Outline, Seg};
 use pathwarp_reader::LARGEST;
 use std::collections::HashMap;
@@ -47,12 +47,12 @@ pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget
         spans(xml, budget).and_then(|()| text_paths(xml, budget)).map_err(too_much)?;
     }
     wide_strokes(xml, budget).map_err(|e| Error::limit(name, "with such wide strokes, its shapes take", e))?;
-    if unfold::may_be_large(xml, features.markers, features.references) {
-        unfold::check(xml, name, budget)?;
+    let segments = if unfold::may_be_large(xml, features.markers, features.references) {
+        unfold::check(xml, name, budget)?
     } else {
-        unfold::count_plain(xml, name, budget)?;
-    }
-    wide_arcs(xml, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
+        unfold::count_plain(xml, name, budget)?
+    };
+    wide_arcs(xml, segments, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
     Ok(features)
 }
 
@@ -68,7 +68,7 @@ fn text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exce
     let lengths: HashMap<String, usize> = xml.descendants().filter_map(data).collect();
     links().try_for_each(|id| {
         let segments = lengths.get(id).map_or(0, |length| length / CURVE);
-        budget.spend(Limit::Segments, segments as u64)
+        budget.spend(cost::SEGMENT * segments as f64)
     })
 }
 
@@ -80,7 +80,7 @@ fn href<'a>(n: roxmltree::Node<'a, '_>) -> Option<&'a str> {
 
 /// Counts what arcs become whose ellipses are much wider than any page, such as those with one small radius that have to be enlarged to
 /// reach their ends. usvg turns an arc into cubics whose number grows with the radius, and the time with its square.
-fn wide_arcs(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+fn wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget) -> Result<(), Exceeded> {
     /// Radii of fewer cubics take no time.
     const WIDE: f64 = 1e8;
     /// A cubic's error times the sixth power of their number in a turn, for the radius 1, and the error that usvg allows.
@@ -101,9 +101,8 @@ fn wide_arcs(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Excee
         return Ok(());
     }
     let cubics = (ERROR * radius / ALLOWED).powf(1.0 / 6.0);
-    // Each of them may be as wide, and all were counted with what references show again.
-    let arcs = budget.limits().of(Limit::Segments) - budget.left(Limit::Segments);
-    budget.spend_cut(Limit::Comparisons, (arcs * MOVED * cubics * cubics) as u64)
+    // Each of them may be as wide.
+    budget.spend(cost::COMPARISON * segments as f64 * MOVED * cubics * cubics)
 }
 
 /// Returns `false` if all numbers of path data are certainly below 10⁴ and, unless they are zero, at least 10⁻³: no exponent, no five
@@ -145,25 +144,23 @@ fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Ex
         return Ok(());
     }
     let shapes = xml.descendants().filter(roxmltree::Node::is_element).count();
-    budget.spend(Limit::Comparisons, (shapes as f64 * width * UNIT) as u64)
+    budget.spend(cost::COMPARISON * shapes as f64 * width * UNIT)
 }
 
 /// Counts the letters that are compared with every span of their text.
 fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    const AT_A_TIME: u64 = 64;
+    const AT_A_TIME: f64 = 64.0;
     let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
     for text in texts {
-        let (mut spans, mut letters) = (0, 0);
+        let (mut spans, mut letters) = (0.0, 0.0);
         for n in text.descendants() {
             if n.is_element() {
-                spans += 1;
+                spans += 1.0;
             }
-            letters += unfold::letters(n);
+            letters += unfold::letters(n) as f64;
         }
-        budget.check(Limit::Letters, letters as f64)?;
         // The text itself is no span. Its letters are also compared with each other, some at a time.
-        let compared = letters.min(budget.limits().of(Limit::Letters) as u64);
-        budget.spend(Limit::Comparisons, (spans - 1) * letters + compared * compared / AT_A_TIME)?;
+        budget.spend(cost::COMPARISON * ((spans - 1.0) * letters + letters * letters / AT_A_TIME))?;
     }
     Ok(())
 }

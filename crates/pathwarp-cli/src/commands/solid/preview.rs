@@ -4,7 +4,7 @@ use crate::advice;
 use crate::bitmap::encode;
 use crate::failure::Failure;
 use crate::input::PREVIEW;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp_raster::Pixmap;
 use pathwarp_solid::Box3;
 use pathwarp_solid::glam::DVec3;
@@ -45,7 +45,7 @@ impl Preview<'_> {
         let second = Camera3::towards(DVec3::new(1.0, 0.4, 0.35), scene);
         for (row, (mesh, guides)) in [(self.before, &[][..]), (self.after, self.guides)].into_iter().enumerate() {
             for (column, camera) in [first, second].into_iter().flatten().enumerate() {
-                let counted = budget.spend_cut(Limit::Painting, (SAMPLE * samples(mesh, &camera, SIDE)) as u64);
+                let counted = budget.spend(cost::PIXEL * SAMPLE * samples(mesh, &camera, SIDE));
                 counted.map_err(|e| too_much(&e))?;
                 let panel = draw(mesh, guides, &camera, SIDE);
                 for (y, line) in panel.chunks(4 * SIDE).enumerate() {
