@@ -30,8 +30,10 @@ pub enum Limit {
 pub mod cost {
     /// A comparison of names, of places or of a selector with an element.
     pub const COMPARISON: f64 = 2.0;
-    /// A segment that is read, laid out and written.
-    pub const SEGMENT: f64 = 15.0;
+    /// An element that is read, styled and written.
+    pub const ELEMENT: f64 = 600.0;
+    /// A segment that is read, laid out and written: its memory counts, too.
+    pub const SEGMENT: f64 = 40.0;
     /// A letter that is shaped and laid out.
     pub const LETTER: f64 = 200.0;
     /// A pixel that is painted with a little arithmetic.
@@ -83,7 +85,7 @@ impl Limit {
             Self::Bytes => 64e6,
             Self::Elements => 30e3,
             Self::Pixels => 256e6,
-            Self::Work => 90e6,
+            Self::Work => 100e6,
             Self::Seconds => 4.5,
             Self::Memory => 450e6,
         }
@@ -93,7 +95,7 @@ impl Limit {
     /// beside the decoded picture.
     fn per_pixel(self) -> f64 {
         match self {
-            Self::Work => 1.6,
+            Self::Work => 4.0,
             Self::Seconds => 0.5e-7,
             Self::Memory => 5.0,
             _ => 0.0,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub(crate) enum Pixel {
     Decoded = 4,
     /// Sampled and compressed.
-    Warped = 29,
+    Warped = 60,
     /// Of a gradient.
     Shaded = 40,
 }

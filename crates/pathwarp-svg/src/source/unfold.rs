@@ -111,7 +111,8 @@ impl Size {
     }
 
     fn work(self) -> f64 {
-        cost::SEGMENT * self.segments as f64 + cost::LETTER * self.letters as f64
+        let Self { elements, segments, letters } = self;
+        cost::ELEMENT * elements as f64 + cost::SEGMENT * segments as f64 + cost::LETTER * letters as f64
     }
 
     /// Compares with the limits, whatever is used of them.
