@@ -1,8 +1,8 @@
 //! Elements as the crate `selectors` looks at them. Every look is counted: a selector of many parts tries many ways to choose
 //! them among an element's ancestors and siblings.
 
-use pathwarp::budget::{Budget, Exceeded, cost};
 use super::names::{Name, State, Svg};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use roxmltree::Node;
 use selectors::OpaqueElement;
 use selectors::attr::{AttrSelectorOperation, CaseSensitivity, NamespaceConstraint};

@@ -1,6 +1,6 @@
 //! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
-use crate::source::read::{unpacked, text};
+use crate::source::read::{text, unpacked};
 use crate::source::table::tag_end;
 use crate::source::tags::PATHWARP as NAMESPACE;
 use base64::Engine as _;
@@ -86,7 +86,8 @@ impl Origin {
         let damaged = |e: &dyn std::fmt::Display| Error::input("the embedded source", format!("is damaged: {e}"));
         let packed: String = text("source").split_ascii_whitespace().collect();
         let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
-        let source = unpacked(&bytes, "the embedded source", &budget)?.ok_or_else(|| damaged(&"it is not compressed"))?;
+        let source =
+            unpacked(&bytes, "the embedded source", &budget)?.ok_or_else(|| damaged(&"it is not compressed"))?;
         Ok(Some(Self { recipe: text("recipe"), source }))
     }
 

@@ -45,8 +45,7 @@ const BASE_SIZE: f64 = 1_048_576.0;
 
 impl Limit {
     /// All limits, in the order of the help.
-    pub const ALL: [Self; 6] =
-        [Self::Bytes, Self::Elements, Self::Pixels, Self::Work, Self::Seconds, Self::Memory];
+    pub const ALL: [Self; 6] = [Self::Bytes, Self::Elements, Self::Pixels, Self::Work, Self::Seconds, Self::Memory];
 
     /// The name of the limit, as in messages.
     #[must_use]
@@ -267,7 +266,11 @@ impl Budget {
         let sixteenths = (16.0 * work).ceil();
         let before = self.work.fetch_add(sixteenths as u64, Ordering::Relaxed) as f64;
         // How far beyond the limit threads went is not told.
-        self.limits().check(Limit::Work, (before + sixteenths) / 16.0).map_err(|e| Exceeded { needed: e.most, cut: true, ..e })
+        self.limits().check(Limit::Work, (before + sixteenths) / 16.0).map_err(|e| Exceeded {
+            needed: e.most,
+            cut: true,
+            ..e
+        })
     }
 
     /// The work that is left.

@@ -106,10 +106,7 @@ fn curves_that_are_near_each_other_are_compared_within_bounds() {
     ]);
     for (a, b) in [("a.svg", "a.svg"), ("a.svg", "b.svg"), ("b.svg", "b.svg"), ("c.svg", "c.svg"), ("c.svg", "b.svg")] {
         let (code, said) = folder.run(&["compare", a, b]);
-        assert!(
-            code == 0 || said.contains("--limit work="),
-            "{a} {b}: {said}"
-        );
+        assert!(code == 0 || said.contains("--limit work="), "{a} {b}: {said}");
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::watch;
 use pathwarp::budget::{Budget, Exceeded, Limit, cost};
-use pathwarp::map::{Jet, Map};
 use pathwarp::kurbo::Point;
+use pathwarp::map::{Jet, Map};
 use std::sync::Arc;
 
 /// What is done with a pixel, in pixels painted.

@@ -155,7 +155,9 @@ impl Artwork for PictureArtwork {
 /// The error about a picture of this size that takes too much.
 fn too_much(what: &str, (width, height): (f64, f64), e: &Exceeded) -> Failure {
     let advice = advice::raise(e);
-    Failure::Geometry(format!("{what} of {width:.0} x {height:.0} pixels takes {e}; give a smaller --image-size, or {advice}"))
+    Failure::Geometry(format!(
+        "{what} of {width:.0} x {height:.0} pixels takes {e}; give a smaller --image-size, or {advice}"
+    ))
 }
 
 /// The part of the plane that the result shows, and its size in pixels: by default one pixel per unit of the plane.

@@ -5,7 +5,7 @@ use super::outcome::StrokeOutcome;
 use super::task::PartTask;
 use super::width::StrokeWidth;
 use crate::scene::affine::stretch;
-use crate::scene::expand::{spend_dashes, stroke_outline, spend_stroke};
+use crate::scene::expand::{spend_dashes, spend_stroke, stroke_outline};
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::refit::{self, Assurance, PathReport};
 use pathwarp::{GeometryError, Outline};

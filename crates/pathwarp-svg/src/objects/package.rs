@@ -6,7 +6,7 @@
 
 use super::names::referred;
 use super::nodes::is_definition;
-use crate::source::read::{unpacked, compressed};
+use crate::source::read::{compressed, unpacked};
 use crate::source::tags::SVG;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

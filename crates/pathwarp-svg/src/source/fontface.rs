@@ -119,7 +119,9 @@ fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
             Ok(unpacked(&data))
         }
         Some(b"ttcf") => {
-            budget.take(Limit::Bytes, listing(&data, budget.room(Limit::Bytes) as u64) as f64).map_err(Exceeded::cut_short)?;
+            budget
+                .take(Limit::Bytes, listing(&data, budget.room(Limit::Bytes) as u64) as f64)
+                .map_err(Exceeded::cut_short)?;
             Ok(Some(data))
         }
         Some(b"wOF2") | None => Ok(None),

@@ -1,8 +1,8 @@
 //! Composition of maps.
 
-use crate::budget::Budget;
 use super::batch::{Lane, WIDTH};
 use super::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree};
+use crate::budget::Budget;
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 

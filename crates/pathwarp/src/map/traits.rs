@@ -1,8 +1,8 @@
 //! The trait that every map implements.
 
 use super::batch::{Lane, WIDTH};
-use crate::budget::Budget;
 use super::{Class, Creases, Jet, RationalBezier, RationalDegree};
+use crate::budget::Budget;
 use kurbo::Point;
 use std::sync::Arc;
 

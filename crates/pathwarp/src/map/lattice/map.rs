@@ -1,7 +1,7 @@
 //! The lattice as a map, and its inverse.
 
-use crate::budget::Budget;
 use super::Lattice;
+use crate::budget::Budget;
 use crate::map::nets::Patch;
 use crate::map::{AffineMap, Class, Crease, CreaseKind, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Affine, Point, Rect};
