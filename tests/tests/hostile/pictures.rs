@@ -13,15 +13,21 @@ fn crc(chunk: &[u8]) -> u32 {
     })
 }
 
+/// A chunk of a PNG.
+pub fn chunk(kind: &[u8], data: &[u8]) -> Vec<u8> {
+    let content = [kind, data].concat();
+    [&u32::try_from(data.len()).unwrap().to_be_bytes()[..], &content, &crc(&content).to_be_bytes()].concat()
+}
+
+/// A PNG in greys.
+pub fn png(width: u32, height: u32, pixels: &[Vec<u8>]) -> Vec<u8> {
+    let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 0, 0, 0, 0]].concat();
+    [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &header), pixels.concat(), chunk(b"IEND", b"")].concat()
+}
+
 /// A PNG whose header announces a size, with a few bytes of pixels.
 fn announcing(width: u32, height: u32) -> Vec<u8> {
-    let chunk = |kind: &[u8], data: &[u8]| {
-        let content = [kind, data].concat();
-        [&u32::try_from(data.len()).unwrap().to_be_bytes()[..], &content, &crc(&content).to_be_bytes()].concat()
-    };
-    let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 0, 0, 0, 0]].concat();
-    [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &header), chunk(b"IDAT", &[120, 156, 3, 0]), chunk(b"IEND", b"")]
-        .concat()
+    png(width, height, &[chunk(b"IDAT", &[120, 156, 3, 0])])
 }
 
 /// A PNG of one pixel with a colour profile of so many zeros.
