@@ -1,7 +1,7 @@
 //! The work that rendering a drawing takes, estimated before it is done: pixels painted, pixels held, and how far geometry
 //! reaches.
 //!
-//! The renderer has no limits of its own. It paints every isolated group, mask and filter on layers that may be larger than
+//! The renderer, resvg 0.49 (<https://github.com/linebender/resvg/tree/v0.49.0/crates/resvg>), has no limits of its own. It paints every isolated group, mask and filter on layers that may be larger than
 //! the picture, evaluates filters at any size, decodes pictures whatever size they announce, and aborts on coordinates that
 //! its fixed-point numbers cannot hold.
 //!
@@ -197,10 +197,13 @@ impl Load {
             }
             ImageKind::JPEG(d) | ImageKind::PNG(d) | ImageKind::GIF(d) | ImageKind::WEBP(d) => d,
         };
-        let known = Arc::as_ptr(data) as usize;
-        let pixels = *self.sizes.entry(known).or_insert_with(|| {
+        let limits = &mut self.limits;
+        let pixels = *self.sizes.entry(Arc::as_ptr(data) as usize).or_insert_with(|| {
             // The renderer skips what it cannot decode.
-            header_size(data).map_or(0.0, |(w, h)| f64::from(w) * f64::from(h))
+            let pixels = header_size(data).map_or(0.0, |(w, h)| f64::from(w) * f64::from(h));
+            // It was counted when it was read, and holds as much as a result of its size.
+            *limits = limits.for_pixels(2.0 * pixels);
+            pixels
         });
         // The decoder's buffer becomes the picture, or is copied to it.
         self.hold(canvas, 2.0 * pixels)?;

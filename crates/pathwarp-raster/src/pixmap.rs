@@ -7,6 +7,12 @@ use tiny_skia::{FilterQuality, IntRect, Pixmap, PixmapPaint, Transform};
 /// Bytes held for each pixel of a picture that is made: itself, and the file that it becomes.
 const BYTES: f64 = 8.0;
 
+/// Checks the size of a picture that is read.
+pub(crate) fn check_size(width: f64, height: f64, limits: &Limits) -> Result<(), Error> {
+    let too_large = |exceeded| Error::TooLarge { width, height, exceeded };
+    limits.check(Limit::Pixels, width * height).map_err(too_large)
+}
+
 /// Creates a transparent picture, or fails if it would be empty or exceed the limits.
 pub(crate) fn new_pixmap(width: f64, height: f64, limits: &Limits) -> Result<Pixmap, Error> {
     let too_large = |exceeded| Error::TooLarge { width, height, exceeded };

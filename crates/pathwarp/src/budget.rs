@@ -222,6 +222,9 @@ fn rounded(v: f64) -> String {
     if v < 1e6 { format!("{}", (v * 100.0).round() / 100.0) } else { format!("{v:.2e}") }
 }
 
+/// The most that is added at once, so that sums stay in range.
+const MOST: f64 = (1_u64 << 52) as f64;
+
 /// The limits of one input with what is used of them. Threads share it.
 #[derive(Debug, Default)]
 pub struct Budget {
@@ -230,8 +233,6 @@ pub struct Budget {
     work: AtomicU64,
     /// Bytes, elements and pixels.
     sizes: [AtomicU64; 3],
-    /// Bytes of files that the input links to.
-    linked: AtomicU64,
 }
 
 impl Budget {
@@ -244,18 +245,7 @@ impl Budget {
     /// The limits, with what the pictures so far add.
     #[must_use]
     pub fn limits(&self) -> Limits {
-        self.sizes().for_pixels(self.taken(Limit::Pixels))
-    }
-
-    /// The limits, with what linked files add.
-    fn sizes(&self) -> Limits {
-        let linked = self.linked.load(Ordering::Relaxed) as f64 / BASE_SIZE;
-        Limits { scale: self.limits.scale + linked, ..self.limits }
-    }
-
-    /// Adds a file that the input links to: the limits are those of an input that holds it.
-    pub fn add_input(&self, bytes: u64) {
-        self.linked.fetch_add(bytes, Ordering::Relaxed);
+        self.limits.for_pixels(self.taken(Limit::Pixels))
     }
 
     /// Counts work.
@@ -263,7 +253,7 @@ impl Budget {
     /// # Errors
     /// The sum exceeds the limit.
     pub fn spend(&self, work: f64) -> Result<(), Exceeded> {
-        let sixteenths = (16.0 * work).ceil();
+        let sixteenths = (16.0 * work).ceil().min(MOST);
         let before = self.work.fetch_add(sixteenths as u64, Ordering::Relaxed) as f64;
         // How far beyond the limit threads went is not told.
         self.limits().check(Limit::Work, (before + sixteenths) / 16.0).map_err(|e| Exceeded {
@@ -290,8 +280,9 @@ impl Budget {
     /// # Errors
     /// The sum exceeds the limit.
     pub fn take(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
+        let amount = amount.min(MOST);
         let before = self.sizes.get(limit as usize).map_or(0, |n| n.fetch_add(amount as u64, Ordering::Relaxed));
-        self.sizes().check(limit, before as f64 + amount)
+        self.limits.check(limit, before as f64 + amount)
     }
 
     /// What is taken of a size.
@@ -303,7 +294,7 @@ impl Budget {
     /// What is left of a size.
     #[must_use]
     pub fn room(&self, limit: Limit) -> f64 {
-        (self.sizes().of(limit) - self.taken(limit)).max(0.0)
+        (self.limits.of(limit) - self.taken(limit)).max(0.0)
     }
 
     /// Checks a size that is not added up.

@@ -9,6 +9,8 @@ use std::sync::Arc;
 /// What is done with a pixel, in pixels painted.
 #[derive(Clone, Copy)]
 pub(crate) enum Pixel {
+    /// Of a model, for every face in front of or behind it.
+    Sampled = 2,
     Decoded = 4,
     /// Sampled and compressed.
     Warped = 60,

@@ -14,7 +14,8 @@ use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use crate::units::units_per_px;
-use pathwarp::budget::Budget;
+use crate::watch;
+use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
@@ -61,6 +62,7 @@ impl SvgArtwork {
         let format = format(options, input, target).map_err(|e| not_a_drawing(bytes, input, e))?;
         let (name, read) = (display(input), read_options(input, &options.reading));
         let doc = Document::read(bytes, &name, &read).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
+        watch::count_pixels(doc.budget().taken(Limit::Pixels));
         let selection = selection(options);
         doc.check_selection(&selection)?;
         Ok(Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format })

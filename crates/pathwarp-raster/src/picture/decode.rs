@@ -8,17 +8,13 @@ use super::orientation::Orientation;
 use super::png::{self, Png};
 use super::webp::WebP;
 use crate::error::Error;
-use crate::pixmap::new_pixmap;
+use crate::pixmap::{check_size, new_pixmap};
 use pathwarp::budget::{Limit, Limits};
 use tiny_skia::Pixmap;
 
 /// The pixels and the ICC profile, upright if asked.
 pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<(Pixmap, Option<Vec<u8>>), Error> {
-    let check = |(width, height): (u32, u32)| {
-        let (w, h) = (f64::from(width), f64::from(height));
-        let too_large = |exceeded| Error::TooLarge { width: w, height: h, exceeded };
-        limits.check(Limit::Pixels, w * h).map_err(too_large)
-    };
+    let check = |(width, height): (u32, u32)| check_size(f64::from(width), f64::from(height), limits);
     png::size(bytes).map_or(Ok(()), check)?;
     let mut bitmap = open(bytes, limits)?;
     let (width, height) = bitmap.size();

@@ -162,7 +162,6 @@ fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
     let size = std::fs::metadata(file).ok().filter(std::fs::Metadata::is_file)?.len();
     // Larger files are recorded as unread.
     options.budget.check(Limit::Bytes, size as f64).ok()?;
-    options.budget.add_input(size);
     let mut data = Vec::new();
     File::open(file).ok()?.take(size).read_to_end(&mut data).ok()?;
     Some(data)
