@@ -56,7 +56,8 @@ impl PictureArtwork {
         let budget = Budget::new(options.reading.limits.for_input(bytes.len()));
         let (width, height) = header_size(bytes)?;
         let size = (f64::from(width), f64::from(height));
-        work::picture(&budget, Pixel::Decoded, size).map_err(|e| too_much("reading the picture", size, &e))?;
+        let counted = work::picture(&budget, Pixel::Decoded, size);
+        counted.map_err(|e| Failure::Input(too_much("reading a picture", size, &e, "")))?;
         let picture = Picture::read_within(bytes, &budget.limits())?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
@@ -128,7 +129,8 @@ impl Artwork for PictureArtwork {
         let orientation = fold::orientation(&self.outline, true, &*map);
         warnings.extend(orientation.folded_against(&orientation).map(|at| folds::warning("the picture", &[], at)));
         let (visible, size) = size(bounds, options.image_size)?;
-        let too_much = |e: &Exceeded| too_much("warping it to a picture", size, e);
+        let smaller = "give a smaller --image-size, or ";
+        let too_much = |e: &Exceeded| Failure::Geometry(too_much("warping it to a picture", size, e, smaller));
         work::picture(&self.budget, Pixel::Warped, size).map_err(|e| too_much(&e))?;
         let size = (size.0 as u32, size.1 as u32);
         let inverse = inverse(&map, area, &self.budget);
@@ -156,12 +158,9 @@ impl Artwork for PictureArtwork {
     }
 }
 
-/// The error about a picture of this size that takes too much.
-fn too_much(what: &str, (width, height): (f64, f64), e: &Exceeded) -> Failure {
-    let advice = advice::raise(e);
-    Failure::Geometry(format!(
-        "{what} of {width:.0} x {height:.0} pixels takes {e}; give a smaller --image-size, or {advice}"
-    ))
+/// The message about a picture of this size that takes too much.
+fn too_much(what: &str, (width, height): (f64, f64), e: &Exceeded, advice: &str) -> String {
+    format!("{what} of {width:.0} x {height:.0} pixels takes {e}; {advice}{}", advice::raise(e))
 }
 
 /// The part of the plane that the result shows, and its size in pixels: by default one pixel per unit of the plane.
