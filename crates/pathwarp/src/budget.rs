@@ -12,7 +12,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Limit {
-    /// Bytes of text, unpacked and with entities expanded, and of embedded files.
+    /// Bytes of text, unpacked and with entities expanded, and of embedded fonts. Those of pictures count beyond four for each pixel.
     Bytes,
     /// Elements, with everything that references show again.
     Elements,
@@ -81,7 +81,7 @@ impl Limit {
     /// The value for inputs of up to a mebibyte. Together they keep a run below 5 seconds on one core and 500 MB.
     fn base(self) -> f64 {
         match self {
-            Self::Bytes => 64e6,
+            Self::Bytes => 32e6,
             Self::Elements => 30e3,
             Self::Pixels => 256e6,
             Self::Work => 100e6,

@@ -52,7 +52,7 @@ fn packed_text_is_unpacked_up_to_the_limit() {
     Folder::with(&[("a.svgz", &rects)]).expect("a.svgz", [3, 3], "elements");
     let inside = packed(&svg(&"<a/>".repeat(4_000_000)));
     let folder = Folder::with(&[("in.svgz", &inside), ("a.svg", &svg("<image width='9' height='9' href='in.svgz'/>"))]);
-    folder.expect("a.svg", [3, 3], "bytes");
+    folder.expect("a.svg", [3, 3], "elements");
     Folder::with(&[("a.svgz", &packed(&svg(RECT)))]).expect("a.svgz", [0, 0], "");
 }
 

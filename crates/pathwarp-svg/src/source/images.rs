@@ -19,6 +19,9 @@ use std::sync::{Arc, Mutex};
 const DATA: &str = "data:";
 const BASE64: &str = ";base64,";
 
+/// Bytes of a pixel as it is held: files of pictures that are no larger are counted by their pixels.
+const PIXEL: f64 = 4.0;
+
 /// Names that were asked for and not found.
 pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
 
@@ -121,21 +124,25 @@ pub(super) fn checked(
 ) -> Result<Option<Arc<Vec<u8>>>, Error> {
     let budget = &options.budget;
     let profile = bitmap::unpacked_profile(&data, budget.room(Limit::Bytes) as u64);
-    let counted = budget.take(Limit::Bytes, data.len() as f64 + profile as f64).map_err(Exceeded::cut_short);
-    counted.map_err(|e| Error::limit(place, "with the images before it, it takes", e))?;
+    let take = |bytes: f64| {
+        let counted = budget.take(Limit::Bytes, bytes.max(0.0) + profile as f64).map_err(Exceeded::cut_short);
+        counted.map_err(|e| Error::limit(place, "with the images before it, it takes", e))
+    };
     if mime != SVG {
         match imagesize::blob_size(&data) {
             Ok(_) if is_png_without_header(&data) => return Ok(None),
             Ok(size) => {
                 let what = format!("with a picture of {} x {} pixels, its pictures take", size.width, size.height);
-                let counted = budget.take(Limit::Pixels, size.width as f64 * size.height as f64);
-                counted.map_err(|e| Error::limit(place, what, e))?;
+                let pixels = size.width as f64 * size.height as f64;
+                budget.take(Limit::Pixels, pixels).map_err(|e| Error::limit(place, what, e))?;
+                take(data.len() as f64 - PIXEL * pixels)?;
                 return Ok(Some(data).filter(|data| !bitmap::is_unreadable(data)));
             }
             Err(_) if mime != ANY => return Ok(None),
             Err(_) => {}
         }
     }
+    take(0.0)?;
     let text = match read::text(&data, place, budget) {
         Ok(text) => text,
         Err(e @ Error::Input { limit: Some(_), .. }) => return Err(e),
@@ -161,7 +168,7 @@ fn is_png_without_header(data: &[u8]) -> bool {
 fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
     let size = std::fs::metadata(file).ok().filter(std::fs::Metadata::is_file)?.len();
     // Larger files are recorded as unread.
-    options.budget.check(Limit::Bytes, size as f64).ok()?;
+    options.budget.check(Limit::Memory, size as f64).ok()?;
     let mut data = Vec::new();
     File::open(file).ok()?.take(size).read_to_end(&mut data).ok()?;
     Some(data)
