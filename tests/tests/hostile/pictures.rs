@@ -97,7 +97,7 @@ fn layers_masks_and_filters_are_drawn_within_bounds() {
     large(&format!("<mask id='m0'>{RECT}</mask>{masks}<g mask='url(#m29)'>{RECT}</g>")).expect(
         "a.svg",
         [0, 3],
-        "memory",
+        "the limit",
     );
     for filter in [
         "<feTurbulence numOctaves='20' baseFrequency='.1'/>",

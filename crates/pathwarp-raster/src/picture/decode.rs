@@ -33,7 +33,9 @@ pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<(Pi
 /// # Errors
 /// [`Error::Decode`] for other and damaged files.
 pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
-    open(bytes, &Limits::default().for_input(bytes.len())).map(|bitmap| bitmap.size())
+    let opened = open(bytes, &Limits::default().for_input(bytes.len())).map(|bitmap| bitmap.size());
+    // A PNG that announces more than its decoder stands says so, too.
+    opened.or_else(|e| png::size(bytes).ok_or(e))
 }
 
 /// The number of pixels is limited by the caller. What a decoder holds besides them is limited here: unpacked profiles, and a frame of
