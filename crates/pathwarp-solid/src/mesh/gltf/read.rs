@@ -98,10 +98,10 @@ fn object(
         let material = p.material().index().and_then(|i| assets.materials.get(i));
         // Without a name, the material of the object before would go on.
         mark(mesh, Mark::Material(material.cloned().unwrap_or_else(|| "none".into())));
+        primitive::append(mesh, &p, to_scene, buffers, lost)?;
         // A node may show a mesh again and again: each of its vertices is then one more point to map.
         let count = |a: Option<gltf::Accessor<'_>>| a.map_or(0, |a| a.count()) as f64;
         budget.spend(count(p.get(&gltf::Semantic::Positions)) + count(p.indices()))?;
-        primitive::append(mesh, &p, to_scene, buffers, lost)?;
     }
     Ok(())
 }
