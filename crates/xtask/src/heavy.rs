@@ -148,7 +148,7 @@ fn words(words: usize, random: &mut Random) -> String {
     (0..words).map(|_| word(random) + " ").collect()
 }
 
-/// Up to 30,000 letters.
+/// Up to 27,000 letters.
 fn poster(n: usize, random: &mut Random) -> String {
     let line =
         |i: usize, r: &mut Random| format!("<text x='5' y='{}' font-size='3'>{}</text>", 4 + 3 * i, words(13, r));
