@@ -51,7 +51,7 @@ fn pdf(doc: &Document, options: &CommonOptions) -> Result<Exported, Failure> {
     let exact = ExactOutlines::of(doc);
     let written = usvg_tree::with_stack(doc, || {
         let outline = |path: &_| exact.get(path).cloned();
-        let limits = *doc.budget().limits();
+        let limits = doc.budget().limits();
         let options = pathwarp_pdf::Options { exact: &outline, picture_dpi: options.image_dpi, limits };
         Ok(pathwarp_pdf::write(usvg_tree::tree(doc), &options))
     })??;
@@ -62,7 +62,7 @@ fn pdf(doc: &Document, options: &CommonOptions) -> Result<Exported, Failure> {
         if pictures == 1 { "is" } else { "are" },
     );
     let less = format!(
-        "{} fewer pixels than the resolution asks for, within the limits; --limit painting and --limit pixels raise them",
+        "{} fewer pixels than the resolution asks for, within the limits; --limit work and --limit memory raise them",
         counted(coarser, "of these pictures has", "of these pictures have")
     );
     let warnings = [(pictures > 0).then_some(warning), (coarser > 0).then_some(less)];
@@ -90,7 +90,7 @@ fn dxf(doc: &Document, options: &CommonOptions, tolerance: Option<f64>) -> Resul
         curves: options.dxf_curves,
         tolerance: tolerance * to_mm.determinant().abs().sqrt(),
         page,
-        limits: *doc.budget().limits(),
+        limits: doc.budget().limits(),
     };
     let text = pathwarp_dxf::write(&shapes, &settings)
         .map_err(|e| pathwarp::Error::limit(doc.name(), "as polylines, it takes", e))?;

@@ -4,7 +4,7 @@ use crate::file::{File, deflated};
 use crate::space::matrix;
 use crate::stream::Stream;
 use kurbo::{Affine, Rect};
-use pathwarp::budget::Limit;
+use pathwarp::budget::cost;
 use pathwarp_raster::{Error, Picture, Pixmap, header_size};
 use pdf_writer::{Filter, Finish as _, Name, Ref};
 use std::sync::Arc;
@@ -82,7 +82,7 @@ const DECODING: f64 = 4.0;
 const COMPRESSING: f64 = 20.0;
 
 fn count(file: &File<'_>, (width, height): (u32, u32), work: f64) -> Result<(), Error> {
-    Ok(file.budget.spend(Limit::Painting, (work * f64::from(width) * f64::from(height)) as u64)?)
+    Ok(file.budget.spend(cost::PIXEL * work * f64::from(width) * f64::from(height))?)
 }
 
 /// Adds a bitmap, with its transparency if it has any.

@@ -20,7 +20,7 @@ use crate::source::tags::{ElementId, is_shape};
 use crate::source::undrawn::undrawn;
 use crate::write;
 use crate::write::input::WriteInput;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::Map;
 use pathwarp::{Error, Outline, refit};
@@ -96,7 +96,7 @@ impl Document {
 
     /// Forgets what is used of the limits: for programs that warp a drawing again and again, to which the limits apply each time.
     pub fn renew_budget(&mut self) {
-        self.drawing.budget = Arc::new(Budget::new(*self.drawing.budget.limits()));
+        self.drawing.budget = Arc::new(Budget::new(self.drawing.budget.limits()));
     }
 
     #[cfg(feature = "usvg")]
@@ -207,8 +207,7 @@ impl Document {
         const EXCLUDED: usize = 2;
         let source = &self.drawing.source;
         let each = SELECTED * selection.select.len() + EXCLUDED * selection.exclude.len();
-        let comparisons = each.saturating_mul(source.elements.len()) as u64;
-        let counted = self.budget().spend(Limit::Comparisons, comparisons);
+        let counted = self.budget().spend(cost::COMPARISON * each as f64 * source.elements.len() as f64);
         counted.map_err(|e| Error::limit(self.name(), "selecting by so many names takes", e))?;
         for selector in selection.select.iter().chain(&selection.exclude) {
             if !matches_any(source, selector) {

@@ -139,8 +139,8 @@ fn damage_and_endless_work() {
     refused("many.ply", &[], "announces 1000000000 elements");
     refused("many.bpt", &[], "ends");
     refused("out.gltf", &[], "outside the file");
-    refused("in.obj", &["--refine", "1e-12", "--limit", "evaluations=1000000"], "allow a larger --refine");
-    refused("in.bpt", &["--refine", "1e-13", "--limit", "evaluations=100000"], "allow a larger --refine");
+    refused("in.obj", &["--refine", "1e-12", "--limit", "work=1000000"], "allow a larger --refine");
+    refused("in.bpt", &["--refine", "1e-13", "--limit", "work=100000"], "allow a larger --refine");
 }
 
 /// An inverted map that folds has several sources for a place.

@@ -181,8 +181,7 @@ impl Warper {
             let budget = Arc::new(Budget::new(options.reading.limits));
             let built = self.build(&frame, &outline, &budget)?;
             // Points are mapped as often as the program around this likes.
-            built.stop_counting();
-            Ok(PointMap::new(built.map))
+            Ok(PointMap::new(built.unlimited()))
         })
     }
 

@@ -14,7 +14,7 @@ use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::page::PageNews;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::Budget;
 use pathwarp::fold::{Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::{Chain, Class, Map};
@@ -262,8 +262,8 @@ impl GimpArtwork {
         let bends: Vec<PartBend<'_>> =
             built.parts.iter().enumerate().map(|(k, b)| self.part_bend(k, b, request)).collect();
         let segments: usize = bends.iter().map(|b| b.segments).sum();
-        let work: f64 = bends.iter().map(|b| b.survey.work(0, b.segments) * b.places.len() as f64).sum();
-        self.budget.spend_cut(Limit::Evaluations, work as u64).map_err(|e| Error::from(GeometryError::Limit(e)))?;
+        let spent = bends.iter().try_for_each(|b| b.survey.spend(0, b.segments, b.places.len(), &self.budget));
+        spent.map_err(Error::from)?;
         let warp = |place: usize| {
             let b = &bends[self.part(place)];
             let strokes = warp_strokes(self.path(self.selected[place]), &b.places, b.map, &b.refit);

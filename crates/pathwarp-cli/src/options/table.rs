@@ -414,10 +414,9 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run(
             "limit",
             OptionValue::List { name: "NAME=N", push: |o, text| parse::limit(text, &mut o.reading.limits) },
-            "Raise or lower a limit on the work that an input may cause, such as segments=5e6, or memory=none; may be given \
-         several times. The limits are bytes, elements, comparisons, segments, letters, pixels, painting, image-bytes, \
-         evaluations, seconds (of processor time) and memory (in bytes); without this option they grow with the size of \
-         the input",
+            "Raise or lower a limit on the work that an input may cause, such as work=1e9, or memory=none; may be given \
+         several times. The limits are bytes, elements, pixels (of pictures), work, seconds (of processor time) and memory \
+         (in bytes); without this option they grow with the size of the input and its pictures",
         )
     },
     CommonOption {

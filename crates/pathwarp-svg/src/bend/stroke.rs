@@ -5,8 +5,7 @@ use super::outcome::StrokeOutcome;
 use super::task::PartTask;
 use super::width::StrokeWidth;
 use crate::scene::affine::stretch;
-use crate::scene::expand::{dash_segments, stroke_outline, stroke_segments};
-use pathwarp::budget::Limit;
+use crate::scene::expand::{spend_dashes, spend_stroke, stroke_outline};
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::refit::{self, Assurance, PathReport};
 use pathwarp::{GeometryError, Outline};
@@ -77,8 +76,7 @@ pub(super) fn stroke(
     }
     let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(BentStroke::scaled(1.0, None)) };
     // The box of a stroke that stays one is measured with its dashes.
-    let dashes = dash_segments(&p.local, s) as u64;
-    t.options().refit.budget.spend_cut(Limit::Segments, dashes).map_err(GeometryError::Limit)?;
+    spend_dashes(&p.local, s, &t.options().refit.budget).map_err(GeometryError::Limit)?;
     let mode = t.options().strokes;
     if mode == Strokes::Keep {
         return Ok(BentStroke::scaled(1.0, None));
@@ -118,8 +116,7 @@ fn stretched(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
 /// the part's user space to root user space.
 fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathReport), GeometryError> {
     let (p, options) = (t.part, t.options());
-    let segments = stroke_segments(&p.local, s) as u64;
-    options.refit.budget.spend_cut(Limit::Segments, segments).map_err(GeometryError::Limit)?;
+    spend_stroke(&p.local, s, &options.refit.budget).map_err(GeometryError::Limit)?;
     let allowed = t.allowed();
     let expanded = |fine: f64| {
         let one = |local: &Outline, places: &[Affine]| {

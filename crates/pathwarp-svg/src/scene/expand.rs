@@ -2,6 +2,7 @@
 
 use super::regular::{is_point, polygon, regular};
 use super::tidy::tidy;
+use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::kurbo::{self, Cap, Circle, Join, Rect, Shape as _, StrokeOpts};
 use pathwarp::{Outline, Seg};
 use usvg::{LineCap, LineJoin, Stroke};
@@ -68,6 +69,9 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
 /// Limit on the dashes of a path. More would take long and look like a grey line.
 const MOST_DASHES: f64 = 20_000.0;
 
+/// The work of one of the segments below: there are fewer, and fitting them is counted, too.
+const EXPANDED: f64 = 15.0;
+
 /// Segments of the outline of a dash or a subpath with its caps, and of a segment with its join. All are held three times: expanded,
 /// bent, and as they are written.
 const PER_DASH: f64 = 3.0 * 8.0;
@@ -78,15 +82,19 @@ const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 const MEASURED: f64 = 2.0;
 
 /// The work of expanding the dashes of a stroke, in segments. They are held only until the stroke is measured.
-pub(crate) fn dash_segments(local: &Outline, stroke: &Stroke) -> f64 {
-    MEASURED * drawn_dashes(local, stroke)
+pub(crate) fn spend_dashes(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
+    budget.spend(EXPANDED * MEASURED * drawn_dashes(local, stroke))
 }
 
-/// A bound for the segments into which a stroke is expanded.
-pub(crate) fn stroke_segments(local: &Outline, stroke: &Stroke) -> f64 {
+/// Counts a bound for the segments into which a stroke is expanded.
+///
+/// # Errors
+/// It is more work than the limit allows.
+pub(crate) fn spend_stroke(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
     let dashes = drawn_dashes(local, stroke);
     let each = if stroke.linejoin() == LineJoin::Round { PER_ROUND_SEGMENT } else { PER_SEGMENT };
-    PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64
+    let segments = PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64;
+    budget.spend(EXPANDED * segments)
 }
 
 /// A bound for the number of dashes that are drawn of a stroke.

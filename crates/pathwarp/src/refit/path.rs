@@ -9,7 +9,6 @@ use super::piece::{FittedPiece, PathWriter, reverse};
 use super::report::{Assurance, PathReport};
 use super::segment::SegmentFitter;
 use super::split;
-use crate::budget::Limit;
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
@@ -73,10 +72,7 @@ pub(super) fn subpath(
     let projective = matches!(map.class(), Class::Projective(_));
     let work = map.work();
     // Values at the nodes.
-    options
-        .budget
-        .spend_cut(Limit::Evaluations, (work * sub.segs.len() as f64) as u64)
-        .map_err(GeometryError::Limit)?;
+    options.budget.spend(work * sub.segs.len() as f64).map_err(GeometryError::Limit)?;
     let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
     let refitted = |i: usize, segs: &[Seg], memory: &mut MergeMemory| {
         if !announced {
@@ -99,7 +95,7 @@ pub(super) fn subpath(
         }
     }
     // Segments beyond the limit were not fitted.
-    options.budget.spend_cut(Limit::Evaluations, 0).map_err(GeometryError::Limit)?;
+    options.budget.spend(0.0).map_err(GeometryError::Limit)?;
     out.subpath(start.p, &pieces, sub.closed);
     Ok(())
 }

@@ -9,7 +9,6 @@ use super::report::PathReport;
 use super::source::{BreakPoint, SourceCurve};
 use super::split::{self, SlowSpots};
 use super::stretch::StretchFitter;
-use crate::budget::Limit;
 use crate::map::{Class, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use kurbo::{CubicBez, Line, Point};
@@ -104,7 +103,7 @@ impl SegmentFitter<'_> {
         pieces: &mut Vec<FittedPiece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
-        if self.options.budget.left(Limit::Evaluations) <= 0.0 {
+        if self.options.budget.left() <= 0.0 {
             pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
             return Ok(());
         }
@@ -133,7 +132,7 @@ impl SegmentFitter<'_> {
     /// The attempts after which this part ends: those that exceed the budget by themselves, so that the result does not depend on
     /// what other threads count at the same time.
     fn most_attempts(&self) -> usize {
-        let left = self.options.budget.left(Limit::Evaluations) / self.work;
+        let left = self.options.budget.left() / self.work;
         let (usual, hard) = (left / EVALUATIONS as f64, left / THOROUGH_WORK as f64);
         let most = if usual < HARD as f64 { usual } else { hard.max(HARD as f64) };
         MAX_ATTEMPTS.min((most as usize).saturating_add(1))
@@ -141,7 +140,7 @@ impl SegmentFitter<'_> {
 
     /// Counts work. Too much of it is an error of the whole path, which ends by itself: `fit` does no more.
     pub(super) fn spend(&self, evaluations: f64) {
-        let _ = self.options.budget.spend(Limit::Evaluations, evaluations as u64);
+        let _ = self.options.budget.spend(evaluations);
     }
 
     /// Covers a smooth part, whose ends are at most `blur` from the source's image.

@@ -25,7 +25,6 @@ use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
 use super::segment::SegmentFitter;
 use super::source::SourceCurve;
-use crate::budget::Limit;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use carry::{Carried, Site};
@@ -140,7 +139,7 @@ impl<'a> Merger<'a> {
     /// Appends the pieces of the first segments from `start` up to `end`, whose joints may be smooth, and returns how many they are.
     fn joined(&mut self, start: usize, end: usize) -> Result<usize, Point> {
         // The whole path is refused then.
-        if self.fitter.options.budget.left(Limit::Evaluations) <= 0.0 {
+        if self.fitter.options.budget.left() <= 0.0 {
             return self.single(start);
         }
         let (shape, off) = self.memory.repeats.shape(&self.segs[start..end], self.fitter.options.tolerance);
