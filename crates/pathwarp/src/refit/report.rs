@@ -7,6 +7,9 @@ use kurbo::{BezPath, PathEl, Point};
 /// the fit chases noise.
 pub const RESOLUTION: f64 = 1e-13;
 
+/// Sums of errors round up.
+pub(super) const SUMMED: f64 = 1e-9;
+
 /// Basis of the reported error, from the weakest to the strongest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Assurance {
@@ -53,10 +56,8 @@ impl Default for PathReport {
 impl PathReport {
     /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest one of the image.
     pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
-        /// Sums of errors round up.
-        const ROUNDING: f64 = 1e-9;
         let resolution = RESOLUTION * outline.extent().max(image);
-        let mut missed = self.max_error > tolerance * (1.0 + ROUNDING);
+        let mut missed = self.max_error > tolerance * (1.0 + SUMMED);
         if resolution > tolerance {
             self.unresolved = Some(resolution);
             self.add_error(resolution, Assurance::Checked);
@@ -103,6 +104,17 @@ pub(super) fn extent(path: &BezPath) -> f64 {
 pub struct RefittedPath {
     /// Lines and cubics.
     pub path: BezPath,
+    /// What became of each of the options' [spans](super::Options::spans).
+    pub spans: Vec<SpanReport>,
     /// Statistics.
     pub report: PathReport,
+}
+
+/// What became of a span.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpanReport {
+    /// Number of lines and cubics, including a closing line.
+    pub pieces: usize,
+    /// Largest distance between the true image and the output, in root user units.
+    pub max_error: f64,
 }
