@@ -43,6 +43,8 @@ pub struct ShapeReport {
     pub segments_out: usize,
     /// Largest distance between exact image and output, rounding included, in root user units.
     pub max_error: f64,
+    /// The largest distance as a share of the tolerance that holds where it is: that of the contour, if contours have their own.
+    pub share: f64,
     /// Assurance of `max_error`.
     pub assurance: Assurance,
     /// Points of the source where the tolerance was not met.
@@ -94,6 +96,7 @@ impl WarpedDocument {
                 last.segments_in += r.segments_in;
                 last.segments_out += r.segments_out;
                 last.max_error = last.max_error.max(error);
+                last.share = last.share.max(r.share);
                 last.assurance = last.assurance.min(r.assurance);
                 last.over_budget.extend(&r.over_budget);
                 last.unresolved = most(last.unresolved, r.unresolved);
@@ -109,6 +112,7 @@ impl WarpedDocument {
                 segments_in: r.segments_in,
                 segments_out: r.segments_out,
                 max_error: error,
+                share: r.share,
                 assurance: r.assurance,
                 over_budget: r.over_budget.clone(),
                 unresolved: r.unresolved,

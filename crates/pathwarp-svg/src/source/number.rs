@@ -171,49 +171,55 @@ pub(crate) fn matrix(m: Affine) -> String {
 
 /// Formats a path as a `d` attribute with absolute commands.
 pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
+    path_data_by(path, |_| [decimals; 2])
+}
+
+/// The same with decimals for the handles and the end of each element, given by its index.
+pub(crate) fn path_data_by(path: &BezPath, decimals: impl Fn(usize) -> [u8; 2]) -> String {
     let mut out: Vec<u8> = Vec::with_capacity(path.elements().len() * 48);
-    let point = |out: &mut Vec<u8>, p: Point| {
+    let point = |out: &mut Vec<u8>, p: Point, decimals: u8| {
         push_bytes(out, p.x, decimals);
         out.push(b',');
         push_bytes(out, p.y, decimals);
     };
     let mut at = Point::ORIGIN;
-    // Write a cubic as a quadratic if the two differ by less than the rounding.
-    let near = 0.1 * 0.1_f64.powi(i32::from(decimals));
-    for el in path.elements() {
+    for (i, el) in path.elements().iter().enumerate() {
+        let [handle, node] = decimals(i);
+        // Write a cubic as a quadratic if the two differ by less than the rounding.
+        let near = || 0.1 * 0.1_f64.powi(i32::from(handle));
         if !out.is_empty() {
             out.push(b' ');
         }
         match *el {
             PathEl::MoveTo(p) => {
                 out.push(b'M');
-                point(&mut out, p);
+                point(&mut out, p, node);
             }
             PathEl::LineTo(p) => {
                 out.push(b'L');
-                point(&mut out, p);
+                point(&mut out, p, node);
             }
             PathEl::QuadTo(a, p) => {
                 out.push(b'Q');
-                point(&mut out, a);
+                point(&mut out, a, handle);
                 out.push(b' ');
-                point(&mut out, p);
+                point(&mut out, p, node);
             }
-            PathEl::CurveTo(a, b, p) if quadratic(at, a, b, p).is_some_and(|q| q.1 < near) => {
+            PathEl::CurveTo(a, b, p) if quadratic(at, a, b, p).is_some_and(|q| q.1 < near()) => {
                 if let Some((q, _)) = quadratic(at, a, b, p) {
                     out.push(b'Q');
-                    point(&mut out, q);
+                    point(&mut out, q, handle);
                     out.push(b' ');
-                    point(&mut out, p);
+                    point(&mut out, p, node);
                 }
             }
             PathEl::CurveTo(a, b, p) => {
                 out.push(b'C');
-                point(&mut out, a);
+                point(&mut out, a, handle);
                 out.push(b' ');
-                point(&mut out, b);
+                point(&mut out, b, handle);
                 out.push(b' ');
-                point(&mut out, p);
+                point(&mut out, p, node);
             }
             PathEl::ClosePath => out.push(b'Z'),
         }
@@ -282,9 +288,8 @@ pub(crate) fn outline_data(outline: &Outline) -> String {
 
 /// Formats an outline with arcs as a `d` attribute, as accurately as [`path_data`] does with that number of decimals: the centre of
 /// an arc follows from its ends and radii, and needs more.
-pub(crate) fn arcs_data(outline: &Outline, decimals: u8) -> String {
-    let decimals = decimals.saturating_add(1).min(MOST_DECIMALS);
-    let finer = decimals.saturating_add(2).min(MOST_DECIMALS);
+/// `decimals` gives their number for each subpath.
+pub(crate) fn arcs_data(outline: &Outline, decimals: impl Fn(usize) -> u8) -> String {
     let mut out = String::new();
     let add = |out: &mut String, command: char, numbers: &[(f64, u8)]| {
         if !out.is_empty() {
@@ -298,7 +303,9 @@ pub(crate) fn arcs_data(outline: &Outline, decimals: u8) -> String {
             push(out, *v, *decimals);
         }
     };
-    for s in &outline.subpaths {
+    for (i, s) in outline.subpaths.iter().enumerate() {
+        let decimals = decimals(i).saturating_add(1).min(MOST_DECIMALS);
+        let finer = decimals.saturating_add(2).min(MOST_DECIMALS);
         let at = |p: Point| [(p.x, decimals), (p.y, decimals)];
         add(&mut out, 'M', &at(s.start));
         let closing = s.closed && matches!(s.segs.last(), Some(Seg::Line(_)));

@@ -38,6 +38,7 @@ pub(super) fn affine(
                 affine_segment(seg, m, tolerance, &mut pieces, &mut report)?;
             }
             if !spans.is_empty() {
+                report.share = report.max_error / tolerance;
                 out.spans.push(SpanReport { pieces: pieces.len() - before, max_error: report.max_error });
             }
             out.report.add(report);
@@ -143,6 +144,7 @@ pub(super) fn subpath(
             let nodes = if first { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
             let refit = if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) };
             let (pieces, mut report) = refit?;
+            report.share = report.max_error / tolerance;
             if !spans.is_empty() && report.max_error > tolerance * (1.0 + SUMMED) && report.over_budget.is_empty() {
                 report.over_budget.extend(segs.first().map(Seg::start));
             }

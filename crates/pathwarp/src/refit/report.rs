@@ -31,6 +31,8 @@ pub struct PathReport {
     pub segments_out: usize,
     /// Largest distance between the true image and the output, in root user units.
     pub max_error: f64,
+    /// The largest error as a share of the tolerance that holds where it is.
+    pub share: f64,
     /// Basis of `max_error`: the weakest of all segments.
     pub assurance: Assurance,
     /// Places in the source at which the tolerance was not met: the work budget ran out, or rounding is larger.
@@ -46,6 +48,7 @@ impl Default for PathReport {
             segments_in: 0,
             segments_out: 0,
             max_error: 0.0,
+            share: 0.0,
             assurance: Assurance::Exact,
             over_budget: Vec::new(),
             unresolved: None,
@@ -58,6 +61,7 @@ impl PathReport {
     pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
         let resolution = RESOLUTION * outline.extent().max(image);
         let mut missed = self.max_error > tolerance * (1.0 + SUMMED);
+        self.share = self.share.max(self.max_error / tolerance);
         if resolution > tolerance {
             self.unresolved = Some(resolution);
             self.add_error(resolution, Assurance::Checked);
@@ -71,6 +75,7 @@ impl PathReport {
     /// Adds the report of another part of the same path; the numbers of segments stay.
     pub fn add(&mut self, part: Self) {
         self.add_error(part.max_error, part.assurance);
+        self.share = self.share.max(part.share);
         self.over_budget.extend(part.over_budget);
         self.unresolved = larger(self.unresolved, part.unresolved);
     }
