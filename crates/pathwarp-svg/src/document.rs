@@ -153,7 +153,7 @@ impl Document {
 
     fn counted(&self, selection: &Selection) -> seen::Counted {
         let parts = self.drawing.selected_parts(selection).to_vec();
-        seen::Counted { parts, bitmaps: self.selected_bitmaps(selection) }
+        seen::Counted { parts, bitmaps: self.selected_bitmaps(selection), strokes: false }
     }
 
     /// Bounding box of what is seen of the selected shapes, without stroke widths, and pictures: not what clip paths, masks and zero opacity
@@ -161,6 +161,14 @@ impl Document {
     #[must_use]
     pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
         let counted = self.counted(selection);
+        let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
+        seen.or_else(|| self.artwork_box(selection))
+    }
+
+    /// The box of what is seen, [`Document::seen_box`], with strokes by half their width.
+    #[must_use]
+    pub fn painted_box(&self, selection: &Selection) -> Option<Rect> {
+        let counted = seen::Counted { strokes: true, ..self.counted(selection) };
         let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
         seen.or_else(|| self.artwork_box(selection))
     }

@@ -3,11 +3,10 @@
 use super::bends::Bend;
 use super::letters::{LetterPiece, placed};
 use super::options::WarpOptions;
-use crate::scene::affine::stretch;
 use crate::scene::drawing::Drawing;
-use crate::scene::model::Part;
+use crate::scene::seen::reach;
 use pathwarp::Outline;
-use pathwarp::kurbo::{Affine, Rect};
+use pathwarp::kurbo::Rect;
 use pathwarp::refit::{RESOLUTION, suited};
 use std::sync::Arc;
 
@@ -26,12 +25,6 @@ pub(super) fn of_parts(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>],
     let all: Vec<Vec<f64>> = (0..parts.len()).map(own).collect();
     let is_small = |t: &f64| *t < tolerance;
     if all.iter().flatten().any(is_small) { all } else { vec![Vec::new(); parts.len()] }
-}
-
-/// How far a part's paint extends from its path, in root user space.
-fn reach(p: &Part, to_px: Affine) -> f64 {
-    let space = if p.fixed_width { to_px.inverse() } else { p.frame };
-    p.stroke.as_ref().filter(|_| !p.in_tile).map_or(0.0, |s| 0.5 * f64::from(s.width().get()) * stretch(space))
 }
 
 fn of_part(outline: &Outline, reach: f64, is_text: bool, tolerance: f64) -> Vec<f64> {

@@ -96,7 +96,7 @@ pub(super) fn stroke(
         let hairline = is_hairline(t, s);
         let replaced = !hairline && (p.stroke_tiles.is_some() || pictured);
         if let Some(w) = width.as_ref().filter(|_| !replaced) {
-            let right = [w.mean(), w.middle()].into_iter().find(|s| w.is_right(*s, t.finest));
+            let right = [w.mean(), w.middle()].into_iter().find(|s| w.is_right(*s, t.options().refit.tolerance));
             if let Some(scale) = right.or_else(|| hairline.then(|| w.mean())) {
                 return Ok(scaled(w, scale));
             }

@@ -97,8 +97,9 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
     let own;
     let options = if options.suited && options.spans.is_empty() {
         let contours: Vec<f64> = outline.subpaths.iter().map(|s| suited(options.tolerance, s.diagonal())).collect();
-        let shared = SharedEdges::held([(outline, &contours[..])]);
-        own = options.clone().with_spans(shared.spans(outline, &contours));
+        let alone = || SharedEdges::held([(outline, &contours[..])]);
+        let spans = if *options.shared == SharedEdges::default() { alone().spans(outline, &contours) } else { options.shared.spans(outline, &contours) };
+        own = options.clone().with_spans(spans);
         &own
     } else {
         options
