@@ -34,11 +34,16 @@ pub(super) struct Digits {
     pub(super) size: f64,
     /// Decimals on request.
     pub(super) given: Option<u8>,
+    /// The tolerance of the drawing.
+    pub(super) whole: f64,
 }
 
 impl Digits {
+    /// As many as the whole drawing has, unless their rounding is more than a tenth of this tolerance.
     pub(super) fn decimals(self, tolerance: f64) -> u8 {
-        decimals(self.size, tolerance, self.given)
+        /// Tolerances whose hundredth is a tenth of the one given.
+        const COARSE: f64 = 10.0;
+        decimals(self.size, self.whole.min(COARSE * tolerance), self.given)
     }
 
     pub(super) fn rounding(self, tolerance: f64) -> f64 {

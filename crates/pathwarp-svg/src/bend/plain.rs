@@ -44,7 +44,7 @@ pub fn warp_path(
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
-    let digits = Digits { size: 1.0, given: precision };
+    let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
     let held = |s: &Subpath| if options.suited { suited(options.tolerance, s.diagonal()) } else { options.tolerance };
     let contours: Vec<f64> = outline.subpaths.iter().map(held).collect();
     let finest = contours.iter().copied().fold(options.tolerance, f64::min);

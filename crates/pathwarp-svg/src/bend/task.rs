@@ -79,7 +79,7 @@ impl<'a> PartTask<'a> {
         let (mut outline, contours) = placed_outline(&whole, own, options, pieces);
         // Placed letters skip the first step; everything else goes through the whole map.
         let map: &dyn Map = if pieces.is_empty() { context.map } else { &options.letters.after };
-        let digits = Digits { size: stretch(write), given: options.precision };
+        let digits = Digits { size: stretch(write), given: options.precision, whole: options.refit.tolerance };
         let finest = contours.iter().copied().fold(options.refit.tolerance, f64::min);
         let (decimals, rounding) = (digits.decimals(finest), digits.rounding(finest));
         if outline.subpaths.iter().any(|s| stubs::has_closing_stub(s, rounding)) {

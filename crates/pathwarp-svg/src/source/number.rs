@@ -185,8 +185,8 @@ pub(crate) fn path_data_by(path: &BezPath, decimals: impl Fn(usize) -> [u8; 2]) 
     let mut at = Point::ORIGIN;
     for (i, el) in path.elements().iter().enumerate() {
         let [handle, node] = decimals(i);
-        // Write a cubic as a quadratic if the two differ by less than the rounding.
-        let near = || 0.1 * 0.1_f64.powi(i32::from(handle));
+        // Write a cubic as a quadratic if the two differ by a tenth of the last decimal.
+        let near = || 0.1_f64.powi(i32::from(handle));
         if !out.is_empty() {
             out.push(b' ');
         }
