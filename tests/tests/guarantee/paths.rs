@@ -27,7 +27,7 @@ impl Random {
         self.next() as f64 / (1u64 << 48) as f64
     }
 
-    fn between(&mut self, a: f64, b: f64) -> f64 {
+    pub fn between(&mut self, a: f64, b: f64) -> f64 {
         a + (b - a) * self.share()
     }
 

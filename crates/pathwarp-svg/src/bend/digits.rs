@@ -17,9 +17,10 @@ pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
     })
 }
 
-/// Largest error from rounding to `decimals`, in root user units.
+/// Largest error from rounding to `decimals`, in root user units: half the diagonal of a unit of the last, and a third of that unit for
+/// cubics written as quadratics.
 pub(super) fn rounding(size: f64, decimals: u8) -> f64 {
-    size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals))
+    size * (std::f64::consts::FRAC_1_SQRT_2 + 0.3) * 0.1_f64.powi(i32::from(decimals))
 }
 
 /// The tolerance less the room for rounding.
@@ -44,6 +45,11 @@ impl Digits {
         /// Tolerances whose hundredth is a tenth of the one given.
         const COARSE: f64 = 10.0;
         decimals(self.size, self.whole.min(COARSE * tolerance), self.given)
+    }
+
+    /// Decimals that an arc may have beside these.
+    pub(super) fn more(self) -> u8 {
+        if self.given.is_none() { 4 } else { 0 }
     }
 
     pub(super) fn rounding(self, tolerance: f64) -> f64 {
@@ -96,6 +102,6 @@ impl Digits {
                 },
             });
         }
-        path_data_by(path, |i| each[i])
+        path_data_by(path, self.given.is_none(), |i| each[i])
     }
 }

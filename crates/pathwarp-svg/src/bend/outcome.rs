@@ -3,7 +3,7 @@
 use super::paint::PaintFit;
 use super::picture::{BentImage, PictureError};
 use super::warning::Warning;
-use crate::source::number::path_data;
+use crate::source::number::path_data_by;
 use pathwarp::kurbo::{BezPath, Point, Rect};
 use pathwarp::refit::{Assurance, PathReport};
 use std::collections::{BTreeMap, BTreeSet};
@@ -172,6 +172,8 @@ pub(crate) struct WarpedPart {
     /// too. Empty if there is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
+    /// Short handles may have more decimals.
+    pub(crate) smooth: bool,
     /// The text of `path`, if it has been written already: if it has arcs, which `path` approximates, and a large drawing's on the
     /// threads that bend it.
     pub(crate) data: Option<String>,
@@ -195,9 +197,15 @@ pub(crate) struct WarpedPart {
 }
 
 impl WarpedPart {
+    /// The text of a path of the part.
+    pub(crate) fn text(&self, path: &BezPath) -> String {
+        path_data_by(path, self.smooth, |_| [self.decimals; 2])
+    }
+
     /// Writes the text of the path.
-    pub(super) fn with_data(self) -> Self {
-        Self { data: Some(self.data.unwrap_or_else(|| path_data(&self.path, self.decimals))), ..self }
+    pub(super) fn with_data(mut self) -> Self {
+        self.data = Some(self.data.take().unwrap_or_else(|| self.text(&self.path)));
+        self
     }
 }
 

@@ -54,7 +54,7 @@ pub fn warp_path(
     let tolerance = allowed(options.tolerance, digits.rounding(options.tolerance));
     let options = options.clone().with_tolerance(tolerance).with_spans(digits.allowed(&spans));
     if let Some((image, report)) = with_arcs(map, &outline, &options)? {
-        let data = arcs_data(&image, |i| digits.decimals(contours[i]));
+        let data = arcs_data(&image, digits.more(), |i| digits.decimals(contours[i]));
         return Ok(WarpedPath { data, path: image.to_bez_path(finest), report });
     }
     let warped = refit::warp_path(&outline, map, &options)?;

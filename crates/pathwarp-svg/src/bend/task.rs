@@ -101,7 +101,7 @@ impl<'a> PartTask<'a> {
         if let Some((image, report)) = with_arcs(self.map, outline, &options)? {
             let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };
             let fine = ROUNDING * allowed(self.finest, self.rounding) / stretch(self.write).max(f64::MIN_POSITIVE);
-            let data = arcs_data(&image, |i| self.digits.decimals(contours.get(i).copied().unwrap_or(self.finest)));
+            let data = arcs_data(&image, self.digits.more(), |i| self.digits.decimals(contours.get(i).copied().unwrap_or(self.finest)));
             return Ok(BentPath { path: image.to_bez_path(fine), data: Some(data), report });
         }
         let warped = self.context.known.warp_path(outline, self.map, &options)?;
