@@ -28,12 +28,12 @@ pub fn tolerances(subpaths: &[Vec<Curve>], tolerance: f64) -> Vec<f64> {
 }
 
 /// The paths of a drawing.
-fn paths(svg: &str) -> Vec<Vec<Curve>> {
+pub fn paths(svg: &str) -> Vec<Vec<Curve>> {
     svg.split("<path d=\"").skip(1).flat_map(|p| curves::read(p.split_once('"').unwrap().0)).collect()
 }
 
-/// A result of the default command, with the map.
-fn bent(svg: &str, deformation: &str, values: &[(&str, &str)]) -> (String, f64, impl Fn(&[Point]) -> Vec<Point>) {
+/// A result of the default command, with its tolerance and the map.
+pub fn bent(svg: &str, deformation: &str, values: &[(&str, &str)]) -> (String, f64, impl Fn(&[Point]) -> Vec<Point>) {
     let warper = Warper::new(&REGISTRY, deformation, values).unwrap();
     let done = warper.warp_drawing(svg.as_bytes(), None).unwrap();
     let report: Value = serde_json::from_str(&done.report).unwrap();

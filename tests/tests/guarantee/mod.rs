@@ -6,6 +6,7 @@ mod contours;
 mod curves;
 mod measure;
 mod paths;
+mod written;
 
 use curves::Curve;
 use measure::{Sampled, far, kink, sampled};

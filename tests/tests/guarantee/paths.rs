@@ -129,7 +129,7 @@ fn loops(r: &mut Random) -> String {
 }
 
 /// The same path elsewhere: relative commands after a first point far away.
-fn shifted(d: &str, by: [f64; 2]) -> String {
+pub fn shifted(d: &str, by: [f64; 2]) -> String {
     use svgtypes::PathSegment as S;
     let mut out = String::new();
     for s in svgtypes::PathParser::from(d).map_while(Result::ok) {

@@ -115,6 +115,8 @@ pub enum PageFit {
     /// Set it to the bounding box of the warped artwork and the margin of the original around it: the least distance between
     /// the original artwork and the edge of its page.
     PageWithMargin,
+    /// Set it to an area of its size at the origin.
+    Origin,
 }
 
 /// Treatment of patterns.
