@@ -32,8 +32,11 @@ pub fn paths(svg: &str) -> Vec<Vec<Curve>> {
     svg.split("<path d=\"").skip(1).flat_map(|p| curves::read(p.split_once('"').unwrap().0)).collect()
 }
 
+/// Maps points, many at a time.
+type Points = dyn Fn(&[Point]) -> Vec<Point>;
+
 /// A result of the default command, with its tolerance and the map.
-pub fn bent(svg: &str, deformation: &str, values: &[(&str, &str)]) -> (String, f64, impl Fn(&[Point]) -> Vec<Point>) {
+pub fn bent(svg: &str, deformation: &str, values: &[(&str, &str)]) -> (String, f64, Box<Points>) {
     let warper = Warper::new(&REGISTRY, deformation, values).unwrap();
     let done = warper.warp_drawing(svg.as_bytes(), None).unwrap();
     let report: Value = serde_json::from_str(&done.report).unwrap();
@@ -48,7 +51,7 @@ pub fn bent(svg: &str, deformation: &str, values: &[(&str, &str)]) -> (String, f
         points.points(ps, &mut out);
         out
     };
-    (String::from_utf8(done.bytes).unwrap(), report["tolerance"].as_f64().unwrap(), image)
+    (String::from_utf8(done.bytes).unwrap(), report["tolerance"].as_f64().unwrap(), Box::new(image))
 }
 
 /// An A0 poster in millimetres: dots of 1.2 mm and letters of 3 mm, also within one path.
