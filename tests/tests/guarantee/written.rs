@@ -90,9 +90,10 @@ fn a_cage_far_away_bends_as_it_does_near() {
     };
     let mut r = Random::new(9);
     for far_away in [1e6, 9e8] {
-        for _ in 0..20 {
+        for _ in 0..60 {
             let d = path(&mut r).1;
-            if d.contains("00000") {
+            // The centre of half a turn is known to no more than the root of the last digit, and paths that are far by themselves are not near.
+            if d.contains(['A', 'a']) || d.contains("00000") {
                 continue;
             }
             let drawn = |x: f64, y: f64, d: &str| {

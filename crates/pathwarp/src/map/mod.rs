@@ -41,6 +41,7 @@ mod class;
 #[cfg(test)]
 pub(crate) mod counted;
 mod crease;
+mod creased;
 pub(crate) mod curves;
 mod dual;
 mod formula;
@@ -73,6 +74,7 @@ pub use lattice::{Lattice, LatticeMap};
 pub(crate) use metered::{Metered, metered};
 pub use nets::{BicubicNet, Net, bspline, complete_net};
 pub(crate) use newton::INVERSE_WORK;
+pub(crate) use creased::CreasedInverse;
 pub use newton::NewtonInverse;
 pub use piecewise::{Coons, Sides};
 pub use projective::AffineMap;

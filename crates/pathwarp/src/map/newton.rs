@@ -182,7 +182,7 @@ impl NewtonInverse {
     }
 
     /// Counts the work of a search.
-    fn counted(&self, (found, effort): (Option<Jet>, Effort)) -> Option<Jet> {
+    pub(super) fn counted(&self, (found, effort): (Option<Jet>, Effort)) -> Option<Jet> {
         self.overrun.add(effort, 1, self.jet_work);
         found
     }
@@ -297,7 +297,7 @@ impl NewtonInverse {
     }
 
     /// Newton's method from one starting point.
-    fn newton(&self, map: &dyn Map, start: Point, q: Point, effort: &mut Effort) -> Option<Jet> {
+    pub(super) fn newton(&self, map: &dyn Map, start: Point, q: Point, effort: &mut Effort) -> Option<Jet> {
         let room = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
         let mut x = start;
         let mut jet = map.jet(x);
