@@ -161,7 +161,8 @@ pub enum Clones {
 pub struct WarpOptions {
     /// Options for refitting paths; the tolerance is in root user units.
     pub refit: refit::Options,
-    /// Number of decimals in written coordinates. `None`: as many as keep rounding below a hundredth of the tolerance.
+    /// Number of decimals in written coordinates. `None`: as many as keep rounding below a hundredth of the tolerance, or a tenth of that
+    /// of a small contour, and smooth joints smooth.
     pub precision: Option<u8>,
     /// Treatment of strokes.
     pub strokes: Strokes,
