@@ -109,7 +109,9 @@ impl Gradient {
             }
             Shape::Radial(circles) => {
                 shading.shading_type(FunctionShadingType::Radial);
-                shading.coords(circles.iter().flat_map(|(c, r)| [(c.x - near.x) as f32, (c.y - near.y) as f32, *r as f32]));
+                shading.coords(
+                    circles.iter().flat_map(|(c, r)| [(c.x - near.x) as f32, (c.y - near.y) as f32, *r as f32]),
+                );
             }
         }
         shading.pair(Name(b"ColorSpace"), space);

@@ -28,7 +28,8 @@ pub(crate) fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use
             let shift = stream.shift;
             let grey = gradient.opacities(file, stream.to_start);
             stream.pattern(grey, false);
-            let [x, y, width, height] = [area.x0 - shift.x, area.y0 - shift.y, area.width(), area.height()].map(|v| v as f32);
+            let [x, y, width, height] =
+                [area.x0 - shift.x, area.y0 - shift.y, area.width(), area.height()].map(|v| v as f32);
             stream.content.rect(x, y, width, height).fill_nonzero();
         });
         state = state.mask(MaskKind::Luminosity, group);

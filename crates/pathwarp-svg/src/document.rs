@@ -90,10 +90,8 @@ impl Document {
             return Ok(None);
         }
         let refit = refit::Options::new(FINE * side).with_budget(self.budget().clone());
-        let options = WarpOptions::new(refit)
-            .with_strokes(Strokes::Keep)
-            .with_on_error(OnError::Skip)
-            .with_page(PageFit::Origin);
+        let options =
+            WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
         let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
         Ok(Some(self.warp(&map, &options)?.svg))
     }

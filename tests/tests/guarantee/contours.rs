@@ -68,7 +68,9 @@ fn poster() -> String {
             "M{x} {y}c0 -1.9 2.6 -2.1 2.7 -.1c.1 2.2 -2.6 2.3 -2.7 .1zm.5 .05c.1 1.2 1.7 1.1 1.7 -.1c-.1 -1.2 -1.7 -1.1 -1.7 .1zm3 -1.6q1.9 -.4 2 1.4v1.6h-.5v-1.5q0 -1.2 -1.4 -1z"
         );
     }
-    format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 841 1189'><path d=\"{d}\"/><path d=\"{dots}\"/></svg>")
+    format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 841 1189'><path d=\"{d}\"/><path d=\"{dots}\"/></svg>"
+    )
 }
 
 #[test]

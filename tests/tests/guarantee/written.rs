@@ -29,7 +29,10 @@ fn short_handles_keep_smooth_joints_smooth() {
     let mut r = Random::new(5);
     let (mut joints, mut short) = (0, 0);
     for i in 0..60 {
-        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d=\"{}\"/></svg>", chain(&mut r));
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d=\"{}\"/></svg>",
+            chain(&mut r)
+        );
         let angle = format!("{}", 7 * i);
         let (out, ..) = bent(&svg, "affine", &[("rotate", &angle)]);
         for run in paths(&out).iter().skip(1) {

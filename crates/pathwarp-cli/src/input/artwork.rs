@@ -8,9 +8,9 @@ use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::Rect;
 use pathwarp::outline::Subpath;
-use pathwarp::refit;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, Recipe, Step};
+use pathwarp::refit;
 use pathwarp::{Error, Outline};
 use std::sync::Arc;
 

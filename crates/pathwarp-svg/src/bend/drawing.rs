@@ -114,11 +114,10 @@ fn warp_parts(
         let map = gathered.as_ref().map_or(*map, |g| g as &dyn Map);
         let context = PartContext { map, options, known: &known[k], to_px: scene.to_px, gradients, hairline };
         let write = written(scene, slots, p.slot, p.frame);
-        (is_invertible(p.frame) && is_invertible(write))
-            .then(|| {
-                let outline = (shapes[i].outline.clone(), &contours[k][i][..]);
-                part::warp(&PartTask::new(p, outline, write, &context, &pieces[k][i]))
-            })
+        (is_invertible(p.frame) && is_invertible(write)).then(|| {
+            let outline = (shapes[i].outline.clone(), &contours[k][i][..]);
+            part::warp(&PartTask::new(p, outline, write, &context, &pieces[k][i]))
+        })
     };
     let copies = each.iter().map(|b| b.options.copies.len()).max().unwrap_or_default();
     let segments = || -> usize { parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * copies.max(1) };

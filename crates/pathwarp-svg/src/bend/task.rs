@@ -87,7 +87,22 @@ impl<'a> PartTask<'a> {
             subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, rounding));
         }
         let back = write.inverse();
-        Self { part, context, write, back, pieces, whole, outline, contours, own, finest, map, digits, decimals, rounding }
+        Self {
+            part,
+            context,
+            write,
+            back,
+            pieces,
+            whole,
+            outline,
+            contours,
+            own,
+            finest,
+            map,
+            digits,
+            decimals,
+            rounding,
+        }
     }
 
     pub(super) fn options(&self) -> &'a WarpOptions {
@@ -101,7 +116,9 @@ impl<'a> PartTask<'a> {
         if let Some((image, report)) = with_arcs(self.map, outline, &options)? {
             let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };
             let fine = ROUNDING * allowed(self.finest, self.rounding) / stretch(self.write).max(f64::MIN_POSITIVE);
-            let data = arcs_data(&image, self.digits.more(), |i| self.digits.decimals(contours.get(i).copied().unwrap_or(self.finest)));
+            let data = arcs_data(&image, self.digits.more(), |i| {
+                self.digits.decimals(contours.get(i).copied().unwrap_or(self.finest))
+            });
             return Ok(BentPath { path: image.to_bez_path(fine), data: Some(data), report });
         }
         let warped = self.context.known.warp_path(outline, self.map, &options)?;

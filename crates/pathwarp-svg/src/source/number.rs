@@ -327,9 +327,7 @@ pub(crate) fn arcs_data(outline: &Outline, more: u8, decimals: impl Fn(usize) ->
         let nominal = POWERS[usize::from(decimals(i).min(MOST_DECIMALS))].recip();
         let holds = |a: &EllipticArc, from: Point, d: u8| ArcText::new(a, d).error(a, from) <= nominal;
         let first = decimals(i).saturating_add(1).min(MOST_DECIMALS);
-        let all = |d: u8| {
-            s.segs.iter().all(|g| if let Seg::Arc(a) = g { holds(a, rounded(a.p0, d), d) } else { true })
-        };
+        let all = |d: u8| s.segs.iter().all(|g| if let Seg::Arc(a) = g { holds(a, rounded(a.p0, d), d) } else { true });
         let decimals = (first..=(first + more).min(MOST_DECIMALS)).find(|d| all(*d)).unwrap_or(first);
         subpath_with_arcs(&mut out, s, decimals, nominal, holds);
     }
@@ -409,7 +407,8 @@ impl ArcText {
         let Some(read) = EllipticArc::from_svg(from, radii, round(self.turn), self.large, self.sweep, self.to) else {
             return a.p0.distance(from) + a.p1.distance(self.to);
         };
-        let off = |i: u32| read.eval(f64::from(i) / f64::from(SAMPLES)).distance(a.eval(f64::from(i) / f64::from(SAMPLES)));
+        let off =
+            |i: u32| read.eval(f64::from(i) / f64::from(SAMPLES)).distance(a.eval(f64::from(i) / f64::from(SAMPLES)));
         (0..=SAMPLES).map(off).fold(0.0, f64::max)
     }
 }

@@ -236,9 +236,7 @@ impl<'a> Writer<'a> {
         };
         let Some(s) = &p.stroke else { return String::new() };
         match (&warped.stroke, content) {
-            (StrokeOutcome::Outlined(o), Some(content)) => {
-                self.clipped_to(&warped.text(o), "nonzero", &content, i)
-            }
+            (StrokeOutcome::Outlined(o), Some(content)) => self.clipped_to(&warped.text(o), "nonzero", &content, i),
             (StrokeOutcome::Outlined(o), None) => {
                 let properties = self.outlined(p, s, warped);
                 self.markup.path(&warped.text(o), "", &properties)

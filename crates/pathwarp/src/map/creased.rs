@@ -119,7 +119,8 @@ mod tests {
     #[test]
     fn an_inverse_has_a_crease_where_that_of_the_map_goes() {
         let map: Arc<dyn Map> = Arc::new(Roof);
-        let back = CreasedInverse::of(&map, NewtonInverse::over(Arc::clone(&map), Rect::new(-5.0, -5.0, 5.0, 5.0), 0.1));
+        let back =
+            CreasedInverse::of(&map, NewtonInverse::over(Arc::clone(&map), Rect::new(-5.0, -5.0, 5.0, 5.0), 0.1));
         let mut creases = Creases::default();
         back.creases(&mut creases);
         let [crease] = creases.items() else { panic!("{creases:?}") };

@@ -98,7 +98,11 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
     let options = if options.suited && options.spans.is_empty() {
         let contours: Vec<f64> = outline.subpaths.iter().map(|s| suited(options.tolerance, s.diagonal())).collect();
         let alone = || SharedEdges::held([(outline, &contours[..])]);
-        let spans = if *options.shared == SharedEdges::default() { alone().spans(outline, &contours) } else { options.shared.spans(outline, &contours) };
+        let spans = if *options.shared == SharedEdges::default() {
+            alone().spans(outline, &contours)
+        } else {
+            options.shared.spans(outline, &contours)
+        };
         own = options.clone().with_spans(spans);
         &own
     } else {

@@ -135,14 +135,17 @@ pub(super) fn subpath(
         let mut all = Vec::new();
         for (span, tolerance, segs) in runs(&spans, options.tolerance, i * CHUNK, segs) {
             let own;
-            let options = if tolerance == options.tolerance { options } else {
+            let options = if tolerance == options.tolerance {
+                options
+            } else {
                 own = options.clone().with_tolerance(tolerance);
                 &own
             };
             let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
             let first = i == 0 && all.is_empty();
             let nodes = if first { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
-            let refit = if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) };
+            let refit =
+                if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) };
             let (pieces, mut report) = refit?;
             report.share = report.max_error / tolerance;
             if !spans.is_empty() && report.max_error > tolerance * (1.0 + SUMMED) && report.over_budget.is_empty() {
