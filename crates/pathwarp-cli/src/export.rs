@@ -37,7 +37,12 @@ pub(crate) fn drawing(
     options: &CommonOptions,
     tolerance: Option<f64>,
 ) -> Result<Exported, Failure> {
-    let document = || Document::read(svg.as_bytes(), "the result", read);
+    let parsed = |text: &str| Document::read(text.as_bytes(), "the result", read);
+    // PDF and its reader know single precision only.
+    let document = || {
+        let there = parsed(&svg)?;
+        there.moved_to_origin()?.map_or(Ok(there), |near| parsed(&near))
+    };
     match format {
         Format::Svgz => Ok(compressed(&svg).map_err(|e| Failure::file(Path::new("the result"), e))?.into()),
         Format::Pdf => pdf(&document()?, options),

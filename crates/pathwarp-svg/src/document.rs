@@ -3,7 +3,7 @@
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
 use crate::bend::letters::placed_outlines;
-use crate::bend::options::{PageFit, Structure, WarpOptions};
+use crate::bend::options::{OnError, PageFit, Strokes, Structure, WarpOptions};
 use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::tiles;
 use crate::scene::drawing::Drawing;
@@ -22,7 +22,7 @@ use crate::write;
 use crate::write::input::WriteInput;
 use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{Affine, Rect, Size};
-use pathwarp::map::Map;
+use pathwarp::map::{AffineMap, Map};
 use pathwarp::{Error, Outline, refit};
 use std::sync::Arc;
 
@@ -74,6 +74,27 @@ impl Document {
     #[must_use]
     pub fn user_to_px(&self) -> Affine {
         self.drawing.scene().to_px
+    }
+
+    /// The text of the drawing with its page moved to the origin, for readers in single precision; `None` if it lies near enough.
+    ///
+    /// # Errors
+    /// As [`Document::warp`].
+    pub fn moved_to_origin(&self) -> Result<Option<String>, Error> {
+        /// Beyond this many pages from the origin, single precision would move things by a hundred-thousandth of the page.
+        const FAR: f64 = 64.0;
+        /// Share of the page that rounding may take.
+        const FINE: f64 = 1e-8;
+        let page = self.drawing.visible_area();
+        let (side, away) = (page.width().max(page.height()), page.x0.abs().max(page.y0.abs()));
+        if away <= FAR * side || self.drawing.specified_area().is_none() {
+            return Ok(None);
+        }
+        let refit = refit::Options::new(FINE * side).with_budget(self.budget().clone());
+        let options =
+            WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
+        let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
+        Ok(Some(self.warp(&map, &options)?.svg))
     }
 
     /// Size of the page in px.
@@ -163,7 +184,7 @@ impl Document {
 
     fn counted(&self, selection: &Selection) -> seen::Counted {
         let parts = self.drawing.selected_parts(selection).to_vec();
-        seen::Counted { parts, bitmaps: self.selected_bitmaps(selection) }
+        seen::Counted { parts, bitmaps: self.selected_bitmaps(selection), strokes: false }
     }
 
     /// Bounding box of what is seen of the selected shapes, without stroke widths, and pictures: not what clip paths, masks and zero opacity
@@ -171,6 +192,14 @@ impl Document {
     #[must_use]
     pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
         let counted = self.counted(selection);
+        let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
+        seen.or_else(|| self.artwork_box(selection))
+    }
+
+    /// The box of what is seen, [`Document::seen_box`], with strokes by half their width.
+    #[must_use]
+    pub fn painted_box(&self, selection: &Selection) -> Option<Rect> {
+        let counted = seen::Counted { strokes: true, ..self.counted(selection) };
         let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
         seen.or_else(|| self.artwork_box(selection))
     }

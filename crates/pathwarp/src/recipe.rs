@@ -26,7 +26,7 @@ use crate::ambiguity::{SAMPLES, ambiguity};
 use crate::budget::{Budget, Limits};
 use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
-use crate::map::{Chain, Class, Map, NewtonInverse};
+use crate::map::{Chain, Class, CreasedInverse, Map, NewtonInverse};
 use crate::outline::Outline;
 use crate::outline::Seg;
 use crate::param::{Args, Frame, Kind, Param};
@@ -452,8 +452,8 @@ type Counting<'a> = (&'a dyn Fn(&BuiltRecipe, &Portion<'_>) -> Result<(), Geomet
 fn inverse(built: &Built, frame: &Frame, budget: &Arc<Budget>) -> Arc<dyn Map> {
     /// Distance beyond the frame at which a solution is accepted, as a share of its diagonal: strokes and handles extend past it.
     const REACH: f64 = 0.25;
-    let newton = || Arc::new(NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH)) as Arc<dyn Map>;
-    let inverse = built.map.inverse().unwrap_or_else(newton);
+    let over = || NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH);
+    let inverse = built.map.inverse().unwrap_or_else(|| CreasedInverse::of(&built.map, over()));
     inverse.within(budget).unwrap_or(inverse)
 }
 

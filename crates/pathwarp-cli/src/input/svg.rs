@@ -136,7 +136,7 @@ impl SvgArtwork {
         let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
         let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
-        let refit = refit.with_budget(self.doc.budget().clone());
+        let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
         WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(options.strokes)
@@ -301,6 +301,7 @@ fn shape_report(s: &pathwarp_svg::ShapeReport, fold: Option<&Fold>, steps: Optio
         segments_in: s.segments_in,
         segments_out: s.segments_out,
         max_error: s.max_error,
+        share: s.share,
         certified: s.assurance != refit::Assurance::Checked,
         assurance: assurance_word(s.assurance),
         steps,
@@ -354,6 +355,10 @@ impl Artwork for SvgArtwork {
 
     fn bounding_box(&self, which: Which) -> Option<Rect> {
         self.doc.seen_box(self.selection(which))
+    }
+
+    fn painted_box(&self) -> Option<Rect> {
+        self.doc.painted_box(&self.selection)
     }
 
     fn uncut_box(&self, which: Which, bounds: Rect) -> Option<Rect> {

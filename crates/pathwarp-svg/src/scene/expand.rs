@@ -15,6 +15,16 @@ const PATH: f64 = 0.2;
 
 /// Expands the stroke of `local` to a filled outline in the same user space, within `tolerance` there.
 pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -> Outline {
+    let each = stroke_outlines(local, stroke, |_| tolerance);
+    Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() }
+}
+
+/// Expands the stroke of each subpath, given by its index, within a tolerance of its own.
+pub(crate) fn stroke_outlines(
+    local: &Outline,
+    stroke: &Stroke,
+    tolerance: impl Fn(usize) -> f64,
+) -> Vec<(usize, Outline)> {
     let cap = match stroke.linecap() {
         LineCap::Butt => Cap::Butt,
         LineCap::Round => Cap::Round,
@@ -40,28 +50,29 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
     }
     // Subpaths of zero length show only their caps.
     let (points, lines): (Vec<_>, Vec<_>) =
-        local.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
-    let expanded = |o: &Outline| -> Outline {
+        local.subpaths.iter().enumerate().partition(|(_, s)| s.segs.iter().all(|g| is_point(g, s.start)));
+    let expanded = |o: &Outline, tolerance: f64| -> Outline {
         let path = o.to_bez_path(PATH * tolerance);
         (&kurbo::stroke(path, &style, &StrokeOpts::default(), (1.0 - PATH) * tolerance)).into()
     };
-    let mut out = Outline { subpaths: Vec::new() };
-    for s in lines {
-        let s = regular(&s, PATH * tolerance);
-        let mut edge = expanded(&Outline { subpaths: vec![s.clone()] });
+    let mut out = Vec::with_capacity(local.subpaths.len());
+    for (i, s) in lines {
+        let tolerance = tolerance(i);
+        let s = regular(s, PATH * tolerance);
+        let mut edge = expanded(&Outline { subpaths: vec![s.clone()] }, tolerance);
         if !is_finite(&edge) {
-            edge = expanded(&polygon(&s, PATH * tolerance));
+            edge = expanded(&polygon(&s, PATH * tolerance), tolerance);
         }
-        out.subpaths.extend(tidy(edge, &s, 0.5 * width).subpaths);
+        out.push((i, tidy(edge, &s, 0.5 * width)));
     }
     let reach = width / 2.0;
-    for s in points.iter().filter(|s| s.closed || !s.segs.is_empty()) {
+    for (i, s) in points.into_iter().filter(|(_, s)| s.closed || !s.segs.is_empty()) {
         let dot = match cap {
             Cap::Butt => continue,
-            Cap::Round => Circle::new(s.start, reach).to_path(tolerance),
-            Cap::Square => Rect::from_center_size(s.start, (2.0 * reach, 2.0 * reach)).to_path(tolerance),
+            Cap::Round => Circle::new(s.start, reach).to_path(tolerance(i)),
+            Cap::Square => Rect::from_center_size(s.start, (2.0 * reach, 2.0 * reach)).to_path(tolerance(i)),
         };
-        out.subpaths.extend(Outline::from(&dot).subpaths);
+        out.push((i, Outline::from(&dot)));
     }
     out
 }

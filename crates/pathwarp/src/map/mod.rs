@@ -41,6 +41,7 @@ mod class;
 #[cfg(test)]
 pub(crate) mod counted;
 mod crease;
+mod creased;
 pub(crate) mod curves;
 mod dual;
 mod formula;
@@ -62,6 +63,7 @@ pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
 pub use class::{Class, RationalDegree};
 pub use crease::{Crease, CreaseKind, Creases, Level};
+pub(crate) use creased::CreasedInverse;
 pub use curves::{Pace, Side};
 pub use dual::{Dual, Real};
 pub use formula::Formula;

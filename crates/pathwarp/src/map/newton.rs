@@ -195,7 +195,7 @@ impl NewtonInverse {
     }
 
     /// Counts the work of a search.
-    fn counted(&self, (found, search): (Option<Jet>, Search)) -> Option<Jet> {
+    pub(super) fn counted(&self, (found, search): (Option<Jet>, Search)) -> Option<Jet> {
         search.spend(self.budget.as_ref(), 1, self.jet_work);
         found
     }
@@ -310,7 +310,7 @@ impl NewtonInverse {
     }
 
     /// Newton's method from one starting point.
-    fn newton(&self, map: &dyn Map, start: Point, q: Point, search: &mut Search) -> Option<Jet> {
+    pub(super) fn newton(&self, map: &dyn Map, start: Point, q: Point, search: &mut Search) -> Option<Jet> {
         let room = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
         let mut x = start;
         let mut jet = map.jet(x);

@@ -1,6 +1,6 @@
 //! Pieces of the output, and the path they are written to.
 
-use super::report::{PathReport, RefittedPath};
+use super::report::{PathReport, RefittedPath, SpanReport};
 use kurbo::{BezPath, CubicBez, Line, Point};
 
 /// One segment of the output.
@@ -32,6 +32,7 @@ pub(super) fn reverse(pieces: &mut [FittedPiece]) {
 pub(super) struct PathWriter {
     path: BezPath,
     pub(super) report: PathReport,
+    pub(super) spans: Vec<SpanReport>,
 }
 
 impl PathWriter {
@@ -52,6 +53,6 @@ impl PathWriter {
     }
 
     pub(super) fn finish(self) -> RefittedPath {
-        RefittedPath { path: self.path, report: self.report }
+        RefittedPath { path: self.path, spans: self.spans, report: self.report }
     }
 }
