@@ -59,11 +59,8 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>
     // Without a result, the program that waits has its drawing as it was.
     let state = if waits { None } else { folders::state() };
     let (listener, guard) = listen(options, state.as_deref())?;
-    if let Some(state) = &state {
-        // Without it, only a page that is open now would not find the next run.
-        let _ = guard.keep(&*host, state, &options.file);
-    }
     let session = Session::open(host, &options.file, &bytes, options.purpose.clone(), state)?;
+    session.keep_address(&guard);
     let address = guard.address();
     announce(&News::Address(&address));
     if options.open && (waits || has_display()) {

@@ -3,6 +3,7 @@
 use crate::command_line::{command_line, quoted};
 use crate::draft::{Draft, Kept, NO_FOLDER};
 use crate::grips::grips;
+use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened};
 use crate::openings::{Variant, example, opening, variants};
 use crate::picture::Picture;
@@ -41,7 +42,7 @@ pub(crate) struct Session {
     handed_over: bool,
     opened: Opened,
     kept: Kept,
-    /// The user's folder for drafts.
+    /// The user's folder for drafts and addresses.
     drafts: Option<PathBuf>,
     draft: Draft,
     /// The last file saved, and its steps.
@@ -86,6 +87,13 @@ impl Session {
         let kept = kept.unwrap_or_else(|| Kept::new(as_opened));
         let (file, first, handed_over) = (file.to_owned(), None, false);
         Ok(Self { host, file, first, purpose, handed_over, opened, kept, drafts, draft, saved, restored, problem })
+    }
+
+    /// Keeps the address of the page for the next run. Without it, only a page that is open now does not find that.
+    pub(crate) fn keep_address(&self, guard: &Guard) {
+        if let Some(state) = &self.drafts {
+            let _ = guard.keep(&*self.host, state, &self.file);
+        }
     }
 
     /// Opens a drawing that was dropped on the page, with its own draft; that of the present one stays.
