@@ -5,14 +5,14 @@ use super::limits::CHUNK;
 use super::merge::{self, MergeMemory, Merger, may_be_smooth};
 use super::options::Options;
 use super::parallel::in_parallel;
-use super::piece::{FittedPiece, PathWriter, reverse};
-use super::report::{Assurance, PathReport};
+use super::report::{PathWriter, reverse};
 use super::segment::SegmentFitter;
 use super::split;
 use crate::budget::Limit;
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
+use bezierfit::{Assurance, NotFinite, Piece, Report};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
@@ -33,19 +33,19 @@ pub(super) fn affine(
             let image = seg.transformed(m);
             finite(&image)?;
             match image {
-                Seg::Line(l) => pieces.push(FittedPiece::Line(l)),
+                Seg::Line(l) => pieces.push(Piece::Line(l)),
                 Seg::Arc(a) => {
                     let (canonical, flipped) = split::canonical(seg);
                     let start = pieces.len();
                     if let Seg::Arc(c) = canonical.transformed(m) {
-                        pieces.extend(c.to_cubics(options.tolerance).map(FittedPiece::Cubic));
+                        pieces.extend(c.to_cubics(options.tolerance).map(Piece::Cubic));
                     }
                     if flipped {
                         reverse(&mut pieces[start..]);
                     }
                     out.report.add_error(a.cubics_error(a.cubics_needed(options.tolerance)), Assurance::Certified);
                 }
-                other => pieces.push(FittedPiece::Cubic(other.to_cubic())),
+                other => pieces.push(Piece::Cubic(other.to_cubic())),
             }
         }
         out.subpath(m * sub.start, &pieces, sub.closed);
@@ -88,13 +88,13 @@ pub(super) fn subpath(
     let mut pieces = Vec::new();
     if sub.segs.len() <= CHUNK {
         let (all, report) = refitted(0, &sub.segs, memory)?;
-        out.report.add(report);
+        out.report.add_pieces(report);
         pieces = all;
     } else {
         let known = memory.known();
         let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::new(Arc::clone(&known)));
         for (more, report) in in_parallel(&sub.segs, CHUNK, alone)? {
-            out.report.add(report);
+            out.report.add_pieces(report);
             pieces.extend(more);
         }
     }
@@ -127,14 +127,14 @@ fn announce(runs: &[&[Seg]], map: &dyn Map, creases: &Creases, options: &Options
 }
 
 /// The pieces of consecutive segments, and their report.
-type Refitted = Result<(Vec<FittedPiece>, PathReport), GeometryError>;
+type Refitted = Result<(Vec<Piece>, Report), GeometryError>;
 
 /// Refits segments one by one.
 fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
-    let (mut pieces, mut report) = (Vec::with_capacity(segs.len() + segs.len() / 2), PathReport::default());
+    let (mut pieces, mut report) = (Vec::with_capacity(segs.len() + segs.len() / 2), Report::default());
     for seg in segs {
         let ends = nodes.next(seg)?;
-        fitter.fit(seg, ends, &mut pieces, &mut report).map_err(infinity)?;
+        fitter.fit(seg, ends, &mut pieces, &mut report).map_err(lost)?;
     }
     Ok((pieces, report))
 }
@@ -153,7 +153,7 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
         smooth.push(i > 0 && may_be_smooth(&segs[i - 1], seg, &ends[0]));
         jets.push(ends);
     }
-    Merger::new(fitter, segs, &jets, memory).merged(&smooth).map_err(infinity)
+    Merger::new(fitter, segs, &jets, memory).merged(&smooth).map_err(lost)
 }
 
 /// The jets at the ends of one segment after the other.
@@ -206,6 +206,10 @@ const PATH: &str = "path";
 
 fn finite(seg: &Seg) -> Result<(), GeometryError> {
     if seg.is_finite() { Ok(()) } else { Err(GeometryError::NotFinite { shape: PATH.into(), at: seg.start() }) }
+}
+
+fn lost(e: NotFinite) -> GeometryError {
+    infinity(e.at)
 }
 
 fn infinity(at: Point) -> GeometryError {

@@ -1,27 +1,17 @@
 //! One segment: its canonical direction, its smooth parts, and their pieces.
 
-use super::check::THOROUGH_WORK;
-use super::limits::{MAX_ATTEMPTS, MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
+use super::limits::{MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
 use super::options::Options;
-use super::piece::{FittedPiece, reverse};
-use super::proof::RationalForm;
-use super::report::PathReport;
-use super::source::{BreakPoint, SourceCurve};
-use super::split::{self, SlowSpots};
-use super::stretch::StretchFitter;
+use super::report::reverse;
+use super::source::SourceCurve;
+use super::split;
 use crate::budget::Limit;
 use crate::map::{Class, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
+use bezierfit::parts::StretchFitter;
+use bezierfit::{BreakPoint, NotFinite, Piece, Report, SlowSpots, Source};
 use kurbo::{CubicBez, Line, Point};
-use std::cell::Cell;
 use std::sync::Arc;
-
-/// Evaluations of the map for an attempt at a piece with its usual checks.
-const EVALUATIONS: usize = 32;
-
-/// A part with more attempts may be one where the map oscillates faster than samples can tell, so that most need the thorough check:
-/// fewer are allowed from there on.
-const HARD: usize = 64;
 
 /// Creases of one segment that are found by comparing branches with the map.
 const MAX_FOUND: usize = 16;
@@ -40,16 +30,16 @@ pub(super) struct SegmentFitter<'a> {
 }
 
 impl SegmentFitter<'_> {
-    /// Appends the image of one segment, given the jets at its ends. `Err`: a point at which the map is not finite.
+    /// Appends the image of one segment, given the jets at its ends. `Err`: a place at which the map is not finite.
     pub(super) fn fit(
         &self,
         seg: &Seg,
         jets: [&Jet; 2],
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
         if self.projective && matches!(seg, Seg::Line(_)) {
-            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
+            pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
             return Ok(());
         }
         let reversed;
@@ -79,16 +69,16 @@ impl SegmentFitter<'_> {
         &self,
         arc: &EllipticArc,
         [first, last]: [&Jet; 2],
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
         let n = (arc.sweep.abs() / MAX_RATIONAL_SWEEP).ceil();
         let mut from = *first;
         for i in 0..n as usize {
             let part = arc.subsegment(i as f64 / n, (i + 1) as f64 / n);
             let to = if i + 1 == n as usize { *last } else { self.map.jet(part.p1) };
             if !to.is_finite() {
-                return Err(part.p1);
+                return Err(NotFinite { t: (i + 1) as f64 / n, at: part.p1 });
             }
             self.fit_canonical(&Seg::Arc(part), [&from, &to], pieces, report)?;
             from = to;
@@ -101,21 +91,18 @@ impl SegmentFitter<'_> {
         &self,
         seg: &Seg,
         jets: [&Jet; 2],
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
         if self.options.budget.left(Limit::Evaluations) <= 0.0 {
-            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
+            pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
             return Ok(());
         }
         let certify = self.options.certify;
-        let mut source = SourceCurve::new(seg, self.map);
-        if certify {
-            source.make_rational();
-        }
+        let source = SourceCurve::for_proof(seg, self.map, self.degree, certify);
         if source.size() <= POINT_SIZE * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot()) {
             // A segment of no length is kept, as it carries line caps and markers; it has no direction to preserve.
-            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
+            pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
             return Ok(());
         }
         let mut slow = split::slow_spots(seg);
@@ -125,18 +112,9 @@ impl SegmentFitter<'_> {
         if self.creases.items().is_empty() {
             let from = source.end_with(0.0, jets[0].p, jets[0]);
             let to = source.end_with(1.0, jets[1].p, jets[1]);
-            return self.cover(&source, self.degree, 0.0, &slow, [&from, &to], pieces, report);
+            return self.cover(&source, 0.0, &slow, [&from, &to], pieces, report);
         }
         self.fit_parts(&source, jets, &slow, pieces, report)
-    }
-
-    /// The attempts after which this part ends: those that exceed the budget by themselves, so that the result does not depend on
-    /// what other threads count at the same time.
-    fn most_attempts(&self) -> usize {
-        let left = self.options.budget.left(Limit::Evaluations) / self.work;
-        let (usual, hard) = (left / EVALUATIONS as f64, left / THOROUGH_WORK as f64);
-        let most = if usual < HARD as f64 { usual } else { hard.max(HARD as f64) };
-        MAX_ATTEMPTS.min((most as usize).saturating_add(1))
     }
 
     /// Counts work. Too much of it is an error of the whole path, which ends by itself: `fit` does no more.
@@ -146,27 +124,20 @@ impl SegmentFitter<'_> {
 
     /// Covers a smooth part, whose ends are at most `blur` from the source's image.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
     fn cover(
         &self,
         source: &SourceCurve<'_>,
-        degree: Option<RationalDegree>,
         blur: f64,
         slow: &SlowSpots,
         [from, to]: [&BreakPoint; 2],
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
-        let form = if self.options.certify { RationalForm::new(source, degree) } else { None };
-        let form = form.map(|f| f.with_blur(blur));
-        let degree = degree.filter(|_| blur == 0.0);
-        let tolerance = self.options.tolerance;
-        let (most_attempts, extra) = (self.most_attempts(), Cell::new(0));
-        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0, extra, most_attempts };
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
+        let left = self.options.budget.left(Limit::Evaluations) / self.work;
+        let (tolerance, prove) = (self.options.tolerance, (self.options.certify, blur));
+        let mut fitter = StretchFitter::new(source, slow, tolerance, prove, left);
         let covered = fitter.cover(from, to, pieces, report);
-        let each = if fitter.attempts > HARD { THOROUGH_WORK } else { EVALUATIONS };
-        let checked = fitter.attempts * EVALUATIONS + fitter.extra.get();
-        self.spend((fitter.attempts * each).max(checked) as f64 * self.work);
+        self.spend(fitter.evaluations() as f64 * self.work);
         covered
     }
 
@@ -177,9 +148,9 @@ impl SegmentFitter<'_> {
         whole: &SourceCurve<'_>,
         jets: [&Jet; 2],
         slow: &SlowSpots,
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
         let (seg, map) = (whole.seg, self.map);
         self.spend(self.creases.splits_work(seg, self.work));
         let mut ends = self.creases.splits(seg);
@@ -213,7 +184,7 @@ impl SegmentFitter<'_> {
                 let source = match &branch {
                     None => whole,
                     Some(b) => {
-                        inside = SourceCurve::for_proof(seg, b, self.options.certify);
+                        inside = SourceCurve::for_proof(seg, b, b.rational_degree(), self.options.certify);
                         &inside
                     }
                 };
@@ -264,11 +235,11 @@ impl SegmentFitter<'_> {
         on_branch: bool,
         nodes: [&Node<'_>; 2],
         slow: &SlowSpots,
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
         let mut blur = 0.0f64;
-        let mut end = |node: &Node<'_>| -> Result<(BreakPoint, bool), Point> {
+        let mut end = |node: &Node<'_>| -> Result<(BreakPoint, bool), NotFinite> {
             if let (false, Some(jet)) = (on_branch, node.jet) {
                 return Ok((source.end_with(node.u, node.p, jet), false));
             }
@@ -282,11 +253,11 @@ impl SegmentFitter<'_> {
         };
         let ((e0, torn0), (e1, torn1)) = (end(nodes[0])?, end(nodes[1])?);
         if torn0 {
-            pieces.push(FittedPiece::Line(Line::new(nodes[0].p, e0.p)));
+            pieces.push(Piece::Line(Line::new(nodes[0].p, e0.p)));
         }
-        self.cover(source, source.map.rational_degree(), blur, slow, [&e0, &e1], pieces, report)?;
+        self.cover(source, blur, slow, [&e0, &e1], pieces, report)?;
         if torn1 {
-            pieces.push(FittedPiece::Line(Line::new(e1.p, nodes[1].p)));
+            pieces.push(Piece::Line(Line::new(e1.p, nodes[1].p)));
         }
         Ok(())
     }
@@ -303,18 +274,18 @@ struct Node<'a> {
 }
 
 /// Appends a part that an affine branch moves exactly, between the nodes it shares with its neighbours.
-fn affine_part(part: &Seg, from: Point, to: Point, tolerance: f64, pieces: &mut Vec<FittedPiece>) {
+fn affine_part(part: &Seg, from: Point, to: Point, tolerance: f64, pieces: &mut Vec<Piece>) {
     let near = |a: Point, b: Point| a.distance(b) <= TEAR * tolerance;
     let (a, b) = (part.start(), part.end());
     if !near(a, from) {
-        pieces.push(FittedPiece::Line(Line::new(from, a)));
+        pieces.push(Piece::Line(Line::new(from, a)));
     }
     let (p0, p3) = (if near(a, from) { from } else { a }, if near(b, to) { to } else { b });
     pieces.push(match part {
-        Seg::Line(_) => FittedPiece::Line(Line::new(p0, p3)),
-        other => FittedPiece::Cubic(CubicBez { p0, p3, ..other.to_cubic() }),
+        Seg::Line(_) => Piece::Line(Line::new(p0, p3)),
+        other => Piece::Cubic(CubicBez { p0, p3, ..other.to_cubic() }),
     });
     if !near(b, to) {
-        pieces.push(FittedPiece::Line(Line::new(b, to)));
+        pieces.push(Piece::Line(Line::new(b, to)));
     }
 }
