@@ -30,6 +30,8 @@ mod judge;
 mod limits;
 mod merge;
 mod minimax;
+mod options;
+mod path;
 mod proof;
 mod quick;
 mod report;
@@ -41,6 +43,8 @@ mod stretch;
 mod tables;
 mod trial;
 
+pub use options::Options;
+pub use path::{Fitted, Segment, fit, simplify};
 pub use report::{Assurance, Piece, Report};
 pub use sample::{Lane, Lanes};
 pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};

@@ -422,10 +422,8 @@ pub const SURE_CORNER: f64 = 0.009;
 /// Test: *figures* (at 1).
 pub const MERGE_GRID: usize = 8;
 
-/// Segments under one cubic, which bounds the table of errors. 1: +19.1 % pieces, −40.7 % work; 6: unchanged here, on icons 0.1 % more pieces at 1; 30:
-/// unchanged.
-/// Test: *figures* (at 1).
-pub(crate) const MAX_SPAN: usize = 12;
+/// Share of a cubic's grid places to which its end is searched: the last of 64 or fewer exactly, of more as a share.
+pub(crate) const FINEST_STEP: usize = 128;
 
 /// Share of the tolerance for merged pieces, which leaves room between the samples. 0.1: +15 % pieces; 1: −0.05 %; 2: errors above
 /// the tolerance.
@@ -439,11 +437,6 @@ pub(crate) const RATIONAL_SAMPLES: usize = 16;
 /// random cases.
 /// Test: `merge_random::waves_shorter_than_a_segment_are_seen` (at 16).
 pub(crate) const OPAQUE_SAMPLES: usize = 32;
-
-/// Searches over one run, each without the pieces that the last one's checks refused. 1: +5.7 % pieces, −8.7 % work; 4: +0.5 %
-/// pieces, −2.4 % work; 100: unchanged.
-/// Test: *figures* (at 1).
-pub(crate) const MERGE_SEARCHES: usize = 12;
 
 /// Error of the best cubic for a curve whose curvature jumps by 1, per square of the shorter side: that of x²/2 right of zero and
 /// 0 left of it, on −1..1, in the uniform norm. A joint with a larger jump than this allows is not crossed, so no fit is wasted

@@ -6,23 +6,24 @@
 
 use crate::distances::{Distances, MarkedCubic, proven};
 use crate::limits::{
-    BETWEEN_TARGET, CARRY_BELOW, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT, MAX_SPAN,
-    MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, REACH_TARGET, REFUSED_ERROR, SMALLEST_REACH_ERROR,
+    BETWEEN_TARGET, CARRY_BELOW, FINEST_STEP, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT,
+    MERGE_GRID, MERGE_SHARE, REACH_TARGET, REFUSED_ERROR, SMALLEST_REACH_ERROR,
 };
 use crate::report::{Assurance, Piece, Report};
 use crate::run::SegmentRun;
 use crate::source::{BreakPoint, NotFinite, Source};
 use crate::trial::{RunCubic, Stretch, Trial};
+use std::collections::VecDeque;
 
 /// A cubic that was tried from one place to another.
 struct Tried {
     to: usize,
     /// Error ÷ tolerance at the samples. At most 1 if the cubic fits.
     error: f64,
-    /// Index of the cubic, if it fits.
-    cubic: Option<usize>,
+    /// Set if it fits.
+    cubic: Option<Box<RunCubic>>,
     /// Set once it has passed its check.
-    passed: Option<Passed>,
+    passed: Option<Box<Passed>>,
     /// The next entry with the same start.
     next: usize,
 }
@@ -36,20 +37,24 @@ struct Passed {
 
 /// No entry.
 const NONE: usize = usize::MAX;
+/// Break points that are remembered at the same time.
+const ENDS: usize = 256;
+/// Joints that are looked at together.
+const BLOCK: usize = 64;
 
 /// Lists of [`Reaches`], which keep their memory from run to run.
 #[derive(Default)]
 pub struct ReachMemory {
-    /// Break points at the grid places, computed on first use.
-    ends: Vec<Option<BreakPoint>>,
+    /// Break points at grid places, each where its number modulo the length leads; computed on first use.
+    ends: Vec<Option<(usize, BreakPoint)>>,
     /// For each joint, how far on either side of it a cubic may extend: the shorter side of a cubic that crosses it is at most
     /// this long.
     crossing: Vec<f64>,
+    /// The last place on the run from which a cubic may cross each joint of a block of joints.
+    blocks: Vec<f64>,
     tried: Vec<Tried>,
     /// The last entry of `tried` from each place.
     latest: Vec<usize>,
-    /// The cubics that fit.
-    cubics: Vec<RunCubic>,
     distances: Distances,
     /// Places reached from the start before: drawings change little along a curve.
     pub last_reach: usize,
@@ -90,14 +95,23 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         let tolerance = MERGE_SHARE * settings.tolerance;
         let places = run.grid() + 1;
         memory.ends.clear();
-        memory.ends.resize(places, None);
+        memory.ends.resize(places.min(ENDS), None);
         memory.latest.clear();
         memory.latest.resize(places, NONE);
         memory.tried.clear();
-        memory.cubics.clear();
-        let crossing = (0..=run.segments.len()).map(|j| (tolerance / (JUMP_ERROR * run.curvature_jump(j))).sqrt());
+        let crossing = (0..=run.segments.len()).map(|j| {
+            let most = (tolerance / (JUMP_ERROR * run.curvature_jump(j))).sqrt();
+            // Segments shorter than that say nothing about the curvature so far from the joint.
+            if most < run.shorter_beside(j) { most } else { f64::INFINITY }
+        });
         memory.crossing.clear();
         memory.crossing.extend(crossing);
+        let furthest = |(j, most): (usize, &f64)| run.place(j * MERGE_GRID) - most;
+        let blocks = memory.crossing.chunks(BLOCK).enumerate().map(|(b, block)| {
+            block.iter().enumerate().map(|(i, most)| furthest((b * BLOCK + i, most))).fold(f64::NEG_INFINITY, f64::max)
+        });
+        memory.blocks.clear();
+        memory.blocks.extend(blocks);
         Self { run, own, tolerance, settings, memory }
     }
 
@@ -113,11 +127,14 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
 
     /// The break point at place `k`. `Err`: the curve is not finite there.
     fn end(&mut self, k: usize) -> Result<BreakPoint, NotFinite> {
-        if let Some(end) = self.memory.ends[k] {
+        let slot = k % self.memory.ends.len();
+        if let Some((at, end)) = self.memory.ends[slot]
+            && at == k
+        {
             return Ok(end);
         }
         let end = self.run.end_at(k)?;
-        self.memory.ends[k] = Some(end);
+        self.memory.ends[slot] = Some((k, end));
         Ok(end)
     }
 
@@ -126,16 +143,21 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(m > k && self.error(k, m)? <= 1.0)
     }
 
+    /// Returns `true` if one cubic from place `k` to `m` passes its check.
+    fn passes(&mut self, k: usize, m: usize) -> Result<bool, NotFinite> {
+        Ok(self.fits(k, m)? && self.piece(k, m)?.is_some())
+    }
+
     /// The piece from place `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
     fn piece(&mut self, k: usize, m: usize) -> Result<Option<(Piece, f64)>, NotFinite> {
         let i = self.entry(k, m)?;
-        if let (Some(cubic), None) = (self.memory.tried[i].cubic, &self.memory.tried[i].passed) {
-            let passed = self.checked(cubic, k, m)?;
+        if let Some(cubic) = self.memory.tried[i].cubic.take() {
+            let passed = self.checked(*cubic, k, m)?.map(Box::new);
             let tried = &mut self.memory.tried[i];
-            tried.passed = passed;
-            if tried.passed.is_none() {
-                (tried.error, tried.cubic) = (REFUSED_ERROR, None);
+            if passed.is_none() {
+                tried.error = REFUSED_ERROR;
             }
+            tried.passed = passed;
         }
         Ok(self.memory.tried[i].passed.as_ref().map(|p| (p.piece, p.error)))
     }
@@ -146,10 +168,9 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         self.memory.tried[i].passed.as_mut()?.marked.take()
     }
 
-    /// Checks a cubic, by its index, and one fitted more closely if it is just outside the tolerance or to be carried with a larger error
+    /// Checks a cubic, and one fitted more closely if it is just outside the tolerance or to be carried with a larger error
     /// than need be.
-    fn checked(&mut self, cubic: usize, k: usize, m: usize) -> Result<Option<Passed>, NotFinite> {
-        let cubic = self.memory.cubics[cubic];
+    fn checked(&mut self, cubic: RunCubic, k: usize, m: usize) -> Result<Option<Passed>, NotFinite> {
         let found = self.within(&cubic)?;
         let enough =
             if self.settings.marks && self.settings.again { CARRY_BELOW * self.tolerance } else { self.tolerance };
@@ -204,10 +225,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         let relative = error / stretch.tolerance;
         let error = if cubic.is_some() { relative.min(1.0) } else { relative.max(1.0 + f64::EPSILON) };
         let memory = &mut *self.memory;
-        let cubic = cubic.map(|cubic| {
-            memory.cubics.push(cubic);
-            memory.cubics.len() - 1
-        });
+        let cubic = cubic.map(Box::new);
         memory.tried.push(Tried { to: m, error, cubic, passed: None, next: memory.latest[k] });
         memory.latest[k] = memory.tried.len() - 1;
         Ok(memory.latest[k])
@@ -220,24 +238,26 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
 
     /// The furthest place that jumps of curvature let a cubic from `k` reach.
     fn limit(&self, k: usize) -> usize {
-        let limit = self.last().min(k + MERGE_GRID * MAX_SPAN);
-        let start = self.run.place(k);
-        for j in k / MERGE_GRID + 1..self.run.segments.len() {
-            if j * MERGE_GRID >= limit {
-                break;
+        let (last, start) = (self.last(), self.run.place(k));
+        let mut j = k / MERGE_GRID + 1;
+        while j < self.run.segments.len() {
+            if j.is_multiple_of(BLOCK) && self.memory.blocks[j / BLOCK] <= start {
+                j += BLOCK;
+                continue;
             }
             let (joint, most) = (self.run.place(j * MERGE_GRID), self.memory.crossing[j]);
             if joint - start <= most {
+                j += 1;
                 continue;
             }
             // The side before the joint is too long, so the side after it must be short enough.
             let mut m = j * MERGE_GRID;
-            while m < limit && self.run.place(m + 1) - joint <= most {
+            while m < last && self.run.place(m + 1) - joint <= most {
                 m += 1;
             }
             return m;
         }
-        limit
+        last
     }
 
     /// The furthest place that one cubic from `k` was found to reach; `k` itself if there is none, or if nothing beyond the
@@ -274,7 +294,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         // Errors at `low` and `high`, as far as they are known.
         let (mut below, mut above) = (None, None);
         let mut probe = (joint + LEAST_PAST_JOINT).max(k + self.memory.last_reach).min(limit);
-        for step in 0.. {
+        for round in 0.. {
             let error = self.error(k, probe)?.max(SMALLEST_REACH_ERROR);
             if error <= 1.0 {
                 (low, below) = (probe, Some(error));
@@ -284,30 +304,31 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             if high <= joint + 1 && self.own_leads_to(joint, k)? {
                 return Ok(k);
             }
-            if low + 1 >= high {
+            if low + step(k, low) >= high {
                 break;
             }
             let (l, h) = (self.run.place(low) - start, self.run.place(high.min(limit)) - start);
             let wanted = match (below, above) {
                 (Some(below), None) => l * (REACH_TARGET / below).powf(1.0 / 6.0),
                 (None, Some(above)) => h * above.powf(-1.0 / 6.0),
-                (Some(below), Some(above)) if step < INTERPOLATIONS => {
+                (Some(below), Some(above)) if round < INTERPOLATIONS => {
                     l * (h / l).powf(((BETWEEN_TARGET / below).ln() / (above / below).ln()).clamp(0.0, 1.0))
                 }
                 _ => 0.5 * (l + h),
             };
-            probe = low + 1;
-            while probe + 1 < high && self.run.place(probe + 1) - start <= wanted {
-                probe += 1;
-            }
+            probe = self.run.place_before(start + wanted, [low + 1, high - 1]);
         }
         self.leap(k, low, limit)
     }
 
     /// Tries the places just beyond a near miss: a few longer stretches fit although the next one does not.
     fn leap(&mut self, k: usize, mut low: usize, limit: usize) -> Result<usize, NotFinite> {
-        'further: while low < limit && self.error(k, low + 1)? <= LEAP_WITHIN {
-            for m in low + 2..=(low + 1 + LEAPS).min(limit) {
+        'further: while low < limit {
+            let step = step(k, low);
+            if low + step > limit || self.error(k, low + step)? > LEAP_WITHIN {
+                break;
+            }
+            for m in (low + 2 * step..=(low + (1 + LEAPS) * step).min(limit)).step_by(step) {
                 let error = self.error(k, m)?;
                 if error <= 1.0 {
                     low = m;
@@ -445,14 +466,10 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     /// # Errors
     /// A segment is not finite.
     pub fn fewest(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
-        for _ in 0..MERGE_SEARCHES {
-            let Some(legs) = fewest_legs(self)? else { return Ok(None) };
-            // A piece that fails is left out of the next search.
-            if let Some(out) = self.pieces_of(&legs)? {
-                return Ok(Some(out));
-            }
+        match fewest_legs(self)? {
+            Some(legs) => self.pieces_of(&legs),
+            None => Ok(None),
         }
-        Ok(None)
     }
 }
 
@@ -469,7 +486,7 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
     let last = reaches.last();
     let mut furthest = vec![Furthest { place: 0, leg: None }];
     // (number of pieces, joint) that a segment's own pieces lead to.
-    let mut by_own = Vec::new();
+    let mut by_own: VecDeque<(usize, usize)> = VecDeque::new();
     for count in 0.. {
         // A segment has at least one piece.
         if count + 1 >= reaches.own.segments() && count + 1 >= reaches.own.total()? {
@@ -489,17 +506,18 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
             && joint < last
             && (joint == k
                 || match leg {
-                    Some((from, true)) if from < joint => reaches.fits(from, joint)?,
+                    Some((from, true)) if from < joint => reaches.passes(from, joint)?,
                     _ => false,
                 });
         if at_joint {
-            by_own.push((count + reaches.own.count(joint / MERGE_GRID)?, joint + MERGE_GRID));
+            by_own.push_back((count + reaches.own.count(joint / MERGE_GRID)?, joint + MERGE_GRID));
         }
         for &(pieces, to) in &by_own {
             if pieces == count + 1 && to >= best.place && to > k {
                 best = Furthest { place: to, leg: Some((to - MERGE_GRID, false)) };
             }
         }
+        by_own.retain(|(pieces, _)| *pieces > count + 1);
         furthest.push(if best.place > k { best } else { Furthest { place: k, leg: None } });
         if best.place == last {
             return legs(&furthest, reaches).map(Some);
@@ -516,15 +534,24 @@ fn beyond(
     best: usize,
 ) -> Result<Option<usize>, NotFinite> {
     let limit = reaches.limit(joint);
-    let possible = from < joint && joint < k && best < limit;
-    if !(possible && reaches.fits(joint, best + 1)? && reaches.fits(from, joint)?) {
+    // A long cubic is searched for too coarsely to gain from a place so near.
+    let possible = from < joint && joint < k && best < limit && step(joint, best) == 1;
+    if !(possible && reaches.fits(joint, best + 1)? && reaches.passes(from, joint)?) {
         return Ok(None);
     }
     let mut place = best + 1;
     while place < limit && reaches.fits(joint, place + 1)? {
         place += 1;
     }
-    Ok(Some(place))
+    while place > best && !reaches.passes(joint, place)? {
+        place -= 1;
+    }
+    Ok((place > best).then_some(place))
+}
+
+/// The number of places that a search may leave open at place `m` after `k`: a long cubic need not end at the last possible one.
+fn step(k: usize, m: usize) -> usize {
+    ((m - k) / FINEST_STEP).max(1)
 }
 
 /// Follows the legs back from the end.

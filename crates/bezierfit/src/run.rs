@@ -40,6 +40,11 @@ impl<S> RunSegment<S> {
     pub fn new(source: S, form: Option<Quotient>, [from, to]: [BreakPoint; 2]) -> Self {
         Self { source, form, from, to, curvature: [Curvature::default(); 2] }
     }
+
+    /// Returns `true` if proofs are wanted and possible.
+    pub fn is_provable(&self) -> bool {
+        self.form.is_some()
+    }
 }
 
 /// Smoothly joined segments as one curve. Samples lie at even parameters of each segment; the last of one segment is the first
@@ -101,6 +106,31 @@ impl<S: Source> SegmentRun<S> {
         Ok(true)
     }
 
+    /// Appends the first of `items` as long as `segment` makes a segment of them and they join with turns of at most `corner` radians.
+    /// Returns how many there were.
+    ///
+    /// # Errors
+    /// A segment is not finite.
+    pub fn extend<'t, T>(
+        &mut self,
+        items: &'t [T],
+        corner: f64,
+        mut segment: impl FnMut(&'t T) -> Result<Option<RunSegment<S>>, NotFinite>,
+    ) -> Result<usize, NotFinite> {
+        for (i, item) in items.iter().enumerate() {
+            let Some(next) = segment(item)? else { return Ok(i) };
+            let parts = |last: &RunSegment<S>| {
+                let (into, away) = (last.to.into, next.from.away);
+                let turn = into.cross(away).atan2(into.dot(away)).abs();
+                turn > corner || last.form.is_some() != next.form.is_some()
+            };
+            if self.segments.last().is_some_and(parts) || !self.push(next)? {
+                return Ok(i);
+            }
+        }
+        Ok(items.len())
+    }
+
     /// Number of grid intervals.
     pub(crate) fn grid(&self) -> usize {
         MERGE_GRID * self.segments.len()
@@ -130,6 +160,30 @@ impl<S: Source> SegmentRun<S> {
         Ok(BreakPoint { t: self.place(k), speed: 1.0, ..end })
     }
 
+    /// The last grid place between two at which the length is at most `length`; the first of them if there is none.
+    pub(crate) fn place_before(&self, length: f64, [first, last]: [usize; 2]) -> usize {
+        let step = self.per_segment / MERGE_GRID;
+        let (mut low, mut high) = (first, last.max(first) + 1);
+        // Near at hand more often than not.
+        let mut stride = 1;
+        while low + stride < high && self.length[(low + stride) * step] <= length {
+            low += stride;
+            stride *= 2;
+        }
+        high = high.min(low + stride);
+        while low + 1 < high {
+            let mid = low.midpoint(high);
+            *if self.length[mid * step] <= length { &mut low } else { &mut high } = mid;
+        }
+        low
+    }
+
+    /// The length of the shorter of the segments beside the start of segment `j`.
+    pub(crate) fn shorter_beside(&self, j: usize) -> f64 {
+        let length = |i: usize| self.length[(i + 1) * self.per_segment] - self.length[i * self.per_segment];
+        if j == 0 || j >= self.segments.len() { f64::INFINITY } else { length(j - 1).min(length(j)) }
+    }
+
     /// The jump of the curvature at the start of segment `j`, as far as it is certain; 0 at the ends of the run.
     pub(crate) fn curvature_jump(&self, j: usize) -> f64 {
         let before = j.checked_sub(1).and_then(|i| self.segments.get(i));
@@ -145,9 +199,7 @@ impl<S: Source> SegmentRun<S> {
         let mut k = first;
         for j in 1..shares.len() - 1 {
             let wanted = start + length * shares[j];
-            while k + 1 < last && self.length[k + 1] <= wanted {
-                k += 1;
-            }
+            k += self.length[k + 1..last].partition_point(|l| *l <= wanted);
             let part = (wanted - self.length[k]) / (self.length[k + 1] - self.length[k]);
             let base = k - k % n + (k % n).saturating_sub(2).min(n - 5);
             let w = lagrange((k - base) as f64 + part);

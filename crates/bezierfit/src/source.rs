@@ -4,7 +4,7 @@ use crate::limits::{ONE_SIDED_STEP, SLOW_MARGIN, SLOW_SPEED, VANISHING_DERIVATIV
 use crate::sample::{Lane, Lanes, sum};
 use kurbo::{CubicBez, Point, QuadBez, Vec2, common::solve_cubic};
 
-/// A curve with a parameter from 0 to 1, smooth in between.
+/// A curve with a parameter from 0 to 1. A closure from a parameter to a point and a derivative is one.
 ///
 /// [`eval`](Source::eval) is all that must be written. The other methods are faster ways to the same values, or say what makes the
 /// fit quicker or its error provable.
@@ -19,6 +19,11 @@ pub trait Source {
             let (p, _) = self.eval(t[i]);
             (out.x[i], out.y[i]) = (p.x, p.y);
         }
+    }
+
+    /// The parameters inside (0, 1) at which the curve has a corner or a cusp.
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
     }
 
     /// Returns `true` if the coordinates are polynomials of low degree or quotients of them: a few samples then tell how far a cubic
@@ -67,6 +72,12 @@ pub trait Source {
     ) where
         Self: Sized + 's,
     {
+    }
+}
+
+impl<F: Fn(f64) -> (Point, Vec2)> Source for F {
+    fn eval(&self, t: f64) -> (Point, Vec2) {
+        self(t)
     }
 }
 

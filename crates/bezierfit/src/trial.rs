@@ -83,11 +83,7 @@ impl Stretch {
         for j in 1..ALL - 1 {
             let share = UNIT * j as f64;
             let twice = 2.0 * (from.t + length * share);
-            while let Some(next) = lengths.get(i + 1)
-                && lengths[i] + next < twice
-            {
-                i += 1;
-            }
+            i = nearest(lengths, i, twice);
             shares[j] = (lengths[i] - from.t) * scale;
             (x[j], y[j]) = (xs[i] - from.p.x, ys[i] - from.p.y);
             furthest_off = larger(furthest_off, (shares[j] - share).abs());
@@ -229,6 +225,28 @@ impl Stretch {
             *best = BestFit { error: judged.error.max(error), ..judged };
         }
     }
+}
+
+/// The index of the length nearest to half of `twice`, at or after `from`.
+#[inline(always)]
+fn nearest(lengths: &[f64], from: usize, twice: f64) -> usize {
+    let is_before = |i: usize| i + 1 < lengths.len() && lengths[i] + lengths[i + 1] < twice;
+    let (mut low, mut stride) = (from, 1);
+    if !is_before(low) {
+        return low;
+    }
+    // `low` is before it, `low + stride` is not.
+    while is_before(low + stride) {
+        low += stride;
+        stride *= 2;
+    }
+    while stride > 1 {
+        stride /= 2;
+        if is_before(low + stride) {
+            low += stride;
+        }
+    }
+    low + 1
 }
 
 /// The height of the highest parabola through three neighbours whose middle one is an extreme, and nearly as far from zero as `most`.

@@ -5,20 +5,18 @@
 //! images of one curve under two smooth maps do, so that a few samples measure the difference: no fit, and no check of all samples.
 
 use super::limits::{CARRIED_TURN, CARRY_DOWN, CARRY_MARGIN, CARRY_UP};
-use super::segment::SegmentFitter;
+use super::segment::{Part, SegmentFitter};
 use super::source::SourceCurve;
 use crate::map::Jet;
-use crate::outline::Seg;
 use bezierfit::parts::{ChordFrame, FOOT_ROUNDING, FitOwn, Leg, MERGE_GRID, MarkedCubic, SMOOTH_JOINT};
 use bezierfit::{Lanes, Piece, Report, Source};
 use kurbo::{Point, Vec2};
 
-/// Consecutive segments at one site of the map, with the jets at the ends of each.
+/// Consecutive segments at one site of the map.
 #[derive(Clone, Copy)]
 pub(super) struct Site<'a> {
     pub(super) fitter: &'a SegmentFitter<'a>,
-    pub(super) segs: &'a [Seg],
-    pub(super) jets: &'a [[Jet; 2]],
+    pub(super) parts: &'a [Part],
 }
 
 /// An end of a cubic.
@@ -39,18 +37,19 @@ impl<'a> Site<'a> {
 
     /// The image at grid place `k`, seen from the segment after it or before it. `None` if it has no derivative there.
     fn end(&self, k: usize, after: bool) -> Option<End> {
-        let (joint, part) = (k / MERGE_GRID, k % MERGE_GRID);
-        let i = if after || part > 0 { joint } else { joint.checked_sub(1)? };
-        let (source, jets) = (SourceCurve::new(self.segs.get(i)?, self.fitter.map, None), self.jets.get(i)?);
-        let mut end = if part > 0 {
-            source.end(part as f64 / MERGE_GRID as f64).ok()?
+        let (joint, place) = (k / MERGE_GRID, k % MERGE_GRID);
+        let i = if after || place > 0 { joint } else { joint.checked_sub(1)? };
+        let part = self.parts.get(i)?;
+        let source = SourceCurve::new(&part.seg, self.fitter.map, None);
+        let mut end = if place > 0 {
+            source.end(place as f64 / MERGE_GRID as f64).ok()?
         } else {
-            let jet = &jets[usize::from(!after)];
+            let jet = &part.jets[usize::from(!after)];
             source.end_with(if after { 0.0 } else { 1.0 }, jet.p, jet)
         };
         // Neighbouring pieces share a joint bit by bit.
-        if let (0, Some([next, _])) = (part, self.jets.get(joint)) {
-            end.p = next.p;
+        if let (0, Some(next)) = (place, self.parts.get(joint)) {
+            end.p = next.jets[0].p;
         }
         let tangent = if after { end.away } else { end.into };
         (end.speed > 0.0).then_some(End { p: end.p, tangent, speed: end.speed })
@@ -59,20 +58,16 @@ impl<'a> Site<'a> {
     /// Fits its segments one by one.
     pub(super) fn own(self) -> impl FitOwn {
         move |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-            let [first, last] = &self.jets[i];
-            self.fitter.fit(&self.segs[i], [first, last], pieces, report)
+            self.fitter.fit_part(&self.parts[i], pieces, report)
         }
     }
 
     /// Returns `true` if the image is smooth at the joints inside a leg.
     fn is_smooth(&self, leg: Leg) -> bool {
         (leg.from / MERGE_GRID + 1..leg.to.div_ceil(MERGE_GRID)).all(|j| {
-            let (Some(before), Some(after), Some([jet, _])) =
-                (self.segs.get(j - 1), self.segs.get(j), self.jets.get(j))
-            else {
-                return false;
-            };
-            let (into, away) = (jet.push(before.deriv(1.0)), jet.push(after.deriv(0.0)));
+            let (Some(before), Some(after)) = (self.parts.get(j - 1), self.parts.get(j)) else { return false };
+            let jet = &after.jets[0];
+            let (into, away) = (jet.push(before.seg.deriv(1.0)), jet.push(after.seg.deriv(0.0)));
             into.cross(away).abs() <= SMOOTH_JOINT * into.dot(away)
         })
     }
@@ -81,7 +76,7 @@ impl<'a> Site<'a> {
     fn images(&self, at: &[(usize, f64); 8]) -> Lanes {
         let mut g = Lanes::default();
         for (i, (segment, t)) in at.iter().enumerate() {
-            let p = self.segs.get(*segment).map_or(Point::ORIGIN, |s| s.eval(*t));
+            let p = self.parts.get(*segment).map_or(Point::ORIGIN, |s| s.seg.eval(*t));
             (g.x[i], g.y[i]) = (p.x, p.y);
         }
         self.fitter.map.lanes(&mut g.x, &mut g.y);
@@ -141,14 +136,14 @@ impl Carried {
     /// A cubic from one of the site's legs. `None` if it begins or ends where the image stops.
     pub(super) fn new(site: &Site<'_>, leg: Leg, cubic: MarkedCubic) -> Option<Self> {
         let (from, to) = (site.end(leg.from, true)?, site.end(leg.to, false)?);
-        let [Jet { dx, dy, .. }, _] = *site.jets.get(leg.from / MERGE_GRID)?;
+        let [Jet { dx, dy, .. }, _] = site.parts.get(leg.from / MERGE_GRID)?.jets;
         let (tangents, speeds) = ([from.tangent, to.tangent], [from.speed, to.speed]);
         Some(Self { jacobian: [dx, dy], tangents, speeds, cubic })
     }
 
     /// The cubic at another place, with a bound of its error. `None` if that may exceed `tolerance`.
     pub(super) fn at(&self, site: &Site<'_>, leg: Leg, tolerance: f64) -> Option<(Piece, f64)> {
-        let change = Change::new(self.jacobian, &site.jets.get(leg.from / MERGE_GRID)?[0])?;
+        let change = Change::new(self.jacobian, &site.parts.get(leg.from / MERGE_GRID)?.jets[0])?;
         let across =
             self.cubic.batches.iter().flat_map(|b| &b.tangents).chain(&self.tangents).map(|t| change.across(*t));
         let error = self.cubic.error * across.fold(0.0, f64::max);

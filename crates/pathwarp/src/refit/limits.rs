@@ -1,8 +1,10 @@
 //! Thresholds of the refit of paths; those of the fit are in the crate `bezierfit`. Entries say what `bezierfit`'s say.
 
-/// Segments refitted as one chunk: a multiple of the longest run that is merged at once, so that the runs of a curve without corners are the same as without
-/// chunks. Memory for the jets and samples of a chunk is released after it.
+/// Segments refitted as one chunk. Memory for the jets and samples of a chunk is released after it.
 pub(super) const CHUNK: usize = 1024;
+
+/// Joints of the source that turn by more than this (as a tangent, ten degrees) are corners at which a chunk may end.
+pub(super) const CHUNK_CORNER: f64 = 0.18;
 
 /// Segments of a subpath for which several threads are started: two milliseconds of work.
 #[cfg(feature = "parallel")]
@@ -29,9 +31,8 @@ pub(super) const MAX_RATIONAL_SWEEP: f64 = 2.2;
 /// `VANISHING_DERIVATIVE`, below which one-sided tangents decide. Unchanged at 0 and 1e9: the sample has no joint in between.
 pub(super) const CLEAR_DERIVATIVE: f64 = 1e-6;
 
-/// Segments in one table, which bounds its memory. 1: no merging; 1000: unchanged.
-/// Test: *figures* (at 1).
-pub(super) const MAX_RUN: usize = 64;
+/// Segments of the longest run whose shape is remembered: some letters in one stroke.
+pub(super) const MAX_SHAPE: usize = 64;
 
 /// Shapes of runs that are remembered, in case they come again: two or three for each letter of an alphabet.
 pub(super) const MAX_SHAPES: usize = 256;

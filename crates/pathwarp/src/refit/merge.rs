@@ -4,10 +4,10 @@
 //! fewest cubics that cover it. They are used only if they are fewer than the segments' own pieces and every one has passed its check.
 
 use super::carry::{Carried, Site};
-use super::limits::{CLEAR_DERIVATIVE, MAX_RUN};
+use super::limits::{CLEAR_DERIVATIVE, MAX_SHAPE};
 use super::options::Options;
 use super::repeats::{CarriedWay, Repeats, Shapes, Way};
-use super::segment::SegmentFitter;
+use super::segment::{Part, SegmentFitter};
 use super::source::SourceCurve;
 use super::split;
 use crate::budget::Limit;
@@ -51,24 +51,23 @@ impl MergeMemory {
 /// Merges the pieces of consecutive segments.
 pub(super) struct Merger<'a> {
     fitter: &'a SegmentFitter<'a>,
-    segs: &'a [Seg],
-    /// At the ends of each segment.
-    jets: &'a [[Jet; 2]],
+    parts: &'a [Part],
     pieces: Vec<Piece>,
     report: Report,
     memory: &'a mut MergeMemory,
 }
 
-/// Returns `false` if the images of two consecutive segments certainly form a corner, given the map's jet where they meet.
+/// Returns `false` if the images of two consecutive segments certainly form a corner, given the map's jets where they meet.
 #[inline]
-pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
-    let (v, w) = (before.deriv(1.0), after.deriv(0.0));
-    let (into, away) = (jet.push(v), jet.push(w));
+fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2]) -> bool {
+    let (into, away) = (jets[0].push(before.deriv(1.0)), jets[1].push(after.deriv(0.0)));
     // One-sided tangents decide where a derivative vanishes or nearly does.
-    let scale = CLEAR_DERIVATIVE * CLEAR_DERIVATIVE * (jet.dx.hypot2() + jet.dy.hypot2());
-    let clear = |d: Vec2, seg: &Seg| d.hypot2() > scale * seg.end().distance_squared(seg.start());
+    let clear = |d: Vec2, jet: &Jet, seg: &Seg| {
+        let scale = CLEAR_DERIVATIVE * CLEAR_DERIVATIVE * (jet.dx.hypot2() + jet.dy.hypot2());
+        d.hypot2() > scale * seg.end().distance_squared(seg.start())
+    };
     let (dot, cross) = (into.dot(away), into.cross(away).abs());
-    dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, before) || !clear(away, after)
+    dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, jets[0], before) || !clear(away, jets[1], after)
 }
 
 /// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
@@ -77,7 +76,7 @@ pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
     let mut sources = Vec::new();
     for segs in runs {
         let smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
-            (Some(before), Some(after)) => may_be_smooth(before, after, &map.jet(after.start())),
+            (Some(before), Some(after)) => may_be_smooth([before, after], [&map.jet(after.start()); 2]),
             _ => false,
         };
         let in_run = |(i, seg): (usize, &'_ Seg)| (smooth(i) || smooth(i + 1)).then_some(*seg);
@@ -94,31 +93,31 @@ pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
 }
 
 impl<'a> Merger<'a> {
-    pub(super) fn new(
-        fitter: &'a SegmentFitter<'a>,
-        segs: &'a [Seg],
-        jets: &'a [[Jet; 2]],
-        memory: &'a mut MergeMemory,
-    ) -> Self {
+    pub(super) fn new(fitter: &'a SegmentFitter<'a>, parts: &'a [Part], memory: &'a mut MergeMemory) -> Self {
         memory.reach.last_reach = 0;
-        Self { fitter, segs, jets, pieces: Vec::with_capacity(segs.len()), report: Report::default(), memory }
+        Self { fitter, parts, pieces: Vec::with_capacity(parts.len()), report: Report::default(), memory }
     }
 
-    /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i
-    /// begins.
-    pub(super) fn merged(mut self, smooth: &[bool]) -> Result<(Vec<Piece>, Report), NotFinite> {
+    /// The pieces of all segments, merged where that saves some.
+    pub(super) fn merged(mut self) -> Result<(Vec<Piece>, Report), NotFinite> {
+        let smooth = |w: &[Part]| {
+            let [before, after] = w else { return false };
+            let torn = before.is_torn(1) || after.is_torn(0);
+            !torn && may_be_smooth([&before.seg, &after.seg], [&before.jets[1], &after.jets[0]])
+        };
         let mut i = 0;
-        while i < self.segs.len() {
-            let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
-            i += if joined > 0 { self.joined(i, i + joined + 1)? } else { self.single(i)? };
+        while i < self.parts.len() {
+            let end = i + 1 + self.parts[i..].windows(2).take_while(|w| smooth(w)).count();
+            while i < end {
+                i += if i + 1 < end { self.joined(i, end)? } else { self.single(i)? };
+            }
         }
         Ok((self.pieces, self.report))
     }
 
     /// Appends the pieces of a segment that cannot be in a run, and returns 1.
     fn single(&mut self, i: usize) -> Result<usize, NotFinite> {
-        let [first, last] = &self.jets[i];
-        self.fitter.fit(&self.segs[i], [first, last], &mut self.pieces, &mut self.report)?;
+        self.fitter.fit_part(&self.parts[i], &mut self.pieces, &mut self.report)?;
         Ok(1)
     }
 
@@ -128,20 +127,23 @@ impl<'a> Merger<'a> {
         if self.fitter.options.budget.left(Limit::Evaluations) <= 0.0 {
             return self.single(start);
         }
-        let (shape, off) = self.memory.repeats.shape(&self.segs[start..end], self.fitter.options.tolerance);
-        if let Some(segments) = self.carried((shape, off), start, end)? {
+        let (parts, tolerance) = (&self.parts[start..end], self.fitter.options.tolerance);
+        let shape = (parts.len() <= MAX_SHAPE).then(|| self.memory.repeats.shape(parts, tolerance));
+        if let Some(shape) = shape
+            && let Some(segments) = self.carried(shape, start, end)?
+        {
             return Ok(segments);
         }
         let run = self.run(start, end)?;
         if run.segments.len() < 2 {
             return self.single(start);
         }
-        self.merge(&run, start, (shape, off))?;
+        self.merge(&run, start, shape)?;
         Ok(run.segments.len())
     }
 
     fn site(&self, start: usize, end: usize) -> Site<'a> {
-        Site { fitter: self.fitter, segs: &self.segs[start..end], jets: &self.jets[start..end] }
+        Site { fitter: self.fitter, parts: &self.parts[start..end] }
     }
 
     /// Appends the pieces of a run whose cubics were found at another site, and returns the number of its segments. `None` if there
@@ -150,14 +152,14 @@ impl<'a> Merger<'a> {
         if !self.site(start, end).carries() {
             return Ok(None);
         }
-        let [jet, _] = &self.jets[start];
+        let [jet, _] = &self.parts[start].jets;
         let magnified = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt();
         for (way, other) in self.memory.repeats.nearest(shape, jet) {
             // The curves differ by at most √2 of this before the map, which may magnify more further on.
             let unlike = 2.0 * magnified * (off + other);
             let tolerance = MERGE_SHARE * self.fitter.options.tolerance - unlike;
             let site = self.site(start, start + way.segments);
-            if site.segs.iter().any(|s| self.fitter.options.shared.contains(s)) {
+            if site.parts.iter().any(|p| self.fitter.options.shared.contains(&p.seg)) {
                 continue;
             }
             let piece = |(leg, cubic): &(Leg, Option<Carried>)| {
@@ -175,7 +177,7 @@ impl<'a> Merger<'a> {
             let mut own = OwnPieces::new(way.segments, site.own());
             if own.count_of(legs.as_deref())? <= way.pieces {
                 let segments = way.segments;
-                own.append(legs, self.assurance(), &mut self.pieces, &mut self.report)?;
+                own.append(legs, Assurance::Checked, &mut self.pieces, &mut self.report)?;
                 return Ok(Some(segments));
             }
         }
@@ -185,38 +187,25 @@ impl<'a> Merger<'a> {
     /// The longest run of smoothly joined segments from `start` up to `end`.
     fn run(&self, start: usize, end: usize) -> Result<SegmentRun<SourceCurve<'a>>, NotFinite> {
         let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
-        for i in start..end {
-            if self.fitter.options.shared.contains(&self.segs[i]) {
-                break;
-            }
-            let Some(segment) = self.run_segment(i) else { break };
-            let turn = |last: &RunSegment<SourceCurve<'_>>| {
-                let (into, away) = (last.to.into, segment.from.away);
-                into.cross(away).atan2(into.dot(away)).abs()
-            };
-            if run.segments.last().is_some_and(|last| turn(last) > SMOOTH_JOINT) || !run.push(segment)? {
-                break;
-            }
-        }
+        let parts: &'a [Part] = self.parts;
+        run.extend(&parts[start..end], SMOOTH_JOINT, |part| Ok(self.run_segment(part)))?;
         Ok(run)
     }
 
-    /// A segment of a run. `None` if it cannot be in one, having no length or slow spots, or as nothing could be proven about it.
-    fn run_segment(&self, i: usize) -> Option<RunSegment<SourceCurve<'a>>> {
-        let SegmentFitter { map, degree, options, .. } = *self.fitter;
-        let seg = &self.segs[i];
-        let source = SourceCurve::for_proof(seg, map, degree, options.certify);
-        let form = if options.certify { Some(source.quotient().and_then(Quotient::provable)?) } else { None };
-        if source.size() == 0.0 || !split::slow_spots(seg).all().is_empty() {
+    /// A segment of a run. `None` if it cannot be in one, having no length or slow spots.
+    fn run_segment(&self, part: &'a Part) -> Option<RunSegment<SourceCurve<'a>>> {
+        let options = self.fitter.options;
+        if options.shared.contains(&part.seg) {
             return None;
         }
-        let [first, last] = &self.jets[i];
+        let source = part.source(self.fitter, &part.seg);
+        let form = if options.certify { source.quotient().and_then(Quotient::provable) } else { None };
+        if source.size() == 0.0 || !split::slow_spots(&part.seg).all().is_empty() {
+            return None;
+        }
+        let [first, last] = &part.jets;
         let ends = [source.end_with(0.0, first.p, first), source.end_with(1.0, last.p, last)];
         Some(RunSegment::new(source, form, ends))
-    }
-
-    fn assurance(&self) -> Assurance {
-        if self.fitter.options.certify { Assurance::Certified } else { Assurance::Checked }
     }
 
     /// Appends the fewest pieces for a run that begins with segment `start`.
@@ -224,31 +213,36 @@ impl<'a> Merger<'a> {
         &mut self,
         run: &SegmentRun<SourceCurve<'a>>,
         start: usize,
-        (shape, off): (usize, f64),
+        shape: Option<(usize, f64)>,
     ) -> Result<(), NotFinite> {
         let segments = run.segments.len();
-        let (site, options, assurance) = (self.site(start, start + segments), self.fitter.options, self.assurance());
+        let (site, options) = (self.site(start, start + segments), self.fitter.options);
+        let proof = run.segments.first().is_some_and(RunSegment::is_provable);
+        let assurance = if proof { Assurance::Certified } else { Assurance::Checked };
         let own = OwnPieces::new(segments, site.own());
         let MergeMemory { repeats, reach } = &mut *self.memory;
-        let (marks, again) = (site.carries(), repeats.comes_again(shape));
-        let settings = MergeSettings { tolerance: options.tolerance, proof: options.certify, marks, again };
+        let marks = site.carries() && shape.is_some();
+        let again = shape.is_some_and(|(shape, _)| repeats.comes_again(shape));
+        let settings = MergeSettings { tolerance: options.tolerance, proof, marks, again };
         let mut reaches = Reaches::new(run, own, settings, reach);
-        let ways = repeats.ways(shape);
+        let ways = shape.map_or(&[][..], |(shape, _)| repeats.ways(shape));
         let legs = match repeated(ways.iter().filter(|w| w.segments == segments), &mut reaches)? {
             Some(legs) => legs,
             None => {
                 let legs = reaches.fewest()?;
-                let pieces = reaches.own.count_of(legs.as_deref())?;
-                let found = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| *leg).collect());
-                repeats.add(shape, Way { segments, legs: found, pieces });
+                if let Some((shape, _)) = shape {
+                    let pieces = reaches.own.count_of(legs.as_deref())?;
+                    let found = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| *leg).collect());
+                    repeats.add(shape, Way { segments, legs: found, pieces });
+                }
                 legs
             }
         };
-        if marks {
+        if let (true, Some((shape, off))) = (marks, shape) {
             let pieces = reaches.own.count_of(legs.as_deref())?;
             let mut carried = |leg: Leg| Carried::new(&site, leg, reaches.marked(leg)?);
             let legs = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| (*leg, carried(*leg))).collect());
-            let Jet { dx, dy, .. } = site.jets[0][0];
+            let Jet { dx, dy, .. } = site.parts[0].jets[0];
             repeats.carry(shape, CarriedWay { jacobian: [dx, dy], off, segments, pieces, legs });
         }
         self.fitter.spend(TRIAL_WORK * reaches.tried() as f64);

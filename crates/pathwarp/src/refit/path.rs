@@ -1,8 +1,8 @@
 //! Whole paths, subpath by subpath.
 
 use super::gather;
-use super::limits::CHUNK;
-use super::merge::{self, MergeMemory, Merger, may_be_smooth};
+use super::limits::{CHUNK, CHUNK_CORNER};
+use super::merge::{self, MergeMemory, Merger};
 use super::options::Options;
 use super::parallel::in_parallel;
 use super::report::{PathWriter, reverse};
@@ -93,7 +93,7 @@ pub(super) fn subpath(
     } else {
         let known = memory.known();
         let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::new(Arc::clone(&known)));
-        for (more, report) in in_parallel(&sub.segs, CHUNK, alone)? {
+        for (more, report) in in_parallel(&chunks(&sub.segs, options), alone)? {
             out.report.add_pieces(report);
             pieces.extend(more);
         }
@@ -141,19 +141,32 @@ fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> R
 
 /// Refits segments, with fewer pieces across smooth joints.
 fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory: &mut MergeMemory) -> Refitted {
-    // Across other creases than the domain's edge the image has corners.
-    if fitter.creases.items().iter().any(|c| c.kind != CreaseKind::Edge) {
-        return unmerged(fitter, segs, nodes);
+    let mut parts = Vec::with_capacity(segs.len());
+    for seg in segs {
+        let ends = nodes.next(seg)?;
+        fitter.parts(seg, ends, fitter.options.shared.contains(seg), &mut parts).map_err(lost)?;
     }
-    let mut jets = Vec::with_capacity(segs.len());
-    // Joints of the image that may be smooth, by the index of the segment that begins there.
-    let mut smooth = Vec::with_capacity(segs.len());
-    for (i, seg) in segs.iter().enumerate() {
-        let ends = nodes.next(seg)?.map(Clone::clone);
-        smooth.push(i > 0 && may_be_smooth(&segs[i - 1], seg, &ends[0]));
-        jets.push(ends);
+    Merger::new(fitter, &parts, memory).merged().map_err(lost)
+}
+
+/// Cuts a long subpath into chunks that are refitted on their own: of [`CHUNK`] segments, or up to the next corner after them if
+/// pieces are merged.
+fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<&'s [Seg]> {
+    let is_corner = |w: &[Seg]| {
+        let (into, away) = (w[0].deriv(1.0), w[1].deriv(0.0));
+        into.cross(away).abs() >= CHUNK_CORNER * into.dot(away)
+    };
+    let mut out = Vec::new();
+    let mut rest = segs;
+    while rest.len() > CHUNK {
+        let more = if options.merge { rest[CHUNK - 1..].windows(2).position(is_corner) } else { Some(0) };
+        let (chunk, after) = rest.split_at(more.map_or(rest.len(), |n| CHUNK + n));
+        out.push(chunk);
+        rest = after;
     }
-    Merger::new(fitter, segs, &jets, memory).merged(&smooth).map_err(lost)
+    out.push(rest);
+    out.retain(|c| !c.is_empty());
+    out
 }
 
 /// The jets at the ends of one segment after the other.

@@ -3,6 +3,7 @@
 
 use super::carry::{Carried, Change};
 use super::limits::{CARRY_TRIALS, MAX_CARRIED, MAX_SHAPES, MAX_WAYS, SAME_SHAPE, SEARCH_AGAIN};
+use super::segment::Part;
 use crate::map::Jet;
 use crate::outline::Seg;
 use bezierfit::parts::Leg;
@@ -57,7 +58,7 @@ struct Glance {
 }
 
 impl Glance {
-    fn of(segs: &[Seg]) -> Self {
+    fn of(segs: &[Part]) -> Self {
         Self { kinds: kinds(segs), first: points(segs).next().unwrap_or_default() }
     }
 
@@ -76,7 +77,7 @@ pub(super) struct Shapes {
 
 impl Shapes {
     /// The index of a shape whose control points are at most `near` from those of `segs`, and their largest distance.
-    fn find(&self, glance: &Glance, segs: &[Seg], near: f64) -> Option<(usize, f64)> {
+    fn find(&self, glance: &Glance, segs: &[Part], near: f64) -> Option<(usize, f64)> {
         let off = |s: &Shape| {
             points(segs).zip(&s.points).try_fold(0.0f64, |off, (p, q)| {
                 let d = apart(p, *q);
@@ -103,7 +104,7 @@ impl Repeats {
     }
 
     /// The index of the shape of a run, which is entered if it is new, and the distance between their control points.
-    pub(super) fn shape(&mut self, segs: &[Seg], tolerance: f64) -> (usize, f64) {
+    pub(super) fn shape(&mut self, segs: &[Part], tolerance: f64) -> (usize, f64) {
         let (glance, near) = (Glance::of(segs), SAME_SHAPE * tolerance);
         let entered = |i: usize| (i, 0.0);
         self.own.find(&glance, segs, near).unwrap_or_else(|| {
@@ -174,9 +175,9 @@ fn apart(p: Vec2, q: Vec2) -> f64 {
 }
 
 /// A number that nearly tells the number and kinds of segments.
-fn kinds(segs: &[Seg]) -> u64 {
-    segs.iter().fold(segs.len() as u64, |hash, seg| {
-        let kind = match seg {
+fn kinds(segs: &[Part]) -> u64 {
+    segs.iter().fold(segs.len() as u64, |hash, part| {
+        let kind = match part.seg {
             Seg::Line(_) => 1,
             Seg::Quad(_) => 2,
             Seg::Cubic(_) => 3,
@@ -187,9 +188,9 @@ fn kinds(segs: &[Seg]) -> u64 {
 }
 
 /// The points that determine the segments, relative to their start.
-fn points(segs: &[Seg]) -> impl Iterator<Item = Vec2> {
-    let start = segs.first().map_or(Point::ORIGIN, Seg::start);
-    segs.iter().flat_map(move |seg| match seg {
+fn points(segs: &[Part]) -> impl Iterator<Item = Vec2> {
+    let start = segs.first().map_or(Point::ORIGIN, |p| p.seg.start());
+    segs.iter().flat_map(move |part| match &part.seg {
         Seg::Line(s) => [s.p1 - start, Vec2::ZERO, Vec2::ZERO],
         Seg::Quad(s) => [s.p1 - start, s.p2 - start, Vec2::ZERO],
         Seg::Cubic(s) => [s.p1 - start, s.p2 - start, s.p3 - start],
@@ -202,8 +203,8 @@ mod tests {
     use super::*;
     use crate::outline::Outline;
 
-    fn segs(d: &str) -> Vec<Seg> {
-        Outline::from_svg(d).unwrap().subpaths[0].segs.clone()
+    fn segs(d: &str) -> Vec<Part> {
+        Outline::from_svg(d).unwrap().subpaths[0].segs.iter().map(|s| Part::whole(*s, [&Jet::default(); 2])).collect()
     }
 
     #[test]
