@@ -45,11 +45,12 @@ pub use compare::{Difference, compare, diff_image};
 pub use draw::render_group;
 pub use error::Error;
 pub use picture::{Picture, PictureFormat, header_size};
+pub use pixmap::enlarged;
 pub use png::{decode_png, encode_png};
 pub use preview::{OverlayKind, Panel, Preview, PreviewOverlay};
 pub use render::{RenderOptions, Size, render};
 pub use smooth_png::encode_smooth_png;
-pub use tiny_skia::{Color, Pixmap};
+pub use tiny_skia::{Color, IntRect, Pixmap};
 pub use warp_image::{
     Colors, Extent, GridInverse, ImageWarp, SeenColor, Shade, ShadeTolerance, SmoothShade, extent, shade, shown,
     warp_image,

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use pathwarp::budget::{Exceeded, Limit, Limits};
-use tiny_skia::Pixmap;
+use tiny_skia::{FilterQuality, IntRect, Pixmap, PixmapPaint, Transform};
 
 /// Pixels held for each pixel of a picture that is made: itself, and the file that it becomes.
 const COPIES: f64 = 2.0;
@@ -23,4 +23,45 @@ pub(crate) fn new_pixmap(width: f64, height: f64, limits: &Limits) -> Result<Pix
         cut: false,
     };
     Pixmap::new(whole_width, whole_height).ok_or_else(|| too_large(refused()))
+}
+
+/// Returns a part of a picture with each pixel enlarged `factor` times: as a square, or with colours interpolated linearly between
+/// the centres of pixels, as browsers enlarge pictures.
+///
+/// # Errors
+/// The result exceeds the limits.
+pub fn enlarged(source: &Pixmap, part: IntRect, factor: u32, squares: bool, limits: &Limits) -> Result<Pixmap, Error> {
+    let size = |side: u32| f64::from(side) * f64::from(factor);
+    let mut out = new_pixmap(size(part.width()), size(part.height()), limits)?;
+    let quality = if squares { FilterQuality::Nearest } else { FilterQuality::Bilinear };
+    let paint = PixmapPaint { quality, ..PixmapPaint::default() };
+    let scale = Transform::from_scale(factor as f32, factor as f32);
+    let to = scale.pre_translate(-(part.x() as f32), -(part.y() as f32));
+    out.draw_pixmap(0, 0, source.as_ref(), &paint, to, None);
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn enlarged_pixels_are_squares_or_blend() {
+        let mut source = Pixmap::new(3, 2).unwrap();
+        for (i, b) in source.data_mut().chunks_mut(4).enumerate() {
+            b.copy_from_slice(&[40 * i as u8, 0, 0, 255]);
+        }
+        let part = IntRect::from_xywh(1, 0, 2, 2).unwrap();
+        let [squares, blended] = [true, false].map(|s| enlarged(&source, part, 50, s, &Limits::default()).unwrap());
+        let red = |p: &Pixmap, x: u32, y: u32| p.pixel(x, y).unwrap().red();
+        for y in 0..100 {
+            for x in 0..100 {
+                assert_eq!(red(&squares, x, y), 40 * (1 + (x / 50 + 3 * (y / 50)) as u8), "{x} {y}");
+                // Between the centres of the pixels 1, 2 and 4, 5.
+                let at = |v: u32| f64::from(v) / 50.0 + 0.01 - 0.5;
+                let exact = 40.0 * (1.0 + at(x).clamp(-1.0, 1.0) + 3.0 * at(y).clamp(0.0, 1.0));
+                assert!((f64::from(red(&blended, x, y)) - exact).abs() < 2.0, "{x} {y}");
+            }
+        }
+    }
 }

@@ -462,6 +462,12 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             return;
         }
         self.note_share(p, raw);
+        if p.name == "image-rendering" {
+            // usvg reads the words of CSS in style only.
+            let new = self.values.of(p, raw, false).map(|v| (p.name.into(), v.into_owned().into()));
+            self.style.extend(new);
+            return;
+        }
         let is_geometry = matches!(p.kind, Kind::Geometry(_));
         let new = match wide(raw.trim()) {
             Some(wide) => match resolved(wide, p) {

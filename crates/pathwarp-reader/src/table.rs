@@ -121,7 +121,7 @@ static PROPERTIES: [Property; 84] = [
     up("font-variation-settings", "normal", Any),
     up("font-weight", "400", FontWeight),
     own("height", "auto", Geometry(Sign::Positive)),
-    up("image-rendering", "auto", Any),
+    up("image-rendering", "auto", Word(&["auto", "optimizeQuality", "optimizeSpeed", "crisp-edges", "pixelated"])),
     own("isolation", "auto", Word(&["auto", "isolate"])),
     up("letter-spacing", "0", Spacing),
     own("lighting-color", "white", Color),

@@ -64,6 +64,10 @@ const OVERLINE: &str = "overlines are a little nearer to the letters than in bro
 const SPACES: &str = "spaces where parts of a text keep them and others do not are not those of browsers";
 const LINES: &str = "a tspan with y and without x begins where the words before end, which centred or right-aligned lines of browsers do not";
 
+const ON_PATHS: &str = "letters on a path turn about their middle, which in browsers is that of the letter with its spacing";
+const AFTER_PATHS: &str = "words after a textPath begin elsewhere than in browsers";
+const VERTICAL: &str = "punctuation, lines and turned letters of vertical text are placed otherwise than in browsers";
+
 /// The case that `text-transform` asks for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Case {
@@ -200,7 +204,20 @@ impl TextStyle {
             && is_content
             && keeps_space(self.keeps_space, Some(node)) != keeps_space(kept, node.parent());
         let lines = tag != "text" && is_content && self.anchor != Anchor::Start && is_lower(node);
-        let notes = [(overline, OVERLINE), (spaces, SPACES), (lines, LINES)];
+        let is_path = tag == "textPath" && self.fade.is_some();
+        let goes_on = |n: &Node<'_, '_>| {
+            let rest = n.next_siblings().skip(1);
+            { rest }.any(|n| n.text().is_some_and(|t| !t.trim().is_empty()) || n.has_tag_name("tspan"))
+        };
+        let vertical = value("writing-mode").is_some_and(|v| v.starts_with("tb") || v.starts_with("vertical"));
+        let notes = [
+            (overline, OVERLINE),
+            (spaces, SPACES),
+            (lines, LINES),
+            (is_path && self.spaced, ON_PATHS),
+            (is_path && goes_on(&node), AFTER_PATHS),
+            (vertical, VERTICAL),
+        ];
         out.notes = notes.into_iter().filter(|n| n.0).map(|n| n.1).collect();
         let overrides = matches!(value("unicode-bidi"), Some("bidi-override" | "isolate-override"));
         let direction = match (self.rtl, overrides) {

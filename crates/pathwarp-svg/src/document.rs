@@ -8,6 +8,7 @@ use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::tiles;
 use crate::scene::drawing::Drawing;
 use crate::scene::lettering::selected::{Lettering, lettering};
+use crate::scene::model::Bitmap;
 use crate::scene::plot::{self, Plot};
 use crate::scene::seen;
 use crate::scene::shape::{NamedPath, Shape, named_path};
@@ -142,6 +143,15 @@ impl Document {
         let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection));
         let pictures = bitmaps.filter(|b| b.1).filter_map(|b| seen::picture_box(b.0));
         shapes.chain(pictures).filter(Rect::is_finite).reduce(|a, b| a.union(b))
+    }
+
+    /// The edges of the selected pictures that are seen, with a name for each.
+    #[must_use]
+    pub fn picture_edges(&self, selection: &Selection) -> Vec<(String, Outline)> {
+        let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection)).filter(|b| b.1);
+        let named = |b: &Bitmap| b.owner.map_or_else(|| "an image".into(), |e| self.drawing.source.display_name(e));
+        let edge = |b: &Bitmap| Some((named(b), Outline::from_points(&seen::picture_corners(b)?, true)));
+        bitmaps.filter_map(|b| edge(b.0)).collect()
     }
 
     /// Which bitmaps are selected.

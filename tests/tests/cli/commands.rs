@@ -34,6 +34,50 @@ fn compare_measures_the_distance_and_can_fail() {
 }
 
 #[test]
+fn compare_matches_what_is_renamed_by_place_and_fails_where_a_shape_is_missing() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, body: &str| {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
+        fs::write(dir.path().join(name), svg).unwrap();
+    };
+    write("a.svg", "<path id='p' d='M0,0h10v10z'/><path id='q' d='M50,50h10v10z'/>");
+    write("b.svg", "<path id='other' d='M50,53h10v10z'/><path id='another' d='M0,0h10v10z'/>");
+    write("c.svg", "<path id='p' d='M0,0h10v10z'/>");
+    write("d.svg", "");
+    let compare = |a: &str, b: &str| {
+        let out = pathwarp_in(dir.path(), &["compare", "--json", a, b], b"");
+        (out.status.code(), serde_json::from_slice::<Value>(&out.stdout).unwrap())
+    };
+    let (code, c) = compare("a.svg", "b.svg");
+    let distances: Vec<f64> = c["paths"].as_array().unwrap().iter().map(|p| p["distance"].as_f64().unwrap()).collect();
+    assert!(code == Some(0) && distances[0] < 1e-9 && (distances[1] - 3.0).abs() < 1e-9, "{c}");
+    for (a, b, only) in [("a.svg", "c.svg", "only_in_a"), ("c.svg", "a.svg", "only_in_b")] {
+        let (code, c) = compare(a, b);
+        assert!(code == Some(1) && c[only] == serde_json::json!(["q"]), "{c}");
+    }
+    assert_eq!(compare("d.svg", "c.svg").0, Some(1));
+}
+
+#[test]
+fn folded_pictures_are_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let photo = fs::read("samples/photo.png").unwrap();
+    fs::write(dir.path().join("p.png"), photo).unwrap();
+    fs::write(
+        dir.path().join("d.svg"),
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><image id='pic' width='100' height='90' href='p.png'/></svg>",
+    )
+    .unwrap();
+    for (input, name) in [("p.png", "the picture"), ("d.svg", "pic")] {
+        let folded = |x: &str| {
+            let out = pathwarp_in(dir.path(), &["expr", input, "--x", x, "-o", &format!("out-{input}")], b"");
+            text(&out.stderr).contains(&format!("{name} folds over"))
+        };
+        assert!(folded("abs(x-50)") && !folded("x+sin(y)"), "{input}");
+    }
+}
+
+#[test]
 fn compare_matches_paths_without_id_by_their_order() {
     let dir = tempfile::tempdir().unwrap();
     let compare = |a: &str, b: &str| -> Value {

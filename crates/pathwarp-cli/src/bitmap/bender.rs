@@ -4,11 +4,11 @@ use super::counted::{count_decoded, count_warped};
 use super::inverse::{ROUNDING, inverse};
 use crate::advice;
 use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
-use pathwarp::kurbo::Rect;
+use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::Map;
 use pathwarp_raster::{
-    ImageWarp, Picture, PictureFormat, SeenColor, ShadeTolerance, SmoothShade, encode_smooth_png, extent, header_size,
-    shown, warp_image,
+    ImageWarp, IntRect, Picture, PictureFormat, SeenColor, ShadeTolerance, SmoothShade, encode_smooth_png, enlarged,
+    extent, header_size, shown, warp_image,
 };
 use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
 use std::sync::Arc;
@@ -20,6 +20,13 @@ const PX_PER_INCH: f64 = 96.0;
 /// resolution.
 const PICTURE: f64 = 40e3;
 const GRADIENT: f64 = 24e3;
+
+/// A picture of no more pixels is drawn at the size of the result where its pixels are larger than [`LARGE_PIXEL`], in px: QR codes,
+/// pixel art, swatches. Bent at its own size, its edges would be as coarse as its pixels.
+const FEW_PIXELS: f64 = 65_536.0;
+const LARGE_PIXEL: f64 = 2.0;
+/// Most pixels that such a picture is enlarged to.
+const MOST_ENLARGED: f64 = 4e6;
 
 /// Work for a pixel of a gradient, in pixels painted.
 const SHADED: f64 = 40.0;
@@ -48,6 +55,18 @@ impl Bender {
         self.with_budget(Arc::new(Budget::new(limits)))
     }
 
+    /// Pixels per unit of a result of this size, beyond which nobody sees a difference. `unit` is the size of a unit in px.
+    fn seen_density(&self, unit: f64, (width, height): (f64, f64)) -> f64 {
+        /// Pixels per px of the drawing in each direction: the resolution of a screen of twice the density.
+        const DENSITY: f64 = 2.0;
+        /// The same for small drawings, which are often shown enlarged, along the longer side.
+        const LEAST: f64 = 256.0;
+        match self.dpi {
+            Some(dpi) => dpi / PX_PER_INCH * unit,
+            None => (DENSITY * unit).max(LEAST / width.max(height)),
+        }
+    }
+
     /// Counts evaluations of the map.
     fn count(&self, evaluations: f64) -> Result<(), Exceeded> {
         self.budget.spend(Limit::Evaluations, (evaluations * self.map.work()) as u64)
@@ -60,6 +79,13 @@ impl Bender {
     }
 }
 
+/// The whole pixels that are shown of a picture of this size, with one more around them, which interpolation asks for.
+fn shown_part((width, height): (u32, u32), crop: Option<Rect>) -> Option<IntRect> {
+    let whole = Rect::new(0.0, 0.0, width.into(), height.into());
+    let part = crop.map_or(whole, |c| c.inset(1.0).expand().intersect(whole));
+    IntRect::from_xywh(part.x0 as i32, part.y0 as i32, part.width() as u32, part.height() as u32)
+}
+
 impl ImageWarper for Bender {
     fn warp(&self, r: &ImageRequest<'_>) -> Result<BentImage, PictureError> {
         /// Largest growth of the pixel count: where the map compresses the image, keeping every detail takes more pixels.
@@ -70,7 +96,10 @@ impl ImageWarper for Bender {
         count_decoded(&self.budget, header_size(r.data).map_err(|e| e.to_string())?).map_err(too_much)?;
         let picture = Picture::read_stored_within(r.data, &self.budget.limits().for_input(r.data.len()))
             .map_err(|e| e.to_string())?;
-        let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
+        let part =
+            shown_part((picture.pixmap.width(), picture.pixmap.height()), r.crop).ok_or("nothing of it is shown")?;
+        let [x0, y0, x1, y1] = [part.left(), part.top(), part.right(), part.bottom()].map(f64::from);
+        let area = Rect::new(x0, y0, x1, y1);
         let nowhere = "the map is undefined on part of it";
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
         let (width, height) = (e.bounds.width(), e.bounds.height());
@@ -78,22 +107,35 @@ impl ImageWarper for Bender {
             return Err("its image has no area".into());
         }
         let most = (GROWTH * area.area()).clamp(1.0, MOST);
-        let finest = (most / (width * height)).sqrt();
+        let finest = |most: f64| (most / (width * height)).sqrt();
+        let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+        let large = e.stretch * unit > if r.pixelated { 1.0 } else { LARGE_PIXEL };
+        let factor = if large && (r.pixelated || area.area() <= FEW_PIXELS) {
+            let most = (MOST_ENLARGED / area.area()).sqrt();
+            (e.stretch * self.seen_density(unit, (width, height))).min(most).ceil().max(1.0)
+        } else {
+            1.0
+        };
         let wanted = match self.dpi {
-            Some(dpi) => {
-                let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
-                (dpi / PX_PER_INCH * unit).min((MOST / (width * height)).sqrt())
-            }
-            None => (1.0 / e.squeeze).min(finest),
+            Some(dpi) => (dpi / PX_PER_INCH * unit).min(finest(MOST)),
+            None if factor > 1.0 => (factor / e.stretch).min(finest(MOST)),
+            None => (1.0 / e.squeeze).min(finest(most)),
         };
         let pixels = |length: f64| (length * wanted - ROUNDING).ceil().clamp(1.0, MOST);
         let size = (pixels(width), pixels(height));
         let size = (size.0 as u32, size.1 as u32);
         count_warped(&self.budget, size).map_err(too_much)?;
         let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area), &self.budget);
+        let (source, placed) = if factor == 1.0 && r.crop.is_none() {
+            (picture.pixmap, r.placed)
+        } else {
+            let larger = enlarged(&picture.pixmap, part, factor as u32, r.pixelated, self.budget.limits());
+            let in_part = Affine::translate(area.origin().to_vec2()) * Affine::scale(1.0 / factor);
+            (larger.map_err(|e| e.to_string())?, r.placed * in_part)
+        };
         let warp = ImageWarp {
-            source: &picture.pixmap,
-            placed: r.placed,
+            source: &source,
+            placed,
             map: r.map,
             inverse: &inverse,
             shown: r.after.inverse() * shown(e.bounds, size),
@@ -113,10 +155,6 @@ fn too_much(e: Exceeded) -> PictureError {
 
 impl GradientPainter for Bender {
     fn paint(&self, r: &GradientRequest<'_>) -> Result<BentImage, PictureError> {
-        /// Largest number of samples per pixel of the drawing in each direction: the resolution of a screen of twice the density.
-        const DENSITY: f64 = 2.0;
-        /// The same for small drawings, which are often shown enlarged, along the longer side.
-        const LEAST: f64 = 256.0;
         /// Most samples in a picture: the file holds them as text.
         const MOST: f64 = 2e6;
         /// Most samples in all pictures of a drawing.
@@ -126,10 +164,7 @@ impl GradientPainter for Bender {
             return Err("the image of the shape has no area".into());
         }
         let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
-        let finest = match self.dpi {
-            Some(dpi) => dpi / PX_PER_INCH * unit,
-            None => (DENSITY * unit).max(LEAST / width.max(height)),
-        };
+        let finest = self.seen_density(unit, (width, height));
         let most = MOST.min(MOST_TOGETHER / r.among.max(1) as f64);
         let finest = finest.min((most / (width * height)).sqrt()).min(most / width.max(height));
         let seen: Vec<_> = r.seen.iter().map(|s| SeenColor { at: s.at, color: s.color }).collect();

@@ -8,6 +8,7 @@ use crate::{input, output, readable};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::budget::Exceeded;
 use pathwarp::distance;
+use pathwarp::kurbo::Rect;
 use pathwarp_raster::{Color, RenderOptions, Size};
 use pathwarp_svg::{Document, NamedPath, usvg_tree};
 use rayon::prelude::*;
@@ -43,8 +44,9 @@ pub(super) fn command() -> Command {
         .args(reading_args())
         .after_help(
             "Paths with the same id are compared; paths without an id are matched by their order within the closest ancestor that \
-             has one. The distance is the largest from a point of either path to the other path. A pixel differs visibly if a \
-             channel differs by more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
+             has one, and what is left by place: those whose boxes are nearest. The distance is the largest from a point of either \
+             path to the other path. A path without a counterpart is exit code 1. A pixel differs visibly if a channel differs by \
+             more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
         )
 }
 
@@ -92,12 +94,14 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     // Pages of different proportions differ everywhere.
     let differing = result.pixels.as_ref().map_or(f64::INFINITY, |p| p.visible_share);
     let apart = over("max-distance", result.max_distance) || over("max-pixels", differing);
-    Ok(Status::partial_if(apart))
+    let unmatched = !result.only_in_a.is_empty() || !result.only_in_b.is_empty();
+    Ok(Status::partial_if(apart || unmatched))
 }
 
 fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure> {
     let (paths_a, paths_b) = (a.paths(), b.paths());
-    let counterparts = counterparts(&paths_a, &paths_b);
+    let mut counterparts = counterparts(&paths_a, &paths_b);
+    match_by_place(&paths_a, &paths_b, &mut counterparts);
     let pairs: Result<Vec<PathPair>, Exceeded> = paths_a
         .par_iter()
         .zip(&counterparts)
@@ -112,14 +116,9 @@ fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure
         })
         .collect();
     let pairs = pairs.map_err(|e| pathwarp::Error::limit(a.name(), "comparing it takes", e))?;
-    let paired: HashSet<usize> = counterparts.iter().flatten().copied().collect();
-    let paired_ids: HashSet<&str> = paired.iter().map(|&i| paths_b[i].id.as_str()).collect();
     let unpaired = paths_a.iter().zip(&counterparts).filter(|(_, i)| i.is_none());
     let only_in_a = unpaired.map(|(p, _)| p.id.clone()).collect();
-    // A repeated id counts only once.
-    let repeated = |p: &NamedPath| p.group.is_none() && paired_ids.contains(p.id.as_str());
-    let unpaired = paths_b.iter().enumerate().filter(|(i, p)| !paired.contains(i) && !repeated(p));
-    let only_in_b = unpaired.map(|(_, p)| p.id.clone()).collect();
+    let only_in_b = unpaired_in(&paths_b, &counterparts).map(|i| paths_b[i].id.clone()).collect();
     let options = RenderOptions { size, background: Some(Color::WHITE) };
     let render = |d: &Document| options.render_counted(usvg_tree::tree(d), a.budget());
     let pixels = match pathwarp_raster::compare(&render(a)?, &render(b)?) {
@@ -170,6 +169,42 @@ fn counterparts(a: &[NamedPath], b: &[NamedPath]) -> Vec<Option<usize>> {
         *counterpart = counterpart.or_else(|| by_id.get(&(p.group.is_none(), p.id.as_str())).copied());
     }
     out
+}
+
+/// The paths of `b` that have no counterpart. A repeated id counts only once.
+fn unpaired_in(b: &[NamedPath], counterparts: &[Option<usize>]) -> impl Iterator<Item = usize> {
+    let paired: HashSet<usize> = counterparts.iter().flatten().copied().collect();
+    let ids: HashSet<&str> = paired.iter().map(|&i| b[i].id.as_str()).collect();
+    (0..b.len()).filter(move |&i| !paired.contains(&i) && (b[i].group.is_some() || !ids.contains(b[i].id.as_str())))
+}
+
+/// Matches the paths that have no counterpart yet by the distance of their boxes, nearest first.
+fn match_by_place(a: &[NamedPath], b: &[NamedPath], counterparts: &mut [Option<usize>]) {
+    /// Most pairs that are compared. Among more paths, those of the same place in the file are matched.
+    const MOST: usize = 4_000_000;
+    let left: Vec<usize> = (0..a.len()).filter(|&i| counterparts[i].is_none()).collect();
+    let others: Vec<usize> = unpaired_in(b, counterparts).collect();
+    if left.len().saturating_mul(others.len()) > MOST {
+        left.iter().zip(&others).for_each(|(&i, &j)| counterparts[i] = Some(j));
+        return;
+    }
+    let boxes = |paths: &[NamedPath], of: &[usize]| -> Vec<Option<Rect>> {
+        of.iter().map(|&i| paths[i].outline.bounding_box()).collect()
+    };
+    let (own, other) = (boxes(a, &left), boxes(b, &others));
+    let apart =
+        |p: &Rect, q: &Rect| (p.x0 - q.x0).abs() + (p.y0 - q.y0).abs() + (p.x1 - q.x1).abs() + (p.y1 - q.y1).abs();
+    let mut pairs = Vec::new();
+    for (i, p) in own.iter().enumerate() {
+        pairs.extend(other.iter().enumerate().filter_map(|(j, q)| Some((apart(p.as_ref()?, q.as_ref()?), i, j))));
+    }
+    pairs.sort_by(|p, q| p.0.total_cmp(&q.0).then((p.1, p.2).cmp(&(q.1, q.2))));
+    let mut taken = HashSet::new();
+    for (_, i, j) in pairs {
+        if counterparts[left[i]].is_none() && taken.insert(j) {
+            counterparts[left[i]] = Some(others[j]);
+        }
+    }
 }
 
 fn table(c: &Comparison) -> String {

@@ -1,6 +1,7 @@
 //! Photographs (PNG, JPEG, WebP) as artwork: warped pixel by pixel, by the same maps as a drawing.
 
 use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::folds;
 use super::read::display;
 use super::reference_name::no_document;
 use crate::advice;
@@ -10,6 +11,7 @@ use crate::format::{Choice, PICTURES};
 use crate::options::{CommonOptions, FrameChoice};
 use crate::page::PageNews;
 use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
+use pathwarp::fold;
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
@@ -121,6 +123,8 @@ impl Artwork for PictureArtwork {
             }
             warnings.push(undefined_at(p));
         }
+        let orientation = fold::orientation(&self.outline, true, &*map);
+        warnings.extend(orientation.folded_against(&orientation).map(|at| folds::warning("the picture", &[], at)));
         let (visible, size) = size(bounds, options.image_size, self.budget.limits())?;
         count_warped(&self.budget, size).map_err(|e| too_much(&e))?;
         let inverse = inverse(&map, area, &self.budget);

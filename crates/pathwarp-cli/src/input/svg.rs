@@ -191,7 +191,25 @@ impl SvgArtwork {
         Ok(shapes.iter().map(|s| s.id.as_str()).zip(all).collect())
     }
 
-    /// The folds of the shapes of a part, by their ids, and the warnings about them.
+    /// The same of every picture.
+    fn picture_orientations(
+        &self,
+        k: usize,
+        built: &BuiltRecipe,
+        options: &WarpOptions,
+    ) -> Result<Vec<(String, Orientation)>, Error> {
+        let pictures = self.doc.picture_edges(&options.selection);
+        if pictures.is_empty() || matches!(options.images, Images::Keep) {
+            return Ok(Vec::new());
+        }
+        let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), 4 * pictures.len());
+        let work = survey.work(pictures.len(), 4 * pictures.len());
+        self.doc.budget().spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)?;
+        let orientation = |o: &Outline| survey.orientation_of_copies(o, &built.placement.copies, true);
+        Ok(pictures.into_iter().map(|(name, edge)| (name, orientation(&edge))).collect())
+    }
+
+    /// The folds of the shapes and pictures of a part: those of shapes by their ids, and the warnings.
     fn folds(
         &self,
         k: usize,
@@ -207,6 +225,8 @@ impl SvgArtwork {
             let sum = by_id.entry(id).or_default();
             *sum = sum.and(&o);
         }
+        let pictures = self.picture_orientations(k, built, options)?;
+        all = pictures.iter().fold(all, |all, (_, o)| all.and(o));
         let (mut out, mut warnings) = (HashMap::new(), Vec::new());
         let places = &built.placement;
         let survey = LazyCell::new(|| Survey::new(&built.map, None, 1));
@@ -216,6 +236,9 @@ impl SvgArtwork {
             let letters = if places.letters.is_empty() { lettering.letters() } else { &[] };
             folds::letters_by_shape(self.doc.selected(&options.selection).map(|s| (&*s.id, &*s.outline)), letters)
         });
+        for (name, o) in &pictures {
+            warnings.extend(o.folded_against(&all).map(|at| folds::warning(name, &[], at)));
+        }
         for s in &warped.shapes {
             let Some((&id, o)) = by_id.get_key_value(s.id.as_str()).filter(|(id, _)| !out.contains_key(**id)) else {
                 continue;

@@ -8,6 +8,7 @@ use super::slots::{PlacedSlot, written};
 use crate::scene::affine::is_invertible;
 use crate::scene::model::{Bitmap, Scene};
 use pathwarp::kurbo::Rect;
+use usvg::ImageRendering;
 
 /// Result for a bitmap.
 #[derive(Debug)]
@@ -43,11 +44,10 @@ pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option
         // Not a bitmap.
         usvg::ImageKind::SVG(_) => return EmbeddedImage::Placed,
     };
-    if b.sliced {
-        return approximate("bending images cropped by preserveAspectRatio (slice) is not supported");
-    }
     let after = (write * b.placing.inverse()).inverse();
-    match warper.warp(&ImageRequest { data, placed: b.frame, map: *map, after, to_px: scene.to_px }) {
+    let pixelated = matches!(b.image.rendering_mode(), ImageRendering::Pixelated | ImageRendering::CrispEdges);
+    let request = ImageRequest { data, placed: b.frame, crop: b.crop, pixelated, map: *map, after, to_px: scene.to_px };
+    match warper.warp(&request) {
         Ok(bent) => EmbeddedImage::Bent(bent),
         Err(why) => approximate(&why.to_string()),
     }

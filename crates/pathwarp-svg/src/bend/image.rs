@@ -1,7 +1,7 @@
 //! Bent bitmaps as the library's users see them. An [`ImageWarper`] does the work on pixels.
 
 use super::picture::{BentImage, PictureError};
-use pathwarp::kurbo::Affine;
+use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::Map;
 use std::fmt;
 use std::sync::Arc;
@@ -22,6 +22,10 @@ pub struct ImageRequest<'a> {
     pub data: &'a [u8],
     /// From pixels to root user space.
     pub placed: Affine,
+    /// The pixels that are shown, if not all. The drawing cuts the result there; what lies beyond need not be bent.
+    pub crop: Option<Rect>,
+    /// Pixels are shown as squares, however large.
+    pub pixelated: bool,
     /// The map of root user space.
     pub map: &'a dyn Map,
     /// From root user space to the user space of the result.

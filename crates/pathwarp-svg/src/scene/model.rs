@@ -215,8 +215,8 @@ pub(crate) struct Bitmap {
     pub(crate) owner: Option<ElementId>,
     /// `false` for images in tiles and filters, which are never bent.
     pub(crate) bends: bool,
-    /// `true` if the image is cropped to its viewport.
-    pub(crate) sliced: bool,
+    /// The pixels that `preserveAspectRatio="… slice"` leaves. A clip path cuts the image there, too.
+    pub(crate) crop: Option<Rect>,
 }
 
 impl Bitmap {

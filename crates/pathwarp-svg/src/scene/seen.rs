@@ -1,7 +1,7 @@
 //! The part of a drawing that is seen: not what clip paths, masks and zero opacity hide, nor what lies off the page.
 
 use super::model::{Bitmap, Group, Node, Part, PartRole, Scene};
-use pathwarp::kurbo::Rect;
+use pathwarp::kurbo::{Point, Rect};
 
 /// What counts: flags of parts and of bitmaps.
 pub(crate) struct Counted {
@@ -21,9 +21,17 @@ pub(crate) fn uncut_box(scene: &Scene, page: Rect, counted: &Counted) -> Option<
 
 /// The place of a bitmap in root user space. `None` if it is hidden, or stands for one that was not read.
 pub(crate) fn picture_box(b: &Bitmap) -> Option<Rect> {
-    let (size, shown) = (b.image.size(), b.image.is_visible() && !b.is_unread());
-    let pixels = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
-    shown.then(|| b.frame.transform_rect_bbox(pixels)).filter(Rect::is_finite)
+    let [p, q, r, s] = picture_corners(b)?;
+    Some(Rect::from_points(p, q).union(Rect::from_points(r, s)))
+}
+
+/// The corners of a bitmap in root user space, likewise.
+pub(crate) fn picture_corners(b: &Bitmap) -> Option<[Point; 4]> {
+    let size = b.image.size();
+    let all = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
+    let r = b.crop.map_or(all, |c| c.intersect(all));
+    let corners = [(r.x0, r.y0), (r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)].map(|p| b.frame * Point::from(p));
+    (b.image.is_visible() && !b.is_unread()).then_some(corners).filter(|c| c.iter().all(|p| p.is_finite()))
 }
 
 /// Bounding box of what `room` leaves of what counts, as far as the box of each is `kept`.

@@ -9,7 +9,7 @@ use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::source::unpatchable::Unpatchable;
 use pathwarp::Outline;
-use pathwarp::kurbo::Affine;
+use pathwarp::kurbo::{Affine, Rect};
 use std::collections::{HashMap, HashSet};
 
 /// Key of a definition in one frame: its address, the frame, the slot, and what bends those who refer to it.
@@ -56,6 +56,8 @@ pub(super) struct Context {
     pub(super) slot: Option<usize>,
     /// The enclosing `image` element.
     pub(super) image: Option<ElementId>,
+    /// The viewport that cuts the image inside, in the coordinates of the group around it.
+    pub(super) viewport: Option<Rect>,
     /// In a definition, the index of what bends those who refer to it.
     pub(super) bend: Option<usize>,
 }
@@ -63,7 +65,7 @@ pub(super) struct Context {
 impl Context {
     /// Outside of owners, slots and images.
     pub(super) fn top(role: PartRole) -> Self {
-        Self { owner: None, role, slot: None, image: None, bend: None }
+        Self { owner: None, role, slot: None, image: None, viewport: None, bend: None }
     }
 }
 

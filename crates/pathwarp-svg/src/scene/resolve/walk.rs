@@ -35,6 +35,7 @@ pub(super) fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, m
     let mask = g.mask().map(|m| mask(b, m, frame, referrer, bent));
     context.owner = owner;
     context.image = source.filter(|&e| b.tag(e) == "image").or(context.image);
+    context.viewport = sliced_viewport(g).or(context.viewport);
     for p in g.filters().iter().flat_map(|f| f.primitives()) {
         if let usvg::filter::Kind::Image(image) = p.kind() {
             picture(b, image.root());
@@ -59,6 +60,13 @@ pub(super) fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, m
     if let Some(s) = slot {
         b.scene.slots[s].parts.end = b.scene.parts.len();
     }
+    // The element has one clip path for both: its own one and the edge of its viewport.
+    if let ([usvg::Node::Group(c)], [Node::Group(edge)]) = (g.children(), children.as_slice())
+        && let (Some(_), Some(edge)) = (sliced_viewport(c), edge.clip)
+        && b.scene.clips[edge].clip.is_none()
+    {
+        b.scene.clips[edge].clip = clip;
+    }
     Group {
         source,
         owner,
@@ -72,6 +80,15 @@ pub(super) fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, m
         slot,
         children,
     }
+}
+
+/// The viewport of an image that covers more than it: usvg puts the image into a group of its own, in a group with a clip path.
+fn sliced_viewport(g: &usvg::Group) -> Option<Rect> {
+    let [usvg::Node::Group(inner)] = g.children() else { return None };
+    let [usvg::Node::Image(_)] = inner.children() else { return None };
+    g.clip_path()?;
+    let v = g.bounding_box();
+    Some(Rect::new(v.left().into(), v.top().into(), v.right().into(), v.bottom().into()))
 }
 
 fn address(g: &usvg::Group) -> usize {
@@ -167,11 +184,10 @@ fn image(
 ) -> Node {
     let own = element.filter(|&e| b.tag(e) == "image");
     if let usvg::ImageKind::SVG(tree) = image.kind() {
-        let context = Context { owner: context.owner.or(own), ..context };
+        let context = Context { owner: context.owner.or(own), viewport: None, ..context };
         return Node::Group(Box::new(drawing(b, image, tree, placing.frame, context)));
     }
     let own = own.or(context.image);
-    let aspect = own.or(context.owner).and_then(|e| b.reader.source.attr(e, "preserveAspectRatio"));
     b.scene.bitmaps.push(Bitmap {
         image: Box::new(image.clone()),
         frame: placing.frame,
@@ -179,8 +195,7 @@ fn image(
         slot: context.slot,
         owner: context.owner.or(own),
         bends: context.role != PartRole::Pattern,
-        // Without an element, assume that the image is cropped.
-        sliced: own.is_none() && context.owner.is_none() || aspect.is_some_and(|a| a.contains("slice")),
+        crop: context.viewport.map(|v| placing.transform.inverse().transform_rect_bbox(v)),
     });
     Node::Image(b.scene.bitmaps.len() - 1)
 }
