@@ -30,6 +30,7 @@ mod judge;
 mod limits;
 mod merge;
 mod minimax;
+mod offset;
 mod options;
 mod path;
 mod proof;
@@ -43,6 +44,7 @@ mod stretch;
 mod tables;
 mod trial;
 
+pub use offset::Offset;
 pub use options::Options;
 pub use path::{Fitted, Segment, fit, simplify};
 pub use report::{Assurance, Piece, Report};
@@ -61,3 +63,8 @@ pub mod parts {
     pub use crate::source::tangent_beside;
     pub use crate::stretch::StretchFitter;
 }
+
+/// The README's example, tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

@@ -134,7 +134,7 @@ fn smooth_run(
         Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends)))
     })?;
     if joined < 2 {
-        let piece = segments.first().map(|s| s.piece());
+        let piece = segments.first().map(Segment::piece);
         pieces.extend(piece);
         return Ok(1);
     }
@@ -196,21 +196,30 @@ impl Segment {
         }
     }
 
-    /// Returns `true` if it has a length and no cusps.
-    fn is_smooth(&self) -> bool {
-        let slow = match &self.seg {
+    /// The first and the second derivative.
+    pub(crate) fn derivatives(&self, t: f64) -> [Vec2; 2] {
+        let [_, c1, c2, c3] = self.c;
+        [(c3 * (3.0 * t) + c2 * 2.0) * t + c1, c3 * (6.0 * t) + c2 * 2.0]
+    }
+
+    /// Where it nearly stops.
+    pub(crate) fn slow_spots(&self) -> SlowSpots {
+        match &self.seg {
             PathSeg::Line(_) => SlowSpots::default(),
             PathSeg::Quad(s) => SlowSpots::of_quad(s),
             PathSeg::Cubic(s) => SlowSpots::of_cubic(s),
-        };
-        slow.all().is_empty() && self.c[1..].iter().any(|c| c.hypot2() > 0.0)
+        }
+    }
+
+    /// Returns `true` if it has a length and no cusps.
+    fn is_smooth(&self) -> bool {
+        self.slow_spots().all().is_empty() && self.c[1..].iter().any(|c| c.hypot2() > 0.0)
     }
 }
 
 impl Source for Segment {
     fn eval(&self, t: f64) -> (Point, Vec2) {
-        let [_, c1, c2, c3] = self.c;
-        (self.seg.eval(t), (c3 * (3.0 * t) + c2 * 2.0) * t + c1)
+        (self.seg.eval(t), self.derivatives(t)[0])
     }
 
     fn points(&self, t: &Lane, out: &mut Lanes) {

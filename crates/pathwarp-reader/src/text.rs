@@ -64,7 +64,8 @@ const OVERLINE: &str = "overlines are a little nearer to the letters than in bro
 const SPACES: &str = "spaces where parts of a text keep them and others do not are not those of browsers";
 const LINES: &str = "a tspan with y and without x begins where the words before end, which centred or right-aligned lines of browsers do not";
 
-const ON_PATHS: &str = "letters on a path turn about their middle, which in browsers is that of the letter with its spacing";
+const ON_PATHS: &str =
+    "letters on a path turn about their middle, which in browsers is that of the letter with its spacing";
 const AFTER_PATHS: &str = "words after a textPath begin elsewhere than in browsers";
 const VERTICAL: &str = "punctuation, lines and turned letters of vertical text are placed otherwise than in browsers";
 
