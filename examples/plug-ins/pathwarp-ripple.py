@@ -6,10 +6,11 @@ docs/plugin-protocol.md describes what pathwarp and this program say to each oth
 
 import json
 import math
+import re
 import sys
 
 ENTRY = {
-    "pathwarp-plugin": 1,
+    "pathwarp-plugin": 2,
     "protocol": "text",
     "name": "ripple",
     "title": "rings on water, spreading from a centre",
@@ -31,6 +32,7 @@ ENTRY = {
         {"args": {"center": "50,50", "wavelength": "40", "height": "3"}, "at": [60, 50], "to": [63, 50], "tolerance": 1e-12},
     ],
 }
+REPEATED = {p["name"] for p in ENTRY["parameters"] if p.get("repeat")}
 
 
 class Map:
@@ -61,7 +63,11 @@ def main():
             pairs = [line.rstrip("\n").partition(" ")[::2] for line in lines]
             values = {}
             for name, value in pairs:
-                values[name] = value if name not in values else [*values[name], value]
+                value = re.sub(r"\\(.)", lambda m: {"n": "\n", "r": "\r"}.get(m[1], m[1]), value)
+                if name in REPEATED:
+                    values.setdefault(name, []).append(value)
+                else:
+                    values[name] = value
             frame = [float(v) for v in values.pop("frame").split()]
             try:
                 point = Map(frame, values).point

@@ -2,7 +2,7 @@
 # tilt: a slant that grows towards the top, as a plug-in in shell and awk.
 cat <<'ENTRY'
 {
-  "pathwarp-plugin": 1,
+  "pathwarp-plugin": 2,
   "protocol": "text",
   "name": "tilt",
   "title": "a slant that grows towards the top",

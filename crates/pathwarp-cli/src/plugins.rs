@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::OPTIONS;
 use crate::steps::INVERSE;
-use crate::temporaries;
+use crate::{temporaries, terminal};
 use pathwarp::deform::{Deformation, Registry};
 use pathwarp_plugin::{Broken, Plugin, Reserved};
 use std::ffi::{OsStr, OsString};
@@ -32,6 +32,15 @@ impl Plugins {
     /// The registry with the plug-ins.
     pub(crate) fn added_to(&self, registry: &Registry) -> Registry {
         self.plugins.iter().fold(registry.clone(), |all, p| all.with(p.clone()))
+    }
+
+    /// Shows what the programs have written to standard error.
+    pub(crate) fn tell(&self) {
+        for p in &self.plugins {
+            if let Some(said) = p.said() {
+                terminal::note(&format!("plug-in {} said: {said}", p.path().display()));
+            }
+        }
     }
 
     /// The plug-in called `name`.

@@ -10,6 +10,7 @@ use crate::session::{Protocol, Session};
 use crate::{binary, text, values};
 use pathwarp::Error;
 use pathwarp::deform::{Built, Deformation, Info};
+use pathwarp::map::{CreaseKind, Map as _};
 use pathwarp::param::{Axis, Settings};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -18,6 +19,7 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone)]
 pub struct Plugin {
     info: &'static Info,
+    version: u32,
     abilities: Abilities,
     program: Arc<Program>,
 }
@@ -45,13 +47,19 @@ impl Plugin {
 
     fn new(path: &Path, entry: &Entry, running: Option<Session>) -> Self {
         let program = Arc::new(Program::new(path.to_owned(), entry.protocol, running));
-        Self { info: entry.info, abilities: entry.abilities, program }
+        Self { info: entry.info, version: entry.version, abilities: entry.abilities, program }
     }
 
     /// The file of the program.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.program.path
+    }
+
+    /// The end of what the running program has written to standard error, on one line.
+    #[must_use]
+    pub fn said(&self) -> Option<String> {
+        self.program.said()
     }
 
     /// Returns `true` if the program gives derivatives itself.
@@ -74,7 +82,7 @@ impl Deformation for Plugin {
 
     fn build(&self, settings: &Settings<'_>) -> Result<Built, Error> {
         let frame = settings.frame();
-        let lines = values::lines(self.info.params, settings)?;
+        let lines = values::lines(self.info.params, settings, self.version)?;
         let request = match self.program.protocol {
             Protocol::Text => text::build(&lines),
             Protocol::Binary => binary::build(&lines),
@@ -86,7 +94,7 @@ impl Deformation for Plugin {
         };
         let answer = self.program.build(&instance).map_err(refused)?;
         let creases = answer::creases(&answer.creases).map_err(refused)?;
-        if !creases.items().is_empty() && !self.abilities.jacobian {
+        if creases.items().iter().any(|c| c.kind == CreaseKind::Kink) && !self.abilities.jacobian {
             let why = "it declares creases but no derivatives (\"jacobian\": true), and differences would cross them";
             return Err(Fault::Entry(why.to_owned()).of(&self.program.path));
         }
@@ -94,7 +102,11 @@ impl Deformation for Plugin {
         let failed = Arc::new(OnceLock::new());
         let size = frame.extent(Axis::Diagonal).max(f64::MIN_POSITIVE);
         let map = ProgramMap { program, instance, abilities, creases, size, failed: Arc::clone(&failed) };
-        let mut built = Built::new(Arc::new(map));
+        let mut built = Built::new(Arc::new(map.clone()));
+        if abilities.partial {
+            let unknown = move |p| (!map.point(p).is_finite()).then(|| "the plug-in gives no numbers there".to_owned());
+            built.undefined = Some(Arc::new(unknown));
+        }
         answer.notes.into_iter().for_each(|n| built.note(n));
         answer.warnings.into_iter().for_each(|w| built.warn(w));
         let path = self.program.path.clone();

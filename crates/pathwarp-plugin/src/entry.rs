@@ -9,7 +9,9 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 /// The version of the protocol.
-pub(crate) const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 2;
+/// The oldest version that programs may speak. Of a repeated number, length, angle, count, point or choice they get the last value.
+pub(crate) const FIRST_VERSION: u32 = 1;
 
 /// Names that a program may not use.
 #[derive(Debug, Clone, Copy, Default)]
@@ -23,6 +25,7 @@ pub struct Reserved<'a> {
 /// An entry, read and checked.
 pub(crate) struct Entry {
     pub(crate) info: &'static Info,
+    pub(crate) version: u32,
     pub(crate) protocol: Protocol,
     pub(crate) abilities: Abilities,
 }
@@ -31,7 +34,7 @@ pub(crate) struct Entry {
 #[serde(deny_unknown_fields)]
 struct Written {
     #[serde(rename = "pathwarp-plugin")]
-    _version: u32,
+    version: u32,
     name: String,
     title: String,
     #[serde(default)]
@@ -135,7 +138,7 @@ pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault>
     let wrong = |problem: String| Fault::Entry(problem);
     let json: Value = serde_json::from_slice(bytes).map_err(|e| wrong(format!("it is not JSON: {e}")))?;
     match json.get("pathwarp-plugin") {
-        Some(v) if v.as_u64() == Some(VERSION.into()) => {}
+        Some(v) if v.as_u64().is_some_and(|v| (FIRST_VERSION.into()..=VERSION.into()).contains(&v)) => {}
         Some(v) => return Err(Fault::Version { found: v.to_string(), known: VERSION }),
         None => return Err(wrong(format!("it lacks \"pathwarp-plugin\": {VERSION}"))),
     }
@@ -171,7 +174,8 @@ pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault>
         .cases(written.cases.iter().map(case).collect::<Vec<_>>().leak());
     let partial = written.domain == Domain::Partial;
     let abilities = Abilities { jacobian: written.jacobian, inverse: written.inverse, partial };
-    Ok(Entry { info: Box::leak(Box::new(info)), protocol: written.protocol, abilities })
+    let (version, protocol) = (written.version, written.protocol);
+    Ok(Entry { info: Box::leak(Box::new(info)), version, protocol, abilities })
 }
 
 /// The first text that could do something to a terminal.

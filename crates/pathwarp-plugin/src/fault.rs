@@ -67,7 +67,7 @@ pub enum Fault {
     #[error("has a wrong entry: {0}")]
     Entry(String),
     /// The entry is of another version of the protocol.
-    #[error("speaks version {found} of the protocol; this program speaks version {known}")]
+    #[error("speaks version {found} of the protocol; this program speaks version {known} and older ones")]
     Version {
         /// The version of the entry.
         found: String,
@@ -78,7 +78,9 @@ pub enum Fault {
     #[error("has the name of a command, {0}; rename it")]
     NameTaken(String),
     /// An answer cannot be read.
-    #[error("wrote {found} where {expected} was expected")]
+    #[error(
+        "wrote {found} to standard output where {expected} was expected; messages belong on standard error (in Python: print(…, file=sys.stderr))"
+    )]
     Garbage {
         /// The expected answer.
         expected: String,
@@ -86,7 +88,9 @@ pub enum Fault {
         found: String,
     },
     /// An answer has the wrong number of points.
-    #[error("answered too much or too little: {expected} {found}")]
+    #[error(
+        "answered too much or too little: {expected} {found}; messages belong on standard error (in Python: print(…, file=sys.stderr))"
+    )]
     Count {
         /// The expected answer.
         expected: String,
@@ -114,11 +118,14 @@ fn quoted(said: &str) -> String {
     if said.is_empty() { String::new() } else { format!("; it said: {said}") }
 }
 
-/// The last lines of `bytes` on one line, without characters that would change the terminal.
+/// The last lines of `bytes` on one line, each with the number of times that it comes in a row, without characters that would change
+/// the terminal.
 pub(crate) fn readable(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let line: Vec<&str> = text.split(|c: char| c.is_control()).map(str::trim).filter(|l| !l.is_empty()).collect();
-    let line = line.join(" | ");
+    let times =
+        |run: &[&str]| if run.len() == 1 { run[0].to_owned() } else { format!("{} ({} times)", run[0], run.len()) };
+    let line = line.chunk_by(|a, b| a == b).map(times).collect::<Vec<_>>().join(" | ");
     let skipped = line.char_indices().rev().nth(QUOTED_BYTES).map_or(0, |(i, _)| i);
     if skipped == 0 { line } else { format!("…{}", &line[skipped..]) }
 }

@@ -90,6 +90,12 @@ impl Pipes {
         }
     }
 
+    /// The end of what was said on standard error so far.
+    pub(crate) fn said(&mut self) -> String {
+        while self.wait(false, Duration::ZERO)[1] && self.hear().is_ok() {}
+        readable(&self.said)
+    }
+
     /// Bytes received after the last answer.
     pub(crate) fn left_over(&self) -> &[u8] {
         &self.incoming

@@ -96,6 +96,18 @@ impl Pipes {
         }
     }
 
+    /// The end of what was said on standard error so far.
+    pub(crate) fn said(&mut self) -> String {
+        while let Ok(event) = self.events.try_recv() {
+            match event {
+                Event::Output(bytes) => self.incoming.extend(bytes),
+                Event::Errors(bytes) if self.hear(&bytes).is_ok() => {}
+                _ => break,
+            }
+        }
+        readable(&self.said)
+    }
+
     /// Bytes received after the last answer.
     pub(crate) fn left_over(&self) -> &[u8] {
         &self.incoming

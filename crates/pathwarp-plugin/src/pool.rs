@@ -47,6 +47,12 @@ impl Program {
         Self { path, protocol, most, state: Mutex::new(state), returned: Condvar::new() }
     }
 
+    /// The end of what the processes have said on standard error.
+    pub(crate) fn said(&self) -> Option<String> {
+        let all: Vec<String> = self.state().idle.iter_mut().map(Session::said).filter(|s| !s.is_empty()).collect();
+        all.into_iter().reduce(|a, b| if a == b { a } else { format!("{a} | {b}") })
+    }
+
     /// Builds a map.
     pub(crate) fn build(&self, instance: &Instance) -> Result<BuildAnswer, Fault> {
         self.with_session(0, |s| s.build(self.protocol, instance))

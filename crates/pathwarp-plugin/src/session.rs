@@ -48,6 +48,11 @@ impl Session {
         Ok((session, entry))
     }
 
+    /// The end of what the program has said on standard error.
+    pub(crate) fn said(&mut self) -> String {
+        self.pipes.said()
+    }
+
     /// Builds a map.
     pub(crate) fn build(&mut self, protocol: Protocol, instance: &Instance) -> Result<BuildAnswer, Fault> {
         let answer = self.built(protocol, &instance.request, 0)?;

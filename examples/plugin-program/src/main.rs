@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 
 const ENTRY: &str = r#"{
-  "pathwarp-plugin": 1,
+  "pathwarp-plugin": 2,
   "protocol": "binary",
   "jacobian": true,
   "name": "ripple",
@@ -40,9 +40,9 @@ struct Map {
 }
 
 impl Map {
-    fn new(values: &HashMap<String, String>) -> Result<Self, String> {
+    fn new(values: &HashMap<String, Vec<String>>) -> Result<Self, String> {
         let numbers = |name: &str| -> Vec<f64> {
-            values.get(name).iter().flat_map(|v| v.split(' ')).filter_map(|v| v.parse().ok()).collect()
+            values.get(name).into_iter().flatten().flat_map(|v| v.split(' ')).filter_map(|v| v.parse().ok()).collect()
         };
         match (numbers("center").as_slice(), numbers("height").as_slice(), numbers("wavelength").as_slice()) {
             (&[x, y], &[height], &[length]) => {
@@ -129,10 +129,30 @@ fn unbuffered() -> io::Result<File> {
     Ok(output.into())
 }
 
-/// The lines `NAME VALUE` of a request to build.
-fn values(text: &str) -> HashMap<String, String> {
-    let pairs = text.lines().filter_map(|line| line.split_once(' '));
-    pairs.map(|(name, value)| (name.to_owned(), value.to_owned())).collect()
+/// The values of a request to build, by name: lines `NAME VALUE`, several for a repeated parameter.
+fn values(text: &str) -> HashMap<String, Vec<String>> {
+    let mut out: HashMap<String, Vec<String>> = HashMap::new();
+    for (name, value) in text.lines().filter_map(|line| line.split_once(' ')) {
+        out.entry(name.to_owned()).or_default().push(unescaped(value));
+    }
+    out
+}
+
+/// A text whose `\\`, `\n` and `\r` stand for a backslash and line breaks.
+fn unescaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut letters = text.chars();
+    while let Some(c) = letters.next() {
+        out.push(match c {
+            '\\' => match letters.next() {
+                Some('n') => '\n',
+                Some('r') => '\r',
+                other => other.unwrap_or('\\'),
+            },
+            c => c,
+        });
+    }
+    out
 }
 
 /// The numbers of `f` at every point of a batch.

@@ -122,8 +122,8 @@ fn wrong_entries() {
         fails_at_start(kind, &format!("#!/bin/sh\ncat <<'E'\n{entry}\nE\n"), 0o755, words);
     };
     let good = entry("bad");
-    at_start("of another version", &good.replace("\"pathwarp-plugin\": 1", "\"pathwarp-plugin\": 2"), &["version 2"]);
-    at_start("without a version", "{\"name\": \"bad\"}", &["lacks \"pathwarp-plugin\": 1"]);
+    at_start("of another version", &good.replace("\"pathwarp-plugin\": 1", "\"pathwarp-plugin\": 3"), &["version 3"]);
+    at_start("without a version", "{\"name\": \"bad\"}", &["lacks \"pathwarp-plugin\": 2"]);
     at_start("of another name", &entry("worse"), &["its name is `worse`"]);
     at_start("with an unknown field", &good.replace("\"about\"", "\"colour\": 1, \"about\""), &["colour"]);
     let with_param = |p: &str| good.replace("\"title\"", &format!("\"parameters\": [{p}], \"title\""));

@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 
 const ENTRY: &str = r#"{
-  "pathwarp-plugin": 1,
+  "pathwarp-plugin": 2,
   "protocol": "binary",
   "jacobian": true,
   "inverse": true,
@@ -43,10 +43,10 @@ struct Map {
 }
 
 impl Map {
-    /// `values` has every parameter's value as text, and the box that percentages refer to as `frame`: x0 y0 x1 y1.
-    fn new(values: &HashMap<String, String>) -> Result<Self, String> {
+    /// `values` has the values of every parameter as text, several of a repeated one, and the box that percentages refer to as `frame`: x0 y0 x1 y1.
+    fn new(values: &HashMap<String, Vec<String>>) -> Result<Self, String> {
         let number = |name: &str| -> Result<f64, String> {
-            values.get(name).and_then(|v| v.parse().ok()).ok_or_else(|| format!("{name} is not a number"))
+            values.get(name).and_then(|all| all.last()?.parse().ok()).ok_or_else(|| format!("{name} is not a number"))
         };
         Ok(Self { height: number("height")?, waves: std::f64::consts::TAU / number("wavelength")? })
     }
@@ -124,10 +124,30 @@ fn unbuffered() -> io::Result<File> {
     Ok(output.into())
 }
 
-/// The lines `NAME VALUE` of a request to build.
-fn values(text: &str) -> HashMap<String, String> {
-    let pairs = text.lines().filter_map(|line| line.split_once(' '));
-    pairs.map(|(name, value)| (name.to_owned(), value.to_owned())).collect()
+/// The values of a request to build, by name: lines `NAME VALUE`, several for a repeated parameter.
+fn values(text: &str) -> HashMap<String, Vec<String>> {
+    let mut out: HashMap<String, Vec<String>> = HashMap::new();
+    for (name, value) in text.lines().filter_map(|line| line.split_once(' ')) {
+        out.entry(name.to_owned()).or_default().push(unescaped(value));
+    }
+    out
+}
+
+/// A text whose `\\`, `\n` and `\r` stand for a backslash and line breaks.
+fn unescaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut letters = text.chars();
+    while let Some(c) = letters.next() {
+        out.push(match c {
+            '\\' => match letters.next() {
+                Some('n') => '\n',
+                Some('r') => '\r',
+                other => other.unwrap_or('\\'),
+            },
+            c => c,
+        });
+    }
+    out
 }
 
 /// The numbers of `f` at every point of a batch.

@@ -6,10 +6,11 @@ docs/plugin-protocol.md describes what pathwarp and this program say to each oth
 
 import json
 import math
+import re
 import sys
 
 ENTRY = {
-    "pathwarp-plugin": 1,
+    "pathwarp-plugin": 2,
     "protocol": "text",
     "name": "@NAME@",
     "title": "waves that run across the artwork",
@@ -36,13 +37,14 @@ ENTRY = {
         {"args": {"height": "4", "wavelength": "40"}, "at": [10, 5], "to": [10, 9], "tolerance": 1e-12},
     ],
 }
+REPEATED = {p["name"] for p in ENTRY["parameters"] if p.get("repeat")}
 
 
 class Map:
     """The map for one set of values. Lengths are in user units, angles in degrees, y points down."""
 
     def __init__(self, frame, values):
-        # frame is [x0, y0, x1, y1], the box that percentages refer to; a value is text, a list of it if given several times.
+        # frame is [x0, y0, x1, y1], the box that percentages refer to; a value is text, that of a repeated parameter a list of texts.
         self.height = float(values["height"])
         self.waves = math.tau / float(values["wavelength"])
 
@@ -62,7 +64,11 @@ def main():
             pairs = [line.rstrip("\n").partition(" ")[::2] for line in lines]
             values = {}
             for name, value in pairs:
-                values[name] = value if name not in values else [*values[name], value]
+                value = re.sub(r"\\(.)", lambda m: {"n": "\n", "r": "\r"}.get(m[1], m[1]), value)
+                if name in REPEATED:
+                    values.setdefault(name, []).append(value)
+                else:
+                    values[name] = value
             frame = [float(v) for v in values.pop("frame").split()]
             try:
                 point = Map(frame, values).point

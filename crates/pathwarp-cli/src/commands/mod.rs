@@ -126,8 +126,12 @@ const OTHERS: [(&str, Declare); 18] = [
 /// Runs the subcommand that `args` names; the first of them is the program's name.
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
     let (args, plugins) = plugins::load(registry, args, &OTHERS.map(|(name, _)| name))?;
-    let registry = &plugins.added_to(registry);
-    let args = args.as_slice();
+    let result = dispatched(&plugins.added_to(registry), &args, &plugins);
+    plugins.tell();
+    result
+}
+
+fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Result<Status, Failure> {
     // Each part after a lone `+` is a command line of its own.
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
@@ -145,7 +149,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     }
     let matches = command
         .try_get_matches_from(first)
-        .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
+        .map_err(|e| broken(plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
@@ -169,9 +173,9 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
-        edit::NAME => edit::run(registry, &plugins, m),
-        list::NAME => list::run(registry, &plugins, m),
-        check::NAME => check::run(registry, &plugins, m),
+        edit::NAME => edit::run(registry, plugins, m),
+        list::NAME => list::run(registry, plugins, m),
+        check::NAME => check::run(registry, plugins, m),
         new_plugin::NAME => {
             let taken =
                 |name: &str| name == "help" || OTHERS.iter().any(|(n, _)| *n == name) || registry.get(name).is_some();

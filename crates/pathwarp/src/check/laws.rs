@@ -1,22 +1,20 @@
 //! The laws that a deformation states about itself, and values known from elsewhere.
 
 use super::frame::frame;
-use super::maps::samples;
+use super::maps::{Domain, skipped};
 use super::outcome::Check;
-use crate::deform::{Deformation, Law, Pairs};
+use crate::deform::{Built, Deformation, Law, Pairs};
 use crate::map::Map;
 use crate::param::Args;
 use kurbo::{Point, Rect, Vec2};
 use std::cell::Cell;
-use std::sync::Arc;
 
 /// The laws.
 pub(super) fn laws(entry: &dyn Deformation) -> Check {
     let mut faults = Check::new("laws");
     faults.detail = format!("{} of them", entry.info().laws.len());
-    for law in entry.info().laws {
-        check_law(entry, law, &mut faults);
-    }
+    let outside: usize = entry.info().laws.iter().map(|law| check_law(entry, law, &mut faults)).sum();
+    faults.detail += &skipped(outside);
     faults
 }
 
@@ -26,10 +24,12 @@ pub(super) fn cases(entry: &dyn Deformation) -> Check {
     faults.detail = format!("{} known values", entry.info().cases.len());
     for case in entry.info().cases {
         match build(entry, case.args) {
-            Ok(map) => {
-                let got = map.point(case.at.into());
+            Ok(built) => {
+                let got = built.map.point(case.at.into());
                 let off = got.distance(case.to.into());
-                if off.is_nan() || off > case.tolerance {
+                if let Some(failure) = failure(&built) {
+                    faults.fault(format!("{:?}: {failure}", case.args));
+                } else if off.is_nan() || off > case.tolerance {
                     faults.fault(format!(
                         "{:?} takes {:?} to {got:?}, {off:e} away from {:?}",
                         case.args, case.at, case.to
@@ -42,88 +42,119 @@ pub(super) fn cases(entry: &dyn Deformation) -> Check {
     faults
 }
 
-fn build(entry: &dyn Deformation, pairs: Pairs) -> Result<Arc<dyn Map>, crate::Error> {
-    entry.build_from(&Args::from_pairs(pairs), &frame()).map(|b| b.map)
+fn build(entry: &dyn Deformation, pairs: Pairs) -> Result<Built, crate::Error> {
+    entry.build_from(&Args::from_pairs(pairs), &frame())
+}
+
+/// Why a map that asks another program has failed, if it has.
+fn failure(built: &Built) -> Option<crate::Error> {
+    built.failure.as_ref().and_then(|f| f())
 }
 
 /// Returns the distance of the image of a point between `p` and `q` from the line through their images.
 fn bent(m: &dyn Map, p: Point, q: Point) -> f64 {
     let (a, b, c) = (m.point(p), m.point(p.lerp(q, 0.4)), m.point(q));
     let n = (c - a).hypot();
-    if n > 0.0 { ((b - a).cross(c - a) / n).abs() } else { 0.0 }
+    if n == 0.0 { 0.0 } else { ((b - a).cross(c - a) / n).abs() }
 }
 
-fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) {
+fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
     const NEAR: f64 = 1e-9;
-    let mut with = |pairs: Pairs| {
-        let built = build(entry, pairs);
-        if let Err(e) = &built {
-            faults.fault(format!("{pairs:?} does not build: {e}"));
-        }
-        built.ok()
+    let values = match *law {
+        Law::Same(a, b) | Law::Undoes(a, b) => vec![a, b],
+        Law::Identity(a)
+        | Law::KeepsLines(a)
+        | Law::KeepsLinesAlong(a, _)
+        | Law::FixedOutside(a, _)
+        | Law::Area(a, _)
+        | Law::KeepsAngles(a) => vec![a],
     };
+    let mut built = Vec::with_capacity(values.len());
+    for pairs in &values {
+        match build(entry, pairs) {
+            Ok(b) => built.push(b),
+            Err(e) => faults.fault(format!("{pairs:?} does not build: {e}")),
+        }
+    }
+    let (Some(first), Some(last)) = (built.first(), built.last().filter(|_| built.len() == values.len())) else {
+        return 0;
+    };
+    let domain = Domain::of(first);
+    let (samples, outside) = domain.samples();
+    let is_partial = domain.is_partial() || Domain::of(last).is_partial();
+    let skips = Cell::new(outside);
     // The place of the largest value of the last call of `worst`.
     let place = Cell::new(None);
-    let worst = |map: &dyn Map, f: &dyn Fn(Point) -> f64| {
+    let worst = |f: &dyn Fn(Point) -> f64| {
         place.set(None);
-        samples(map).into_iter().fold(0.0_f64, |most, p| {
+        let mut most = 0.0_f64;
+        for &p in &samples {
             let off = f(p);
-            if off > most {
+            if off.is_nan() && is_partial {
+                skips.set(skips.get() + 1);
+            } else if off > most || off.is_nan() {
                 place.set(Some(p));
+                most = if off.is_nan() { f64::INFINITY } else { off };
             }
-            most.max(off)
-        })
+        }
+        most
     };
+    let (f, g) = (&*first.map, &*last.map);
+    let pairs = values[0];
+    let by = |off: f64| if off.is_finite() { format!("{off:e}") } else { "what is no number".to_owned() };
     let fault = match *law {
-        Law::Identity(pairs) => with(pairs).and_then(|m| {
-            let off = worst(&*m, &|p| m.point(p).distance(p));
-            (off > NEAR).then(|| format!("{pairs:?} should be the identity; it moves a point by {off:e}"))
-        }),
-        Law::Same(a, b) => with(a).zip(with(b)).and_then(|(a_map, b_map)| {
-            let off = worst(&*a_map, &|p| a_map.point(p).distance(b_map.point(p)));
-            (off > NEAR).then(|| format!("{a:?} and {b:?} should be one map; they differ by {off:e}"))
-        }),
-        Law::KeepsLines(pairs) => with(pairs).and_then(|m| {
-            let off = worst(&*m, &|p| bent(&*m, p, Point::new(97.0 - p.x, 0.3 * p.y + 11.0)));
-            (off > NEAR).then(|| format!("{pairs:?} should keep lines straight; it bends one by {off:e}"))
-        }),
-        Law::KeepsLinesAlong(pairs, (x, y)) => with(pairs).and_then(|m| {
-            let off = worst(&*m, &|p| bent(&*m, p, p + Vec2::new(x, y) * (9.0 / x.hypot(y))));
-            (off > NEAR).then(|| format!("{pairs:?} should keep lines along {x},{y} straight; it bends one by {off:e}"))
-        }),
-        Law::FixedOutside(pairs, [x0, y0, x1, y1]) => with(pairs).and_then(|m| {
+        Law::Identity(_) => {
+            let off = worst(&|p| f.point(p).distance(p));
+            (off > NEAR).then(|| format!("{pairs:?} should be the identity; it moves a point by {}", by(off)))
+        }
+        Law::Same(a, b) => {
+            let off = worst(&|p| f.point(p).distance(g.point(p)));
+            (off > NEAR).then(|| format!("{a:?} and {b:?} should be one map; they differ by {}", by(off)))
+        }
+        Law::KeepsLines(_) => {
+            let off = worst(&|p| bent(f, p, Point::new(97.0 - p.x, 0.3 * p.y + 11.0)));
+            (off > NEAR).then(|| format!("{pairs:?} should keep lines straight; it bends one by {}", by(off)))
+        }
+        Law::KeepsLinesAlong(_, (x, y)) => {
+            let off = worst(&|p| bent(f, p, p + Vec2::new(x, y) * (9.0 / x.hypot(y))));
+            (off > NEAR)
+                .then(|| format!("{pairs:?} should keep lines along {x},{y} straight; it bends one by {}", by(off)))
+        }
+        Law::FixedOutside(_, [x0, y0, x1, y1]) => {
             let inside = Rect::new(x0, y0, x1, y1);
-            let moves = worst(&*m, &|p| m.point(p).distance(p)) > 0.0;
-            let off = worst(&*m, &|p| if inside.contains(p) { 0.0 } else { m.point(p).distance(p) });
-            let inert = format!("{pairs:?} moves nothing at all");
-            (off > 0.0 || !moves).then(|| {
-                if moves {
-                    format!("{pairs:?} should move nothing outside {inside:?}; it moves a point by {off:e}")
-                } else {
-                    inert
-                }
-            })
-        }),
-        Law::Area(pairs, factor) => with(pairs).and_then(|m| {
-            let off = worst(&*m, &|p| (m.jet(p).det() - factor).abs());
+            if worst(&|p| f.point(p).distance(p)) > 0.0 {
+                let off = worst(&|p| if inside.contains(p) { 0.0 } else { f.point(p).distance(p) });
+                (off > 0.0).then(|| {
+                    format!("{pairs:?} should move nothing outside {inside:?}; it moves a point by {}", by(off))
+                })
+            } else {
+                Some(format!("{pairs:?} moves nothing at all"))
+            }
+        }
+        Law::Area(_, factor) => {
+            let off = worst(&|p| (f.jet(p).det() - factor).abs());
             (off > NEAR * (1.0 + factor.abs()))
-                .then(|| format!("{pairs:?} should multiply areas by {factor}; it is off by {off:e}"))
-        }),
-        Law::KeepsAngles(pairs) => with(pairs).and_then(|m| {
+                .then(|| format!("{pairs:?} should multiply areas by {factor}; it is off by {}", by(off)))
+        }
+        Law::KeepsAngles(_) => {
             // Cauchy–Riemann equations: ∂F/∂y is ∂F/∂x rotated by 90°.
-            let off = worst(&*m, &|p| {
-                let j = m.jet(p);
+            let off = worst(&|p| {
+                let j = f.jet(p);
                 (j.dy - j.dx.turn_90()).hypot() / j.dx.hypot().max(f64::MIN_POSITIVE)
             });
-            (off > NEAR).then(|| format!("{pairs:?} should keep angles; one is off by {off:e}"))
-        }),
-        Law::Undoes(there, back) => with(there).zip(with(back)).and_then(|(f, g)| {
-            let off = worst(&*f, &|p| g.point(f.point(p)).distance(p));
-            (off > NEAR).then(|| format!("{back:?} should undo {there:?}; a point ends {off:e} away"))
-        }),
+            (off > NEAR).then(|| format!("{pairs:?} should keep angles; one is off by {}", by(off)))
+        }
+        Law::Undoes(there, back) => {
+            let off = worst(&|p| g.point(f.point(p)).distance(p));
+            (off > NEAR).then(|| format!("{back:?} should undo {there:?}; a point ends {} away", by(off)))
+        }
     };
-    if let Some(f) = fault {
+    // Values after a failure mean nothing.
+    if let Some((pairs, e)) = values.iter().zip(&built).find_map(|(pairs, b)| Some((pairs, failure(b)?))) {
+        faults.fault(format!("{pairs:?}: {e}"));
+    } else if let Some(fault) = fault {
         let place = place.get().map(|p: Point| format!(", worst at {},{}", p.x, p.y)).unwrap_or_default();
-        faults.fault(f + &place);
+        faults.fault(fault + &place);
     }
+    skips.get()
 }
