@@ -56,8 +56,11 @@ pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
 pub mod parts {
     pub use crate::distances::{MarkBatch, MarkedCubic};
     pub use crate::fit::ChordFrame;
-    pub use crate::limits::{FOOT_ROUNDING, MERGE_GRID, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER, VANISHING_DERIVATIVE};
-    pub use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches};
+    pub use crate::limits::{
+        FOOT_ROUNDING, MERGE_GRID, MERGE_SHARE, SMOOTH_JOINT, STRAIGHT_TOLERANCE, STRAIGHT_TURN, SURE_CORNER,
+        VANISHING_DERIVATIVE,
+    };
+    pub use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, refined};
     pub use crate::run::{RunSegment, SegmentRun, per_segment, sample_lanes};
     pub use crate::sample::{CHECKED, FITTED, fma, spaced};
     pub use crate::source::tangent_beside;

@@ -45,7 +45,7 @@ pub(crate) const STRAIGHT_SIZE: f64 = 1e-9;
 /// … and within this share of the tolerance, so that lines leave the rest to other errors. Figures are unchanged from 1e-4 to
 /// 1e-2.
 /// Test: `refit::images_straight_to_rounding_become_lines` (at 0 and 1).
-pub(crate) const STRAIGHT_TOLERANCE: f64 = 1e-3;
+pub const STRAIGHT_TOLERANCE: f64 = 1e-3;
 
 /// Rounding of a coordinate after a map's arithmetic, relative to the coordinate: some twenty operations. Added to the distance
 /// allowed for a line.
@@ -58,7 +58,7 @@ pub(crate) const SAMPLE_ROUNDING: f64 = 1e-12;
 
 /// Tangents within this many radians of the chord make no corner with it: far below the 0.01° to which joints are kept smooth.
 /// Tests: `refit::images_straight_to_rounding_become_lines` (at 0); `report::misfits_are_reported_with_their_place` (at 10).
-pub(crate) const STRAIGHT_TURN: f64 = 1e-6;
+pub const STRAIGHT_TURN: f64 = 1e-6;
 
 // Fit
 
@@ -422,6 +422,15 @@ pub const SURE_CORNER: f64 = 0.009;
 /// Test: *figures* (at 1).
 pub const MERGE_GRID: usize = 8;
 
+/// A run of at least this many segments is searched again on a finer grid if it is one curve …
+pub(crate) const LEAST_REFINED: usize = 6;
+
+/// … whose curvature jumps by no more than this share, …
+pub(crate) const EVEN_CURVATURE: f64 = 0.05;
+
+/// … and if its pieces have fewer grid places than this. Circles of eight cubics under strong maps have up to a sixth fewer pieces.
+pub(crate) const FEW_PLACES: usize = 24;
+
 /// Share of a cubic's grid places to which its end is searched: the last of 64 or fewer exactly, of more as a share.
 pub(crate) const FINEST_STEP: usize = 128;
 
@@ -485,10 +494,6 @@ pub(crate) const SHORT_FACTOR: f64 = 6.0;
 /// measured: elsewhere the two run side by side. 0: a check takes three times as long.
 /// Test: `merge_random::bulges_of_the_cubic_between_foot_points_are_seen` (at 1e9).
 pub(crate) const SHARP_TURN: f64 = 0.25;
-
-/// Places past the next joint at which the first trial ends, unless the last cubic reached further: half a segment, the least that is
-/// likely to save a piece.
-pub(crate) const LEAST_PAST_JOINT: usize = MERGE_GRID / 2;
 
 /// Try a minimax fit over several segments if the error is within this multiple of the tolerance. 1.4, as for single segments: −0.02 %
 /// pieces, on curves of evenly spaced nodes −0.2 %, and +5 % time; 1.15: +0.3 % pieces there, −2.4 % work.

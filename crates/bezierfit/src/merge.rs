@@ -6,8 +6,8 @@
 
 use crate::distances::{Distances, MarkedCubic, proven};
 use crate::limits::{
-    BETWEEN_TARGET, CARRY_BELOW, FINEST_STEP, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT,
-    MERGE_GRID, MERGE_SHARE, REACH_TARGET, REFUSED_ERROR, SMALLEST_REACH_ERROR,
+    BETWEEN_TARGET, CARRY_BELOW, FEW_PLACES, FINEST_STEP, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, MERGE_GRID,
+    MERGE_SHARE, REACH_TARGET, REFUSED_ERROR, SMALLEST_REACH_ERROR,
 };
 use crate::report::{Assurance, Piece, Report};
 use crate::run::SegmentRun;
@@ -88,12 +88,13 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     /// For one run; the memory is that of any run before.
     pub fn new(
         run: &'r SegmentRun<S>,
-        own: OwnPieces<F>,
+        mut own: OwnPieces<F>,
         settings: MergeSettings,
         memory: &'r mut ReachMemory,
     ) -> Self {
         let tolerance = MERGE_SHARE * settings.tolerance;
-        let places = run.grid() + 1;
+        own.grid = run.grid;
+        let places = run.last_place() + 1;
         memory.ends.clear();
         memory.ends.resize(places.min(ENDS), None);
         memory.latest.clear();
@@ -106,7 +107,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         });
         memory.crossing.clear();
         memory.crossing.extend(crossing);
-        let furthest = |(j, most): (usize, &f64)| run.place(j * MERGE_GRID) - most;
+        let furthest = |(j, most): (usize, &f64)| run.place(j * run.grid) - most;
         let blocks = memory.crossing.chunks(BLOCK).enumerate().map(|(b, block)| {
             block.iter().enumerate().map(|(i, most)| furthest((b * BLOCK + i, most))).fold(f64::NEG_INFINITY, f64::max)
         });
@@ -122,7 +123,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
 
     /// The last grid place.
     fn last(&self) -> usize {
-        self.run.grid()
+        self.run.last_place()
     }
 
     /// The break point at place `k`. `Err`: the curve is not finite there.
@@ -239,19 +240,19 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     /// The furthest place that jumps of curvature let a cubic from `k` reach.
     fn limit(&self, k: usize) -> usize {
         let (last, start) = (self.last(), self.run.place(k));
-        let mut j = k / MERGE_GRID + 1;
+        let mut j = k / self.run.grid + 1;
         while j < self.run.segments.len() {
             if j.is_multiple_of(BLOCK) && self.memory.blocks[j / BLOCK] <= start {
                 j += BLOCK;
                 continue;
             }
-            let (joint, most) = (self.run.place(j * MERGE_GRID), self.memory.crossing[j]);
+            let (joint, most) = (self.run.place(j * self.run.grid), self.memory.crossing[j]);
             if joint - start <= most {
                 j += 1;
                 continue;
             }
             // The side before the joint is too long, so the side after it must be short enough.
-            let mut m = j * MERGE_GRID;
+            let mut m = j * self.run.grid;
             while m < last && self.run.place(m + 1) - joint <= most {
                 m += 1;
             }
@@ -267,7 +268,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     /// sixth-order law of the error as the guess.
     fn furthest(&mut self, k: usize) -> Result<usize, NotFinite> {
         let limit = self.limit(k);
-        let joint = (k / MERGE_GRID + 1) * MERGE_GRID;
+        let grid = self.run.grid;
+        let joint = (k / grid + 1) * grid;
         if limit <= joint && self.own_leads_to(joint, k)? {
             return Ok(k);
         }
@@ -284,7 +286,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
 
     /// Returns `true` if `k` is the joint before `joint`, and the segment between them has a single piece.
     fn own_leads_to(&mut self, joint: usize, k: usize) -> Result<bool, NotFinite> {
-        Ok(k + MERGE_GRID == joint && self.own.count(k / MERGE_GRID)? == 1)
+        Ok(k + self.run.grid == joint && self.own.count(k / self.run.grid)? == 1)
     }
 
     /// The furthest place that one cubic reaches from `k` as far as its samples show.
@@ -293,7 +295,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         let (mut low, mut high) = (k, limit + 1);
         // Errors at `low` and `high`, as far as they are known.
         let (mut below, mut above) = (None, None);
-        let mut probe = (joint + LEAST_PAST_JOINT).max(k + self.memory.last_reach).min(limit);
+        let mut probe = (joint + self.run.grid / 2).max(k + self.memory.last_reach).min(limit);
         for round in 0.. {
             let error = self.error(k, probe)?.max(SMALLEST_REACH_ERROR);
             if error <= 1.0 {
@@ -363,6 +365,8 @@ impl<F: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite>> Fit
 /// The pieces of single segments, fitted when they are needed: where merging succeeds, most never are.
 pub struct OwnPieces<F> {
     fit: F,
+    /// Grid places per segment of the legs between them.
+    grid: usize,
     pieces: Vec<Piece>,
     /// For each segment, its range of `pieces` and their report.
     known: Vec<Option<(usize, usize, Report)>>,
@@ -371,7 +375,7 @@ pub struct OwnPieces<F> {
 impl<F: FitOwn> OwnPieces<F> {
     /// For a number of segments.
     pub fn new(segments: usize, fit: F) -> Self {
-        Self { fit, pieces: Vec::new(), known: vec![None; segments] }
+        Self { fit, grid: MERGE_GRID, pieces: Vec::new(), known: vec![None; segments] }
     }
 
     fn fitted(&mut self, i: usize) -> Result<&(usize, usize, Report), NotFinite> {
@@ -404,7 +408,7 @@ impl<F: FitOwn> OwnPieces<F> {
     /// A segment is not finite.
     pub fn count_of(&mut self, legs: Option<&[PassedLeg]>) -> Result<usize, NotFinite> {
         let Some(legs) = legs else { return self.total() };
-        legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { self.count(leg.from / MERGE_GRID) }).sum()
+        legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { self.count(leg.from / self.grid) }).sum()
     }
 
     /// Appends the pieces of segment `i`.
@@ -435,7 +439,7 @@ impl<F: FitOwn> OwnPieces<F> {
                 report.add_error(error, assurance);
                 pieces.push(piece);
             } else {
-                self.append_segment(leg.from / MERGE_GRID, pieces, report)?;
+                self.append_segment(leg.from / self.grid, pieces, report)?;
             }
         }
         Ok(())
@@ -473,6 +477,37 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     }
 }
 
+/// A way with fewer pieces on a finer grid, if there is one: where pieces are hardly longer than segments, they lose much by ending at
+/// places of a coarse one.
+///
+/// # Errors
+/// A segment is not finite.
+pub fn refined<S: Source + Clone, F: FitOwn>(
+    run: &SegmentRun<S>,
+    mut own: OwnPieces<F>,
+    legs: Option<Vec<PassedLeg>>,
+    settings: MergeSettings,
+    memory: &mut ReachMemory,
+) -> Result<(OwnPieces<F>, Option<Vec<PassedLeg>>), NotFinite> {
+    let pieces = own.count_of(legs.as_deref())?;
+    let by = (FEW_PLACES * pieces / run.last_place()).next_power_of_two().min(MOST_REFINED);
+    if by == 1 {
+        return Ok((own, legs));
+    }
+    let Some(fine) = run.refined(by)? else { return Ok((own, legs)) };
+    let mut reaches = Reaches::new(&fine, own, MergeSettings { marks: false, ..settings }, memory);
+    let fewer = reaches.fewest()?;
+    let mut own = reaches.own;
+    if fewer.is_some() && own.count_of(fewer.as_deref())? < pieces {
+        return Ok((own, fewer));
+    }
+    own.grid = run.grid;
+    Ok((own, legs))
+}
+
+/// Largest factor by which a grid is refined.
+const MOST_REFINED: usize = 16;
+
 /// The furthest place found for some number of pieces.
 #[derive(Debug, Clone, Copy)]
 struct Furthest {
@@ -483,7 +518,7 @@ struct Furthest {
 
 /// The way through the grid with the fewest pieces. `None` if there are not fewer than the segments have.
 fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Option<Vec<Leg>>, NotFinite> {
-    let last = reaches.last();
+    let (last, grid) = (reaches.last(), reaches.run.grid);
     let mut furthest = vec![Furthest { place: 0, leg: None }];
     // (number of pieces, joint) that a segment's own pieces lead to.
     let mut by_own: VecDeque<(usize, usize)> = VecDeque::new();
@@ -493,7 +528,7 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
             break;
         }
         let Furthest { place: k, leg } = furthest[count];
-        let joint = k - k % MERGE_GRID;
+        let joint = k - k % grid;
         let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
         if let Some((from, true)) = leg
             && let Some(place) = beyond(reaches, [from, joint, k], best.place)?
@@ -501,7 +536,7 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
             best = Furthest { place, leg: Some((joint, true)) };
         }
         // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
-        let at_joint = best.place <= joint + MERGE_GRID
+        let at_joint = best.place <= joint + grid
             && best.place < last
             && joint < last
             && (joint == k
@@ -510,11 +545,11 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
                     _ => false,
                 });
         if at_joint {
-            by_own.push_back((count + reaches.own.count(joint / MERGE_GRID)?, joint + MERGE_GRID));
+            by_own.push_back((count + reaches.own.count(joint / grid)?, joint + grid));
         }
         for &(pieces, to) in &by_own {
             if pieces == count + 1 && to >= best.place && to > k {
-                best = Furthest { place: to, leg: Some((to - MERGE_GRID, false)) };
+                best = Furthest { place: to, leg: Some((to - grid, false)) };
             }
         }
         by_own.retain(|(pieces, _)| *pieces > count + 1);
@@ -565,7 +600,7 @@ fn legs(furthest: &[Furthest], reaches: &mut Reaches<'_, impl Source, impl FitOw
             continue;
         };
         legs.push(Leg { from, to, merged });
-        count -= if merged { 1 } else { reaches.own.count(from / MERGE_GRID)? };
+        count -= if merged { 1 } else { reaches.own.count(from / reaches.run.grid)? };
         to = from;
     }
     legs.reverse();

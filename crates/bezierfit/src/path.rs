@@ -1,7 +1,7 @@
 //! Fits of whole curves and paths.
 
 use crate::limits::ONE_SIDED_STEP;
-use crate::merge::{MergeSettings, OwnPieces, ReachMemory, Reaches};
+use crate::merge::{MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
 use crate::options::Options;
 use crate::report::{Assurance, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
@@ -131,7 +131,7 @@ fn smooth_run(
     let joined = run.extend(segments, options.corner, |segment| {
         let form = if options.prove { segment.quotient() } else { None };
         let ends = [segment.end(0.0)?, segment.end(1.0)?];
-        Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends)))
+        Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends, matches!(segment.seg, PathSeg::Line(_)))))
     })?;
     if joined < 2 {
         let piece = segments.first().map(Segment::piece);
@@ -145,8 +145,9 @@ fn smooth_run(
     let settings = MergeSettings { tolerance: options.tolerance, proof: options.prove, marks: false, again: false };
     let mut reaches = Reaches::new(&run, own, settings, memory);
     let legs = reaches.fewest()?;
+    let (mut own, legs) = refined(&run, reaches.own, legs, settings, memory)?;
     let assurance = if options.prove { Assurance::Certified } else { Assurance::Checked };
-    reaches.own.append(legs, assurance, pieces, report)?;
+    own.append(legs, assurance, pieces, report)?;
     Ok(joined)
 }
 

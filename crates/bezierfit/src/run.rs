@@ -1,11 +1,12 @@
 //! Segments in a row as one curve, known by samples at even parameters of each.
 
-use crate::limits::{MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
+use crate::limits::{EVEN_CURVATURE, LEAST_REFINED, MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
 use crate::sample::{Evenly, Lane, Lanes};
 use crate::source::{BreakPoint, NotFinite, Quotient, Source, images};
 use kurbo::{Point, Vec2};
 
 /// One segment of a run.
+#[derive(Clone)]
 pub struct RunSegment<S> {
     pub(crate) source: S,
     /// Set if proofs are wanted.
@@ -14,6 +15,8 @@ pub struct RunSegment<S> {
     pub from: BreakPoint,
     /// See `from`.
     pub to: BreakPoint,
+    /// It is a line, which stays one: only other lines may continue it.
+    is_line: bool,
     /// The curvature at both ends.
     curvature: [Curvature; 2],
 }
@@ -36,9 +39,9 @@ impl Curvature {
 }
 
 impl<S> RunSegment<S> {
-    /// A segment without slow spots, with its ends, and its form if proofs are wanted.
-    pub fn new(source: S, form: Option<Quotient>, [from, to]: [BreakPoint; 2]) -> Self {
-        Self { source, form, from, to, curvature: [Curvature::default(); 2] }
+    /// A segment without slow spots, with its ends, its form if proofs are wanted, and `true` if it is a line.
+    pub fn new(source: S, form: Option<Quotient>, [from, to]: [BreakPoint; 2], is_line: bool) -> Self {
+        Self { source, form, from, to, is_line, curvature: [Curvature::default(); 2] }
     }
 
     /// Returns `true` if proofs are wanted and possible.
@@ -54,6 +57,8 @@ pub struct SegmentRun<S> {
     pub segments: Vec<RunSegment<S>>,
     /// Intervals between samples of a segment.
     pub(crate) per_segment: usize,
+    /// Places per segment at which a piece may end.
+    pub(crate) grid: usize,
     /// Images of the samples.
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
@@ -66,7 +71,8 @@ impl<S: Source> SegmentRun<S> {
     pub fn new(simple: bool, capacity: usize) -> Self {
         let per_segment = per_segment(simple);
         let samples = || Vec::with_capacity(capacity * per_segment + 1);
-        Self { segments: Vec::with_capacity(capacity), per_segment, x: samples(), y: samples(), length: samples() }
+        let (segments, grid) = (Vec::with_capacity(capacity), MERGE_GRID);
+        Self { segments, per_segment, grid, x: samples(), y: samples(), length: samples() }
     }
 
     /// Samples a segment and appends it. Returns `false` if it does not move everywhere: a stretch without length has no direction
@@ -122,7 +128,7 @@ impl<S: Source> SegmentRun<S> {
             let parts = |last: &RunSegment<S>| {
                 let (into, away) = (last.to.into, next.from.away);
                 let turn = into.cross(away).atan2(into.dot(away)).abs();
-                turn > corner || last.form.is_some() != next.form.is_some()
+                turn > corner || last.form.is_some() != next.form.is_some() || last.is_line != next.is_line
             };
             if self.segments.last().is_some_and(parts) || !self.push(next)? {
                 return Ok(i);
@@ -131,14 +137,41 @@ impl<S: Source> SegmentRun<S> {
         Ok(items.len())
     }
 
-    /// Number of grid intervals.
-    pub(crate) fn grid(&self) -> usize {
-        MERGE_GRID * self.segments.len()
+    /// Number of the last grid place.
+    pub(crate) fn last_place(&self) -> usize {
+        self.grid * self.segments.len()
+    }
+
+    /// The same run with `by` times as many samples and places, if it is one curve with more nodes than it needs: if its curvature
+    /// hardly jumps.
+    ///
+    /// # Errors
+    /// A segment is not finite.
+    pub(crate) fn refined(&self, by: usize) -> Result<Option<Self>, NotFinite>
+    where
+        S: Clone,
+    {
+        let joints = self.segments.windows(2);
+        let even = |w: &[RunSegment<S>]| {
+            let (a, b) = (w[0].curvature[1].value, w[1].curvature[0].value);
+            (a - b).abs() <= EVEN_CURVATURE * a.abs().max(b.abs())
+        };
+        if self.segments.len() < LEAST_REFINED || !joints.clone().all(even) {
+            return Ok(None);
+        }
+        let mut out = Self::new(true, 0);
+        (out.per_segment, out.grid) = (by * self.per_segment, by * self.grid);
+        for segment in &self.segments {
+            if !out.push(segment.clone())? {
+                return Ok(None);
+            }
+        }
+        Ok(Some(out))
     }
 
     /// The sample at grid place `k`.
     pub(crate) fn sample(&self, k: usize) -> usize {
-        k * (self.per_segment / MERGE_GRID)
+        k * (self.per_segment / self.grid)
     }
 
     /// The length up to grid place `k`.
@@ -148,9 +181,9 @@ impl<S: Source> SegmentRun<S> {
 
     /// The break point at grid place `k`, with the length as its parameter.
     pub(crate) fn end_at(&self, k: usize) -> Result<BreakPoint, NotFinite> {
-        let (i, part) = (k / MERGE_GRID, k % MERGE_GRID);
+        let (i, part) = (k / self.grid, k % self.grid);
         let end = match (self.segments.get(i), i.checked_sub(1).and_then(|i| self.segments.get(i))) {
-            (Some(segment), _) if part > 0 => segment.source.end(part as f64 / MERGE_GRID as f64)?,
+            (Some(segment), _) if part > 0 => segment.source.end(part as f64 / self.grid as f64)?,
             // A joint has the tangents of both its segments.
             (Some(after), Some(before)) => BreakPoint { into: before.to.into, ..after.from },
             (Some(after), None) => after.from,
@@ -162,7 +195,7 @@ impl<S: Source> SegmentRun<S> {
 
     /// The last grid place between two at which the length is at most `length`; the first of them if there is none.
     pub(crate) fn place_before(&self, length: f64, [first, last]: [usize; 2]) -> usize {
-        let step = self.per_segment / MERGE_GRID;
+        let step = self.per_segment / self.grid;
         let (mut low, mut high) = (first, last.max(first) + 1);
         // Near at hand more often than not.
         let mut stride = 1;

@@ -15,7 +15,7 @@ use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use bezierfit::parts::{
     FitOwn, Leg, MERGE_GRID, MERGE_SHARE, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, RunSegment,
-    SMOOTH_JOINT, SURE_CORNER, SegmentRun, per_segment, sample_lanes,
+    SMOOTH_JOINT, STRAIGHT_TOLERANCE, STRAIGHT_TURN, SURE_CORNER, SegmentRun, per_segment, refined, sample_lanes,
 };
 use bezierfit::{Assurance, NotFinite, Piece, Quotient, Report, Source};
 use kurbo::Vec2;
@@ -205,7 +205,15 @@ impl<'a> Merger<'a> {
         }
         let [first, last] = &part.jets;
         let ends = [source.end_with(0.0, first.p, first), source.end_with(1.0, last.p, last)];
-        Some(RunSegment::new(source, form, ends))
+        // A line that stays one is not bent by what follows.
+        let is_line = matches!(part.seg, Seg::Line(_)) && {
+            let q = ends[1].p - ends[0].p;
+            let along = |v: Vec2| v.cross(q).abs() <= STRAIGHT_TURN * q.hypot() && v.dot(q) > 0.0;
+            let off = |t: f64| (source.eval(t).0 - ends[0].p).cross(q).abs();
+            let limit = STRAIGHT_TOLERANCE * options.tolerance * q.hypot();
+            along(ends[0].away) && along(ends[1].into) && [0.27, 0.5, 0.81].into_iter().all(|t| off(t) <= limit)
+        };
+        Some(RunSegment::new(source, form, ends, is_line))
     }
 
     /// Appends the fewest pieces for a run that begins with segment `start`.
@@ -246,7 +254,9 @@ impl<'a> Merger<'a> {
             repeats.carry(shape, CarriedWay { jacobian: [dx, dy], off, segments, pieces, legs });
         }
         self.fitter.spend(TRIAL_WORK * reaches.tried() as f64);
-        reaches.own.append(legs, assurance, &mut self.pieces, &mut self.report)
+        let Reaches { own, .. } = reaches;
+        let (mut own, legs) = refined(run, own, legs, settings, reach)?;
+        own.append(legs, assurance, &mut self.pieces, &mut self.report)
     }
 }
 

@@ -6,7 +6,7 @@ use super::merge::{self, MergeMemory, Merger};
 use super::options::Options;
 use super::parallel::in_parallel;
 use super::report::{PathWriter, reverse};
-use super::segment::SegmentFitter;
+use super::segment::{Part, SegmentFitter};
 use super::split;
 use crate::budget::Limit;
 use crate::error::GeometryError;
@@ -145,6 +145,12 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
     for seg in segs {
         let ends = nodes.next(seg)?;
         fitter.parts(seg, ends, fitter.options.shared.contains(seg), &mut parts).map_err(lost)?;
+    }
+    // What a map moves as it is keeps its control points.
+    if !parts.is_empty() && parts.iter().all(Part::is_affine) {
+        let (mut pieces, mut report) = (Vec::with_capacity(parts.len()), Report::default());
+        parts.iter().try_for_each(|p| fitter.fit_part(p, &mut pieces, &mut report)).map_err(lost)?;
+        return Ok((pieces, report));
     }
     Merger::new(fitter, &parts, memory).merged().map_err(lost)
 }

@@ -289,6 +289,12 @@ impl Part {
         }
     }
 
+    /// Returns `true` if an affine map moves the part.
+    pub(super) fn is_affine(&self) -> bool {
+        let branch = self.cut.as_ref().and_then(|c| c.branch.as_ref());
+        branch.is_some_and(|b| matches!(b.class(), Class::Affine(_)))
+    }
+
     /// Returns `true` if the map tears at the start (0) or at the end (1).
     pub(super) fn is_torn(&self, end: usize) -> bool {
         self.cut.as_ref().is_some_and(|c| c.torn[end].is_some())
