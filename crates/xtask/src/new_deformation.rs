@@ -206,6 +206,7 @@ mod tests {
         let here = copy.path();
         let pathwarp = here.join("crates/pathwarp");
         copy_folder(&root.join("crates/pathwarp"), &pathwarp);
+        copy_folder(&root.join("crates/bezierfit"), &here.join("crates/bezierfit"));
         fs::create_dir_all(here.join("all/src")).unwrap();
         fs::write(here.join("all/src/lib.rs"), "//! Asks for every dependency of the workspace.\n").unwrap();
         let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();

@@ -33,8 +33,9 @@ fn dependencies_run_one_way() {
         let normal = package["dependencies"].as_array().unwrap().iter().filter(|d| d["kind"].is_null());
         normal.map(|d| d["name"].as_str().unwrap().to_owned()).collect()
     };
-    // The core: curves, path data, the JSON that deformations read, error types, and (optional) threads, nothing else.
-    assert_eq!(of("pathwarp"), ["kurbo", "rayon", "serde", "serde_json", "svgtypes", "thiserror"]);
+    // The core: curves, the fitter, path data, the JSON that deformations read, error types, and (optional) threads, nothing else.
+    assert_eq!(of("pathwarp"), ["bezierfit", "kurbo", "rayon", "serde", "serde_json", "svgtypes", "thiserror"]);
+    assert_eq!(of("bezierfit"), ["kurbo"]);
     let allowed = |name: &str, ours: &[&str]| {
         for d in of(name).iter().filter(|d| d.starts_with("pathwarp")) {
             assert!(ours.contains(&d.as_str()), "{name} must not depend on {d}");

@@ -1,10 +1,10 @@
 //! Shapes that come again from path to path, as the letters of a page do.
 
-use super::merge::{MergeMemory, Shapes};
+use super::merge::MergeMemory;
 use super::options::Options;
 use super::path;
-use super::piece::PathWriter;
-use super::report::{self, RefittedPath};
+use super::repeats::Shapes;
+use super::report::{self, PathWriter, RefittedPath};
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Gathered, Map};
 use crate::outline::Outline;

@@ -1,68 +1,31 @@
 //! Refits the image of a path under a map with lines and cubics, within a given Hausdorff distance.
 //!
-//! [`warp_path`] works segment by segment. Let g(t) be the image of a segment under the map.
+//! [`warp_path`] works segment by segment. Affine maps move control points; projective maps keep lines (`path`). Each other segment is
+//! taken in a canonical direction (`split`), so that shared edges come out identical, and cut where the map has creases (`segment`).
+//! The image of each part is a source (`source`) for the crate `bezierfit`, which fits it. If asked for, fewer pieces are looked for
+//! across smooth joints (`merge`); those of shapes that come again are carried from one place to the next (`carry`, `repeats`).
 //!
-//! 1. **Exact cases** (`path`). Affine maps move control points; projective maps keep lines.
-//! 2. **Direction and splits** (`segment`, `split`). Each segment is fitted in a canonical direction, so that shared edges come
-//!    out identical, and is split where the map has creases and where the source has cusps or near-cusps.
-//! 3. **Samples** (`source`, `samples`). g is evaluated at eight parameters in one batch, at eight more in between when needed,
-//!    and with its derivative at the break points. An image that is a line to rounding ends here (`straight`).
-//! 4. **Fit** (`frame`, `residuals`, `fit`). A piece keeps end points and end tangents (G¹). Its two handle lengths minimise the
-//!    normal residuals: Gauss–Newton by variable projection, each step bent along the valley of equal area. The error is of sixth
-//!    order in the piece's length. The Hermite cubic, with the image's end derivatives, is tried first (`hermite`).
-//! 5. **Further attempts** (`improve`): converge, restart elsewhere in the valley, minimax by exchange (`minimax`).
-//! 6. **Acceptance** (`judge`). A fit is judged by the cheapest test that can decide: eight samples; sixteen, with the peaks
-//!    predicted between them (`resolution`, `peaks`); samples halfway beside doubtful ones; a dense check (`check`); or, if
-//!    asked for, a proof by polynomial bounds (`proof`).
-//! 7. **Break points** (`breaks`). The sixth root of error ÷ tolerance measures difficulty. Break points go to its quantiles,
-//!    with fewer pieces tried first and single break points bisected, until every piece fits.
-//! 8. **Merging** (`merge`), if asked for. Dynamic programming finds the fewest cubics across smooth joints.
-//!
-//! `limits` holds every threshold of these stages, with the reason for its value. `docs/refitting.md` derives the method.
+//! `docs/refitting.md` derives the method.
 
-// Loops over eight lanes run by index through several arrays at once, the form that LLVM vectorises.
-#![allow(clippy::needless_range_loop)]
-
-mod attempt;
-mod breaks;
-mod candidate;
-mod check;
-mod cusp;
-mod fit;
-mod frame;
+mod carry;
 mod gather;
-mod hermite;
-mod improve;
-mod judge;
 mod known;
-mod lanes;
 mod limits;
 mod merge;
-mod minimax;
 mod options;
-mod outcome;
 mod parallel;
 mod path;
-mod peaks;
-mod piece;
-mod polyline;
-mod proof;
+mod repeats;
 mod report;
-mod request;
-mod residuals;
-mod resolution;
-mod samples;
 mod segment;
 mod shared;
 mod source;
 mod split;
-mod straight;
-mod stretch;
-mod valley;
 
+pub use bezierfit::Assurance;
 pub use known::KnownShapes;
 pub use options::{Options, suited};
-pub use report::{Assurance, PathReport, RESOLUTION, RefittedPath, SpanReport};
+pub use report::{PathReport, RESOLUTION, RefittedPath, SpanReport};
 pub use shared::{SharedEdges, Span};
 
 use crate::error::GeometryError;

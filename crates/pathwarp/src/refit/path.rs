@@ -1,18 +1,18 @@
 //! Whole paths, subpath by subpath.
 
 use super::gather;
-use super::limits::CHUNK;
-use super::merge::{self, MergeMemory, Merger, may_be_smooth};
+use super::limits::{CHUNK, CHUNK_CORNER};
+use super::merge::{self, MergeMemory, Merger};
 use super::options::Options;
 use super::parallel::in_parallel;
-use super::piece::{FittedPiece, PathWriter, reverse};
-use super::report::{Assurance, PathReport, SUMMED, SpanReport};
-use super::segment::SegmentFitter;
+use super::report::{PathReport, PathWriter, SUMMED, SpanReport, reverse};
+use super::segment::{Part, SegmentFitter};
 use super::shared::Span;
 use super::split;
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
+use bezierfit::{Assurance, NotFinite, Piece, Report};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
@@ -51,25 +51,25 @@ fn affine_segment(
     seg: &Seg,
     m: Affine,
     tolerance: f64,
-    pieces: &mut Vec<FittedPiece>,
+    pieces: &mut Vec<Piece>,
     report: &mut PathReport,
 ) -> Result<(), GeometryError> {
     let image = seg.transformed(m);
     finite(&image)?;
     match image {
-        Seg::Line(l) => pieces.push(FittedPiece::Line(l)),
+        Seg::Line(l) => pieces.push(Piece::Line(l)),
         Seg::Arc(a) => {
             let (canonical, flipped) = split::canonical(seg);
             let start = pieces.len();
             if let Seg::Arc(c) = canonical.transformed(m) {
-                pieces.extend(c.to_cubics(tolerance).map(FittedPiece::Cubic));
+                pieces.extend(c.to_cubics(tolerance).map(Piece::Cubic));
             }
             if flipped {
                 reverse(&mut pieces[start..]);
             }
             report.add_error(a.cubics_error(a.cubics_needed(tolerance)), Assurance::Certified);
         }
-        other => pieces.push(FittedPiece::Cubic(other.to_cubic())),
+        other => pieces.push(Piece::Cubic(other.to_cubic())),
     }
     Ok(())
 }
@@ -124,12 +124,12 @@ pub(super) fn subpath(
     // Values at the nodes.
     options.budget.spend(work * sub.segs.len() as f64).map_err(GeometryError::Limit)?;
     let spans = spans_of(sub, options, out);
-    let refitted = |i: usize, segs: &[Seg], memory: &mut MergeMemory| {
+    let refitted = |from: usize, segs: &[Seg], memory: &mut MergeMemory| {
         if !announced {
             announce(&[segs], map, creases, options);
         }
         let mut all = Vec::new();
-        for (span, tolerance, segs) in runs(&spans, options.tolerance, i * CHUNK, segs) {
+        for (span, tolerance, segs) in runs(&spans, options.tolerance, from, segs) {
             let own;
             let options = if tolerance == options.tolerance {
                 options
@@ -138,11 +138,13 @@ pub(super) fn subpath(
                 &own
             };
             let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
-            let first = i == 0 && all.is_empty();
+            let first = from == 0 && all.is_empty();
             let nodes = if first { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
             let refit =
                 if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) };
-            let (pieces, mut report) = refit?;
+            let (pieces, of_pieces) = refit?;
+            let mut report = PathReport::default();
+            report.add_pieces(of_pieces);
             report.share = report.max_error / tolerance;
             if !spans.is_empty() && report.max_error > tolerance * (1.0 + SUMMED) && report.over_budget.is_empty() {
                 report.over_budget.extend(segs.first().map(Seg::start));
@@ -155,8 +157,17 @@ pub(super) fn subpath(
         vec![refitted(0, &sub.segs, memory)?]
     } else {
         let known = memory.known();
-        let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::new(Arc::clone(&known)));
-        in_parallel(&sub.segs, CHUNK, alone)?
+        let chunks = chunks(&sub.segs, options);
+        let starts: Vec<usize> = chunks
+            .iter()
+            .scan(0, |next, c| {
+                let start = *next;
+                *next += c.len();
+                Some(start)
+            })
+            .collect();
+        let alone = |i: usize, segs: &[Seg]| refitted(starts[i], segs, &mut MergeMemory::new(Arc::clone(&known)));
+        in_parallel(&chunks, alone)?
     };
     let (mut pieces, first) = (Vec::new(), out.spans.len());
     out.spans.extend(spans.iter().map(|_| SpanReport { pieces: 0, max_error: 0.0 }));
@@ -197,33 +208,52 @@ fn announce(runs: &[&[Seg]], map: &dyn Map, creases: &Creases, options: &Options
 }
 
 /// The pieces of consecutive segments, and their report.
-type Refitted = Result<(Vec<FittedPiece>, PathReport), GeometryError>;
+type Refitted = Result<(Vec<Piece>, Report), GeometryError>;
 
 /// Refits segments one by one.
 fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
-    let (mut pieces, mut report) = (Vec::with_capacity(segs.len() + segs.len() / 2), PathReport::default());
+    let (mut pieces, mut report) = (Vec::with_capacity(segs.len() + segs.len() / 2), Report::default());
     for seg in segs {
         let ends = nodes.next(seg)?;
-        fitter.fit(seg, ends, &mut pieces, &mut report).map_err(infinity)?;
+        fitter.fit(seg, ends, &mut pieces, &mut report).map_err(lost)?;
     }
     Ok((pieces, report))
 }
 
 /// Refits segments, with fewer pieces across smooth joints.
 fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory: &mut MergeMemory) -> Refitted {
-    // Across other creases than the domain's edge the image has corners.
-    if fitter.creases.items().iter().any(|c| c.kind != CreaseKind::Edge) {
-        return unmerged(fitter, segs, nodes);
+    let mut parts = Vec::with_capacity(segs.len());
+    for seg in segs {
+        let ends = nodes.next(seg)?;
+        fitter.parts(seg, ends, fitter.options.shared.contains(seg), &mut parts).map_err(lost)?;
     }
-    let mut jets = Vec::with_capacity(segs.len());
-    // Joints of the image that may be smooth, by the index of the segment that begins there.
-    let mut smooth = Vec::with_capacity(segs.len());
-    for (i, seg) in segs.iter().enumerate() {
-        let ends = nodes.next(seg)?.map(Clone::clone);
-        smooth.push(i > 0 && may_be_smooth(&segs[i - 1], seg, &ends[0]));
-        jets.push(ends);
+    // What a map moves as it is keeps its control points.
+    if !parts.is_empty() && parts.iter().all(Part::is_affine) {
+        let (mut pieces, mut report) = (Vec::with_capacity(parts.len()), Report::default());
+        parts.iter().try_for_each(|p| fitter.fit_part(p, &mut pieces, &mut report)).map_err(lost)?;
+        return Ok((pieces, report));
     }
-    Merger::new(fitter, segs, &jets, memory).merged(&smooth).map_err(infinity)
+    Merger::new(fitter, &parts, memory).merged().map_err(lost)
+}
+
+/// Cuts a long subpath into chunks that are refitted on their own: of [`CHUNK`] segments, or up to the next corner after them if
+/// pieces are merged.
+fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<&'s [Seg]> {
+    let is_corner = |w: &[Seg]| {
+        let (into, away) = (w[0].deriv(1.0), w[1].deriv(0.0));
+        into.cross(away).abs() >= CHUNK_CORNER * into.dot(away)
+    };
+    let mut out = Vec::new();
+    let mut rest = segs;
+    while rest.len() > CHUNK {
+        let more = if options.merge { rest[CHUNK - 1..].windows(2).position(is_corner) } else { Some(0) };
+        let (chunk, after) = rest.split_at(more.map_or(rest.len(), |n| CHUNK + n));
+        out.push(chunk);
+        rest = after;
+    }
+    out.push(rest);
+    out.retain(|c| !c.is_empty());
+    out
 }
 
 /// The jets at the ends of one segment after the other.
@@ -276,6 +306,10 @@ const PATH: &str = "path";
 
 fn finite(seg: &Seg) -> Result<(), GeometryError> {
     if seg.is_finite() { Ok(()) } else { Err(GeometryError::NotFinite { shape: PATH.into(), at: seg.start() }) }
+}
+
+fn lost(e: NotFinite) -> GeometryError {
+    infinity(e.at)
 }
 
 fn infinity(at: Point) -> GeometryError {

@@ -1,6 +1,7 @@
 //! The result of a refit: the path, its error, and how far that error can be trusted.
 
 use crate::outline::Outline;
+use bezierfit::{Assurance, Piece, Report};
 use kurbo::{BezPath, PathEl, Point};
 
 /// Rounding relative to the largest coordinate: some hundreds of roundings in double precision. A finer error cannot be measured, as
@@ -9,17 +10,6 @@ pub const RESOLUTION: f64 = 1e-13;
 
 /// Sums of errors round up.
 pub(super) const SUMMED: f64 = 1e-9;
-
-/// Basis of the reported error, from the weakest to the strongest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Assurance {
-    /// Measured by dense sampling; the error between samples is estimated.
-    Checked,
-    /// A proven bound.
-    Certified,
-    /// Nothing was approximated; the error is rounding.
-    Exact,
-}
 
 /// Statistics of a refit path.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +70,12 @@ impl PathReport {
         self.unresolved = larger(self.unresolved, part.unresolved);
     }
 
+    /// Adds what is known of some pieces.
+    pub(super) fn add_pieces(&mut self, part: Report) {
+        self.add_error(part.max_error, part.assurance);
+        self.over_budget.extend(part.unresolved);
+    }
+
     /// Accounts for a piece with this error.
     pub(super) fn add_error(&mut self, error: f64, assurance: Assurance) {
         self.max_error = self.max_error.max(error);
@@ -122,4 +118,42 @@ pub struct SpanReport {
     pub pieces: usize,
     /// Largest distance between the true image and the output, in root user units.
     pub max_error: f64,
+}
+
+/// Collects the output, subpath by subpath.
+#[derive(Debug, Default)]
+pub(super) struct PathWriter {
+    path: BezPath,
+    pub(super) report: PathReport,
+    pub(super) spans: Vec<SpanReport>,
+}
+
+impl PathWriter {
+    /// Writes a subpath. In a closed one, a last line is left to the close command.
+    pub(super) fn subpath(&mut self, start: Point, pieces: &[Piece], closed: bool) {
+        self.report.segments_out += pieces.len();
+        self.path.move_to(start);
+        let by_close = closed && matches!(pieces.last(), Some(Piece::Line(_)));
+        for p in &pieces[..pieces.len() - usize::from(by_close)] {
+            match p {
+                Piece::Line(l) => self.path.line_to(l.p1),
+                Piece::Cubic(c) => self.path.curve_to(c.p1, c.p2, c.p3),
+            }
+        }
+        if closed {
+            self.path.close_path();
+        }
+    }
+
+    pub(super) fn finish(self) -> RefittedPath {
+        RefittedPath { path: self.path, spans: self.spans, report: self.report }
+    }
+}
+
+/// Reverses the direction of a run of pieces.
+pub(super) fn reverse(pieces: &mut [Piece]) {
+    pieces.reverse();
+    for p in pieces {
+        *p = p.reversed();
+    }
 }

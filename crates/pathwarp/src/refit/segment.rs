@@ -1,26 +1,16 @@
 //! One segment: its canonical direction, its smooth parts, and their pieces.
 
-use super::check::THOROUGH_WORK;
-use super::limits::{MAX_ATTEMPTS, MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
+use super::limits::{MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
 use super::options::Options;
-use super::piece::{FittedPiece, reverse};
-use super::proof::RationalForm;
-use super::report::PathReport;
-use super::source::{BreakPoint, SourceCurve};
-use super::split::{self, SlowSpots};
-use super::stretch::StretchFitter;
-use crate::map::{Class, Creases, Jet, Map, RationalDegree};
+use super::report::reverse;
+use super::source::SourceCurve;
+use super::split;
+use crate::map::{Class, CreaseKind, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
+use bezierfit::parts::StretchFitter;
+use bezierfit::{NotFinite, Piece, Report};
 use kurbo::{CubicBez, Line, Point};
-use std::cell::Cell;
 use std::sync::Arc;
-
-/// Evaluations of the map for an attempt at a piece with its usual checks.
-const EVALUATIONS: usize = 32;
-
-/// A part with more attempts may be one where the map oscillates faster than samples can tell, so that most need the thorough check:
-/// fewer are allowed from there on.
-const HARD: usize = 64;
 
 /// Creases of one segment that are found by comparing branches with the map.
 const MAX_FOUND: usize = 16;
@@ -39,16 +29,16 @@ pub(super) struct SegmentFitter<'a> {
 }
 
 impl SegmentFitter<'_> {
-    /// Appends the image of one segment, given the jets at its ends. `Err`: a point at which the map is not finite.
+    /// Appends the image of one segment, given the jets at its ends. `Err`: a place at which the map is not finite.
     pub(super) fn fit(
         &self,
         seg: &Seg,
         jets: [&Jet; 2],
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
         if self.projective && matches!(seg, Seg::Line(_)) {
-            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
+            pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
             return Ok(());
         }
         let reversed;
@@ -61,11 +51,13 @@ impl SegmentFitter<'_> {
         };
         let [first, last] = if flipped { [jets[1], jets[0]] } else { jets };
         let start = pieces.len();
-        match canonical {
-            Seg::Arc(a) if self.options.certify && a.sweep.abs() > MAX_RATIONAL_SWEEP && self.degree.is_some() => {
-                self.fit_long_arc(a, [first, last], pieces, report)?;
+        if self.creases.items().is_empty() && !self.is_long_arc(seg) {
+            let source = SourceCurve::for_proof(canonical, self.map, self.degree, self.options.certify);
+            self.fit_smooth(&source, [first, last], 0.0, pieces, report)?;
+        } else {
+            for part in self.cut(canonical, [first, last])? {
+                self.fit_part(&part, pieces, report)?;
             }
-            _ => self.fit_canonical(canonical, [first, last], pieces, report)?,
         }
         if flipped {
             reverse(&mut pieces[start..]);
@@ -73,69 +65,42 @@ impl SegmentFitter<'_> {
         Ok(())
     }
 
-    /// Cuts an arc for a proof: only arcs of less than half a turn are quotients of polynomials with positive denominators.
-    fn fit_long_arc(
-        &self,
-        arc: &EllipticArc,
-        [first, last]: [&Jet; 2],
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
-        let n = (arc.sweep.abs() / MAX_RATIONAL_SWEEP).ceil();
-        let mut from = *first;
-        for i in 0..n as usize {
-            let part = arc.subsegment(i as f64 / n, (i + 1) as f64 / n);
-            let to = if i + 1 == n as usize { *last } else { self.map.jet(part.p1) };
-            if !to.is_finite() {
-                return Err(part.p1);
-            }
-            self.fit_canonical(&Seg::Arc(part), [&from, &to], pieces, report)?;
-            from = to;
-        }
-        Ok(())
+    /// For a proof, arcs are cut: only those of less than half a turn are quotients of polynomials with positive denominators.
+    fn is_long_arc(&self, seg: &Seg) -> bool {
+        let long = |a: &EllipticArc| a.sweep.abs() > MAX_RATIONAL_SWEEP;
+        self.options.certify && self.degree.is_some() && matches!(seg, Seg::Arc(a) if long(a))
     }
 
-    /// Appends the image of a segment in its canonical direction.
-    fn fit_canonical(
+    /// Appends the image of a segment in its canonical direction, on which the map is smooth, given the jets at its ends, whose points
+    /// are at most `blur` from the map's own.
+    #[inline(always)]
+    fn fit_smooth(
         &self,
-        seg: &Seg,
-        jets: [&Jet; 2],
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
-        if self.options.budget.left() <= 0.0 {
-            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
-            return Ok(());
-        }
-        let certify = self.options.certify;
-        let mut source = SourceCurve::new(seg, self.map);
-        if certify {
-            source.make_rational();
-        }
-        if source.size() <= POINT_SIZE * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot()) {
-            // A segment of no length is kept, as it carries line caps and markers; it has no direction to preserve.
-            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
+        source: &SourceCurve<'_>,
+        [first, last]: [&Jet; 2],
+        blur: f64,
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
+        let seg = source.seg;
+        // A segment of no length is kept, as it carries line caps and markers; it has no direction to preserve.
+        let is_point = source.size() <= POINT_SIZE * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot());
+        if is_point || self.options.budget.left() <= 0.0 {
+            pieces.push(Piece::Line(Line::new(first.p, last.p)));
             return Ok(());
         }
         let mut slow = split::slow_spots(seg);
         if source.is_rational() {
             slow = slow.map(|t| source.param(t));
         }
-        if self.creases.items().is_empty() {
-            let from = source.end_with(0.0, jets[0].p, jets[0]);
-            let to = source.end_with(1.0, jets[1].p, jets[1]);
-            return self.cover(&source, self.degree, 0.0, &slow, [&from, &to], pieces, report);
-        }
-        self.fit_parts(&source, jets, &slow, pieces, report)
-    }
-
-    /// The attempts after which this part ends: those that exceed the budget by themselves, so that the result does not depend on
-    /// what other threads count at the same time.
-    fn most_attempts(&self) -> usize {
+        let from = source.end_with(0.0, first.p, first);
+        let to = source.end_with(1.0, last.p, last);
         let left = self.options.budget.left() / self.work;
-        let (usual, hard) = (left / EVALUATIONS as f64, left / THOROUGH_WORK as f64);
-        let most = if usual < HARD as f64 { usual } else { hard.max(HARD as f64) };
-        MAX_ATTEMPTS.min((most as usize).saturating_add(1))
+        let (tolerance, prove) = (self.options.tolerance, (self.options.certify, blur));
+        let mut fitter = StretchFitter::new(source, &slow, tolerance, prove, left);
+        let covered = fitter.cover(&from, &to, pieces, report);
+        self.spend(fitter.evaluations() as f64 * self.work);
+        covered
     }
 
     /// Counts work. Too much of it is an error of the whole path, which ends by itself: `fit` does no more.
@@ -143,84 +108,107 @@ impl SegmentFitter<'_> {
         let _ = self.options.budget.spend(evaluations);
     }
 
-    /// Covers a smooth part, whose ends are at most `blur` from the source's image.
-    #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
-    fn cover(
-        &self,
-        source: &SourceCurve<'_>,
-        degree: Option<RationalDegree>,
-        blur: f64,
-        slow: &SlowSpots,
-        [from, to]: [&BreakPoint; 2],
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
-        let form = if self.options.certify { RationalForm::new(source, degree) } else { None };
-        let form = form.map(|f| f.with_blur(blur));
-        let degree = degree.filter(|_| blur == 0.0);
-        let tolerance = self.options.tolerance;
-        let (most_attempts, extra) = (self.most_attempts(), Cell::new(0));
-        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0, extra, most_attempts };
-        let covered = fitter.cover(from, to, pieces, report);
-        let each = if fitter.attempts > HARD { THOROUGH_WORK } else { EVALUATIONS };
-        let checked = fitter.attempts * EVALUATIONS + fitter.extra.get();
-        self.spend((fitter.attempts * each).max(checked) as f64 * self.work);
-        covered
+    /// Appends the image of a part. Where the map tears, a line connects it with its neighbour.
+    pub(super) fn fit_part(&self, part: &Part, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
+        let Some(cut) = &part.cut else { return self.fit(&part.seg, part.jets.each_ref(), pieces, report) };
+        let [first, last] = part.jets.each_ref();
+        if let Some(p) = cut.torn[0] {
+            pieces.push(Piece::Line(Line::new(p, first.p)));
+        }
+        let affine = cut.branch.as_ref().map(Map::class);
+        if let (Some(Class::Affine(m)), false) = (affine, matches!(part.seg, Seg::Arc(_))) {
+            pieces.push(match part.seg.transformed(m) {
+                Seg::Line(_) => Piece::Line(Line::new(first.p, last.p)),
+                other => Piece::Cubic(CubicBez { p0: first.p, p3: last.p, ..other.to_cubic() }),
+            });
+        } else {
+            let (canonical, flipped) = split::canonical(&part.seg);
+            let start = pieces.len();
+            let source = part.source(self, &canonical);
+            let jets = if flipped { [last, first] } else { [first, last] };
+            self.fit_smooth(&source, jets, cut.blur, pieces, report)?;
+            if flipped {
+                reverse(&mut pieces[start..]);
+            }
+        }
+        if let Some(p) = cut.torn[1] {
+            pieces.push(Piece::Line(Line::new(last.p, p)));
+        }
+        Ok(())
     }
 
-    /// Splits a segment at the map's creases and covers each part under the branch of the map that holds there.
+    /// Appends the parts of a segment, in its own direction. If `whole`, or if the map has no creases but edges, that is itself.
+    pub(super) fn parts(&self, seg: &Seg, jets: [&Jet; 2], whole: bool, out: &mut Vec<Part>) -> Result<(), NotFinite> {
+        let creased = self.creases.items().iter().any(|c| c.kind != CreaseKind::Edge);
+        let nothing_left = self.options.budget.left() <= 0.0;
+        if whole || nothing_left || !(creased || self.is_long_arc(seg)) {
+            out.push(Part::whole(*seg, jets));
+            return Ok(());
+        }
+        let (canonical, flipped) = split::canonical(seg);
+        let parts = self.cut(&canonical, if flipped { [jets[1], jets[0]] } else { jets })?;
+        if flipped {
+            out.extend(parts.into_iter().rev().map(Part::reversed));
+        } else {
+            out.extend(parts);
+        }
+        Ok(())
+    }
+
+    /// Cuts a segment in its canonical direction into parts on which the map is smooth.
     #[inline(never)]
-    fn fit_parts(
-        &self,
-        whole: &SourceCurve<'_>,
-        jets: [&Jet; 2],
-        slow: &SlowSpots,
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
-        let (seg, map) = (whole.seg, self.map);
+    fn cut(&self, seg: &Seg, [first, last]: [&Jet; 2]) -> Result<Vec<Part>, NotFinite> {
         self.spend(self.creases.splits_work(seg, self.work));
         let mut ends = self.creases.splits(seg);
+        if let (true, Seg::Arc(a)) = (self.is_long_arc(seg), seg) {
+            let n = (a.sweep.abs() / MAX_RATIONAL_SWEEP).ceil();
+            ends.extend((1..n as usize).map(|i| i as f64 / n));
+            ends.sort_by(f64::total_cmp);
+        }
         ends.push(1.0);
         ends.reverse();
-        let mut found = 0;
-        let mut from = Node { t: 0.0, u: 0.0, p: jets[0].p, jet: Some(jets[0]) };
+        let mut out = Vec::with_capacity(ends.len());
+        let (mut found, mut from, mut p0) = (0, 0.0, first.p);
         while let Some(&t) = ends.last() {
-            let u = if t == 1.0 { 1.0 } else { whole.param(t) };
-            let branch = match self.branch_between(seg, from.t, t) {
+            let branch = match self.branch_between(seg, from, t) {
                 Ok(b) => b,
                 // A crease that the map does not tell, or that was missed.
                 Err(at) if found < MAX_FOUND => {
                     found += 1;
-                    ends.push(from.t + (t - from.t) * at);
+                    ends.push(from + (t - from) * at);
                     continue;
                 }
-                Err(_) => map.branch(seg.eval(0.5 * (from.t + t))),
+                Err(_) => self.map.branch(seg.eval(0.5 * (from + t))),
             };
             ends.pop();
-            let to = match t == 1.0 {
-                false => Node { t, u, p: map.point(seg.eval(t)), jet: None },
-                true => Node { t, u, p: jets[1].p, jet: Some(jets[1]) },
+            let part = match seg {
+                Seg::Arc(a) => Seg::Arc(a.subsegment(from, t)),
+                other => other.part(from, t).unwrap_or(*other),
             };
-            if let Some(Class::Affine(m)) = branch.as_ref().map(Map::class)
-                && let Some(part) = seg.part(from.t, to.t)
-            {
-                affine_part(&part.transformed(m), from.p, to.p, self.options.tolerance, pieces);
-            } else {
-                let inside;
-                let source = match &branch {
-                    None => whole,
-                    Some(b) => {
-                        inside = SourceCurve::for_proof(seg, b, self.options.certify);
-                        &inside
-                    }
-                };
-                self.fit_part(source, branch.is_some(), [&from, &to], slow, pieces, report)?;
+            let p3 = if t == 1.0 { last.p } else { self.map.point(part.end()) };
+            let jet = |at: Point, whole: Option<&Jet>| match (&branch, whole) {
+                (None, Some(jet)) => *jet,
+                (None, None) => self.map.jet(at),
+                (Some(branch), _) => branch.jet(at),
+            };
+            let mut jets =
+                [jet(part.start(), (from == 0.0).then_some(first)), jet(part.end(), (t == 1.0).then_some(last))];
+            let (mut blur, mut torn) = (0.0f64, [None; 2]);
+            for (k, p) in [p0, p3].into_iter().enumerate() {
+                let off = jets[k].p.distance(p);
+                if !(jets[k].is_finite() && p.is_finite()) {
+                    return Err(NotFinite { t: [from, t][k], at: seg.eval([from, t][k]) });
+                }
+                if off > TEAR * self.options.tolerance {
+                    torn[k] = Some(p);
+                } else {
+                    (blur, jets[k].p) = (blur.max(off), p);
+                }
             }
-            from = to;
+            out.push(Part { seg: part, jets, cut: Some(Cut { branch, blur, torn }) });
+            (from, p0) = (t, p3);
         }
-        Ok(())
+        Ok(out)
     }
 
     /// The branch that is the map between two parameters: that of a point inside, confirmed at others. `Err`: where, as a share of
@@ -255,65 +243,59 @@ impl SegmentFitter<'_> {
         }
         Err(inside)
     }
-
-    /// Covers the part between two nodes. If the map tears at a node, a line connects the node to the branch's own value.
-    fn fit_part(
-        &self,
-        source: &SourceCurve<'_>,
-        on_branch: bool,
-        nodes: [&Node<'_>; 2],
-        slow: &SlowSpots,
-        pieces: &mut Vec<FittedPiece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
-        let mut blur = 0.0f64;
-        let mut end = |node: &Node<'_>| -> Result<(BreakPoint, bool), Point> {
-            if let (false, Some(jet)) = (on_branch, node.jet) {
-                return Ok((source.end_with(node.u, node.p, jet), false));
-            }
-            let own = source.end(node.u)?;
-            let off = own.p.distance(node.p);
-            if off > TEAR * self.options.tolerance {
-                return Ok((own, true));
-            }
-            blur = blur.max(off);
-            Ok((BreakPoint { p: node.p, ..own }, false))
-        };
-        let ((e0, torn0), (e1, torn1)) = (end(nodes[0])?, end(nodes[1])?);
-        if torn0 {
-            pieces.push(FittedPiece::Line(Line::new(nodes[0].p, e0.p)));
-        }
-        self.cover(source, source.map.rational_degree(), blur, slow, [&e0, &e1], pieces, report)?;
-        if torn1 {
-            pieces.push(FittedPiece::Line(Line::new(e1.p, nodes[1].p)));
-        }
-        Ok(())
-    }
 }
 
-/// An end of a smooth part, whose image the neighbouring part shares bit by bit.
-struct Node<'a> {
-    /// Parameter of the segment, and of the curve.
-    t: f64,
-    u: f64,
-    p: Point,
-    /// The map's jet, at the ends of the segment.
-    jet: Option<&'a Jet>,
+/// A segment, or a part of one on which the map is smooth.
+#[derive(Clone)]
+pub(super) struct Part {
+    pub(super) seg: Seg,
+    /// At its ends. Neighbours share the points bit by bit, unless the map tears.
+    pub(super) jets: [Jet; 2],
+    cut: Option<Cut>,
 }
 
-/// Appends a part that an affine branch moves exactly, between the nodes it shares with its neighbours.
-fn affine_part(part: &Seg, from: Point, to: Point, tolerance: f64, pieces: &mut Vec<FittedPiece>) {
-    let near = |a: Point, b: Point| a.distance(b) <= TEAR * tolerance;
-    let (a, b) = (part.start(), part.end());
-    if !near(a, from) {
-        pieces.push(FittedPiece::Line(Line::new(from, a)));
+/// A part's own map.
+#[derive(Clone)]
+struct Cut {
+    /// `None`: the whole map.
+    branch: Option<Arc<dyn Map>>,
+    /// Distance of the shared points from the branch's own.
+    blur: f64,
+    /// The neighbour's points at ends where the map tears.
+    torn: [Option<Point>; 2],
+}
+
+impl Part {
+    /// A whole segment with the jets at its ends.
+    pub(super) fn whole(seg: Seg, jets: [&Jet; 2]) -> Self {
+        Self { seg, jets: jets.map(|j| *j), cut: None }
     }
-    let (p0, p3) = (if near(a, from) { from } else { a }, if near(b, to) { to } else { b });
-    pieces.push(match part {
-        Seg::Line(_) => FittedPiece::Line(Line::new(p0, p3)),
-        other => FittedPiece::Cubic(CubicBez { p0, p3, ..other.to_cubic() }),
-    });
-    if !near(b, to) {
-        pieces.push(FittedPiece::Line(Line::new(b, to)));
+
+    fn reversed(mut self) -> Self {
+        self.jets.reverse();
+        if let Some(cut) = &mut self.cut {
+            cut.torn.reverse();
+        }
+        Self { seg: self.seg.reversed(), ..self }
+    }
+
+    /// The image of `seg`, the part's segment in either direction.
+    pub(super) fn source<'a>(&'a self, fitter: &SegmentFitter<'a>, seg: &'a Seg) -> SourceCurve<'a> {
+        let certify = fitter.options.certify;
+        match self.cut.as_ref().and_then(|c| c.branch.as_ref()) {
+            None => SourceCurve::for_proof(seg, fitter.map, fitter.degree, certify),
+            Some(b) => SourceCurve::for_proof(seg, b, b.rational_degree(), certify),
+        }
+    }
+
+    /// Returns `true` if an affine map moves the part.
+    pub(super) fn is_affine(&self) -> bool {
+        let branch = self.cut.as_ref().and_then(|c| c.branch.as_ref());
+        branch.is_some_and(|b| matches!(b.class(), Class::Affine(_)))
+    }
+
+    /// Returns `true` if the map tears at the start (0) or at the end (1).
+    pub(super) fn is_torn(&self, end: usize) -> bool {
+        self.cut.as_ref().is_some_and(|c| c.torn[end].is_some())
     }
 }

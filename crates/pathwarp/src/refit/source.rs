@@ -1,9 +1,9 @@
-//! The image of one source segment under a map that is smooth on it, sampled eight parameters at a time.
+//! The image of one segment under a map that is smooth on it, sampled eight parameters at a time.
 
-use super::lanes::{Lane, Lanes, fma, sum};
-use super::limits::{ONE_SIDED_STEP, VANISHING_DERIVATIVE};
-use crate::map::{Jet, Map};
+use crate::map::{Jet, Map, RationalBezier, RationalDegree};
 use crate::outline::Seg;
+use bezierfit::parts::{VANISHING_DERIVATIVE, fma, tangent_beside};
+use bezierfit::{BreakPoint, Lane, Lanes, NotFinite, Quotient, Source};
 use kurbo::{Point, Vec2};
 
 /// A source segment in its canonical direction, with the smooth map that holds on it.
@@ -11,6 +11,8 @@ use kurbo::{Point, Vec2};
 pub(super) struct SourceCurve<'a> {
     pub(super) seg: &'a Seg,
     pub(super) map: &'a dyn Map,
+    /// The map's degree, if it is a quotient of polynomials.
+    degree: Option<RationalDegree>,
     /// Coefficients of the power basis, constant term first; unused for an arc unless `w` is set.
     c: [Vec2; 4],
     /// The derivative at the end: exact, where the power basis has it only up to rounding.
@@ -21,22 +23,11 @@ pub(super) struct SourceCurve<'a> {
     w: Option<[f64; 3]>,
 }
 
-/// A point between two pieces: a place on the image, with the tangents on both sides.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BreakPoint {
-    pub(super) t: f64,
-    pub(super) p: Point,
-    /// Speed of the image with respect to the parameter; zero where the derivative vanishes.
-    pub(super) speed: f64,
-    /// Unit tangent just before.
-    pub(super) into: Vec2,
-    /// Unit tangent just after.
-    pub(super) away: Vec2,
-}
-
+// Loops over eight lanes run by index through several arrays at once, the form that LLVM vectorises.
+#[allow(clippy::needless_range_loop)]
 impl<'a> SourceCurve<'a> {
     #[inline(always)]
-    pub(super) fn new(seg: &'a Seg, map: &'a dyn Map) -> Self {
+    pub(super) fn new(seg: &'a Seg, map: &'a dyn Map, degree: Option<RationalDegree>) -> Self {
         let zero = Vec2::ZERO;
         let (c, last, size) = match seg {
             Seg::Line(s) => {
@@ -54,14 +45,14 @@ impl<'a> SourceCurve<'a> {
             }
             Seg::Arc(s) => ([zero; 4], s.deriv(1.0), s.a.hypot().max(s.b.hypot()) * s.sweep.abs()),
         };
-        Self { seg, map, c, last, size, w: None }
+        Self { seg, map, degree, c, last, size, w: None }
     }
 
     /// As [`SourceCurve::new`]. If a proof is wanted, turns an arc of less than half a turn into a rational quadratic: the
     /// same curve in another parametrisation.
     #[inline(always)]
-    pub(super) fn for_proof(seg: &'a Seg, map: &'a dyn Map, proof: bool) -> Self {
-        let mut out = Self::new(seg, map);
+    pub(super) fn for_proof(seg: &'a Seg, map: &'a dyn Map, degree: Option<RationalDegree>, proof: bool) -> Self {
+        let mut out = Self::new(seg, map, degree);
         if proof {
             out.make_rational();
         }
@@ -113,24 +104,13 @@ impl<'a> SourceCurve<'a> {
 
     /// The degree of the source as a quotient of polynomials, and `true` if it has a denominator. `None` for an arc that is
     /// not in rational form.
-    pub(super) fn degree(&self) -> Option<(usize, bool)> {
+    fn seg_degree(&self) -> Option<(usize, bool)> {
         match self.seg {
             Seg::Line(_) => Some((1, false)),
             Seg::Quad(_) => Some((2, false)),
             Seg::Cubic(_) => Some((3, false)),
             Seg::Arc(_) => self.w.map(|_| (2, true)),
         }
-    }
-
-    /// The denominators of the image at eight parameters: the map's, times the source's to the power of the map's degree.
-    pub(super) fn denominators(&self, t: &Lane, points: &Lanes, power: i32) -> Lane {
-        let mut out = self.map.denominators(&points.x, &points.y);
-        if let Some([w0, w1, w2]) = self.w {
-            for i in 0..8 {
-                out[i] *= ((w2 * t[i] + w1) * t[i] + w0).powi(power);
-            }
-        }
-        out
     }
 
     /// The source's derivative.
@@ -154,7 +134,7 @@ impl<'a> SourceCurve<'a> {
 
     /// Source points at eight parameters.
     #[inline(always)]
-    pub(super) fn points(&self, t: &Lane) -> Lanes {
+    pub(super) fn seg_points(&self, t: &Lane) -> Lanes {
         let mut out = Lanes::default();
         if let Seg::Arc(a) = self.seg {
             if let Some([w0, w1, w2]) = self.w {
@@ -182,37 +162,10 @@ impl<'a> SourceCurve<'a> {
         out
     }
 
-    /// Writes the images at eight parameters. `Err`: the source point at which the map is not finite.
-    #[inline(always)]
-    pub(super) fn images_into(&self, t: &Lane, g: &mut Lanes) -> Result<(), Point> {
-        *g = self.points(t);
-        self.map.lanes(&mut g.x, &mut g.y);
-        // One test for all: the sum is finite only if every term is. Terms too large to add up are too large to fit.
-        let mut all = [0.0; 8];
-        for i in 0..8 {
-            all[i] = g.x[i] + g.y[i];
-        }
-        if sum(&all).is_finite() { Ok(()) } else { Err(self.not_finite(t, g)) }
-    }
-
-    /// Returns the images at eight parameters. `Err`: the source point at which the map is not finite.
-    #[inline(always)]
-    pub(super) fn images(&self, t: &Lane) -> Result<Lanes, Point> {
-        let mut out = Lanes::default();
-        self.images_into(t, &mut out)?;
-        Ok(out)
-    }
-
-    #[cold]
-    fn not_finite(&self, t: &Lane, g: &Lanes) -> Point {
-        let i = (0..8).find(|&i| !(g.x[i] + g.y[i]).is_finite()).unwrap_or(0);
-        self.at(t[i])
-    }
-
-    /// The image's point and derivative.
-    pub(super) fn image(&self, t: f64) -> (Point, Vec2) {
-        let j = self.map.jet(self.at(t));
-        (j.p, j.push(self.deriv(t)))
+    /// The same as points.
+    pub(super) fn sampled(&self, t: &Lane) -> [Point; 8] {
+        let g = self.seg_points(t);
+        std::array::from_fn(|i| Point::new(g.x[i], g.y[i]))
     }
 
     /// The source's point.
@@ -224,13 +177,6 @@ impl<'a> SourceCurve<'a> {
             }
             _ => self.seg.eval(t),
         }
-    }
-
-    /// The break point at `t`. `Err`: the source point, if the map is not finite there.
-    pub(super) fn end(&self, t: f64) -> Result<BreakPoint, Point> {
-        let at = self.at(t);
-        let jet = self.map.jet(at);
-        if jet.is_finite() { Ok(self.end_with(t, jet.p, &jet)) } else { Err(at) }
     }
 
     /// The break point at `t` where the map has the finite jet `jet`. `p` is the image of a source node or crease, which
@@ -271,21 +217,77 @@ impl<'a> SourceCurve<'a> {
                 }
             }
         }
-        // Step farther away until there is a direction; a constant image has none.
-        let mut h = ONE_SIDED_STEP;
-        while h < 1.0 {
-            let s = t + side * h;
-            let s = if (0.0..=1.0).contains(&s) { s } else { t - side * h };
-            let flip = if (s - t) * side < 0.0 { -1.0 } else { 1.0 };
-            let (_, d) = self.image(s);
-            let n = d.hypot();
-            if n > 0.0 && n.is_finite() {
-                // Beyond the end of the segment there is no curve. The tangent on that side is never used by a piece of
-                // this segment, so the sign does not matter.
-                return d * (flip / n);
-            }
-            h *= 30.0;
+        tangent_beside(self, t, side)
+    }
+}
+
+impl Source for SourceCurve<'_> {
+    fn eval(&self, t: f64) -> (Point, Vec2) {
+        let j = self.map.jet(self.at(t));
+        (j.p, j.push(self.deriv(t)))
+    }
+
+    #[inline(always)]
+    fn points(&self, t: &Lane, g: &mut Lanes) {
+        *g = self.seg_points(t);
+        self.map.lanes(&mut g.x, &mut g.y);
+    }
+
+    #[inline(always)]
+    fn is_simple(&self) -> bool {
+        self.degree.is_some()
+    }
+
+    fn quotient(&self) -> Option<Quotient> {
+        let (degree, rational) = self.seg_degree()?;
+        if let Some(map) = self.degree {
+            let degree = map.degree * degree;
+            return Some(Quotient {
+                below: if map.rational || rational { degree } else { 0 },
+                ..Quotient::polynomial(degree)
+            });
         }
-        Vec2::ZERO
+        if rational {
+            return None;
+        }
+        let image = self.map.image(&RationalBezier::from_seg(self.seg)?)?;
+        let weights = (!image.is_polynomial()).then(|| image.points.iter().map(|p| p[2]).collect::<Vec<_>>());
+        let below = if weights.is_some() { image.degree() } else { 0 };
+        Some(Quotient { below, weights, ..Quotient::polynomial(image.degree()) })
+    }
+
+    /// The map's denominators, times the segment's to the power of the map's degree.
+    fn denominators(&self, t: &Lane) -> Lane {
+        let points = self.seg_points(t);
+        let mut out = self.map.denominators(&points.x, &points.y);
+        if let Some([w0, w1, w2]) = self.w {
+            let power = self.degree.map_or(1, |d| d.degree as i32);
+            for (w, t) in out.iter_mut().zip(t) {
+                *w *= ((w2 * t + w1) * t + w0).powi(power);
+            }
+        }
+        out
+    }
+
+    fn place(&self, t: f64) -> Point {
+        self.at(t)
+    }
+
+    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+        let at = self.at(t);
+        let jet = self.map.jet(at);
+        if jet.is_finite() { Ok(self.end_with(t, jet.p, &jet)) } else { Err(NotFinite { t, at }) }
+    }
+
+    fn announce<'s>(points: &mut dyn Iterator<Item = (&'s Self, Lane)>, ends: &mut dyn Iterator<Item = (&'s Self, f64)>)
+    where
+        Self: 's,
+    {
+        let (mut points, mut ends) = (points.peekable(), ends.peekable());
+        let first = points.peek().map(|(s, _)| *s).or_else(|| ends.peek().map(|(s, _)| *s));
+        let Some(map) = first.map(|s| s.map).filter(|m| m.prefers_batches()) else { return };
+        let values: Vec<Point> = points.flat_map(|(s, t)| s.sampled(&t)).collect();
+        let jets: Vec<Point> = ends.map(|(s, t)| s.at(t)).collect();
+        map.prepare(&values, &jets);
     }
 }

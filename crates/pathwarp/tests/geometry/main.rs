@@ -5,6 +5,7 @@
 
 mod budget;
 mod exact;
+mod few_nodes;
 mod figures;
 mod lattice;
 mod limits;

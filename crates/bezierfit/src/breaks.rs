@@ -1,0 +1,267 @@
+//! Chooses the break points: as few pieces as the tolerance allows, of equal difficulty.
+//!
+//! The error of a piece goes with the sixth power of its length. A piece with error e therefore uses the share
+//! (e/tolerance)^(1/6) of what one piece can do: its difficulty. Difficulties add up along the curve. One attempt on the whole
+//! stretch predicts the number of pieces; the break points then go to the quantiles of the difficulty measured so far, until
+//! every piece fits.
+//!
+//! The sixth power is that of the leading term. Its coefficient changes sign along many curves, and a piece across such a place
+//! has a much smaller error. So fewer pieces than the difficulty predicts are tried first, and near the limit single break
+//! points are moved by bisection.
+
+use crate::limits::{
+    BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE, REPORT_MARGIN,
+};
+use crate::report::{Assurance, Piece, Report};
+use crate::sample::{CHECKED, FITTED, Lanes, larger, spaced};
+use crate::source::{BreakPoint, NotFinite, Source};
+use crate::stretch::{FitOutcome, StretchFitter};
+
+/// Stretches still to be covered, the first one on top, with the outcome of a single piece if it is known.
+type Stack = Vec<(BreakPoint, BreakPoint, Option<FitOutcome>)>;
+
+/// A division of a stretch into `n` parts.
+struct Plan {
+    n: usize,
+    ends: [BreakPoint; MAX_PLANNED + 1],
+    outcomes: [Option<FitOutcome>; MAX_PLANNED],
+}
+
+impl<S: Source> StretchFitter<'_, S> {
+    /// Appends pieces for the stretch between two break points. `Err`: a place at which the curve is not finite.
+    #[inline(always)]
+    pub fn cover(
+        &mut self,
+        from: &BreakPoint,
+        to: &BreakPoint,
+        out: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
+        // As `attempt`, but the Hermite cubic, with which most segments end, is written without a detour through `FitOutcome`.
+        let mut g = Lanes::default();
+        let mut request = self.start(from, to, &mut g)?;
+        let first = match self.line(&request)? {
+            Some(line) => line,
+            None => {
+                if let Some(error) = self.hermite_error(&mut request)? {
+                    self.accept(Piece::Cubic(request.hermite()), error, out, report);
+                    return Ok(());
+                }
+                self.improve(&mut request)?
+            }
+        };
+        if let FitOutcome::Fits { piece, error, .. } = first {
+            self.accept(piece, error, out, report);
+            return Ok(());
+        }
+        self.divide(from, to, first, out, report)
+    }
+
+    /// Covers a stretch that one piece does not fit.
+    #[inline(never)]
+    fn divide(
+        &mut self,
+        from: &BreakPoint,
+        to: &BreakPoint,
+        first: FitOutcome,
+        out: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
+        let mut stack: Stack = vec![(*from, *to, Some(first))];
+        while let Some((from, to, known)) = stack.pop() {
+            let outcome = match known {
+                Some(o) => o,
+                None => self.attempt(&from, &to)?,
+            };
+            let (piece, error, cusp) = match outcome {
+                FitOutcome::Fits { piece, error, .. } => {
+                    self.accept(piece, error, out, report);
+                    continue;
+                }
+                FitOutcome::Misses { piece, error, cusp, .. } => (piece, error, cusp),
+            };
+            let h = to.t - from.t;
+            if self.attempts >= self.most_attempts || h < MIN_STRETCH {
+                report.unresolved.push(self.source.place(0.5 * (from.t + to.t)));
+                report.add_error(error, Assurance::Checked);
+                out.push(piece);
+                continue;
+            }
+            if let Some(t) = self.slow.inside(from.t, to.t).or(cusp) {
+                let mid = self.source.end(t)?;
+                stack.push((mid, to, None));
+                stack.push((from, mid, None));
+                continue;
+            }
+            self.plan(from, to, &outcome, &mut stack)?;
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn accept(&self, piece: Piece, error: f64, out: &mut Vec<Piece>, report: &mut Report) {
+        if self.form.is_some() {
+            report.add_error(error, Assurance::Certified);
+        } else {
+            let bound = error * REPORT_MARGIN;
+            let bound = larger(error, if bound < self.tolerance { bound } else { self.tolerance });
+            report.max_error = larger(bound, report.max_error);
+            report.assurance = report.assurance.min(Assurance::Checked);
+        }
+        out.push(piece);
+    }
+
+    /// Divides a stretch that one piece does not fit into parts of equal difficulty, and puts them on the stack. Not all of
+    /// them need fit.
+    fn plan(
+        &mut self,
+        from: BreakPoint,
+        to: BreakPoint,
+        whole: &FitOutcome,
+        stack: &mut Stack,
+    ) -> Result<(), NotFinite> {
+        let tol = self.tolerance;
+        // Fewer parts than their difficulty predicts, of equal length to begin with.
+        let n = ((whole.difficulty(tol) * HOPE).ceil() as usize).clamp(2, MAX_PLANNED);
+        let mut plan = Plan { n, ends: [from; MAX_PLANNED + 1], outcomes: [None; MAX_PLANNED] };
+        plan.ends[n] = to;
+        let places = |i: usize| from.t + (to.t - from.t) * i as f64 / n as f64;
+        self.announce(from.t, &(1..n).map(places), to.t);
+        for (i, end) in plan.ends.iter_mut().enumerate().take(n).skip(1) {
+            *end = self.source.end(places(i))?;
+        }
+        let mut placements = 0;
+        loop {
+            let n = plan.n;
+            let mut total = 0.0;
+            let mut fits = true;
+            // Sums of the difficulties up to each break point.
+            let mut sums = [0.0; MAX_PLANNED + 1];
+            for i in 0..n {
+                let outcome = match plan.outcomes[i] {
+                    Some(o) => o,
+                    None => self.attempt(&plan.ends[i], &plan.ends[i + 1])?,
+                };
+                plan.outcomes[i] = Some(outcome);
+                total += outcome.difficulty(tol);
+                sums[i + 1] = total;
+                fits &= outcome.fits();
+            }
+            placements += 1;
+            let has_cusp = |o: &FitOutcome| matches!(o, FitOutcome::Misses { cusp: Some(_), .. });
+            let cusp = plan.outcomes[..n].iter().flatten().any(has_cusp);
+            if fits || cusp || self.attempts >= self.most_attempts {
+                break;
+            }
+            let mut next = n;
+            if total > n as f64 * FULL || placements >= PLACEMENTS {
+                if total <= n as f64 * REPAIRABLE && self.repair(&mut plan)? {
+                    break;
+                }
+                next = (n + 1).max((total * HOPE).ceil() as usize);
+                placements = 0;
+            }
+            if next > MAX_PLANNED {
+                break;
+            }
+            self.replace(&mut plan, next, to, &sums)?;
+        }
+        for i in (0..plan.n).rev() {
+            stack.push((plan.ends[i], plan.ends[i + 1], plan.outcomes[i]));
+        }
+        Ok(())
+    }
+
+    /// Moves the break points to the quantiles of the difficulty, whose sums are given, for `next` parts.
+    fn replace(
+        &self,
+        plan: &mut Plan,
+        next: usize,
+        to: BreakPoint,
+        sums: &[f64; MAX_PLANNED + 1],
+    ) -> Result<(), NotFinite> {
+        let (n, old) = (plan.n, plan.ends);
+        let total = sums[n];
+        let mut at = 0;
+        let mut places = [0.0; MAX_PLANNED + 1];
+        for (i, place) in places.iter_mut().enumerate().take(next).skip(1) {
+            let want = total * i as f64 / next as f64;
+            while at + 1 < n && sums[at + 1] < want {
+                at += 1;
+            }
+            let share = (want - sums[at]) / (sums[at + 1] - sums[at]);
+            *place = old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0);
+        }
+        self.announce(old[0].t, &places[1..next].iter().copied(), to.t);
+        for (end, place) in plan.ends[1..next].iter_mut().zip(&places[1..next]) {
+            *end = self.source.end(*place)?;
+        }
+        plan.ends[next] = to;
+        plan.outcomes = [None; MAX_PLANNED];
+        plan.n = next;
+        Ok(())
+    }
+
+    /// Announces the break points `places` of the stretch from `first` to `last`, and sixteen samples of each part.
+    fn announce(&self, first: f64, places: &(impl Iterator<Item = f64> + Clone), last: f64) {
+        let starts = std::iter::once(first).chain(places.clone());
+        let parts = starts.zip(places.clone().chain([last]));
+        let lanes = parts.flat_map(|(a, b)| [&FITTED, &CHECKED].map(|set| spaced(a, b - a, set)));
+        S::announce(&mut lanes.map(|t| (self.source, t)), &mut places.clone().map(|t| (self.source, t)));
+    }
+
+    /// Moves break points between a piece that misses and a neighbour that fits until both fit: near its limit a piece's
+    /// error is no smooth function of its length, and no quantile finds the place. Returns `true` if all pieces fit now.
+    fn repair(&mut self, plan: &mut Plan) -> Result<bool, NotFinite> {
+        let fits = |o: &Option<FitOutcome>| o.is_some_and(|o| o.fits());
+        let (ends, outcomes) = (&mut plan.ends[..=plan.n], &mut plan.outcomes[..plan.n]);
+        for i in 0..outcomes.len() {
+            for k in i.saturating_sub(1)..=i {
+                if !fits(&outcomes[i]) && k + 1 < outcomes.len() && fits(&outcomes[k]) != fits(&outcomes[k + 1]) {
+                    self.balance(&mut ends[k..k + 3], &mut outcomes[k..k + 2])?;
+                }
+            }
+            if !fits(&outcomes[i]) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Moves the break point between two pieces, one of which fits, until both do or clearly cannot.
+    fn balance(&mut self, ends: &mut [BreakPoint], outcomes: &mut [Option<FitOutcome>]) -> Result<(), NotFinite> {
+        let tol = self.tolerance;
+        let [from, mid, to] = *ends else { return Ok(()) };
+        let [Some(a), Some(b)] = *outcomes else { return Ok(()) };
+        let (mut lo, mut hi, mut t) = (from.t, to.t, mid.t);
+        let mut now = [a, b];
+        for _ in 0..BISECTIONS {
+            // The piece that fits may grow.
+            if now[0].fits() {
+                lo = t;
+            } else {
+                hi = t;
+            }
+            let [da, db] = [now[0].difficulty(tol), now[1].difficulty(tol)];
+            let half = 0.5 * (da + db);
+            t = if half < da { from.t + (t - from.t) * half / da } else { to.t - (to.t - t) * half / db };
+            let margin = BISECTION_MARGIN * (hi - lo);
+            if !(t > lo + margin && t < hi - margin) {
+                t = 0.5 * (lo + hi);
+            }
+            self.announce(from.t, &std::iter::once(t), to.t);
+            let mid = self.source.end(t)?;
+            now = [self.attempt(&from, &mid)?, self.attempt(&mid, &to)?];
+            match now.map(|o| o.fits()) {
+                [false, false] => return Ok(()),
+                [true, true] => {
+                    ends[1] = mid;
+                    (outcomes[0], outcomes[1]) = (Some(now[0]), Some(now[1]));
+                    return Ok(());
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,73 @@
+//! Fits any curve with few Bézier curves, within a Hausdorff distance that is checked or proven.
+//!
+//! Let g(t) be the curve, a [`Source`].
+//!
+//! 1. **Samples** (`sample`). g is evaluated at eight parameters in one batch, at eight more in between when needed, and with its
+//!    derivative at the break points. A curve that is a line to rounding ends here (`quick`).
+//! 2. **Fit** (`fit`). A piece keeps end points and end tangents (G¹). Its two handle lengths minimise the normal residuals: Gauss–Newton
+//!    by variable projection, each step bent along the valley of equal area. The error is of sixth order in the piece's length. The
+//!    Hermite cubic, with the curve's end derivatives, is tried first (`quick`).
+//! 3. **Further attempts** (`stretch`): converge, restart elsewhere in the valley, minimax by exchange (`minimax`).
+//! 4. **Acceptance** (`judge`). A fit is judged by the cheapest test that can decide: eight samples; sixteen, with the peaks
+//!    predicted between them; samples halfway beside doubtful ones; a dense check (`check`); or, if asked for, a proof by polynomial
+//!    bounds (`proof`, `sampled`).
+//! 5. **Break points** (`breaks`). The sixth root of error ÷ tolerance measures difficulty. Break points go to its quantiles,
+//!    with fewer pieces tried first and single break points bisected, until every piece fits.
+//! 6. **Merging** (`run`, `trial`, `distances`, `merge`), if asked for: the fewest cubics across smooth joints of several curves.
+//!
+//! `limits` holds every threshold of these stages, with the reason for its value.
+
+// Loops over eight lanes run by index through several arrays at once, the form that LLVM vectorises.
+#![allow(clippy::needless_range_loop)]
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod breaks;
+mod chebyshev;
+mod check;
+mod distances;
+mod fit;
+mod judge;
+mod limits;
+mod merge;
+mod minimax;
+mod offset;
+mod options;
+mod path;
+mod proof;
+mod quick;
+mod report;
+mod run;
+mod sample;
+mod sampled;
+mod source;
+mod stretch;
+mod tables;
+mod trial;
+
+pub use offset::Offset;
+pub use options::Options;
+pub use path::{Fitted, Segment, fit, simplify};
+pub use report::{Assurance, Piece, Report};
+pub use sample::{Lane, Lanes};
+pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
+
+/// Parts of the fitter for callers that put it together themselves. They may change in any release.
+#[doc(hidden)]
+pub mod parts {
+    pub use crate::distances::{MarkBatch, MarkedCubic};
+    pub use crate::fit::ChordFrame;
+    pub use crate::limits::{
+        FOOT_ROUNDING, MERGE_GRID, MERGE_SHARE, SMOOTH_JOINT, STRAIGHT_TOLERANCE, STRAIGHT_TURN, SURE_CORNER,
+        VANISHING_DERIVATIVE,
+    };
+    pub use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, refined};
+    pub use crate::run::{RunSegment, SegmentRun, per_segment, sample_lanes};
+    pub use crate::sample::{CHECKED, FITTED, fma, spaced};
+    pub use crate::source::tangent_beside;
+    pub use crate::stretch::StretchFitter;
+}
+
+/// The README's example, tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

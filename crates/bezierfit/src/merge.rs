@@ -1,0 +1,608 @@
+//! Fewer pieces across smooth joints: the fewest over the places of a grid on a run of segments.
+//!
+//! After c pieces only the furthest place matters, nearly: what one cubic covers from some place it also covers from a later
+//! one. So the search keeps one place for each number of pieces, extends it as far as one cubic reaches, and compares with
+//! the segments' own pieces, which lead from joint to joint.
+
+use crate::distances::{Distances, MarkedCubic, proven};
+use crate::limits::{
+    BETWEEN_TARGET, CARRY_BELOW, FEW_PLACES, FINEST_STEP, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, MERGE_GRID,
+    MERGE_SHARE, REACH_TARGET, REFUSED_ERROR, SMALLEST_REACH_ERROR,
+};
+use crate::report::{Assurance, Piece, Report};
+use crate::run::SegmentRun;
+use crate::source::{BreakPoint, NotFinite, Source};
+use crate::trial::{RunCubic, Stretch, Trial};
+use std::collections::VecDeque;
+
+/// A cubic that was tried from one place to another.
+struct Tried {
+    to: usize,
+    /// Error ÷ tolerance at the samples. At most 1 if the cubic fits.
+    error: f64,
+    /// Set if it fits.
+    cubic: Option<Box<RunCubic>>,
+    /// Set once it has passed its check.
+    passed: Option<Box<Passed>>,
+    /// The next entry with the same start.
+    next: usize,
+}
+
+/// A piece that has passed its check.
+struct Passed {
+    piece: Piece,
+    error: f64,
+    marked: Option<MarkedCubic>,
+}
+
+/// No entry.
+const NONE: usize = usize::MAX;
+/// Break points that are remembered at the same time.
+const ENDS: usize = 256;
+/// Joints that are looked at together.
+const BLOCK: usize = 64;
+
+/// Lists of [`Reaches`], which keep their memory from run to run.
+#[derive(Default)]
+pub struct ReachMemory {
+    /// Break points at grid places, each where its number modulo the length leads; computed on first use.
+    ends: Vec<Option<(usize, BreakPoint)>>,
+    /// For each joint, how far on either side of it a cubic may extend: the shorter side of a cubic that crosses it is at most
+    /// this long.
+    crossing: Vec<f64>,
+    /// The last place on the run from which a cubic may cross each joint of a block of joints.
+    blocks: Vec<f64>,
+    tried: Vec<Tried>,
+    /// The last entry of `tried` from each place.
+    latest: Vec<usize>,
+    distances: Distances,
+    /// Places reached from the start before: drawings change little along a curve.
+    pub last_reach: usize,
+}
+
+/// Everything known about single cubics between the grid places of a run.
+pub struct Reaches<'r, S, F> {
+    run: &'r SegmentRun<S>,
+    /// The segments' own pieces.
+    pub own: OwnPieces<F>,
+    /// The tolerance of checks, smaller than that of proofs.
+    tolerance: f64,
+    settings: MergeSettings,
+    memory: &'r mut ReachMemory,
+}
+
+/// What is wanted of merged pieces.
+#[derive(Debug, Clone, Copy)]
+pub struct MergeSettings {
+    /// Largest allowed distance.
+    pub tolerance: f64,
+    /// The error is to be proven.
+    pub proof: bool,
+    /// Cubics are to be marked, for use elsewhere.
+    pub marks: bool,
+    /// They are certain to be used, so that their errors should be small.
+    pub again: bool,
+}
+
+impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
+    /// For one run; the memory is that of any run before.
+    pub fn new(
+        run: &'r SegmentRun<S>,
+        mut own: OwnPieces<F>,
+        settings: MergeSettings,
+        memory: &'r mut ReachMemory,
+    ) -> Self {
+        let tolerance = MERGE_SHARE * settings.tolerance;
+        own.grid = run.grid;
+        let places = run.last_place() + 1;
+        memory.ends.clear();
+        memory.ends.resize(places.min(ENDS), None);
+        memory.latest.clear();
+        memory.latest.resize(places, NONE);
+        memory.tried.clear();
+        let crossing = (0..=run.segments.len()).map(|j| {
+            let most = (tolerance / (JUMP_ERROR * run.curvature_jump(j))).sqrt();
+            // Segments shorter than that say nothing about the curvature so far from the joint.
+            if most < run.shorter_beside(j) { most } else { f64::INFINITY }
+        });
+        memory.crossing.clear();
+        memory.crossing.extend(crossing);
+        let furthest = |(j, most): (usize, &f64)| run.place(j * run.grid) - most;
+        let blocks = memory.crossing.chunks(BLOCK).enumerate().map(|(b, block)| {
+            block.iter().enumerate().map(|(i, most)| furthest((b * BLOCK + i, most))).fold(f64::NEG_INFINITY, f64::max)
+        });
+        memory.blocks.clear();
+        memory.blocks.extend(blocks);
+        Self { run, own, tolerance, settings, memory }
+    }
+
+    /// Number of cubics that were tried.
+    pub fn tried(&self) -> usize {
+        self.memory.tried.len()
+    }
+
+    /// The last grid place.
+    fn last(&self) -> usize {
+        self.run.last_place()
+    }
+
+    /// The break point at place `k`. `Err`: the curve is not finite there.
+    fn end(&mut self, k: usize) -> Result<BreakPoint, NotFinite> {
+        let slot = k % self.memory.ends.len();
+        if let Some((at, end)) = self.memory.ends[slot]
+            && at == k
+        {
+            return Ok(end);
+        }
+        let end = self.run.end_at(k)?;
+        self.memory.ends[slot] = Some((k, end));
+        Ok(end)
+    }
+
+    /// Returns `true` if one cubic fits from place `k` to `m`, as far as its samples show.
+    fn fits(&mut self, k: usize, m: usize) -> Result<bool, NotFinite> {
+        Ok(m > k && self.error(k, m)? <= 1.0)
+    }
+
+    /// Returns `true` if one cubic from place `k` to `m` passes its check.
+    fn passes(&mut self, k: usize, m: usize) -> Result<bool, NotFinite> {
+        Ok(self.fits(k, m)? && self.piece(k, m)?.is_some())
+    }
+
+    /// The piece from place `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
+    fn piece(&mut self, k: usize, m: usize) -> Result<Option<(Piece, f64)>, NotFinite> {
+        let i = self.entry(k, m)?;
+        if let Some(cubic) = self.memory.tried[i].cubic.take() {
+            let passed = self.checked(*cubic, k, m)?.map(Box::new);
+            let tried = &mut self.memory.tried[i];
+            if passed.is_none() {
+                tried.error = REFUSED_ERROR;
+            }
+            tried.passed = passed;
+        }
+        Ok(self.memory.tried[i].passed.as_ref().map(|p| (p.piece, p.error)))
+    }
+
+    /// A leg's piece as other sites need it, if it has passed its check.
+    pub fn marked(&mut self, leg: Leg) -> Option<MarkedCubic> {
+        let i = self.known(leg.from, leg.to)?;
+        self.memory.tried[i].passed.as_mut()?.marked.take()
+    }
+
+    /// Checks a cubic, and one fitted more closely if it is just outside the tolerance or to be carried with a larger error
+    /// than need be.
+    fn checked(&mut self, cubic: RunCubic, k: usize, m: usize) -> Result<Option<Passed>, NotFinite> {
+        let found = self.within(&cubic)?;
+        let enough =
+            if self.settings.marks && self.settings.again { CARRY_BELOW * self.tolerance } else { self.tolerance };
+        if found.as_ref().is_some_and(|f| f.error <= enough) {
+            return Ok(found);
+        }
+        let closer = match self.stretch(k, m)?.fitted_closely(&cubic).cubic {
+            Some(closer) => self.within(&closer)?,
+            None => None,
+        };
+        let error = |p: &Option<Passed>| p.as_ref().map_or(f64::INFINITY, |p| p.error);
+        Ok(if error(&closer) < error(&found) { closer } else { found })
+    }
+
+    /// The error of a cubic by the samples of all segments, or proven segment by segment. `None` if it is not within the tolerance.
+    fn within(&mut self, cubic: &RunCubic) -> Result<Option<Passed>, NotFinite> {
+        let enough = self.tolerance;
+        let checked = self.memory.distances.measure(self.run, cubic, enough)?;
+        let Some(mut error) = checked.filter(|e| *e <= enough) else { return Ok(None) };
+        if self.settings.proof {
+            let tolerance = self.settings.tolerance;
+            error = proven(self.run, cubic, &self.memory.distances.feet, tolerance)?;
+            if error > tolerance {
+                return Ok(None);
+            }
+        }
+        let marked = self.settings.marks.then(|| self.memory.distances.marked(self.run, cubic, error)).flatten();
+        Ok(Some(Passed { piece: cubic.piece(), error, marked }))
+    }
+
+    fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch, NotFinite> {
+        let ends = [self.end(k)?, self.end(m)?];
+        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], self.tolerance))
+    }
+
+    /// The entry of the cubic from `k` to `m`, if it was tried.
+    fn known(&self, k: usize, m: usize) -> Option<usize> {
+        let mut i = self.memory.latest[k];
+        while i != NONE && self.memory.tried[i].to != m {
+            i = self.memory.tried[i].next;
+        }
+        (i != NONE).then_some(i)
+    }
+
+    /// The entry of the cubic from `k` to `m`, which is fitted on first use.
+    fn entry(&mut self, k: usize, m: usize) -> Result<usize, NotFinite> {
+        if let Some(i) = self.known(k, m) {
+            return Ok(i);
+        }
+        let stretch = self.stretch(k, m)?;
+        let Trial { error, cubic } = stretch.fitted();
+        let relative = error / stretch.tolerance;
+        let error = if cubic.is_some() { relative.min(1.0) } else { relative.max(1.0 + f64::EPSILON) };
+        let memory = &mut *self.memory;
+        let cubic = cubic.map(Box::new);
+        memory.tried.push(Tried { to: m, error, cubic, passed: None, next: memory.latest[k] });
+        memory.latest[k] = memory.tried.len() - 1;
+        Ok(memory.latest[k])
+    }
+
+    fn error(&mut self, k: usize, m: usize) -> Result<f64, NotFinite> {
+        let i = self.entry(k, m)?;
+        Ok(self.memory.tried[i].error)
+    }
+
+    /// The furthest place that jumps of curvature let a cubic from `k` reach.
+    fn limit(&self, k: usize) -> usize {
+        let (last, start) = (self.last(), self.run.place(k));
+        let mut j = k / self.run.grid + 1;
+        while j < self.run.segments.len() {
+            if j.is_multiple_of(BLOCK) && self.memory.blocks[j / BLOCK] <= start {
+                j += BLOCK;
+                continue;
+            }
+            let (joint, most) = (self.run.place(j * self.run.grid), self.memory.crossing[j]);
+            if joint - start <= most {
+                j += 1;
+                continue;
+            }
+            // The side before the joint is too long, so the side after it must be short enough.
+            let mut m = j * self.run.grid;
+            while m < last && self.run.place(m + 1) - joint <= most {
+                m += 1;
+            }
+            return m;
+        }
+        last
+    }
+
+    /// The furthest place that one cubic from `k` was found to reach; `k` itself if there is none, or if nothing beyond the
+    /// segment's own single piece can be reached.
+    ///
+    /// A stretch that fails makes nearly all longer ones fail, so places are tried in the manner of a bisection, with the
+    /// sixth-order law of the error as the guess.
+    fn furthest(&mut self, k: usize) -> Result<usize, NotFinite> {
+        let limit = self.limit(k);
+        let grid = self.run.grid;
+        let joint = (k / grid + 1) * grid;
+        if limit <= joint && self.own_leads_to(joint, k)? {
+            return Ok(k);
+        }
+        loop {
+            let m = self.seek(k, joint, limit)?;
+            if m > k {
+                self.memory.last_reach = m - k;
+            }
+            if m == k || self.piece(k, m)?.is_some() {
+                return Ok(m);
+            }
+        }
+    }
+
+    /// Returns `true` if `k` is the joint before `joint`, and the segment between them has a single piece.
+    fn own_leads_to(&mut self, joint: usize, k: usize) -> Result<bool, NotFinite> {
+        Ok(k + self.run.grid == joint && self.own.count(k / self.run.grid)? == 1)
+    }
+
+    /// The furthest place that one cubic reaches from `k` as far as its samples show.
+    fn seek(&mut self, k: usize, joint: usize, limit: usize) -> Result<usize, NotFinite> {
+        let start = self.run.place(k);
+        let (mut low, mut high) = (k, limit + 1);
+        // Errors at `low` and `high`, as far as they are known.
+        let (mut below, mut above) = (None, None);
+        let mut probe = (joint + self.run.grid / 2).max(k + self.memory.last_reach).min(limit);
+        for round in 0.. {
+            let error = self.error(k, probe)?.max(SMALLEST_REACH_ERROR);
+            if error <= 1.0 {
+                (low, below) = (probe, Some(error));
+            } else {
+                (high, above) = (probe, Some(error));
+            }
+            if high <= joint + 1 && self.own_leads_to(joint, k)? {
+                return Ok(k);
+            }
+            if low + step(k, low) >= high {
+                break;
+            }
+            let (l, h) = (self.run.place(low) - start, self.run.place(high.min(limit)) - start);
+            let wanted = match (below, above) {
+                (Some(below), None) => l * (REACH_TARGET / below).powf(1.0 / 6.0),
+                (None, Some(above)) => h * above.powf(-1.0 / 6.0),
+                (Some(below), Some(above)) if round < INTERPOLATIONS => {
+                    l * (h / l).powf(((BETWEEN_TARGET / below).ln() / (above / below).ln()).clamp(0.0, 1.0))
+                }
+                _ => 0.5 * (l + h),
+            };
+            probe = self.run.place_before(start + wanted, [low + 1, high - 1]);
+        }
+        self.leap(k, low, limit)
+    }
+
+    /// Tries the places just beyond a near miss: a few longer stretches fit although the next one does not.
+    fn leap(&mut self, k: usize, mut low: usize, limit: usize) -> Result<usize, NotFinite> {
+        'further: while low < limit {
+            let step = step(k, low);
+            if low + step > limit || self.error(k, low + step)? > LEAP_WITHIN {
+                break;
+            }
+            for m in (low + 2 * step..=(low + (1 + LEAPS) * step).min(limit)).step_by(step) {
+                let error = self.error(k, m)?;
+                if error <= 1.0 {
+                    low = m;
+                    continue 'further;
+                }
+                if error > LEAP_WITHIN {
+                    break;
+                }
+            }
+            break;
+        }
+        Ok(low)
+    }
+}
+
+/// A step between two grid places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Leg {
+    /// Its first place.
+    pub from: usize,
+    /// Its last place.
+    pub to: usize,
+    /// By one cubic; otherwise by the pieces of one segment.
+    pub merged: bool,
+}
+
+/// Fits a segment, given its index in the run, and appends its pieces.
+pub trait FitOwn: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite> {}
+
+impl<F: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite>> FitOwn for F {}
+
+/// The pieces of single segments, fitted when they are needed: where merging succeeds, most never are.
+pub struct OwnPieces<F> {
+    fit: F,
+    /// Grid places per segment of the legs between them.
+    grid: usize,
+    pieces: Vec<Piece>,
+    /// For each segment, its range of `pieces` and their report.
+    known: Vec<Option<(usize, usize, Report)>>,
+}
+
+impl<F: FitOwn> OwnPieces<F> {
+    /// For a number of segments.
+    pub fn new(segments: usize, fit: F) -> Self {
+        Self { fit, grid: MERGE_GRID, pieces: Vec::new(), known: vec![None; segments] }
+    }
+
+    fn fitted(&mut self, i: usize) -> Result<&(usize, usize, Report), NotFinite> {
+        if self.known[i].is_none() {
+            let (start, mut report) = (self.pieces.len(), Report::default());
+            (self.fit)(i, &mut self.pieces, &mut report)?;
+            self.known[i] = Some((start, self.pieces.len(), report));
+        }
+        Ok(self.known[i].get_or_insert_with(|| (0, 0, Report::default())))
+    }
+
+    /// Number of pieces of segment `i`.
+    fn count(&mut self, i: usize) -> Result<usize, NotFinite> {
+        self.fitted(i).map(|(from, to, _)| to - from)
+    }
+
+    /// Number of segments.
+    fn segments(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Number of pieces of all segments.
+    fn total(&mut self) -> Result<usize, NotFinite> {
+        (0..self.segments()).map(|i| self.count(i)).sum()
+    }
+
+    /// Number of pieces that a way takes; without one, of the segments' own.
+    ///
+    /// # Errors
+    /// A segment is not finite.
+    pub fn count_of(&mut self, legs: Option<&[PassedLeg]>) -> Result<usize, NotFinite> {
+        let Some(legs) = legs else { return self.total() };
+        legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { self.count(leg.from / self.grid) }).sum()
+    }
+
+    /// Appends the pieces of segment `i`.
+    fn append_segment(&mut self, i: usize, out: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
+        let (from, to, own) = self.fitted(i)?;
+        let (from, to) = (*from, *to);
+        report.add(own.clone());
+        out.extend_from_slice(&self.pieces[from..to]);
+        Ok(())
+    }
+
+    /// Appends the pieces of a way; without one, the segments' own.
+    ///
+    /// # Errors
+    /// A segment is not finite.
+    pub fn append(
+        &mut self,
+        legs: Option<Vec<PassedLeg>>,
+        assurance: Assurance,
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
+        let Some(legs) = legs else {
+            return (0..self.segments()).try_for_each(|i| self.append_segment(i, pieces, report));
+        };
+        for (leg, piece) in legs {
+            if let Some((piece, error)) = piece {
+                report.add_error(error, assurance);
+                pieces.push(piece);
+            } else {
+                self.append_segment(leg.from / self.grid, pieces, report)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A leg with its piece and that one's error, if it is merged.
+pub type PassedLeg = (Leg, Option<(Piece, f64)>);
+
+impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
+    /// The legs with their pieces. `None` if one of them does not pass its check.
+    ///
+    /// # Errors
+    /// A segment is not finite.
+    pub fn pieces_of(&mut self, legs: &[Leg]) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
+        let mut out = Vec::with_capacity(legs.len());
+        for leg in legs {
+            let piece = if leg.merged { self.piece(leg.from, leg.to)? } else { None };
+            if piece.is_some() || !leg.merged {
+                out.push((*leg, piece));
+            }
+        }
+        Ok((out.len() == legs.len()).then_some(out))
+    }
+
+    /// The way with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
+    ///
+    /// # Errors
+    /// A segment is not finite.
+    pub fn fewest(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
+        match fewest_legs(self)? {
+            Some(legs) => self.pieces_of(&legs),
+            None => Ok(None),
+        }
+    }
+}
+
+/// A way with fewer pieces on a finer grid, if there is one: where pieces are hardly longer than segments, they lose much by ending at
+/// places of a coarse one.
+///
+/// # Errors
+/// A segment is not finite.
+pub fn refined<S: Source + Clone, F: FitOwn>(
+    run: &SegmentRun<S>,
+    mut own: OwnPieces<F>,
+    legs: Option<Vec<PassedLeg>>,
+    settings: MergeSettings,
+    memory: &mut ReachMemory,
+) -> Result<(OwnPieces<F>, Option<Vec<PassedLeg>>), NotFinite> {
+    let pieces = own.count_of(legs.as_deref())?;
+    let by = (FEW_PLACES * pieces / run.last_place()).next_power_of_two().min(MOST_REFINED);
+    if by == 1 {
+        return Ok((own, legs));
+    }
+    let Some(fine) = run.refined(by)? else { return Ok((own, legs)) };
+    let mut reaches = Reaches::new(&fine, own, MergeSettings { marks: false, ..settings }, memory);
+    let fewer = reaches.fewest()?;
+    let mut own = reaches.own;
+    if fewer.is_some() && own.count_of(fewer.as_deref())? < pieces {
+        return Ok((own, fewer));
+    }
+    own.grid = run.grid;
+    Ok((own, legs))
+}
+
+/// Largest factor by which a grid is refined.
+const MOST_REFINED: usize = 16;
+
+/// The furthest place found for some number of pieces.
+#[derive(Debug, Clone, Copy)]
+struct Furthest {
+    place: usize,
+    /// The start of the last leg, and `true` if it is merged. `None` if one piece less leads as far.
+    leg: Option<(usize, bool)>,
+}
+
+/// The way through the grid with the fewest pieces. `None` if there are not fewer than the segments have.
+fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Option<Vec<Leg>>, NotFinite> {
+    let (last, grid) = (reaches.last(), reaches.run.grid);
+    let mut furthest = vec![Furthest { place: 0, leg: None }];
+    // (number of pieces, joint) that a segment's own pieces lead to.
+    let mut by_own: VecDeque<(usize, usize)> = VecDeque::new();
+    for count in 0.. {
+        // A segment has at least one piece.
+        if count + 1 >= reaches.own.segments() && count + 1 >= reaches.own.total()? {
+            break;
+        }
+        let Furthest { place: k, leg } = furthest[count];
+        let joint = k - k % grid;
+        let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
+        if let Some((from, true)) = leg
+            && let Some(place) = beyond(reaches, [from, joint, k], best.place)?
+        {
+            best = Furthest { place, leg: Some((joint, true)) };
+        }
+        // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
+        let at_joint = best.place <= joint + grid
+            && best.place < last
+            && joint < last
+            && (joint == k
+                || match leg {
+                    Some((from, true)) if from < joint => reaches.passes(from, joint)?,
+                    _ => false,
+                });
+        if at_joint {
+            by_own.push_back((count + reaches.own.count(joint / grid)?, joint + grid));
+        }
+        for &(pieces, to) in &by_own {
+            if pieces == count + 1 && to >= best.place && to > k {
+                best = Furthest { place: to, leg: Some((to - grid, false)) };
+            }
+        }
+        by_own.retain(|(pieces, _)| *pieces > count + 1);
+        furthest.push(if best.place > k { best } else { Furthest { place: k, leg: None } });
+        if best.place == last {
+            return legs(&furthest, reaches).map(Some);
+        }
+    }
+    Ok(None)
+}
+
+/// The place that a cubic from `joint` reaches beyond `best`, if it does. The joint lies before `k`, and the cubic that begins at `from`
+/// can be shortened to it: its tangent may suit what follows better.
+fn beyond(
+    reaches: &mut Reaches<'_, impl Source, impl FitOwn>,
+    [from, joint, k]: [usize; 3],
+    best: usize,
+) -> Result<Option<usize>, NotFinite> {
+    let limit = reaches.limit(joint);
+    // A long cubic is searched for too coarsely to gain from a place so near.
+    let possible = from < joint && joint < k && best < limit && step(joint, best) == 1;
+    if !(possible && reaches.fits(joint, best + 1)? && reaches.passes(from, joint)?) {
+        return Ok(None);
+    }
+    let mut place = best + 1;
+    while place < limit && reaches.fits(joint, place + 1)? {
+        place += 1;
+    }
+    while place > best && !reaches.passes(joint, place)? {
+        place -= 1;
+    }
+    Ok((place > best).then_some(place))
+}
+
+/// The number of places that a search may leave open at place `m` after `k`: a long cubic need not end at the last possible one.
+fn step(k: usize, m: usize) -> usize {
+    ((m - k) / FINEST_STEP).max(1)
+}
+
+/// Follows the legs back from the end.
+fn legs(furthest: &[Furthest], reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Vec<Leg>, NotFinite> {
+    let mut legs = Vec::new();
+    let mut count = furthest.len() - 1;
+    let mut to = reaches.last();
+    while to > 0 {
+        let Some((from, merged)) = furthest[count].leg else {
+            count -= 1;
+            continue;
+        };
+        legs.push(Leg { from, to, merged });
+        count -= if merged { 1 } else { reaches.own.count(from / reaches.run.grid)? };
+        to = from;
+    }
+    legs.reverse();
+    Ok(legs)
+}

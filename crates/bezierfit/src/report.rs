@@ -1,0 +1,65 @@
+//! Pieces, and what is known of their error.
+
+use kurbo::{CubicBez, Line, Point};
+
+/// One segment of the output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Piece {
+    /// A line.
+    Line(Line),
+    /// A cubic.
+    Cubic(CubicBez),
+}
+
+impl Piece {
+    /// The same piece in the other direction.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Line(l) => Self::Line(Line::new(l.p1, l.p0)),
+            Self::Cubic(c) => Self::Cubic(CubicBez::new(c.p3, c.p2, c.p1, c.p0)),
+        }
+    }
+}
+
+/// Basis of the reported error, from the weakest to the strongest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Assurance {
+    /// Measured by dense sampling; the error between samples is estimated.
+    Checked,
+    /// A proven bound.
+    Certified,
+    /// Nothing was approximated; the error is rounding.
+    Exact,
+}
+
+/// What is known of the error of a fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Largest distance between the curve and the output.
+    pub max_error: f64,
+    /// Basis of `max_error`: the weakest of all pieces.
+    pub assurance: Assurance,
+    /// [Places](crate::Source::place) at which the tolerance was not met.
+    pub unresolved: Vec<Point>,
+}
+
+impl Default for Report {
+    fn default() -> Self {
+        Self { max_error: 0.0, assurance: Assurance::Exact, unresolved: Vec::new() }
+    }
+}
+
+impl Report {
+    /// Accounts for a piece with this error.
+    pub fn add_error(&mut self, error: f64, assurance: Assurance) {
+        self.max_error = self.max_error.max(error);
+        self.assurance = self.assurance.min(assurance);
+    }
+
+    /// Adds the report of another part.
+    pub fn add(&mut self, part: Self) {
+        self.add_error(part.max_error, part.assurance);
+        self.unresolved.extend(part.unresolved);
+    }
+}

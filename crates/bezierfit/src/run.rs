@@ -1,0 +1,293 @@
+//! Segments in a row as one curve, known by samples at even parameters of each.
+
+use crate::limits::{EVEN_CURVATURE, LEAST_REFINED, MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
+use crate::sample::{Evenly, Lane, Lanes};
+use crate::source::{BreakPoint, NotFinite, Quotient, Source, images};
+use kurbo::{Point, Vec2};
+
+/// One segment of a run.
+#[derive(Clone)]
+pub struct RunSegment<S> {
+    pub(crate) source: S,
+    /// Set if proofs are wanted.
+    pub(crate) form: Option<Quotient>,
+    /// Its ends.
+    pub from: BreakPoint,
+    /// See `from`.
+    pub to: BreakPoint,
+    /// It is a line, which stays one: only other lines may continue it.
+    is_line: bool,
+    /// The curvature at both ends.
+    curvature: [Curvature; 2],
+}
+
+/// A curvature and how far it may be off.
+#[derive(Debug, Clone, Copy, Default)]
+struct Curvature {
+    value: f64,
+    uncertainty: f64,
+}
+
+impl Curvature {
+    /// Estimates the curvature at `p` with unit tangent `t` from the next two samples `q` and `r`, at single and double distance:
+    /// chords give 2·(t × d)/|d|², with an error of first order in the distance, which extrapolation removes.
+    fn new(t: Vec2, p: Point, [q, r]: [Point; 2]) -> Self {
+        let chord = |d: Vec2| 2.0 * t.cross(d) / d.hypot2();
+        let (near, far) = (chord(q - p), chord(r - p));
+        Self { value: 2.0 * near - far, uncertainty: (near - far).abs() }
+    }
+}
+
+impl<S> RunSegment<S> {
+    /// A segment without slow spots, with its ends, its form if proofs are wanted, and `true` if it is a line.
+    pub fn new(source: S, form: Option<Quotient>, [from, to]: [BreakPoint; 2], is_line: bool) -> Self {
+        Self { source, form, from, to, is_line, curvature: [Curvature::default(); 2] }
+    }
+
+    /// Returns `true` if proofs are wanted and possible.
+    pub fn is_provable(&self) -> bool {
+        self.form.is_some()
+    }
+}
+
+/// Smoothly joined segments as one curve. Samples lie at even parameters of each segment; the last of one segment is the first
+/// of the next.
+pub struct SegmentRun<S> {
+    /// The segments.
+    pub segments: Vec<RunSegment<S>>,
+    /// Intervals between samples of a segment.
+    pub(crate) per_segment: usize,
+    /// Places per segment at which a piece may end.
+    pub(crate) grid: usize,
+    /// Images of the samples.
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    /// Lengths of the polygon through the samples, up to each.
+    pub(crate) length: Vec<f64>,
+}
+
+impl<S: Source> SegmentRun<S> {
+    /// A run without segments, of simple curves or any other.
+    pub fn new(simple: bool, capacity: usize) -> Self {
+        let per_segment = per_segment(simple);
+        let samples = || Vec::with_capacity(capacity * per_segment + 1);
+        let (segments, grid) = (Vec::with_capacity(capacity), MERGE_GRID);
+        Self { segments, per_segment, grid, x: samples(), y: samples(), length: samples() }
+    }
+
+    /// Samples a segment and appends it. Returns `false` if it does not move everywhere: a stretch without length has no direction
+    /// to be merged along.
+    pub fn push(&mut self, mut segment: RunSegment<S>) -> Result<bool, NotFinite> {
+        let n = self.per_segment;
+        if self.x.is_empty() {
+            self.x.push(segment.from.p.x);
+            self.y.push(segment.from.p.y);
+            self.length.push(0.0);
+        }
+        let start = self.x.len() - 1;
+        for t in sample_lanes(n) {
+            let g = images(&segment.source, &t)?;
+            self.x.extend(g.x);
+            self.y.extend(g.y);
+        }
+        let mut moves = true;
+        for k in start..start + n {
+            let (dx, dy) = (self.x[k + 1] - self.x[k], self.y[k + 1] - self.y[k]);
+            let step = (dx * dx + dy * dy).sqrt();
+            moves &= step > 0.0;
+            self.length.push(self.length[k] + step);
+        }
+        if !moves {
+            for samples in [&mut self.x, &mut self.y, &mut self.length] {
+                samples.truncate(start + 1);
+            }
+            return Ok(false);
+        }
+        let at = |i: usize| Point::new(self.x[start + i], self.y[start + i]);
+        let first = Curvature::new(segment.from.away, at(0), [at(1), at(2)]);
+        let last = Curvature::new(-segment.to.into, at(n), [at(n - 1), at(n - 2)]);
+        // Seen backwards, a curve bends to the other side.
+        segment.curvature = [first, Curvature { value: -last.value, ..last }];
+        self.segments.push(segment);
+        Ok(true)
+    }
+
+    /// Appends the first of `items` as long as `segment` makes a segment of them and they join with turns of at most `corner` radians.
+    /// Returns how many there were.
+    ///
+    /// # Errors
+    /// A segment is not finite.
+    pub fn extend<'t, T>(
+        &mut self,
+        items: &'t [T],
+        corner: f64,
+        mut segment: impl FnMut(&'t T) -> Result<Option<RunSegment<S>>, NotFinite>,
+    ) -> Result<usize, NotFinite> {
+        for (i, item) in items.iter().enumerate() {
+            let Some(next) = segment(item)? else { return Ok(i) };
+            let parts = |last: &RunSegment<S>| {
+                let (into, away) = (last.to.into, next.from.away);
+                let turn = into.cross(away).atan2(into.dot(away)).abs();
+                turn > corner || last.form.is_some() != next.form.is_some() || last.is_line != next.is_line
+            };
+            if self.segments.last().is_some_and(parts) || !self.push(next)? {
+                return Ok(i);
+            }
+        }
+        Ok(items.len())
+    }
+
+    /// Number of the last grid place.
+    pub(crate) fn last_place(&self) -> usize {
+        self.grid * self.segments.len()
+    }
+
+    /// The same run with `by` times as many samples and places, if it is one curve with more nodes than it needs: if its curvature
+    /// hardly jumps.
+    ///
+    /// # Errors
+    /// A segment is not finite.
+    pub(crate) fn refined(&self, by: usize) -> Result<Option<Self>, NotFinite>
+    where
+        S: Clone,
+    {
+        let joints = self.segments.windows(2);
+        let even = |w: &[RunSegment<S>]| {
+            let (a, b) = (w[0].curvature[1].value, w[1].curvature[0].value);
+            (a - b).abs() <= EVEN_CURVATURE * a.abs().max(b.abs())
+        };
+        if self.segments.len() < LEAST_REFINED || !joints.clone().all(even) {
+            return Ok(None);
+        }
+        let mut out = Self::new(true, 0);
+        (out.per_segment, out.grid) = (by * self.per_segment, by * self.grid);
+        for segment in &self.segments {
+            if !out.push(segment.clone())? {
+                return Ok(None);
+            }
+        }
+        Ok(Some(out))
+    }
+
+    /// The sample at grid place `k`.
+    pub(crate) fn sample(&self, k: usize) -> usize {
+        k * (self.per_segment / self.grid)
+    }
+
+    /// The length up to grid place `k`.
+    pub(crate) fn place(&self, k: usize) -> f64 {
+        self.length[self.sample(k)]
+    }
+
+    /// The break point at grid place `k`, with the length as its parameter.
+    pub(crate) fn end_at(&self, k: usize) -> Result<BreakPoint, NotFinite> {
+        let (i, part) = (k / self.grid, k % self.grid);
+        let end = match (self.segments.get(i), i.checked_sub(1).and_then(|i| self.segments.get(i))) {
+            (Some(segment), _) if part > 0 => segment.source.end(part as f64 / self.grid as f64)?,
+            // A joint has the tangents of both its segments.
+            (Some(after), Some(before)) => BreakPoint { into: before.to.into, ..after.from },
+            (Some(after), None) => after.from,
+            (None, Some(before)) => before.to,
+            (None, None) => return Err(NotFinite { t: 0.0, at: Point::ORIGIN }),
+        };
+        Ok(BreakPoint { t: self.place(k), speed: 1.0, ..end })
+    }
+
+    /// The last grid place between two at which the length is at most `length`; the first of them if there is none.
+    pub(crate) fn place_before(&self, length: f64, [first, last]: [usize; 2]) -> usize {
+        let step = self.per_segment / self.grid;
+        let (mut low, mut high) = (first, last.max(first) + 1);
+        // Near at hand more often than not.
+        let mut stride = 1;
+        while low + stride < high && self.length[(low + stride) * step] <= length {
+            low += stride;
+            stride *= 2;
+        }
+        high = high.min(low + stride);
+        while low + 1 < high {
+            let mid = low.midpoint(high);
+            *if self.length[mid * step] <= length { &mut low } else { &mut high } = mid;
+        }
+        low
+    }
+
+    /// The length of the shorter of the segments beside the start of segment `j`.
+    pub(crate) fn shorter_beside(&self, j: usize) -> f64 {
+        let length = |i: usize| self.length[(i + 1) * self.per_segment] - self.length[i * self.per_segment];
+        if j == 0 || j >= self.segments.len() { f64::INFINITY } else { length(j - 1).min(length(j)) }
+    }
+
+    /// The jump of the curvature at the start of segment `j`, as far as it is certain; 0 at the ends of the run.
+    pub(crate) fn curvature_jump(&self, j: usize) -> f64 {
+        let before = j.checked_sub(1).and_then(|i| self.segments.get(i));
+        let (Some(before), Some(after)) = (before, self.segments.get(j)) else { return 0.0 };
+        let (a, b) = (before.curvature[1], after.curvature[0]);
+        ((a.value - b.value).abs() - a.uncertainty - b.uncertainty).max(0.0)
+    }
+
+    /// Places at shares of the length between two samples, by polynomials of degree five through six samples of the same segment.
+    pub(crate) fn between(&self, [first, last]: [usize; 2], shares: &Evenly, [x, y]: [&mut Evenly; 2]) {
+        let (start, length) = (self.length[first], self.length[last] - self.length[first]);
+        let n = self.per_segment;
+        let mut k = first;
+        for j in 1..shares.len() - 1 {
+            let wanted = start + length * shares[j];
+            k += self.length[k + 1..last].partition_point(|l| *l <= wanted);
+            let part = (wanted - self.length[k]) / (self.length[k + 1] - self.length[k]);
+            let base = k - k % n + (k % n).saturating_sub(2).min(n - 5);
+            let w = lagrange((k - base) as f64 + part);
+            (x[j], y[j]) = (0.0, 0.0);
+            for (i, w) in w.into_iter().enumerate() {
+                x[j] += w * self.x[base + i];
+                y[j] += w * self.y[base + i];
+            }
+        }
+    }
+
+    /// Images at eight parameters of segment `i`.
+    pub(crate) fn images(&self, i: usize, t: &Lane) -> Result<Lanes, NotFinite> {
+        self.segments.get(i).map_or(Ok(Lanes::default()), |s| images(&s.source, t))
+    }
+}
+
+/// Number of samples of a segment.
+pub fn per_segment(simple: bool) -> usize {
+    if simple { RATIONAL_SAMPLES } else { OPAQUE_SAMPLES }
+}
+
+/// The parameters of a segment's samples.
+pub fn sample_lanes(per_segment: usize) -> impl Iterator<Item = Lane> + Clone {
+    let n = per_segment;
+    (0..n / 8).map(move |batch| std::array::from_fn(|i| (8 * batch + i + 1) as f64 / n as f64))
+}
+
+/// Lagrange's weights of the values at 0, 1, …, 5 for the value at `u`.
+fn lagrange(u: f64) -> [f64; 6] {
+    const SCALE: [f64; 6] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
+    let mut w = SCALE;
+    let mut below = 1.0;
+    for (i, w) in w.iter_mut().enumerate() {
+        *w *= below;
+        below *= u - i as f64;
+    }
+    let mut above = 1.0;
+    for (i, w) in w.iter_mut().enumerate().rev() {
+        *w *= above;
+        above *= u - i as f64;
+    }
+    w
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lagrange;
+
+    #[test]
+    fn polynomials_of_degree_five_are_reproduced() {
+        let f = |u: f64| ((((0.3 * u - 1.0) * u + 2.0) * u - 0.7) * u + 1.5) * u - 4.0;
+        for u in [-0.2, 0.0, 0.4, 1.0, 2.5, 4.9, 5.0] {
+            let sum: f64 = lagrange(u).iter().enumerate().map(|(i, w)| w * f(i as f64)).sum();
+            assert!((sum - f(u)).abs() < 1e-12, "{u}: {sum}");
+        }
+    }
+}

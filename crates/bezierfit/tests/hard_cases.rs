@@ -1,0 +1,186 @@
+//! Curves on which fits hang, panic, leave the curve or cut corners elsewhere: each is covered within the tolerance, by a measurement of
+//! its own, with a bounded number of pieces and of evaluations.
+
+#![allow(clippy::unwrap_used)]
+
+use bezierfit::{Fitted, Offset, Options, Source, fit, simplify};
+use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveNearest, PathSeg, Point, Vec2};
+use std::cell::Cell;
+
+/// The Hausdorff distance between a curve and a path, by samples of both.
+fn distance(source: &impl Source, path: &BezPath) -> f64 {
+    const SAMPLES: usize = 4000;
+    let curve: Vec<Point> = (0..=SAMPLES).map(|i| source.eval(i as f64 / SAMPLES as f64).0).collect();
+    let off = |p: &Point| path.segments().map(|s| s.nearest(*p, 1e-12).distance_sq).fold(f64::INFINITY, f64::min);
+    let there = curve.iter().map(off).fold(0.0, f64::max).sqrt();
+    // The way back is measured to the polygon through the samples.
+    let nearest = |p: Point| {
+        let sides = curve.windows(2).map(|w| kurbo::Line::new(w[0], w[1]).nearest(p, 0.0).distance_sq);
+        sides.fold(f64::INFINITY, f64::min)
+    };
+    let places = path.segments().flat_map(|s| (0..=40).map(move |i| s.eval(f64::from(i) / 40.0)));
+    there.max(places.map(nearest).fold(0.0, f64::max).sqrt())
+}
+
+/// Fits a source, and checks the distance, the number of pieces and that of evaluations.
+fn check(name: &str, source: &impl Source, tolerance: f64, most: usize) -> Fitted {
+    let evaluations = Cell::new(0);
+    let counted = |t: f64| {
+        evaluations.set(evaluations.get() + 1);
+        source.eval(t)
+    };
+    struct Counted<'a, S, F>(&'a S, F);
+    impl<S: Source, F: Fn(f64) -> (Point, Vec2)> Source for Counted<'_, S, F> {
+        fn eval(&self, t: f64) -> (Point, Vec2) {
+            (self.1)(t)
+        }
+        fn breaks(&self) -> Vec<f64> {
+            self.0.breaks()
+        }
+    }
+    let fitted = fit(&Counted(source, counted), &Options::new(tolerance)).unwrap();
+    let pieces = fitted.path.segments().count();
+    let error = distance(source, &fitted.path);
+    assert!(fitted.report.unresolved.is_empty(), "{name}: {:?}", fitted.report);
+    assert!(error <= 1.001 * tolerance, "{name}: {} of the tolerance", error / tolerance);
+    assert!(pieces <= most, "{name}: {pieces} pieces");
+    let spent = evaluations.get();
+    assert!(spent <= 5000 * most, "{name}: {spent} evaluations");
+    fitted
+}
+
+fn polyline(points: &[(f64, f64)], close: bool) -> BezPath {
+    let mut path = BezPath::new();
+    path.move_to(points[0]);
+    points[1..].iter().for_each(|p| path.line_to(*p));
+    if close {
+        path.close_path();
+    }
+    path
+}
+
+/// kurbo's issues 601, 602, 603 and 604 panic, hang and leave the drawing on polygons like these; 342 was about lines among curves.
+#[test]
+fn polygons_keep_their_corners() {
+    let sliver = polyline(&[(1.0, 0.7), (4.1, 2.0), (4.4, 2.1), (0.0, 0.0)], true);
+    let fold = polyline(&[(10.0, 2.0), (20.0, 0.0), (0.0, 0.0)], false);
+    let flat = polyline(&[(415.74, 324.0), (440.0, 324.5), (460.0, 325.49), (480.0, 325.0), (493.93, 324.0)], false);
+    for path in [sliver, fold, flat] {
+        for tolerance in [0.01, 2.0, 16.0] {
+            let simple = simplify(&path, &Options::new(tolerance)).unwrap();
+            assert_eq!(simple.path, path, "{tolerance}");
+        }
+    }
+    let mixed = BezPath::from_svg("M0 0H50C77.6 0 100 22.4 100 50V100").unwrap();
+    let simple = simplify(&mixed, &Options::new(0.01)).unwrap();
+    assert_eq!(simple.path.segments().count(), 3);
+}
+
+/// kurbo's issues 344, 300 and 268 hang or give NaN on such offsets: an end without a handle, curves on one line, radii of curvature
+/// below the distance.
+#[test]
+fn offsets_break_at_their_cusps() {
+    let cubic = |p: [f64; 8]| PathSeg::Cubic(CubicBez::new((p[0], p[1]), (p[2], p[3]), (p[4], p[5]), (p[6], p[7])));
+    let no_handle = cubic([51.0, 0.0, -0.085_937_5, 161.640_625, 0.0, 164.0, 0.0, 164.0]);
+    let hook = cubic([0.0, 0.0, 100.0, 0.0, 100.0, 20.0, 0.0, 20.0]);
+    let bow = cubic([0.0, 0.0, 30.0, 80.0, 70.0, 80.0, 100.0, 0.0]);
+    for (name, seg) in [("without a handle", no_handle), ("hook", hook), ("bow", bow)] {
+        for distance in [-60.0, -8.0, -1.0, 1.0, 8.0, 60.0] {
+            check(&format!("{name} at {distance}"), &Offset::new(seg, distance), 0.01, 40);
+        }
+    }
+    // Each point of an offset is as far from the curve.
+    let far = fit(&Offset::new(bow, 5.0), &Options::new(1e-4)).unwrap();
+    for p in far.path.segments().flat_map(|s| (0..=10).map(move |i| s.eval(f64::from(i) / 10.0))) {
+        let off = bow.nearest(p, 1e-12).distance_sq.sqrt();
+        assert!((off - 5.0).abs() < 1.1e-4, "{off}");
+    }
+}
+
+#[test]
+fn spirals_loops_flat_ellipses_and_cusps_are_followed() {
+    let spiral = |t: f64| {
+        let (s, c) = (40.0 * t).sin_cos();
+        (Point::new(100.0 * t * c, 100.0 * t * s), Vec2::new(c - 40.0 * t * s, s + 40.0 * t * c) * 100.0)
+    };
+    check("spiral", &spiral, 0.01, 40);
+    // A clothoid, its integrals summed by the midpoint rule between closed-form derivatives.
+    let clothoid = |t: f64| {
+        let phase = |u: f64| 12.0 * u * u;
+        let n = 400;
+        let sum = (0..n)
+            .map(|i| Vec2::from_angle(phase(t * (f64::from(i) + 0.5) / f64::from(n))))
+            .fold(Vec2::ZERO, |a, b| a + b);
+        ((sum * (100.0 * t / f64::from(n))).to_point(), Vec2::from_angle(phase(t)) * 100.0)
+    };
+    check("clothoid", &clothoid, 0.01, 20);
+    let ellipse = |t: f64| {
+        let (s, c) = (std::f64::consts::TAU * t).sin_cos();
+        (Point::new(1000.0 * c, s), Vec2::new(-1000.0 * s, c) * std::f64::consts::TAU)
+    };
+    check("ellipse", &ellipse, 0.01, 24);
+    let lissajous = |t: f64| {
+        let u = std::f64::consts::TAU * t;
+        let (x, y) = ((3.0 * u).sin(), (2.0 * u).sin());
+        (
+            Point::new(100.0 * x, 100.0 * y),
+            Vec2::new(300.0 * (3.0 * u).cos(), 200.0 * (2.0 * u).cos()) * std::f64::consts::TAU,
+        )
+    };
+    check("Lissajous", &lissajous, 0.01, 60);
+    // y² = x³, with the cusp inside.
+    let cusp = |t: f64| {
+        let u = 2.0 * t - 1.0;
+        (Point::new(50.0 * u * u, 50.0 * u * u * u), Vec2::new(200.0 * u, 300.0 * u * u))
+    };
+    check("cusp", &cusp, 0.01, 8);
+    let near = |t: f64| {
+        let u = 2.0 * t - 1.0;
+        (Point::new(50.0 * u * u, 50.0 * u * u * u + 0.01 * u), Vec2::new(200.0 * u, 300.0 * u * u + 0.02))
+    };
+    check("near-cusp", &near, 0.001, 16);
+}
+
+#[test]
+fn scale_does_not_matter() {
+    let bow = CubicBez::new((0.0, 0.0), (0.3, 0.8), (0.7, 0.8), (1.0, 0.0));
+    let counts = [1e-6, 1.0, 1e6].map(|size: f64| {
+        let scaled = PathSeg::Cubic(kurbo::Affine::scale(size) * bow);
+        check(&format!("{size}"), &Offset::new(scaled, 0.1 * size), 1e-4 * size, 8).path.segments().count()
+    });
+    assert!(counts[0] == counts[1] && counts[1] == counts[2], "{counts:?}");
+}
+
+#[test]
+fn what_is_not_finite_is_said() {
+    let pole = |t: f64| (Point::new(t, 1.0 / (t - 0.5)), Vec2::new(1.0, -1.0 / (t - 0.5).powi(2)));
+    let hole = |t: f64| if (0.4..0.6).contains(&t) { (Point::new(f64::NAN, 0.0), Vec2::ZERO) } else { pole(t) };
+    assert!(fit(&hole, &Options::new(0.01)).is_err());
+    let broken =
+        BezPath::from_vec(vec![kurbo::PathEl::MoveTo(Point::ORIGIN), kurbo::PathEl::LineTo(Point::new(f64::NAN, 1.0))]);
+    assert!(simplify(&broken, &Options::new(0.01)).is_err());
+}
+
+#[test]
+fn a_circle_of_any_number_of_cubics_is_four() {
+    for n in [8, 40, 1000, 20_000] {
+        let step = std::f64::consts::TAU / f64::from(n);
+        let handle = 4.0 / 3.0 * (0.25 * step).tan() * 1000.0;
+        let at = |i: i32| Vec2::from_angle(step * f64::from(i % n));
+        let along = |i: i32| Vec2::new(-at(i).y, at(i).x) * handle;
+        let place = |i: i32| (at(i) * 1000.0).to_point();
+        let mut path = BezPath::new();
+        path.move_to(place(0));
+        (0..n).for_each(|i| path.curve_to(place(i) + along(i), place(i + 1) - along(i + 1), place(i + 1)));
+        path.close_path();
+        for prove in [false, true] {
+            let simple = simplify(&path, &Options::new(1.0).with_prove(prove)).unwrap();
+            assert_eq!(simple.path.segments().count(), 4, "{n} {prove}");
+            let radii = simple
+                .path
+                .segments()
+                .flat_map(|s| (0..=50).map(move |i| s.eval(f64::from(i) / 50.0).to_vec2().hypot()));
+            assert!(radii.into_iter().all(|r| (r - 1000.0).abs() <= 1.0));
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! Fewer pieces across smooth joints of the source.
+//!
+//! A drawing often has more nodes than its shape needs. Smoothly joined segments are one curve to the fitter, which searches for the
+//! fewest cubics that cover it. They are used only if they are fewer than the segments' own pieces and every one has passed its check.
+
+use super::carry::{Carried, Site};
+use super::limits::{CLEAR_DERIVATIVE, MAX_SHAPE};
+use super::options::Options;
+use super::repeats::{CarriedWay, Repeats, Shapes, Way};
+use super::segment::{Part, SegmentFitter};
+use super::source::SourceCurve;
+use super::split;
+use crate::map::{Jet, Map};
+use crate::outline::Seg;
+use bezierfit::parts::{
+    FitOwn, Leg, MERGE_GRID, MERGE_SHARE, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, RunSegment,
+    SMOOTH_JOINT, STRAIGHT_TOLERANCE, STRAIGHT_TURN, SURE_CORNER, SegmentRun, per_segment, refined, sample_lanes,
+};
+use bezierfit::{Assurance, NotFinite, Piece, Quotient, Report, Source};
+use kurbo::Vec2;
+use std::sync::Arc;
+
+/// Work of a trial with its share of the checks, in evaluations of the map. The samples themselves are fewer.
+const TRIAL_WORK: f64 = 40.0;
+
+/// What outlasts a subpath.
+#[derive(Default)]
+pub(super) struct MergeMemory {
+    repeats: Repeats,
+    reach: ReachMemory,
+}
+
+impl MergeMemory {
+    /// Begins with the shapes of other paths.
+    pub(super) fn new(known: Arc<Shapes>) -> Self {
+        Self { repeats: Repeats::new(known), ..Self::default() }
+    }
+
+    /// The shapes it began with.
+    pub(super) fn known(&self) -> Arc<Shapes> {
+        Arc::clone(&self.repeats.known)
+    }
+
+    /// The shapes of the runs so far.
+    pub(super) fn into_shapes(self) -> Shapes {
+        self.repeats.own
+    }
+}
+
+/// Merges the pieces of consecutive segments.
+pub(super) struct Merger<'a> {
+    fitter: &'a SegmentFitter<'a>,
+    parts: &'a [Part],
+    pieces: Vec<Piece>,
+    report: Report,
+    memory: &'a mut MergeMemory,
+}
+
+/// Returns `false` if the images of two consecutive segments certainly form a corner, given the map's jets where they meet.
+#[inline]
+fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2]) -> bool {
+    let (into, away) = (jets[0].push(before.deriv(1.0)), jets[1].push(after.deriv(0.0)));
+    // One-sided tangents decide where a derivative vanishes or nearly does.
+    let clear = |d: Vec2, jet: &Jet, seg: &Seg| {
+        let scale = CLEAR_DERIVATIVE * CLEAR_DERIVATIVE * (jet.dx.hypot2() + jet.dy.hypot2());
+        d.hypot2() > scale * seg.end().distance_squared(seg.start())
+    };
+    let (dot, cross) = (into.dot(away), into.cross(away).abs());
+    dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, jets[0], before) || !clear(away, jets[1], after)
+}
+
+/// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
+/// batches and knows the jets at the joints.
+pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
+    let mut sources = Vec::new();
+    for segs in runs {
+        let smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
+            (Some(before), Some(after)) => may_be_smooth([before, after], [&map.jet(after.start()); 2]),
+            _ => false,
+        };
+        let in_run = |(i, seg): (usize, &'_ Seg)| (smooth(i) || smooth(i + 1)).then_some(*seg);
+        sources.extend(segs.iter().enumerate().filter_map(in_run));
+    }
+    let degree = map.rational_degree();
+    let sources: Vec<_> = sources.iter().map(|seg| SourceCurve::for_proof(seg, map, degree, options.certify)).collect();
+    let lanes = sample_lanes(per_segment(degree.is_some()));
+    let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+    Source::announce(
+        &mut sources.iter().flat_map(|s| lanes.clone().map(move |t| (s, t))),
+        &mut sources.iter().flat_map(|s| ends.clone().map(move |t| (s, t))),
+    );
+}
+
+impl<'a> Merger<'a> {
+    pub(super) fn new(fitter: &'a SegmentFitter<'a>, parts: &'a [Part], memory: &'a mut MergeMemory) -> Self {
+        memory.reach.last_reach = 0;
+        Self { fitter, parts, pieces: Vec::with_capacity(parts.len()), report: Report::default(), memory }
+    }
+
+    /// The pieces of all segments, merged where that saves some.
+    pub(super) fn merged(mut self) -> Result<(Vec<Piece>, Report), NotFinite> {
+        let smooth = |w: &[Part]| {
+            let [before, after] = w else { return false };
+            let torn = before.is_torn(1) || after.is_torn(0);
+            !torn && may_be_smooth([&before.seg, &after.seg], [&before.jets[1], &after.jets[0]])
+        };
+        let mut i = 0;
+        while i < self.parts.len() {
+            let end = i + 1 + self.parts[i..].windows(2).take_while(|w| smooth(w)).count();
+            while i < end {
+                i += if i + 1 < end { self.joined(i, end)? } else { self.single(i)? };
+            }
+        }
+        Ok((self.pieces, self.report))
+    }
+
+    /// Appends the pieces of a segment that cannot be in a run, and returns 1.
+    fn single(&mut self, i: usize) -> Result<usize, NotFinite> {
+        self.fitter.fit_part(&self.parts[i], &mut self.pieces, &mut self.report)?;
+        Ok(1)
+    }
+
+    /// Appends the pieces of the first segments from `start` up to `end`, whose joints may be smooth, and returns how many they are.
+    fn joined(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
+        // The whole path is refused then.
+        if self.fitter.options.budget.left() <= 0.0 {
+            return self.single(start);
+        }
+        let (parts, tolerance) = (&self.parts[start..end], self.fitter.options.tolerance);
+        let shape = (parts.len() <= MAX_SHAPE).then(|| self.memory.repeats.shape(parts, tolerance));
+        if let Some(shape) = shape
+            && let Some(segments) = self.carried(shape, start, end)?
+        {
+            return Ok(segments);
+        }
+        let run = self.run(start, end)?;
+        if run.segments.len() < 2 {
+            return self.single(start);
+        }
+        self.merge(&run, start, shape)?;
+        Ok(run.segments.len())
+    }
+
+    fn site(&self, start: usize, end: usize) -> Site<'a> {
+        Site { fitter: self.fitter, parts: &self.parts[start..end] }
+    }
+
+    /// Appends the pieces of a run whose cubics were found at another site, and returns the number of its segments. `None` if there
+    /// are none or they may not suffice here.
+    fn carried(&mut self, (shape, off): (usize, f64), start: usize, end: usize) -> Result<Option<usize>, NotFinite> {
+        if !self.site(start, end).carries() {
+            return Ok(None);
+        }
+        let [jet, _] = &self.parts[start].jets;
+        let magnified = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt();
+        for (way, other) in self.memory.repeats.nearest(shape, jet) {
+            // The curves differ by at most √2 of this before the map, which may magnify more further on.
+            let unlike = 2.0 * magnified * (off + other);
+            let tolerance = MERGE_SHARE * self.fitter.options.tolerance - unlike;
+            let site = self.site(start, start + way.segments);
+            if site.parts.iter().any(|p| self.fitter.options.shared.contains(&p.seg)) {
+                continue;
+            }
+            let piece = |(leg, cubic): &(Leg, Option<Carried>)| {
+                let piece = if leg.merged { cubic.as_ref()?.at(&site, *leg, tolerance) } else { None };
+                let piece = piece.map(|(piece, error)| (piece, error + unlike));
+                (piece.is_some() || !leg.merged).then_some((*leg, piece))
+            };
+            let legs = match &way.legs {
+                None => None,
+                Some(legs) => match legs.iter().map(piece).collect::<Option<Vec<PassedLeg>>>() {
+                    None => continue,
+                    found => found,
+                },
+            };
+            let mut own = OwnPieces::new(way.segments, site.own());
+            if own.count_of(legs.as_deref())? <= way.pieces {
+                let segments = way.segments;
+                own.append(legs, Assurance::Checked, &mut self.pieces, &mut self.report)?;
+                return Ok(Some(segments));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The longest run of smoothly joined segments from `start` up to `end`.
+    fn run(&self, start: usize, end: usize) -> Result<SegmentRun<SourceCurve<'a>>, NotFinite> {
+        let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
+        let parts: &'a [Part] = self.parts;
+        run.extend(&parts[start..end], SMOOTH_JOINT, |part| Ok(self.run_segment(part)))?;
+        Ok(run)
+    }
+
+    /// A segment of a run. `None` if it cannot be in one, having no length or slow spots.
+    fn run_segment(&self, part: &'a Part) -> Option<RunSegment<SourceCurve<'a>>> {
+        let options = self.fitter.options;
+        if options.shared.contains(&part.seg) {
+            return None;
+        }
+        let source = part.source(self.fitter, &part.seg);
+        let form = if options.certify { source.quotient().and_then(Quotient::provable) } else { None };
+        if source.size() == 0.0 || !split::slow_spots(&part.seg).all().is_empty() {
+            return None;
+        }
+        let [first, last] = &part.jets;
+        let ends = [source.end_with(0.0, first.p, first), source.end_with(1.0, last.p, last)];
+        // A line that stays one is not bent by what follows.
+        let is_line = matches!(part.seg, Seg::Line(_)) && {
+            let q = ends[1].p - ends[0].p;
+            let along = |v: Vec2| v.cross(q).abs() <= STRAIGHT_TURN * q.hypot() && v.dot(q) > 0.0;
+            let off = |t: f64| (source.eval(t).0 - ends[0].p).cross(q).abs();
+            let limit = STRAIGHT_TOLERANCE * options.tolerance * q.hypot();
+            along(ends[0].away) && along(ends[1].into) && [0.27, 0.5, 0.81].into_iter().all(|t| off(t) <= limit)
+        };
+        Some(RunSegment::new(source, form, ends, is_line))
+    }
+
+    /// Appends the fewest pieces for a run that begins with segment `start`.
+    fn merge(
+        &mut self,
+        run: &SegmentRun<SourceCurve<'a>>,
+        start: usize,
+        shape: Option<(usize, f64)>,
+    ) -> Result<(), NotFinite> {
+        let segments = run.segments.len();
+        let (site, options) = (self.site(start, start + segments), self.fitter.options);
+        let proof = run.segments.first().is_some_and(RunSegment::is_provable);
+        let assurance = if proof { Assurance::Certified } else { Assurance::Checked };
+        let own = OwnPieces::new(segments, site.own());
+        let MergeMemory { repeats, reach } = &mut *self.memory;
+        let marks = site.carries() && shape.is_some();
+        let again = shape.is_some_and(|(shape, _)| repeats.comes_again(shape));
+        let settings = MergeSettings { tolerance: options.tolerance, proof, marks, again };
+        let mut reaches = Reaches::new(run, own, settings, reach);
+        let ways = shape.map_or(&[][..], |(shape, _)| repeats.ways(shape));
+        let legs = match repeated(ways.iter().filter(|w| w.segments == segments), &mut reaches)? {
+            Some(legs) => legs,
+            None => {
+                let legs = reaches.fewest()?;
+                if let Some((shape, _)) = shape {
+                    let pieces = reaches.own.count_of(legs.as_deref())?;
+                    let found = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| *leg).collect());
+                    repeats.add(shape, Way { segments, legs: found, pieces });
+                }
+                legs
+            }
+        };
+        if let (true, Some((shape, off))) = (marks, shape) {
+            let pieces = reaches.own.count_of(legs.as_deref())?;
+            let mut carried = |leg: Leg| Carried::new(&site, leg, reaches.marked(leg)?);
+            let legs = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| (*leg, carried(*leg))).collect());
+            let Jet { dx, dy, .. } = site.parts[0].jets[0];
+            repeats.carry(shape, CarriedWay { jacobian: [dx, dy], off, segments, pieces, legs });
+        }
+        self.fitter.spend(TRIAL_WORK * reaches.tried() as f64);
+        let Reaches { own, .. } = reaches;
+        let (mut own, legs) = refined(run, own, legs, settings, reach)?;
+        own.append(legs, assurance, &mut self.pieces, &mut self.report)
+    }
+}
+
+/// The first of the ways for other runs of the same shape that takes no more pieces here. The inner `None` stands for the segments' own.
+fn repeated<'w>(
+    ways: impl Iterator<Item = &'w Way>,
+    reaches: &mut Reaches<'_, SourceCurve<'_>, impl FitOwn>,
+) -> Result<Option<Option<Vec<PassedLeg>>>, NotFinite> {
+    for way in ways {
+        let legs = match &way.legs {
+            None => None,
+            Some(legs) => match reaches.pieces_of(legs)? {
+                None => continue,
+                found => found,
+            },
+        };
+        if reaches.own.count_of(legs.as_deref())? <= way.pieces {
+            return Ok(Some(legs));
+        }
+    }
+    Ok(None)
+}
