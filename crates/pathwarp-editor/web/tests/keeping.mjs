@@ -45,7 +45,7 @@ export const drawings_have_their_own_drafts = () => within(async ({ dir, page, s
   // The page finds the program again by itself.
   await page.waitForSelector("#gone", { state: "hidden" });
   await becomes(page, flag, "the drawing is not there with its flag");
-  check((await page.textContent("#file")) === "logo.svg", await page.textContent("#file"));
+  await page.waitForFunction(() => document.querySelector("#file").textContent === "logo.svg");
   await openFile(page, "other.svg");
   await becomes(page, arc, "the other drawing has lost its step");
   await page.keyboard.press("Control+s");
