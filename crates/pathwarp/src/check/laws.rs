@@ -113,13 +113,11 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
     skips.get()
 }
 
-/// What of a law does not hold for its maps `f` and `g`, which are one for most. `worst` is the largest value of a function at the samples.
-fn broken(
-    law: &Law,
-    pairs: Pairs,
-    [f, g]: [&dyn Map; 2],
-    worst: &dyn Fn(&dyn Fn(Point) -> f64) -> f64,
-) -> Option<String> {
+/// The largest value of a function at the samples.
+type Worst<'a> = &'a dyn Fn(&dyn Fn(Point) -> f64) -> f64;
+
+/// What of a law does not hold for its maps `f` and `g`, which are one for most.
+fn broken(law: &Law, pairs: Pairs, [f, g]: [&dyn Map; 2], worst: Worst<'_>) -> Option<String> {
     let by = |off: f64| if off.is_finite() { format!("{off:e}") } else { "what is no number".to_owned() };
     match *law {
         Law::Identity(_) => {

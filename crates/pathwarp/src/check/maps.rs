@@ -100,7 +100,7 @@ fn derivatives(map: &dyn Map, domain: &Domain<'_>) -> Check {
         }
         let steep = 1.0 + j.dx.hypot() + j.dy.hypot();
         largest = largest.max((dx - j.dx).hypot() / steep).max((dy - j.dy).hypot() / steep);
-        let off = |d: Vec2, own: Vec2| !((d - own).hypot() <= 1e-5 * steep);
+        let off = |d: Vec2, own: Vec2| (d - own).hypot() > 1e-5 * steep || (d - own).is_nan();
         if off(dx, j.dx) || off(dy, j.dy) {
             faults.fault(format!("derivatives at {p:?}: {j:?}, differences give {dx:?} {dy:?}"));
         }
@@ -180,7 +180,7 @@ fn refitting(map: &dyn Map, domain: &Domain<'_>) -> Check {
                         .map(|s| s.nearest(p, TOLERANCE * 1e-4).distance_sq)
                         .fold(f64::INFINITY, f64::min)
                         .sqrt();
-                    if !(off <= TOLERANCE * (1.0 + 1e-6)) {
+                    if off.is_nan() || off > TOLERANCE * (1.0 + 1e-6) {
                         faults.fault(format!("refitted within {TOLERANCE}, a sample at {p:?} is {off} away"));
                         return faults;
                     }
