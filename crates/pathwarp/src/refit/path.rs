@@ -142,9 +142,9 @@ pub(super) fn subpath(
             let nodes = if first { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
             let refit =
                 if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) };
-            let (pieces, of_pieces) = refit?;
+            let (pieces, found) = refit?;
             let mut report = PathReport::default();
-            report.add_pieces(of_pieces);
+            report.add_pieces(found);
             report.share = report.max_error / tolerance;
             if !spans.is_empty() && report.max_error > tolerance * (1.0 + SUMMED) && report.over_budget.is_empty() {
                 report.over_budget.extend(segs.first().map(Seg::start));
@@ -157,17 +157,8 @@ pub(super) fn subpath(
         vec![refitted(0, &sub.segs, memory)?]
     } else {
         let known = memory.known();
-        let chunks = chunks(&sub.segs, options);
-        let starts: Vec<usize> = chunks
-            .iter()
-            .scan(0, |next, c| {
-                let start = *next;
-                *next += c.len();
-                Some(start)
-            })
-            .collect();
-        let alone = |i: usize, segs: &[Seg]| refitted(starts[i], segs, &mut MergeMemory::new(Arc::clone(&known)));
-        in_parallel(&chunks, alone)?
+        let alone = |from: usize, segs: &[Seg]| refitted(from, segs, &mut MergeMemory::new(Arc::clone(&known)));
+        in_parallel(&chunks(&sub.segs, options), alone)?
     };
     let (mut pieces, first) = (Vec::new(), out.spans.len());
     out.spans.extend(spans.iter().map(|_| SpanReport { pieces: 0, max_error: 0.0 }));
@@ -237,8 +228,8 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
 }
 
 /// Cuts a long subpath into chunks that are refitted on their own: of [`CHUNK`] segments, or up to the next corner after them if
-/// pieces are merged.
-fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<&'s [Seg]> {
+/// pieces are merged. Each with the index of its first segment.
+fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<(usize, &'s [Seg])> {
     let is_corner = |w: &[Seg]| {
         let (into, away) = (w[0].deriv(1.0), w[1].deriv(0.0));
         into.cross(away).abs() >= CHUNK_CORNER * into.dot(away)
@@ -248,11 +239,12 @@ fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<&'s [Seg]> {
     while rest.len() > CHUNK {
         let more = if options.merge { rest[CHUNK - 1..].windows(2).position(is_corner) } else { Some(0) };
         let (chunk, after) = rest.split_at(more.map_or(rest.len(), |n| CHUNK + n));
-        out.push(chunk);
+        out.push((segs.len() - rest.len(), chunk));
         rest = after;
     }
-    out.push(rest);
-    out.retain(|c| !c.is_empty());
+    if !rest.is_empty() {
+        out.push((segs.len() - rest.len(), rest));
+    }
     out
 }
 
