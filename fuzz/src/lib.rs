@@ -20,17 +20,8 @@ pub fn limits() -> Limits {
 }
 
 /// A hundredth of the program's own limits.
-const SMALL: [(Limit, f64); 9] = [
-    (Limit::Bytes, 200e3),
-    (Limit::Elements, 1000.0),
-    (Limit::Comparisons, 300e3),
-    (Limit::Segments, 20e3),
-    (Limit::Letters, 300.0),
-    (Limit::Pixels, 1e6),
-    (Limit::Painting, 4e6),
-    (Limit::ImageBytes, 500e3),
-    (Limit::Evaluations, 200e3),
-];
+const SMALL: [(Limit, f64); 4] =
+    [(Limit::Bytes, 500e3), (Limit::Elements, 1000.0), (Limit::Pixels, 1e6), (Limit::Work, 1e6)];
 
 /// Lets panics of libraries pass: pathwarp turns those it knows of into errors, which libFuzzer's hook would not let it do. A panic
 /// that nobody catches counts all the same.

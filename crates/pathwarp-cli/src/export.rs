@@ -37,7 +37,12 @@ pub(crate) fn drawing(
     options: &CommonOptions,
     tolerance: Option<f64>,
 ) -> Result<Exported, Failure> {
-    let document = || Document::read(svg.as_bytes(), "the result", read);
+    let parsed = |text: &str| Document::read(text.as_bytes(), "the result", read);
+    // PDF and its reader know single precision only.
+    let document = || {
+        let there = parsed(&svg)?;
+        there.moved_to_origin()?.map_or(Ok(there), |near| parsed(&near))
+    };
     match format {
         Format::Svgz => Ok(compressed(&svg).map_err(|e| Failure::file(Path::new("the result"), e))?.into()),
         Format::Pdf => pdf(&document()?, options),
@@ -51,7 +56,7 @@ fn pdf(doc: &Document, options: &CommonOptions) -> Result<Exported, Failure> {
     let exact = ExactOutlines::of(doc);
     let written = usvg_tree::with_stack(doc, || {
         let outline = |path: &_| exact.get(path).cloned();
-        let limits = *doc.budget().limits();
+        let limits = doc.budget().limits();
         let options = pathwarp_pdf::Options { exact: &outline, picture_dpi: options.image_dpi, limits };
         Ok(pathwarp_pdf::write(usvg_tree::tree(doc), &options))
     })??;
@@ -62,7 +67,7 @@ fn pdf(doc: &Document, options: &CommonOptions) -> Result<Exported, Failure> {
         if pictures == 1 { "is" } else { "are" },
     );
     let less = format!(
-        "{} fewer pixels than the resolution asks for, within the limits; --limit painting and --limit pixels raise them",
+        "{} fewer pixels than the resolution asks for, within the limits; --limit work and --limit memory raise them",
         counted(coarser, "of these pictures has", "of these pictures have")
     );
     let warnings = [(pictures > 0).then_some(warning), (coarser > 0).then_some(less)];
@@ -90,7 +95,7 @@ fn dxf(doc: &Document, options: &CommonOptions, tolerance: Option<f64>) -> Resul
         curves: options.dxf_curves,
         tolerance: tolerance * to_mm.determinant().abs().sqrt(),
         page,
-        limits: *doc.budget().limits(),
+        limits: doc.budget().limits(),
     };
     let text = pathwarp_dxf::write(&shapes, &settings)
         .map_err(|e| pathwarp::Error::limit(doc.name(), "as polylines, it takes", e))?;

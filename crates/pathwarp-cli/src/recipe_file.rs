@@ -152,24 +152,6 @@ fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> 
     Ok(step)
 }
 
-/// Checks the files that steps name, as those of a recipe file in the current folder.
-///
-/// # Errors
-/// A path is absolute, which only `external` allows, or leads to something else than a regular file.
-pub(crate) fn check_files(catalogue: &dyn Catalogue, recipe: &Recipe, external: bool) -> Result<(), String> {
-    let folder = Folder { path: Path::new(""), external };
-    for step in &recipe.steps {
-        let Some(info) = catalogue.info(&step.deformation) else { continue };
-        for (param, value) in info.params.iter().flat_map(|p| step.args.get(p.name).iter().map(move |v| (p, v))) {
-            if param.kind == Kind::Save {
-                return Err(format!("{}: a draft writes no files", param.name));
-            }
-            from_folder(param, value.clone(), &folder).map_err(|e| format!("{}: {e}", param.name))?;
-        }
-    }
-    Ok(())
-}
-
 /// The values of a key as they would be typed on the command line.
 fn texts(value: &Value) -> Option<Vec<String>> {
     let text = |v: &Value| match v {

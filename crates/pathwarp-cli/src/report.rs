@@ -81,6 +81,8 @@ pub(crate) struct ReportedShape {
     pub(crate) segments_out: usize,
     /// User units.
     pub(crate) max_error: f64,
+    /// The largest distance as a share of the tolerance that holds for its contour: at most 1 if all are kept.
+    pub(crate) share: f64,
     /// `max_error` is proven: the assurance is `certified` or `exact`.
     pub(crate) certified: bool,
     /// `exact`, `certified` or `checked`.

@@ -24,6 +24,8 @@ struct Watched {
     limits: Limits,
     /// Size of the inputs that are being worked on.
     bytes: usize,
+    /// Pixels of the pictures that are read and made for them.
+    pixels: f64,
     /// Number of these inputs beyond the first.
     more: usize,
     /// Processor time when the last input was finished.
@@ -55,7 +57,7 @@ pub(crate) fn begin(limits: Limits) {
         }
         return;
     }
-    *watched = Some(Watched { limits, bytes: 0, more: 0, since: Duration::ZERO, rests: false });
+    *watched = Some(Watched { limits, bytes: 0, pixels: 0.0, more: 0, since: Duration::ZERO, rests: false });
     drop(watched);
     // Without a thread, work is still counted.
     let _ = std::thread::Builder::new().stack_size(1 << 17).spawn(watch);
@@ -72,6 +74,13 @@ pub(crate) fn rest() {
 pub(crate) fn count_input(bytes: usize) {
     if let Some(watched) = lock().as_mut() {
         watched.bytes = watched.bytes.saturating_add(bytes);
+    }
+}
+
+/// Adds a picture: large ones may take longer, whatever the size of the file.
+pub(crate) fn count_pixels(pixels: f64) {
+    if let Some(watched) = lock().as_mut() {
+        watched.pixels += pixels;
     }
 }
 
@@ -93,7 +102,7 @@ impl Drop for InBatch {
             watched.more = watched.more.saturating_sub(1);
             watched.since = used();
             if watched.more == 0 {
-                watched.bytes = 0;
+                (watched.bytes, watched.pixels) = (0, 0.0);
             }
         }
     }
@@ -127,7 +136,7 @@ impl Watched {
             return None;
         }
         let inputs = self.more.max(1);
-        let limits = self.limits.for_input(self.bytes / inputs);
+        let limits = self.limits.for_input(self.bytes / inputs).for_pixels(self.pixels / inputs as f64);
         let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err().map(Exceeded::cut_short);
         let memory = || memory_stats().map_or(0, |m| m.physical_mem);
         check(Limit::Seconds, used().saturating_sub(self.since).as_secs_f64())

@@ -33,7 +33,7 @@ pub use model::{Curves, Options, Shape};
 use codes::Codes;
 use entities::Pen;
 use layers::Layers;
-use pathwarp::budget::{Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, cost};
 
 /// Returns a DXF file with the outlines of these shapes.
 ///
@@ -44,7 +44,7 @@ pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded
     if options.curves == Curves::Polylines {
         let segs = shapes.iter().flat_map(|s| s.outline.segs());
         let lines: f64 = segs.map(|s| flatten::most_lines(s, options.tolerance)).sum();
-        options.limits.check(Limit::Segments, lines)?;
+        Budget::new(options.limits).spend(cost::SEGMENT * lines)?;
     }
     let mut out = Codes::new();
     file::start(&mut out, &layers, options);

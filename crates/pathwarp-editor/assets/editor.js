@@ -2,6 +2,8 @@
 (() => {
   // src/connection.ts
   var RETRY = 700;
+  var PATIENCE = 5e3;
+  var TOKEN = new URLSearchParams(location.search).get("token") ?? "";
   var Refused = class extends Error {
   };
   var Gone = class extends Error {
@@ -27,9 +29,10 @@
     /** The length of the last message from the server. */
     size = 0;
     connect() {
-      const socket = new WebSocket(`ws://${location.host}/socket${location.search}`);
+      const socket = new WebSocket(`ws://${location.host}/socket?token=${TOKEN}`);
       socket.onopen = () => {
         this.socket = socket;
+        history.replaceState(null, "", `/?token=${TOKEN}`);
         this.onOpen();
       };
       socket.onmessage = (message) => {
@@ -42,9 +45,18 @@
         this.waiting.clear();
         this.urgent.clear();
         this.onBusy(false);
+        history.replaceState(null, "", "/");
         this.onGone();
-        if (!this.isStopped) setTimeout(() => this.connect(), RETRY);
+        this.look();
       };
+    }
+    /** Waits for the program, and connects. */
+    look() {
+      setTimeout(async () => {
+        if (this.isStopped) return;
+        if (await isProgram()) this.connect();
+        else this.look();
+      }, RETRY);
     }
     /** Does not connect again. */
     stop() {
@@ -73,6 +85,50 @@
       });
     }
   };
+  async function isProgram() {
+    const question = crypto.randomUUID();
+    try {
+      const answer = await fetch(`/proof?${question}`, { signal: AbortSignal.timeout(PATIENCE) });
+      const sum = await crypto.subtle.digest("SHA-256", new TextEncoder().encode(TOKEN + question));
+      return await answer.text() === Array.from(new Uint8Array(sum), (byte) => byte.toString(16).padStart(2, "0")).join("");
+    } catch {
+      return false;
+    }
+  }
+
+  // src/dom.ts
+  var SVG = "http://www.w3.org/2000/svg";
+  function fill(element, attributes, children) {
+    for (const [name, value] of Object.entries(attributes)) {
+      if (value === void 0 || value === false) continue;
+      if (typeof value === "function") element.addEventListener(name.slice(2), value);
+      else element.setAttribute(name, value === true ? "" : String(value));
+    }
+    for (const child of children) if (child) element.append(child);
+    return element;
+  }
+  function h(tag, attributes = {}, ...children) {
+    return fill(document.createElement(tag), attributes, children);
+  }
+  function s(tag, attributes = {}, ...children) {
+    return fill(document.createElementNS(SVG, tag), attributes, children);
+  }
+  function byId(id) {
+    const found = document.getElementById(id);
+    if (!found) throw new Error(`the page has no #${id}`);
+    return found;
+  }
+  function isTyping(target) {
+    return target instanceof HTMLElement && target.matches("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
+  }
+  var ICONS = {
+    close: "M6 6l12 12M18 6 6 18",
+    up: "M12 19V6M6 11.5 12 5.5l6 6",
+    down: "M12 5v13M6 12.5l6 6 6-6"
+  };
+  function icon(name) {
+    return s("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" }, s("path", { d: ICONS[name] }));
+  }
 
   // src/values.ts
   var DRAGGED = /* @__PURE__ */ new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
@@ -766,6 +822,8 @@
     turns = Promise.resolve();
     /** The last commit, which the server answers after those before it. */
     lastCommit = Promise.resolve();
+    /** The number of commits that the server has refused. */
+    refusals = 0;
     /** Runs while keys move a handle, until the steps are committed. */
     pause = 0;
     connection;
@@ -774,10 +832,15 @@
         () => void this.begin(),
         () => {
           this.isConnected = false;
+          this.endPause();
           this.tell("link");
         },
         (news) => void this.hear(news)
       );
+    }
+    /** What is changed is kept. */
+    get isLive() {
+      return this.isConnected && !this.isDone;
     }
     listen(listener) {
       this.listeners.push(listener);
@@ -878,6 +941,7 @@
         return true;
       });
       if (done || !this.state || !this.isConnected) return;
+      this.refusals += 1;
       const { problem } = this;
       await this.load(this.state);
       this.fail(problem);
@@ -892,11 +956,27 @@
     async flush() {
       if (this.endPause()) await this.commit();
     }
-    /** Waits until the server has all that was done so far. */
+    /** Waits until the server has all that was done so far. Returns `false` if it refuses some of it. */
     async settle() {
+      const { refusals } = this;
+      const field = this.takeTyped();
       await this.turns;
       await this.flush();
       await this.lastCommit;
+      const isTaken = this.refusals === refusals;
+      if (!isTaken && document.activeElement === field) {
+        field?.blur();
+        this.tell("steps");
+      }
+      return isTaken;
+    }
+    /** Takes the value that is being typed, as if its field were left. */
+    takeTyped() {
+      const field = document.activeElement;
+      if (!isTyping(field)) return null;
+      field.blur();
+      field.focus({ preventScroll: true });
+      return field;
     }
     endPause() {
       if (this.pause === 0) return false;
@@ -920,6 +1000,7 @@
     }
     /** Undoes or redoes. */
     turn(direction) {
+      this.takeTyped();
       return this.inTurn(() => this.turned(direction));
     }
     async turned(direction) {
@@ -1052,37 +1133,6 @@
       return key;
     }
   };
-
-  // src/dom.ts
-  var SVG = "http://www.w3.org/2000/svg";
-  function fill(element, attributes, children) {
-    for (const [name, value] of Object.entries(attributes)) {
-      if (value === void 0 || value === false) continue;
-      if (typeof value === "function") element.addEventListener(name.slice(2), value);
-      else element.setAttribute(name, value === true ? "" : String(value));
-    }
-    for (const child of children) if (child) element.append(child);
-    return element;
-  }
-  function h(tag, attributes = {}, ...children) {
-    return fill(document.createElement(tag), attributes, children);
-  }
-  function s(tag, attributes = {}, ...children) {
-    return fill(document.createElementNS(SVG, tag), attributes, children);
-  }
-  function byId(id) {
-    const found = document.getElementById(id);
-    if (!found) throw new Error(`the page has no #${id}`);
-    return found;
-  }
-  var ICONS = {
-    close: "M6 6l12 12M18 6 6 18",
-    up: "M12 19V6M6 11.5 12 5.5l6 6",
-    down: "M12 5v13M6 12.5l6 6 6-6"
-  };
-  function icon(name) {
-    return s("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" }, s("path", { d: ICONS[name] }));
-  }
 
   // src/toast.ts
   var SHORTEST = 5e3;
@@ -1386,10 +1436,10 @@
       const { app: app2 } = this;
       await app2.settle();
       const { state } = app2;
-      if (!state) return;
+      if (!state || !app2.isLive) return;
       if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
-      const isUnsaved = state.steps.length > 0 && !state.saved;
-      if (isUnsaved && !confirm(`The steps of ${state.file} are not saved. Open ${file.name} all the same?`)) return;
+      const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
+      if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
       const answer = await app2.attempt(async () => app2.connection.ask({ do: "open", name: file.name, bytes: await base64(file) }));
       if (!answer?.state) return;
       this.stage.forget();
@@ -1402,9 +1452,6 @@
     let binary = "";
     for (let i = 0; i < bytes.length; i += PIECE) binary += String.fromCharCode(...bytes.subarray(i, i + PIECE));
     return btoa(binary);
-  }
-  function isTyping(target) {
-    return target instanceof HTMLElement && target.matches("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
   }
 
   // src/place.ts
@@ -2046,6 +2093,9 @@
           if (this.down.has(pointerId)) this.down.set(pointerId, stage2.point(e));
         });
       }
+      app2.listen((change) => {
+        if (change === "link" && !app2.isLive) this.finish?.();
+      });
       for (const end2 of ["pointerup", "pointercancel"]) window.addEventListener(end2, (e) => this.down.delete(e.pointerId));
     }
     app;
@@ -2229,7 +2279,7 @@
     }
     async keep(name) {
       try {
-        await this.app.settle();
+        if (!await this.app.settle()) throw new Error(this.app.problem ?? "");
         const { presets } = await this.app.connection.ask({ do: "keep-preset", name });
         this.gallery.showPresets(presets ?? []);
         this.dialog.close();
@@ -2255,8 +2305,8 @@
       byId("warnings").addEventListener("click", () => toast(app2.warnings.join(" · ")));
     }
     app;
-    /** The steps of a draft have been announced. */
-    isAnnounced = false;
+    /** The drawing whose draft has been announced. */
+    announced = null;
     slow = 0;
     busy(isBusy) {
       clearTimeout(this.slow);
@@ -2285,8 +2335,9 @@
       const isEmpty = state.steps.length === 0;
       const disabled = { undo: !state.undo, redo: !state.redo, "start-over": isEmpty, "keep-preset": isEmpty };
       for (const [id, value] of Object.entries(disabled)) byId(id).disabled = value;
-      if (state.restored && !this.isAnnounced) toast("Your last, unsaved steps are here again");
-      this.isAnnounced ||= state.restored;
+      const restored = state.restored ? state.file : null;
+      if (restored && restored !== this.announced) toast("Your last, unsaved steps are here again");
+      this.announced = restored;
     }
     /** What can be done with the handles on show. */
     hint() {
@@ -2310,14 +2361,21 @@
       if (this.app.isProposal && this.app.handles?.handles.length) show("note", "This moves the view. Pull a blue point or line to bend the artwork");
     }
     link() {
-      const { isDone, isConnected, state } = this.app;
+      const { isDone, isLive, state } = this.app;
       const gone = byId("gone");
-      gone.hidden = isConnected && !isDone;
+      gone.hidden = isLive;
+      for (const part of Array.from(document.querySelectorAll("header, main, footer"))) part.inert = !isLive;
+      if (!isLive) for (const dialog of Array.from(document.querySelectorAll("dialog"))) dialog.close();
       gone.classList.toggle("done", isDone);
       show("gone-title", isDone ? `${state?.program} has the result.` : "pathwarp has ended.");
-      show("gone-kept", isDone ? "You can close this page." : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.` : `${state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing."} Run “pathwarp edit” again to go on.`);
+      show("gone-kept", isDone ? "You can close this page." : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.` : `${kept(state)} To go on${state?.saved ? "" : " here"}, run “${state?.again ?? "pathwarp edit"}”.`);
     }
   };
+  function kept(state) {
+    if (!state || state.steps.length === 0) return "";
+    if (state.saved) return "Everything is saved.";
+    return state.problem ? `What was not saved is lost (${state.problem}).` : `The steps of ${state.file} are kept.`;
+  }
   function show(id, text) {
     const element = byId(id);
     element.hidden = text === "";
@@ -2332,6 +2390,7 @@
     ["png", "PNG", "A picture"],
     ["toml", "Recipe", "For other drawings"]
   ];
+  var FETCHED = 6e4;
   var Saving = class {
     constructor(app2) {
       this.app = app2;
@@ -2349,6 +2408,7 @@
         void this.write(this.name.value, false);
       });
       this.replace.addEventListener("click", () => void this.write(this.name.value, true));
+      this.download.addEventListener("click", () => void this.fetch(this.name.value));
       this.name.addEventListener("input", () => this.say(""));
       byId("copy-command").addEventListener("click", () => void this.copyCommand());
       app2.listen((change) => {
@@ -2361,12 +2421,15 @@
     extension = "svg";
     message = byId("save-message");
     replace = byId("save-replace");
+    download = byId("save-download");
+    /** The steps that were downloaded last. */
+    downloaded = "";
     show() {
       const { state } = this.app;
       if (!state) return;
       byId("file").textContent = state.file;
       const isEmpty = state.steps.length === 0;
-      byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}` : isEmpty ? "No changes yet" : "Not saved yet";
+      byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}` : isEmpty ? "No changes yet" : this.isDownloaded ? "Downloaded" : "Not saved yet";
       const save = byId("save");
       save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
       if (state.program) {
@@ -2376,11 +2439,14 @@
       }
       document.title = `${this.isUnsaved ? "• " : ""}${state.file} — pathwarp`;
     }
+    get isDownloaded() {
+      return this.downloaded === JSON.stringify(this.app.state?.steps);
+    }
     /** Something would be lost without saving. */
     get isUnsaved() {
       const { state } = this.app;
       if (!state) return false;
-      return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved;
+      return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved && !this.isDownloaded;
     }
     /** Gives the steps to the program that waits for them. */
     async handOver() {
@@ -2391,21 +2457,24 @@
     }
     /** Saves where it was saved last; the first time, under the usual name. */
     async quick() {
-      await this.app.settle();
+      if (this.dialog.open) return this.write(this.name.value, false);
+      if (!await this.app.settle()) return;
       const { state } = this.app;
       if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
       if (!state || state.steps.length === 0) return;
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
-      if (answer?.exists) return this.open();
+      if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
       if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
     }
-    async open() {
-      await this.app.settle();
+    /** Asks for a name, and says why if nothing could be written. */
+    async open(unwritable = "") {
+      if (!await this.app.settle()) return;
       const { state } = this.app;
       if (!state || state.steps.length === 0 || state.program || this.dialog.open) return;
       this.name.value = state.target;
       this.choose("svg");
       byId("save-folder").textContent = state.folder;
+      if (unwritable) this.refuse(unwritable);
       this.dialog.showModal();
       this.name.select();
     }
@@ -2417,16 +2486,36 @@
       }
       this.say("");
     }
-    say(text, offersReplace = false) {
+    /** Shows a message, with the button that helps. */
+    say(text, help = null) {
       this.message.textContent = text;
-      this.replace.hidden = !offersReplace;
+      for (const button of [this.replace, this.download]) button.hidden = button !== help;
+    }
+    refuse(unwritable) {
+      this.say(`${unwritable}. Download it instead: the browser has a folder of its own.`, this.download);
     }
     async write(name, replace) {
       try {
         const answer = await this.app.connection.ask({ do: "save", name, replace });
-        if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
+        if (answer.exists) return this.say(`${answer.exists} exists already.`, this.replace);
+        if (answer.unwritable) return this.refuse(answer.unwritable);
         this.dialog.close();
         this.done(answer.written ?? name, answer.state, answer.warnings ?? []);
+      } catch (e) {
+        this.say(e instanceof Error ? e.message : String(e));
+      }
+    }
+    /** Hands the file to the browser, which knows a folder that can be written. */
+    async fetch(name) {
+      try {
+        const { written = name, bytes = "", warnings = [] } = await this.app.connection.ask({ do: "download", name });
+        const href = URL.createObjectURL(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
+        h("a", { href, download: written }).click();
+        setTimeout(() => URL.revokeObjectURL(href), FETCHED);
+        this.dialog.close();
+        if (/\.svgz?$/i.test(written)) this.downloaded = JSON.stringify(this.app.state?.steps);
+        this.app.tell("state");
+        toast([`Downloaded ${written}`, ...warnings].join(". "));
       } catch (e) {
         this.say(e instanceof Error ? e.message : String(e));
       }
@@ -2440,6 +2529,7 @@
       toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
     }
     async copyCommand() {
+      await this.app.settle();
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
       if (!answer?.text) return;
       try {
@@ -2874,13 +2964,15 @@
     const action = isCommand ? COMMANDS2[key] : isTyping(e.target) ? void 0 : KEYS2[key];
     if (!action) return;
     if (isCommand) e.preventDefault();
-    if (!e.repeat || key !== "b") action(e.shiftKey);
+    if (app.isLive && (!e.repeat || key !== "b")) action(e.shiftKey);
   });
   window.addEventListener("keyup", (e) => {
     if (e.key.toLowerCase() === "b") hide();
   });
   window.addEventListener("blur", hide);
   window.addEventListener("beforeunload", (e) => {
-    if (app.state?.program && saving.isUnsaved && app.isConnected) e.preventDefault();
+    if (!app.isLive) return;
+    void app.settle();
+    if (saving.isUnsaved && (app.state?.program || app.state?.problem)) e.preventDefault();
   });
 })();

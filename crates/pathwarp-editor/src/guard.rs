@@ -3,18 +3,22 @@
 //! The token in the address keeps out other users of the computer. The `Host` header keeps out pages that reach the server by a
 //! name of their own (DNS rebinding), and `Origin` keeps out the scripts of other pages, which browsers let open WebSockets anywhere.
 
+use crate::folders;
+use crate::host::Host;
 use base64::Engine as _;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
+use serde::{Deserialize, Serialize};
 use std::io;
+use std::path::{Path, PathBuf};
 
 /// Bytes of the token: too many to guess.
 const TOKEN_BYTES: usize = 24;
 
 /// Conditions for answering a request.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Guard {
     token: String,
-    port: u16,
+    pub(crate) port: u16,
 }
 
 /// The reason for a refusal.
@@ -34,6 +38,30 @@ impl Guard {
         let mut bytes = [0; TOKEN_BYTES];
         getrandom::fill(&mut bytes).map_err(|e| io::Error::other(e.to_string()))?;
         Ok(Self { token: URL_SAFE_NO_PAD.encode(bytes), port })
+    }
+
+    /// The file that remembers the guard of the last run on a drawing.
+    fn file(state: &Path, drawing: &Path) -> PathBuf {
+        state.join("addresses").join(folders::key(drawing, &[]) + ".json")
+    }
+
+    /// The guard of the last run on a drawing.
+    pub(crate) fn last(state: &Path, drawing: &Path) -> Option<Self> {
+        let text = std::fs::read_to_string(Self::file(state, drawing)).ok()?;
+        let guard: Self = serde_json::from_str(&text).ok()?;
+        // Half a file is no secret.
+        URL_SAFE_NO_PAD.decode(&guard.token).is_ok_and(|t| t.len() == TOKEN_BYTES).then_some(guard)
+    }
+
+    /// Remembers the guard for the next run on a drawing.
+    pub(crate) fn keep(&self, host: &dyn Host, state: &Path, drawing: &Path) -> Result<(), String> {
+        let text = serde_json::to_string(self).map_err(|e| e.to_string())?;
+        folders::write(host, &Self::file(state, drawing), text.as_bytes())
+    }
+
+    /// Shows that the token is known here, without telling it: what the page has sent decides the answer.
+    pub(crate) fn proof(&self, question: &str) -> String {
+        folders::hex(&[self.token.as_bytes(), question.as_bytes()])
     }
 
     /// The address of the page.

@@ -23,12 +23,6 @@ pub trait Host: Send + Sync {
     /// The bytes are not a drawing that can be read.
     fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String>;
 
-    /// Refuses steps from a file that a stranger may have written if they name files anywhere, as the drawing itself may not.
-    ///
-    /// # Errors
-    /// A step names such a file.
-    fn admits(&self, recipe: &Recipe) -> Result<(), String>;
-
     /// The text that names a file in a step.
     fn reference(&self, file: &Path) -> String;
 

@@ -36,7 +36,7 @@ pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<
     }
     let (path, query) = (request.uri().path(), request.uri().query().unwrap_or_default());
     // The script and the style hold nothing of the user's; browsers ask for them without the page's query.
-    let public = path == "/editor.js" || path == "/editor.css";
+    let public = ["/editor.js", "/editor.css", "/proof"].contains(&path);
     if !public && let Err(refusal) = guard.check_token(query) {
         return refuse(&mut stream, "403 Forbidden", explain(refusal));
     }
@@ -52,6 +52,11 @@ pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<
             }
             Err(_) => refuse(&mut stream, "400 Bad Request", "this is not a WebSocket"),
         };
+    }
+    // A page that has lost the program tells its token to nobody else who may listen here now.
+    if path == "/proof" {
+        respond(&mut stream, "200 OK", "text/plain", &guard.proof(query))?;
+        return Ok(None);
     }
     match ASSETS.iter().find(|a| a.path == path) {
         Some(asset) => respond(&mut stream, "200 OK", asset.kind, asset.text)?,

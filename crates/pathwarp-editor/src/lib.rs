@@ -6,7 +6,7 @@
 //!
 //! * `http`, `guard`: the few requests of a page, and who may make them;
 //! * `socket`: one connection of a page, with messages in JSON (`protocol`);
-//! * `session`: the document, its steps, undo, and the draft on disk;
+//! * `session`: the document, its steps, undo, and the `draft` on disk, in one of the user's `folders`;
 //! * `picture`, `quick`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
 //! * `catalogue`, `openings`, `grips`: the deformations, their first values, and the geometry that handles show.
 
@@ -14,6 +14,7 @@ mod assets;
 mod catalogue;
 mod command_line;
 mod draft;
+mod folders;
 mod grips;
 mod guard;
 mod host;

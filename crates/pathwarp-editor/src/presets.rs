@@ -3,6 +3,7 @@
 //! Percentages fit every drawing by themselves. Path data is in the units of one drawing, so the frames are kept as well, and paths
 //! are laid from the old frame onto the new one.
 
+use crate::folders;
 use crate::grips::path_data;
 use crate::host::Host;
 use crate::protocol::PageStep;
@@ -35,13 +36,7 @@ struct PresetFile {
 
 /// The file, if the user has a folder for settings.
 fn file() -> Option<PathBuf> {
-    let folder = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
-    let settings = if cfg!(windows) {
-        folder("APPDATA")?
-    } else {
-        folder("XDG_CONFIG_HOME").or_else(|| Some(folder("HOME")?.join(".config")))?
-    };
-    Some(settings.join("pathwarp").join("presets.json"))
+    Some(folders::settings()?.join("presets.json"))
 }
 
 /// All presets, by name.

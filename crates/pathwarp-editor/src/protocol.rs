@@ -85,6 +85,10 @@ pub(crate) enum Request {
         name: Option<String>,
         replace: bool,
     },
+    /// The bytes that *Save* would write to this file, for a folder that cannot be written.
+    Download {
+        name: String,
+    },
     /// Keeps the steps for the program that waits for them.
     HandOver,
     /// The names of the sets of steps that were kept.

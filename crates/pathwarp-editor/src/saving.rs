@@ -32,6 +32,11 @@ pub(crate) fn named(name: &str, beside: &Path) -> Result<PathBuf, String> {
     Ok(beside.with_file_name(with_extension))
 }
 
+/// Returns `true` if the file has one of these extensions.
+pub(crate) fn has_extension(file: &Path, all: &[&str]) -> bool {
+    file.extension().is_some_and(|e| all.iter().any(|a| e.eq_ignore_ascii_case(a)))
+}
+
 /// Returns `true` if both are the same file.
 pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)

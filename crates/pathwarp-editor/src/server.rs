@@ -1,6 +1,6 @@
 //! The server: listens on the loopback interface, and ends when its page is closed.
 
-use crate::draft::Draft;
+use crate::folders;
 use crate::guard::Guard;
 use crate::host::Host;
 use crate::purpose::Purpose;
@@ -10,7 +10,7 @@ use crate::{http, socket};
 use pathwarp::recipe::Recipe;
 use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -55,16 +55,14 @@ pub enum News<'a> {
 /// The drawing cannot be opened, the port is taken, or a program waits and no page opens. Errors are sentences for the user.
 pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>)) -> Result<Option<Recipe>, String> {
     let bytes = std::fs::read(&options.file).map_err(|e| format!("{}: cannot be read: {e}", options.file.display()))?;
+    let waits = options.purpose.program().is_some();
     // Without a result, the program that waits has its drawing as it was.
-    let draft = if options.purpose.program().is_some() { Draft::default() } else { Draft::of(&options.file) };
-    let session = Session::open(host, &options.file, &bytes, options.purpose.clone(), draft)?;
-    let port = options.port.unwrap_or(0);
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|e| unusable(port, &e))?;
-    let failed = |e: io::Error| format!("the server cannot run: {e}");
-    let guard = Guard::new(listener.local_addr().map_err(failed)?.port()).map_err(failed)?;
+    let state = if waits { None } else { folders::state() };
+    let (listener, guard) = listen(options, state.as_deref())?;
+    let session = Session::open(host, &options.file, &bytes, options.purpose.clone(), state)?;
+    session.keep_address(&guard);
     let address = guard.address();
     announce(&News::Address(&address));
-    let waits = options.purpose.program().is_some();
     if options.open && (waits || has_display()) {
         match open_browser(&address) {
             Err(e) if waits => return Err(format!("no browser can be started: {e}")),
@@ -73,10 +71,29 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>
             Ok(()) => {}
         }
     }
-    listener.set_nonblocking(true).map_err(failed)?;
+    listener.set_nonblocking(true).map_err(|e| failed(&e))?;
     let shared = Arc::new(Shared::new(session));
     accept(&listener, &guard, &shared, waits.then_some(FIRST_PAGE))?;
     Ok(shared.with_session(|s| s.result()))
+}
+
+/// Listens where the last run on this drawing did, if that is free, so that a page which is still open finds the program again.
+fn listen(options: &Options, state: Option<&Path>) -> Result<(TcpListener, Guard), String> {
+    let at = |port: u16| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
+    let last = state.and_then(|s| Guard::last(s, &options.file));
+    if let Some(guard) = last.filter(|g| options.port.is_none_or(|p| p == g.port))
+        && let Ok(listener) = at(guard.port)
+    {
+        return Ok((listener, guard));
+    }
+    let port = options.port.unwrap_or(0);
+    let listener = at(port).map_err(|e| unusable(port, &e))?;
+    let guard = listener.local_addr().and_then(|a| Guard::new(a.port())).map_err(|e| failed(&e))?;
+    Ok((listener, guard))
+}
+
+fn failed(e: &io::Error) -> String {
+    format!("the server cannot run: {e}")
 }
 
 /// The reason why nothing can listen at a port.

@@ -1,8 +1,9 @@
 //! The session: one drawing with its steps, shared by all pages that are open.
 
-use crate::command_line::command_line;
-use crate::draft::{Draft, Kept};
+use crate::command_line::{command_line, quoted};
+use crate::draft::{Draft, Kept, NO_FOLDER};
 use crate::grips::grips;
+use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened};
 use crate::openings::{Variant, example, opening, variants};
 use crate::picture::Picture;
@@ -32,13 +33,17 @@ const THUMBNAIL_TOLERANCE: f64 = 1e-3;
 /// The drawing and its steps.
 pub(crate) struct Session {
     host: Arc<dyn Host>,
-    /// The file that the editor was started with; results go beside it.
+    /// The file on show; results go beside it.
     file: PathBuf,
+    /// The file that the editor was started with, once another one is on show.
+    first: Option<PathBuf>,
     purpose: Purpose,
     /// The steps are the result of the session.
     handed_over: bool,
     opened: Opened,
     kept: Kept,
+    /// The user's folder for drafts and addresses.
+    drafts: Option<PathBuf>,
     draft: Draft,
     /// The last file saved, and its steps.
     saved: Option<(PathBuf, Vec<PageStep>)>,
@@ -63,15 +68,6 @@ impl Shown {
     }
 }
 
-/// Whether a draft, which may come from a stranger as the drawing does, keeps to what both may do: it reads no files from elsewhere.
-fn admitted(host: &dyn Host, kept: &Kept, file: &Path) -> Result<(), String> {
-    if let Some((name, _)) = &kept.dropped {
-        saving::named(name, file)?;
-    }
-    let mut states = kept.undo.iter().chain(&kept.redo).chain([&kept.steps]);
-    states.try_for_each(|steps| host.admits(&recipe(steps)))
-}
-
 impl Session {
     /// Opens a drawing, with its draft if one was left behind.
     pub(crate) fn open(
@@ -79,41 +75,37 @@ impl Session {
         file: &Path,
         bytes: &[u8],
         purpose: Purpose,
-        draft: Draft,
+        drafts: Option<PathBuf>,
     ) -> Result<Self, String> {
-        let (mut kept, mut problem) = (draft.read(), None);
-        if let Some(Err(e)) = kept.as_ref().map(|k| admitted(&*host, k, file)) {
-            problem = Some(format!("the draft beside the drawing was not opened: {e}"));
-            kept = None;
-        }
-        let dropped = kept.as_ref().and_then(|k| k.dropped.as_ref());
-        let dropped =
-            dropped.and_then(|(name, bytes)| Some((saving::named(name, file).ok()?, STANDARD.decode(bytes).ok()?)));
-        let opened = match dropped {
-            Some((name, bytes)) => host.open(&name, &bytes)?,
-            None => host.open(file, bytes)?,
-        };
+        let opened = host.open(file, bytes)?;
+        let draft = Draft::of(drafts.as_deref(), file, bytes);
+        let kept = draft.read();
         let restored = kept.is_some();
+        let problem = (drafts.is_none() && purpose.program().is_none()).then(|| NO_FOLDER.to_owned());
         let as_opened = steps(&opened.recipe);
         let saved = opened.is_result.then(|| (file.to_owned(), as_opened.clone()));
-        let kept = kept.take().unwrap_or_else(|| Kept::new(as_opened));
-        let file = file.to_owned();
-        let handed_over = false;
-        Ok(Self { host, file, purpose, handed_over, opened, kept, draft, saved, restored, problem })
+        let kept = kept.unwrap_or_else(|| Kept::new(as_opened));
+        let (file, first, handed_over) = (file.to_owned(), None, false);
+        Ok(Self { host, file, first, purpose, handed_over, opened, kept, drafts, draft, saved, restored, problem })
     }
 
-    /// Opens a drawing that was dropped on the page instead of the present one.
+    /// Keeps the address of the page for the next run. Without it, only a page that is open now does not find that.
+    pub(crate) fn keep_address(&self, guard: &Guard) {
+        if let Some(state) = &self.drafts {
+            let _ = guard.keep(&*self.host, state, &self.file);
+        }
+    }
+
+    /// Opens a drawing that was dropped on the page, with its own draft; that of the present one stays.
     pub(crate) fn replace(&mut self, name: &str, bytes: &str) -> Result<(), String> {
         self.refuse_for_program("another drawing cannot be opened")?;
         let file = saving::named(name, &self.file)?;
         let content = STANDARD.decode(bytes).map_err(|e| format!("{name}: {e}"))?;
-        self.opened = self.host.open(&file, &content)?;
-        self.kept = Kept::new(steps(&self.opened.recipe));
-        self.kept.dropped = Some((name.to_owned(), bytes.to_owned()));
-        self.file = file;
-        self.purpose = Purpose::Files { out: None };
-        (self.saved, self.restored) = (None, false);
-        self.keep();
+        let (host, purpose) = (Arc::clone(&self.host), Purpose::Files { out: None });
+        let other = Self::open(host, &file, &content, purpose, self.drafts.clone())?;
+        let first = self.first.take().or_else(|| Some(std::mem::take(&mut self.file)));
+        // A file of this name in the folder may be another one.
+        *self = Self { first, saved: None, ..other };
         Ok(())
     }
 
@@ -140,15 +132,19 @@ impl Session {
         let document = self.opened.artwork.document();
         let page = document.view_box();
         let name = |p: &Path| p.file_name().map(|n| n.to_string_lossy().into_owned());
+        let saved = self.saved.as_ref().filter(|(_, steps)| *steps == self.kept.steps);
+        let again = saved.map(|(p, _)| p).or(self.first.as_ref()).unwrap_or(&self.file);
+        let again = std::path::absolute(again).unwrap_or_else(|_| again.clone());
         let folder = self.file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         json!({
             "file": if let Purpose::Program { drawing, .. } = &self.purpose { Some(drawing.clone()) } else { name(&self.file) },
+            "again": format!("pathwarp edit {}", quoted(&again.display().to_string())),
             "program": self.purpose.program(),
             "folder": folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).display().to_string(),
             "steps": self.kept.steps,
             "undo": !self.kept.undo.is_empty(),
             "redo": !self.kept.redo.is_empty(),
-            "saved": self.saved.as_ref().is_some_and(|(_, steps)| *steps == self.kept.steps),
+            "saved": saved.is_some(),
             "savedTo": self.saved.as_ref().and_then(|(p, _)| name(p)),
             "target": name(&self.target()),
             "restored": self.restored,
@@ -240,6 +236,9 @@ impl Session {
     }
 
     fn keep(&mut self) {
+        if self.purpose.program().is_some() {
+            return;
+        }
         let is_saved = self.saved.as_ref().is_some_and(|(_, steps)| *steps == self.kept.steps);
         self.problem = if is_saved {
             self.draft.remove();
@@ -366,32 +365,56 @@ impl Session {
         if !own && !self.opened.is_result && saving::same_file(&to, &self.file) {
             return Err(format!("{} is the drawing itself; choose another name", to.display()));
         }
+        if self.first.as_ref().is_some_and(|first| saving::same_file(&to, first)) {
+            return Err(format!("{} is the drawing that was open first; choose another name", to.display()));
+        }
         let asked = self.out().is_some_and(|out| saving::same_file(out, &to));
         if to.exists() && !own && !asked && !replace {
             return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
         }
-        let extension = to.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let given = recipe(&self.kept.steps);
-        let is_svg = matches!(extension.as_str(), "svg" | "svgz");
-        let (bytes, lost) = if extension == "toml" {
-            (self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new())
-        } else {
-            let svg = self.opened.artwork.bend(&given, Fineness::Finished { embedded: is_svg })?.svg;
-            self.host.export(svg, &to)?
-        };
-        self.host.write(&to, &bytes)?;
-        if is_svg {
+        let (bytes, lost) = self.finished(&to)?;
+        if let Err(why) = self.host.write(&to, &bytes) {
+            return Ok(json!({ "unwritable": why }));
+        }
+        if is_svg(&to) {
             self.saved = Some((to.clone(), self.kept.steps.clone()));
             self.draft.remove();
             self.restored = false;
+            if saving::same_file(&to, &self.file) {
+                self.draft = Draft::of(self.drafts.as_deref(), &self.file, &bytes);
+            }
         }
         Ok(json!({ "written": to.display().to_string(), "warnings": lost }))
+    }
+
+    /// The result as *Save* would write it to the file of this name, for a page that keeps it elsewhere.
+    pub(crate) fn download(&mut self, name: &str) -> Result<Value, String> {
+        self.refuse_for_program("nothing can be downloaded")?;
+        let to = saving::named(name, &self.file)?;
+        let (bytes, lost) = self.finished(&to)?;
+        let name = to.file_name().map(|n| n.to_string_lossy());
+        Ok(json!({ "written": name, "bytes": STANDARD.encode(bytes), "warnings": lost }))
+    }
+
+    /// The result in the format of the file `to`, and what that cannot hold.
+    fn finished(&mut self, to: &Path) -> Result<(Vec<u8>, Vec<String>), String> {
+        let given = recipe(&self.kept.steps);
+        if saving::has_extension(to, &["toml"]) {
+            return Ok((self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new()));
+        }
+        let svg = self.opened.artwork.bend(&given, Fineness::Finished { embedded: is_svg(to) })?.svg;
+        self.host.export(svg, to)
     }
 
     pub(crate) fn command_line(&self) -> String {
         let given = recipe(&self.kept.steps);
         command_line(self.host.registry(), &given, &self.opened.artwork.options(), &self.file, &self.target())
     }
+}
+
+/// Returns `true` for a file that holds the source and the steps, to go on with.
+fn is_svg(file: &Path) -> bool {
+    saving::has_extension(file, &["svg", "svgz"])
 }
 
 /// The variant of a deformation with this label.

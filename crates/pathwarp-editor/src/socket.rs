@@ -131,6 +131,7 @@ impl Page {
                 answer["state"] = session.state();
                 Ok(answer)
             }
+            Request::Download { name } => session.download(&name),
             Request::HandOver => {
                 session.hand_over()?;
                 self.shared.pages.done.store(true, Ordering::SeqCst);

@@ -41,10 +41,10 @@ impl<'a> ByteSource<'a> {
         Ok(Self { backend: Backend::File(BufReader::with_capacity(1 << 12, file)), at: 0, end, limits, unpacked: 0 })
     }
 
-    /// Reads the output of a decoder, up to the limit on bytes of pictures.
+    /// Reads the output of a decoder, up to the limit on bytes.
     pub(crate) fn stream(decoder: impl Read + 'a, limits: Limits) -> Self {
         let backend = Backend::Stream(BufReader::with_capacity(CHUNK, Box::new(decoder)));
-        Self { backend, at: 0, end: limits.of(Limit::ImageBytes) as u64, limits, unpacked: 0 }
+        Self { backend, at: 0, end: limits.of(Limit::Bytes) as u64, limits, unpacked: 0 }
     }
 
     /// Checks that `count` bytes are left; if not, the error at byte `place` says what `needed` them. The end of a stream is the limit,
@@ -54,13 +54,13 @@ impl<'a> ByteSource<'a> {
             return Ok(());
         }
         let known = Error::truncated(place, &needed(), self.left());
-        let of_limit = self.end == self.limits.of(Limit::ImageBytes) as u64;
+        let of_limit = self.end == self.limits.of(Limit::Bytes) as u64;
         Err(if of_limit { self.beyond(self.at.saturating_add(count), known) } else { known })
     }
 
     /// The error about byte `to`, which is beyond the end: that of a file is `known`, that of a stream is a limit.
     pub(crate) fn beyond(&self, to: u64, known: Error) -> Error {
-        match (&self.backend, self.limits.check(Limit::ImageBytes, to as f64)) {
+        match (&self.backend, self.limits.check(Limit::Bytes, to as f64)) {
             (Backend::Stream(_), Err(e)) => Error::too_large(known.offset, "unpacked, the file takes", e.cut_short()),
             _ => known,
         }

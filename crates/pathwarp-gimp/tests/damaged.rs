@@ -209,7 +209,7 @@ fn decompression_bombs_end_soon() {
         gz.write_all(&points.repeat(20_000)).unwrap();
     }
     let e = bounded_error(&gz.finish().unwrap());
-    assert!(e.limit.is_some_and(|e| e.limit == Limit::ImageBytes) && e.problem.contains("image-bytes"), "{e}");
+    assert!(e.limit.is_some_and(|e| e.limit == Limit::Bytes) && e.problem.contains("`bytes`"), "{e}");
     // A string of a gigabyte, all of it present in compressed form.
     let mut head = common::head(0).0;
     for w in [25, u32::MAX, 1, 0, 1, 1 << 30] {
@@ -221,7 +221,7 @@ fn decompression_bombs_end_soon() {
         gz.write_all(&vec![b'a'; 1 << 20]).unwrap();
     }
     let e = bounded_error(&gz.finish().unwrap());
-    assert!(e.limit.is_some_and(|e| e.limit == Limit::ImageBytes) && e.problem.contains("image-bytes"), "{e}");
+    assert!(e.limit.is_some_and(|e| e.limit == Limit::Bytes) && e.problem.contains("`bytes`"), "{e}");
 }
 
 #[track_caller]

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::shape::{NamedShape, Point3, SurfaceFn};
 use pathwarp::Seg;
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::{Budget, cost};
 use pathwarp::kurbo::Point;
 
 /// Maximum number of halvings of a segment.
@@ -29,9 +29,7 @@ pub(crate) fn polygons(
         for seg in &sub.segs {
             let before = points.len();
             flatten(seg, &place, tolerance, &mut points)?;
-            let more = (points.len() - before) as u64;
-            let counted = budget.spend_cut(Limit::Segments, more);
-            counted.map_err(|exceeded| Error::TooMany { shape: shape.name.to_owned(), exceeded })?;
+            spend(shape.name, (points.len() - before) as f64, budget)?;
         }
         if sub.closed && points.len() > 1 && points.first() == points.last() {
             points.pop();
@@ -39,6 +37,12 @@ pub(crate) fn polygons(
         out.push(Polygon { points, closed: sub.closed });
     }
     Ok(out)
+}
+
+/// Counts segments of a shape.
+pub(crate) fn spend(shape: &str, segments: f64, budget: &Budget) -> Result<(), Error> {
+    let spent = budget.spend(cost::SEGMENT * segments);
+    spent.map_err(|exceeded| Error::TooMany { shape: shape.to_owned(), exceeded })
 }
 
 /// Appends the points of a segment after its first.

@@ -1,10 +1,10 @@
 //! Subdivides triangles until the midpoints of their edges are close to the surface.
 
 use crate::error::Error;
-use crate::flatten::chord_distance;
+use crate::flatten::{chord_distance, spend};
 use crate::shape::{Point3, SurfaceFn};
 use crate::tessellate::FlatMesh;
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::Budget;
 use pathwarp::kurbo::Point;
 use std::collections::{HashMap, HashSet};
 
@@ -34,9 +34,7 @@ pub(crate) fn to_surface(
     tolerance: f64,
     budget: &Budget,
 ) -> Result<TriangleMesh, Error> {
-    let too_many = |exceeded| Error::TooMany { shape: name.to_owned(), exceeded };
-    let count =
-        |triangles: usize| budget.spend_cut(Limit::Segments, (SIDES * triangles as f64) as u64).map_err(too_many);
+    let count = |triangles: usize| spend(name, SIDES * triangles as f64, budget);
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: name.to_owned(), at: p });
     let mut plane = flat.points;
     let placed: Result<Vec<Point3>, Error> = plane.iter().map(|p| place(*p)).collect();

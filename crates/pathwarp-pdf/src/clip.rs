@@ -16,7 +16,7 @@ pub(crate) fn apply(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, b
         }
         return None;
     }
-    Some(file.group(bounds, |file, stream| {
+    Some(file.group(bounds, stream.shift, |file, stream| {
         if let Some(next) = clip.clip_path()
             && let Some(mask) = apply(file, stream, next, bounds)
         {

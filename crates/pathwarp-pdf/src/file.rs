@@ -5,7 +5,7 @@ use crate::space::pdf_rect;
 use crate::stream::Stream;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use kurbo::Rect;
+use kurbo::{Rect, Vec2};
 use pathwarp::budget::Budget;
 use pathwarp_raster::Error;
 use pdf_writer::types::{BlendMode, MaskType};
@@ -127,16 +127,17 @@ impl<'a> File<'a> {
         self.pdf.stream(at, &deflated(bytes)).filter(Filter::FlateDecode);
     }
 
-    /// Adds what `draw` draws as a group that is composed on its own. `bounds` is in the coordinates of the group.
-    pub(crate) fn group(&mut self, bounds: Rect, draw: impl FnOnce(&mut Self, &mut Stream)) -> Ref {
-        let mut stream = Stream::new();
+    /// Adds what `draw` draws as a group that is composed on its own. `bounds` is in the coordinates of the group, which are written with
+    /// the [shift](Stream::shift) of where it is drawn.
+    pub(crate) fn group(&mut self, bounds: Rect, shift: Vec2, draw: impl FnOnce(&mut Self, &mut Stream)) -> Ref {
+        let mut stream = Stream::shifted(shift);
         draw(self, &mut stream);
         let (bytes, used) = stream.finish();
         let at = self.new_ref();
         let bytes = deflated(&bytes);
         let mut object = self.pdf.form_xobject(at, &bytes);
         object.filter(Filter::FlateDecode);
-        object.bbox(pdf_rect(bounds));
+        object.bbox(pdf_rect(bounds - shift));
         used.write(&mut object.resources());
         object.group().transparency().isolated(true).pair(Name(b"CS"), Name(b"DeviceRGB"));
         at

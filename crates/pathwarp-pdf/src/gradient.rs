@@ -5,6 +5,7 @@
 
 use crate::file::File;
 use crate::space::{affine, matrix};
+use crate::stream::FAR;
 use kurbo::{Affine, Point, Rect, Vec2};
 use pdf_writer::types::FunctionShadingType;
 use pdf_writer::{Finish as _, Name, Ref};
@@ -88,20 +89,29 @@ impl Gradient {
         self.shading(file, to_start, &stops, Name(b"DeviceGray"))
     }
 
+    /// The place of a gradient that is far from the origin.
+    fn far(&self) -> Vec2 {
+        let (Shape::Axial([at, _]) | Shape::Radial([(at, _), _])) = self.shape;
+        if at.to_vec2().hypot() > FAR { at.to_vec2() } else { Vec2::ZERO }
+    }
+
     fn shading(&self, file: &mut File<'_>, to_start: Affine, stops: &[(f64, Vec<f32>)], space: Name<'_>) -> Ref {
         let function = function(file, stops);
         let at = file.new_ref();
         let mut pattern = file.pdf.shading_pattern(at);
-        pattern.matrix(matrix(to_start * self.transform));
+        let near = self.far();
+        pattern.matrix(matrix(to_start * self.transform * Affine::translate(near)));
         let mut shading = pattern.function_shading();
         match &self.shape {
             Shape::Axial(ends) => {
                 shading.shading_type(FunctionShadingType::Axial);
-                shading.coords(ends.iter().flat_map(|p| [p.x as f32, p.y as f32]));
+                shading.coords(ends.iter().map(|p| *p - near).flat_map(|p| [p.x as f32, p.y as f32]));
             }
             Shape::Radial(circles) => {
                 shading.shading_type(FunctionShadingType::Radial);
-                shading.coords(circles.iter().flat_map(|(c, r)| [c.x as f32, c.y as f32, *r as f32]));
+                shading.coords(
+                    circles.iter().flat_map(|(c, r)| [(c.x - near.x) as f32, (c.y - near.y) as f32, *r as f32]),
+                );
             }
         }
         shading.pair(Name(b"ColorSpace"), space);

@@ -4,7 +4,7 @@ use crate::file::{File, MaskKind, State};
 use crate::space::{affine, rect, roomy};
 use crate::stream::Stream;
 use crate::{clip, image, path, picture};
-use kurbo::{Affine, Rect};
+use kurbo::{Affine, Rect, Vec2};
 use pdf_writer::Ref;
 use usvg::{BlendMode, Group, Mask, MaskType, Node};
 
@@ -46,17 +46,17 @@ fn isolated(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
     if let Some(clip) = g.clip_path() {
         masks.extend(clip::apply(file, stream, clip, bounds).map(|m| (MaskKind::Luminosity, m)));
     }
-    masks.extend(g.mask().map(|m| mask(file, m)));
+    masks.extend(g.mask().map(|m| mask(file, m, stream.shift)));
     let state = State::default().opacity(g.opacity().get()).blend(g.blend_mode());
     // A clip path alone does not need a group.
     if masks.is_empty() && state.is_plain() && !g.isolate() {
         children(file, stream, g);
         return;
     }
-    let mut content = file.group(bounds, |file, stream| children(file, stream, g));
+    let mut content = file.group(bounds, stream.shift, |file, stream| children(file, stream, g));
     while masks.len() > 1 {
         let Some((kind, mask)) = masks.pop() else { break };
-        content = file.group(bounds, |file, stream| {
+        content = file.group(bounds, stream.shift, |file, stream| {
             let state = file.state(State::default().mask(kind, mask));
             stream.state(state);
             stream.object(content);
@@ -76,15 +76,15 @@ fn compose(file: &mut File<'_>, stream: &mut Stream, state: State, object: Ref) 
 }
 
 /// Adds a mask.
-fn mask(file: &mut File<'_>, m: &Mask) -> (MaskKind, Ref) {
+fn mask(file: &mut File<'_>, m: &Mask, shift: Vec2) -> (MaskKind, Ref) {
     let kind = match m.kind() {
         MaskType::Luminance => MaskKind::Luminosity,
         MaskType::Alpha => MaskKind::Alpha,
     };
     let area: Rect = rect(m.rect().to_rect());
-    let group = file.group(area, |file, stream| {
-        let outer = m.mask().map(|m| mask(file, m));
-        let content = file.group(area, |file, stream| draw(file, stream, m.root()));
+    let group = file.group(area, shift, |file, stream| {
+        let outer = m.mask().map(|m| mask(file, m, shift));
+        let content = file.group(area, shift, |file, stream| draw(file, stream, m.root()));
         let state = outer.map_or(State::default(), |(kind, group)| State::default().mask(kind, group));
         compose(file, stream, state, content);
     });

@@ -1,10 +1,9 @@
 //! Images. A JPEG stays as it is; other bitmaps are stored without loss.
 
 use crate::file::{File, deflated};
-use crate::space::matrix;
 use crate::stream::Stream;
 use kurbo::{Affine, Rect};
-use pathwarp::budget::Limit;
+use pathwarp::budget::cost;
 use pathwarp_raster::{Error, Picture, Pixmap, header_size};
 use pdf_writer::{Filter, Finish as _, Name, Ref};
 use std::sync::Arc;
@@ -23,7 +22,7 @@ pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, image: &Image) {
     let object = match image.kind() {
         ImageKind::SVG(tree) => {
             let size = Rect::new(0.0, 0.0, f64::from(tree.size().width()), f64::from(tree.size().height()));
-            let object = file.group(size, |file, stream| {
+            let object = file.group(size, stream.shift, |file, stream| {
                 stream.clip(&kurbo::Shape::to_path(&size, 1.0), FillRule::NonZero);
                 (file.draw)(file, stream, tree.root());
             });
@@ -54,10 +53,7 @@ fn embedded(file: &mut File<'_>, data: &Arc<Vec<u8>>, smooth: bool) -> Option<Re
 pub(crate) fn place(stream: &mut Stream, object: Ref, area: Rect) {
     // A bitmap fills the unit square, its first row on top.
     let unit = Affine::new([area.width(), 0.0, 0.0, -area.height(), area.x0, area.y1]);
-    stream.content.save_state();
-    stream.content.transform(matrix(unit));
-    stream.object(object);
-    stream.content.restore_state();
+    stream.placed(object, unit);
 }
 
 /// Adds a picture as its pixels. What cannot be decoded is not drawn, as in browsers; too large a one is an error.
@@ -82,7 +78,7 @@ const DECODING: f64 = 4.0;
 const COMPRESSING: f64 = 20.0;
 
 fn count(file: &File<'_>, (width, height): (u32, u32), work: f64) -> Result<(), Error> {
-    Ok(file.budget.spend(Limit::Painting, (work * f64::from(width) * f64::from(height)) as u64)?)
+    Ok(file.budget.spend(cost::PIXEL * work * f64::from(width) * f64::from(height))?)
 }
 
 /// Adds a bitmap, with its transparency if it has any.

@@ -24,10 +24,12 @@ pub(crate) fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use
     let mut state = State::default().opacity(painted.opacity);
     if let Some(gradient) = gradient.as_ref().filter(|g| g.is_translucent()) {
         // The same gradient in grey says how much shows.
-        let group = file.group(area, |file, stream| {
+        let group = file.group(area, stream.shift, |file, stream| {
+            let shift = stream.shift;
             let grey = gradient.opacities(file, stream.to_start);
             stream.pattern(grey, false);
-            let [x, y, width, height] = [area.x0, area.y0, area.width(), area.height()].map(|v| v as f32);
+            let [x, y, width, height] =
+                [area.x0 - shift.x, area.y0 - shift.y, area.width(), area.height()].map(|v| v as f32);
             stream.content.rect(x, y, width, height).fill_nonzero();
         });
         state = state.mask(MaskKind::Luminosity, group);

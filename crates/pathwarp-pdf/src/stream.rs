@@ -2,11 +2,14 @@
 
 use crate::outline;
 use crate::space::matrix;
-use kurbo::{Affine, BezPath};
+use kurbo::{Affine, BezPath, Vec2};
 use pdf_writer::types::ColorSpaceOperand;
 use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Finish as _, Name, Ref};
 use std::collections::BTreeSet;
+
+/// Coordinates beyond this are far from the page's corner: in single precision their last digit is a hundredth.
+pub(crate) const FAR: f64 = 1e5;
 
 /// The kinds of resources in use here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -29,37 +32,61 @@ pub(crate) struct Stream {
     used: Used,
     /// From the current coordinates to those in which the stream starts: patterns are anchored there.
     pub(crate) to_start: Affine,
-    outer: Vec<Affine>,
+    /// What is subtracted from the current coordinates before they are written: PDF has single precision, too coarse for maps in
+    /// metres. Nothing, as long as the page's corner is not far.
+    pub(crate) shift: Vec2,
+    outer: Vec<(Affine, Vec2)>,
 }
 
 impl Stream {
     pub(crate) fn new() -> Self {
-        Self { content: Content::new(), used: Used::default(), to_start: Affine::IDENTITY, outer: Vec::new() }
+        Self::shifted(Vec2::ZERO)
+    }
+
+    /// The content of an object that is drawn in coordinates that are written with this shift.
+    pub(crate) fn shifted(shift: Vec2) -> Self {
+        let to_start = Affine::translate(-shift);
+        Self { content: Content::new(), used: Used::default(), to_start, shift, outer: Vec::new() }
     }
 
     /// Saves the graphics state.
     pub(crate) fn save(&mut self) {
         self.content.save_state();
-        self.outer.push(self.to_start);
+        self.outer.push((self.to_start, self.shift));
     }
 
     /// Restores the graphics state.
     pub(crate) fn restore(&mut self) {
         self.content.restore_state();
-        self.to_start = self.outer.pop().unwrap_or_default();
+        (self.to_start, self.shift) = self.outer.pop().unwrap_or_default();
     }
 
     /// Changes the coordinates.
     pub(crate) fn transform(&mut self, m: Affine) {
         if m != Affine::IDENTITY {
-            self.content.transform(matrix(m));
+            let corner = (m.inverse() * self.shift.to_point()).to_vec2();
+            let shift = if corner.hypot() > FAR && corner.is_finite() { corner } else { Vec2::ZERO };
+            self.content.transform(matrix(Affine::translate(-self.shift) * m * Affine::translate(shift)));
             self.to_start *= m;
+            self.shift = shift;
         }
+    }
+
+    /// Draws an object of the unit square in an area given by a transform of that.
+    pub(crate) fn placed(&mut self, object: Ref, unit: Affine) {
+        self.content.save_state();
+        self.content.transform(matrix(Affine::translate(-self.shift) * unit));
+        self.object(object);
+        self.content.restore_state();
     }
 
     /// Starts a path with these outlines.
     pub(crate) fn outline(&mut self, path: &BezPath) {
-        outline::write(&mut self.content, path);
+        if self.shift == Vec2::ZERO {
+            outline::write(&mut self.content, path);
+        } else {
+            outline::write(&mut self.content, &(Affine::translate(-self.shift) * path));
+        }
     }
 
     /// Restricts drawing to an outline.

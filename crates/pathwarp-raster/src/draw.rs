@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::load;
 use crate::pixmap::new_pixmap;
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::Budget;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tiny_skia::{Pixmap, Transform};
 use usvg::{Group, Node};
@@ -20,7 +20,7 @@ pub(crate) fn draw(
 ) -> Result<(), Error> {
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     let size = [picture.width() as f32, picture.height() as f32];
-    count(load::of_group(tree.root(), transform, size, budget.limits())?, budget)?;
+    load::of_group(tree.root(), transform, size, budget)?;
     // A failure leaves the picture half painted; it is then dropped.
     let drawn = catch_unwind(AssertUnwindSafe(|| resvg::render(tree, transform, &mut picture.as_mut())));
     drawn.map_err(|_| Error::Renderer)
@@ -41,15 +41,9 @@ pub fn render_group(
     let corner = group.abs_layer_bounding_box();
     let moved = transform.pre_translate(-corner.x(), -corner.y());
     #[expect(clippy::cast_possible_truncation, reason = "an estimate")]
-    let work = load::of_group(group, moved, [width as f32, height as f32], budget.limits())?;
-    count(work, budget)?;
-    let mut pixmap = new_pixmap(width, height, budget.limits())?;
+    load::of_group(group, moved, [width as f32, height as f32], budget)?;
+    let mut pixmap = new_pixmap(width, height, &budget.limits())?;
     let node = Node::Group(Box::new(group.clone()));
     let drawn = catch_unwind(AssertUnwindSafe(|| resvg::render_node(&node, transform, &mut pixmap.as_mut())));
     Ok(drawn.map_err(|_| Error::Renderer)?.map(|()| pixmap))
-}
-
-fn count(work: f64, budget: &Budget) -> Result<(), Error> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    Ok(budget.spend_cut(Limit::Painting, work as u64)?)
 }

@@ -1,7 +1,7 @@
 //! The work that rendering a drawing takes, estimated before it is done: pixels painted, pixels held, and how far geometry
 //! reaches.
 //!
-//! The renderer has no limits of its own. It paints every isolated group, mask and filter on layers that may be larger than
+//! The renderer, resvg 0.49 (<https://github.com/linebender/resvg/tree/v0.49.0/crates/resvg>), has no limits of its own. It paints every isolated group, mask and filter on layers that may be larger than
 //! the picture, evaluates filters at any size, decodes pictures whatever size they announce, and aborts on coordinates that
 //! its fixed-point numbers cannot hold.
 //!
@@ -12,7 +12,7 @@ mod edges;
 use crate::error::Error;
 use crate::picture::header_size;
 use edges::Edges;
-use pathwarp::budget::{Exceeded, Limit, Limits};
+use pathwarp::budget::{Budget, Exceeded, Limit, Limits, cost};
 use std::collections::HashMap;
 use std::sync::Arc;
 use tiny_skia::{Rect, Transform};
@@ -42,10 +42,13 @@ const WINDOW: f64 = 0.4;
 const PATH: f64 = 50.0;
 const DASH: f64 = 200.0;
 
+/// Bytes of a pixel.
+const PIXEL_BYTES: f64 = 4.0;
+
 /// Octaves of turbulence beyond these change no colour of eight bits, and overflow in the renderer.
 const MOST_OCTAVES: u32 = 24;
 
-/// The work of drawing a group with `transform` on a picture of `width` × `height` pixels.
+/// Counts the work of drawing a group with `transform` on a picture of `width` × `height` pixels.
 ///
 /// # Errors
 /// It exceeds the limits, or geometry reaches too far.
@@ -53,12 +56,12 @@ pub(crate) fn of_group(
     group: &Group,
     transform: Transform,
     [width, height]: [f32; 2],
-    limits: &Limits,
-) -> Result<f64, Error> {
-    let mut load = Load { limits: *limits, work: 0.0, sizes: HashMap::new() };
+    budget: &Budget,
+) -> Result<(), Error> {
+    let mut load = Load { limits: budget.limits(), work: 0.0, sizes: HashMap::new() };
     let held = f64::from(width) * f64::from(height);
     load.group(group, transform, &Canvas { width, height, held })?;
-    Ok(load.work)
+    Ok(budget.spend(cost::PIXEL * load.work)?)
 }
 
 /// The surface that is painted on.
@@ -101,13 +104,13 @@ struct Load {
 impl Load {
     fn add(&mut self, work: f64) -> Result<(), Error> {
         self.work += work;
-        Ok(self.limits.check(Limit::Painting, self.work).map_err(Exceeded::cut_short)?)
+        Ok(self.limits.check(Limit::Work, cost::PIXEL * self.work).map_err(Exceeded::cut_short)?)
     }
 
     /// The canvas with another surface of `area` pixels.
     fn hold(&self, canvas: &Canvas, area: f64) -> Result<Canvas, Error> {
         let held = canvas.held + area;
-        self.limits.check(Limit::Pixels, held)?;
+        self.limits.check(Limit::Memory, PIXEL_BYTES * held)?;
         Ok(Canvas { held, ..*canvas })
     }
 
@@ -194,12 +197,13 @@ impl Load {
             }
             ImageKind::JPEG(d) | ImageKind::PNG(d) | ImageKind::GIF(d) | ImageKind::WEBP(d) => d,
         };
-        // A large picture has a large file, wherever it is.
-        self.limits = self.limits.for_input(data.len());
-        let known = Arc::as_ptr(data) as usize;
-        let pixels = *self.sizes.entry(known).or_insert_with(|| {
+        let limits = &mut self.limits;
+        let pixels = *self.sizes.entry(Arc::as_ptr(data) as usize).or_insert_with(|| {
             // The renderer skips what it cannot decode.
-            header_size(data).map_or(0.0, |(w, h)| f64::from(w) * f64::from(h))
+            let pixels = header_size(data).map_or(0.0, |(w, h)| f64::from(w) * f64::from(h));
+            // It was counted when it was read, and holds as much as a result of its size.
+            *limits = limits.for_pixels(2.0 * pixels);
+            pixels
         });
         // The decoder's buffer becomes the picture, or is copied to it.
         self.hold(canvas, 2.0 * pixels)?;

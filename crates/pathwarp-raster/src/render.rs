@@ -60,7 +60,7 @@ impl RenderOptions {
     pub fn render_counted(&self, tree: &usvg::Tree, budget: &Budget) -> Result<Pixmap, Error> {
         let native = (f64::from(tree.size().width()), f64::from(tree.size().height()));
         let (width, height, scale) = self.size.resolve(native)?;
-        let mut pixmap = new_pixmap(width, height, budget.limits())?;
+        let mut pixmap = new_pixmap(width, height, &budget.limits())?;
         if let Some(color) = self.background {
             pixmap.fill(color);
         }

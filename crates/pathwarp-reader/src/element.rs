@@ -2,6 +2,7 @@
 //! them among an element's ancestors and siblings.
 
 use super::names::{Name, State, Svg};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use roxmltree::Node;
 use selectors::OpaqueElement;
 use selectors::attr::{AttrSelectorOperation, CaseSensitivity, NamespaceConstraint};
@@ -22,11 +23,20 @@ const TRIED: usize = 2;
 
 /// Counts what matching looks at, up to a limit.
 pub(super) struct Looks {
-    pub(super) done: Cell<u64>,
-    pub(super) most: u64,
+    done: Cell<u64>,
+    most: f64,
 }
 
 impl Looks {
+    pub(super) fn within(budget: &Budget) -> Self {
+        Self { done: Cell::new(0), most: budget.left() / cost::COMPARISON }
+    }
+
+    /// Counts the looks in the budget.
+    pub(super) fn spend(&self, budget: &Budget) -> Result<(), Exceeded> {
+        budget.spend(cost::COMPARISON * self.done.get() as f64)
+    }
+
     /// Counts, and tells whether matching may go on.
     pub(super) fn add(&self, looks: usize) -> bool {
         self.done.set(self.done.get().saturating_add(looks as u64));
@@ -34,7 +44,7 @@ impl Looks {
     }
 
     pub(super) fn exceeded(&self) -> bool {
-        self.done.get() > self.most
+        self.done.get() as f64 > self.most
     }
 }
 

@@ -8,10 +8,9 @@ use super::sheet::{Declaration, declarations};
 use super::table::of_attribute;
 use super::tree::rules;
 use super::xml::{self, escape};
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::Budget;
 use roxmltree::Node;
 use selectors::context::SelectorCaches;
-use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap};
 
 /// Adds declarations to an edited drawing so that no rule of its style sheets gives an element what it did not have before. `kept` tells
@@ -37,8 +36,7 @@ pub fn guarded(
     if is_rules.is_empty() {
         return Ok(None);
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    let looks = Looks { done: Cell::new(0), most: budget.left(Limit::Comparisons) as u64 };
+    let looks = Looks::within(budget);
     let (mut was_caches, mut is_caches) = (SelectorCaches::default(), SelectorCaches::default());
     let origins: HashMap<usize, usize> = kept.iter().map(|(element, at)| (*at, *element)).collect();
     let mut out = String::new();
@@ -79,7 +77,7 @@ pub fn guarded(
         out.push_str(&value);
         done = range.end;
     }
-    budget.spend_cut(Limit::Comparisons, looks.done.get())?;
+    looks.spend(budget)?;
     out.push_str(&after[done..]);
     Ok((done > 0).then_some(out))
 }

@@ -8,7 +8,7 @@ use super::tree::{Styled, Tree, styled};
 use super::value::{percent_decoded, safe_id};
 use super::xml::{self, escape};
 use memchr::memmem;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::Affine;
 use roxmltree::{Document, NS_XML_URI, Node};
 use std::borrow::Cow;
@@ -148,7 +148,7 @@ pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
     let mut done = 0;
     for (change, new) in all {
         let Some(before) = text.get(done..change.range.start) else { continue };
-        budget.spend(Limit::Comparisons, (new.len() / WRITTEN) as u64)?;
+        budget.spend(cost::COMPARISON * (new.len() / WRITTEN) as f64)?;
         done = change.range.end;
         out.text.push_str(before);
         let start = out.text.len();

@@ -10,11 +10,10 @@ use super::sheet::{Declaration, Rules, declarations};
 use super::text::TextStyle;
 use super::value::{Custom, MEDIUM, Units, length};
 use super::{media, transform};
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{Affine, Rect};
 use roxmltree::{Document, Node, NodeId};
 use selectors::context::SelectorCaches;
-use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
@@ -57,8 +56,7 @@ pub(super) struct Tree<'a> {
 /// It takes more work than the budget allows.
 pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Tree<'a>, Exceeded> {
     let (rules, sheets, unsupported) = rules(nodes, budget)?;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    let looks = Looks { done: Cell::new(0), most: budget.left(Limit::Comparisons) as u64 };
+    let looks = Looks::within(budget);
     let mut caches = SelectorCaches::default();
     let ids = Ids::new(doc);
     // What the elements around hand on, outermost first.
@@ -88,10 +86,10 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
         let custom = Rc::clone(&here.custom);
         let style = computed(*node, parent.is_none(), &declarations, &ids, &mut here);
         // Variables can make any value of a short one.
-        budget.spend(Limit::Comparisons, style.values().map(work).sum::<usize>() as u64)?;
+        budget.spend(cost::COMPARISON * style.values().map(work).sum::<usize>() as f64)?;
         if !Rc::ptr_eq(&custom, &here.custom) {
             let bytes: usize = here.custom.values().map(|v| VARIABLE + v.len()).sum();
-            budget.spend(Limit::Comparisons, (bytes / PARSED) as u64)?;
+            budget.spend(cost::COMPARISON * (bytes / PARSED) as f64)?;
         }
         let units = here.units;
         if node.tag_name().name() == "svg" {
@@ -105,7 +103,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
         }
         out.push((style, units));
     }
-    budget.spend_cut(Limit::Comparisons, looks.done.get())?;
+    looks.spend(budget)?;
     let matrices = matrices(nodes, &out);
     let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
     let declared = rules.blocks.iter().flat_map(|b| &b.declarations).map(|d| d.name.to_string()).collect();
@@ -138,7 +136,7 @@ pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheet
             }
         }
         for text in node.children().filter_map(|c| c.text()) {
-            budget.spend(Limit::Comparisons, (text.len() / PARSED) as u64)?;
+            budget.spend(cost::COMPARISON * (text.len() / PARSED) as f64)?;
             rules.add(text);
         }
     }

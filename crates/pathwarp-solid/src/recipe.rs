@@ -2,11 +2,10 @@
 
 use crate::box3::Box3;
 use crate::deform::{Built3, Registry3};
-use crate::map::{Chain3, Creases3, Map3, NewtonInverse3, metered};
+use crate::map::{Chain3, Creases3, Map3, NewtonInverse3};
 use crate::settings::Frame3;
 use glam::DVec3;
-use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
-use pathwarp::meter::Meter;
+use pathwarp::budget::{Budget, Exceeded, Limits};
 use pathwarp::recipe::Recipe;
 use pathwarp::{Error, GeometryError};
 use std::sync::Arc;
@@ -20,24 +19,24 @@ pub struct BuiltRecipe3 {
     pub steps: Vec<Built3>,
     /// What percentages of each step referred to.
     pub frames: Vec<Frame3>,
-    /// Counts the searches of inverses.
-    meter: Arc<Meter>,
+    /// What searches of inverses spend.
+    budget: Arc<Budget>,
 }
 
 impl BuiltRecipe3 {
-    fn new(steps: usize, meter: &Arc<Meter>) -> Self {
+    fn new(steps: usize, budget: &Arc<Budget>) -> Self {
         Self {
             map: Chain3::default(),
             steps: Vec::with_capacity(steps),
             frames: Vec::with_capacity(steps),
-            meter: Arc::clone(meter),
+            budget: Arc::clone(budget),
         }
     }
 
     /// Returns the limit that searches for an inverse have exceeded. Results computed with the map are then not to be used.
     #[must_use]
     pub fn exceeded(&self) -> Option<Exceeded> {
-        self.meter.exceeded()
+        self.budget.exceeded()
     }
 }
 
@@ -78,8 +77,8 @@ pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVe
 }
 
 /// As [`build`], within a budget, which counts the evaluations that find out where the points are after each step, and those of one
-/// more run of the map at all points. Inverses that search count in it what each search takes beyond [`Map3::work`], for as long as they
-/// are used: once that exceeds the limit they are undefined everywhere, and [`BuiltRecipe3::exceeded`] says so.
+/// more run of the map at all points. Inverses that search spend from it what each search takes beyond [`Map3::work`], for as long as they
+/// are used: once nothing is left they are undefined everywhere, and [`BuiltRecipe3::exceeded`] says so.
 ///
 /// # Errors
 /// As for [`build`], and [`GeometryError::Limit`] if the budget does not allow so many.
@@ -90,20 +89,18 @@ pub fn build_within(
     points: &[DVec3],
     budget: &Arc<Budget>,
 ) -> Result<BuiltRecipe3, Error> {
-    let meter = Meter::new(Arc::clone(budget));
     let out = if recipe.steps.len() > 1 && recipe.steps.iter().all(|s| s.inverse) {
-        undo(&recipe.inverted(), registry, frame, points, &meter)?
+        undo(&recipe.inverted(), registry, frame, points, budget)?
     } else {
-        built(recipe, registry, frame, points, &meter)?
+        built(recipe, registry, frame, points, budget)?
     };
-    count(&meter, &out.map, points.len())?;
+    count(budget, &out.map, points.len())?;
     Ok(out)
 }
 
 /// Counts evaluations of a map.
-fn count(meter: &Meter, map: &dyn Map3, places: usize) -> Result<(), GeometryError> {
-    let work = (places as f64 * map.work()) as u64;
-    meter.budget().spend_cut(Limit::Evaluations, work).map_err(GeometryError::Limit)
+fn count(budget: &Budget, map: &dyn Map3, places: usize) -> Result<(), GeometryError> {
+    budget.spend(places as f64 * map.work()).map_err(GeometryError::Limit)
 }
 
 fn built(
@@ -111,9 +108,9 @@ fn built(
     registry: &Registry3,
     frame: Frame3,
     points: &[DVec3],
-    meter: &Arc<Meter>,
+    budget: &Arc<Budget>,
 ) -> Result<BuiltRecipe3, Error> {
-    let mut out = BuiltRecipe3::new(recipe.steps.len(), meter);
+    let mut out = BuiltRecipe3::new(recipe.steps.len(), budget);
     let mut frame = frame;
     let mut images = if recipe.steps.len() > 1 { points.to_vec() } else { Vec::new() };
     for (i, step) in recipe.steps.iter().enumerate() {
@@ -128,10 +125,10 @@ fn built(
         }
         let mut built = entry.build_from(&step.args, &frame)?;
         if step.inverse {
-            built = inverted(built, &frame.bounds, meter)?;
+            built = inverted(built, &frame.bounds, budget)?;
         }
         if i + 1 < recipe.steps.len() {
-            count(meter, &*built.map, points.len())?;
+            count(budget, &*built.map, points.len())?;
             built.map.points(&mut images);
         }
         out.map.push(Arc::clone(&built.map));
@@ -147,12 +144,12 @@ fn undo(
     registry: &Registry3,
     frame: Frame3,
     images: &[DVec3],
-    meter: &Arc<Meter>,
+    budget: &Arc<Budget>,
 ) -> Result<BuiltRecipe3, Error> {
     /// Boxes that differ by less than this share of their size are the same.
     const SETTLED: f64 = 1e-12;
     const TURNS: usize = 64;
-    let mut there = built(recipe, registry, frame, &places(&frame.bounds).collect::<Vec<_>>(), meter)?;
+    let mut there = built(recipe, registry, frame, &places(&frame.bounds).collect::<Vec<_>>(), budget)?;
     let mut off = f64::INFINITY;
     for _ in 0..TURNS {
         if off <= SETTLED {
@@ -160,18 +157,18 @@ fn undo(
         }
         let mut sources = images.to_vec();
         for (step, frame) in there.steps.iter().zip(&there.frames).rev() {
-            let back = inverse(&step.map, &frame.bounds, meter);
-            count(meter, &*back, sources.len())?;
+            let back = inverse(&step.map, &frame.bounds, budget);
+            count(budget, &*back, sources.len())?;
             back.points(&mut sources);
         }
         sources.retain(|p| p.is_finite());
-        let next = built(recipe, registry, frame, &sources, meter)?;
+        let next = built(recipe, registry, frame, &sources, budget)?;
         off = next.frames.iter().zip(&there.frames).map(|(a, b)| apart(&a.bounds, &b.bounds)).fold(0.0, f64::max);
         there = next;
     }
-    let mut out = BuiltRecipe3::new(there.steps.len(), meter);
+    let mut out = BuiltRecipe3::new(there.steps.len(), budget);
     for (step, frame) in there.steps.into_iter().zip(there.frames).rev() {
-        let step = inverted(step, &frame.bounds, meter)?;
+        let step = inverted(step, &frame.bounds, budget)?;
         out.map.push(Arc::clone(&step.map));
         out.steps.push(step);
         out.frames.push(frame);
@@ -191,8 +188,8 @@ fn apart(a: &Box3, b: &Box3) -> f64 {
 }
 
 /// Inverts a step over its box, with a warning if it folds.
-fn inverted(mut built: Built3, bounds: &Box3, meter: &Arc<Meter>) -> Result<Built3, GeometryError> {
-    count(meter, &*built.map, GRID.pow(3))?;
+fn inverted(mut built: Built3, bounds: &Box3, budget: &Arc<Budget>) -> Result<Built3, GeometryError> {
+    count(budget, &*built.map, GRID.pow(3))?;
     if let Some(at) = fold(&*built.map, bounds) {
         let DVec3 { x, y, z } = at;
         built.warn(format!(
@@ -200,14 +197,15 @@ fn inverted(mut built: Built3, bounds: &Box3, meter: &Arc<Meter>) -> Result<Buil
              sources, and one of them is taken"
         ));
     }
-    built.map = inverse(&built.map, bounds, meter);
+    built.map = inverse(&built.map, bounds, budget);
     Ok(built)
 }
 
 /// The inverse of a map: its own, or by Newton's method over a box.
-fn inverse(map: &Arc<dyn Map3>, bounds: &Box3, meter: &Arc<Meter>) -> Arc<dyn Map3> {
+fn inverse(map: &Arc<dyn Map3>, bounds: &Box3, budget: &Arc<Budget>) -> Arc<dyn Map3> {
     let newton = || -> Arc<dyn Map3> {
         Arc::new(NewtonInverse3::new(Arc::clone(map), *bounds, REACH * bounds.diagonal(), PIECES))
     };
-    metered(map.inverse().unwrap_or_else(newton), meter)
+    let inverse = map.inverse().unwrap_or_else(newton);
+    inverse.within(budget).unwrap_or(inverse)
 }

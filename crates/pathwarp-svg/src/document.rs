@@ -3,7 +3,7 @@
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
 use crate::bend::letters::placed_outlines;
-use crate::bend::options::{PageFit, Structure, WarpOptions};
+use crate::bend::options::{OnError, PageFit, Strokes, Structure, WarpOptions};
 use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::tiles;
 use crate::scene::drawing::Drawing;
@@ -20,9 +20,9 @@ use crate::source::tags::{ElementId, is_shape};
 use crate::source::undrawn::undrawn;
 use crate::write;
 use crate::write::input::WriteInput;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{Affine, Rect, Size};
-use pathwarp::map::Map;
+use pathwarp::map::{AffineMap, Map};
 use pathwarp::{Error, Outline, refit};
 use std::sync::Arc;
 
@@ -76,6 +76,27 @@ impl Document {
         self.drawing.scene().to_px
     }
 
+    /// The text of the drawing with its page moved to the origin, for readers in single precision; `None` if it lies near enough.
+    ///
+    /// # Errors
+    /// As [`Document::warp`].
+    pub fn moved_to_origin(&self) -> Result<Option<String>, Error> {
+        /// Beyond this many pages from the origin, single precision would move things by a hundred-thousandth of the page.
+        const FAR: f64 = 64.0;
+        /// Share of the page that rounding may take.
+        const FINE: f64 = 1e-8;
+        let page = self.drawing.visible_area();
+        let (side, away) = (page.width().max(page.height()), page.x0.abs().max(page.y0.abs()));
+        if away <= FAR * side || self.drawing.specified_area().is_none() {
+            return Ok(None);
+        }
+        let refit = refit::Options::new(FINE * side).with_budget(self.budget().clone());
+        let options =
+            WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
+        let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
+        Ok(Some(self.warp(&map, &options)?.svg))
+    }
+
     /// Size of the page in px.
     #[must_use]
     pub fn size_px(&self) -> Size {
@@ -96,7 +117,7 @@ impl Document {
 
     /// Forgets what is used of the limits: for programs that warp a drawing again and again, to which the limits apply each time.
     pub fn renew_budget(&mut self) {
-        self.drawing.budget = Arc::new(Budget::new(*self.drawing.budget.limits()));
+        self.drawing.budget = Arc::new(Budget::new(self.drawing.budget.limits()));
     }
 
     #[cfg(feature = "usvg")]
@@ -163,7 +184,7 @@ impl Document {
 
     fn counted(&self, selection: &Selection) -> seen::Counted {
         let parts = self.drawing.selected_parts(selection).to_vec();
-        seen::Counted { parts, bitmaps: self.selected_bitmaps(selection) }
+        seen::Counted { parts, bitmaps: self.selected_bitmaps(selection), strokes: false }
     }
 
     /// Bounding box of what is seen of the selected shapes, without stroke widths, and pictures: not what clip paths, masks and zero opacity
@@ -171,6 +192,14 @@ impl Document {
     #[must_use]
     pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
         let counted = self.counted(selection);
+        let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
+        seen.or_else(|| self.artwork_box(selection))
+    }
+
+    /// The box of what is seen, [`Document::seen_box`], with strokes by half their width.
+    #[must_use]
+    pub fn painted_box(&self, selection: &Selection) -> Option<Rect> {
+        let counted = seen::Counted { strokes: true, ..self.counted(selection) };
         let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
         seen.or_else(|| self.artwork_box(selection))
     }
@@ -207,8 +236,7 @@ impl Document {
         const EXCLUDED: usize = 2;
         let source = &self.drawing.source;
         let each = SELECTED * selection.select.len() + EXCLUDED * selection.exclude.len();
-        let comparisons = each.saturating_mul(source.elements.len()) as u64;
-        let counted = self.budget().spend(Limit::Comparisons, comparisons);
+        let counted = self.budget().spend(cost::COMPARISON * each as f64 * source.elements.len() as f64);
         counted.map_err(|e| Error::limit(self.name(), "selecting by so many names takes", e))?;
         for selector in selection.select.iter().chain(&selection.exclude) {
             if !matches_any(source, selector) {

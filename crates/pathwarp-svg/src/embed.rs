@@ -1,12 +1,12 @@
 //! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
-use crate::source::read::{bytes_unpacked, text};
+use crate::source::read::{text, unpacked};
 use crate::source::table::tag_end;
 use crate::source::tags::PATHWARP as NAMESPACE;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
-use pathwarp::budget::{Budget, Limit, Limits};
+use pathwarp::budget::{Budget, Limits};
 use pathwarp_reader::xml::{self, escape_content};
 use std::io::Write as _;
 use usvg::roxmltree;
@@ -86,10 +86,8 @@ impl Origin {
         let damaged = |e: &dyn std::fmt::Display| Error::input("the embedded source", format!("is damaged: {e}"));
         let packed: String = text("source").split_ascii_whitespace().collect();
         let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
-        let source = bytes_unpacked(&bytes, budget.left(Limit::Bytes)).map_err(|e| damaged(&e))?;
-        let source = source.ok_or_else(|| damaged(&"it is not compressed"))?;
-        let counted = budget.spend_cut(Limit::Bytes, source.len() as u64);
-        counted.map_err(|e| Error::limit("the embedded source", "it takes", e))?;
+        let source =
+            unpacked(&bytes, "the embedded source", &budget)?.ok_or_else(|| damaged(&"it is not compressed"))?;
         Ok(Some(Self { recipe: text("recipe"), source }))
     }
 

@@ -121,7 +121,7 @@ fn shared(cells: &[Cell], read: &ReadOptions) -> ReadOptions {
     const DRAWINGS: f64 = 6.0;
     let sizes = || cells.iter().map(|c| c.svg.len());
     let largest = read.limits.for_input(sizes().max().unwrap_or_default());
-    let counted = [Limit::Elements, Limit::Segments, Limit::Letters];
+    let counted = [Limit::Elements, Limit::Work];
     let limits = counted.into_iter().fold(largest, |all, l| all.with(l, DRAWINGS * largest.of(l)));
     let limits = limits.with(Limit::Bytes, read.limits.for_input(sizes().sum()).of(Limit::Bytes));
     read.clone().with_limits(limits).begin(0)

@@ -68,7 +68,8 @@ pub fn with_stack<T: Send>(document: &Document, f: impl FnOnce() -> Result<T, Er
     document.drawing().with_stack(f)
 }
 
-/// The outlines of the paths whose arcs usvg approximates, by up to a tenth of a unit.
+/// The outlines of the paths whose arcs usvg approximates, by up to a tenth of a unit, and of those so far from the origin that its single
+/// precision is coarse.
 #[derive(Debug)]
 pub struct ExactOutlines<'d> {
     by_address: HashMap<usize, BezPath>,
@@ -79,13 +80,17 @@ pub struct ExactOutlines<'d> {
 /// The distance between an arc and the curves that stand for it, as a share of the size of its outline.
 const OF_SIZE: f64 = 1e-6;
 
+/// Coordinates that are rounded to a hundredth in single precision.
+const FAR: f64 = 1e5;
+
 impl<'d> ExactOutlines<'d> {
     /// The outlines of a document.
     #[must_use]
     pub fn of(document: &'d Document) -> Self {
         let mut by_address = HashMap::new();
         for part in &document.drawing().scene().parts {
-            if part.path != 0 && part.local.segs().any(|s| matches!(s, Seg::Arc(_))) {
+            let has_arcs = || part.local.segs().any(|s| matches!(s, Seg::Arc(_)));
+            if part.path != 0 && (part.local.extent() > FAR || has_arcs()) {
                 let size = part.local.bounding_box().map_or(0.0, |b| b.width().max(b.height()));
                 by_address.insert(part.path, part.local.to_bez_path(OF_SIZE * size));
             }

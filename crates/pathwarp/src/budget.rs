@@ -1,7 +1,8 @@
-//! Limits on the work that one input may cause: plain numbers, and counters for what is used.
+//! Limits on what one input may ask for: three sizes, checked when it is read, and one counter of work.
 //!
 //! A few bytes can ask for any amount of work: references to references, packed text, pictures that announce a size, formulas
-//! that oscillate. Whoever does such work counts it here first, and stops with an error that names the limit.
+//! that oscillate. What is known beforehand is compared with a limit on a size. Everything else is work: stages count what they have done or
+//! are about to do, long loops ask in between, and an error names the limit.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -11,28 +12,32 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Limit {
-    /// Bytes of text, unpacked and with entities expanded.
+    /// Bytes of text, unpacked and with entities expanded, and of embedded fonts. Those of pictures count beyond four for each pixel.
     Bytes,
     /// Elements, with everything that references show again.
     Elements,
-    /// Comparisons: of names, to match selectors and by the XML parser; of places, to measure distances.
-    Comparisons,
-    /// Segments of outlines: read, laid out, or written.
-    Segments,
-    /// Letters of text.
-    Letters,
-    /// Pixels held at the same time: pictures with their copies, and layers painted on each other.
+    /// Pixels of pictures that are read or made.
     Pixels,
-    /// Pixels painted in total, by layers, masks, filters and pictures.
-    Painting,
-    /// Bytes of embedded and linked pictures, and of drawings among them.
-    ImageBytes,
-    /// Evaluations of the map.
-    Evaluations,
+    /// Work of all kinds, in evaluations of a bicubic net with what is done about each: about 50 nanoseconds.
+    Work,
     /// Seconds of processor time. Counted by the program around this library.
     Seconds,
-    /// Bytes of memory. Counted by the program around this library.
+    /// Bytes of memory. The program around this library counts them; layers are compared before they are painted.
     Memory,
+}
+
+/// The work that things take.
+pub mod cost {
+    /// A comparison of names, of places or of a selector with an element.
+    pub const COMPARISON: f64 = 2.0;
+    /// An element that is read, styled and written.
+    pub const ELEMENT: f64 = 600.0;
+    /// A segment that is read, laid out and written: its memory counts, too.
+    pub const SEGMENT: f64 = 40.0;
+    /// A letter that is shaped and laid out.
+    pub const LETTER: f64 = 200.0;
+    /// A pixel that is painted with a little arithmetic.
+    pub const PIXEL: f64 = 0.08;
 }
 
 /// One mebibyte: an input up to this size has the base limits.
@@ -40,19 +45,7 @@ const BASE_SIZE: f64 = 1_048_576.0;
 
 impl Limit {
     /// All limits, in the order of the help.
-    pub const ALL: [Self; 11] = [
-        Self::Bytes,
-        Self::Elements,
-        Self::Comparisons,
-        Self::Segments,
-        Self::Letters,
-        Self::Pixels,
-        Self::Painting,
-        Self::ImageBytes,
-        Self::Evaluations,
-        Self::Seconds,
-        Self::Memory,
-    ];
+    pub const ALL: [Self; 6] = [Self::Bytes, Self::Elements, Self::Pixels, Self::Work, Self::Seconds, Self::Memory];
 
     /// The name of the limit, as in messages.
     #[must_use]
@@ -60,13 +53,8 @@ impl Limit {
         match self {
             Self::Bytes => "bytes",
             Self::Elements => "elements",
-            Self::Comparisons => "comparisons",
-            Self::Segments => "segments",
-            Self::Letters => "letters",
             Self::Pixels => "pixels",
-            Self::Painting => "painting",
-            Self::ImageBytes => "image-bytes",
-            Self::Evaluations => "evaluations",
+            Self::Work => "work",
             Self::Seconds => "seconds",
             Self::Memory => "memory",
         }
@@ -81,35 +69,35 @@ impl Limit {
     /// The counted things, in the plural.
     fn things(self) -> &'static str {
         match self {
-            Self::Bytes => "bytes of text",
+            Self::Bytes => "bytes",
             Self::Elements => "elements",
-            Self::Comparisons => "comparisons",
-            Self::Segments => "segments",
-            Self::Letters => "letters",
-            Self::Pixels => "pixels at once",
-            Self::Painting => "pixels to paint",
-            Self::ImageBytes => "bytes of pictures",
-            Self::Evaluations => "evaluations of the map",
+            Self::Pixels => "pixels",
+            Self::Work => "units of work",
             Self::Seconds => "seconds of processor time",
             Self::Memory => "bytes of memory",
         }
     }
 
-    /// The value for inputs of up to a mebibyte. Together they keep a run below 5 seconds on one core and 500 MB; each is
-    /// about what takes half of that if nothing else does (`docs/reliability.md` lists measured files).
+    /// The value for inputs of up to a mebibyte. Together they keep a run below 5 seconds on one core and 500 MB.
     fn base(self) -> f64 {
         match self {
-            Self::Bytes => 16e6,
+            Self::Bytes => 32e6,
             Self::Elements => 30e3,
-            Self::Letters => 60e3,
-            Self::Comparisons => 15e6,
-            Self::Segments => 2e6,
-            Self::Pixels => 80e6,
-            Self::Painting => 400e6,
-            Self::ImageBytes => 64e6,
-            Self::Evaluations => 30e6,
+            Self::Pixels => 256e6,
+            Self::Work => 100e6,
             Self::Seconds => 4.5,
             Self::Memory => 450e6,
+        }
+    }
+
+    /// What a pixel of a picture adds. Half of them are the source's, half the result's: ten million of each are allowed a second, and 60 MB
+    /// beside the decoded picture.
+    fn per_pixel(self) -> f64 {
+        match self {
+            Self::Work => 4.0,
+            Self::Seconds => 0.5e-7,
+            Self::Memory => 5.0,
+            _ => 0.0,
         }
     }
 }
@@ -125,20 +113,22 @@ impl fmt::Display for Limit {
 /// ```
 /// use pathwarp::budget::{Limit, Limits};
 ///
-/// let limits = Limits::default().with(Limit::Segments, 5e6).for_input(10 << 20);
-/// assert_eq!(limits.of(Limit::Segments), 5e6);
-/// assert_eq!(limits.of(Limit::Letters), 10.0 * Limits::default().of(Limit::Letters));
+/// let limits = Limits::default().with(Limit::Elements, 5e6).for_input(10 << 20);
+/// assert_eq!(limits.of(Limit::Elements), 5e6);
+/// assert_eq!(limits.of(Limit::Work), 10.0 * Limits::default().of(Limit::Work));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     given: [Option<f64>; Limit::ALL.len()],
     /// Factor on the limits that are not given.
     scale: f64,
+    /// Pixels of the input's pictures.
+    pixels: f64,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { given: [None; Limit::ALL.len()], scale: 1.0 }
+        Self { given: [None; Limit::ALL.len()], scale: 1.0, pixels: 0.0 }
     }
 }
 
@@ -146,7 +136,7 @@ impl Limits {
     /// No limits at all: for trusted input.
     #[must_use]
     pub fn none() -> Self {
-        Self { given: [Some(f64::INFINITY); Limit::ALL.len()], scale: 1.0 }
+        Self { given: [Some(f64::INFINITY); Limit::ALL.len()], ..Self::default() }
     }
 
     /// Sets a limit, whatever the size of the input.
@@ -162,10 +152,16 @@ impl Limits {
         Self { scale: (bytes as f64 / BASE_SIZE).max(self.scale), ..self }
     }
 
+    /// The limits for an input with further pictures of `pixels`, however they are compressed.
+    #[must_use]
+    pub fn for_pixels(self, pixels: f64) -> Self {
+        Self { pixels: self.pixels + pixels, ..self }
+    }
+
     /// The value of a limit. Where other limits are raised, time and memory grow alike, unless they are set themselves.
     #[must_use]
     pub fn of(&self, limit: Limit) -> f64 {
-        let default = limit.base() * self.scale;
+        let default = limit.base() * self.scale + limit.per_pixel() * self.pixels;
         self.given[limit as usize].unwrap_or(match limit {
             Limit::Seconds | Limit::Memory => default * self.raised(),
             _ => default,
@@ -178,10 +174,10 @@ impl Limits {
         factors.fold(1.0, f64::max)
     }
 
-    /// Checks a single amount, which is not counted.
+    /// Checks a size.
     ///
     /// # Errors
-    /// The amount exceeds the limit.
+    /// It exceeds the limit.
     pub fn check(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
         let most = self.of(limit);
         // An amount that is not a number exceeds every limit.
@@ -214,7 +210,7 @@ impl Exceeded {
     #[must_use]
     pub fn enough(&self) -> f64 {
         if self.cut {
-            return 10.0 * self.most;
+            return 10.0 * self.most.max(self.needed);
         }
         let unit = 10_f64.powf(self.needed.max(1.0).log10().floor() - 1.0);
         (self.needed / unit).ceil() * unit
@@ -226,55 +222,87 @@ fn rounded(v: f64) -> String {
     if v < 1e6 { format!("{}", (v * 100.0).round() / 100.0) } else { format!("{v:.2e}") }
 }
 
+/// The most that is added at once, so that sums stay in range.
+const MOST: f64 = (1_u64 << 52) as f64;
+
 /// The limits of one input with what is used of them. Threads share it.
 #[derive(Debug, Default)]
 pub struct Budget {
     limits: Limits,
-    used: [AtomicU64; Limit::ALL.len()],
+    /// Work in sixteenths of a unit, so that the sum does not depend on the order of threads.
+    work: AtomicU64,
+    /// Bytes, elements and pixels.
+    sizes: [AtomicU64; 3],
 }
 
 impl Budget {
     /// A budget of which nothing is used.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
-        Self { limits, used: Default::default() }
+        Self { limits, ..Self::default() }
     }
 
-    /// The limits.
+    /// The limits, with what the pictures so far add.
     #[must_use]
-    pub fn limits(&self) -> &Limits {
-        &self.limits
+    pub fn limits(&self) -> Limits {
+        self.limits.for_pixels(self.taken(Limit::Pixels))
     }
 
-    /// Counts an amount.
+    /// Counts work.
     ///
     /// # Errors
-    /// The sum of all amounts exceeds the limit.
-    pub fn spend(&self, limit: Limit, amount: u64) -> Result<(), Exceeded> {
-        let before = self.used[limit as usize].fetch_add(amount, Ordering::Relaxed);
-        self.limits.check(limit, before.saturating_add(amount) as f64)
+    /// The sum exceeds the limit.
+    pub fn spend(&self, work: f64) -> Result<(), Exceeded> {
+        let sixteenths = (16.0 * work).ceil().min(MOST);
+        let before = self.work.fetch_add(sixteenths as u64, Ordering::Relaxed) as f64;
+        // How far beyond the limit threads went is not told.
+        self.limits().check(Limit::Work, (before + sixteenths) / 16.0).map_err(|e| Exceeded {
+            needed: e.most,
+            cut: true,
+            ..e
+        })
     }
 
-    /// Counts an amount whose count was cut short if it exceeds the limit.
-    ///
-    /// # Errors
-    /// The sum of all amounts exceeds the limit.
-    pub fn spend_cut(&self, limit: Limit, amount: u64) -> Result<(), Exceeded> {
-        self.spend(limit, amount).map_err(Exceeded::cut_short)
+    /// The work that is left.
+    #[must_use]
+    pub fn left(&self) -> f64 {
+        (self.limits().of(Limit::Work) - self.work.load(Ordering::Relaxed) as f64 / 16.0).max(0.0)
     }
 
-    /// Checks a single amount, which is not counted.
+    /// Returns the limit if more work was counted than it allows.
+    #[must_use]
+    pub fn exceeded(&self) -> Option<Exceeded> {
+        self.spend(0.0).err()
+    }
+
+    /// Adds to a size: bytes, elements, or pixels.
     ///
     /// # Errors
-    /// The amount exceeds the limit.
+    /// The sum exceeds the limit.
+    pub fn take(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
+        let amount = amount.min(MOST);
+        let before = self.sizes.get(limit as usize).map_or(0, |n| n.fetch_add(amount as u64, Ordering::Relaxed));
+        self.limits.check(limit, before as f64 + amount)
+    }
+
+    /// What is taken of a size.
+    #[must_use]
+    pub fn taken(&self, limit: Limit) -> f64 {
+        self.sizes.get(limit as usize).map_or(0.0, |n| n.load(Ordering::Relaxed) as f64)
+    }
+
+    /// What is left of a size.
+    #[must_use]
+    pub fn room(&self, limit: Limit) -> f64 {
+        (self.limits.of(limit) - self.taken(limit)).max(0.0)
+    }
+
+    /// Checks a size that is not added up.
+    ///
+    /// # Errors
+    /// It exceeds the limit.
     pub fn check(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
-        self.limits.check(limit, amount)
-    }
-
-    /// The amount that is left.
-    #[must_use]
-    pub fn left(&self, limit: Limit) -> f64 {
-        (self.limits.of(limit) - self.used[limit as usize].load(Ordering::Relaxed) as f64).max(0.0)
+        self.limits().check(limit, amount)
     }
 }
 
@@ -291,13 +319,17 @@ mod tests {
 
     #[test]
     fn amounts_add_up_and_the_error_names_the_limit() {
-        let budget = Budget::new(Limits::default().with(Limit::Letters, 10.0));
-        assert!(budget.spend(Limit::Letters, 6).is_ok() && budget.spend(Limit::Letters, 4).is_ok());
-        assert_eq!(budget.left(Limit::Letters), 0.0);
-        let e = budget.spend(Limit::Letters, 1).unwrap_err();
-        assert_eq!((e.limit, e.most, e.needed, e.enough()), (Limit::Letters, 10.0, 11.0, 11.0));
-        assert_eq!(e.to_string(), "11 letters, and the limit `letters` is 10");
+        let budget = Budget::new(Limits::default().with(Limit::Elements, 10.0).with(Limit::Work, 3.0));
+        assert!(budget.take(Limit::Elements, 6.0).is_ok() && budget.take(Limit::Elements, 4.0).is_ok());
+        assert_eq!(budget.room(Limit::Elements), 0.0);
+        let e = budget.take(Limit::Elements, 1.0).unwrap_err();
+        assert_eq!((e.limit, e.most, e.needed, e.enough()), (Limit::Elements, 10.0, 11.0, 11.0));
+        assert_eq!(e.to_string(), "11 elements, and the limit `elements` is 10");
         assert!(budget.check(Limit::Pixels, f64::NAN).is_err());
+        assert!(budget.spend(1.5).is_ok() && budget.spend(1.5).is_ok() && budget.exceeded().is_none());
+        let e = budget.spend(0.001).unwrap_err();
+        assert_eq!((e.limit, e.enough(), budget.left()), (Limit::Work, 30.0, 0.0));
+        assert_eq!(budget.exceeded(), Some(e));
     }
 
     #[test]
@@ -306,8 +338,18 @@ mod tests {
         assert_eq!(limits.of(Limit::Bytes), 5.0);
         assert_eq!(limits.of(Limit::Elements), 3.0 * Limits::default().of(Limit::Elements));
         assert_eq!(Limits::default().for_input(7), Limits::default());
-        let raised = Limits::default().with(Limit::Pixels, 2.0 * Limit::Pixels.base());
+        let raised = Limits::default().with(Limit::Work, 2.0 * Limit::Work.base());
         assert_eq!(raised.of(Limit::Memory), 2.0 * Limit::Memory.base());
+    }
+
+    /// A second and 60 MB beside the decoded picture for each ten megapixels.
+    #[test]
+    fn limits_grow_with_the_pixels() {
+        let budget = Budget::default();
+        budget.take(Limit::Pixels, 200e6).unwrap();
+        let more = |limit| budget.limits().of(limit) - Limits::default().of(limit);
+        assert_eq!((more(Limit::Seconds).round(), more(Limit::Memory)), (10.0, 1e9));
+        assert!(budget.take(Limit::Pixels, 100e6).is_err());
     }
 
     #[test]

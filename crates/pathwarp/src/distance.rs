@@ -11,7 +11,7 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 
-use crate::budget::{Budget, Exceeded, Limit, Limits};
+use crate::budget::{Budget, Exceeded, Limits, cost};
 use crate::outline::{Outline, Seg};
 use kurbo::{Point, Rect, Vec2};
 
@@ -76,7 +76,7 @@ fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<
             let d = targets.distance(p, most.unwrap_or(least), &mut work);
             most = Some(d.max(most.unwrap_or(least)));
         }
-        budget.spend_cut(Limit::Comparisons, work as u64)?;
+        budget.spend(cost::COMPARISON * work)?;
     }
     Ok(most)
 }
@@ -310,16 +310,16 @@ mod tests {
             let points: Vec<Point> = (0..n).map(|i| Point::new(i as f64, y + (i % 2) as f64)).collect();
             Outline::from_points(&points, false)
         };
-        let budget = Budget::new(Limits::default().with(Limit::Comparisons, 20e6));
+        let budget = Budget::new(Limits::default().with(Limit::Work, 40e6));
         assert!(
             (symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12
         );
         // Every part of the star is as far from the centre.
         let star: Vec<Point> = (0..30_000).map(|i| Point::new(1e3 * f64::from(i % 2 * 2 - 1), 0.0)).collect();
-        let few = Budget::new(Limits::default().with(Limit::Comparisons, 1e3));
+        let few = Budget::new(Limits::default().with(Limit::Work, 1e3));
         assert_eq!(
             symmetric_within(&Outline::from_points(&star, false), &zigzag(9, 5.0), &few).unwrap_err().limit,
-            Limit::Comparisons
+            Limit::Work
         );
     }
 }

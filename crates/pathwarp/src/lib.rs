@@ -44,11 +44,12 @@ pub mod fold;
 pub(crate) mod formula;
 pub mod map;
 #[doc(hidden)]
-pub mod meter;
 pub mod outline;
 pub mod param;
 pub mod recipe;
 pub mod refit;
+#[doc(hidden)]
+pub mod search;
 pub mod solve;
 
 pub use error::{Error, GeometryError};

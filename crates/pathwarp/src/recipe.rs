@@ -23,11 +23,10 @@
 //! ```
 
 use crate::ambiguity::{SAMPLES, ambiguity};
-use crate::budget::{Budget, Limit, Limits};
+use crate::budget::{Budget, Limits};
 use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
-use crate::map::{Chain, Class, Map, NewtonInverse, metered};
-use crate::meter::Meter;
+use crate::map::{Chain, Class, CreasedInverse, Map, NewtonInverse};
 use crate::outline::Outline;
 use crate::outline::Seg;
 use crate::param::{Args, Frame, Kind, Param};
@@ -96,8 +95,8 @@ pub struct BuiltRecipe {
     pub frames: Vec<Frame>,
     /// For every step, its index in the recipe.
     pub indices: Vec<usize>,
-    /// Counts the searches of inverses.
-    meter: Arc<Meter>,
+    /// What searches of inverses spend.
+    budget: Arc<Budget>,
 }
 
 /// A part of the artwork that the same steps hold for.
@@ -120,8 +119,8 @@ pub struct BuiltParts {
 
 impl Recipe {
     /// Builds every step within a budget, which counts the segments of the paths that control the steps, and the
-    /// evaluations that find out where the artwork is after each step. Inverses that search count in it what each search takes beyond
-    /// [`Map::work`], for as long as they are used: once that exceeds the limit they are undefined everywhere, and
+    /// evaluations that find out where the artwork is after each step. Inverses that search spend from it what each search takes beyond
+    /// [`Map::work`], for as long as they are used: once nothing is left they are undefined everywhere, and
     /// [`BuiltRecipe::failure`] says so. See [`Recipe::build`].
     ///
     /// # Errors
@@ -150,14 +149,14 @@ impl Recipe {
         budget: &Arc<Budget>,
     ) -> Result<BuiltParts, Error> {
         let paths: usize = self.steps.iter().map(|s| s.args.path_segments()).sum();
-        budget.spend(Limit::Evaluations, MEASURED * paths as u64).map_err(GeometryError::Limit)?;
+        budget.spend(MEASURED * paths as f64).map_err(GeometryError::Limit)?;
         let count = |out: &BuiltRecipe, portion: &Portion<'_>| {
             let samples = portion.outlines.iter().flat_map(|o| o.segs()).count() * (PER_SEGMENT + 1);
             let places = out.placement.copies.len().max(1) as f64;
             let work = SAMPLE * places * samples as f64 * out.map.work();
-            budget.spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)
+            budget.spend(work).map_err(GeometryError::Limit)
         };
-        self.counted(registry, start, portions, (&count, &Meter::new(Arc::clone(budget))))
+        self.counted(registry, start, portions, (&count, budget))
     }
 
     /// Returns `true` if no part of the artwork that step `i` holds for has been moved by an earlier step; for a recipe of inverse steps
@@ -193,7 +192,7 @@ impl Recipe {
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
-        let unlimited = Meter::new(Arc::new(Budget::new(Limits::none())));
+        let unlimited = Arc::new(Budget::new(Limits::none()));
         let counting: Counting<'_> = (&|_, _| Ok(()), &unlimited);
         self.counted(registry, &self.alone(frame), &[self.all_of(artwork)], counting).map(|b| b.whole)
     }
@@ -253,10 +252,10 @@ impl Recipe {
         let sources: Vec<Option<Frame>> = start.iter().rev().cloned().collect();
         let there = self.inverted().built(registry, &sources, &there, counting)?.whole;
         let mut frames: Vec<Frame> = there.frames.into_iter().rev().collect();
-        let (count, meter) = counting;
+        let (count, budget) = counting;
         let mut off = f64::INFINITY;
         for _ in 0..TURNS {
-            let mut back: Vec<BuiltRecipe> = portions.iter().map(|_| BuiltRecipe::new(frames.len(), meter)).collect();
+            let mut back: Vec<BuiltRecipe> = portions.iter().map(|_| BuiltRecipe::new(frames.len(), budget)).collect();
             off = 0.0;
             for (i, step) in self.steps.iter().enumerate() {
                 let members: Vec<usize> = members(portions, i).collect();
@@ -265,7 +264,7 @@ impl Recipe {
                     continue;
                 }
                 let built = entry(registry, i, step)?.build_from(&step.args, &frames[i])?;
-                let map = inverse(&built, &frames[i], meter);
+                let map = inverse(&built, &frames[i], budget);
                 for &m in &members {
                     back[m].map.push(Arc::clone(&map));
                     count(&back[m], &portions[m])?;
@@ -293,8 +292,8 @@ impl Recipe {
         portions: &[Portion<'_>],
         counting: Counting<'_>,
     ) -> Result<BuiltParts, Error> {
-        let (count, meter) = counting;
-        let new = || BuiltRecipe::new(self.steps.len(), meter);
+        let (count, budget) = counting;
+        let new = || BuiltRecipe::new(self.steps.len(), budget);
         let mut out = BuiltParts { whole: new(), parts: portions.iter().map(|_| new()).collect() };
         let mut frame = Frame::new(Rect::ZERO);
         for (i, step) in self.steps.iter().enumerate() {
@@ -325,7 +324,7 @@ impl Recipe {
                 if let Some(warning) = all().find_map(torn) {
                     built.warn(warning);
                 }
-                built = inverted(built, &frame, &step.deformation, meter)?;
+                built = inverted(built, &frame, &step.deformation, budget)?;
             }
             members.iter().for_each(|&m| out.parts[m].push(i, built.clone(), &frame));
             out.whole.push(i, built, &frame);
@@ -371,7 +370,7 @@ fn check_placement(placement: &Placement, i: usize, is_first: bool, step: &Step)
 }
 
 impl BuiltRecipe {
-    fn new(steps: usize, meter: &Arc<Meter>) -> Self {
+    fn new(steps: usize, budget: &Arc<Budget>) -> Self {
         Self {
             map: Chain::default(),
             steps: Vec::with_capacity(steps),
@@ -379,7 +378,7 @@ impl BuiltRecipe {
             after: Chain::default(),
             frames: Vec::with_capacity(steps),
             indices: Vec::with_capacity(steps),
-            meter: Arc::clone(meter),
+            budget: Arc::clone(budget),
         }
     }
 
@@ -401,12 +400,13 @@ impl BuiltRecipe {
     #[must_use]
     pub fn failure(&self) -> Option<Error> {
         let failed = self.steps.iter().find_map(|s| s.failure.as_ref().and_then(|failed| failed()));
-        failed.or_else(|| self.meter.exceeded().map(|e| GeometryError::Limit(e).into()))
+        failed.or_else(|| self.budget.exceeded().map(|e| GeometryError::Limit(e).into()))
     }
 
-    /// Stops counting the searches of inverses in the budget that the recipe was built within: for maps that are used on and on.
-    pub fn stop_counting(&self) {
-        self.meter.release();
+    /// Returns the map without a limit on what inverses search: for maps that are used on and on.
+    #[must_use]
+    pub fn unlimited(&self) -> Chain {
+        self.map.spending(&Arc::new(Budget::new(Limits::none()))).unwrap_or_else(|| self.map.clone())
     }
 
     /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
@@ -445,22 +445,23 @@ impl BuiltRecipe {
     }
 }
 
-/// What is called before the artwork's image under the steps so far is sampled, and the meter of the inverses.
-type Counting<'a> = (&'a dyn Fn(&BuiltRecipe, &Portion<'_>) -> Result<(), GeometryError>, &'a Arc<Meter>);
+/// What is called before the artwork's image under the steps so far is sampled, and what inverses spend.
+type Counting<'a> = (&'a dyn Fn(&BuiltRecipe, &Portion<'_>) -> Result<(), GeometryError>, &'a Arc<Budget>);
 
 /// The inverse of a map: its closed form, or Newton's method over the frame.
-fn inverse(built: &Built, frame: &Frame, meter: &Arc<Meter>) -> Arc<dyn Map> {
+fn inverse(built: &Built, frame: &Frame, budget: &Arc<Budget>) -> Arc<dyn Map> {
     /// Distance beyond the frame at which a solution is accepted, as a share of its diagonal: strokes and handles extend past it.
     const REACH: f64 = 0.25;
-    let newton = || Arc::new(NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH)) as Arc<dyn Map>;
-    metered(built.map.inverse().unwrap_or_else(newton), meter)
+    let over = || NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH);
+    let inverse = built.map.inverse().unwrap_or_else(|| CreasedInverse::of(&built.map, over()));
+    inverse.within(budget).unwrap_or(inverse)
 }
 
 /// Inverts a deformation, with a warning if it folds.
-fn inverted(mut built: Built, frame: &Frame, deformation: &str, meter: &Arc<Meter>) -> Result<Built, GeometryError> {
-    let map = inverse(&built, frame, meter);
+fn inverted(mut built: Built, frame: &Frame, deformation: &str, budget: &Arc<Budget>) -> Result<Built, GeometryError> {
+    let map = inverse(&built, frame, budget);
     let work = INVERTED * built.map.work() + SAMPLES as f64 * map.work();
-    meter.budget().spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)?;
+    budget.spend(work).map_err(GeometryError::Limit)?;
     if let Some(a) = ambiguity(&*built.map, &*map, frame.rect) {
         built.warn(format!(
             "{deformation}: undoing it is ambiguous: {} and {} have the same image, {}, of which only one can come back; artwork \
@@ -491,7 +492,7 @@ const SETTLED: f64 = 1e-9;
 const TURNS: usize = 64;
 
 /// The work of building a map with a segment of a path that controls it, in evaluations of the budget: most maps measure its length.
-const MEASURED: u64 = 4000;
+const MEASURED: f64 = 4000.0;
 
 /// The work of building an inverse, in evaluations of the map: its starting points.
 const INVERTED: f64 = 150.0;

@@ -63,11 +63,11 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
 }
 
 /// Exit code and cost of a run.
-struct Used {
+pub(crate) struct Used {
     /// `None`: it was killed.
-    code: Option<i32>,
-    seconds: f64,
-    megabytes: f64,
+    pub(crate) code: Option<i32>,
+    pub(crate) seconds: f64,
+    pub(crate) megabytes: f64,
 }
 
 impl Used {
@@ -81,7 +81,7 @@ impl Used {
     }
 }
 
-fn measure(program: &Path, line: &str, file: &Path, scratch: &Path) -> Result<Used, ChoreError> {
+pub(crate) fn measure(program: &Path, line: &str, file: &Path, scratch: &Path) -> Result<Used, ChoreError> {
     let (input, output) = (file.to_string_lossy(), scratch.join("out"));
     let word = |w: String| w.replace("IN", &input).replace("OUT", &output.to_string_lossy());
     let args = shell::words(line).into_iter().map(|w| if w == "IN" || w.starts_with("OUT") { word(w) } else { w });

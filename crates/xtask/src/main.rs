@@ -5,6 +5,7 @@ mod chore;
 mod corpus;
 mod docs;
 mod files;
+mod heavy;
 mod hostile;
 mod new_deformation;
 mod outputs;
@@ -20,13 +21,14 @@ use clap::Command;
 use std::process::ExitCode;
 
 /// Every chore, declared with its options in a separate file.
-const CHORES: [Chore; 11] = [
+const CHORES: [Chore; 12] = [
     new_deformation::CHORE,
     corpus::CHORE,
     refit_report::CHORE,
     outputs::CHORE,
     speed::CHORE,
     hostile::CHORE,
+    heavy::CHORE,
     package::CHORE,
     package::REPRODUCIBLE,
     semver::CHORE,

@@ -1,7 +1,7 @@
 //! DXF files, read back and compared with the SVG of the same command.
 
 use super::dxf_reader::{Dxf, Entity};
-use super::geometry::{documents, drawing, gap, outlines};
+use super::geometry::{documents, drawing, far, gap, outlines};
 use crate::support::{artwork, expect_code, pathwarp_in, sample};
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
@@ -175,4 +175,17 @@ fn losses_are_reported() {
     fs::write(dir.path().join("in.svg"), page("<g clip-path='url(#half)'><path d='M50,50H60V60Z'/></g>")).unwrap();
     let (file, said) = dxf(dir.path(), &["convert", "in.svg"], b"");
     assert!(file.entities.is_empty() && said.is_empty(), "{said}");
+}
+
+/// Drawings of maps, far from the origin, are where their page shows them.
+#[test]
+fn far_drawings_lie_on_their_page() {
+    let dir = tempfile::tempdir().unwrap();
+    let near = outlines(far(0.0, 0.0).as_bytes());
+    for [x, y] in [[1e6, 2e6], [3.67e7, -5.5e6]] {
+        let (file, _) = dxf(dir.path(), &["convert", "-"], far(x, y).as_bytes());
+        let got = file.polylines();
+        let (there, back) = (gap(&got, &near), gap(&near, &got));
+        assert!(there.max(back) < SAMPLING, "{x}: {there} {back}");
+    }
 }

@@ -85,3 +85,22 @@ pub fn gap(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
     };
     a.iter().flat_map(|l| l.windows(2)).map(between).fold(0.0, f64::max)
 }
+
+/// A drawing on a page of 100 mm at some place: a path, a circle, and a group with a transform.
+pub fn far(x: f64, y: f64) -> String {
+    let at = |u: f64, v: f64| format!("{} {}", x + u, y + v);
+    format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='{} 100 100'>\n\
+         <path d='M{}C{} {} {}L{}Z' fill='none' stroke='red' stroke-width='.1'/>\n\
+         <circle cx='{}' cy='{}' r='12.34'/>\n\
+         <g transform='translate({x} {y})'><path d='M5.5 60.25h20.125v11.3l-7 8.2Z'/></g></svg>",
+        at(0.0, 0.0),
+        at(10.1, 20.2),
+        at(30.3, 5.05),
+        at(50.7, 60.6),
+        at(80.25, 41.3),
+        at(35.0, 90.15),
+        x + 70.5,
+        y + 70.25
+    )
+}

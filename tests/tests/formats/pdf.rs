@@ -1,6 +1,6 @@
 //! PDF files: their size in points, and how an independent renderer (Poppler, where it is installed) draws them.
 
-use super::geometry::documents;
+use super::geometry::{documents, far, gap, outlines};
 use crate::support::{artwork, expect_code, pathwarp_in, sample};
 use pathwarp::kurbo::Point;
 use pathwarp_raster::{Size, decode_png, render};
@@ -252,4 +252,26 @@ fn arcs_are_true() {
     // Poppler writes six decimals, on a page scaled to whole px.
     assert!(off < 1e-5, "{off}");
     assert!((radius - 140.0 / 25.4 * 72.0).abs() < 0.5, "{radius}");
+}
+
+/// Drawings of maps, far from the origin, are where they are near it.
+#[test]
+fn far_drawings_keep_their_shape() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name).display().to_string();
+    let mut shown = Vec::new();
+    for [x, y] in [[0.0, 0.0], [1e6, 2e6], [3.67e7, -5.5e6]] {
+        fs::write(at("far.svg"), far(x, y)).unwrap();
+        expect_code(0, &["convert", &at("far.svg"), "-o", &at("far.pdf")]);
+        if !poppler("pdftocairo", &["-svg", &at("far.pdf"), &at("back.svg")]) {
+            return;
+        }
+        let back = outlines(&fs::read(at("back.svg")).unwrap());
+        assert!(back.len() >= 3, "{}", back.len());
+        shown.push(back);
+    }
+    for far in &shown[1..] {
+        let (there, back) = (gap(far, &shown[0]), gap(&shown[0], far));
+        assert!(there.max(back) < 1e-3, "{there} {back}");
+    }
 }

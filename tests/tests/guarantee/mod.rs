@@ -2,9 +2,11 @@
 //! run it, for many pairs of a path and a map. `PATHWARP_PAIRS=100000 cargo test -p pathwarp-tests guarantee -- --nocapture` measures as
 //! many as it says, and prints the table of docs/benchmarks.md.
 
+mod contours;
 mod curves;
 mod measure;
 mod paths;
+mod written;
 
 use curves::Curve;
 use measure::{Sampled, far, kink, sampled};
@@ -112,30 +114,31 @@ fn measured(d: &str, maps: &Maps) -> Option<Found> {
     };
     let same = |ps: &[Point]| ps.to_vec();
     let mut found = Found { ratio: 0.0, turn: 0.0, near: Point::ORIGIN };
-    for (n, last) in [(32, false), (320, true)] {
-        let exact: Vec<Sampled> = source.iter().map(|s| sampled(s, &image, n, tolerance)).collect();
-        let ours: Vec<Sampled> = written.iter().map(|s| sampled(s, &same, n, tolerance)).collect();
-        if !all_finite(&exact) || exact.is_empty() || ours.is_empty() {
-            return None;
-        }
-        let good = 0.85 * tolerance;
-        let there = |s: usize, (i, t): (usize, f64)| image(&[source[s][i].at(t)])[0];
-        let here = |s: usize, (i, t): (usize, f64)| written[s][i].at(t);
-        let (a, b) = (far(&exact, &ours, &here, good), far(&ours, &exact, &there, good));
-        let worst = if a.0 > b.0 { a } else { b };
-        (found.ratio, found.near) = (worst.0 / tolerance, worst.1);
-        if last || found.ratio <= 1.0 {
-            if source.len() == written.len() {
-                for ((s, e), w) in source.iter().zip(&exact).zip(&written) {
-                    let closed = s[0].at(0.0) == s[s.len() - 1].at(1.0);
-                    let (turn, near) = kink(s, e, &image, w, (closed, 2.0 * tolerance));
-                    if turn > found.turn {
-                        found.turn = turn;
-                        if found.ratio <= 1.0 {
-                            found.near = near;
-                        }
-                    }
-                }
+    if source.is_empty() || source.len() != written.len() {
+        return None;
+    }
+    for ((s, w), held) in source.iter().zip(&written).zip(contours::tolerances(&source, tolerance)) {
+        for (n, last) in [(32, false), (320, true)] {
+            let (exact, ours) = ([sampled(s, &image, n, held)], [sampled(w, &same, n, held)]);
+            if !all_finite(&exact) {
+                return None;
+            }
+            let good = 0.85 * held;
+            let there = |_: usize, (i, t): (usize, f64)| image(&[s[i].at(t)])[0];
+            let here = |_: usize, (i, t): (usize, f64)| w[i].at(t);
+            let (a, b) = (far(&exact, &ours, &here, good), far(&ours, &exact, &there, good));
+            let worst = if a.0 > b.0 { a } else { b };
+            let ratio = worst.0 / held;
+            if !last && ratio > 1.0 {
+                continue;
+            }
+            let closed = s[0].at(0.0) == s[s.len() - 1].at(1.0);
+            let (turn, near) = kink(s, &exact[0], &image, w, (closed, 2.0 * held));
+            if turn > found.turn {
+                (found.turn, found.near) = (turn, if found.ratio <= 1.0 { near } else { found.near });
+            }
+            if ratio > found.ratio || ratio.is_nan() {
+                (found.ratio, found.near) = (ratio, worst.1);
             }
             break;
         }

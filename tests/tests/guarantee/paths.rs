@@ -27,7 +27,7 @@ impl Random {
         self.next() as f64 / (1u64 << 48) as f64
     }
 
-    fn between(&mut self, a: f64, b: f64) -> f64 {
+    pub fn between(&mut self, a: f64, b: f64) -> f64 {
         a + (b - a) * self.share()
     }
 
@@ -129,7 +129,7 @@ fn loops(r: &mut Random) -> String {
 }
 
 /// The same path elsewhere: relative commands after a first point far away.
-fn shifted(d: &str, by: [f64; 2]) -> String {
+pub fn shifted(d: &str, by: [f64; 2]) -> String {
     use svgtypes::PathSegment as S;
     let mut out = String::new();
     for s in svgtypes::PathParser::from(d).map_while(Result::ok) {

@@ -17,8 +17,8 @@ fn crossing_edges_are_counted_before_they_are_drawn() {
     let lines: String = (0..100_000_u64).map(|i| format!("L{} {}", i * i % 97, i * 61 % 101)).collect();
     for paint in ["", "fill='none' stroke='red' stroke-width='3' stroke-linejoin='round'"] {
         let folder = Folder::with(&[("a.svg", &svg(&format!("<path {paint} d='M0 0{lines}'/>")))]);
-        refused(&folder, &["render", "a.svg", "-o", "o.png"], &["painting"]);
-        refused(&folder, &["compare", "a.svg", "a.svg"], &["painting", "comparisons"]);
+        refused(&folder, &["render", "a.svg", "-o", "o.png"], &["work"]);
+        refused(&folder, &["compare", "a.svg", "a.svg"], &["work"]);
         folder.run_all("a.svg");
     }
     // A waveform, whose lines do not cross.
@@ -32,7 +32,7 @@ fn round_caps_are_counted() {
     let caps = "M5 5l0 0".repeat(110_000);
     let stroke = "fill='none' stroke='red' stroke-width='50' stroke-linecap='round'";
     let folder = Folder::with(&[("a.svg", &svg(&format!("<path {stroke} d='{caps}'/>")))]);
-    refused(&folder, &["compare", "a.svg", "a.svg"], &["painting", "comparisons"]);
+    refused(&folder, &["compare", "a.svg", "a.svg"], &["work"]);
     folder.run_all("a.svg");
 }
 
@@ -44,7 +44,7 @@ fn outlines_of_strokes_are_counted() {
     let dense = format!("<path d='M0 0{}' stroke='red'/>", "l.1 .1-.1 .1".repeat(75_000));
     for body in [path, ellipses, dense] {
         let folder = Folder::with(&[("a.svg", &svg(&body))]);
-        refused(&folder, &FLAT, &["evaluations", "segments"]);
+        refused(&folder, &FLAT, &["work"]);
         folder.run_all("a.svg");
     }
 }
@@ -54,8 +54,8 @@ fn letters_are_counted() {
     let dashed = "<text y='50' font-size='50' stroke='red' stroke-width='3' stroke-dasharray='.1'>";
     let folder = Folder::with(&[("a.svg", &svg(&format!("{dashed}{}</text>", "aé&amp;@".repeat(2500))))]).whole();
     // Which of the two comes first depends on the outlines of the font.
-    refused(&folder, &["swirl", "a.svg", "-o", "o.svg"], &["segments", "evaluations"]);
-    refused(&folder, &FLAT, &["segments", "evaluations"]);
+    refused(&folder, &["swirl", "a.svg", "-o", "o.svg"], &["work"]);
+    refused(&folder, &FLAT, &["work"]);
     let many: String = (0..14_000).map(|i| format!("<text y='{i}'>ab</text>")).collect();
     let vertical = format!("<text y='9' writing-mode='tb'>{}</text>", "aあ".repeat(12_000));
     let unknown: String = (0..20_000).filter_map(|i| char::from_u32(0x4e00 + i)).collect();
@@ -75,7 +75,7 @@ fn wide_arcs_are_counted() {
         let folder = Folder::with(&[("a.svg", &svg(&body))]);
         let to_dxf = ["convert", "a.svg", "--dxf-curves", "polyline", "-o", "o.dxf"];
         for args in [&["compare", "a.svg", "a.svg"][..], &["convert", "a.svg", "-o", "o.pdf"], &to_dxf] {
-            refused(&folder, args, &["comparisons"]);
+            refused(&folder, args, &["work"]);
         }
         folder.run_all("a.svg");
     }
@@ -100,8 +100,8 @@ fn faces_at_the_same_edge_are_counted() {
     ]);
     let twist = ["--preset", "twist", "--along", "y", "--angle", "90", "-o", "o.obj"];
     for file in ["faces.obj", "polygon.obj"] {
-        refused(&folder, &[&["solid", "bend", file, "--refine", "0.01"][..], &twist].concat(), &["segments"]);
+        refused(&folder, &[&["solid", "bend", file, "--refine", "0.01"][..], &twist].concat(), &["work"]);
     }
-    refused(&folder, &[&["solid", "bend", "patches.bpt"][..], &twist].concat(), &["evaluations"]);
+    refused(&folder, &[&["solid", "bend", "patches.bpt"][..], &twist].concat(), &["work"]);
     assert!(!folder.path().join("o.obj").exists());
 }

@@ -73,7 +73,7 @@ fn polylines_are_counted() {
     let folder = Folder::with(&[("a.svg", &svg(&path))]);
     let fine = ["convert", "a.svg", "--dxf-curves", "polyline", "--tolerance", "1e-7", "-o", "o.dxf"];
     let (code, said) = folder.run(&fine);
-    assert_eq!((code, said.contains("--limit segments=")), (3, true), "{said}");
+    assert_eq!((code, said.contains("--limit work=")), (3, true), "{said}");
     assert!(!folder.path().join("o.dxf").exists());
     assert_eq!(folder.run(&["convert", "a.svg", "--dxf-curves", "polyline", "-o", "o.dxf"]).0, 0);
 }

@@ -169,7 +169,7 @@ fn glyphs_without_an_end_are_refused() {
 fn heavy_letters_are_counted() {
     let glyphs = [triangle(), parts(2, 3000), triangle()];
     lettered(&of_glyphs(&glyphs, Vec::new()), "a").expect("a.svg", [0, 0], "");
-    lettered(&of_glyphs(&glyphs, Vec::new()), &"a".repeat(600)).is_not_read("a.svg", "--limit segments=");
+    lettered(&of_glyphs(&glyphs, Vec::new()), &"a".repeat(600)).is_not_read("a.svg", "--limit work=");
 }
 
 #[test]
@@ -199,7 +199,7 @@ fn crowded_collections_are_refused() {
     };
     for (announced, fonts) in [(u32::MAX, 1), (60_000, 60_000)] {
         let folder = lettered(&collection(announced, fonts), "a");
-        folder.is_not_read("a.svg", "--limit image-bytes=");
+        folder.is_not_read("a.svg", "--limit bytes=");
         let (code, said) = folder.run(&["swirl", "a.svg", "--font-file", "a.ttf", "-o", "o.svg"]);
         assert_eq!((code, said.contains("than can be listed")), (3, true), "{said}");
     }

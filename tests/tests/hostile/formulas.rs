@@ -90,7 +90,7 @@ fn names_in_recipes_are_counted() {
         ("many.svg", &many),
     ]);
     let (code, said) = folder.run(&["run", "long.toml", "many.svg", "-o", "o.svg"]);
-    assert_eq!((code, said.contains("--limit comparisons=")), (3, true), "{said}");
+    assert_eq!((code, said.contains("--limit work=")), (3, true), "{said}");
     folder.run(&["run", "long.toml", "few.svg", "-o", "o.svg"]);
     assert_eq!(folder.run(&["run", "short.toml", "many.svg", "-o", "o.svg"]).0, 0);
 }

@@ -19,7 +19,7 @@ fn quilt(n: usize, at: usize, to: [f64; 2]) -> String {
 #[track_caller]
 fn ends_by_count(folder: &Folder, args: &[&str]) {
     let (code, said) = folder.run(args);
-    assert!(code == 4 && said.contains("--limit evaluations"), "{args:?}: {code} {said}");
+    assert!(code == 4 && said.contains("--limit work"), "{args:?}: {code} {said}");
 }
 
 /// Found by fuzzing: it took 20 seconds and ended by them.
@@ -90,13 +90,13 @@ fn undoing_other_extremes_ends_by_count_or_succeeds() {
     ];
     for case in cases {
         let (code, said) = folder.run(&[case, &["--inverse", "--on-error", "skip", "-o", "o.svg"]].concat());
-        assert!([0, 1].contains(&code) || said.contains("--limit evaluations"), "{case:?}: {code} {said}");
+        assert!([0, 1].contains(&code) || said.contains("--limit work"), "{case:?}: {code} {said}");
     }
     let twist = ["--style", "twist", "--bend", "300%", "--inverse"];
     let chain =
         [&["warp", "a.svg"], &twist[..], &["-o", "o.svg", "+", "warp"], &twist, &["+", "warp"], &twist].concat();
     let (code, said) = folder.run(&chain);
-    assert!([0, 1].contains(&code) || said.contains("--limit evaluations"), "{code} {said}");
+    assert!([0, 1].contains(&code) || said.contains("--limit work"), "{code} {said}");
 }
 
 #[test]
@@ -104,11 +104,23 @@ fn undoing_points_is_counted() {
     let points: String = (0..100_000).map(|i| format!("{} {}\n", i % 317, i % 211)).collect();
     let folder = Folder::with(&[("p.txt", points.as_bytes()), ("q.json", quilt(2, 1, [1e6, -1e6]).as_bytes())]);
     // `map` takes its limits before the deformation.
-    let args = ["map", "--limit", "seconds=60", "mesh", "--mesh", "q.json", "--inverse", "--frame", "0,0,100,100"];
+    let args = [
+        "map",
+        "--limit",
+        "seconds=60",
+        "--limit",
+        "work=3e7",
+        "mesh",
+        "--mesh",
+        "q.json",
+        "--inverse",
+        "--frame",
+        "0,0,100,100",
+    ];
     let mut command = Command::new(pathwarp_program());
     let done = command.args(args).args(["--points", "p.txt"]).current_dir(folder.path()).output().unwrap();
     let said = String::from_utf8_lossy(&done.stderr);
-    assert!(done.status.code() == Some(4) && said.contains("--limit evaluations"), "{said}");
+    assert!(done.status.code() == Some(4) && said.contains("--limit work"), "{said}");
 }
 
 /// A B-spline box of control points with their places mixed up, and 10,000 triangles in it.

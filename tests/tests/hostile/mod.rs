@@ -6,6 +6,7 @@ mod crowded;
 mod exports;
 mod fonts;
 mod formulas;
+mod honest;
 mod inverses;
 mod lists;
 mod markup;

@@ -59,9 +59,9 @@ fn packed_files_are_unpacked_up_to_the_limit() {
     for command in &COMMANDS[..3] {
         assert_eq!(small.run(command).0, 0, "{command:?}");
         let (code, said) = large.run(command);
-        assert_eq!((code, said.contains("--limit image-bytes=")), (3, true), "{command:?}: {said}");
+        assert_eq!((code, said.contains("--limit bytes=")), (3, true), "{command:?}: {said}");
     }
-    assert_eq!(large.run(&["paths", "a.xcf", "--limit", "image-bytes=3e8"]).0, 0);
+    assert_eq!(large.run(&["paths", "a.xcf", "--limit", "bytes=3e8"]).0, 0);
 }
 
 /// Thousands of layers that start in one long list of properties, at different places.

@@ -13,15 +13,21 @@ fn crc(chunk: &[u8]) -> u32 {
     })
 }
 
+/// A chunk of a PNG.
+pub fn chunk(kind: &[u8], data: &[u8]) -> Vec<u8> {
+    let content = [kind, data].concat();
+    [&u32::try_from(data.len()).unwrap().to_be_bytes()[..], &content, &crc(&content).to_be_bytes()].concat()
+}
+
+/// A PNG in greys.
+pub fn png(width: u32, height: u32, pixels: &[Vec<u8>]) -> Vec<u8> {
+    let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 0, 0, 0, 0]].concat();
+    [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &header), pixels.concat(), chunk(b"IEND", b"")].concat()
+}
+
 /// A PNG whose header announces a size, with a few bytes of pixels.
 fn announcing(width: u32, height: u32) -> Vec<u8> {
-    let chunk = |kind: &[u8], data: &[u8]| {
-        let content = [kind, data].concat();
-        [&u32::try_from(data.len()).unwrap().to_be_bytes()[..], &content, &crc(&content).to_be_bytes()].concat()
-    };
-    let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 0, 0, 0, 0]].concat();
-    [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &header), chunk(b"IDAT", &[120, 156, 3, 0]), chunk(b"IEND", b"")]
-        .concat()
+    png(width, height, &[chunk(b"IDAT", &[120, 156, 3, 0])])
 }
 
 /// A PNG of one pixel with a colour profile of so many zeros.
@@ -91,7 +97,7 @@ fn layers_masks_and_filters_are_drawn_within_bounds() {
     large(&format!("<mask id='m0'>{RECT}</mask>{masks}<g mask='url(#m29)'>{RECT}</g>")).expect(
         "a.svg",
         [0, 3],
-        "pixels",
+        "the limit",
     );
     for filter in [
         "<feTurbulence numOctaves='20' baseFrequency='.1'/>",
@@ -108,8 +114,8 @@ fn layers_masks_and_filters_are_drawn_within_bounds() {
         assert_eq!(all[3].0, 3, "{filter}: {}", all[3].1);
     }
     let tile = "<pattern id='p' width='1e5' height='1e5' patternUnits='userSpaceOnUse'><circle r='1'/></pattern>";
-    expect(&format!("{tile}<rect width='90' height='90' fill='url(#p)'/>"), [0, 3], "painting");
-    expect("<path d='M0 0H100' stroke='red' stroke-dasharray='1e-6'/>", [0, 3], "painting");
+    expect(&format!("{tile}<rect width='90' height='90' fill='url(#p)'/>"), [0, 3], "work");
+    expect("<path d='M0 0H100' stroke='red' stroke-dasharray='1e-6'/>", [0, 3], "work");
     let folder = Folder::with(&[("a.svg", &svg(RECT))]);
     assert_eq!(folder.run(&["render", "a.svg", "-o", "o.png", "--width", "100000"]).0, 3);
     assert_eq!(folder.run(&["render", "a.svg", "-o", "o.png", "--width", "3000"]).0, 0);
@@ -118,13 +124,13 @@ fn layers_masks_and_filters_are_drawn_within_bounds() {
 #[test]
 fn packed_profiles_are_counted() {
     let folder = Folder::with(&[("p.png", &with_profile(300 << 20)), ("a.svg", &svg(IMAGE))]);
-    folder.expect("a.svg", [3, 3], "image-bytes");
+    folder.expect("a.svg", [3, 3], "bytes");
     assert_eq!(folder.run(&["swirl", "p.png", "-o", "o.png"]).0, 0, "the picture itself is small");
     // Thirty together.
     Folder::with(&[("p.png", &with_profile(3 << 20)), ("a.svg", &svg(&IMAGE.repeat(30)))]).expect(
         "a.svg",
         [3, 3],
-        "image-bytes",
+        "bytes",
     );
     Folder::with(&[("p.png", &with_profile(1 << 20)), ("a.svg", &svg(IMAGE))]).expect("a.svg", [0, 0], "");
 }
@@ -156,7 +162,7 @@ fn pictures_are_counted_before_each_is_decoded() {
     let png = resvg::tiny_skia::Pixmap::new(3000, 3000).unwrap().encode_png().unwrap();
     let folder = Folder::with(&[("p.png", &png), ("a.svg", &svg(&IMAGE.repeat(60)))]);
     let all = folder.run_all("a.svg");
-    assert!(all[0].0 == 1 && all[0].1.contains("painting"), "{}", all[0].1);
+    assert!(all[0].0 == 3 && all[0].1.contains("--limit pixels="), "{}", all[0].1);
     folder.run(&["swirl", "a.svg", "-o", "o.pdf"]);
     // A strip, most of whose pixels have no place in the source.
     let strip = resvg::tiny_skia::Pixmap::new(1, 65_535).unwrap().encode_png().unwrap();

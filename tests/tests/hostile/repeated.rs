@@ -15,7 +15,7 @@ fn curves(n: usize) -> String {
 #[test]
 fn texts_measure_their_paths() {
     let texts = "<text><textPath href='#p'>abc</textPath></text>".repeat(3000);
-    expect(&format!("<path id='p' d='{}'/>{texts}", curves(10_000)), [3, 3], "segments");
+    expect(&format!("<path id='p' d='{}'/>{texts}", curves(10_000)), [3, 3], "work");
     expect("<path id='p' d='M0 50H90'/><text><textPath href='#p'>abc</textPath></text>", [0, 0], "");
 }
 
@@ -23,7 +23,7 @@ fn texts_measure_their_paths() {
 fn wide_strokes_are_counted() {
     let path = "<path d='M0 0H90C3 3 3 3 9 9'/>".repeat(3000);
     for wide in ["stroke-width='9e8'", "style='stroke:red;stroke-width: 5e7px'"] {
-        expect(&format!("<g stroke='red' {wide}>{path}</g>"), [3, 3], "comparisons");
+        expect(&format!("<g stroke='red' {wide}>{path}</g>"), [3, 3], "work");
     }
     expect(&format!("<g stroke='red' stroke-width='9e5'>{RECT}</g>"), [0, 0], "");
 }
@@ -34,7 +34,7 @@ fn all_stops_of_a_gradient_are_counted() {
     let rect = "<rect width='100' height='100' fill='url(#g)'/>";
     let folder = Folder::with(&[("a.svg", &svg(&format!("<linearGradient id='g'>{stops}</linearGradient>{rect}")))]);
     let (code, said) = folder.run(&["render", "a.svg", "-o", "o.png", "--width", "2000"]);
-    assert_eq!((code, said.contains("--limit painting=")), (3, true), "{said}");
+    assert_eq!((code, said.contains("--limit work=")), (3, true), "{said}");
     folder.run_all("a.svg");
     folder.run(&["compare", "a.svg", "a.svg"]);
 }
@@ -48,7 +48,7 @@ fn pictures_and_gradients_are_counted() {
         |n: usize| svg(&format!("<image width='9' height='9' href='data:image/png;base64,{png}'/>").repeat(n));
     let folder = Folder::with(&[("a.svg", &pictures(2000)), ("few.svg", &pictures(30))]);
     let (code, said) = folder.run(&["swirl", "a.svg", "-o", "o.svg"]);
-    assert_eq!((code, said.contains("--limit evaluations=")), (4, true), "{said}");
+    assert_eq!((code, said.contains("--limit work=")), (4, true), "{said}");
     assert_eq!(folder.run(&["swirl", "few.svg", "-o", "o.svg"]).0, 0);
     let radial = |i: usize| {
         let stops = "<stop/><stop offset='1' stop-color='red'/>";
@@ -68,7 +68,7 @@ fn dashes_are_counted_before_they_are_made() {
     let body = format!("<g fill='none' stroke='red' stroke-dasharray='.02'>{circles}</g>");
     let folder = Folder::with(&[("a.svg", &svg(&body))]);
     let (code, said) = folder.run(&["wave", "a.svg", "-o", "o.svg", "--strokes", "outline"]);
-    assert!([3, 4].contains(&code) && said.contains("--limit segments="), "{code}: {said}");
+    assert!([3, 4].contains(&code) && said.contains("--limit work="), "{code}: {said}");
     folder.run_all("a.svg");
 }
 
@@ -79,7 +79,7 @@ fn paths_that_control_a_map_are_counted() {
     let folder = Folder::with(&[("a.svg", &fs::read(sample("logo.svg")).unwrap()), ("k.svg", &skeleton)]);
     for along in ["k.svg#k", &curves(9000)] {
         let (code, said) = folder.run(&["bend", "a.svg", "--along", along, "-o", "o.svg"]);
-        assert_eq!((code, said.contains("--limit evaluations=")), (4, true), "{said}");
+        assert_eq!((code, said.contains("--limit work=")), (4, true), "{said}");
     }
     folder.run(&["bend", "a.svg", "--along", &curves(1000), "-o", "o.svg"]);
 }
@@ -92,7 +92,7 @@ fn halved_edges_are_counted() {
     for (refine, refused) in [("1e-9", true), ("1e-300", true), ("0.01", false)] {
         let (code, said) = folder.run(&[&twist[..], &["--refine", refine]].concat());
         assert_eq!(code == 0, !refused, "{refine}: {said}");
-        assert!(!refused || said.contains("--limit segments=") || said.contains("--limit evaluations="), "{said}");
+        assert!(!refused || said.contains("--limit work="), "{said}");
     }
 }
 
@@ -106,10 +106,7 @@ fn curves_that_are_near_each_other_are_compared_within_bounds() {
     ]);
     for (a, b) in [("a.svg", "a.svg"), ("a.svg", "b.svg"), ("b.svg", "b.svg"), ("c.svg", "c.svg"), ("c.svg", "b.svg")] {
         let (code, said) = folder.run(&["compare", a, b]);
-        assert!(
-            code == 0 || said.contains("--limit comparisons=") || said.contains("--limit painting="),
-            "{a} {b}: {said}"
-        );
+        assert!(code == 0 || said.contains("--limit work="), "{a} {b}: {said}");
     }
 }
 
@@ -120,7 +117,7 @@ fn dashes_of_strokes_that_stay_are_counted() {
         format!("<g fill='none' stroke='red' stroke-dasharray='{dashes}'>{}</g>", "<circle r='90'/>".repeat(3000));
     let folder = Folder::with(&[("a.svg", &svg(&body))]);
     let (code, said) = folder.run(&["wave", "a.svg", "-o", "o.svg", "--strokes", "keep"]);
-    assert!(code == 4 && said.contains("--limit segments="), "{code}: {said}");
+    assert!(code == 4 && said.contains("--limit work="), "{code}: {said}");
 }
 
 #[test]
@@ -134,7 +131,7 @@ fn faces_that_cover_each_other_are_counted_before_they_are_drawn() {
         folder.run(&["solid", "bend", file, "--preset", "taper", "--along", "x", "--preview", "o.png", "-o", "o.stl"])
     };
     let (code, said) = bend("many.obj");
-    assert!(code == 3 && said.contains("--limit painting="), "{code}: {said}");
+    assert!(code == 3 && said.contains("--limit work="), "{code}: {said}");
     assert_eq!(bend("one.obj").0, 0);
 }
 

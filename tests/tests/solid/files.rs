@@ -130,17 +130,18 @@ fn damage_and_endless_work() {
         r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}],"buffers":[{"uri":"/etc/passwd","byteLength":9}]}"#,
     )
     .unwrap();
-    let refused = |input: &str, more: &[&str], part: &str| {
+    let refused_by = |code: i32, input: &str, more: &[&str], part: &str| {
         let twist = ["bend", input, "--preset", "twist", "--along", "y", "--angle", "90", "-o", "o.obj"];
-        let said = fails(dir.path(), &[&twist[..], more].concat(), "", 3);
+        let said = fails(dir.path(), &[&twist[..], more].concat(), "", code);
         assert!(said.contains(part), "{input}: {said}");
         assert!(!dir.path().join("o.obj").exists());
     };
+    let refused = |input: &str, more: &[&str], part: &str| refused_by(3, input, more, part);
     refused("many.ply", &[], "announces 1000000000 elements");
     refused("many.bpt", &[], "ends");
     refused("out.gltf", &[], "outside the file");
-    refused("in.obj", &["--refine", "1e-12", "--limit", "evaluations=1000000"], "allow a larger --refine");
-    refused("in.bpt", &["--refine", "1e-13", "--limit", "evaluations=100000"], "allow a larger --refine");
+    refused("in.obj", &["--refine", "1e-12", "--limit", "work=1000000"], "allow a larger --refine");
+    refused_by(4, "in.bpt", &["--refine", "1e-13", "--limit", "work=100000"], "the limit `work`");
 }
 
 /// An inverted map that folds has several sources for a place.

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test file uses another part of this")]
 
 pub mod browser;
+pub mod editor;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -41,7 +41,8 @@ fn geometry(e: &GeometryError, flags: &Flags) -> String {
 pub(crate) fn raise(exceeded: &Exceeded) -> String {
     let enough = exceeded.enough();
     let value = if enough.is_finite() { format!("{enough:.0}") } else { "none".to_owned() };
-    format!("if you trust the file, raise the limit with --limit {}={value}", exceeded.limit)
+    let guess = if exceeded.cut { ", ten times as much, as the whole amount is not known" } else { "" };
+    format!("if you trust the file, raise the limit with --limit {}={value}{guess}", exceeded.limit)
 }
 
 /// The message of an error about a picture, with advice.

@@ -1,9 +1,9 @@
 //! [`Bender`]: warps the bitmaps in drawings and paints bent gradients.
 
-use super::counted::{count_decoded, count_warped};
 use super::inverse::{ROUNDING, inverse};
+use super::work::{self, Pixel};
 use crate::advice;
-use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
+use pathwarp::budget::{Budget, Exceeded, Limits};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::Map;
 use pathwarp_raster::{
@@ -28,8 +28,6 @@ const LARGE_PIXEL: f64 = 2.0;
 /// Most pixels that such a picture is enlarged to.
 const MOST_ENLARGED: f64 = 4e6;
 
-/// Work for a pixel of a gradient, in pixels painted.
-const SHADED: f64 = 40.0;
 /// Work to find the resolution of a gradient, in pixels of it; and where no difference may be visible.
 const SEARCHED: f64 = 500.0;
 const SEARCHED_STRICTLY: f64 = 2000.0;
@@ -67,11 +65,6 @@ impl Bender {
         }
     }
 
-    /// Counts evaluations of the map.
-    fn count(&self, evaluations: f64) -> Result<(), Exceeded> {
-        self.budget.spend(Limit::Evaluations, (evaluations * self.map.work()) as u64)
-    }
-
     /// Counts the work on all bitmaps in a budget.
     #[must_use]
     pub fn with_budget(self, budget: Arc<Budget>) -> Self {
@@ -92,10 +85,10 @@ impl ImageWarper for Bender {
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
         const MOST: f64 = 16e6;
-        self.count(PICTURE).map_err(too_much)?;
-        count_decoded(&self.budget, header_size(r.data).map_err(|e| e.to_string())?).map_err(too_much)?;
-        let picture = Picture::read_stored_within(r.data, &self.budget.limits().for_input(r.data.len()))
-            .map_err(|e| e.to_string())?;
+        work::evaluations(&self.budget, &*self.map, PICTURE).map_err(too_much)?;
+        let (width, height) = header_size(r.data).map_err(|e| e.to_string())?;
+        work::spend(&self.budget, Pixel::Decoded, f64::from(width) * f64::from(height)).map_err(too_much)?;
+        let picture = Picture::read_stored_within(r.data, &self.budget.limits()).map_err(|e| e.to_string())?;
         let part =
             shown_part((picture.pixmap.width(), picture.pixmap.height()), r.crop).ok_or("nothing of it is shown")?;
         let [x0, y0, x1, y1] = [part.left(), part.top(), part.right(), part.bottom()].map(f64::from);
@@ -123,13 +116,13 @@ impl ImageWarper for Bender {
         };
         let pixels = |length: f64| (length * wanted - ROUNDING).ceil().clamp(1.0, MOST);
         let size = (pixels(width), pixels(height));
+        work::picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
         let size = (size.0 as u32, size.1 as u32);
-        count_warped(&self.budget, size).map_err(too_much)?;
         let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area), &self.budget);
         let (source, placed) = if factor == 1.0 && r.crop.is_none() {
             (picture.pixmap, r.placed)
         } else {
-            let larger = enlarged(&picture.pixmap, part, factor as u32, r.pixelated, self.budget.limits());
+            let larger = enlarged(&picture.pixmap, part, factor as u32, r.pixelated, &self.budget.limits());
             let in_part = Affine::translate(area.origin().to_vec2()) * Affine::scale(1.0 / factor);
             (larger.map_err(|e| e.to_string())?, r.placed * in_part)
         };
@@ -142,7 +135,7 @@ impl ImageWarper for Bender {
             size,
         };
         let pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
-        inverse.check().map_err(too_much)?;
+        self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
         let png = Picture { pixmap, profile: picture.profile }.write(PictureFormat::Png).map_err(|e| e.to_string())?;
         Ok(BentImage { png, area: e.bounds })
     }
@@ -180,13 +173,13 @@ impl GradientPainter for Bender {
             tolerance: if r.strict { ShadeTolerance::INVISIBLE } else { ShadeTolerance::UNNOTICED },
             finest,
         };
-        self.count(GRADIENT).map_err(too_much)?;
+        work::evaluations(&self.budget, &*self.map, GRADIENT).map_err(too_much)?;
         // The number of pixels follows from painting. Nothing is painted once the limit is reached.
         let search = if r.strict { SEARCHED_STRICTLY } else { SEARCHED };
-        self.budget.spend(Limit::Painting, (SHADED * search) as u64).map_err(too_much)?;
+        work::spend(&self.budget, Pixel::Shaded, search).map_err(too_much)?;
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
         let pixels = f64::from(pixmap.width()) * f64::from(pixmap.height());
-        self.budget.spend(Limit::Painting, (SHADED * pixels) as u64).map_err(too_much)?;
+        work::spend(&self.budget, Pixel::Shaded, pixels).map_err(too_much)?;
         Ok(BentImage { png: encode_smooth_png(&pixmap).map_err(|e| e.to_string())?, area })
     }
 }

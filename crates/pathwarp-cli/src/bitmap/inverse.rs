@@ -1,6 +1,6 @@
 //! The inverse map over a bitmap's area: every pixel of a result asks it for its place in the source.
 
-use super::counted::{Counted, Inverse, Tried};
+use super::work::Inverse;
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Rect, Vec2};
 use pathwarp::map::{Map, NewtonInverse};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub(crate) const ROUNDING: f64 = 1e-6;
 
 /// Returns the map's own inverse if it holds on all of `area`, else Newton's method over it. Either counts its evaluations.
-pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> Counted<Inverse> {
+pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> Inverse {
     /// Reach beyond the area as a fraction of its diagonal: the source footprint of the pixels along its edge.
     const REACH: f64 = 0.02;
     /// Test points per side.
@@ -23,9 +23,6 @@ pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> C
         places.filter(|p| map.point(*p).is_finite()).all(|p| inverse.point(map.point(p)).distance(p) < 1e-3 * diagonal)
     };
     let own = map.inverse().filter(returns);
-    let newton = || {
-        let tried = Arc::new(Counted::new(Arc::clone(map), Arc::clone(budget), Tried::default()));
-        Arc::new(NewtonInverse::over(tried, area, REACH)) as Arc<dyn Map>
-    };
-    Counted::new(own.unwrap_or_else(newton), Arc::clone(budget), Inverse)
+    let newton = || Arc::new(NewtonInverse::over(Arc::clone(map), area, REACH)) as Arc<dyn Map>;
+    Inverse::new(own.unwrap_or_else(newton), Arc::clone(budget))
 }

@@ -44,7 +44,7 @@ pub(super) fn command() -> Command {
         .args(reading_args())
         .after_help(
             "Paths with the same id are compared; paths without an id are matched by their order within the closest ancestor that \
-             has one, and what is left by place: those whose boxes are nearest. The distance is the largest from a point of either \
+             has one, and what is left by place: those whose boxes are nearest and overlap or nearly so. The distance is the largest from a point of either \
              path to the other path. A path without a counterpart is exit code 1. A pixel differs visibly if a channel differs by \
              more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
         )
@@ -178,7 +178,8 @@ fn unpaired_in(b: &[NamedPath], counterparts: &[Option<usize>]) -> impl Iterator
     (0..b.len()).filter(move |&i| !paired.contains(&i) && (b[i].group.is_some() || !ids.contains(b[i].id.as_str())))
 }
 
-/// Matches the paths that have no counterpart yet by the distance of their boxes, nearest first.
+/// Matches the paths that have no counterpart yet by the distance of their boxes, nearest first. Those of other places have none: a box
+/// reaches half its size beyond itself.
 fn match_by_place(a: &[NamedPath], b: &[NamedPath], counterparts: &mut [Option<usize>]) {
     /// Most pairs that are compared. Among more paths, those of the same place in the file are matched.
     const MOST: usize = 4_000_000;
@@ -196,7 +197,11 @@ fn match_by_place(a: &[NamedPath], b: &[NamedPath], counterparts: &mut [Option<u
         |p: &Rect, q: &Rect| (p.x0 - q.x0).abs() + (p.y0 - q.y0).abs() + (p.x1 - q.x1).abs() + (p.y1 - q.y1).abs();
     let mut pairs = Vec::new();
     for (i, p) in own.iter().enumerate() {
-        pairs.extend(other.iter().enumerate().filter_map(|(j, q)| Some((apart(p.as_ref()?, q.as_ref()?), i, j))));
+        let Some(p) = p else { continue };
+        let around = p.inflate(0.5 * p.width().max(p.height()), 0.5 * p.width().max(p.height()));
+        let near =
+            other.iter().enumerate().filter_map(|(j, q)| Some((j, q.as_ref().filter(|q| around.overlaps(**q))?)));
+        pairs.extend(near.map(|(j, q)| (apart(p, q), i, j)));
     }
     pairs.sort_by(|p, q| p.0.total_cmp(&q.0).then((p.1, p.2).cmp(&(q.1, q.2))));
     let mut taken = HashSet::new();

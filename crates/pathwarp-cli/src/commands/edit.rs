@@ -24,14 +24,15 @@ pub(super) fn command() -> Command {
                 .long("port")
                 .value_name("N")
                 .value_parser(value_parser!(u16).range(1..))
-                .help("Listen on this port of 127.0.0.1 [default: a free one]"),
+                .help("Listen on this port of 127.0.0.1 [default: that of the last run on the drawing, or a free one]"),
         )
         .arg(Arg::new("no-open").long("no-open").action(ArgAction::SetTrue).help("Only print the page's address"))
         .args(options::reading_args())
         .after_help(
             "The first line on standard output is the address of the page. Only this computer can open it, and only with the token \
              in the address. The program ends when the page is closed, or with Ctrl-C. Steps that are not saved yet are kept in \
-             a hidden file beside the drawing and are there again next time.\n\nExamples:\n  pathwarp edit logo.svg\n  pathwarp edit \
+             your folder for state ($XDG_STATE_HOME, %LOCALAPPDATA%) and are there again next time, and a page that is still \
+             open goes on.\n\nExamples:\n  pathwarp edit logo.svg\n  pathwarp edit \
              logo.svg -o flag.svg   # Save writes flag.svg\n  pathwarp edit flag.svg         # goes on: the source and the steps are in \
              the file\n  pathwarp edit logo.svg --no-open --port 8000",
         )

@@ -152,7 +152,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let bytes = if format.of_picture(None).is_some() {
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &plain)?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
-        let drawn = RenderOptions { size, background: None }.render_within(&tree, doc.budget().limits())?;
+        let drawn = RenderOptions { size, background: None }.render_within(&tree, &doc.budget().limits())?;
         encode(drawn, format, options.quality)?
     } else {
         export::drawing(svg, format, &plain, &options, None)?.bytes

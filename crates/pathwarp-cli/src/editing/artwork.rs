@@ -82,7 +82,7 @@ impl EditedArtwork {
         self.svg.restore(&self.options);
         self.svg.remove_guides(guides.clone());
         let frame = self.framed(guides, baseline)?;
-        let tolerance = self.options.tolerance_for(self.svg.bounding_box(Which::All), &frame)?;
+        let tolerance = self.options.tolerance_for(self.svg.painted_box(), &frame)?;
         let parts = pipeline::divided(&mut self.svg, &resolved)?;
         let known = (!resolved.steps.iter().any(Step::is_selective)).then_some(&frame);
         let starts = pipeline::starts(&self.registry, &resolved, &self.svg, &parts, self.options.frame, known)?;
@@ -109,7 +109,8 @@ impl EditedArtwork {
         let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
         let same_view = !matches!(fineness, Fineness::Finished { .. });
         let options = &self.options;
-        let request = WarpRequest { recipe, built: &built, options, tolerance, embedded_recipe, same_view };
+        let suited = options.tolerance.is_none() && !matches!(fineness, Fineness::Draft(_));
+        let request = WarpRequest { recipe, built: &built, options, tolerance, suited, embedded_recipe, same_view };
         if let Fineness::Draft(_) = fineness {
             let svg = self.svg.draft(&request);
             sound(&built)?;

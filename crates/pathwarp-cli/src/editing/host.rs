@@ -105,11 +105,6 @@ impl Host for EditorHost {
         self.said(self.open_drawing(file, bytes))
     }
 
-    fn admits(&self, recipe: &Recipe) -> Result<(), String> {
-        let external = self.said(self.given.read())?.reading.external;
-        recipe_file::check_files(&*self.registry, recipe, external)
-    }
-
     fn reference(&self, file: &Path) -> String {
         recipe_file::from_here(file)
     }

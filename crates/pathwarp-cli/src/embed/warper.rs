@@ -181,8 +181,7 @@ impl Warper {
             let budget = Arc::new(Budget::new(options.reading.limits));
             let built = self.build(&frame, &outline, &budget)?;
             // Points are mapped as often as the program around this likes.
-            built.stop_counting();
-            Ok(PointMap::new(built.map))
+            Ok(PointMap::new(built.unlimited()))
         })
     }
 
@@ -212,6 +211,7 @@ impl Warper {
             let budget = Arc::new(Budget::new(options.reading.limits));
             let built = self.build(&frame, outline, &budget)?;
             let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
+            let refit = refit.with_suited(options.tolerance.is_none());
             let copies = &built.placement.copies;
             let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };
             let path = pathwarp_svg::warp_path(&repeated, &built.map, &refit.with_budget(budget), options.precision)

@@ -7,8 +7,10 @@ use crate::page::PageNews;
 use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::Rect;
+use pathwarp::outline::Subpath;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, Recipe, Step};
+use pathwarp::refit;
 use pathwarp::{Error, Outline};
 use std::sync::Arc;
 
@@ -43,6 +45,11 @@ pub(crate) trait Artwork {
 
     /// The bounding box of the artwork; `None` if there is none.
     fn bounding_box(&self, which: Which) -> Option<Rect>;
+
+    /// The bounding box of all of the artwork, with strokes.
+    fn painted_box(&self) -> Option<Rect> {
+        self.bounding_box(Which::All)
+    }
 
     /// The bounding box, `bounds`, with what the page cuts off the artwork. `None` if it cuts nothing.
     fn uncut_box(&self, _which: Which, _bounds: Rect) -> Option<Rect> {
@@ -92,10 +99,20 @@ pub(crate) struct WarpRequest<'a> {
     pub(crate) options: &'a CommonOptions,
     /// User units.
     pub(crate) tolerance: f64,
+    /// Small contours are held to less; see [`refit::suited`].
+    pub(crate) suited: bool,
     /// The recipe file's text, to be embedded in the result.
     pub(crate) embedded_recipe: Option<String>,
     /// Show the result on the page of the source.
     pub(crate) same_view: bool,
+}
+
+impl WarpRequest<'_> {
+    /// The tolerances of an outline's contours.
+    pub(crate) fn contours(&self, o: &Outline) -> Vec<f64> {
+        let own = |s: &Subpath| if self.suited { refit::suited(self.tolerance, s.diagonal()) } else { self.tolerance };
+        o.subpaths.iter().map(own).collect()
+    }
 }
 
 /// The outcome of a warp. Nothing is written yet.

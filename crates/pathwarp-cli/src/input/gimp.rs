@@ -14,7 +14,7 @@ use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::page::PageNews;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::Budget;
 use pathwarp::fold::{Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::{Chain, Class, Map};
@@ -102,7 +102,10 @@ impl GimpArtwork {
         // Coordinates that have not moved are not rounded.
         let stays = |b: &BuiltRecipe| b.map.class() == Class::Affine(Affine::IDENTITY) && b.placement.copies.is_empty();
         let unmoved = request.built.parts.iter().all(stays);
-        let precision = request.options.precision.or((!unmoved).then(|| decimals_for(request.tolerance)));
+        let precision = request.options.precision.or((!unmoved).then(|| {
+            let contours = self.outlines.iter().flat_map(|o| request.contours(o));
+            decimals_for(contours.fold(request.tolerance, f64::min))
+        }));
         let format = match (self.format, &request.options.into) {
             (GimpFormat::IntoXcf, Some(copy)) => {
                 let file = copy_with_paths(&self.file.path, copy, &warped.strokes)?;
@@ -245,11 +248,13 @@ struct PartBend<'a> {
 impl GimpArtwork {
     fn part_bend<'a>(&self, k: usize, built: &'a BuiltRecipe, request: &WarpRequest<'_>) -> PartBend<'a> {
         let outlines = || self.places(Which::Part(k)).map(|i| &self.outlines[i]);
+        let contours: Vec<Vec<f64>> = outlines().map(|o| request.contours(o)).collect();
         let refit = refit::Options::new(request.tolerance)
             .with_certify(request.options.certify)
             .with_merge(request.options.merge)
             .with_budget(Arc::clone(&self.budget))
-            .with_shared(Arc::new(SharedEdges::among(outlines())));
+            .with_suited(request.suited)
+            .with_shared(Arc::new(SharedEdges::held(outlines().zip(contours.iter().map(Vec::as_slice)))));
         let copies = &built.placement.copies;
         let places = if copies.is_empty() { vec![Affine::IDENTITY] } else { copies.clone() };
         let segments: usize = outlines().map(|o| o.segs().count()).sum();
@@ -262,8 +267,8 @@ impl GimpArtwork {
         let bends: Vec<PartBend<'_>> =
             built.parts.iter().enumerate().map(|(k, b)| self.part_bend(k, b, request)).collect();
         let segments: usize = bends.iter().map(|b| b.segments).sum();
-        let work: f64 = bends.iter().map(|b| b.survey.work(0, b.segments) * b.places.len() as f64).sum();
-        self.budget.spend_cut(Limit::Evaluations, work as u64).map_err(|e| Error::from(GeometryError::Limit(e)))?;
+        let spent = bends.iter().try_for_each(|b| b.survey.spend(0, b.segments, b.places.len(), &self.budget));
+        spent.map_err(Error::from)?;
         let warp = |place: usize| {
             let b = &bends[self.part(place)];
             let strokes = warp_strokes(self.path(self.selected[place]), &b.places, b.map, &b.refit);
@@ -344,6 +349,7 @@ fn shape_report(
         segments_in: warped.segments_in,
         segments_out: warped.segments_out,
         max_error: warped.max_error,
+        share: warped.share,
         certified: warped.assurance != Assurance::Checked,
         assurance: assurance_word(warped.assurance),
         folds: fold.count,

@@ -5,19 +5,20 @@ use super::folds;
 use super::read::display;
 use super::reference_name::no_document;
 use crate::advice;
-use crate::bitmap::{ROUNDING, count_decoded, count_warped, inverse};
+use crate::bitmap::work::{self, Pixel};
+use crate::bitmap::{ROUNDING, inverse};
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use crate::options::{CommonOptions, FrameChoice};
 use crate::page::PageNews;
-use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
+use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::fold;
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, Step};
 use pathwarp::{Error, Outline};
-use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, shown, warp_image};
+use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, header_size, shown, warp_image};
 use pathwarp_svg::OnError;
 use std::path::Path;
 use std::sync::Arc;
@@ -52,10 +53,12 @@ impl PictureArtwork {
                 return Err(Failure::usage(format!("--{option} is for SVG files; {name} is a picture")));
             }
         }
-        let limits = options.reading.limits.for_input(bytes.len());
-        let budget = Budget::new(limits);
-        let picture = Picture::read_within(bytes, &limits)?;
-        count_decoded(&budget, (picture.pixmap.width(), picture.pixmap.height())).map_err(|e| too_much(&e))?;
+        let budget = Budget::new(options.reading.limits.for_input(bytes.len()));
+        let (width, height) = header_size(bytes)?;
+        let size = (f64::from(width), f64::from(height));
+        let counted = work::picture(&budget, Pixel::Decoded, size);
+        counted.map_err(|e| Failure::Input(too_much("reading a picture", size, &e, "")))?;
+        let picture = Picture::read_within(bytes, &budget.limits())?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
         Ok(Self { name, picture, format, budget: Arc::new(budget), outline: Outline::from_points(&corners, true) })
@@ -125,8 +128,11 @@ impl Artwork for PictureArtwork {
         }
         let orientation = fold::orientation(&self.outline, true, &*map);
         warnings.extend(orientation.folded_against(&orientation).map(|at| folds::warning("the picture", &[], at)));
-        let (visible, size) = size(bounds, options.image_size, self.budget.limits())?;
-        count_warped(&self.budget, size).map_err(|e| too_much(&e))?;
+        let (visible, size) = size(bounds, options.image_size)?;
+        let smaller = "give a smaller --image-size, or ";
+        let too_much = |e: &Exceeded| Failure::Geometry(too_much("warping it to a picture", size, e, smaller));
+        work::picture(&self.budget, Pixel::Warped, size).map_err(|e| too_much(&e))?;
+        let size = (size.0 as u32, size.1 as u32);
         let inverse = inverse(&map, area, &self.budget);
         let warp = ImageWarp {
             source: &self.picture.pixmap,
@@ -137,7 +143,7 @@ impl Artwork for PictureArtwork {
             size,
         };
         let pixmap = warp_image(&warp)?;
-        inverse.check().map_err(|e| too_much(&e))?;
+        self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(&e)))?;
         let warped = Picture { pixmap, profile: self.picture.profile.clone() };
         Ok(WarpedArtwork {
             result: WarpedResult::Bytes(warped.write(self.format)?),
@@ -152,13 +158,13 @@ impl Artwork for PictureArtwork {
     }
 }
 
-/// The error about a picture that takes too much work.
-fn too_much(e: &Exceeded) -> Failure {
-    Failure::Geometry(format!("warping the picture takes {e}; give a smaller --image-size, or {}", advice::raise(e)))
+/// The message about a picture of this size that takes too much.
+fn too_much(what: &str, (width, height): (f64, f64), e: &Exceeded, advice: &str) -> String {
+    format!("{what} of {width:.0} x {height:.0} pixels takes {e}; {advice}{}", advice::raise(e))
 }
 
 /// The part of the plane that the result shows, and its size in pixels: by default one pixel per unit of the plane.
-fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>, limits: &Limits) -> Result<(Rect, (u32, u32)), Failure> {
+fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>) -> Result<(Rect, (f64, f64)), Failure> {
     let shown = match wanted {
         None => Rect::new(
             (bounds.x0 + ROUNDING).floor(),
@@ -176,12 +182,5 @@ fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>, limits: &Limits) -> Re
         Some((w, Some(h))) => (f64::from(w), f64::from(h)),
         Some((w, None)) => (f64::from(w), (f64::from(w) * shown.height() / shown.width()).round().max(1.0)),
     };
-    // The result is held twice: as pixels and as a file.
-    if let Err(e) = limits.check(Limit::Pixels, 2.0 * width * height) {
-        let advice = advice::raise(&e);
-        return Err(Failure::Geometry(format!(
-            "the warped picture would have {width:.0} x {height:.0} pixels, which takes {e}; give --image-size, or {advice}"
-        )));
-    }
-    Ok((shown, (width as u32, height as u32)))
+    Ok((shown, (width, height)))
 }

@@ -50,5 +50,5 @@ pub(super) fn draw(
             *panel = panel.clone().with(PreviewOverlay::new(kind, o.path.clone()));
         }
     }
-    encode(Preview::new(left, right).view(view).render_within(doc.budget().limits())?, format, quality)
+    encode(Preview::new(left, right).view(view).render_within(&doc.budget().limits())?, format, quality)
 }

@@ -14,6 +14,7 @@ use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use crate::units::units_per_px;
+use crate::watch;
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
@@ -21,7 +22,7 @@ use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::refit;
-use pathwarp::{Error, GeometryError, Outline};
+use pathwarp::{Error, Outline};
 use pathwarp_svg::{
     Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, WarpOptions,
     WarpedDocument,
@@ -61,6 +62,7 @@ impl SvgArtwork {
         let format = format(options, input, target).map_err(|e| not_a_drawing(bytes, input, e))?;
         let (name, read) = (display(input), read_options(input, &options.reading));
         let doc = Document::read(bytes, &name, &read).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
+        watch::count_pixels(doc.budget().taken(Limit::Pixels));
         let selection = selection(options);
         doc.check_selection(&selection)?;
         Ok(Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format })
@@ -134,7 +136,7 @@ impl SvgArtwork {
         let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
         let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
-        let refit = refit.with_budget(self.doc.budget().clone());
+        let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
         WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(options.strokes)
@@ -175,8 +177,7 @@ impl SvgArtwork {
         });
         let survey = Survey::new(&built.map, all_copies, segments * copies.len().max(1));
         let filled = shapes.iter().filter(|s| s.filled).count();
-        let work = survey.work(filled, segments) * copies.len().max(1) as f64;
-        self.doc.budget().spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)?;
+        survey.spend(filled, segments, copies.len(), self.doc.budget())?;
         // A letter that is placed on its own can fold only in a later step.
         let placed = self.doc.placed(options);
         let orientation = |(s, placed): (&'_ pathwarp_svg::Shape, &Option<Outline>)| match placed {
@@ -203,8 +204,7 @@ impl SvgArtwork {
             return Ok(Vec::new());
         }
         let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), 4 * pictures.len());
-        let work = survey.work(pictures.len(), 4 * pictures.len());
-        self.doc.budget().spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)?;
+        survey.spend(pictures.len(), 4 * pictures.len(), 1, self.doc.budget())?;
         let orientation = |o: &Outline| survey.orientation_of_copies(o, &built.placement.copies, true);
         Ok(pictures.into_iter().map(|(name, edge)| (name, orientation(&edge))).collect())
     }
@@ -301,6 +301,7 @@ fn shape_report(s: &pathwarp_svg::ShapeReport, fold: Option<&Fold>, steps: Optio
         segments_in: s.segments_in,
         segments_out: s.segments_out,
         max_error: s.max_error,
+        share: s.share,
         certified: s.assurance != refit::Assurance::Checked,
         assurance: assurance_word(s.assurance),
         steps,
@@ -354,6 +355,10 @@ impl Artwork for SvgArtwork {
 
     fn bounding_box(&self, which: Which) -> Option<Rect> {
         self.doc.seen_box(self.selection(which))
+    }
+
+    fn painted_box(&self) -> Option<Rect> {
+        self.doc.painted_box(&self.selection)
     }
 
     fn uncut_box(&self, which: Which, bounds: Rect) -> Option<Rect> {

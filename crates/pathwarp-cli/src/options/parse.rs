@@ -16,9 +16,17 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 
 /// Parses a limit, `NAME=N` or `NAME=none`.
 pub(super) fn limit(text: &str, limits: &mut Limits) -> Result<(), String> {
-    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=N, such as segments=5e6"))?;
-    let limit = Limit::named(name.trim())
-        .ok_or_else(|| crate::advice::unknown("limit", name.trim(), Limit::ALL.into_iter().map(Limit::name)))?;
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=N, such as work=1e9"))?;
+    let limit = Limit::named(name.trim()).ok_or_else(|| match name.trim() {
+        old @ ("comparisons" | "segments" | "letters" | "painting" | "evaluations") => {
+            format!(
+                "`{old}` is now part of the limit `work`: --limit work=N, of which a default run has {:.0e}",
+                Limits::default().of(Limit::Work)
+            )
+        }
+        "image-bytes" => "`image-bytes` is now part of the limit `bytes`: --limit bytes=N".to_owned(),
+        other => crate::advice::unknown("limit", other, Limit::ALL.into_iter().map(Limit::name)),
+    })?;
     let most = if value.trim() == "none" { f64::INFINITY } else { positive(value.trim())? };
     *limits = limits.with(limit, most);
     Ok(())

@@ -115,7 +115,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         "Read the paths before the damage in a damaged GIMP file",
     ),
     CommonOption {
-        default: Some("1e-4 of the artwork's diagonal"),
+        default: Some("1e-4 of the artwork's diagonal, and for small contours 2e-3 of their own"),
         ..stored(
             "tolerance",
             OptionValue::Text {
@@ -123,7 +123,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 minus: LeadingMinus::Number,
                 set: |o, text| parse::positive_length(text).map(|d| o.tolerance = Some(d)),
             },
-            "Largest distance between the exact curve and the output: user units, or a length such as 0.05mm",
+            "Largest distance between the exact curve and the output: user units, or a length such as 0.05mm. If it is given, it holds for \
+             all contours alike",
         )
     },
     stored(
@@ -177,7 +178,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         "Leave these unchanged; takes the same values as --select",
     ),
     CommonOption {
-        default: Some("enough for a hundredth of the tolerance"),
+        default: Some("enough for a hundredth of the tolerance; a tenth of that of small contours"),
         ..stored(
             "precision",
             OptionValue::Whole { name: "N", range: 0..=15, set: |o, n| o.precision = u8::try_from(n).ok() },
@@ -414,10 +415,9 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run(
             "limit",
             OptionValue::List { name: "NAME=N", push: |o, text| parse::limit(text, &mut o.reading.limits) },
-            "Raise or lower a limit on the work that an input may cause, such as segments=5e6, or memory=none; may be given \
-         several times. The limits are bytes, elements, comparisons, segments, letters, pixels, painting, image-bytes, \
-         evaluations, seconds (of processor time) and memory (in bytes); without this option they grow with the size of \
-         the input",
+            "Raise or lower a limit on the work that an input may cause, such as work=1e9, or memory=none; may be given \
+         several times. The limits are bytes, elements, pixels (of pictures), work, seconds (of processor time) and memory \
+         (in bytes); without this option they grow with the size of the input and its pictures",
         )
     },
     CommonOption {

@@ -89,7 +89,7 @@ impl Batch<'_> {
         let bounds = artwork.bounding_box(Which::All);
         let starts = starts(registry, &recipe, artwork, &parts, options.frame, None)?;
         let first = starts.iter().flatten().next().cloned().unwrap_or_else(|| Frame::new(Rect::ZERO));
-        let tolerance = options.tolerance_for(bounds, &first)?;
+        let tolerance = options.tolerance_for(artwork.painted_box(), &first)?;
         let built = build(registry, &recipe, artwork, &parts, &starts)?;
         let whole = &built.whole;
         // The map of a plug-in may fail at any time. Nothing that was computed with it is used, not even another error.
@@ -106,8 +106,15 @@ impl Batch<'_> {
 
         let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
-        let request =
-            WarpRequest { recipe: self.recipe, built: &built, options, tolerance, embedded_recipe, same_view: false };
+        let request = WarpRequest {
+            recipe: self.recipe,
+            built: &built,
+            options,
+            tolerance,
+            suited: options.tolerance.is_none(),
+            embedded_recipe,
+            same_view: false,
+        };
         let warped = artwork.warp(&request);
         sound()?;
         let warped = warped.map_err(|f| explained(f, &built))?;
@@ -115,7 +122,7 @@ impl Batch<'_> {
         let mut warnings: Vec<String> = self.in_flags(whole, |e| &e.warnings).chain(warped.warnings).collect();
         warnings.extend(stretched.into_iter().map(|(uncut, stretch)| advice::stretched(uncut, stretch)));
         warnings.extend(warped.page.warnings());
-        let coarse = too_coarse(options.precision, &warped.shapes, tolerance);
+        let coarse = too_coarse(options.precision, &warped.shapes);
         let is_coarse = coarse.is_some();
         warnings.extend(coarse);
         let frame = first.rect;
@@ -308,9 +315,10 @@ pub(crate) fn baseline(registry: &Registry, step: &Step) -> Baseline {
 }
 
 /// Warns of decimals that are too few for the tolerance.
-fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape], tolerance: f64) -> Option<String> {
-    let (n, off) = (precision?, shapes.iter().map(|s| s.max_error).fold(0.0, f64::max));
-    (off > 1.001 * tolerance).then(|| {
+fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape]) -> Option<String> {
+    let worst = shapes.iter().max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let (n, off, tolerance) = (precision?, worst.max_error, worst.max_error / worst.share);
+    (worst.share > 1.001).then(|| {
         format!(
             "--precision {n} is too coarse for the tolerance of {tolerance:.3e}: with the rounding, shapes are off by up to {off:.3e}; \
              give more decimals, or a larger --tolerance"

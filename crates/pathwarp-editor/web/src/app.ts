@@ -1,6 +1,7 @@
 // The state of the page: the steps, which of them is being changed, and the pictures that the server makes of them.
 
 import { Connection, Gone } from "./connection";
+import { isTyping } from "./dom";
 import { Handles } from "./handles";
 import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
 
@@ -56,6 +57,8 @@ export class App {
   private turns: Promise<unknown> = Promise.resolve();
   /** The last commit, which the server answers after those before it. */
   private lastCommit: Promise<void> = Promise.resolve();
+  /** The number of commits that the server has refused. */
+  private refusals = 0;
   /** Runs while keys move a handle, until the steps are committed. */
   private pause = 0;
   readonly connection: Connection;
@@ -65,10 +68,16 @@ export class App {
       () => void this.begin(),
       () => {
         this.isConnected = false;
+        this.endPause();
         this.tell("link");
       },
       (news) => void this.hear(news),
     );
+  }
+
+  /** What is changed is kept. */
+  get isLive(): boolean {
+    return this.isConnected && !this.isDone;
   }
 
   listen(listener: (change: Change) => void): void {
@@ -183,6 +192,7 @@ export class App {
       return true;
     });
     if (done || !this.state || !this.isConnected) return;
+    this.refusals += 1;
     // Back to what can be bent, with the reason on show.
     const { problem } = this;
     await this.load(this.state);
@@ -201,11 +211,29 @@ export class App {
     if (this.endPause()) await this.commit();
   }
 
-  /** Waits until the server has all that was done so far. */
-  async settle(): Promise<void> {
+  /** Waits until the server has all that was done so far. Returns `false` if it refuses some of it. */
+  async settle(): Promise<boolean> {
+    const { refusals } = this;
+    const field = this.takeTyped();
     await this.turns;
     await this.flush();
     await this.lastCommit;
+    const isTaken = this.refusals === refusals;
+    if (!isTaken && document.activeElement === field) {
+      // The value that holds is on show again.
+      field?.blur();
+      this.tell("steps");
+    }
+    return isTaken;
+  }
+
+  /** Takes the value that is being typed, as if its field were left. */
+  private takeTyped(): HTMLElement | null {
+    const field = document.activeElement;
+    if (!isTyping(field)) return null;
+    field.blur();
+    field.focus({ preventScroll: true });
+    return field;
   }
 
   private endPause(): boolean {
@@ -233,6 +261,7 @@ export class App {
 
   /** Undoes or redoes. */
   turn(direction: "undo" | "redo"): Promise<void> {
+    this.takeTyped();
     return this.inTurn(() => this.turned(direction));
   }
 

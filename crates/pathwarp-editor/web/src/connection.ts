@@ -4,8 +4,11 @@ import type { Answer } from "./types";
 
 type Waiting = { resolve: (answer: Answer) => void; reject: (problem: Error) => void };
 
-/** The pause before the page tries to connect again, in ms. */
+/** The pause before the page looks for the program again, and the longest time for its answer, in ms. */
 const RETRY = 700;
+const PATIENCE = 5000;
+/** Who knows it may connect. */
+const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
 
 /** The server cannot do what it was asked. The message is for the user. */
 export class Refused extends Error {}
@@ -32,9 +35,10 @@ export class Connection {
   }
 
   private connect(): void {
-    const socket = new WebSocket(`ws://${location.host}/socket${location.search}`);
+    const socket = new WebSocket(`ws://${location.host}/socket?token=${TOKEN}`);
     socket.onopen = () => {
       this.socket = socket;
+      history.replaceState(null, "", `/?token=${TOKEN}`);
       this.onOpen();
     };
     socket.onmessage = (message) => {
@@ -47,9 +51,20 @@ export class Connection {
       this.waiting.clear();
       this.urgent.clear();
       this.onBusy(false);
+      // Loading the page anew would tell the token to whoever listens there now.
+      history.replaceState(null, "", "/");
       this.onGone();
-      if (!this.isStopped) setTimeout(() => this.connect(), RETRY);
+      this.look();
     };
+  }
+
+  /** Waits for the program, and connects. */
+  private look(): void {
+    setTimeout(async () => {
+      if (this.isStopped) return;
+      if (await isProgram()) this.connect();
+      else this.look();
+    }, RETRY);
   }
 
   /** Does not connect again. */
@@ -79,5 +94,17 @@ export class Connection {
       this.waiting.set(id, { resolve, reject });
       socket.send(JSON.stringify({ ...request, id }));
     });
+  }
+}
+
+/** Whether the program listens there, and nobody else at its port: it proves that it knows the token, and is not told. */
+async function isProgram(): Promise<boolean> {
+  const question = crypto.randomUUID();
+  try {
+    const answer = await fetch(`/proof?${question}`, { signal: AbortSignal.timeout(PATIENCE) });
+    const sum = await crypto.subtle.digest("SHA-256", new TextEncoder().encode(TOKEN + question));
+    return (await answer.text()) === Array.from(new Uint8Array(sum), (byte) => byte.toString(16).padStart(2, "0")).join("");
+  } catch {
+    return false;
   }
 }

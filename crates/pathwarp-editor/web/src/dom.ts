@@ -36,6 +36,11 @@ export function byId<E extends Element = HTMLElement>(id: string): E {
   return found as unknown as E;
 }
 
+/** Typing goes into this element. */
+export function isTyping(target: EventTarget | null): target is HTMLElement {
+  return target instanceof HTMLElement && target.matches("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
+}
+
 const ICONS = {
   close: "M6 6l12 12M18 6 6 18",
   up: "M12 19V6M6 11.5 12 5.5l6 6",

@@ -1,10 +1,10 @@
 // The page: puts the parts together, with the buttons and keys that belong to none of them.
 
 import { App } from "./app";
-import { byId } from "./dom";
+import { byId, isTyping } from "./dom";
 import { Gallery } from "./gallery";
 import { Modes, snapLines } from "./modes";
-import { isTyping, Opening } from "./opening";
+import { Opening } from "./opening";
 import { Place } from "./place";
 import { Pointing } from "./pointing";
 import { Presets } from "./presets";
@@ -134,14 +134,16 @@ window.addEventListener("keydown", (e) => {
   const action = isCommand ? COMMANDS[key] : isTyping(e.target) ? undefined : KEYS[key];
   if (!action) return;
   if (isCommand) e.preventDefault();
-  if (!e.repeat || key !== "b") action(e.shiftKey);
+  if (app.isLive && (!e.repeat || key !== "b")) action(e.shiftKey);
 });
 window.addEventListener("keyup", (e) => {
   if (e.key.toLowerCase() === "b") hide();
 });
 window.addEventListener("blur", hide);
 
-// Beside a drawing, everything is kept; a program that waits gets nothing from a page that is closed.
+// Drafts keep everything, where they can be written; a program that waits gets nothing from a page that is closed.
 window.addEventListener("beforeunload", (e) => {
-  if (app.state?.program && saving.isUnsaved && app.isConnected) e.preventDefault();
+  if (!app.isLive) return;
+  void app.settle();
+  if (saving.isUnsaved && (app.state?.program || app.state?.problem)) e.preventDefault();
 });

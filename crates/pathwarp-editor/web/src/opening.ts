@@ -1,7 +1,7 @@
 // Other drawings: chosen, dropped anywhere on the page, or pasted.
 
 import type { App } from "./app";
-import { byId } from "./dom";
+import { byId, isTyping } from "./dom";
 import type { Stage } from "./stage";
 import { toast } from "./toast";
 
@@ -48,10 +48,10 @@ export class Opening {
     const { app } = this;
     await app.settle();
     const { state } = app;
-    if (!state) return;
+    if (!state || !app.isLive) return;
     if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
-    const isUnsaved = state.steps.length > 0 && !state.saved;
-    if (isUnsaved && !confirm(`The steps of ${state.file} are not saved. Open ${file.name} all the same?`)) return;
+    const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
+    if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
     const answer = await app.attempt(async () => app.connection.ask({ do: "open", name: file.name, bytes: await base64(file) }));
     if (!answer?.state) return;
     this.stage.forget();
@@ -68,9 +68,4 @@ export async function base64(file: File): Promise<string> {
   let binary = "";
   for (let i = 0; i < bytes.length; i += PIECE) binary += String.fromCharCode(...bytes.subarray(i, i + PIECE));
   return btoa(binary);
-}
-
-/** Typing goes into this element. */
-export function isTyping(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.matches("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
 }

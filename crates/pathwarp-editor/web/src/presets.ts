@@ -28,7 +28,7 @@ export class Presets {
 
   private async keep(name: string): Promise<void> {
     try {
-      await this.app.settle();
+      if (!(await this.app.settle())) throw new Error(this.app.problem ?? "");
       const { presets } = await this.app.connection.ask({ do: "keep-preset", name });
       this.gallery.showPresets(presets ?? []);
       this.dialog.close();

@@ -3,13 +3,14 @@
 import type { App } from "./app";
 import { byId } from "./dom";
 import { toast } from "./toast";
+import type { State } from "./types";
 
 /** An answer that takes longer than this shows a line along the upper edge, in ms. */
 const SLOW = 250;
 
 export class Report {
-  /** The steps of a draft have been announced. */
-  private isAnnounced = false;
+  /** The drawing whose draft has been announced. */
+  private announced: string | null = null;
   private slow = 0;
 
   constructor(private app: App) {
@@ -53,8 +54,9 @@ export class Report {
     const isEmpty = state.steps.length === 0;
     const disabled = { undo: !state.undo, redo: !state.redo, "start-over": isEmpty, "keep-preset": isEmpty };
     for (const [id, value] of Object.entries(disabled)) byId<HTMLButtonElement>(id).disabled = value;
-    if (state.restored && !this.isAnnounced) toast("Your last, unsaved steps are here again");
-    this.isAnnounced ||= state.restored;
+    const restored = state.restored ? state.file : null;
+    if (restored && restored !== this.announced) toast("Your last, unsaved steps are here again");
+    this.announced = restored;
   }
 
   /** What can be done with the handles on show. */
@@ -82,15 +84,25 @@ export class Report {
   }
 
   private link(): void {
-    const { isDone, isConnected, state } = this.app;
+    const { isDone, isLive, state } = this.app;
     const gone = byId("gone");
-    gone.hidden = isConnected && !isDone;
+    gone.hidden = isLive;
+    // Nobody keeps what is changed now.
+    for (const part of Array.from(document.querySelectorAll<HTMLElement>("header, main, footer"))) part.inert = !isLive;
+    if (!isLive) for (const dialog of Array.from(document.querySelectorAll("dialog"))) dialog.close();
     gone.classList.toggle("done", isDone);
     show("gone-title", isDone ? `${state?.program} has the result.` : "pathwarp has ended.");
     show("gone-kept", isDone ? "You can close this page."
       : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.`
-      : `${state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing."} Run “pathwarp edit” again to go on.`);
+      : `${kept(state)} To go on${state?.saved ? "" : " here"}, run “${state?.again ?? "pathwarp edit"}”.`);
   }
+}
+
+/** What has become of the steps when the program has ended. */
+function kept(state: State | null): string {
+  if (!state || state.steps.length === 0) return "";
+  if (state.saved) return "Everything is saved.";
+  return state.problem ? `What was not saved is lost (${state.problem}).` : `The steps of ${state.file} are kept.`;
 }
 
 /** Shows a text, or hides its element if there is none. */

@@ -12,12 +12,18 @@ const FORMATS: [string, string, string][] = [
   ["toml", "Recipe", "For other drawings"],
 ];
 
+/** The browser has taken a download by then, in ms. */
+const FETCHED = 60_000;
+
 export class Saving {
   private dialog = byId<HTMLDialogElement>("save-dialog");
   private name = byId<HTMLInputElement>("save-name");
   private extension = "svg";
   private message = byId("save-message");
   private replace = byId<HTMLButtonElement>("save-replace");
+  private download = byId<HTMLButtonElement>("save-download");
+  /** The steps that were downloaded last. */
+  private downloaded = "";
 
   constructor(private app: App) {
     const formats = byId("save-formats");
@@ -34,6 +40,7 @@ export class Saving {
       void this.write(this.name.value, false);
     });
     this.replace.addEventListener("click", () => void this.write(this.name.value, true));
+    this.download.addEventListener("click", () => void this.fetch(this.name.value));
     this.name.addEventListener("input", () => this.say(""));
     byId("copy-command").addEventListener("click", () => void this.copyCommand());
     app.listen((change) => {
@@ -46,7 +53,7 @@ export class Saving {
     if (!state) return;
     byId("file").textContent = state.file;
     const isEmpty = state.steps.length === 0;
-    byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? (state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}`) : isEmpty ? "No changes yet" : "Not saved yet";
+    byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? (state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}`) : isEmpty ? "No changes yet" : this.isDownloaded ? "Downloaded" : "Not saved yet";
     const save = byId<HTMLButtonElement>("save");
     // For a program, having removed all steps is a result, too.
     save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
@@ -58,11 +65,15 @@ export class Saving {
     document.title = `${this.isUnsaved ? "• " : ""}${state.file} — pathwarp`;
   }
 
+  private get isDownloaded(): boolean {
+    return this.downloaded === JSON.stringify(this.app.state?.steps);
+  }
+
   /** Something would be lost without saving. */
   get isUnsaved(): boolean {
     const { state } = this.app;
     if (!state) return false;
-    return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved;
+    return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved && !this.isDownloaded;
   }
 
   /** Gives the steps to the program that waits for them. */
@@ -76,22 +87,25 @@ export class Saving {
 
   /** Saves where it was saved last; the first time, under the usual name. */
   async quick(): Promise<void> {
-    await this.app.settle();
+    if (this.dialog.open) return this.write(this.name.value, false);
+    if (!(await this.app.settle())) return;
     const { state } = this.app;
     if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
     if (!state || state.steps.length === 0) return;
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
-    if (answer?.exists) return this.open();
+    if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
     if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
   }
 
-  async open(): Promise<void> {
-    await this.app.settle();
+  /** Asks for a name, and says why if nothing could be written. */
+  async open(unwritable = ""): Promise<void> {
+    if (!(await this.app.settle())) return;
     const { state } = this.app;
     if (!state || state.steps.length === 0 || state.program || this.dialog.open) return;
     this.name.value = state.target;
     this.choose("svg");
     byId("save-folder").textContent = state.folder;
+    if (unwritable) this.refuse(unwritable);
     this.dialog.showModal();
     this.name.select();
   }
@@ -105,17 +119,39 @@ export class Saving {
     this.say("");
   }
 
-  private say(text: string, offersReplace = false): void {
+  /** Shows a message, with the button that helps. */
+  private say(text: string, help: HTMLButtonElement | null = null): void {
     this.message.textContent = text;
-    this.replace.hidden = !offersReplace;
+    for (const button of [this.replace, this.download]) button.hidden = button !== help;
+  }
+
+  private refuse(unwritable: string): void {
+    this.say(`${unwritable}. Download it instead: the browser has a folder of its own.`, this.download);
   }
 
   private async write(name: string, replace: boolean): Promise<void> {
     try {
       const answer = await this.app.connection.ask({ do: "save", name, replace });
-      if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
+      if (answer.exists) return this.say(`${answer.exists} exists already.`, this.replace);
+      if (answer.unwritable) return this.refuse(answer.unwritable);
       this.dialog.close();
       this.done(answer.written ?? name, answer.state, answer.warnings ?? []);
+    } catch (e) {
+      this.say(e instanceof Error ? e.message : String(e));
+    }
+  }
+
+  /** Hands the file to the browser, which knows a folder that can be written. */
+  private async fetch(name: string): Promise<void> {
+    try {
+      const { written = name, bytes = "", warnings = [] } = await this.app.connection.ask({ do: "download", name });
+      const href = URL.createObjectURL(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
+      h("a", { href, download: written }).click();
+      setTimeout(() => URL.revokeObjectURL(href), FETCHED);
+      this.dialog.close();
+      if (/\.svgz?$/i.test(written)) this.downloaded = JSON.stringify(this.app.state?.steps);
+      this.app.tell("state");
+      toast([`Downloaded ${written}`, ...warnings].join(". "));
     } catch (e) {
       this.say(e instanceof Error ? e.message : String(e));
     }
@@ -131,6 +167,7 @@ export class Saving {
   }
 
   private async copyCommand(): Promise<void> {
+    await this.app.settle();
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
     if (!answer?.text) return;
     try {

@@ -99,6 +99,8 @@ export interface State {
   saved: boolean;
   savedTo: string | null;
   target: string;
+  /** The command that goes on with the steps. */
+  again: string;
   /** The program that waits for the steps, if one does. */
   program: string | null;
   restored: boolean;
@@ -135,6 +137,10 @@ export interface Answer {
   text?: string;
   written?: string;
   exists?: string;
+  /** The reason why nothing could be written. */
+  unwritable?: string;
+  /** A file, as base64. */
+  bytes?: string;
   copied?: boolean;
   presets?: string[];
   steps?: Step[];

@@ -46,17 +46,20 @@ export const AXE = `(async () => {
 
 export const sample = (name) => join(root, "samples", name);
 
-/** A folder for settings, so that the user's own presets stay out of the tests. */
-const settings = emptyFolder();
+/** Folders for settings and state, so that the user's own stay out of the tests. */
+export const OWN = { XDG_CONFIG_HOME: emptyFolder(), XDG_STATE_HOME: emptyFolder() };
 
 // One listener for every program that is started.
 process.setMaxListeners(0);
 process.once("exit", () => temporary.forEach((dir) => rmSync(dir, { recursive: true, force: true, maxRetries: 5 })));
 
 /** Starts the editor on a file. */
-export async function edit(file, ...args) {
-  const child = spawn(program, ["edit", basename(file), "--no-open", ...args], {
-    cwd: join(file, ".."), stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, XDG_CONFIG_HOME: settings },
+export const edit = (file, ...args) => editWith({}, file, ...args);
+
+/** Starts the editor on a file with these variables, as the user `uid` if there is one. */
+export async function editWith({ uid, as = program, ...variables }, file, ...args) {
+  const child = spawn(as, ["edit", basename(file), "--no-open", ...args], {
+    cwd: join(file, ".."), stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, ...OWN, ...variables }, uid,
   });
   // A test that fails leaves no program behind.
   process.once("exit", () => child.kill("SIGKILL"));

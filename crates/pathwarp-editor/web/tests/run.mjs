@@ -2,6 +2,7 @@
 import { close } from "./harness.mjs";
 import * as dragging from "./dragging.mjs";
 import * as files from "./files.mjs";
+import * as keeping from "./keeping.mjs";
 import * as safety from "./safety.mjs";
 import * as access from "./access.mjs";
 import * as firefox from "./firefox.mjs";
@@ -11,7 +12,7 @@ import * as modes from "./modes.mjs";
 import * as choosing from "./choosing.mjs";
 
 const wanted = process.argv.slice(2);
-const tests = Object.entries({ ...dragging, ...files, ...points, ...modes, ...choosing, ...safety, ...access, ...inkscape, ...firefox })
+const tests = Object.entries({ ...dragging, ...files, ...keeping, ...points, ...modes, ...choosing, ...safety, ...access, ...inkscape, ...firefox })
   .filter(([name]) => wanted.length === 0 || wanted.some((word) => name.includes(word)));
 let failed = 0;
 

@@ -8,26 +8,20 @@ use super::orientation::Orientation;
 use super::png::{self, Png};
 use super::webp::WebP;
 use crate::error::Error;
-use crate::pixmap::new_pixmap;
+use crate::pixmap::{check_size, new_pixmap};
 use pathwarp::budget::{Limit, Limits};
 use tiny_skia::Pixmap;
 
-/// Pixels held for each pixel of a picture that is warped: decoded, reduced for sampling, the result, and its file.
-const COPIES: f64 = 4.0;
-
 /// The pixels and the ICC profile, upright if asked.
 pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<(Pixmap, Option<Vec<u8>>), Error> {
-    let check = |(width, height): (u32, u32)| {
-        let (w, h) = (f64::from(width), f64::from(height));
-        let too_large = |exceeded| Error::TooLarge { width: w, height: h, exceeded };
-        limits.check(Limit::Pixels, COPIES * w * h).map_err(too_large)
-    };
+    let check = |(width, height): (u32, u32)| check_size(f64::from(width), f64::from(height), limits);
     png::size(bytes).map_or(Ok(()), check)?;
     let mut bitmap = open(bytes, limits)?;
     let (width, height) = bitmap.size();
     check((width, height))?;
     let profile = bitmap.profile();
     let exif = if upright { bitmap.exif() } else { None };
+    let limits = &limits.for_pixels(f64::from(width) * f64::from(height));
     let mut pixmap = new_pixmap(f64::from(width), f64::from(height), limits)?;
     bitmap.decode(&mut pixmap)?;
     let orientation = exif.map_or_else(Orientation::default, |exif| Orientation::of_exif(&exif));
@@ -39,14 +33,16 @@ pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<(Pi
 /// # Errors
 /// [`Error::Decode`] for other and damaged files.
 pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
-    open(bytes, &Limits::default().for_input(bytes.len())).map(|bitmap| bitmap.size())
+    let opened = open(bytes, &Limits::default().for_input(bytes.len())).map(|bitmap| bitmap.size());
+    // A PNG that announces more than its decoder stands says so, too.
+    opened.or_else(|e| png::size(bytes).ok_or(e))
 }
 
 /// The number of pixels is limited by the caller. What a decoder holds besides them is limited here: unpacked profiles, and a frame of
 /// an animation, which may be larger than the picture.
 fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Box<dyn Bitmap + 'a>, Error> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    let most = limits.of(Limit::ImageBytes) as usize;
+    let most = limits.of(Limit::Bytes) as usize;
     match Kind::of(bytes) {
         Some(Kind::Png) => Ok(Box::new(Png::open(bytes, most)?)),
         Some(Kind::Jpeg) => Ok(Box::new(Jpeg::open(bytes)?)),

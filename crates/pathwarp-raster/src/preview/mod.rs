@@ -176,7 +176,7 @@ impl PanelLayout {
         if !determinant.is_finite() || determinant == 0.0 {
             return Err(Error::NoView("the map from user units to pixels is singular"));
         }
-        let mut picture = new_pixmap(self.width, self.height, budget.limits())?;
+        let mut picture = new_pixmap(self.width, self.height, &budget.limits())?;
         picture.fill(Color::from_rgba8(0xec, 0xee, 0xf1, 0xff));
         self.draw_page(panel.page, &mut picture);
         let tree_to_panel = skia::transform(self.to_panel * panel.user_to_px.inverse());

@@ -25,7 +25,8 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let (width, height) = warp.size;
     // The result may be as large in proportion to its source as any result to its input.
     let limits = Limits::default().for_input(warp.source.data().len());
-    let mut out = new_pixmap(f64::from(width), f64::from(height), &limits)?;
+    let (width_px, height_px) = (f64::from(width), f64::from(height));
+    let mut out = new_pixmap(width_px, height_px, &limits.for_pixels(width_px * height_px))?;
     let reach = Reach::new(warp, warp.shown.inverse(), TILE);
     let painter = ImagePainter {
         warp,

@@ -6,6 +6,7 @@ use crate::map::{
     Chart, Collineation, Creases3, Displaced, Fraction3, Jet3, Local, Map3, NewtonInverse3, Poly3, Quotient, for_all,
 };
 use glam::{DMat3, DVec3};
+use pathwarp::budget::Budget;
 use std::sync::Arc;
 
 /// Distance from the faces, relative to the coordinates, within which outside points count as inside.
@@ -235,7 +236,7 @@ impl Map3 for LatticeInverse {
         self.inner.work()
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        self.inner.take_overrun()
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(Self { map: self.map.clone(), inner: self.inner.spending(budget) }))
     }
 }

@@ -5,6 +5,7 @@ use super::crease::{Crease3, Creases3};
 use super::jet::Jet3;
 use super::traits::Map3;
 use glam::DVec3;
+use pathwarp::budget::Budget;
 use std::sync::Arc;
 
 /// Maps one after another; the first is applied first. Neighbouring collineations are folded into one.
@@ -75,8 +76,12 @@ impl Map3 for Chain3 {
         self.steps.iter().map(Map3::work).sum::<f64>().max(1.0)
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        self.steps.iter().filter_map(Map3::take_overrun).reduce(|a, b| a + b)
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        let within: Vec<Option<Arc<dyn Map3>>> = self.steps.iter().map(|s| s.within(budget)).collect();
+        within.iter().any(Option::is_some).then(|| {
+            let steps = within.into_iter().zip(&self.steps).map(|(within, s)| within.unwrap_or_else(|| Arc::clone(s)));
+            Arc::new(Self { steps: steps.collect() }) as Arc<dyn Map3>
+        })
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map3>> {

@@ -15,7 +15,6 @@ mod crease;
 mod jet;
 mod lane;
 mod local;
-mod metered;
 mod newton;
 mod poly;
 mod tensor;
@@ -31,7 +30,6 @@ pub use traits::Map3;
 
 pub(crate) use batch::{Displaced, Quotient, Radial, Swept, for_all};
 pub(crate) use local::Local;
-pub(crate) use metered::metered;
 #[cfg(test)]
 use pathwarp::map::Real;
 pub(crate) use poly::Poly3;

@@ -14,7 +14,8 @@ use super::jet::Jet3;
 use super::traits::Map3;
 use crate::box3::Box3;
 use glam::{DMat3, DVec3};
-use pathwarp::meter::{Effort, Overrun};
+use pathwarp::budget::Budget;
+use pathwarp::search::{Search, is_over};
 use std::sync::Arc;
 
 /// Fewest starting points along a side of the box.
@@ -29,11 +30,12 @@ const MAX_STEPS: usize = 40;
 const MIN_DAMPING: f64 = 1e-4;
 /// Starting points tried for one point.
 const MAX_TRIES: usize = 12;
-/// Work of a point of the inverse, as a multiple of the map's: where there is a source. What a search takes beyond this is counted
-/// afterwards ([`Map3::take_overrun`]).
+/// Work of a point of the inverse, as a multiple of the map's: where there is a source. What a search takes beyond this it
+/// spends itself.
 const INVERSE_WORK: f64 = 5.0;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
+#[derive(Clone)]
 pub struct NewtonInverse3 {
     map: Arc<dyn Map3>,
     domain: Box3,
@@ -42,9 +44,9 @@ pub struct NewtonInverse3 {
     orientation: f64,
     reach: f64,
     /// Starting points with their images.
-    starts: Vec<(DVec3, DVec3)>,
+    starts: Arc<[(DVec3, DVec3)]>,
     /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`.
-    buckets: Vec<Vec<u32>>,
+    buckets: Arc<[Vec<u32>]>,
     bounds: Box3,
     side: usize,
     lipschitz: f64,
@@ -52,7 +54,8 @@ pub struct NewtonInverse3 {
     rounding: f64,
     /// The work of the map.
     map_work: f64,
-    overrun: Overrun,
+    /// What searches spend.
+    budget: Option<Arc<Budget>>,
 }
 
 impl NewtonInverse3 {
@@ -97,30 +100,39 @@ impl NewtonInverse3 {
         let orientation = map.jet(core.center()).det().signum();
         let mut out = Self {
             map_work: map.work(),
-            overrun: Overrun::default(),
+            budget: None,
             map,
             domain,
             core,
             orientation,
             reach,
-            starts,
-            buckets: vec![Vec::new(); side * side * side],
+            starts: starts.into(),
+            buckets: Arc::default(),
             bounds,
             side,
             lipschitz: 2.0 * lipschitz,
             rounding: 64.0 * f64::EPSILON * largest,
         };
+        let mut buckets = vec![Vec::new(); side * side * side];
         for (s, b) in boxes.iter().enumerate() {
             let (from, to) = (out.bucket(b.min), out.bucket(b.max));
             for k in from[2]..=to[2] {
                 for j in from[1]..=to[1] {
                     for i in from[0]..=to[0] {
-                        out.buckets[(k * side + j) * side + i].push(u32::try_from(s).unwrap_or(0));
+                        buckets[(k * side + j) * side + i].push(u32::try_from(s).unwrap_or(0));
                     }
                 }
             }
         }
+        out.buckets = buckets.into();
         out
+    }
+
+    /// The same inverse, whose searches spend from a budget.
+    pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
+        // The map may be an inverse itself.
+        let map = self.map.within(budget).unwrap_or_else(|| Arc::clone(&self.map));
+        Self { map, budget: Some(Arc::clone(budget)), ..self.clone() }
     }
 
     fn bucket(&self, q: DVec3) -> [usize; 3] {
@@ -132,16 +144,16 @@ impl NewtonInverse3 {
     /// The preimage of `q` and the derivatives of the inverse there; `None` if there is no certified preimage in the box.
     #[must_use]
     pub fn solve(&self, q: DVec3) -> Option<Jet3> {
-        let mut effort = Effort::default();
-        let found = self.search(q, &mut effort);
-        self.overrun.add(effort, 1, self.map_work);
+        let mut search = Search::default();
+        let found = self.search(q, &mut search);
+        search.spend(self.budget.as_ref(), 1, self.map_work);
         found
     }
 
-    fn search(&self, q: DVec3, effort: &mut Effort) -> Option<Jet3> {
+    fn search(&self, q: DVec3, search: &mut Search) -> Option<Jet3> {
         /// Looks at a starting point that it takes to find the nearest.
         const SELECTING: usize = 30;
-        if !q.is_finite() {
+        if !q.is_finite() || is_over(self.budget.as_ref()) {
             return None;
         }
         let [i, j, k] = self.bucket(q);
@@ -152,10 +164,10 @@ impl NewtonInverse3 {
         };
         let mut order: Vec<(bool, f64, usize)> = near.iter().map(|s| off(*s as usize)).collect();
         if order.is_empty() {
-            effort.starts += self.starts.len();
+            search.starts += self.starts.len();
             order.extend((0..self.starts.len()).map(off).min_by(|a, b| a.1.total_cmp(&b.1)));
         }
-        effort.starts += SELECTING * order.len();
+        search.starts += SELECTING * order.len();
         if order.len() > MAX_TRIES {
             order.select_nth_unstable_by(MAX_TRIES, less);
             order.truncate(MAX_TRIES);
@@ -163,7 +175,7 @@ impl NewtonInverse3 {
         order.sort_by(less);
         let mut best: Option<(f64, Jet3)> = None;
         for (_, _, s) in &order {
-            let Some(found) = self.newton(self.starts[*s].0, q, effort) else { continue };
+            let Some(found) = self.newton(self.starts[*s].0, q, search) else { continue };
             let distance = self.distance_from_core(found.p);
             if distance <= self.reach {
                 return Some(found);
@@ -182,11 +194,11 @@ impl NewtonInverse3 {
     }
 
     /// Newton's method from one starting point.
-    fn newton(&self, start: DVec3, q: DVec3, effort: &mut Effort) -> Option<Jet3> {
+    fn newton(&self, start: DVec3, q: DVec3, search: &mut Search) -> Option<Jet3> {
         let room = self.domain.inflate(0.25 * self.domain.size());
         let mut x = start;
         let mut jet = self.map.jet(x);
-        effort.jets += 1;
+        search.jets += 1;
         let mut residual = q - jet.p;
         for _ in 0..MAX_STEPS {
             let step = jet.d.inverse() * residual;
@@ -199,7 +211,7 @@ impl NewtonInverse3 {
             while damping > MIN_DAMPING {
                 to = (x + step * damping).clamp(room.min, room.max);
                 at = self.map.jet(to);
-                effort.jets += 1;
+                search.jets += 1;
                 r = q - at.p;
                 if r.length_squared() < residual.length_squared() || r.length() <= self.rounding {
                     break;
@@ -246,9 +258,8 @@ impl Map3 for NewtonInverse3 {
         INVERSE_WORK * self.map_work
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        // The map may be an inverse itself.
-        Some(self.overrun.take() + self.map.take_overrun().unwrap_or(0))
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(self.spending(budget)))
     }
 }
 

@@ -6,6 +6,7 @@ use super::jet::Jet3;
 use super::poly::Fraction3;
 use crate::box3::Box3;
 use glam::DVec3;
+use pathwarp::budget::Budget;
 use std::sync::Arc;
 
 /// A differentiable map of space: x right, y up, z towards the viewer.
@@ -65,10 +66,10 @@ pub trait Map3: Send + Sync {
         1.0
     }
 
-    /// Takes the work, in evaluations of the budget, by which evaluations since the last call exceeded [`work`](Map3::work). `None`:
-    /// none ever does. Inverses that search exceed it where they search in vain, which is known only afterwards.
+    /// The same map, whose searches spend from a budget what they take beyond [`work`](Map3::work), and find nothing once it is used up.
+    /// `None`: nothing is searched.
     #[doc(hidden)]
-    fn take_overrun(&self) -> Option<u64> {
+    fn within(&self, _budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
         None
     }
 }
@@ -105,7 +106,7 @@ impl<M: Map3 + ?Sized> Map3 for Arc<M> {
     fn work(&self) -> f64 {
         (**self).work()
     }
-    fn take_overrun(&self) -> Option<u64> {
-        (**self).take_overrun()
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        (**self).within(budget)
     }
 }

@@ -9,7 +9,7 @@ use super::error::MeshError;
 use super::model::{Corner, Mark, Mesh, NONE, PolygonKind};
 use crate::map::Map3;
 use glam::DVec3;
-use pathwarp::budget::{Budget, Limit};
+use pathwarp::budget::{Budget, cost};
 use std::collections::{HashMap, HashSet};
 
 /// Most rounds of halving, which give at most 2¹⁶ parts of an edge.
@@ -28,7 +28,7 @@ pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) 
         if split.is_empty() {
             break;
         }
-        budget.spend_cut(Limit::Segments, PER_SPLIT * halved(mesh, &split))?;
+        budget.spend(cost::SEGMENT * (PER_SPLIT * halved(mesh, &split)) as f64)?;
         work.split(mesh, &split);
     }
     Ok(())
@@ -105,12 +105,12 @@ impl Refining<'_> {
         let swap = ends[0].to_array().partial_cmp(&ends[1].to_array()) == Some(std::cmp::Ordering::Greater);
         let [a, b] = if swap { [ends[1], ends[0]] } else { ends };
         let [p, q] = (if swap { [j, i] } else { [i, j] }).map(|v| self.images[v as usize]);
-        self.budget.spend(Limit::Evaluations, 3)?;
+        self.budget.spend(3.0)?;
         Ok([0.25, 0.5, 0.75].iter().any(|t| from_chord(p, q, self.map.point(a.lerp(b, *t))) > self.tolerance))
     }
 
     fn bulges(&self, mesh: &Mesh, corners: &[Corner]) -> Result<bool, MeshError> {
-        self.budget.spend(Limit::Evaluations, 1)?;
+        self.budget.spend(1.0)?;
         let n = corners.len() as f64;
         let mean = |of: &[DVec3]| corners.iter().map(|c| of[c.vertex as usize]).sum::<DVec3>() / n;
         let (middle, image) = (mean(&mesh.positions), mean(&self.images));
@@ -277,7 +277,7 @@ mod tests {
     use crate::box3::Box3;
     use crate::deform::{Bend3, Spine3};
     use crate::mesh::{deform, obj, topology};
-    use pathwarp::budget::Limits;
+    use pathwarp::budget::{Limit, Limits};
 
     /// A bar of quads with texture coordinates: 100 × 10 × 10, one face on each side.
     const BAR: &str = "v 0 0 0\nv 100 0 0\nv 100 10 0\nv 0 10 0\nv 0 0 10\nv 100 0 10\nv 100 10 10\nv 0 10 10\nvt 0 0\nvt 1 0\nvt 1 1\n\
@@ -313,7 +313,7 @@ mod tests {
         refine(&mut mesh, &*taper, 0.01, &Budget::new(Limits::default())).unwrap();
         assert_eq!(mesh, obj::read(BAR.as_bytes()).unwrap());
         let twist = Bend3::new(frame, Spine3::Twist(2.0)).build().unwrap().map;
-        let budget = Budget::new(Limits::default().with(Limit::Evaluations, 1e4));
-        assert!(refine(&mut mesh, &*twist, 1e-6, &budget).unwrap_err().to_string().contains("evaluations"));
+        let budget = Budget::new(Limits::default().with(Limit::Work, 1e4));
+        assert!(refine(&mut mesh, &*twist, 1e-6, &budget).unwrap_err().to_string().contains("`work`"));
     }
 }

@@ -9,7 +9,7 @@ use super::knots;
 use super::surface::Surface;
 use crate::map::{Collineation, Fraction3, Map3};
 use glam::{DVec4, Vec4Swizzles as _};
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded};
 use std::collections::BTreeMap;
 
 /// The exact image under a map, if it is a surface with positive weights of a degree that is allowed.
@@ -45,7 +45,7 @@ fn fractions(
     for piece in pieces {
         // About as much work as so many evaluations of the map; the first piece tells for the others.
         let d = out.last().map_or(most, Fraction3::degree) + 1;
-        budget.spend(Limit::Evaluations, d.pow(4) as u64)?;
+        budget.spend(d.pow(4) as f64)?;
         match piece.bounds().and_then(|b| map.fraction(&b, most)) {
             Some(fraction) => out.push(fraction),
             None => return Ok(None),

@@ -3,7 +3,6 @@
 use super::bezier::BezierPatch;
 use crate::map::{Creases3, Jet3, Level3, Map3};
 use glam::{DMat3, DVec3};
-use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp::map::CreaseKind;
 
 /// Places along u and along v at which the side of a crease is looked at.
@@ -29,20 +28,13 @@ pub(super) fn levels(creases: &Creases3) -> Vec<Level3> {
     creases.items().iter().filter(|c| c.kind == CreaseKind::Kink).map(|c| c.level.clone()).collect()
 }
 
+/// The work of [`crossing`]: along a level set, both sides of some places are compared.
+pub(super) fn work(levels: &[Level3]) -> f64 {
+    (PLACES * (PLACES + 4 * levels.len()).min(9 * PLACES)) as f64
+}
+
 /// The level sets that cross the patch where the derivative really jumps.
-///
-/// # Errors
-/// More evaluations than the limit allows.
-pub(super) fn crossing(
-    patch: &BezierPatch,
-    map: &dyn Map3,
-    levels: &[Level3],
-    budget: &Budget,
-) -> Result<Vec<Level3>, Exceeded> {
-    if levels.is_empty() {
-        return Ok(Vec::new());
-    }
-    budget.spend(Limit::Evaluations, (PLACES * PLACES) as u64)?;
+pub(super) fn crossing(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Vec<Level3> {
     let grid: Vec<_> = (0..PLACES * PLACES).map(|k| patch.point(place(k % PLACES), place(k / PLACES))).collect();
     let mut out = Vec::new();
     for level in levels {
@@ -51,12 +43,11 @@ pub(super) fn crossing(
         let right = (0..side.len()).filter(|k| k % PLACES + 1 < PLACES && side[*k] != side[k + 1]).map(|k| (k, k + 1));
         let up = (0..side.len() - PLACES).filter(|k| side[*k] != side[k + PLACES]).map(|k| (k, k + PLACES));
         let pairs: Vec<(usize, usize)> = right.chain(up).collect();
-        budget.spend(Limit::Evaluations, 2 * pairs.len() as u64)?;
         if pairs.iter().any(|(a, b)| jumps(patch, map, level, at(*a), at(*b))) {
             out.push(level.clone());
         }
     }
-    Ok(out)
+    out
 }
 
 /// A place at which the map itself jumps across a level set, among places of a coarse grid and its lines.

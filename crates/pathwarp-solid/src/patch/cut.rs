@@ -15,7 +15,7 @@ use super::surface::Surface;
 use super::trims::Trims;
 use crate::map::{Chain3, Level3, Map3};
 use glam::{DVec3, Vec4Swizzles as _};
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded};
 
 /// Cuts in the middle after which a part is fitted as it is.
 const DEEPEST: usize = 6;
@@ -58,7 +58,7 @@ impl Cutter<'_> {
         let across = breaks[0].len() - 1;
         let mut crossed = Vec::with_capacity(pieces.len());
         for piece in pieces {
-            crossed.push(crossing::crossing(piece, self.map, self.levels, self.budget)?);
+            crossed.push(self.crossing(piece, self.levels)?);
         }
         if crossed.iter().all(Vec::is_empty) && !self.is_torn(pieces, across)? {
             return Ok(None);
@@ -76,13 +76,18 @@ impl Cutter<'_> {
         Ok(Some(out))
     }
 
+    fn crossing(&self, patch: &BezierPatch, levels: &[Level3]) -> Result<Vec<Level3>, Exceeded> {
+        self.budget.spend(crossing::work(levels))?;
+        Ok(crossing::crossing(patch, self.map, levels))
+    }
+
     /// Returns `true` if the images of two neighbouring patches do not join.
     fn is_torn(&self, pieces: &[BezierPatch], across: usize) -> Result<bool, Exceeded> {
         const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
         if pieces.len() == 1 {
             return Ok(false);
         }
-        self.budget.spend(Limit::Evaluations, (4 * PLACES.len() * pieces.len()) as u64)?;
+        self.budget.spend((4 * PLACES.len() * pieces.len()) as f64)?;
         let sides: Vec<Sided> = pieces.iter().map(|p| Sided::new(p, self.map)).collect();
         let image = |k: usize, u: f64, v: f64| sides[k].map.point(pieces[k].point(u, v));
         let apart = |p: DVec3, q: DVec3| p.distance(q) > self.tolerance;
@@ -100,7 +105,7 @@ impl Cutter<'_> {
         /// Clipping a curve takes about as long as so many evaluations of a map.
         const WORK: usize = 16;
         let Some(trims) = trims else { return Ok(None) };
-        self.budget.spend(Limit::Evaluations, (WORK * trims.count()) as u64)?;
+        self.budget.spend((WORK * trims.count()) as f64)?;
         Ok(trims.part(from, to))
     }
 
@@ -110,7 +115,7 @@ impl Cutter<'_> {
             return Ok(());
         }
         let patch = &part.patch;
-        let crossing = crossing::crossing(patch, self.map, levels, self.budget)?;
+        let crossing = self.crossing(patch, levels)?;
         let most = if cuts[0] < DEEPEST && cuts[1] < MOST_CUTS { ENOUGH } else { MOST_CELLS };
         let turned = part.transposed();
         if let Some((surfaces, off)) = self.whole(part, &turned, &crossing, most)?
@@ -186,7 +191,7 @@ impl Cutter<'_> {
             let own = if graphs.count() == 0 {
                 Some(trims.clone())
             } else {
-                self.budget.spend(Limit::Evaluations, (WORK * trims.count()) as u64)?;
+                self.budget.spend((WORK * trims.count()) as f64)?;
                 trims.layer(graphs, k, SHARE * self.tolerance / steepest(&surface, n))
             };
             if own.as_ref().is_some_and(Trims::is_empty) {
@@ -209,7 +214,8 @@ impl Cutter<'_> {
         let layers = Layers { patch: &part.patch, graphs, map };
         let mut n = 1;
         loop {
-            let fits = (0..=graphs.count()).map(|k| layers.fit(k, n, self.budget)).collect::<Result<Vec<_>, _>>()?;
+            self.budget.spend(layers.work(n) * (graphs.count() + 1) as f64)?;
+            let fits: Vec<Cells> = (0..=graphs.count()).map(|k| layers.fit(k, n)).collect();
             let off = fits.iter().fold(0.0, |d: f64, c| d.max(c.distance));
             if off <= self.tolerance || n >= most {
                 let surfaces = match &part.trims {

@@ -9,7 +9,7 @@ use super::side::Sided;
 use super::surface::Surface;
 use crate::map::{Chain3, Creases3, Map3};
 use glam::DVec3;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded};
 use thiserror::Error;
 
 /// Counts of deformed surfaces, and the largest error.
@@ -120,7 +120,8 @@ fn refitted(
         for (_, pieces, _) in left {
             let mut cells = Vec::with_capacity(pieces.len());
             for (side, piece) in pieces {
-                let fit = refit::fit(piece, &side.map, n, inside, budget)?;
+                budget.spend(refit::work(piece, n))?;
+                let fit = refit::fit(piece, &side.map, n, inside);
                 distance = distance.max(fit.distance);
                 cells.push(fit);
             }
@@ -147,7 +148,7 @@ fn examine(
 ) -> Result<(), PatchError> {
     const GRID: usize = 8;
     for piece in pieces {
-        budget.spend(Limit::Evaluations, (GRID * GRID) as u64)?;
+        budget.spend((GRID * GRID) as f64)?;
         for k in 0..GRID * GRID {
             let at = |i: usize| i as f64 / (GRID - 1) as f64;
             let p = piece.point(at(k % GRID), at(k / GRID));

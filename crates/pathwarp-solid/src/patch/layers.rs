@@ -8,7 +8,6 @@ use super::crossing::Graphs;
 use super::refit::{self, Cells, Corner, INSIDE};
 use crate::map::Map3;
 use glam::DVec3;
-use pathwarp::budget::{Budget, Exceeded, Limit};
 
 /// The parts of a patch between the curves, from v = 0 upwards.
 pub(super) struct Layers<'a> {
@@ -25,12 +24,13 @@ struct Rung {
 }
 
 impl Layers<'_> {
+    /// The work of fitting n × n cells to a layer.
+    pub(super) fn work(&self, n: usize) -> f64 {
+        refit::work(self.patch, n) + 16.0 * (n * refit::PLACES) as f64
+    }
+
     /// Fits n × n cells to a layer and measures their distance from the image.
-    ///
-    /// # Errors
-    /// More evaluations than the limit allows.
-    pub(super) fn fit(&self, layer: usize, n: usize, budget: &Budget) -> Result<Cells, Exceeded> {
-        budget.spend(Limit::Evaluations, refit::work(self.patch, n) + 16 * (n * refit::PLACES) as u64)?;
+    pub(super) fn fit(&self, layer: usize, n: usize) -> Cells {
         let at = |i: usize| i as f64 / n as f64;
         let mut corners = Vec::with_capacity((n + 1) * (n + 1));
         let rungs: Vec<[Rung; 2]> =
@@ -42,7 +42,7 @@ impl Layers<'_> {
         let columns: Vec<Rung> =
             (0..n * refit::PLACES).map(|i| self.rung(layer, (i as f64 + 0.5) / (n * refit::PLACES) as f64)).collect();
         cells.measure(|i, _, t| self.map.point(self.place(&columns[i], t)));
-        Ok(cells)
+        cells
     }
 
     fn rung(&self, layer: usize, s: f64) -> Rung {

@@ -9,7 +9,6 @@ use super::knots;
 use super::surface::Surface;
 use crate::map::Map3;
 use glam::{DVec3, DVec4};
-use pathwarp::budget::{Budget, Exceeded, Limit};
 
 /// Cells along a side of a patch at most; more would mean a crease, at which they converge slowly.
 pub(super) const MOST_CELLS: usize = 64;
@@ -62,30 +61,20 @@ pub(super) fn is_torn(at: DVec3, [beside, ds, dt]: &[DVec3; 3], inside: f64) -> 
 }
 
 /// The evaluations that n × n cells take.
-pub(super) fn work(patch: &BezierPatch, n: usize) -> u64 {
+pub(super) fn work(patch: &BezierPatch, n: usize) -> f64 {
     let samples = (n * PLACES + 1) * (n * PLACES + 1);
-    (patch.work() * (3 * (n + 1) * (n + 1) + samples)) as u64
+    (patch.work() * (3 * (n + 1) * (n + 1) + samples)) as f64
 }
 
 /// Fits n × n cells and measures their distance from the image. Derivatives at the sides are taken `inside` of them, in the parameters:
 /// 0, or [`INSIDE`] if a crease may lie along a side.
-///
-/// # Errors
-/// More evaluations than the limit allows.
-pub(super) fn fit(
-    patch: &BezierPatch,
-    map: &dyn Map3,
-    n: usize,
-    inside: f64,
-    budget: &Budget,
-) -> Result<Cells, Exceeded> {
-    budget.spend(Limit::Evaluations, work(patch, n))?;
+pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, inside: f64) -> Cells {
     let at = |i: usize| i as f64 / n as f64;
     let corners =
         (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, [at(i), at(j)], n, inside));
     let mut out = Cells::new(n, corners.collect());
     out.measure(|_, u, v| map.point(patch.point(u, v)));
-    Ok(out)
+    out
 }
 
 impl Cells {

@@ -5,7 +5,7 @@ use super::surface::Surface;
 use crate::map::{Chain3, Map3};
 use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded};
 use std::collections::HashMap;
 
 /// Quads along a side of a patch if no distance is given.
@@ -40,14 +40,14 @@ pub fn tessellate_image(
     if let Some(within) = within {
         // A power of two, so that parameters from both ends of an edge are the same numbers.
         while side < MOST {
-            budget.spend(Limit::Evaluations, (work * 4 * side * side) as u64)?;
+            budget.spend((work * 4 * side * side) as f64)?;
             if patches.iter().all(|(_, p)| is_close(p, map, side, within)) {
                 break;
             }
             side *= 2;
         }
     }
-    budget.spend(Limit::Evaluations, (work * (side + 1) * (side + 1)) as u64)?;
+    budget.spend((work * (side + 1) * (side + 1)) as f64)?;
     let mut mesh = Mesh::default();
     let mut places: HashMap<[u64; 3], u32> = HashMap::new();
     let mut last = None;

@@ -285,11 +285,11 @@ fn infinity_and_endless_work_are_refused() {
     let map = chain("anamorph", &[("eye", "30,30,20"), ("reference", "0,0,0 64,0,0 0,64,0"), ("push", "1,0,0:2")]);
     let e = deform_patches(&mut vec![patch([3, 3], false)], &map, 0.1, &budget()).unwrap_err();
     assert!(matches!(e, PatchError::Undefined { surface: 0, .. }), "{e}");
-    let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e4));
+    let small = Budget::new(Limits::default().with(Limit::Work, 1e4));
     let twist = chain("bend", &[("preset", "twist"), ("along", "y"), ("angle", "100")]);
     let e = deform_patches(&mut vec![patch([3, 3], false)], &twist, 1e-12, &small).unwrap_err();
-    assert!(e.to_string().contains("evaluations"), "{e}");
-    let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e3));
+    assert!(e.to_string().contains("`work`"), "{e}");
+    let small = Budget::new(Limits::default().with(Limit::Work, 1e3));
     assert!(tessellate(&[patch([3, 3], false)], Some(1e-9), &small).is_err());
     let mesh = tessellate(&[patch([3, 3], false)], Some(0.01), &budget()).unwrap();
     assert!(mesh.polygons.len() > 64 && mesh.name_of(0) == "s");
@@ -307,8 +307,8 @@ fn long_surfaces_take_linear_time() {
     let begun = std::time::Instant::now();
     assert_eq!(long.pieces().0.len(), 19_997);
     let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]);
-    let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e6));
-    assert!(deform_patches(&mut vec![long], &map, 0.1, &small).unwrap_err().to_string().contains("evaluations"));
+    let small = Budget::new(Limits::default().with(Limit::Work, 1e6));
+    assert!(deform_patches(&mut vec![long], &map, 0.1, &small).unwrap_err().to_string().contains("`work`"));
     // Of too high a degree to be composed: known before any product.
     let high = chain("ffd", &[("degree", "10"), ("move", "5,5,5:4,0,0")]);
     let done = deform_patches(&mut vec![patch([3, 3], false)], &high, 0.5, &budget()).unwrap();

@@ -2,13 +2,15 @@
 
 use super::bends::{Bend, Bends};
 use super::bitmap::{self, EmbeddedImage};
-use super::letters;
+use super::contours;
+use super::digits::ROUNDING;
+use super::letters::{self, LetterPiece};
 use super::options::OnError;
 use super::outcome::{PartOutcome, Skipped, WarpedDocument, WarpedPart};
 use super::part;
 use super::shading::Shading;
 use super::slots::{self, PlacedSlot, written};
-use super::task::{PartContext, PartTask, ROUNDING};
+use super::task::{PartContext, PartTask};
 use super::warning::Warning;
 use crate::scene::affine::is_invertible;
 use crate::scene::drawing::Drawing;
@@ -98,8 +100,10 @@ fn warp_parts(
     const WORTH_IT: usize = 1000;
     let scene = drawing.scene();
     let (parts, shapes) = (&scene.parts, drawing.shapes());
-    let each: Vec<Bend<'_>> = bends.each.iter().enumerate().map(|(k, b)| shared(drawing, b, of, k)).collect();
-    let pieces: Vec<_> = each.iter().map(|b| letters::pieces(drawing, &b.options)).collect();
+    let pieces: Vec<_> = bends.each.iter().map(|b| letters::pieces(drawing, &b.options)).collect();
+    let each = bends.each.iter().zip(&pieces).enumerate();
+    let each: Vec<_> = each.map(|(k, (b, pieces))| shared(drawing, b, (of, k), pieces)).collect();
+    let (each, contours): (Vec<Bend<'_>>, Vec<_>) = each.into_iter().unzip();
     let known: Vec<_> = each.iter().enumerate().map(|(k, b)| known_shapes(drawing, b, of, k)).collect();
     let gradients = if bends.options.paints_gradients() { parts.iter().map(gradients).sum() } else { 0 };
     let hairline = drawing.millimetre().map_or(0.0, |mm| HAIRLINE * mm);
@@ -110,8 +114,10 @@ fn warp_parts(
         let map = gathered.as_ref().map_or(*map, |g| g as &dyn Map);
         let context = PartContext { map, options, known: &known[k], to_px: scene.to_px, gradients, hairline };
         let write = written(scene, slots, p.slot, p.frame);
-        (is_invertible(p.frame) && is_invertible(write))
-            .then(|| part::warp(&PartTask::new(p, shapes[i].outline.clone(), write, &context, &pieces[k][i])))
+        (is_invertible(p.frame) && is_invertible(write)).then(|| {
+            let outline = (shapes[i].outline.clone(), &contours[k][i][..]);
+            part::warp(&PartTask::new(p, outline, write, &context, &pieces[k][i]))
+        })
     };
     let copies = each.iter().map(|b| b.options.copies.len()).max().unwrap_or_default();
     let segments = || -> usize { parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * copies.max(1) };
@@ -128,13 +134,26 @@ fn bent<'a>(drawing: &'a Drawing, of: &[Option<usize>], k: usize) -> impl Iterat
 }
 
 /// A bend that knows the edges that shapes under it share: these keep their own pieces. An edge that another map bends on its other
-/// side is not shared.
-fn shared<'a>(drawing: &Drawing, bend: &Bend<'a>, of: &[Option<usize>], k: usize) -> Bend<'a> {
+/// side is not shared. With the tolerances of the contours of every part.
+fn shared<'a>(
+    drawing: &Drawing,
+    bend: &Bend<'a>,
+    (of, k): (&[Option<usize>], usize),
+    pieces: &[Vec<LetterPiece>],
+) -> (Bend<'a>, Vec<Vec<f64>>) {
     let mut bend = bend.clone();
-    if bend.options.refit.merge && !bend.is_identity() {
-        bend.options.refit.shared = Arc::new(refit::SharedEdges::among(bent(drawing, of, k)));
+    let contours = contours::of_parts(drawing, &bend, of, k);
+    let refit = &bend.options.refit;
+    if (refit.merge || refit.suited) && !bend.is_identity() {
+        let outline = |i: usize| {
+            let (whole, own) = (&drawing.shapes()[i].outline, &contours[i]);
+            contours::placed_outline(whole, own, &bend.options, &pieces[i])
+        };
+        let placed: Vec<_> = (0..of.len()).filter(|&i| of[i] == Some(k)).map(outline).collect();
+        let all = placed.iter().map(|(o, contours)| (&**o, &contours[..]));
+        bend.options.refit.shared = Arc::new(refit::SharedEdges::held(all));
     }
-    bend
+    (bend, contours)
 }
 
 /// The shapes that come again from one part to the next.
@@ -144,7 +163,7 @@ fn known_shapes(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usi
     }
     // Most parts have less than the whole tolerance, because they are rounded.
     let refit = &bend.options.refit;
-    let finer = refit.clone().with_tolerance((1.0 - ROUNDING) * refit.tolerance);
+    let finer = refit.clone().with_tolerance((1.0 - ROUNDING) * refit.tolerance).with_suited(false);
     KnownShapes::among(bent(drawing, of, k), bend.map, &finer)
 }
 

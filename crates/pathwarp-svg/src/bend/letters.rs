@@ -19,6 +19,16 @@ impl LetterPiece {
     pub(crate) fn of(&self, whole: &Outline) -> Outline {
         Outline { subpaths: whole.subpaths.get(self.range.clone()).unwrap_or_default().to_vec() }
     }
+
+    /// The index in `whole` of the letter's first subpath.
+    pub(crate) fn first(&self) -> usize {
+        self.range.start
+    }
+
+    /// What holds for the letter's subpaths of `whole`, for each of its places.
+    pub(crate) fn repeated(&self, whole: &[f64]) -> Vec<f64> {
+        whole.get(self.range.clone()).unwrap_or_default().repeat(self.places.len())
+    }
 }
 
 /// Places all letters of an outline.

@@ -4,6 +4,8 @@ mod arcs;
 pub(crate) mod bends;
 mod bent_gradient;
 pub(crate) mod bitmap;
+mod contours;
+mod digits;
 pub(crate) mod drawing;
 pub(crate) mod gradient;
 pub(crate) mod image;

@@ -115,6 +115,8 @@ pub enum PageFit {
     /// Set it to the bounding box of the warped artwork and the margin of the original around it: the least distance between
     /// the original artwork and the edge of its page.
     PageWithMargin,
+    /// Set it to an area of its size at the origin.
+    Origin,
 }
 
 /// Treatment of patterns.
@@ -159,7 +161,8 @@ pub enum Clones {
 pub struct WarpOptions {
     /// Options for refitting paths; the tolerance is in root user units.
     pub refit: refit::Options,
-    /// Number of decimals in written coordinates. `None`: as many as keep rounding below a hundredth of the tolerance.
+    /// Number of decimals in written coordinates. `None`: as many as keep rounding below a hundredth of the tolerance, or a tenth of that
+    /// of a small contour, and smooth joints smooth.
     pub precision: Option<u8>,
     /// Treatment of strokes.
     pub strokes: Strokes,

@@ -3,7 +3,7 @@
 use super::paint::PaintFit;
 use super::picture::{BentImage, PictureError};
 use super::warning::Warning;
-use crate::source::number::path_data;
+use crate::source::number::path_data_by;
 use pathwarp::kurbo::{BezPath, Point, Rect};
 use pathwarp::refit::{Assurance, PathReport};
 use std::collections::{BTreeMap, BTreeSet};
@@ -43,6 +43,8 @@ pub struct ShapeReport {
     pub segments_out: usize,
     /// Largest distance between exact image and output, rounding included, in root user units.
     pub max_error: f64,
+    /// The largest distance as a share of the tolerance that holds where it is: that of the contour, if contours have their own.
+    pub share: f64,
     /// Assurance of `max_error`.
     pub assurance: Assurance,
     /// Points of the source where the tolerance was not met.
@@ -94,6 +96,7 @@ impl WarpedDocument {
                 last.segments_in += r.segments_in;
                 last.segments_out += r.segments_out;
                 last.max_error = last.max_error.max(error);
+                last.share = last.share.max(r.share);
                 last.assurance = last.assurance.min(r.assurance);
                 last.over_budget.extend(&r.over_budget);
                 last.unresolved = most(last.unresolved, r.unresolved);
@@ -109,6 +112,7 @@ impl WarpedDocument {
                 segments_in: r.segments_in,
                 segments_out: r.segments_out,
                 max_error: error,
+                share: r.share,
                 assurance: r.assurance,
                 over_budget: r.over_budget.clone(),
                 unresolved: r.unresolved,
@@ -168,6 +172,8 @@ pub(crate) struct WarpedPart {
     /// too. Empty if there is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
+    /// Short handles may have more decimals.
+    pub(crate) smooth: bool,
     /// The text of `path`, if it has been written already: if it has arcs, which `path` approximates, and a large drawing's on the
     /// threads that bend it.
     pub(crate) data: Option<String>,
@@ -191,9 +197,15 @@ pub(crate) struct WarpedPart {
 }
 
 impl WarpedPart {
+    /// The text of a path of the part.
+    pub(crate) fn text(&self, path: &BezPath) -> String {
+        path_data_by(path, self.smooth, |_| [self.decimals; 2])
+    }
+
     /// Writes the text of the path.
-    pub(super) fn with_data(self) -> Self {
-        Self { data: Some(self.data.unwrap_or_else(|| path_data(&self.path, self.decimals))), ..self }
+    pub(super) fn with_data(mut self) -> Self {
+        self.data = Some(self.data.take().unwrap_or_else(|| self.text(&self.path)));
+        self
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let p = t.part;
     // The centre line of an outlined stroke is not written.
     let draft = p.fill.is_none() && p.stroke.as_ref().is_some_and(|s| expands(t, s)) && !p.in_tile;
-    let bent = if draft { t.draft()? } else { t.bend(&t.outline)? };
+    let bent = if draft { t.draft()? } else { t.bend(&t.outline, &t.contours)? };
     let fit = paint_fit(t, &bent.path);
     let (centre, pieces) = (bent.report.segments_in, bent.report.segments_out);
     let Filled { mut path, mut data, fill, mut report } = filled(t, bent)?;
@@ -30,7 +30,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let stroke_gradient = p.stroke.as_ref().filter(|s| expands(t, s)).and_then(|s| BentGradient::of(t, s.paint(), fit));
     let bent = stroke::stroke(t, &path, pieces, stroke_gradient.is_some())?;
     if draft && bent.outcome.outline().is_none() {
-        let refitted = t.bend(&t.outline)?;
+        let refitted = t.bend(&t.outline, &t.contours)?;
         (path, data, report) = (refitted.path, refitted.data, [Some(refitted.report), None]);
     }
     let error = report[0].as_ref().map_or(0.0, |r| r.max_error);
@@ -43,6 +43,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         path,
         fill,
         decimals: t.decimals,
+        smooth: t.options().precision.is_none(),
         data,
         stroke: bent.outcome,
         stroke_error: bent.error.map(|e| e + bent.leverage * (error + t.rounding)),
@@ -129,14 +130,13 @@ fn filled(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
     let stroked = t.part.stroke.is_some() && t.part.role != PartRole::Clip;
     // With `Strokes::Keep`, each centre line is to stay one path, so only fills without a stroke are closed.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
-    let tolerance = t.options().refit.tolerance;
-    let area = filled_area(t, tolerance).filter(|a| closes || a.is_empty());
+    let area = filled_area(t, t.finest).filter(|(a, _)| closes || a.is_empty());
     let report = Some(report);
     Ok(match area {
         None => Filled { path, data, fill: None, report: [report, None] },
-        Some(area) if area.is_empty() => Filled { path, data, fill: Some(BezPath::new()), report: [report, None] },
-        Some(area) => {
-            let closed = t.bend(&area)?;
+        Some((area, _)) if area.is_empty() => Filled { path, data, fill: Some(BezPath::new()), report: [report, None] },
+        Some((area, contours)) => {
+            let closed = t.bend(&area, &contours)?;
             if stroked {
                 Filled { path, data, fill: Some(closed.path), report: [report, Some(closed.report)] }
             } else {
@@ -147,8 +147,8 @@ fn filled(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
 }
 
 /// Closes the subpaths of a fill if the map bends one of the closing lines, which are not drawn. Subpaths that enclose nothing
-/// are dropped. Returns `None` if the fill equals the outline.
-fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<Outline> {
+/// are dropped. Returns `None` if the fill equals the outline, else the fill with the tolerances of its contours.
+fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> {
     /// Samples along a line.
     const SAMPLES: u32 = 16;
     let (p, outline, map) = (t.part, &t.outline, t.map);
@@ -183,7 +183,9 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<Outline> {
         s
     };
     let encloses = |s: &&Subpath| !open(s) || !matches!(s.segs.as_slice(), [] | [Seg::Line(_)]);
-    Some(Outline { subpaths: outline.subpaths.iter().filter(encloses).map(closed).collect() })
+    let kept = |i: &usize| encloses(&&outline.subpaths[*i]);
+    let contours = (0..t.contours.len()).filter(kept).map(|i| t.contours[i]).collect();
+    Some((Outline { subpaths: outline.subpaths.iter().filter(encloses).map(closed).collect() }, contours))
 }
 
 /// Returns `true` if one of the part's paints follows the affine fit. Only gradients become pictures, and only patterns tiles.

@@ -1,12 +1,13 @@
 //! The image of a path that belongs to no drawing, as path data: what a drawing would hold for it.
 
 use super::arcs::with_arcs;
+use super::digits::{Digits, allowed};
 use super::stubs;
-use super::task::{allowed, decimals, rounding};
-use crate::source::number::{arcs_data, path_data};
+use crate::source::number::arcs_data;
 use pathwarp::kurbo::BezPath;
 use pathwarp::map::Map;
-use pathwarp::refit::{self, PathReport};
+use pathwarp::outline::Subpath;
+use pathwarp::refit::{self, PathReport, SharedEdges, suited};
 use pathwarp::{GeometryError, Outline};
 
 /// The image of a path.
@@ -43,15 +44,22 @@ pub fn warp_path(
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
-    let decimals = decimals(1.0, options.tolerance, precision);
-    let rounding = rounding(1.0, decimals);
+    let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
+    let held = |s: &Subpath| if options.suited { suited(options.tolerance, s.diagonal()) } else { options.tolerance };
+    let contours: Vec<f64> = outline.subpaths.iter().map(held).collect();
+    let finest = contours.iter().copied().fold(options.tolerance, f64::min);
     let mut outline = outline.clone();
-    outline.subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, rounding));
-    let options = options.clone().with_tolerance(allowed(options.tolerance, rounding));
+    outline.subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, digits.rounding(finest)));
+    let spans = SharedEdges::held([(&outline, &contours[..])]).spans(&outline, &contours);
+    let tolerance = allowed(options.tolerance, digits.rounding(options.tolerance));
+    let options = options.clone().with_tolerance(tolerance).with_spans(digits.allowed(&spans));
     if let Some((image, report)) = with_arcs(map, &outline, &options)? {
-        let data = arcs_data(&image, decimals);
-        return Ok(WarpedPath { data, path: image.to_bez_path(options.tolerance), report });
+        let data = arcs_data(&image, digits.more(), |i| digits.decimals(contours[i]));
+        return Ok(WarpedPath { data, path: image.to_bez_path(finest), report });
     }
     let warped = refit::warp_path(&outline, map, &options)?;
-    Ok(WarpedPath { data: path_data(&warped.path, decimals), path: warped.path, report: warped.report })
+    let mut report = warped.report;
+    report.share = digits.errors(&spans, &warped.spans)[1];
+    let data = digits.path_data(&warped.path, &outline, &spans, &warped.spans);
+    Ok(WarpedPath { data, path: warped.path, report })
 }

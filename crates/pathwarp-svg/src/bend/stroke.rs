@@ -5,10 +5,9 @@ use super::outcome::StrokeOutcome;
 use super::task::PartTask;
 use super::width::StrokeWidth;
 use crate::scene::affine::stretch;
-use crate::scene::expand::{dash_segments, stroke_outline, stroke_segments};
-use pathwarp::budget::Limit;
+use crate::scene::expand::{spend_dashes, spend_stroke, stroke_outlines};
 use pathwarp::kurbo::{Affine, BezPath, Point};
-use pathwarp::refit::{self, Assurance, PathReport};
+use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
 use pathwarp::{GeometryError, Outline};
 use usvg::Stroke;
 
@@ -21,6 +20,9 @@ const MISSED: f64 = 0.6;
 
 /// Finest expansion, in user units: rounding is coarser.
 const FINEST: f64 = 1e-9;
+
+/// Stands for the drawing where contours have indices.
+const DRAWING: usize = usize::MAX;
 
 /// The image of a stroke.
 pub(super) struct BentStroke {
@@ -77,8 +79,7 @@ pub(super) fn stroke(
     }
     let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(BentStroke::scaled(1.0, None)) };
     // The box of a stroke that stays one is measured with its dashes.
-    let dashes = dash_segments(&p.local, s) as u64;
-    t.options().refit.budget.spend_cut(Limit::Segments, dashes).map_err(GeometryError::Limit)?;
+    spend_dashes(&p.local, s, &t.options().refit.budget).map_err(GeometryError::Limit)?;
     let mode = t.options().strokes;
     if mode == Strokes::Keep {
         return Ok(BentStroke::scaled(1.0, None));
@@ -118,34 +119,47 @@ fn stretched(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
 /// the part's user space to root user space.
 fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathReport), GeometryError> {
     let (p, options) = (t.part, t.options());
-    let segments = stroke_segments(&p.local, s) as u64;
-    options.refit.budget.spend_cut(Limit::Segments, segments).map_err(GeometryError::Limit)?;
-    let allowed = t.allowed();
-    let expanded = |fine: f64| {
-        let one = |local: &Outline, places: &[Affine]| {
-            stroke_outline(local, s, fine).transformed(p.frame).repeated(places).subpaths
+    spend_stroke(&p.local, s, &options.refit.budget).map_err(GeometryError::Limit)?;
+    // Every contour's outline, with its index among those of the part.
+    let expanded = |fine: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
+        let one = |local: &Outline, places: &[Affine], first: usize| {
+            let each = stroke_outlines(local, s, |i| fine(first + i));
+            let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(p.frame).repeated(places));
+            each.into_iter().map(placed).collect::<Vec<_>>()
         };
-        let subpaths = if t.pieces.is_empty() {
-            one(&p.local, &options.copies)
+        if t.pieces.is_empty() {
+            one(&p.local, &options.copies, 0)
         } else {
-            t.pieces.iter().flat_map(|piece| one(&piece.of(&p.local), &piece.places)).collect()
-        };
-        Outline { subpaths }
+            t.pieces.iter().flat_map(|piece| one(&piece.of(&p.local), &piece.places, piece.first())).collect()
+        }
     };
-    let fine = |stretch: f64| (allowed * EXPANSION / stretch).max(FINEST);
-    let mut outline = expanded(fine(stretch));
-    let mut expansion = fine(stretch) * largest_stretch(t, &outline);
+    let fine = |i: usize, stretch: f64| (t.allowed_of(i) * EXPANSION / stretch).max(FINEST);
+    let largest = |each: &[(usize, Outline)]| each.iter().map(|(_, o)| largest_stretch(t, o)).fold(0.0, f64::max);
+    let (mut assumed, allowed) = (stretch, t.allowed_of(DRAWING));
+    let mut each = expanded(&|i| fine(i, assumed));
+    let mut found = largest(&each);
     // The map may stretch more beside the path than on it.
+    let expansion = fine(DRAWING, assumed) * found;
     if expansion > MISSED * allowed {
-        let found = stretch * expansion / (allowed * EXPANSION);
-        outline = expanded(fine(found));
-        expansion = fine(found) * largest_stretch(t, &outline);
+        assumed *= expansion / (allowed * EXPANSION);
+        each = expanded(&|i| fine(i, assumed));
+        found = largest(&each);
     }
-    let rest = (allowed - expansion).max((1.0 - MISSED) * allowed);
-    let mut warped = refit::warp_path(&outline, t.map, &options.refit.clone().with_tolerance(rest))?;
-    warped.report.max_error += expansion;
-    warped.report.assurance = warped.report.assurance.min(Assurance::Checked);
-    Ok((t.to_local(warped.path), warped.report))
+    let expansion = |i: usize| fine(i, assumed) * found;
+    let rest = |i: usize| (t.allowed_of(i) - expansion(i)).max((1.0 - MISSED) * t.allowed_of(i));
+    let mut refit = t.refit(rest(DRAWING));
+    let contours: Vec<usize> = each.iter().flat_map(|(i, o)| vec![*i; o.subpaths.len()]).collect();
+    let outline = Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
+    if !t.own.is_empty() {
+        let rests: Vec<f64> = contours.iter().map(|i| rest(*i)).collect();
+        refit = refit.with_spans(SharedEdges::default().spans(&outline, &rests));
+    }
+    let warped = refit::warp_path(&outline, t.map, &refit)?;
+    let mut report = warped.report;
+    let most = contours.iter().map(|i| expansion(*i)).fold(0.0, f64::max);
+    report.max_error += if t.own.is_empty() { expansion(DRAWING) } else { most };
+    report.assurance = report.assurance.min(Assurance::Checked);
+    Ok((t.to_local(warped.path), report))
 }
 
 /// Largest factor by which lengths are stretched at the nodes of an expanded stroke, from the part's user space to root user

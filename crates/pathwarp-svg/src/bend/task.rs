@@ -1,39 +1,19 @@
 //! A part to be warped, with everything that determines its image.
 
 use super::arcs::with_arcs;
-use super::letters::{LetterPiece, placed};
+use super::contours::placed_outline;
+use super::digits::{Digits, ROUNDING, allowed};
+use super::letters::LetterPiece;
 use super::options::WarpOptions;
 use super::stubs;
 use crate::scene::affine::stretch;
 use crate::scene::model::Part;
-use crate::source::number::{MOST_DECIMALS, arcs_data};
+use crate::source::number::arcs_data;
 use pathwarp::kurbo::{Affine, BezPath};
 use pathwarp::map::Map;
 use pathwarp::refit::{self, KnownShapes, PathReport};
 use pathwarp::{GeometryError, Outline};
 use std::sync::Arc;
-
-/// The fraction of the tolerance that rounding may use.
-pub(super) const ROUNDING: f64 = 0.01;
-
-/// The number of decimals of coordinates: as given, or enough for [`ROUNDING`]. A unit as written is `size` units of root user
-/// space.
-pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
-    given.unwrap_or_else(|| {
-        let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
-        if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
-    })
-}
-
-/// Largest error from rounding to `decimals`, in root user units.
-pub(super) fn rounding(size: f64, decimals: u8) -> f64 {
-    size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals))
-}
-
-/// The tolerance less the room for rounding.
-pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
-    (tolerance - rounding).max(0.5 * tolerance)
-}
 
 /// The surroundings of a part.
 #[derive(Clone, Copy)]
@@ -72,8 +52,15 @@ pub(super) struct PartTask<'a> {
     pub(super) whole: Arc<Outline>,
     /// The outline to bend: all copies, or the placed letters.
     pub(super) outline: Arc<Outline>,
+    /// The tolerances of its contours, and of those of `whole`; none if they are that of the drawing.
+    pub(super) contours: Vec<f64>,
+    pub(super) own: &'a [f64],
+    /// The smallest of them.
+    pub(super) finest: f64,
     /// The map that bends `outline`.
     pub(super) map: &'a dyn Map,
+    digits: Digits,
+    /// Decimals for the finest contour.
     pub(super) decimals: u8,
     /// Largest error from rounding, in root user units.
     pub(super) rounding: f64,
@@ -83,59 +70,90 @@ impl<'a> PartTask<'a> {
     /// `whole` is the part's outline in root user space.
     pub(super) fn new(
         part: &'a Part,
-        whole: Arc<Outline>,
+        (whole, own): (Arc<Outline>, &'a [f64]),
         write: Affine,
         context: &'a PartContext<'a>,
         pieces: &'a [LetterPiece],
     ) -> Self {
         let options = context.options;
+        let (mut outline, contours) = placed_outline(&whole, own, options, pieces);
         // Placed letters skip the first step; everything else goes through the whole map.
-        let (mut outline, map): (Arc<Outline>, &dyn Map) = match (pieces, options.copies.as_slice()) {
-            ([], []) => (whole.clone(), context.map),
-            ([], copies) => (Arc::new(whole.repeated(copies)), context.map),
-            _ => (Arc::new(placed(&whole, pieces)), &options.letters.after),
-        };
-        let size = stretch(write);
-        let tolerance = options.refit.tolerance;
-        let decimals = decimals(size, tolerance, options.precision);
-        let rounding = rounding(size, decimals);
+        let map: &dyn Map = if pieces.is_empty() { context.map } else { &options.letters.after };
+        let digits = Digits { size: stretch(write), given: options.precision, whole: options.refit.tolerance };
+        let finest = contours.iter().copied().fold(options.refit.tolerance, f64::min);
+        let (decimals, rounding) = (digits.decimals(finest), digits.rounding(finest));
         if outline.subpaths.iter().any(|s| stubs::has_closing_stub(s, rounding)) {
             let subpaths = &mut Arc::make_mut(&mut outline).subpaths;
             subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, rounding));
         }
-        Self { part, context, write, back: write.inverse(), pieces, whole, outline, map, decimals, rounding }
+        let back = write.inverse();
+        Self {
+            part,
+            context,
+            write,
+            back,
+            pieces,
+            whole,
+            outline,
+            contours,
+            own,
+            finest,
+            map,
+            digits,
+            decimals,
+            rounding,
+        }
     }
 
     pub(super) fn options(&self) -> &'a WarpOptions {
         self.context.options
     }
 
-    /// Bends an outline.
-    pub(super) fn bend(&self, outline: &Outline) -> Result<BentPath, GeometryError> {
-        let options = self.options().refit.clone().with_tolerance(self.allowed());
+    /// Bends an outline whose contours have these tolerances.
+    pub(super) fn bend(&self, outline: &Outline, contours: &[f64]) -> Result<BentPath, GeometryError> {
+        let spans = self.options().refit.shared.spans(outline, contours);
+        let options = self.refit(self.allowed()).with_spans(self.digits.allowed(&spans));
         if let Some((image, report)) = with_arcs(self.map, outline, &options)? {
             let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };
-            let fine = ROUNDING * self.allowed() / stretch(self.write).max(f64::MIN_POSITIVE);
-            let data = arcs_data(&image, self.decimals);
+            let fine = ROUNDING * allowed(self.finest, self.rounding) / stretch(self.write).max(f64::MIN_POSITIVE);
+            let data = arcs_data(&image, self.digits.more(), |i| {
+                self.digits.decimals(contours.get(i).copied().unwrap_or(self.finest))
+            });
             return Ok(BentPath { path: image.to_bez_path(fine), data: Some(data), report });
         }
-        self.bend_with(outline, &options)
+        let warped = self.context.known.warp_path(outline, self.map, &options)?;
+        let mut report = warped.report;
+        let path = self.to_local(warped.path);
+        if spans.is_empty() {
+            report.share = (report.max_error + self.rounding) / self.finest;
+            return Ok(BentPath { path, data: None, report });
+        }
+        let [error, share] = self.digits.errors(&spans, &warped.spans);
+        (report.max_error, report.share) = (error - self.rounding, share);
+        let data = self.digits.path_data(&path, outline, &spans, &warped.spans);
+        Ok(BentPath { path, data: Some(data), report })
     }
 
     /// Bends the part's outline for measures of it. Merging would take most of the time.
     pub(super) fn draft(&self) -> Result<BentPath, GeometryError> {
-        let options = self.options().refit.clone().with_tolerance(self.allowed());
-        self.bend_with(&self.outline, &options.with_merge(false).with_certify(false))
-    }
-
-    fn bend_with(&self, outline: &Outline, options: &refit::Options) -> Result<BentPath, GeometryError> {
-        let warped = self.context.known.warp_path(outline, self.map, options)?;
+        let options = self.refit(allowed(self.finest, self.rounding)).with_merge(false).with_certify(false);
+        let warped = self.context.known.warp_path(&self.outline, self.map, &options)?;
         Ok(BentPath { path: self.to_local(warped.path), data: None, report: warped.report })
     }
 
-    /// The tolerance less the room for rounding.
-    pub(super) fn allowed(&self) -> f64 {
-        allowed(self.options().refit.tolerance, self.rounding)
+    /// Options for refitting within a tolerance.
+    pub(super) fn refit(&self, tolerance: f64) -> refit::Options {
+        self.options().refit.clone().with_tolerance(tolerance).with_suited(false)
+    }
+
+    /// The tolerance of the drawing, or of a contour of `whole`, less the room for rounding.
+    pub(super) fn allowed_of(&self, contour: usize) -> f64 {
+        let tolerance = self.own.get(contour).copied().unwrap_or(self.options().refit.tolerance);
+        allowed(tolerance, self.digits.rounding(tolerance))
+    }
+
+    fn allowed(&self) -> f64 {
+        self.allowed_of(usize::MAX)
     }
 
     /// Transforms a path from root user space to the part's user space as written.

@@ -6,12 +6,12 @@
 
 use super::names::referred;
 use super::nodes::is_definition;
-use crate::source::read::{bytes_unpacked, compressed};
+use crate::source::read::{compressed, unpacked};
 use crate::source::tags::SVG;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
-use pathwarp::budget::{Budget, Limit, Limits};
+use pathwarp::budget::{Budget, Limits};
 use pathwarp_reader::xml::escape;
 use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write as _;
@@ -65,11 +65,8 @@ pub(super) fn unpack(value: &str, limits: &Limits) -> Result<String, Error> {
     let damaged = |e: &dyn std::fmt::Display| Error::input("the source of a warped object", format!("is damaged: {e}"));
     let packed: String = value.split_ascii_whitespace().collect();
     let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
-    let budget = Budget::new(*limits);
-    let text = bytes_unpacked(&bytes, budget.left(Limit::Bytes)).map_err(|e| damaged(&e))?;
+    let text = unpacked(&bytes, "the source of a warped object", &Budget::new(*limits))?;
     let text = text.ok_or_else(|| damaged(&"it is not compressed"))?;
-    let counted = budget.spend_cut(Limit::Bytes, text.len() as u64);
-    counted.map_err(|e| Error::limit("the source of a warped object", "it takes", e))?;
     String::from_utf8(text).map_err(|e| damaged(&e))
 }
 

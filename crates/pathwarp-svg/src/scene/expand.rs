@@ -2,6 +2,7 @@
 
 use super::regular::{is_point, polygon, regular};
 use super::tidy::tidy;
+use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::kurbo::{self, Cap, Circle, Join, Rect, Shape as _, StrokeOpts};
 use pathwarp::{Outline, Seg};
 use usvg::{LineCap, LineJoin, Stroke};
@@ -14,6 +15,16 @@ const PATH: f64 = 0.2;
 
 /// Expands the stroke of `local` to a filled outline in the same user space, within `tolerance` there.
 pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -> Outline {
+    let each = stroke_outlines(local, stroke, |_| tolerance);
+    Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() }
+}
+
+/// Expands the stroke of each subpath, given by its index, within a tolerance of its own.
+pub(crate) fn stroke_outlines(
+    local: &Outline,
+    stroke: &Stroke,
+    tolerance: impl Fn(usize) -> f64,
+) -> Vec<(usize, Outline)> {
     let cap = match stroke.linecap() {
         LineCap::Butt => Cap::Butt,
         LineCap::Round => Cap::Round,
@@ -39,34 +50,38 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
     }
     // Subpaths of zero length show only their caps.
     let (points, lines): (Vec<_>, Vec<_>) =
-        local.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
-    let expanded = |o: &Outline| -> Outline {
+        local.subpaths.iter().enumerate().partition(|(_, s)| s.segs.iter().all(|g| is_point(g, s.start)));
+    let expanded = |o: &Outline, tolerance: f64| -> Outline {
         let path = o.to_bez_path(PATH * tolerance);
         (&kurbo::stroke(path, &style, &StrokeOpts::default(), (1.0 - PATH) * tolerance)).into()
     };
-    let mut out = Outline { subpaths: Vec::new() };
-    for s in lines {
-        let s = regular(&s, PATH * tolerance);
-        let mut edge = expanded(&Outline { subpaths: vec![s.clone()] });
+    let mut out = Vec::with_capacity(local.subpaths.len());
+    for (i, s) in lines {
+        let tolerance = tolerance(i);
+        let s = regular(s, PATH * tolerance);
+        let mut edge = expanded(&Outline { subpaths: vec![s.clone()] }, tolerance);
         if !is_finite(&edge) {
-            edge = expanded(&polygon(&s, PATH * tolerance));
+            edge = expanded(&polygon(&s, PATH * tolerance), tolerance);
         }
-        out.subpaths.extend(tidy(edge, &s, 0.5 * width).subpaths);
+        out.push((i, tidy(edge, &s, 0.5 * width)));
     }
     let reach = width / 2.0;
-    for s in points.iter().filter(|s| s.closed || !s.segs.is_empty()) {
+    for (i, s) in points.into_iter().filter(|(_, s)| s.closed || !s.segs.is_empty()) {
         let dot = match cap {
             Cap::Butt => continue,
-            Cap::Round => Circle::new(s.start, reach).to_path(tolerance),
-            Cap::Square => Rect::from_center_size(s.start, (2.0 * reach, 2.0 * reach)).to_path(tolerance),
+            Cap::Round => Circle::new(s.start, reach).to_path(tolerance(i)),
+            Cap::Square => Rect::from_center_size(s.start, (2.0 * reach, 2.0 * reach)).to_path(tolerance(i)),
         };
-        out.subpaths.extend(Outline::from(&dot).subpaths);
+        out.push((i, Outline::from(&dot)));
     }
     out
 }
 
 /// Limit on the dashes of a path. More would take long and look like a grey line.
 const MOST_DASHES: f64 = 20_000.0;
+
+/// The work of one of the segments below: there are fewer, and fitting them is counted, too.
+const EXPANDED: f64 = 15.0;
 
 /// Segments of the outline of a dash or a subpath with its caps, and of a segment with its join. All are held three times: expanded,
 /// bent, and as they are written.
@@ -78,15 +93,19 @@ const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 const MEASURED: f64 = 2.0;
 
 /// The work of expanding the dashes of a stroke, in segments. They are held only until the stroke is measured.
-pub(crate) fn dash_segments(local: &Outline, stroke: &Stroke) -> f64 {
-    MEASURED * drawn_dashes(local, stroke)
+pub(crate) fn spend_dashes(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
+    budget.spend(EXPANDED * MEASURED * drawn_dashes(local, stroke))
 }
 
-/// A bound for the segments into which a stroke is expanded.
-pub(crate) fn stroke_segments(local: &Outline, stroke: &Stroke) -> f64 {
+/// Counts a bound for the segments into which a stroke is expanded.
+///
+/// # Errors
+/// It is more work than the limit allows.
+pub(crate) fn spend_stroke(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
     let dashes = drawn_dashes(local, stroke);
     let each = if stroke.linejoin() == LineJoin::Round { PER_ROUND_SEGMENT } else { PER_SEGMENT };
-    PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64
+    let segments = PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64;
+    budget.spend(EXPANDED * segments)
 }
 
 /// A bound for the number of dashes that are drawn of a stroke.

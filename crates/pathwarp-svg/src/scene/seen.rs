@@ -1,15 +1,18 @@
 //! The part of a drawing that is seen: not what clip paths, masks and zero opacity hide, nor what lies off the page.
 
+use super::affine::stretch;
 use super::model::{Bitmap, Group, Node, Part, PartRole, Scene};
-use pathwarp::kurbo::{Point, Rect};
+use pathwarp::kurbo::{Affine, Point, Rect};
 
 /// What counts: flags of parts and of bitmaps.
 pub(crate) struct Counted {
     pub(crate) parts: Vec<bool>,
     pub(crate) bitmaps: Vec<bool>,
+    /// Strokes count by half their width.
+    pub(crate) strokes: bool,
 }
 
-/// Bounding box, without stroke widths, of what is seen of what counts. `page` is the visible area, if there is one.
+/// Bounding box of what is seen of what counts. `page` is the visible area, if there is one.
 pub(crate) fn seen_box(scene: &Scene, page: Option<Rect>, counted: &Counted) -> Option<Rect> {
     in_group(scene, &scene.root, page, counted, &|_| true)
 }
@@ -50,11 +53,18 @@ fn in_group(
         Node::Part(i) => {
             let p = &scene.parts[*i];
             let seen = is_seen(p) && p.role == PartRole::Paint && counted.parts[*i];
-            left(p.outline().bounding_box().filter(|b| seen && b.is_finite())?)
+            let by = if counted.strokes { reach(p, scene.to_px) } else { 0.0 };
+            left(p.outline().bounding_box().filter(|b| seen && b.is_finite())?.inflate(by, by))
         }
         Node::Image(i) => left(picture_box(&scene.bitmaps[*i]).filter(|_| counted.bitmaps[*i])?),
     };
     g.children.iter().filter_map(one).reduce(|a, b| a.union(b))
+}
+
+/// How far a part's stroke extends from its path, in root user space: half its width.
+pub(crate) fn reach(p: &Part, to_px: Affine) -> f64 {
+    let space = if p.fixed_width { to_px.inverse() } else { p.frame };
+    p.stroke.as_ref().filter(|_| !p.in_tile).map_or(0.0, |s| 0.5 * f64::from(s.width().get()) * stretch(space))
 }
 
 /// Returns `true` if a part is visible and has a paint that is not transparent.

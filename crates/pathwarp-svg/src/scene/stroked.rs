@@ -1,10 +1,10 @@
 //! The area that a stroke covers.
 
 use super::affine::stretch;
-use super::expand::{stroke_outline, stroke_segments};
+use super::expand::{spend_stroke, stroke_outline};
 use super::model::Part;
 use pathwarp::Outline;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::kurbo::Affine;
 
 /// The area that a part's stroke covers in root user space, to be filled by the nonzero rule, within `tolerance` there. `to_px` leads from
@@ -22,7 +22,7 @@ pub(crate) fn stroked(
     if part.in_tile {
         return Ok(Some(Outline::clone(&part.outline())));
     }
-    budget.spend_cut(Limit::Segments, stroke_segments(&part.local, stroke) as u64)?;
+    spend_stroke(&part.local, stroke, budget)?;
     // The space in which the width counts, as seen from root user space.
     let frame = if part.fixed_width { to_px.inverse() } else { part.frame };
     let scale = stretch(frame);

@@ -1,11 +1,9 @@
 //! The check of a drawing before it is resolved: everything that references, style sheets and text make of it is counted.
 
 use super::unfold;
-use memchr::{memchr2, memmem};
-use pathwarp::budget::{Budget, Exceeded, Limit};
-use pathwarp::{Error, Outline, Seg};
-use pathwarp_reader::LARGEST;
-use std::collections::HashMap;
+use super::usvgguard::{spans, text_paths, wide_arcs, wide_strokes};
+use pathwarp::Error;
+use pathwarp::budget::Budget;
 use usvg::roxmltree;
 
 /// Features of a drawing that decide about fonts, images and limits.
@@ -47,123 +45,11 @@ pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget
         spans(xml, budget).and_then(|()| text_paths(xml, budget)).map_err(too_much)?;
     }
     wide_strokes(xml, budget).map_err(|e| Error::limit(name, "with such wide strokes, its shapes take", e))?;
-    if unfold::may_be_large(xml, features.markers, features.references) {
-        unfold::check(xml, name, budget)?;
+    let segments = if unfold::may_be_large(xml, features.markers, features.references) {
+        unfold::check(xml, name, budget)?
     } else {
-        unfold::count_plain(xml, name, budget)?;
-    }
-    wide_arcs(xml, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
-    Ok(features)
-}
-
-/// Counts the segments along which texts are laid out: each text measures its whole path.
-fn text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    /// Fewest bytes of path data for a curve, whose length takes the time. A line takes less in fewer bytes.
-    const CURVE: usize = 12;
-    let links = || xml.descendants().filter(|n| n.tag_name().name() == "textPath").filter_map(href);
-    if links().next().is_none() {
-        return Ok(());
-    }
-    let data = |n: roxmltree::Node<'_, '_>| Some((n.attribute("id")?.to_owned(), n.attribute("d")?.len()));
-    let lengths: HashMap<String, usize> = xml.descendants().filter_map(data).collect();
-    links().try_for_each(|id| {
-        let segments = lengths.get(id).map_or(0, |length| length / CURVE);
-        budget.spend(Limit::Segments, segments as u64)
-    })
-}
-
-/// The id that a link leads to.
-fn href<'a>(n: roxmltree::Node<'a, '_>) -> Option<&'a str> {
-    let link = n.attributes().find(|a| a.name() == "href")?.value();
-    link.trim().strip_prefix('#')
-}
-
-/// Counts what arcs become whose ellipses are much wider than any page, such as those with one small radius that have to be enlarged to
-/// reach their ends. usvg turns an arc into cubics whose number grows with the radius, and the time with its square.
-fn wide_arcs(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    /// Radii of fewer cubics take no time.
-    const WIDE: f64 = 1e8;
-    /// A cubic's error times the sixth power of their number in a turn, for the radius 1, and the error that usvg allows.
-    const ERROR: f64 = 1.1163;
-    const ALLOWED: f64 = 0.1;
-    /// Comparisons for an arc, by the square of its cubics.
-    const MOVED: f64 = 0.0125;
-    // Path data is parsed once more only where its numbers may amount to such an arc.
-    let arcs = |d: &str| {
-        let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && is_uneven(d);
-        suspected.then(|| Outline::from_svg_lossy(d))
+        unfold::count_plain(xml, name, budget)?
     };
-    let radius = |s: &Seg| if let Seg::Arc(a) = s { a.a.hypot().max(a.b.hypot()) } else { 0.0 };
-    let widest = |o: Outline| o.segs().map(radius).fold(0.0, f64::max);
-    let paths = xml.descendants().filter_map(|n| n.attribute("d")).filter_map(arcs);
-    let radius = paths.map(widest).fold(0.0, f64::max);
-    if radius < WIDE {
-        return Ok(());
-    }
-    let cubics = (ERROR * radius / ALLOWED).powf(1.0 / 6.0);
-    // Each of them may be as wide, and all were counted with what references show again.
-    let arcs = budget.limits().of(Limit::Segments) - budget.left(Limit::Segments);
-    budget.spend_cut(Limit::Comparisons, (arcs * MOVED * cubics * cubics) as u64)
-}
-
-/// Returns `false` if all numbers of path data are certainly below 10⁴ and, unless they are zero, at least 10⁻³: no exponent, no five
-/// digits before a point, no three zeros after it.
-fn is_uneven(data: &str) -> bool {
-    let (mut digits, mut zeros, mut fraction) = (0, 0, false);
-    for byte in data.bytes() {
-        match byte {
-            b'e' | b'E' => return true,
-            b'.' => (zeros, fraction) = (0, true),
-            b'0' if fraction => zeros += 1,
-            // The digits after the first one that is not zero do not count.
-            b'0'..=b'9' if fraction => zeros = i32::MIN,
-            b'0'..=b'9' => digits += 1,
-            _ => (digits, fraction) = (0, false),
-        }
-        if digits > 4 || fraction && zeros > 2 {
-            return true;
-        }
-    }
-    false
-}
-
-/// Counts the shapes of a drawing with strokes so wide that single precision fails the renderer when it outlines them for their
-/// boxes: the time grows with the width.
-fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    /// Narrower strokes take no time.
-    const WIDE: f64 = 2e6;
-    /// Comparisons for a shape and a unit of its width.
-    const UNIT: f64 = 350e-6;
-    let text = xml.input_text();
-    let widths = memmem::find_iter(text.as_bytes(), "stroke-width").filter_map(|at| {
-        let value = text.get(at + "stroke-width".len()..)?.trim_start_matches([' ', ':', '=', '"', '\'']);
-        let end = value.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-')));
-        value[..end.unwrap_or(value.len())].trim_end_matches(['e', 'E']).parse::<f64>().ok()
-    });
-    let width = widths.fold(0.0, f64::max).min(LARGEST);
-    if width < WIDE {
-        return Ok(());
-    }
-    let shapes = xml.descendants().filter(roxmltree::Node::is_element).count();
-    budget.spend(Limit::Comparisons, (shapes as f64 * width * UNIT) as u64)
-}
-
-/// Counts the letters that are compared with every span of their text.
-fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    const AT_A_TIME: u64 = 64;
-    let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
-    for text in texts {
-        let (mut spans, mut letters) = (0, 0);
-        for n in text.descendants() {
-            if n.is_element() {
-                spans += 1;
-            }
-            letters += unfold::letters(n);
-        }
-        budget.check(Limit::Letters, letters as f64)?;
-        // The text itself is no span. Its letters are also compared with each other, some at a time.
-        let compared = letters.min(budget.limits().of(Limit::Letters) as u64);
-        budget.spend(Limit::Comparisons, (spans - 1) * letters + compared * compared / AT_A_TIME)?;
-    }
-    Ok(())
+    wide_arcs(xml, segments, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
+    Ok(features)
 }

@@ -6,7 +6,7 @@ use super::fonts::load_unnamed;
 use super::metrics;
 use super::style::declarations;
 use base64::Engine as _;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use pathwarp_text::GlyphWork;
 use std::collections::BTreeMap;
 use std::io::Read as _;
@@ -69,7 +69,7 @@ fn count_letters(xml: &Document<'_>, faces: &[Face], budget: &Budget) -> Result<
     for face in faces {
         let Some(mut work) = GlyphWork::new(&face.data, 0) else { continue };
         let total: u64 = letters.iter().map(|(c, n)| n * work.of_letter(*c)).sum();
-        budget.check(Limit::Segments, total as f64)?;
+        budget.check(Limit::Work, cost::SEGMENT * total as f64)?;
     }
     Ok(())
 }
@@ -115,11 +115,13 @@ fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
     let Some(data) = decoded(url) else { return Ok(None) };
     match data.get(..4) {
         Some(b"wOFF") => {
-            budget.spend(Limit::ImageBytes, unpacked_size(&data).unwrap_or(0))?;
+            budget.take(Limit::Bytes, unpacked_size(&data).unwrap_or(0) as f64)?;
             Ok(unpacked(&data))
         }
         Some(b"ttcf") => {
-            budget.spend_cut(Limit::ImageBytes, listing(&data, budget.left(Limit::ImageBytes) as u64))?;
+            budget
+                .take(Limit::Bytes, listing(&data, budget.room(Limit::Bytes) as u64) as f64)
+                .map_err(Exceeded::cut_short)?;
             Ok(Some(data))
         }
         Some(b"wOF2") | None => Ok(None),

@@ -1,5 +1,7 @@
 //! Fonts that a drawing brings along, or that come from given files: their collections are checked before they are loaded, and their
-//! glyphs when the first letter asks for them. Installed fonts and the bundled one are not checked.
+//! glyphs when the first letter asks for them. Installed fonts and the bundled one are not checked. Guards skrifa 0.44
+//! (<https://github.com/googlefonts/fontations>), which draws glyphs of glyphs without an end, and fontdb 0.24, which lists whatever a collection
+//! announces: what a later version refuses by itself can be deleted.
 
 use super::faces::BUNDLED;
 use super::images::{self, Rejected};

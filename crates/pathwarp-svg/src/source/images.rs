@@ -7,7 +7,7 @@ use super::{bitmap, check};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
-use pathwarp::budget::Limit;
+use pathwarp::budget::{Exceeded, Limit};
 use pathwarp_reader::{Plain, xml};
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -19,8 +19,8 @@ use std::sync::{Arc, Mutex};
 const DATA: &str = "data:";
 const BASE64: &str = ";base64,";
 
-/// Pixels held for each pixel of a picture that is warped: decoded, reduced, the result, and its file.
-const COPIES: f64 = 4.0;
+/// Bytes of a pixel as it is held: files of pictures that are no larger are counted by their pixels.
+const PIXEL: f64 = 4.0;
 
 /// Names that were asked for and not found.
 pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
@@ -123,23 +123,26 @@ pub(super) fn checked(
     options: &ReadOptions,
 ) -> Result<Option<Arc<Vec<u8>>>, Error> {
     let budget = &options.budget;
-    let profile = bitmap::unpacked_profile(&data, budget.left(Limit::ImageBytes) as u64);
-    let counted = budget.spend_cut(Limit::ImageBytes, data.len() as u64 + profile);
-    counted.map_err(|e| Error::limit(place, "with the images before it, it takes", e))?;
+    let profile = bitmap::unpacked_profile(&data, budget.room(Limit::Bytes) as u64);
+    let take = |bytes: f64| {
+        let counted = budget.take(Limit::Bytes, bytes.max(0.0) + profile as f64).map_err(Exceeded::cut_short);
+        counted.map_err(|e| Error::limit(place, "with the images before it, it takes", e))
+    };
     if mime != SVG {
         match imagesize::blob_size(&data) {
             Ok(_) if is_png_without_header(&data) => return Ok(None),
             Ok(size) => {
-                let pixels = COPIES * size.width as f64 * size.height as f64;
-                let limits = budget.limits().for_input(data.len());
-                let what = format!("a picture of {} x {} pixels takes", size.width, size.height);
-                limits.check(Limit::Pixels, pixels).map_err(|e| Error::limit(place, what, e))?;
+                let what = format!("with a picture of {} x {} pixels, its pictures take", size.width, size.height);
+                let pixels = size.width as f64 * size.height as f64;
+                budget.take(Limit::Pixels, pixels).map_err(|e| Error::limit(place, what, e))?;
+                take(data.len() as f64 - PIXEL * pixels)?;
                 return Ok(Some(data).filter(|data| !bitmap::is_unreadable(data)));
             }
             Err(_) if mime != ANY => return Ok(None),
             Err(_) => {}
         }
     }
+    take(0.0)?;
     let text = match read::text(&data, place, budget) {
         Ok(text) => text,
         Err(e @ Error::Input { limit: Some(_), .. }) => return Err(e),
@@ -165,7 +168,7 @@ fn is_png_without_header(data: &[u8]) -> bool {
 fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
     let size = std::fs::metadata(file).ok().filter(std::fs::Metadata::is_file)?.len();
     // Larger files are recorded as unread.
-    options.budget.check(Limit::ImageBytes, size as f64).ok()?;
+    options.budget.check(Limit::Memory, size as f64).ok()?;
     let mut data = Vec::new();
     File::open(file).ok()?.take(size).read_to_end(&mut data).ok()?;
     Some(data)

@@ -29,3 +29,4 @@ pub(crate) mod tree;
 pub(crate) mod undrawn;
 mod unfold;
 pub(crate) mod unpatchable;
+mod usvgguard;

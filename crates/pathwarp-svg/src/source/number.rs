@@ -2,7 +2,7 @@
 
 use pathwarp::decimal::push_trimmed;
 use pathwarp::kurbo::{Affine, BezPath, PathEl, Point, Vec2};
-use pathwarp::outline::EllipticArc;
+use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 
@@ -171,56 +171,94 @@ pub(crate) fn matrix(m: Affine) -> String {
 
 /// Formats a path as a `d` attribute with absolute commands.
 pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
+    path_data_by(path, false, |_| [decimals; 2])
+}
+
+/// The same with decimals for the handles and the end of each element, given by its index. If `smooth`, handles that are so short that
+/// rounding would turn them have more, so that smooth joints stay smooth.
+pub(crate) fn path_data_by(path: &BezPath, smooth: bool, decimals: impl Fn(usize) -> [u8; 2]) -> String {
     let mut out: Vec<u8> = Vec::with_capacity(path.elements().len() * 48);
-    let point = |out: &mut Vec<u8>, p: Point| {
+    let point = |out: &mut Vec<u8>, p: Point, decimals: u8| {
         push_bytes(out, p.x, decimals);
         out.push(b',');
         push_bytes(out, p.y, decimals);
     };
-    let mut at = Point::ORIGIN;
-    // Write a cubic as a quadratic if the two differ by less than the rounding.
-    let near = 0.1 * 0.1_f64.powi(i32::from(decimals));
-    for el in path.elements() {
+    let (mut at, mut from) = (Point::ORIGIN, Point::ORIGIN);
+    for (i, el) in path.elements().iter().enumerate() {
+        let [handle, node] = decimals(i);
+        let to = el.end_point().map_or(from, |p| rounded(p, node));
         if !out.is_empty() {
             out.push(b' ');
         }
         match *el {
             PathEl::MoveTo(p) => {
                 out.push(b'M');
-                point(&mut out, p);
+                point(&mut out, p, node);
             }
             PathEl::LineTo(p) => {
                 out.push(b'L');
-                point(&mut out, p);
+                point(&mut out, p, node);
             }
             PathEl::QuadTo(a, p) => {
                 out.push(b'Q');
-                point(&mut out, a);
+                point(&mut out, a, handle);
                 out.push(b' ');
-                point(&mut out, p);
-            }
-            PathEl::CurveTo(a, b, p) if quadratic(at, a, b, p).is_some_and(|q| q.1 < near) => {
-                if let Some((q, _)) = quadratic(at, a, b, p) {
-                    out.push(b'Q');
-                    point(&mut out, q);
-                    out.push(b' ');
-                    point(&mut out, p);
-                }
+                point(&mut out, p, node);
             }
             PathEl::CurveTo(a, b, p) => {
-                out.push(b'C');
-                point(&mut out, a);
-                out.push(b' ');
-                point(&mut out, b);
-                out.push(b' ');
-                point(&mut out, p);
+                // A quadratic, if it differs by less than the rounding and has the same directions.
+                let near = NEAR * POWERS[usize::from(handle.min(MOST_DECIMALS))].recip();
+                let quad = quadratic(at, a, b, p).filter(|(_, off)| *off < near).map(|(q, _)| q).filter(|q| {
+                    let q = rounded(*q, handle);
+                    is_kept(a - at, q - from) && is_kept(b - p, q - to)
+                });
+                out.push(if quad.is_some() { b'Q' } else { b'C' });
+                let handles = match quad {
+                    Some(q) => [Some((q, handle)), None],
+                    None if !smooth => [Some((a, handle)), Some((b, handle))],
+                    None => [Some(kept(a, (at, from), handle)), Some(kept(b, (p, to), handle))],
+                };
+                for (q, decimals) in handles.into_iter().flatten() {
+                    point(&mut out, q, decimals);
+                    out.push(b' ');
+                }
+                point(&mut out, p, node);
             }
             PathEl::ClosePath => out.push(b'Z'),
         }
-        at = el.end_point().unwrap_or(at);
+        (at, from) = (el.end_point().unwrap_or(at), to);
     }
     // ASCII only, so this cannot fail.
     String::from_utf8(out).unwrap_or_default()
+}
+
+/// Decimals in which a quadratic's handle may differ, seen from its two ends; the curves differ by a tenth of that.
+const NEAR: f64 = 3.0;
+
+/// A point as its text will be read.
+fn rounded(p: Point, decimals: u8) -> Point {
+    let unit = POWERS[usize::from(decimals.min(MOST_DECIMALS))];
+    Point::new((p.x * unit).round() / unit, (p.y * unit).round() / unit)
+}
+
+/// Returns `true` if `v` has the direction of `exact` within 0.2°, so that two handles at a joint turn by less than half a degree.
+fn is_kept(exact: Vec2, v: Vec2) -> bool {
+    const TURN: f64 = 0.0035;
+    let along = exact.dot(v);
+    exact == Vec2::ZERO || along > 0.0 && exact.cross(v).abs() <= TURN * along
+}
+
+/// A handle at a node, which is given with what is written for it; with the decimals that keep the handle's direction.
+fn kept(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point, u8) {
+    /// Shorter handles are below what can be seen by a factor of a million.
+    const MORE: u8 = 6;
+    let v = handle - node;
+    if is_kept(v, rounded(handle, decimals) - written) {
+        return (handle, decimals);
+    }
+    let more = (1..=MORE).map(|n| decimals.saturating_add(n).min(MOST_DECIMALS));
+    let fine = more.into_iter().find(|d| is_kept(v, rounded(written + v, *d) - written));
+    fine.map_or((handle, decimals), |d| (written + v, d))
 }
 
 /// Appends `v` in the shortest form that reads back unchanged; as an f32 if `v` is one.
@@ -280,13 +318,30 @@ pub(crate) fn outline_data(outline: &Outline) -> String {
     out
 }
 
-/// Formats an outline with arcs as a `d` attribute, as accurately as [`path_data`] does with that number of decimals: the centre of
-/// an arc follows from its ends and radii, and needs more.
-pub(crate) fn arcs_data(outline: &Outline, decimals: u8) -> String {
-    let decimals = decimals.saturating_add(1).min(MOST_DECIMALS);
-    let finer = decimals.saturating_add(2).min(MOST_DECIMALS);
+/// Formats an outline with arcs as a `d` attribute, as accurately as [`path_data`] does with that number of decimals, which
+/// `decimals` gives for each subpath. The centre of an arc follows from its ends and radii, and needs more: one, or as many as a flat
+/// ellipse asks for, up to `more`. Where no number of decimals is enough, an arc is written as cubics.
+pub(crate) fn arcs_data(outline: &Outline, more: u8, decimals: impl Fn(usize) -> u8) -> String {
     let mut out = String::new();
-    let add = |out: &mut String, command: char, numbers: &[(f64, u8)]| {
+    for (i, s) in outline.subpaths.iter().enumerate() {
+        let nominal = POWERS[usize::from(decimals(i).min(MOST_DECIMALS))].recip();
+        let holds = |a: &EllipticArc, from: Point, d: u8| ArcText::new(a, d).error(a, from) <= nominal;
+        let first = decimals(i).saturating_add(1).min(MOST_DECIMALS);
+        let all = |d: u8| s.segs.iter().all(|g| if let Seg::Arc(a) = g { holds(a, rounded(a.p0, d), d) } else { true });
+        let decimals = (first..=(first + more).min(MOST_DECIMALS)).find(|d| all(*d)).unwrap_or(first);
+        subpath_with_arcs(&mut out, s, decimals, nominal, holds);
+    }
+    out
+}
+
+fn subpath_with_arcs(
+    out: &mut String,
+    s: &Subpath,
+    decimals: u8,
+    nominal: f64,
+    holds: impl Fn(&EllipticArc, Point, u8) -> bool,
+) {
+    let mut add = |command: char, numbers: &[(f64, u8)]| {
         if !out.is_empty() {
             out.push(' ');
         }
@@ -298,30 +353,64 @@ pub(crate) fn arcs_data(outline: &Outline, decimals: u8) -> String {
             push(out, *v, *decimals);
         }
     };
-    for s in &outline.subpaths {
-        let at = |p: Point| [(p.x, decimals), (p.y, decimals)];
-        add(&mut out, 'M', &at(s.start));
-        let closing = s.closed && matches!(s.segs.last(), Some(Seg::Line(_)));
-        for g in s.segs.iter().take(s.segs.len() - usize::from(closing)) {
-            match g {
-                Seg::Line(l) => add(&mut out, 'L', &at(l.p1)),
-                Seg::Quad(q) => add(&mut out, 'Q', &[at(q.p1), at(q.p2)].concat()),
-                Seg::Cubic(c) => add(&mut out, 'C', &[at(c.p1), at(c.p2), at(c.p3)].concat()),
-                Seg::Arc(a) => {
-                    let ([rx, ry], turn) = axes(a);
-                    let flag = |yes: bool| (f64::from(u8::from(yes)), 0);
-                    let large = flag(a.sweep.abs() > std::f64::consts::PI);
-                    let sweep = flag(a.sweep * a.a.cross(a.b) > 0.0);
-                    let [x, y] = at(a.p1);
-                    add(&mut out, 'A', &[(rx, finer), (ry, finer), (turn, finer), large, sweep, x, y]);
+    let at = |p: Point| [(p.x, decimals), (p.y, decimals)];
+    add('M', &at(s.start));
+    let closing = s.closed && matches!(s.segs.last(), Some(Seg::Line(_)));
+    for g in s.segs.iter().take(s.segs.len() - usize::from(closing)) {
+        match g {
+            Seg::Line(l) => add('L', &at(l.p1)),
+            Seg::Quad(q) => add('Q', &[at(q.p1), at(q.p2)].concat()),
+            Seg::Cubic(c) => add('C', &[at(c.p1), at(c.p2), at(c.p3)].concat()),
+            Seg::Arc(a) if holds(a, rounded(a.p0, decimals), decimals) => {
+                let ArcText { radii: [rx, ry], turn, large, sweep, finer, .. } = ArcText::new(a, decimals);
+                let flag = |yes: bool| (f64::from(u8::from(yes)), 0);
+                let [x, y] = at(a.p1);
+                add('A', &[(rx, finer), (ry, finer), (turn, finer), flag(large), flag(sweep), x, y]);
+            }
+            Seg::Arc(a) => {
+                for c in a.to_cubics(0.1 * nominal) {
+                    add('C', &[at(c.p1), at(c.p2), at(c.p3)].concat());
                 }
             }
         }
-        if s.closed {
-            out.push_str(" Z");
-        }
     }
-    out
+    if s.closed {
+        out.push_str(" Z");
+    }
+}
+
+/// What is written for an arc.
+struct ArcText {
+    radii: [f64; 2],
+    /// In degrees.
+    turn: f64,
+    large: bool,
+    sweep: bool,
+    to: Point,
+    /// Decimals of radii and turn.
+    finer: u8,
+}
+
+impl ArcText {
+    fn new(a: &EllipticArc, decimals: u8) -> Self {
+        let finer = decimals.saturating_add(2).min(MOST_DECIMALS);
+        let (radii, turn) = axes(a);
+        let (large, sweep) = (a.sweep.abs() > std::f64::consts::PI, a.sweep * a.a.cross(a.b) > 0.0);
+        Self { radii, turn, large, sweep, to: rounded(a.p1, decimals), finer }
+    }
+
+    /// A bound for the distance between the arc and what is read for it after the point `from`.
+    fn error(&self, a: &EllipticArc, from: Point) -> f64 {
+        const SAMPLES: u32 = 16;
+        let round = |v: f64| rounded(Point::new(v, 0.0), self.finer).x;
+        let radii = Vec2::new(round(self.radii[0]), round(self.radii[1]));
+        let Some(read) = EllipticArc::from_svg(from, radii, round(self.turn), self.large, self.sweep, self.to) else {
+            return a.p0.distance(from) + a.p1.distance(self.to);
+        };
+        let off =
+            |i: u32| read.eval(f64::from(i) / f64::from(SAMPLES)).distance(a.eval(f64::from(i) / f64::from(SAMPLES)));
+        (0..=SAMPLES).map(off).fold(0.0, f64::max)
+    }
 }
 
 /// The semi-axes of an arc's ellipse and the direction of the first in degrees: the singular values of (a b).

@@ -3,7 +3,7 @@
 use super::encoding::decoded;
 use super::faces::GenericFamilies;
 use pathwarp::Error;
-use pathwarp::budget::{Budget, Limit, Limits};
+use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
 use std::borrow::Cow;
 use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
@@ -64,7 +64,7 @@ impl ReadOptions {
 
     /// The same options with a budget of which nothing is used.
     pub(crate) fn begin_again(&self) -> Self {
-        Self { budget: Arc::new(Budget::new(*self.budget.limits())), ..self.clone() }
+        Self { budget: Arc::new(Budget::new(self.budget.limits())), ..self.clone() }
     }
 
     /// Sets [`base_dir`](Self::base_dir).
@@ -119,32 +119,33 @@ impl ReadOptions {
 
 /// Decodes an SVG or svgz file. `name` identifies it in errors.
 pub(crate) fn text(data: &[u8], name: &str, budget: &Budget) -> Result<String, Error> {
-    let mut bytes = Cow::Borrowed(data);
-    let unpacked = bytes_unpacked(data, budget.left(Limit::Bytes))
-        .map_err(|e| Error::input(name, format!("the compressed data is damaged: {e}")))?;
-    if let Some(out) = unpacked {
-        bytes = Cow::Owned(out);
-    }
-    let size = bytes.len() as u64;
-    // Stop unpacking at the limit.
-    let counted =
-        if bytes.len() == data.len() { budget.spend(Limit::Bytes, size) } else { budget.spend_cut(Limit::Bytes, size) };
-    counted.map_err(|e| Error::limit(name, "its text takes", e))?;
+    let bytes = match unpacked(data, name, budget)? {
+        Some(unpacked) => Cow::Owned(unpacked),
+        None => {
+            let counted = budget.take(Limit::Bytes, data.len() as f64);
+            counted.map_err(|e| Error::limit(name, "its text takes", e))?;
+            Cow::Borrowed(data)
+        }
+    };
     decoded(bytes).map_err(|(at, problem)| Error::input(format!("{name}: byte {at}"), problem))
 }
 
 /// What gzip data begins with.
 pub(super) const GZIP: &[u8] = &[0x1f, 0x8b];
 
-/// Unpacks gzip data up to one byte more than `most`. Returns `None` for other data.
-pub(crate) fn bytes_unpacked(data: &[u8], most: f64) -> std::io::Result<Option<Vec<u8>>> {
+/// Unpacks gzip data. Returns `None` for other data. `name` identifies it in errors.
+pub(crate) fn unpacked(data: &[u8], name: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Error> {
     if !data.starts_with(GZIP) {
         return Ok(None);
     }
     let mut out = Vec::new();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    let limit = (most as u64).saturating_add(1);
-    flate2::read::GzDecoder::new(data).take(limit).read_to_end(&mut out)?;
+    let limit = (budget.room(Limit::Bytes) as u64).saturating_add(1);
+    let read = flate2::read::GzDecoder::new(data).take(limit).read_to_end(&mut out);
+    read.map_err(|e| Error::input(name, format!("the compressed data is damaged: {e}")))?;
+    // Unpacking stopped at the limit.
+    let counted = budget.take(Limit::Bytes, out.len() as f64).map_err(Exceeded::cut_short);
+    counted.map_err(|e| Error::limit(name, "unpacked, it takes", e))?;
     Ok(Some(out))
 }
 

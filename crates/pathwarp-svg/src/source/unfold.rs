@@ -5,7 +5,7 @@
 
 use super::tags::is_shape;
 use pathwarp::Error;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use simplecss::DeclarationTokenizer;
 use std::collections::HashMap;
 use usvg::roxmltree::{self, Node, NodeId};
@@ -30,23 +30,24 @@ pub(crate) fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referr
     markers > 1 || markers == 1 && text.len() > SMALL || (referring || markers > 0) && large(references())
 }
 
-/// Counts a drawing that cannot expand to much.
+/// Counts a drawing that cannot expand to much, and returns its segments.
 ///
 /// # Errors
 /// Returns [`Error::Input`] if it exceeds the budget as it is.
-pub(crate) fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
+pub(crate) fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
     let sizes = doc.descendants().filter(Node::is_element).map(Size::of);
     let sum = sizes.fold(Size::default(), Size::plus);
     sum.exceeded(budget).map_err(|e| Error::limit(name, "it takes", e))?;
-    sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))
+    sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))?;
+    Ok(sum.segments)
 }
 
-/// Rejects a drawing that expands to too much. `name` identifies the drawing in the error.
+/// Rejects a drawing that expands to too much, or returns its segments. `name` identifies the drawing in the error.
 ///
 /// # Errors
 /// Returns [`Error::Input`] that names the element.
-pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
-    let counted = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
+pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
+    let (size, _) = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
         let which = node.attribute("id").map_or(format!("<{tag}>"), |id| format!("<{tag} id=\"{id}\">"));
@@ -64,7 +65,8 @@ pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) 
             }
         }
     })?;
-    counted.0.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))
+    size.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))?;
+    Ok(size.segments)
 }
 
 enum TooMuch {
@@ -108,17 +110,20 @@ impl Size {
         }
     }
 
-    fn amounts(self) -> [(Limit, u64); 3] {
-        [(Limit::Elements, self.elements), (Limit::Segments, self.segments), (Limit::Letters, self.letters)]
+    fn work(self) -> f64 {
+        let Self { elements, segments, letters } = self;
+        cost::ELEMENT * elements as f64 + cost::SEGMENT * segments as f64 + cost::LETTER * letters as f64
     }
 
     /// Compares with the limits, whatever is used of them.
     fn exceeded(self, budget: &Budget) -> Result<(), Exceeded> {
-        self.amounts().into_iter().try_for_each(|(limit, n)| budget.check(limit, n as f64))
+        budget.check(Limit::Elements, self.elements as f64)?;
+        budget.check(Limit::Work, self.work()).map_err(Exceeded::cut_short)
     }
 
     fn spend(self, budget: &Budget) -> Result<(), Exceeded> {
-        self.amounts().into_iter().try_for_each(|(limit, n)| budget.spend_cut(limit, n))
+        budget.take(Limit::Elements, self.elements as f64)?;
+        budget.spend(self.work())
     }
 }
 
@@ -188,7 +193,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         let mut visited = first.size;
         let mut open = vec![(root, first)];
         self.known.insert(root, None);
-        let mut last = (Size::default(), 0);
+        let (mut last, mut first_over) = ((Size::default(), 0), None);
         while let Some((body, inside)) = open.last_mut() {
             if let Some(next) = inside.shown.pop() {
                 let (other, times, at) = next;
@@ -213,13 +218,17 @@ impl<'a, 'i> Unfolding<'a, 'i> {
             last = (inside.size, inside.depth);
             self.known.insert(*body, Some(last));
             open.pop();
-            let counted = last.0.exceeded(budget).and_then(|()| visited.exceeded(budget));
-            counted.map_err(|e| (node, TooMuch::Work(e)))?;
+            if last.0.exceeded(budget).is_err() {
+                first_over.get_or_insert(node);
+            }
+            visited.exceeded(budget).map_err(|e| (node, TooMuch::Work(e.cut_short())))?;
             if last.1.max(open.len()) > DEEPEST {
                 return Err((node, TooMuch::Depth));
             }
         }
-        Ok(last)
+        // The message tells what the whole drawing takes.
+        let counted = last.0.exceeded(budget);
+        counted.map(|()| last).map_err(|e| (first_over.unwrap_or(self.doc.root_element()), TooMuch::Work(e)))
     }
 
     /// Examines a body without the bodies shown inside.

@@ -12,7 +12,7 @@ use super::values::{color, part_data, stroke_scale};
 use super::{filter, filter_region, gradients, masks, patterns};
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::scene::model::{Group, Node, Part};
-use crate::source::number::{matrix, outline_data, path_data, short};
+use crate::source::number::{matrix, outline_data, short};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
@@ -171,7 +171,7 @@ impl<'a> Writer<'a> {
             return self.markup.path(&d, &id, &properties);
         };
         let (top, over) = match outlined {
-            Some((outline, stroke)) => (path_data(outline, warped.decimals), self.outlined(p, stroke, warped)),
+            Some((outline, stroke)) => (warped.text(outline), self.outlined(p, stroke, warped)),
             None => {
                 let mut over = properties.clone();
                 over.retain(|p| !p.0.starts_with("fill"));
@@ -185,7 +185,7 @@ impl<'a> Writer<'a> {
         let top = self.markup.path(&top, "", &over);
         properties.retain(|p| p.0 == "fill" || !p.0.starts_with("stroke") && p.0 != "paint-order");
         properties.push(("stroke", "none".into()));
-        let base = self.markup.path(&area.map_or(d, |a| path_data(a, warped.decimals)), "", &properties);
+        let base = self.markup.path(&area.map_or(d, |a| warped.text(a)), "", &properties);
         let both =
             if p.paint_order == PaintOrder::StrokeAndFill { format!("{top}{base}") } else { format!("{base}{top}") };
         self.markup.named_group(&id, both)
@@ -209,7 +209,7 @@ impl<'a> Writer<'a> {
             picture.map(|content| Clipped { content, opacity })
         };
         // The fill may have an outline of its own, or be empty.
-        let area = warped.fill.as_ref().map_or_else(|| d.to_owned(), |a| path_data(a, warped.decimals));
+        let area = warped.fill.as_ref().map_or_else(|| d.to_owned(), |a| warped.text(a));
         match (p.fill.as_ref().filter(|_| !area.is_empty()), content) {
             (None, _) => String::new(),
             (Some(f), Some(content)) => {
@@ -236,12 +236,10 @@ impl<'a> Writer<'a> {
         };
         let Some(s) = &p.stroke else { return String::new() };
         match (&warped.stroke, content) {
-            (StrokeOutcome::Outlined(o), Some(content)) => {
-                self.clipped_to(&path_data(o, warped.decimals), "nonzero", &content, i)
-            }
+            (StrokeOutcome::Outlined(o), Some(content)) => self.clipped_to(&warped.text(o), "nonzero", &content, i),
             (StrokeOutcome::Outlined(o), None) => {
                 let properties = self.outlined(p, s, warped);
-                self.markup.path(&path_data(o, warped.decimals), "", &properties)
+                self.markup.path(&warped.text(o), "", &properties)
             }
             (StrokeOutcome::Scaled(scale), _) => {
                 let stroke = Some(self.paint(s.paint(), p, Some(warped)));
@@ -385,7 +383,7 @@ impl<'a> Writer<'a> {
         let warped = self.input.warped(i);
         let d = match warped {
             _ if written == t => part_data(p, warped, self.input.source),
-            Some(w) => path_data(&(written.inverse() * t * w.path.clone()), w.decimals),
+            Some(w) => w.text(&(written.inverse() * t * w.path.clone())),
             None => outline_data(&p.local.transformed(written.inverse() * t)),
         };
         self.markup.path(&d, &head, &properties)

@@ -38,6 +38,7 @@ fn adapted(input: &WriteInput<'_>) -> Option<Rect> {
     let page = input.drawing.visible_area();
     let shown = match input.options.page {
         PageFit::None => return None,
+        PageFit::Origin => Rect::from_origin_size(Point::ORIGIN, page.size()),
         PageFit::Auto => held(input, page)?,
         PageFit::Grow => page.union(artwork(input, Some(page))?),
         PageFit::Page => artwork(input, None)?,

@@ -3,7 +3,7 @@
 use crate::bend::outcome::WarpedPart;
 use crate::bend::picture::BentImage;
 use crate::scene::model::Part;
-use crate::source::number::{outline_data, path_data, short};
+use crate::source::number::{outline_data, short};
 use crate::source::text::SourceText;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -44,7 +44,7 @@ pub(super) fn part_box(p: &Part, warped: Option<&WarpedPart>) -> Rect {
 pub(super) fn part_data(p: &Part, warped: Option<&WarpedPart>, source: &SourceText) -> String {
     let own = |e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path");
     match (warped, p.drawn.and_then(own)) {
-        (Some(w), _) => w.data.clone().unwrap_or_else(|| path_data(&w.path, w.decimals)),
+        (Some(w), _) => w.data.clone().unwrap_or_else(|| w.text(&w.path)),
         (None, Some(d)) => escape(&d),
         (None, None) => outline_data(&p.local),
     }

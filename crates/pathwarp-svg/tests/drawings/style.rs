@@ -171,7 +171,7 @@ fn style_ends_by_the_budget() {
     for body in [nested, many, siblings, nth] {
         let read = Document::read(drawing(&body).as_bytes(), "t", &options());
         if let Err(e) = read {
-            assert!(e.to_string().contains(&Limit::Comparisons.to_string()), "{e}");
+            assert!(e.to_string().contains(&Limit::Work.to_string()), "{e}");
         }
     }
     let mut rules = "--0:xxxxxxxxxxxxxxxx;".to_owned();

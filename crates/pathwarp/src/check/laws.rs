@@ -9,6 +9,9 @@ use crate::param::Args;
 use kurbo::{Point, Rect, Vec2};
 use std::cell::Cell;
 
+/// Differences up to this are rounding.
+const NEAR: f64 = 1e-9;
+
 /// The laws.
 pub(super) fn laws(entry: &dyn Deformation) -> Check {
     let mut faults = Check::new("laws");
@@ -58,8 +61,8 @@ fn bent(m: &dyn Map, p: Point, q: Point) -> f64 {
     if n == 0.0 { 0.0 } else { ((b - a).cross(c - a) / n).abs() }
 }
 
+/// Checks a law, and returns the number of samples that were skipped.
 fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
-    const NEAR: f64 = 1e-9;
     let values = match *law {
         Law::Same(a, b) | Law::Undoes(a, b) => vec![a, b],
         Law::Identity(a)
@@ -99,10 +102,26 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
         }
         most
     };
-    let (f, g) = (&*first.map, &*last.map);
-    let pairs = values[0];
+    let fault = broken(law, values[0], [&*first.map, &*last.map], &worst);
+    // Values after a failure mean nothing.
+    if let Some((pairs, e)) = values.iter().zip(&built).find_map(|(pairs, b)| Some((pairs, failure(b)?))) {
+        faults.fault(format!("{pairs:?}: {e}"));
+    } else if let Some(fault) = fault {
+        let place = place.get().map(|p: Point| format!(", worst at {},{}", p.x, p.y)).unwrap_or_default();
+        faults.fault(fault + &place);
+    }
+    skips.get()
+}
+
+/// What of a law does not hold for its maps `f` and `g`, which are one for most. `worst` is the largest value of a function at the samples.
+fn broken(
+    law: &Law,
+    pairs: Pairs,
+    [f, g]: [&dyn Map; 2],
+    worst: &dyn Fn(&dyn Fn(Point) -> f64) -> f64,
+) -> Option<String> {
     let by = |off: f64| if off.is_finite() { format!("{off:e}") } else { "what is no number".to_owned() };
-    let fault = match *law {
+    match *law {
         Law::Identity(_) => {
             let off = worst(&|p| f.point(p).distance(p));
             (off > NEAR).then(|| format!("{pairs:?} should be the identity; it moves a point by {}", by(off)))
@@ -148,13 +167,5 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
             let off = worst(&|p| g.point(f.point(p)).distance(p));
             (off > NEAR).then(|| format!("{back:?} should undo {there:?}; a point ends {} away", by(off)))
         }
-    };
-    // Values after a failure mean nothing.
-    if let Some((pairs, e)) = values.iter().zip(&built).find_map(|(pairs, b)| Some((pairs, failure(b)?))) {
-        faults.fault(format!("{pairs:?}: {e}"));
-    } else if let Some(fault) = fault {
-        let place = place.get().map(|p: Point| format!(", worst at {},{}", p.x, p.y)).unwrap_or_default();
-        faults.fault(fault + &place);
     }
-    skips.get()
 }

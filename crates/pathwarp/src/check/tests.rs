@@ -36,18 +36,28 @@ fn degenerate_frames_are_survived() {
 /// A deformation with a fault of every kind that `entry` looks for.
 struct Bad;
 struct BadMap;
+/// Its batches are other than its single values.
+struct Fickle;
 impl Map for BadMap {
     fn jet(&self, p: Point) -> Jet {
         Jet { p: (p.x + 0.001 * p.y * p.y).into_point(p.y), dx: Vec2::new(1.0, 0.0), dy: Vec2::new(0.5, 1.0) }
     }
-    fn points(&self, ps: &[Point], out: &mut [Point]) {
-        out.copy_from_slice(ps);
+    fn point(&self, p: Point) -> Point {
+        Point::new(p.x + 0.002 * p.y * p.y, p.y)
     }
     fn image(&self, c: &RationalBezier) -> Option<RationalBezier> {
         Some(c.clone())
     }
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(Shift))
+    }
+}
+impl Map for Fickle {
+    fn jet(&self, p: Point) -> Jet {
+        BadMap.jet(p)
+    }
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        out.copy_from_slice(ps);
     }
 }
 trait IntoPoint {
@@ -88,6 +98,12 @@ impl Deformation for Bad {
     fn build(&self, _: &Settings<'_>) -> Result<Built, crate::Error> {
         Ok(Built::new(Arc::new(BadMap)))
     }
+}
+
+#[test]
+fn two_answers_for_a_point_end_the_check() {
+    let [check] = super::maps::all(&Built::new(Arc::new(Fickle))).try_into().unwrap();
+    assert_eq!(check.faults, ["gives two answers for the point 3.7,4.3: 3.7,4.3 and then 3.71849,4.3"]);
 }
 
 #[test]

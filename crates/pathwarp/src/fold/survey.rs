@@ -3,6 +3,8 @@
 use super::interior::interior;
 use super::orientation::Orientation;
 use super::sign;
+use crate::budget::Budget;
+use crate::error::GeometryError;
 use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::{Outline, Seg};
 use kurbo::{Affine, Point, Rect};
@@ -54,16 +56,18 @@ impl<'a> Survey<'a> {
         matches!(self.knowledge, Knowledge::Nothing)
     }
 
-    /// Returns the work of sampling `shapes` outlines with `segments` together, in evaluations of [`budget`](crate::budget); 0 if
-    /// nothing is sampled.
-    #[must_use]
-    pub fn work(&self, shapes: usize, segments: usize) -> f64 {
+    /// Counts the work of sampling `shapes` outlines with `segments` together, in as many copies.
+    ///
+    /// # Errors
+    /// It exceeds the limit.
+    pub fn spend(&self, shapes: usize, segments: usize, copies: usize, budget: &Budget) -> Result<(), GeometryError> {
         /// A sample is taken in a batch.
         const SAMPLE: f64 = 0.25;
         /// Share of a grid over a box that is inside of the shape, and the work to find out.
         const FILLED: f64 = 0.5;
         let samples = segments as f64 * (PER_SEGMENT + 1) as f64 + shapes as f64 * FILLED * (GRID * GRID) as f64;
-        if self.samples() { SAMPLE * self.map.work() * samples } else { 0.0 }
+        let work = if self.samples() { SAMPLE * self.map.work() * samples * copies.max(1) as f64 } else { 0.0 };
+        budget.spend(work).map_err(GeometryError::Limit)
     }
 
     /// Returns the orientation of a shape of the artwork. Unless the survey has a proof, the determinant is sampled along `outline`, and

@@ -2,6 +2,7 @@
 
 use super::batch::{Lane, WIDTH};
 use super::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree};
+use crate::budget::Budget;
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
@@ -60,6 +61,15 @@ impl Chain {
     pub fn steps(&self) -> &[Arc<dyn Map>] {
         &self.steps
     }
+
+    /// The same chain, whose searches spend from a budget. `None`: nothing is searched.
+    pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Option<Self> {
+        let within: Vec<Option<Arc<dyn Map>>> = self.steps.iter().map(|s| s.within(budget)).collect();
+        within.iter().any(Option::is_some).then(|| {
+            let steps = within.into_iter().zip(&self.steps).map(|(within, s)| within.unwrap_or_else(|| Arc::clone(s)));
+            Self { steps: steps.collect() }
+        })
+    }
 }
 
 /// Points passed from step to step at a time: few enough for the stack.
@@ -86,8 +96,8 @@ impl Map for Chain {
         self.steps.iter().map(Map::work).sum::<f64>().max(1.0)
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        self.steps.iter().filter_map(Map::take_overrun).reduce(|a, b| a + b)
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        self.spending(budget).map(|chain| Arc::new(chain) as Arc<dyn Map>)
     }
 
     fn jet(&self, p: Point) -> Jet {

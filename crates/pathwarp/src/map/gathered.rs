@@ -154,10 +154,6 @@ impl Map for Gathered<'_> {
         self.map.work()
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        self.map.take_overrun()
-    }
-
     fn prefers_batches(&self) -> bool {
         true
     }

@@ -17,7 +17,8 @@
 use super::rounds::by_rounds;
 use super::secant::{Target, approach};
 use super::{Jet, Map};
-use crate::meter::{Effort, Overrun};
+use crate::budget::Budget;
+use crate::search::{Search, is_over};
 use kurbo::{Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -40,6 +41,7 @@ const COMPARED: usize = 6;
 ///
 /// Every answer is certified by Kantorovich's condition; points without a certified preimage in the box map to NaN. If the map
 /// folds and a point has several preimages, those in the *core* of the box take precedence.
+#[derive(Clone)]
 pub struct NewtonInverse {
     map: Arc<dyn Map>,
     domain: Rect,
@@ -47,11 +49,11 @@ pub struct NewtonInverse {
     /// The sign of the determinant at the center of the core.
     orientation: f64,
     reach: f64,
-    starts: Vec<Start>,
+    starts: Arc<[Start]>,
     /// Size of a starting point's cell.
     cell: Vec2,
     /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`.
-    buckets: Vec<Vec<u32>>,
+    buckets: Arc<[Vec<u32>]>,
     bounds: Rect,
     side: usize,
     lipschitz: f64,
@@ -60,7 +62,8 @@ pub struct NewtonInverse {
     /// The work of the map, and of one of its jets in a search.
     map_work: f64,
     pub(crate) jet_work: f64,
-    overrun: Overrun,
+    /// What searches spend.
+    budget: Option<Arc<Budget>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -130,31 +133,41 @@ impl NewtonInverse {
         let mut out = Self {
             map_work: map.work().min(map.jet_work()),
             jet_work: map.jet_work(),
-            overrun: Overrun::default(),
+            budget: None,
             map,
             core,
             orientation,
             domain,
             reach,
-            buckets: vec![Vec::new(); side * side],
+            buckets: Arc::default(),
             bounds,
             side,
             lipschitz: 2.0 * lipschitz,
             rounding: 64.0
                 * f64::EPSILON
                 * [bounds.x0, bounds.y0, bounds.x1, bounds.y1].iter().fold(1e-300, |a: f64, v| a.max(v.abs())),
-            starts,
+            starts: starts.into(),
             cell,
         };
+        let mut buckets = vec![Vec::new(); side * side];
         for (k, b) in boxes.iter().enumerate() {
             let ((i0, j0), (i1, j1)) = (out.bucket(b.origin()), out.bucket(Point::new(b.x1, b.y1)));
             for j in j0..=j1 {
                 for i in i0..=i1 {
-                    out.buckets[j * side + i].push(k as u32);
+                    buckets[j * side + i].push(k as u32);
                 }
             }
         }
+        out.buckets = buckets.into();
         out
+    }
+
+    /// The same inverse, whose searches spend from a budget.
+    #[must_use]
+    pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
+        // The map may be an inverse itself.
+        let map = self.map.within(budget).unwrap_or_else(|| Arc::clone(&self.map));
+        Self { map, budget: Some(Arc::clone(budget)), ..self.clone() }
     }
 
     fn bucket(&self, q: Point) -> (usize, usize) {
@@ -175,15 +188,15 @@ impl NewtonInverse {
         self.counted(self.search(q, accept))
     }
 
-    /// As [`NewtonInverse::solve_where`], with the effort it took, for callers that count it themselves.
+    /// As [`NewtonInverse::solve_where`], with what it took, for callers that count it themselves.
     #[must_use]
-    pub(crate) fn search(&self, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Effort) {
+    pub(crate) fn search(&self, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Search) {
         self.search_by(&*self.map, q, accept)
     }
 
     /// Counts the work of a search.
-    fn counted(&self, (found, effort): (Option<Jet>, Effort)) -> Option<Jet> {
-        self.overrun.add(effort, 1, self.jet_work);
+    pub(super) fn counted(&self, (found, search): (Option<Jet>, Search)) -> Option<Jet> {
+        search.spend(self.budget.as_ref(), 1, self.jet_work);
         found
     }
 
@@ -202,31 +215,31 @@ impl NewtonInverse {
     }
 
     /// The same with the jets of `map`, which is this inverse's map or a memory of it.
-    fn search_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Effort) {
-        let mut effort = Effort::default();
-        let found = self.solve_by(map, q, accept, &mut effort);
-        (found, effort)
+    fn search_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Search) {
+        let mut search = Search::default();
+        let found = self.solve_by(map, q, accept, &mut search);
+        (found, search)
     }
 
-    fn solve_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool, effort: &mut Effort) -> Option<Jet> {
-        if !q.is_finite() || self.starts.is_empty() {
+    fn solve_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool, search: &mut Search) -> Option<Jet> {
+        if !q.is_finite() || self.starts.is_empty() || is_over(self.budget.as_ref()) {
             return None;
         }
         let (i, j) = self.bucket(q);
         let near = self.buckets[j * self.side + i].len();
         if near == 0 {
-            effort.starts += self.starts.len();
+            search.starts += self.starts.len();
             let off = |s: &Start| (s.jet.p - q).hypot2();
             let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            return self.newton(map, start.at, q, effort).filter(|found| self.counts(found) && accept(found.p));
+            return self.newton(map, start.at, q, search).filter(|found| self.counts(found) && accept(found.p));
         }
         let mut tried = [u32::MAX; MAX_TRIES];
         let mut best: Option<(f64, Jet)> = None;
         for n in 0..MAX_TRIES {
-            effort.starts += COMPARED * near;
+            search.starts += COMPARED * near;
             let Some(k) = self.next_start(q, &tried) else { break };
             tried[n] = k;
-            let Some(found) = self.newton(map, self.starts[k as usize].at, q, effort).filter(|f| accept(f.p)) else {
+            let Some(found) = self.newton(map, self.starts[k as usize].at, q, search).filter(|f| accept(f.p)) else {
                 continue;
             };
             let distance = self.distance_from_core(found.p);
@@ -297,11 +310,11 @@ impl NewtonInverse {
     }
 
     /// Newton's method from one starting point.
-    fn newton(&self, map: &dyn Map, start: Point, q: Point, effort: &mut Effort) -> Option<Jet> {
+    pub(super) fn newton(&self, map: &dyn Map, start: Point, q: Point, search: &mut Search) -> Option<Jet> {
         let room = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
         let mut x = start;
         let mut jet = map.jet(x);
-        effort.jets += 1;
+        search.jets += 1;
         let mut residual = q - jet.p;
         for _ in 0..MAX_STEPS {
             let step = solve(&jet, residual)?;
@@ -312,7 +325,7 @@ impl NewtonInverse {
                 to = x + step * damping;
                 to = Point::new(to.x.clamp(room.x0, room.x1), to.y.clamp(room.y0, room.y1));
                 at = map.jet(to);
-                effort.jets += 1;
+                search.jets += 1;
                 r = q - at.p;
                 if r.hypot2() < residual.hypot2() || r.hypot() <= self.rounding {
                     break;
@@ -353,7 +366,7 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
 }
 
 /// Work of a point of the inverse, as a multiple of the map's: a dozen jets with the steps around them, where there is a source. What a
-/// search takes beyond this is counted afterwards ([`Map::take_overrun`]).
+/// search takes beyond this it spends itself.
 pub(crate) const INVERSE_WORK: f64 = 5.0;
 
 impl Map for NewtonInverse {
@@ -361,9 +374,8 @@ impl Map for NewtonInverse {
         INVERSE_WORK * self.map_work
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        // The map may be an inverse itself.
-        Some(self.overrun.take() + self.map.take_overrun().unwrap_or(0))
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.spending(budget)))
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -443,18 +455,21 @@ mod tests {
         let map = Arc::new(Counting::default());
         let inverse =
             NewtonInverse::new(Arc::clone(&map) as Arc<dyn Map>, Rect::new(-1.0, -1.0, 1.0, 1.0), 1e-9, [1, 1]);
+        let budget = Arc::new(Budget::default());
+        let (inverse, last) = (inverse.spending(&budget), std::cell::Cell::new(budget.left()));
         let of = |q: Point| {
             map.0.store(0, Ordering::Relaxed);
             let found = inverse.jet(q).is_finite();
-            (found, map.0.load(Ordering::Relaxed), inverse.take_overrun().unwrap())
+            let jets = map.0.load(Ordering::Relaxed);
+            let beyond = last.replace(budget.left()) - budget.left();
+            (found, jets, beyond)
         };
         let (found, jets, beyond) = of(Fold.point(Point::new(0.7, 0.2)));
-        assert!(found && jets <= 12 && beyond <= 5, "{jets} {beyond}");
+        assert!(found && jets <= 12 && beyond <= 5.0, "{jets} {beyond}");
         // On the fold every starting point is tried.
         let (found, jets, beyond) = of(Point::new(0.0, 0.3));
         assert!(!found && jets > 100, "{jets}");
-        assert!((0.3..0.8).contains(&(beyond as f64 / jets as f64)), "{jets} {beyond}");
-        assert_eq!(inverse.take_overrun(), Some(0));
+        assert!((0.3..0.8).contains(&(beyond / jets as f64)), "{jets} {beyond}");
     }
 
     #[test]

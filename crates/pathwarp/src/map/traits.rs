@@ -2,6 +2,7 @@
 
 use super::batch::{Lane, WIDTH};
 use super::{Class, Creases, Jet, RationalBezier, RationalDegree};
+use crate::budget::Budget;
 use kurbo::Point;
 use std::sync::Arc;
 
@@ -82,10 +83,10 @@ pub trait Map: Send + Sync {
         1.0 + SINGLY * (self.work() - 1.0).max(0.0)
     }
 
-    /// Takes the work, in evaluations of the budget, by which evaluations since the last call exceeded [`work`](Map::work). `None`:
-    /// none ever does. Inverses that search exceed it where they search in vain, which is known only afterwards.
+    /// The same map, whose searches spend from a budget what they take beyond [`work`](Map::work), and find nothing once it is used up.
+    /// `None`: nothing is searched.
     #[doc(hidden)]
-    fn take_overrun(&self) -> Option<u64> {
+    fn within(&self, _budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
         None
     }
 
@@ -181,8 +182,8 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     fn jet_work(&self) -> f64 {
         (**self).jet_work()
     }
-    fn take_overrun(&self) -> Option<u64> {
-        (**self).take_overrun()
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        (**self).within(budget)
     }
     fn prefers_batches(&self) -> bool {
         (**self).prefers_batches()
@@ -263,8 +264,8 @@ mod tests {
         fn jet_work(&self) -> f64 {
             self.record("jet_work", 5.0)
         }
-        fn take_overrun(&self) -> Option<u64> {
-            self.record("take_overrun", Some(4))
+        fn within(&self, _budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+            self.record("within", None)
         }
         fn prefers_batches(&self) -> bool {
             self.record("prefers_batches", true)
@@ -305,7 +306,7 @@ mod tests {
         let _ = map.inverse();
         let _ = map.work();
         let _ = map.jet_work();
-        let _ = map.take_overrun();
+        let _ = map.within(&Arc::default());
         let _ = map.prefers_batches();
         let _ = map.differentiates();
         let _ = map.remembers();

@@ -34,6 +34,21 @@ impl Subpath {
         self.segs.last().map_or(self.start, Seg::end)
     }
 
+    /// The bounding box.
+    #[must_use]
+    pub fn bounding_box(&self) -> Rect {
+        let point = |p: Point| Rect::from_points(p, p);
+        let ends = self.segs.iter().map(Seg::end).fold(point(self.start), |b, p| b.union(point(p)));
+        // The extremes of most segments lie inside the box of all ends.
+        self.segs.iter().fold(ends, |b, g| g.extend(b))
+    }
+
+    /// The diagonal of the bounding box.
+    #[must_use]
+    pub fn diagonal(&self) -> f64 {
+        self.bounding_box().size().to_vec2().hypot()
+    }
+
     /// The same curve in the opposite direction.
     #[must_use]
     pub fn reversed(&self) -> Self {

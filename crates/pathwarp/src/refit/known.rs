@@ -5,9 +5,8 @@ use super::options::Options;
 use super::path;
 use super::repeats::Shapes;
 use super::report::{self, PathWriter, RefittedPath};
-use crate::budget::Limit;
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Gathered, Map, Metered};
+use crate::map::{Class, Creases, Gathered, Map};
 use crate::outline::Outline;
 use std::sync::Arc;
 
@@ -78,19 +77,19 @@ fn refit(
     memory: &mut MergeMemory,
 ) -> Result<RefittedPath, GeometryError> {
     let mut out = PathWriter::default();
+    let counted = map.within(&options.budget);
+    let map = counted.as_deref().unwrap_or(map);
     let gathered = (map.prefers_batches() && !map.remembers()).then(|| Gathered::new(map));
     if let Class::Affine(m) = map.class() {
         path::affine(outline, m, options, &mut out)?;
     } else {
         let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
-        let metered = Metered::borrowed(map, &options.budget);
-        let map = metered.as_ref().map_or(map, |m| m as &dyn Map);
         let mut creases = Creases::default();
         map.creases(&mut creases);
         let announced = path::announce_short(outline, map, &creases, options);
         for sub in &outline.subpaths {
-            // A map that counts in the budget is undefined once the limit is exceeded.
-            let limit = |e| options.budget.spend_cut(Limit::Evaluations, 0).err().map_or(e, GeometryError::Limit);
+            // A map that searches is undefined once nothing is left.
+            let limit = |e| options.budget.exceeded().map_or(e, GeometryError::Limit);
             path::subpath(sub, map, &creases, (options, announced), memory, &mut out).map_err(limit)?;
         }
     }

@@ -10,7 +10,6 @@ use super::repeats::{CarriedWay, Repeats, Shapes, Way};
 use super::segment::{Part, SegmentFitter};
 use super::source::SourceCurve;
 use super::split;
-use crate::budget::Limit;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use bezierfit::parts::{
@@ -124,7 +123,7 @@ impl<'a> Merger<'a> {
     /// Appends the pieces of the first segments from `start` up to `end`, whose joints may be smooth, and returns how many they are.
     fn joined(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
         // The whole path is refused then.
-        if self.fitter.options.budget.left(Limit::Evaluations) <= 0.0 {
+        if self.fitter.options.budget.left() <= 0.0 {
             return self.single(start);
         }
         let (parts, tolerance) = (&self.parts[start..end], self.fitter.options.tolerance);

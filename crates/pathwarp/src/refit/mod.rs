@@ -24,15 +24,15 @@ mod split;
 
 pub use bezierfit::Assurance;
 pub use known::KnownShapes;
-pub use options::Options;
-pub use report::{PathReport, RESOLUTION, RefittedPath};
-pub use shared::SharedEdges;
+pub use options::{Options, suited};
+pub use report::{PathReport, RESOLUTION, RefittedPath, SpanReport};
+pub use shared::{SharedEdges, Span};
 
 use crate::error::GeometryError;
 use crate::map::Map;
 use crate::outline::Outline;
 
-/// Returns the image of `outline` under `map`, within `options.tolerance`.
+/// Returns the image of `outline` under `map`, within `options.tolerance`, or what the options say of its parts.
 ///
 /// Subpaths keep their order, direction and closedness. Unless pieces are merged, source nodes remain nodes. Smooth joints
 /// remain smooth. Affine maps move control points, and arcs become cubics within the tolerance; under projective maps lines
@@ -57,5 +57,19 @@ use crate::outline::Outline;
 /// assert!(warped.report.max_error <= 0.01);
 /// ```
 pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<RefittedPath, GeometryError> {
+    let own;
+    let options = if options.suited && options.spans.is_empty() {
+        let contours: Vec<f64> = outline.subpaths.iter().map(|s| suited(options.tolerance, s.diagonal())).collect();
+        let alone = || SharedEdges::held([(outline, &contours[..])]);
+        let spans = if *options.shared == SharedEdges::default() {
+            alone().spans(outline, &contours)
+        } else {
+            options.shared.spans(outline, &contours)
+        };
+        own = options.clone().with_spans(spans);
+        &own
+    } else {
+        options
+    };
     KnownShapes::default().warp_path(outline, map, options)
 }

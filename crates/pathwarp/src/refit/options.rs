@@ -1,6 +1,6 @@
-//! Options of a refit.
+//! Options of a refit, and the tolerance that suits a contour.
 
-use super::shared::SharedEdges;
+use super::shared::{SharedEdges, Span};
 use crate::budget::Budget;
 use std::sync::Arc;
 
@@ -23,6 +23,10 @@ pub struct Options {
     pub merge: bool,
     /// Edges that merging leaves alone, so that neighbouring shapes stay watertight.
     pub shared: Arc<SharedEdges>,
+    /// Hold small contours to what [`suited`] finds for them, too, instead of to `tolerance` alone. A contour is a subpath here.
+    pub suited: bool,
+    /// Tolerances of consecutive segments, over all subpaths. None: `tolerance`, or what suits each subpath, for all.
+    pub spans: Arc<[Span]>,
     /// Counts evaluations of the map and segments.
     pub budget: Arc<Budget>,
 }
@@ -31,7 +35,15 @@ impl Options {
     /// Checked by dense sampling against `tolerance`; no merging.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, certify: false, merge: false, shared: Arc::default(), budget: Arc::default() }
+        Self {
+            tolerance,
+            certify: false,
+            merge: false,
+            shared: Arc::default(),
+            suited: false,
+            spans: Arc::default(),
+            budget: Arc::default(),
+        }
     }
 
     /// Sets [`Options::tolerance`].
@@ -58,9 +70,43 @@ impl Options {
         Self { shared, ..self }
     }
 
+    /// Sets [`Options::suited`].
+    #[must_use]
+    pub fn with_suited(self, suited: bool) -> Self {
+        Self { suited, ..self }
+    }
+
+    /// Sets [`Options::spans`].
+    #[must_use]
+    pub fn with_spans(self, spans: impl Into<Arc<[Span]>>) -> Self {
+        Self { spans: spans.into(), ..self }
+    }
+
     /// Sets [`Options::budget`].
     #[must_use]
     pub fn with_budget(self, budget: Arc<Budget>) -> Self {
         Self { budget, ..self }
     }
+}
+
+/// Returns the tolerance that suits a contour of this diagonal, in a drawing that is held to `tolerance` as a whole: 2e-3 of the
+/// diagonal, so that a dot stays round and a letter legible however large the drawing is, but not more than `tolerance`, and not less
+/// than a thousandth of it. With the usual 1e-4 of the drawing's diagonal, contours larger than a twentieth of the drawing are held to
+/// `tolerance`, and none to less than 1e-7 of its diagonal.
+///
+/// Diagonals are those of what is painted, with strokes. A contour is a subpath, or a letter with its holes.
+///
+/// ```
+/// use pathwarp::refit::suited;
+///
+/// let of_a_poster = 0.14;
+/// assert_eq!(suited(of_a_poster, 1000.0), 0.14);
+/// assert_eq!(suited(of_a_poster, 1.5), 0.003);
+/// assert_eq!(suited(of_a_poster, 0.0), 0.14e-3);
+/// ```
+#[must_use]
+pub fn suited(tolerance: f64, diagonal: f64) -> f64 {
+    const OF_CONTOUR: f64 = 2e-3;
+    const LEAST: f64 = 1e-3;
+    (OF_CONTOUR * diagonal).clamp(LEAST * tolerance, tolerance)
 }

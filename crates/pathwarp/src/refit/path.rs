@@ -5,10 +5,10 @@ use super::limits::{CHUNK, CHUNK_CORNER};
 use super::merge::{self, MergeMemory, Merger};
 use super::options::Options;
 use super::parallel::in_parallel;
-use super::report::{PathWriter, reverse};
+use super::report::{PathReport, PathWriter, SUMMED, SpanReport, reverse};
 use super::segment::{Part, SegmentFitter};
+use super::shared::Span;
 use super::split;
-use crate::budget::Limit;
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
@@ -29,28 +29,77 @@ pub(super) fn affine(
             return Err(infinity(sub.start));
         }
         let mut pieces = Vec::with_capacity(sub.segs.len());
-        for seg in &sub.segs {
-            let image = seg.transformed(m);
-            finite(&image)?;
-            match image {
-                Seg::Line(l) => pieces.push(Piece::Line(l)),
-                Seg::Arc(a) => {
-                    let (canonical, flipped) = split::canonical(seg);
-                    let start = pieces.len();
-                    if let Seg::Arc(c) = canonical.transformed(m) {
-                        pieces.extend(c.to_cubics(options.tolerance).map(Piece::Cubic));
-                    }
-                    if flipped {
-                        reverse(&mut pieces[start..]);
-                    }
-                    out.report.add_error(a.cubics_error(a.cubics_needed(options.tolerance)), Assurance::Certified);
-                }
-                other => pieces.push(Piece::Cubic(other.to_cubic())),
+        let spans = spans_of(sub, options, out);
+        for (_, tolerance, segs) in runs(&spans, options.tolerance, 0, &sub.segs) {
+            let before = pieces.len();
+            let mut report = PathReport::default();
+            for seg in segs {
+                affine_segment(seg, m, tolerance, &mut pieces, &mut report)?;
             }
+            if !spans.is_empty() {
+                report.share = report.max_error / tolerance;
+                out.spans.push(SpanReport { pieces: pieces.len() - before, max_error: report.max_error });
+            }
+            out.report.add(report);
         }
         out.subpath(m * sub.start, &pieces, sub.closed);
     }
     Ok(())
+}
+
+fn affine_segment(
+    seg: &Seg,
+    m: Affine,
+    tolerance: f64,
+    pieces: &mut Vec<Piece>,
+    report: &mut PathReport,
+) -> Result<(), GeometryError> {
+    let image = seg.transformed(m);
+    finite(&image)?;
+    match image {
+        Seg::Line(l) => pieces.push(Piece::Line(l)),
+        Seg::Arc(a) => {
+            let (canonical, flipped) = split::canonical(seg);
+            let start = pieces.len();
+            if let Seg::Arc(c) = canonical.transformed(m) {
+                pieces.extend(c.to_cubics(tolerance).map(Piece::Cubic));
+            }
+            if flipped {
+                reverse(&mut pieces[start..]);
+            }
+            report.add_error(a.cubics_error(a.cubics_needed(tolerance)), Assurance::Certified);
+        }
+        other => pieces.push(Piece::Cubic(other.to_cubic())),
+    }
+    Ok(())
+}
+
+/// The options' spans of the next subpath to be written.
+fn spans_of(sub: &Subpath, options: &Options, out: &PathWriter) -> Vec<Span> {
+    let mut left = sub.segs.len();
+    let own = options.spans.iter().skip(out.spans.len()).take_while(|s| {
+        let some = left > 0;
+        left = left.saturating_sub(s.segments);
+        some
+    });
+    own.copied().collect()
+}
+
+/// The runs of one tolerance, with the index of their span, in a part of a subpath whose first segment is `from`.
+fn runs<'s>(spans: &[Span], all: f64, from: usize, segs: &'s [Seg]) -> Vec<(usize, f64, &'s [Seg])> {
+    if spans.is_empty() {
+        return vec![(0, all, segs)];
+    }
+    let (mut out, mut start) = (Vec::new(), 0_usize);
+    for (i, span) in spans.iter().enumerate() {
+        let end = start + span.segments;
+        let inside = start.saturating_sub(from).min(segs.len())..end.saturating_sub(from).min(segs.len());
+        if !inside.is_empty() {
+            out.push((i, span.tolerance, &segs[inside]));
+        }
+        start = end;
+    }
+    out
 }
 
 /// Refits one subpath under a map that is not affine.
@@ -73,33 +122,56 @@ pub(super) fn subpath(
     let projective = matches!(map.class(), Class::Projective(_));
     let work = map.work();
     // Values at the nodes.
-    options
-        .budget
-        .spend_cut(Limit::Evaluations, (work * sub.segs.len() as f64) as u64)
-        .map_err(GeometryError::Limit)?;
-    let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
-    let refitted = |i: usize, segs: &[Seg], memory: &mut MergeMemory| {
+    options.budget.spend(work * sub.segs.len() as f64).map_err(GeometryError::Limit)?;
+    let spans = spans_of(sub, options, out);
+    let refitted = |from: usize, segs: &[Seg], memory: &mut MergeMemory| {
         if !announced {
             announce(&[segs], map, creases, options);
         }
-        let nodes = if i == 0 { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
-        if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) }
+        let mut all = Vec::new();
+        for (span, tolerance, segs) in runs(&spans, options.tolerance, from, segs) {
+            let own;
+            let options = if tolerance == options.tolerance {
+                options
+            } else {
+                own = options.clone().with_tolerance(tolerance);
+                &own
+            };
+            let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
+            let first = from == 0 && all.is_empty();
+            let nodes = if first { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
+            let refit =
+                if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) };
+            let (pieces, found) = refit?;
+            let mut report = PathReport::default();
+            report.add_pieces(found);
+            report.share = report.max_error / tolerance;
+            if !spans.is_empty() && report.max_error > tolerance * (1.0 + SUMMED) && report.over_budget.is_empty() {
+                report.over_budget.extend(segs.first().map(Seg::start));
+            }
+            all.push((span, pieces, report));
+        }
+        Ok::<_, GeometryError>(all)
     };
-    let mut pieces = Vec::new();
-    if sub.segs.len() <= CHUNK {
-        let (all, report) = refitted(0, &sub.segs, memory)?;
-        out.report.add_pieces(report);
-        pieces = all;
+    let parts = if sub.segs.len() <= CHUNK {
+        vec![refitted(0, &sub.segs, memory)?]
     } else {
         let known = memory.known();
-        let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::new(Arc::clone(&known)));
-        for (more, report) in in_parallel(&chunks(&sub.segs, options), alone)? {
-            out.report.add_pieces(report);
-            pieces.extend(more);
+        let alone = |from: usize, segs: &[Seg]| refitted(from, segs, &mut MergeMemory::new(Arc::clone(&known)));
+        in_parallel(&chunks(&sub.segs, options), alone)?
+    };
+    let (mut pieces, first) = (Vec::new(), out.spans.len());
+    out.spans.extend(spans.iter().map(|_| SpanReport { pieces: 0, max_error: 0.0 }));
+    for (span, more, report) in parts.into_iter().flatten() {
+        if let Some(s) = out.spans.get_mut(first + span) {
+            s.pieces += more.len();
+            s.max_error = s.max_error.max(report.max_error);
         }
+        out.report.add(report);
+        if pieces.is_empty() { pieces = more } else { pieces.extend(more) }
     }
     // Segments beyond the limit were not fitted.
-    options.budget.spend_cut(Limit::Evaluations, 0).map_err(GeometryError::Limit)?;
+    options.budget.spend(0.0).map_err(GeometryError::Limit)?;
     out.subpath(start.p, &pieces, sub.closed);
     Ok(())
 }
@@ -156,8 +228,8 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
 }
 
 /// Cuts a long subpath into chunks that are refitted on their own: of [`CHUNK`] segments, or up to the next corner after them if
-/// pieces are merged.
-fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<&'s [Seg]> {
+/// pieces are merged. Each with the index of its first segment.
+fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<(usize, &'s [Seg])> {
     let is_corner = |w: &[Seg]| {
         let (into, away) = (w[0].deriv(1.0), w[1].deriv(0.0));
         into.cross(away).abs() >= CHUNK_CORNER * into.dot(away)
@@ -167,11 +239,12 @@ fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<&'s [Seg]> {
     while rest.len() > CHUNK {
         let more = if options.merge { rest[CHUNK - 1..].windows(2).position(is_corner) } else { Some(0) };
         let (chunk, after) = rest.split_at(more.map_or(rest.len(), |n| CHUNK + n));
-        out.push(chunk);
+        out.push((segs.len() - rest.len(), chunk));
         rest = after;
     }
-    out.push(rest);
-    out.retain(|c| !c.is_empty());
+    if !rest.is_empty() {
+        out.push((segs.len() - rest.len(), rest));
+    }
     out
 }
 

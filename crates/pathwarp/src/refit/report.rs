@@ -8,6 +8,9 @@ use kurbo::{BezPath, PathEl, Point};
 /// the fit chases noise.
 pub const RESOLUTION: f64 = 1e-13;
 
+/// Sums of errors round up.
+pub(super) const SUMMED: f64 = 1e-9;
+
 /// Statistics of a refit path.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -18,6 +21,8 @@ pub struct PathReport {
     pub segments_out: usize,
     /// Largest distance between the true image and the output, in root user units.
     pub max_error: f64,
+    /// The largest error as a share of the tolerance that holds where it is.
+    pub share: f64,
     /// Basis of `max_error`: the weakest of all segments.
     pub assurance: Assurance,
     /// Places in the source at which the tolerance was not met: the work budget ran out, or rounding is larger.
@@ -33,6 +38,7 @@ impl Default for PathReport {
             segments_in: 0,
             segments_out: 0,
             max_error: 0.0,
+            share: 0.0,
             assurance: Assurance::Exact,
             over_budget: Vec::new(),
             unresolved: None,
@@ -43,10 +49,9 @@ impl Default for PathReport {
 impl PathReport {
     /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest one of the image.
     pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
-        /// Sums of errors round up.
-        const ROUNDING: f64 = 1e-9;
         let resolution = RESOLUTION * outline.extent().max(image);
-        let mut missed = self.max_error > tolerance * (1.0 + ROUNDING);
+        let mut missed = self.max_error > tolerance * (1.0 + SUMMED);
+        self.share = self.share.max(self.max_error / tolerance);
         if resolution > tolerance {
             self.unresolved = Some(resolution);
             self.add_error(resolution, Assurance::Checked);
@@ -60,6 +65,7 @@ impl PathReport {
     /// Adds the report of another part of the same path; the numbers of segments stay.
     pub fn add(&mut self, part: Self) {
         self.add_error(part.max_error, part.assurance);
+        self.share = self.share.max(part.share);
         self.over_budget.extend(part.over_budget);
         self.unresolved = larger(self.unresolved, part.unresolved);
     }
@@ -99,8 +105,19 @@ pub(super) fn extent(path: &BezPath) -> f64 {
 pub struct RefittedPath {
     /// Lines and cubics.
     pub path: BezPath,
+    /// What became of each of the options' [spans](super::Options::spans).
+    pub spans: Vec<SpanReport>,
     /// Statistics.
     pub report: PathReport,
+}
+
+/// What became of a span.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpanReport {
+    /// Number of lines and cubics, including a closing line.
+    pub pieces: usize,
+    /// Largest distance between the true image and the output, in root user units.
+    pub max_error: f64,
 }
 
 /// Collects the output, subpath by subpath.
@@ -108,6 +125,7 @@ pub struct RefittedPath {
 pub(super) struct PathWriter {
     path: BezPath,
     pub(super) report: PathReport,
+    pub(super) spans: Vec<SpanReport>,
 }
 
 impl PathWriter {
@@ -128,7 +146,7 @@ impl PathWriter {
     }
 
     pub(super) fn finish(self) -> RefittedPath {
-        RefittedPath { path: self.path, report: self.report }
+        RefittedPath { path: self.path, spans: self.spans, report: self.report }
     }
 }
 

@@ -5,7 +5,6 @@ use super::options::Options;
 use super::report::reverse;
 use super::source::SourceCurve;
 use super::split;
-use crate::budget::Limit;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use bezierfit::parts::StretchFitter;
@@ -86,7 +85,7 @@ impl SegmentFitter<'_> {
         let seg = source.seg;
         // A segment of no length is kept, as it carries line caps and markers; it has no direction to preserve.
         let is_point = source.size() <= POINT_SIZE * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot());
-        if is_point || self.options.budget.left(Limit::Evaluations) <= 0.0 {
+        if is_point || self.options.budget.left() <= 0.0 {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
             return Ok(());
         }
@@ -96,7 +95,7 @@ impl SegmentFitter<'_> {
         }
         let from = source.end_with(0.0, first.p, first);
         let to = source.end_with(1.0, last.p, last);
-        let left = self.options.budget.left(Limit::Evaluations) / self.work;
+        let left = self.options.budget.left() / self.work;
         let (tolerance, prove) = (self.options.tolerance, (self.options.certify, blur));
         let mut fitter = StretchFitter::new(source, &slow, tolerance, prove, left);
         let covered = fitter.cover(&from, &to, pieces, report);
@@ -106,7 +105,7 @@ impl SegmentFitter<'_> {
 
     /// Counts work. Too much of it is an error of the whole path, which ends by itself: `fit` does no more.
     pub(super) fn spend(&self, evaluations: f64) {
-        let _ = self.options.budget.spend(Limit::Evaluations, evaluations as u64);
+        let _ = self.options.budget.spend(evaluations);
     }
 
     /// Appends the image of a part. Where the map tears, a line connects it with its neighbour.
@@ -141,7 +140,7 @@ impl SegmentFitter<'_> {
     /// Appends the parts of a segment, in its own direction. If `whole`, or if the map has no creases but edges, that is itself.
     pub(super) fn parts(&self, seg: &Seg, jets: [&Jet; 2], whole: bool, out: &mut Vec<Part>) -> Result<(), NotFinite> {
         let creased = self.creases.items().iter().any(|c| c.kind != CreaseKind::Edge);
-        let nothing_left = self.options.budget.left(Limit::Evaluations) <= 0.0;
+        let nothing_left = self.options.budget.left() <= 0.0;
         if whole || nothing_left || !(creased || self.is_long_arc(seg)) {
             out.push(Part::whole(*seg, jets));
             return Ok(());

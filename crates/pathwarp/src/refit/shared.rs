@@ -7,29 +7,91 @@ use super::split;
 use crate::outline::{Outline, Seg};
 use kurbo::Point;
 
-/// The segments that occur more than once in a drawing, in either direction.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+/// The segments that occur more than once in a drawing, in either direction, and how closely they are to be followed.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct SharedEdges {
-    /// Sorted [`fingerprint`]s. Two segments with the same one are taken for equal: among a million segments that happens by chance
-    /// once in forty million drawings, and leaves two edges unmerged.
-    twice: Vec<u64>,
+    /// Sorted [`fingerprint`]s, each with the smallest tolerance of the contours that have the segment. Two segments with the same
+    /// one are taken for equal: among a million segments that happens by chance once in forty million drawings, and leaves two edges
+    /// unmerged.
+    twice: Vec<(u64, f64)>,
+    /// The same for the nodes at which contours of different tolerances meet.
+    nodes: Vec<(u64, f64)>,
 }
 
 impl SharedEdges {
     /// The segments that `outlines` share, with each other or within themselves.
     #[must_use]
     pub fn among<'a>(outlines: impl IntoIterator<Item = &'a Outline>) -> Self {
-        let mut all: Vec<u64> = outlines.into_iter().flat_map(Outline::segs).map(fingerprint).collect();
-        all.sort_unstable();
-        let mut twice: Vec<u64> = all.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
-        twice.dedup();
-        Self { twice }
+        Self::held(outlines.into_iter().map(|o| (o, &[][..])))
+    }
+
+    /// The same for contours with tolerances of their own: one for each subpath of an outline, or none.
+    #[must_use]
+    pub fn held<'a>(outlines: impl IntoIterator<Item = (&'a Outline, &'a [f64])>) -> Self {
+        let (mut all, mut nodes) = (Vec::new(), Vec::new());
+        for (outline, contours) in outlines {
+            for (i, s) in outline.subpaths.iter().enumerate() {
+                let held = contours.get(i).copied();
+                all.extend(s.segs.iter().map(|g| (fingerprint(g), held.unwrap_or(f64::INFINITY))));
+                if let Some(held) = held {
+                    nodes.extend(s.segs.iter().map(Seg::start).chain([s.end()]).map(|p| (mixed(&[p]), held)));
+                }
+            }
+        }
+        let differ = |run: &[(u64, f64)]| run[0].1 < run[run.len() - 1].1;
+        Self { twice: smallest(all, |run| run.len() > 1), nodes: smallest(nodes, differ) }
     }
 
     /// Returns `true` if `seg` is shared.
     pub(super) fn contains(&self, seg: &Seg) -> bool {
-        !self.twice.is_empty() && self.twice.binary_search(&fingerprint(seg)).is_ok()
+        !self.twice.is_empty() && found(&self.twice, fingerprint(seg)).is_some()
     }
+
+    /// Divides an outline whose subpaths have these tolerances into spans of one tolerance each.
+    #[must_use]
+    pub fn spans(&self, outline: &Outline, contours: &[f64]) -> Vec<Span> {
+        let mut out: Vec<Span> = Vec::new();
+        for (s, &contour) in outline.subpaths.iter().zip(contours) {
+            let at = |p: Point| found(&self.nodes, mixed(&[p])).unwrap_or(contour);
+            let (first, mut from) = (out.len(), at(s.start));
+            for g in &s.segs {
+                let shared = if self.twice.is_empty() { None } else { found(&self.twice, fingerprint(g)) };
+                let (tolerance, to) = (shared.map_or(contour, |t| t.min(contour)), at(g.end()));
+                match out[first..].last_mut() {
+                    // A node that others follow more closely stays one.
+                    Some(last) if last.tolerance == tolerance && from >= tolerance => {
+                        last.segments += 1;
+                        last.nodes[1] = to;
+                    }
+                    _ => out.push(Span { segments: 1, tolerance, nodes: [from, to] }),
+                }
+                from = to;
+            }
+        }
+        out
+    }
+}
+
+/// Consecutive segments of one subpath that are followed within the same distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Number of segments.
+    pub segments: usize,
+    /// Largest distance of their images from the output.
+    pub tolerance: f64,
+    /// The smallest tolerance of all that meets at either end, for rounding.
+    pub nodes: [f64; 2],
+}
+
+/// For each key whose run of values is `kept`, the smallest of them; sorted.
+fn smallest(mut all: Vec<(u64, f64)>, kept: impl Fn(&[(u64, f64)]) -> bool) -> Vec<(u64, f64)> {
+    all.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    all.chunk_by(|a, b| a.0 == b.0).filter(|run| kept(run)).map(|run| run[0]).collect()
+}
+
+/// The value of a key.
+fn found(sorted: &[(u64, f64)], key: u64) -> Option<f64> {
+    sorted.binary_search_by_key(&key, |(k, _)| *k).ok().map(|i| sorted[i].1)
 }
 
 /// A hash of the coordinates of a segment in its canonical direction, bit by bit, and of their number.
@@ -81,5 +143,20 @@ mod tests {
         let known: Vec<bool> = a.segs().map(|s| shared.contains(s)).collect();
         assert_eq!(known, [true, false, true, false]);
         assert_eq!(SharedEdges::among([&a]), SharedEdges::default());
+    }
+
+    #[test]
+    fn a_shared_edge_has_the_smallest_tolerance_on_both_sides() {
+        let a = Outline::from_svg("M0,0H9V9H0ZM20,20h1v1").unwrap();
+        let b = Outline::from_svg("M9,9V0H12V9Z").unwrap();
+        let (of_a, of_b) = ([3.0, 0.5], [1.0]);
+        let shared = SharedEdges::held([(&a, &of_a[..]), (&b, &of_b[..])]);
+        let span = |segments, tolerance, nodes| Span { segments, tolerance, nodes };
+        let spans = shared.spans(&a, &of_a);
+        assert_eq!(
+            spans,
+            [span(1, 3.0, [3.0, 1.0]), span(1, 1.0, [1.0, 1.0]), span(2, 3.0, [1.0, 3.0]), span(2, 0.5, [0.5, 0.5])]
+        );
+        assert_eq!(shared.spans(&b, &of_b), [span(4, 1.0, [1.0, 1.0])]);
     }
 }

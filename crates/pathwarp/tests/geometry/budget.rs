@@ -50,9 +50,9 @@ fn a_map_of_many_parts_counts_as_many() {
 fn the_limit_holds_within_a_single_segment() {
     let oscillating = map(&recipe(&[("expr", &[("x", "x+20*sin(x*2000)")])]));
     let line = Outline::from_svg("M0 50C30 40 60 60 100 50").unwrap();
-    let budget = Arc::new(Budget::new(Limits::default().with(Limit::Evaluations, 5000.0)));
+    let budget = Arc::new(Budget::new(Limits::default().with(Limit::Work, 5000.0)));
     let e = warp_path(&line, &*oscillating, &Options::new(1e-3).with_budget(Arc::clone(&budget))).unwrap_err();
-    assert!(matches!(e, GeometryError::Limit(e) if e.limit == Limit::Evaluations), "{e:?}");
+    assert!(matches!(e, GeometryError::Limit(e) if e.limit == Limit::Work), "{e:?}");
     assert!(warp_path(&line, &*oscillating, &Options::new(1e-3)).is_ok());
 }
 
@@ -74,8 +74,8 @@ fn far_quilt() -> Recipe {
 #[test]
 fn searching_in_vain_is_counted() {
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
-    let small = || Arc::new(Budget::new(Limits::default().with(Limit::Evaluations, 1e6)));
-    let limited = |e: &GeometryError| matches!(e, GeometryError::Limit(e) if e.limit == Limit::Evaluations);
+    let small = || Arc::new(Budget::new(Limits::default().with(Limit::Work, 1e6)));
+    let limited = |e: &GeometryError| matches!(e, GeometryError::Limit(e) if e.limit == Limit::Work);
     // By the refit alone.
     let free = map(&far_quilt());
     let e = warp_path(&path(), &*free, &Options::new(0.01).with_budget(small())).unwrap_err();
@@ -129,7 +129,7 @@ fn placing_the_steps_of_a_recipe_is_counted() {
     let waves = [("wave", no_args); 40];
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
     let build = |limit: f64| {
-        let budget = Arc::new(Budget::new(Limits::default().with(Limit::Evaluations, limit)));
+        let budget = Arc::new(Budget::new(Limits::default().with(Limit::Work, limit)));
         recipe(&waves).build_within(&Registry::builtin(), frame.clone(), &std::iter::once(&path()), &budget)
     };
     assert!(build(1e6).is_ok());

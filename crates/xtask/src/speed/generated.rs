@@ -11,10 +11,10 @@ const PER_PETAL: f64 = 12.0;
 const SEED: u64 = 20_261_122;
 
 /// Numbers in [0, 1) by a linear congruential generator (Knuth's MMIX).
-struct Random(u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }

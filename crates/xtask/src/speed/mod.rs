@@ -3,7 +3,7 @@
 //! The yardstick is `usvg IN OUT` on the same file, which reads, resolves and writes a drawing without bending it. Both run as whole
 //! processes, in turn. Unless a row says otherwise, it compares CPU times and gives the median of paired runs.
 
-mod generated;
+pub(crate) mod generated;
 mod process;
 mod rows;
 

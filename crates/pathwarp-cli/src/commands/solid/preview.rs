@@ -2,9 +2,10 @@
 
 use crate::advice;
 use crate::bitmap::encode;
+use crate::bitmap::work::{self, Pixel};
 use crate::failure::Failure;
 use crate::input::PREVIEW;
-use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::budget::{Budget, Exceeded};
 use pathwarp_raster::Pixmap;
 use pathwarp_solid::Box3;
 use pathwarp_solid::glam::DVec3;
@@ -29,8 +30,6 @@ pub(super) struct Preview<'a> {
 impl Preview<'_> {
     /// The picture, in the format of the file's extension.
     pub(super) fn file(&self, file: &Path, quality: Option<u8>, budget: &Budget) -> Result<Vec<u8>, Failure> {
-        /// Work for a sample, in pixels painted.
-        const SAMPLE: f64 = 2.0;
         let format = PREVIEW.format(Some(file), None)?;
         let whole = 2 * SIDE + GAP;
         let size = u32::try_from(whole).unwrap_or(u32::MAX);
@@ -45,7 +44,7 @@ impl Preview<'_> {
         let second = Camera3::towards(DVec3::new(1.0, 0.4, 0.35), scene);
         for (row, (mesh, guides)) in [(self.before, &[][..]), (self.after, self.guides)].into_iter().enumerate() {
             for (column, camera) in [first, second].into_iter().flatten().enumerate() {
-                let counted = budget.spend_cut(Limit::Painting, (SAMPLE * samples(mesh, &camera, SIDE)) as u64);
+                let counted = work::spend(budget, Pixel::Sampled, samples(mesh, &camera, SIDE));
                 counted.map_err(|e| too_much(&e))?;
                 let panel = draw(mesh, guides, &camera, SIDE);
                 for (y, line) in panel.chunks(4 * SIDE).enumerate() {

@@ -16,10 +16,10 @@ use crate::status::Status;
 use crate::{advice, output, terminal};
 use clap::{ArgMatches, Command};
 use fonts::Wanted;
-use pathwarp::budget::{Exceeded, Limit};
+use pathwarp::budget::{Exceeded, Limit, Limits, cost};
 use pathwarp::deform::Registry;
 use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering, write_set_lines};
-use pathwarp_text::{Font, Quantity, TextLimits, layout_within};
+use pathwarp_text::{Font, TextLimits, layout_within};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -64,9 +64,9 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Re
     let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
 
     let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
-    let most =
-        TextLimits { letters: limits.of(Limit::Letters) as usize, segments: limits.of(Limit::Segments) as usize };
-    let set = |text: &String| layout_within(text, &chosen, &style, &most).map_err(|e| failure(&e, &most));
+    let most = |cost: f64| (limits.of(Limit::Work) / cost) as usize;
+    let most = TextLimits { letters: most(cost::LETTER), segments: most(cost::SEGMENT) };
+    let set = |text: &String| layout_within(text, &chosen, &style, &most).map_err(|e| failure(&e, &limits));
     let [text, below] = texts.map(|t| t.as_ref().map(set).transpose());
     let (text, below) = (text?, below?);
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
@@ -94,23 +94,16 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Re
 }
 
 /// Maps an error of the layout: a bad option is wrong usage, anything else a problem of the font or the text.
-fn failure(e: &pathwarp_text::Error, most: &TextLimits) -> Failure {
+fn failure(e: &pathwarp_text::Error, limits: &Limits) -> Failure {
     use pathwarp_text::Error as E;
     match e {
         E::Style { .. } | E::Empty => Failure::usage(e.to_string()),
         E::Setting { .. } => Failure::usage(format!("--script or --language: {e}")),
-        &E::TooLarge { quantity, needed, .. } => {
-            // Only letters are counted before work begins.
-            let enough = match quantity {
-                Quantity::Letters => Exceeded { limit: Limit::Letters, most: 0.0, needed: needed as f64, cut: false },
-                Quantity::Segments => {
-                    Exceeded { limit: Limit::Segments, most: most.segments as f64, needed: 0.0, cut: true }
-                }
-                Quantity::Glyphs => {
-                    Exceeded { limit: Limit::Letters, most: most.letters as f64, needed: 0.0, cut: true }
-                }
-            };
-            Failure::Input(format!("{e}; {}", advice::raise(&enough)))
+        &E::TooLarge { needed, most, .. } => {
+            let work = limits.of(Limit::Work);
+            let needed = work * needed as f64 / most as f64;
+            let exceeded = Exceeded { limit: Limit::Work, most: work, needed, cut: true };
+            Failure::Input(format!("{e}; {}", advice::raise(&exceeded)))
         }
         _ => Failure::Input(e.to_string()),
     }

@@ -345,6 +345,9 @@ fn line(
     let refit = refit.with_budget(budget);
     let (copies, places) = (&built.placement.copies, &built.placement.letters);
     let set = |i: usize, letter: &Letter| {
+        let diagonal = letter.outline.bounding_box().map_or(0.0, |b| b.size().to_vec2().hypot());
+        let held = if options.tolerance.is_none() { refit::suited(tolerance, diagonal) } else { tolerance };
+        let refit = refit.clone().with_tolerance(held);
         let repeated = if copies.is_empty() { letter.outline.clone() } else { letter.outline.repeated(copies) };
         let Some(placed) = places.get(i) else {
             return pathwarp_svg::warp_path(&repeated, &built.map, &refit, options.precision);

@@ -6,7 +6,6 @@ use crate::mesh::model::{Corner, Mesh, NONE, PolygonKind};
 use glam::{DMat3, DMat4, DVec3};
 use gltf::Primitive;
 use gltf::mesh::{Mode, Semantic};
-use pathwarp::budget::{Budget, Limit};
 use std::collections::BTreeSet;
 
 /// Appends a primitive. `lost` collects what is left out.
@@ -15,17 +14,14 @@ pub(super) fn append(
     primitive: &Primitive<'_>,
     to_scene: &DMat4,
     buffers: &Buffers,
-    budget: &Budget,
     lost: &mut BTreeSet<String>,
 ) -> Result<(), MeshError> {
     let Some(positions) = primitive.get(&Semantic::Positions) else {
         lost.insert("primitives without positions".into());
         return Ok(());
     };
-    // A node may show a mesh again and again: each of its vertices is then one more point to map.
     let count = positions.count();
     let own = buffers.floats::<3>(&positions)?;
-    budget.spend(Limit::Evaluations, count as u64)?;
     let first = mesh.positions.len();
     for p in own {
         let p = to_scene.transform_point3(DVec3::from_array(p));
@@ -43,11 +39,7 @@ pub(super) fn append(
         lost.insert("morph targets".into());
     }
     let indices = match primitive.indices() {
-        Some(accessor) => {
-            let own = buffers.indices(&accessor)?;
-            budget.spend(Limit::Evaluations, own.len() as u64)?;
-            own
-        }
+        Some(accessor) => buffers.indices(&accessor)?,
         None => (0..u32::try_from(count).unwrap_or(NONE)).collect(),
     };
     if let Some(i) = indices.iter().find(|i| **i as usize >= count) {

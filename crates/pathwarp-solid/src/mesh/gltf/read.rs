@@ -47,7 +47,7 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     open.reverse();
     while let Some((node, parent)) = open.pop() {
         // Children that are their own parents' parents go on for ever.
-        budget.spend(Limit::Elements, 1)?;
+        budget.take(Limit::Elements, 1.0)?;
         let own = node.transform().matrix().map(|column| column.map(f64::from));
         let to_scene = parent * DMat4::from_cols_array_2d(&own);
         object(&mut mesh, &node, &to_scene, &assets, &buffers, budget, &mut lost)?;
@@ -98,7 +98,10 @@ fn object(
         let material = p.material().index().and_then(|i| assets.materials.get(i));
         // Without a name, the material of the object before would go on.
         mark(mesh, Mark::Material(material.cloned().unwrap_or_else(|| "none".into())));
-        primitive::append(mesh, &p, to_scene, buffers, budget, lost)?;
+        primitive::append(mesh, &p, to_scene, buffers, lost)?;
+        // A node may show a mesh again and again: each of its vertices is then one more point to map.
+        let count = |a: Option<gltf::Accessor<'_>>| a.map_or(0, |a| a.count()) as f64;
+        budget.spend(count(p.get(&gltf::Semantic::Positions)) + count(p.indices()))?;
     }
     Ok(())
 }

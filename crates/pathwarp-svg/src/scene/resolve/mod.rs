@@ -66,9 +66,9 @@ fn root_group<'t>(b: &SceneBuilder<'_>, tree: &'t usvg::Tree, page: Size) -> (&'
         return (tree.root(), by_source);
     }
     let t = affine(g.transform());
-    // usvg centres the drawing in f32, where numbers of the page's size cancel.
-    let slack = 1e-6 * (page.width + page.height + 1.0);
     let (u, v) = (by_source.as_coeffs(), t.as_coeffs());
+    // usvg centres the drawing in f32, where numbers of the page's size cancel, and moves it there, however far.
+    let slack = 1e-6 * (page.width + page.height + 1.0) + 3e-7 * u[4].abs().max(u[5].abs());
     let agree =
         is_near(linear_part(by_source), linear_part(t)) && (u[4] - v[4]).abs() <= slack && (u[5] - v[5]).abs() <= slack;
     // If the page equals its viewBox up to rounding, there is no such group.

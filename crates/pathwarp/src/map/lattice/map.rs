@@ -1,6 +1,7 @@
 //! The lattice as a map, and its inverse.
 
 use super::Lattice;
+use crate::budget::Budget;
 use crate::map::nets::Patch;
 use crate::map::{AffineMap, Class, Crease, CreaseKind, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Affine, Point, Rect};
@@ -246,8 +247,8 @@ impl Map for LatticeInverse {
         2.0 * self.inner.work()
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        self.inner.take_overrun()
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Self { map: self.map.clone(), inner: Arc::new(self.inner.spending(budget)) }))
     }
 
     fn jet(&self, q: Point) -> Jet {

@@ -2,6 +2,7 @@
 //!
 //! The sides of the polygon are creases, crossed exactly. The map inside determines whether it meets the identity there.
 
+use crate::budget::Budget;
 use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
@@ -136,6 +137,14 @@ impl LocalInverse {
         }
     }
 
+    fn spending(&self, budget: &Arc<Budget>) -> Self {
+        let back = match &self.back {
+            InnerInverse::Closed(m) => InnerInverse::Closed(m.within(budget).unwrap_or_else(|| Arc::clone(m))),
+            InnerInverse::Newton(m) => InnerInverse::Newton(Arc::new(m.spending(budget))),
+        };
+        Self { of: self.of.clone(), back }
+    }
+
     /// A margin for parts that end on the sides of the polygon.
     fn margin(&self) -> f64 {
         let b = self.of.bounds();
@@ -151,11 +160,8 @@ impl Map for LocalInverse {
         }
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        match &self.back {
-            InnerInverse::Closed(m) => m.take_overrun(),
-            InnerInverse::Newton(m) => m.take_overrun(),
-        }
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.spending(budget)))
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -197,8 +203,8 @@ impl Map for Inside {
         self.0.work()
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        self.0.take_overrun()
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Self(self.0.spending(budget))))
     }
 
     fn jet(&self, q: Point) -> Jet {

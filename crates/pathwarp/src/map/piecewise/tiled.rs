@@ -3,8 +3,9 @@
 //! The outermost tiles continue beyond the region. The lines between tiles are creases: horizontal lines between rows, and
 //! vertical stretches within a row. Neighbours need not agree there; a path across a gap is connected by a straight line.
 
+use crate::budget::Budget;
 use crate::map::{Crease, CreaseKind, Creases, INVERSE_WORK, Jet, Level, Map, NewtonInverse, RationalBezier};
-use crate::meter::{Effort, Overrun};
+use crate::search::{Search, is_over};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
@@ -168,7 +169,7 @@ struct TiledInverse {
     /// The inverse of every tile, and the rectangle in which its answers must lie.
     tiles: Vec<(Rect, Arc<NewtonInverse>)>,
     jet_work: f64,
-    overrun: Overrun,
+    budget: Option<Arc<Budget>>,
 }
 
 impl TiledInverse {
@@ -183,15 +184,18 @@ impl TiledInverse {
         });
         let tiles: Vec<(Rect, Arc<NewtonInverse>)> = tiles.collect();
         let jet_work = tiles.iter().map(|t| t.1.jet_work).fold(1.0, f64::max);
-        Self { of: of.clone(), tiles, jet_work, overrun: Overrun::default() }
+        Self { of: of.clone(), tiles, jet_work, budget: None }
     }
 
     /// The tile and jet of the first preimage in the region, or else of the first one beyond it.
     fn solve(&self, q: Point) -> Option<(usize, Jet)> {
-        let (mut best, mut effort) = (None, Effort::default());
+        let (mut best, mut search) = (None, Search::default());
+        if is_over(self.budget.as_ref()) {
+            return None;
+        }
         for (k, (rect, inverse)) in self.tiles.iter().enumerate() {
             let (found, more) = inverse.search(q, |p| rect.contains(p));
-            effort.add(more);
+            search.add(more);
             match found {
                 Some(jet) if self.of.region.contains(jet.p) => {
                     best = Some((k, jet));
@@ -201,7 +205,7 @@ impl TiledInverse {
                 None => {}
             }
         }
-        self.overrun.add(effort, FORESEEN, self.jet_work);
+        search.spend(self.budget.as_ref(), FORESEEN, self.jet_work);
         best
     }
 }
@@ -211,8 +215,8 @@ impl Map for TiledInverse {
         FORESEEN as f64 * INVERSE_WORK * self.of.work()
     }
 
-    fn take_overrun(&self) -> Option<u64> {
-        Some(self.overrun.take())
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Self { budget: Some(Arc::clone(budget)), ..self.clone() }))
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -235,7 +239,8 @@ impl Map for TiledInverse {
         let (j, i) = self.of.tiles().nth(k)?;
         // A margin for parts that end on the border of the tile.
         let reach = 1e-3 * (rect.width() + rect.height());
-        Some(Arc::new(NewtonInverse::new(self.of.rows[j].maps[i].clone(), rect, reach, [1, 1])))
+        let branch = NewtonInverse::new(self.of.rows[j].maps[i].clone(), rect, reach, [1, 1]);
+        Some(Arc::new(self.budget.as_ref().map_or_else(|| branch.clone(), |b| branch.spending(b))))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
