@@ -56,7 +56,8 @@ fn flat_arcs_stay_in_place() {
             let (w, h) = (r.between(20.0, 50.0), r.between(20.0, 50.0));
             let (a, b) = (r.between(0.0, 6.0), r.between(0.5, 5.5));
             let at = |t: f64| format!("{} {}", 50.0 + w * t.cos(), 50.0 + h * t.sin());
-            let d = format!("M0 0H100V100H0ZM{}A{w} {h} 0 {} 1 {}", at(a), u8::from(b > 3.141_592_7), at(a + b));
+            let d =
+                format!("M0 0H100V100H0ZM{}A{w} {h} 0 {} 1 {}", at(a), u8::from(b > std::f64::consts::PI), at(a + b));
             let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d=\"{d}\"/></svg>");
             let turned = r.between(0.0, 90.0);
             let matrix = {
