@@ -184,6 +184,7 @@ mod tests {
             Ok((b.len() >= length).then_some(length))
         });
         assert!(answer.is_err() || pipes.left_over().is_empty());
+        assert!(answer.is_err() || pipes.said().is_empty() || script.contains(">&2"));
         answer
     }
 
