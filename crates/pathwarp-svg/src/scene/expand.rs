@@ -12,6 +12,8 @@ const DOT: f64 = 1e-5;
 
 /// Share of the tolerance for regular segments and true arcs as cubics. Their error falls with the sixth power of their number.
 const PATH: f64 = 0.2;
+/// The same of a dashed path: cubics beside an arc by this much all around are longer by as much for each radian, and dashes move on.
+const DASHED_PATH: f64 = 0.01;
 
 /// Expands the stroke of `local` to a filled outline in the same user space, within `tolerance` there.
 pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -> Outline {
@@ -52,7 +54,8 @@ pub(crate) fn stroke_outlines(
     let (points, lines): (Vec<_>, Vec<_>) =
         local.subpaths.iter().enumerate().partition(|(_, s)| s.segs.iter().all(|g| is_point(g, s.start)));
     let expanded = |o: &Outline, tolerance: f64| -> Outline {
-        let path = o.to_bez_path(PATH * tolerance);
+        let share = if style.dash_pattern.is_empty() { PATH } else { DASHED_PATH };
+        let path = o.to_bez_path(share * tolerance);
         (&kurbo::stroke(path, &style, &StrokeOpts::default(), (1.0 - PATH) * tolerance)).into()
     };
     let mut out = Vec::with_capacity(local.subpaths.len());

@@ -71,7 +71,8 @@ const PATHS: [&str; 9] = [
     "M15 80L50 30L85 80",
     "M15 80L30 20L45 80L50 20",
     "M20 20H80V70H20Z",
-    "M50 20A30 30 0 1 1 49.9 20Z",
+    // In short arcs: usvg draws one of a quarter turn so far from it that the dashes after it are a thirtieth of a unit off.
+    "M50 20A30 30 0 0 1 71.2132 28.7868A30 30 0 0 1 80 50A30 30 0 0 1 71.2132 71.2132A30 30 0 0 1 50 80A30 30 0 0 1 28.7868 71.2132A30 30 0 0 1 20 50A30 30 0 0 1 28.7868 28.7868A30 30 0 0 1 49.9 20Z",
     "M20 50A30 12 30 0 1 80 60",
     "M10 50Q50 90 90 50T95 20",
     "M10 90L90 10",
