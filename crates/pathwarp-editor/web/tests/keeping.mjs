@@ -49,7 +49,7 @@ export const drawings_have_their_own_drafts = () => within(async ({ dir, page, s
   await openFile(page, "other.svg");
   await becomes(page, arc, "the other drawing has lost its step");
   await page.keyboard.press("Control+s");
-  await page.waitForSelector("#toast.on:has-text('Saved')");
+  await page.waitForSelector("#toast.on:has-text('Saved other-bent.svg')");
   check(readdirSync(dir).sort().join() === "logo.svg,other-bent.svg", readdirSync(dir).join());
   await page.click("#save-as");
   await page.fill("#save-name", "logo.svg");
