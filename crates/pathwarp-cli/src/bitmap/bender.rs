@@ -75,7 +75,7 @@ impl Bender {
 /// The whole pixels that are shown of a picture of this size, with one more around them, which interpolation asks for.
 fn shown_part((width, height): (u32, u32), crop: Option<Rect>) -> Option<IntRect> {
     let whole = Rect::new(0.0, 0.0, width.into(), height.into());
-    let part = crop.map_or(whole, |c| c.inset(1.0).expand().intersect(whole));
+    let part = crop.map_or(whole, |c| c.inflate(1.0, 1.0).expand().intersect(whole));
     IntRect::from_xywh(part.x0 as i32, part.y0 as i32, part.width() as u32, part.height() as u32)
 }
 
@@ -89,8 +89,9 @@ impl ImageWarper for Bender {
         let (width, height) = header_size(r.data).map_err(|e| e.to_string())?;
         work::spend(&self.budget, Pixel::Decoded, f64::from(width) * f64::from(height)).map_err(too_much)?;
         let picture = Picture::read_stored_within(r.data, &self.budget.limits()).map_err(|e| e.to_string())?;
-        let part =
-            shown_part((picture.pixmap.width(), picture.pixmap.height()), r.crop).ok_or("nothing of it is shown")?;
+        let size = (picture.pixmap.width(), picture.pixmap.height());
+        let part = shown_part(size, r.crop).ok_or("nothing of it is shown")?;
+        let is_whole = (part.width(), part.height()) == size;
         let [x0, y0, x1, y1] = [part.left(), part.top(), part.right(), part.bottom()].map(f64::from);
         let area = Rect::new(x0, y0, x1, y1);
         let nowhere = "the map is undefined on part of it";
@@ -119,7 +120,7 @@ impl ImageWarper for Bender {
         work::picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
         let size = (size.0 as u32, size.1 as u32);
         let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area), &self.budget);
-        let (source, placed) = if factor == 1.0 && r.crop.is_none() {
+        let (source, placed) = if factor == 1.0 && is_whole {
             (picture.pixmap, r.placed)
         } else {
             let larger = enlarged(&picture.pixmap, part, factor as u32, r.pixelated, &self.budget.limits());

@@ -44,9 +44,9 @@ pub(super) fn command() -> Command {
         .args(reading_args())
         .after_help(
             "Paths with the same id are compared; paths without an id are matched by their order within the closest ancestor that \
-             has one, and what is left by place: those whose boxes are nearest and overlap or nearly so. The distance is the largest from a point of either \
-             path to the other path. A path without a counterpart is exit code 1. A pixel differs visibly if a channel differs by \
-             more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
+             has one, and what is left by place: those whose boxes are nearest and overlap or nearly so. The distance is the largest \
+             from a point of either path to the other path. A path without a counterpart is exit code 1. A pixel differs visibly if \
+             a channel differs by more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
         )
 }
 

@@ -2,7 +2,7 @@
 
 use super::frame::frame;
 use super::maps::{Domain, skipped};
-use super::outcome::Check;
+use super::outcome::{Check, failure};
 use crate::deform::{Built, Deformation, Law, Pairs};
 use crate::map::Map;
 use crate::param::Args;
@@ -47,11 +47,6 @@ pub(super) fn cases(entry: &dyn Deformation) -> Check {
 
 fn build(entry: &dyn Deformation, pairs: Pairs) -> Result<Built, crate::Error> {
     entry.build_from(&Args::from_pairs(pairs), &frame())
-}
-
-/// Why a map that asks another program has failed, if it has.
-fn failure(built: &Built) -> Option<crate::Error> {
-    built.failure.as_ref().and_then(|f| f())
 }
 
 /// Returns the distance of the image of a point between `p` and `q` from the line through their images.

@@ -1,6 +1,12 @@
 //! The outcome of one check.
 
 use crate::deform::Built;
+use crate::error::Error;
+
+/// Why a map that asks another program has failed, if it has: its values after that mean nothing.
+pub(super) fn failure(built: &Built) -> Option<Error> {
+    built.failure.as_ref().and_then(|f| f())
+}
 
 /// One check with its outcome.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -28,7 +34,7 @@ impl Check {
 
     /// Replaces the faults by the failure of the map, if it has failed: values after that mean nothing.
     pub(super) fn unless_failed(mut self, built: &Built) -> Self {
-        if let Some(failure) = built.failure.as_ref().and_then(|f| f()) {
+        if let Some(failure) = failure(built) {
             self.faults = vec![failure.to_string()];
         }
         let more = self.faults.len().saturating_sub(LISTED);
