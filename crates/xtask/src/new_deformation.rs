@@ -232,7 +232,8 @@ mod tests {
         assert!(create(here, "Square").is_err() && create(here, "").is_err() && create(here, "a--b").is_err());
     }
 
-    /// The workspace's manifest with two members. The copy is built once, so optimising it takes longer than running it as it is.
+    /// The workspace's manifest with three members. The copies are built once, so optimising them takes longer than running them as they
+    /// are; and built otherwise than the workspace's own, they do not take the place of these in the target folder.
     fn reduced(manifest: &str) -> String {
         let members = manifest.lines().find(|l| l.starts_with("members")).unwrap();
         let own = manifest.lines().filter(|l| !l.contains("crates/pathwarp-") && !l.starts_with("default-members"));
@@ -241,7 +242,7 @@ mod tests {
         own.collect::<Vec<&str>>()
             .join("\n")
             .replace(members, "members = [\"crates/pathwarp\", \"all\"]")
-            .replace(profile, &format!("{profile}pathwarp.opt-level = 0\n"))
+            .replace(profile, &format!("{profile}bezierfit.opt-level = 0\npathwarp.opt-level = 0\n"))
     }
 
     /// The manifest of a crate that depends on all that the workspace depends on: with the same features of the same crates,
