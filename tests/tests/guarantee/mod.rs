@@ -1,6 +1,7 @@
 //! The promise, measured from outside: the distance between the exact image of the source text and the output of the program as people
-//! run it, for many pairs of a path and a map. `PATHWARP_PAIRS=100000 cargo test -p pathwarp-tests guarantee -- --nocapture` measures as
-//! many as it says, and prints the table of docs/benchmarks.md.
+//! run it, for many pairs of a path and a map; every fifth path is one of a drawing.
+//! `PATHWARP_PAIRS=100000 cargo test -p pathwarp-tests guarantee -- --nocapture` measures as many as it says, with paths of the drawings
+//! in the folder `PATHWARP_DRAWINGS`, and prints the table of docs/benchmarks.md.
 
 mod contours;
 mod curves;
@@ -10,7 +11,7 @@ mod written;
 
 use curves::Curve;
 use measure::{Sampled, far, kink, sampled};
-use paths::{Random, path};
+use paths::{Random, drawn, path};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
@@ -177,7 +178,7 @@ fn the_distance_is_kept_for_many_pairs() {
                         break;
                     }
                     let mut random = Random::new(i as u64);
-                    let (kind, d) = path(&mut random);
+                    let (kind, d) = if i % 5 == 4 { drawn(&mut random) } else { path(&mut random) };
                     let map = &maps[random.below(maps.len())];
                     let found = measured(&d, map);
                     let mut tallies = tallies.lock().unwrap();

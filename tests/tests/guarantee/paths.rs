@@ -1,6 +1,8 @@
-//! Paths for the measurement: symmetrical shapes, nodes on creases, loops, random curves, far from the origin or not.
+//! Paths for the measurement: symmetrical shapes, nodes on creases, loops, random curves, those of drawings; far from the origin or not.
 
 use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::LazyLock;
 
 /// A generator that gives the same numbers on every machine.
 pub struct Random(u64);
@@ -160,13 +162,57 @@ pub fn shifted(d: &str, by: [f64; 2]) -> String {
     out.replace(['(', ')'], " ").replace(", ", " ")
 }
 
+/// Commands of a path of a drawing that is measured.
+const MAX_COMMANDS: usize = 200;
+
+/// The path data of drawings: of the folder that `PATHWARP_DRAWINGS` names, or else of the samples.
+static DRAWN: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let folder =
+        std::env::var_os("PATHWARP_DRAWINGS").map_or_else(|| crate::support::root().join("samples"), Into::into);
+    let mut out = Vec::new();
+    gather(&folder, &mut out);
+    assert!(!out.is_empty(), "no drawing in {}", folder.display());
+    out
+});
+
+fn gather(folder: &Path, out: &mut Vec<String>) {
+    let mut all: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    all.sort();
+    for path in all {
+        if path.is_dir() {
+            gather(&path, out);
+        }
+        let Some(text) = std::fs::read_to_string(&path).ok().filter(|_| path.extension().is_some_and(|e| e == "svg"))
+        else {
+            continue;
+        };
+        let options = resvg::usvg::roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
+        let Ok(xml) = resvg::usvg::roxmltree::Document::parse_with_options(&text, options) else { continue };
+        let paths = xml.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "path")));
+        let whole = |d: &&str| svgtypes::PathParser::from(*d).all(|s| s.is_ok());
+        let short = |d: &&str| (2..=MAX_COMMANDS).contains(&svgtypes::PathParser::from(*d).count());
+        out.extend(paths.filter_map(|n| n.attribute("d")).filter(whole).filter(short).map(str::to_owned));
+    }
+}
+
 /// A path, with the name of its kind.
 pub fn path(r: &mut Random) -> (&'static str, String) {
-    let (kind, d) = match r.below(4) {
+    let made = match r.below(4) {
         0 | 1 => ("symmetrical", symmetrical(r)),
         2 => ("random", random(r)),
         _ => ("loops", loops(r)),
     };
+    somewhere(r, made)
+}
+
+/// A path of a drawing.
+pub fn drawn(r: &mut Random) -> (&'static str, String) {
+    let made = ("of drawings", DRAWN[r.below(DRAWN.len())].clone());
+    somewhere(r, made)
+}
+
+/// One in four is moved far from the origin.
+fn somewhere(r: &mut Random, (kind, d): (&'static str, String)) -> (&'static str, String) {
     match r.below(8) {
         0 => ("at 1e5", shifted(&d, [1e5, 3e5])),
         1 => ("at 3e7", shifted(&d, [3e7, -3.67e7])),
