@@ -20,6 +20,7 @@ pub mod coming_from;
 mod commands;
 mod decimals;
 mod editing;
+mod edits;
 pub mod embed;
 mod export;
 mod failure;

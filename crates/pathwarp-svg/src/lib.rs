@@ -58,6 +58,7 @@ mod source;
 pub mod usvg_tree;
 mod write;
 
+pub use bend::edit::Edit;
 pub use bend::gradient::{GradientColors, GradientPainter, GradientRequest, SeenColor};
 pub use bend::image::{ImageRequest, ImageWarper, Images};
 pub use bend::letter_places::LetterPlaces;

@@ -7,6 +7,7 @@ mod completions;
 mod convert;
 mod deformation;
 mod edit;
+mod edits;
 mod file_args;
 mod gallery;
 mod install;
@@ -25,6 +26,7 @@ mod text;
 mod unwarp;
 
 use crate::advice::{self, mistakes};
+use crate::edits::{OUTLINE, SIMPLIFY};
 use crate::failure::Failure;
 use crate::options::Given;
 use crate::plugins::{self, Plugins};
@@ -102,7 +104,7 @@ fn root() -> Command {
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 18] = [
+const OTHERS: [(&str, Declare); 20] = [
     (edit::NAME, |_| edit::command()),
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
@@ -112,6 +114,8 @@ const OTHERS: [(&str, Declare); 18] = [
     (schema::NAME, |_| schema::command()),
     (text::NAME, text::command),
     (paths::NAME, |_| paths::command()),
+    (SIMPLIFY.name, |_| edits::simplify()),
+    (OUTLINE.name, |_| edits::outline()),
     (convert::NAME, |_| convert::command()),
     (render::NAME, |_| render::command()),
     (gallery::NAME, gallery::command),
@@ -187,6 +191,7 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
         schema::NAME => schema::run(registry),
         text::NAME => text::run(registry, m, first),
         paths::NAME => paths::run(m),
+        _ if edits::NAMES.contains(&name) => edits::run(registry, name, m, first),
         convert::NAME => convert::run(m),
         render::NAME => render::run(m),
         gallery::NAME => gallery::run(registry, m),

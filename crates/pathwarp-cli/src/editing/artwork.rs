@@ -110,7 +110,8 @@ impl EditedArtwork {
         let same_view = !matches!(fineness, Fineness::Finished { .. });
         let options = &self.options;
         let suited = options.tolerance.is_none() && !matches!(fineness, Fineness::Draft(_));
-        let request = WarpRequest { recipe, built: &built, options, tolerance, suited, embedded_recipe, same_view };
+        let request =
+            WarpRequest { recipe, built: &built, options, tolerance, suited, embedded_recipe, same_view, edit: None };
         if let Fineness::Draft(_) = fineness {
             let svg = self.svg.draft(&request);
             sound(&built)?;

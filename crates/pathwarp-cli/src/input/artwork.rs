@@ -12,6 +12,7 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, Recipe, Step};
 use pathwarp::refit;
 use pathwarp::{Error, Outline};
+use pathwarp_svg::Edit;
 use std::sync::Arc;
 
 /// Which of the artwork is meant.
@@ -101,6 +102,8 @@ pub(crate) struct WarpRequest<'a> {
     pub(crate) tolerance: f64,
     /// Small contours are held to less; see [`refit::suited`].
     pub(crate) suited: bool,
+    /// What is done to the artwork instead of bending it.
+    pub(crate) edit: Option<Edit>,
     /// The recipe file's text, to be embedded in the result.
     pub(crate) embedded_recipe: Option<String>,
     /// Show the result on the page of the source.

@@ -137,7 +137,7 @@ impl SvgArtwork {
         let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
         let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
-        WarpOptions::new(refit)
+        let warp = WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(options.strokes)
             .with_text(options.text)
@@ -151,7 +151,8 @@ impl SvgArtwork {
             .with_clones(options.clones)
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
-            .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep })
+            .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
+        request.edit.map_or(warp.clone(), |e| warp.editing(e))
     }
 
     /// The reason why the page stays although it could grow.

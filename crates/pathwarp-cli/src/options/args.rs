@@ -10,11 +10,16 @@ pub(crate) const INPUT: &str = "INPUT";
 
 /// The inputs and the common options.
 pub(crate) fn args() -> impl Iterator<Item = Arg> {
-    let inputs = Arg::new(INPUT).num_args(0..).value_parser(value_parser!(PathBuf)).help(
-        "SVG files (also .svgz), PNG, JPEG or WebP pictures, or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none \
-         reads standard input",
-    );
-    std::iter::once(inputs).chain(options_without_inputs())
+    let help = "SVG files (also .svgz), PNG, JPEG or WebP pictures, or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none \
+                reads standard input";
+    std::iter::once(inputs_arg().help(help)).chain(options_without_inputs())
+}
+
+/// The inputs of a command that reads drawings.
+pub(crate) fn inputs_arg() -> Arg {
+    let help =
+        "SVG files (also .svgz), or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none reads standard input";
+    Arg::new(INPUT).num_args(0..).value_parser(value_parser!(PathBuf)).help(help)
 }
 
 /// The common options, without the inputs.

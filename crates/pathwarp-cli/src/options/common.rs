@@ -2,6 +2,7 @@
 
 use super::reading::Reading;
 use super::typed_box::TypedBox;
+use crate::edits::EditChoice;
 use crate::failure::Failure;
 use crate::format::Format;
 use pathwarp::kurbo::Rect;
@@ -61,6 +62,8 @@ impl OnFailure {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct CommonOptions {
     pub(crate) inputs: Vec<PathBuf>,
+    /// What is done to the artwork instead of bending it.
+    pub(crate) edit: Option<EditChoice>,
     /// `None`: standard output.
     pub(crate) out: Option<PathBuf>,
     pub(crate) out_dir: Option<PathBuf>,
@@ -125,6 +128,7 @@ impl CommonOptions {
             let problem = "is finer than the numbers it would be measured with; use at least";
             return Err(Failure::usage(format!("--tolerance: {:e} {problem} {finest:.0e}", given.unwrap_or(0.0))));
         }
-        Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL }))
+        let share = self.edit.as_ref().and_then(|e| e.info.tolerance).unwrap_or(TOLERANCE_OF_DIAGONAL);
+        Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * share } else { share }))
     }
 }

@@ -5,6 +5,7 @@ use super::common::CommonOptions;
 use super::definition::{CommonOption, OptionValue};
 use super::reading::Reading;
 use super::table::OPTIONS;
+use crate::edits::EditChoice;
 use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
@@ -17,6 +18,8 @@ pub(crate) struct Given {
     inputs: Vec<PathBuf>,
     /// In the order of the table. A switch has the value `true`.
     values: Vec<(&'static CommonOption, Vec<OsString>)>,
+    /// What is done to the artwork instead of bending it.
+    pub(crate) edit: Option<EditChoice>,
 }
 
 impl Given {
@@ -47,7 +50,7 @@ impl Given {
             };
             values.push((option, typed));
         }
-        Self { inputs: Vec::new(), values }
+        Self { values, ..Self::default() }
     }
 
     /// The options about reading that a command line of [`reading_args`](super::reading_args) gives.
@@ -152,7 +155,8 @@ impl Given {
             }
         };
         let values = OPTIONS.iter().map(merge).filter(|(_, v)| !v.is_empty()).collect();
-        Self { inputs: self.inputs.iter().chain(&other.inputs).cloned().collect(), values }
+        let inputs = self.inputs.iter().chain(&other.inputs).cloned().collect();
+        Self { inputs, values, edit: other.edit.clone().or_else(|| self.edit.clone()) }
     }
 
     /// Checks that no two options conflict.
@@ -178,6 +182,7 @@ impl Given {
     pub(crate) fn read(&self) -> Result<CommonOptions, Failure> {
         let mut options = defaults();
         options.inputs.clone_from(&self.inputs);
+        options.edit.clone_from(&self.edit);
         for (option, values) in &self.values {
             for value in values {
                 apply(option, value, &mut options)

@@ -12,7 +12,7 @@ mod reading;
 mod table;
 mod typed_box;
 
-pub(crate) use args::{INPUT, args, options_without_inputs, reading_args, some_options};
+pub(crate) use args::{INPUT, args, inputs_arg, options_without_inputs, reading_args, some_options};
 pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};
 pub(crate) use definition::{CommonOption, OptionValue};
 pub(crate) use given::Given;

@@ -112,6 +112,7 @@ impl Batch<'_> {
             options,
             tolerance,
             suited: options.tolerance.is_none(),
+            edit: options.edit.as_ref().map(|e| e.read(&first)).transpose()?,
             embedded_recipe,
             same_view: false,
         };

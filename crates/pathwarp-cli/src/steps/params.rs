@@ -19,10 +19,10 @@ pub(crate) fn args(info: &Info) -> impl Iterator<Item = Arg> {
         .action(ArgAction::SetTrue)
         .help_heading(HEADING)
         .help("Apply the inverse map, if there is one (give --frame: percentages refer to the source's box)");
-    info.params.iter().map(arg).chain([inverse])
+    info.params.iter().map(param_arg).chain([inverse])
 }
 
-fn arg(p: &Param) -> Arg {
+pub(crate) fn param_arg(p: &Param) -> Arg {
     let mut help = p.help.to_owned();
     if let Some(d) = p.default {
         let _ = write!(help, " [default: {d}]");
@@ -44,8 +44,14 @@ fn arg(p: &Param) -> Arg {
 
 /// The step that the parsed subcommand of the deformation `name` asks for.
 pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Step {
+    let args = param_values(catalogue.info(name).map_or(&[][..], |i| i.params), m);
+    Step { inverse: m.get_flag(INVERSE), ..Step::new(name, args) }
+}
+
+/// The values that a parsed command line gives for parameters.
+pub(crate) fn param_values(params: &[Param], m: &ArgMatches) -> Args {
     let mut args = Args::new();
-    for p in catalogue.info(name).map_or(&[][..], |i| i.params) {
+    for p in params {
         if p.kind == Kind::Flag {
             if m.get_flag(p.name) {
                 args.push(p.name, "true");
@@ -56,7 +62,7 @@ pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Ste
             }
         }
     }
-    Step { inverse: m.get_flag(INVERSE), ..Step::new(name, args) }
+    args
 }
 
 /// A name that differs from a known one only in case, as that one.

@@ -1,5 +1,6 @@
 //! The maps of a drawing, each with the part of the drawing that it bends.
 
+use super::edit::{Edit, Still};
 use super::options::WarpOptions;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{PartRole, Referrer, Scene};
@@ -8,7 +9,7 @@ use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use pathwarp::Error;
 use pathwarp::kurbo::Affine;
-use pathwarp::map::{Class, Map};
+use pathwarp::map::{AffineMap, Class, Map};
 use std::ops::Range;
 
 /// A map with the options for what it bends.
@@ -18,11 +19,23 @@ pub(crate) struct Bend<'a> {
     pub(crate) options: WarpOptions,
 }
 
-impl Bend<'_> {
+impl<'a> Bend<'a> {
+    pub(crate) fn new(map: &'a dyn Map, options: WarpOptions) -> Self {
+        let map = match options.edit {
+            None => map,
+            Some(Edit::Simplify { .. }) => &Still,
+            Some(_) => &AffineMap(Affine::IDENTITY),
+        };
+        Self { map, options }
+    }
+
     /// Returns `true` if nothing moves.
     pub(crate) fn is_identity(&self) -> bool {
-        let WarpOptions { copies, letters, .. } = &self.options;
-        self.map.class() == Class::Affine(Affine::IDENTITY) && copies.is_empty() && letters.places.is_empty()
+        let WarpOptions { edit, copies, letters, .. } = &self.options;
+        edit.is_none()
+            && self.map.class() == Class::Affine(Affine::IDENTITY)
+            && copies.is_empty()
+            && letters.places.is_empty()
     }
 }
 

@@ -4,6 +4,7 @@ use super::bends::{Bend, Bends};
 use super::bitmap::{self, EmbeddedImage};
 use super::contours;
 use super::digits::ROUNDING;
+use super::edit::Edit;
 use super::letters::{self, LetterPiece};
 use super::options::OnError;
 use super::outcome::{PartOutcome, Skipped, WarpedDocument, WarpedPart};
@@ -53,7 +54,8 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
         let part = &scene.parts[i];
         outcomes.push(match r {
             None => PartOutcome::Kept,
-            Some(Ok(warped)) => {
+            Some(Ok(mut warped)) => {
+                let stays = matches!(options.edit, Some(Edit::Simplify { .. })) && warped.stays();
                 let id = &drawing.shapes()[i].id;
                 if let Some(why) = &warped.unpainted {
                     out.warnings.push(Warning::FittedGradient { id: id.clone(), why: why.to_string() });
@@ -66,7 +68,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
                 let copies = of[i].map_or(0, |k| bends.each[k].options.copies.len());
                 let report = out.report(id.clone(), &warped, copies.max(1), known);
                 reports.extend(element.map(|e| (e, report)));
-                PartOutcome::Warped(Box::new(warped))
+                if stays { PartOutcome::Kept } else { PartOutcome::Warped(Box::new(warped)) }
             }
             // Tiles extend past their shape, possibly out of the map's domain. The pattern then follows as a whole.
             Some(Err(e)) if part.in_tile && !matches!(e, GeometryError::Limit(_)) => PartOutcome::Kept,
@@ -110,6 +112,9 @@ fn warp_parts(
     let warp = |i: usize| {
         let k = of[i].filter(|&k| !each[k].is_identity())?;
         let (p, Bend { map, options }) = (&parts[i], &each[k]);
+        if options.edit.is_some_and(|e| !e.concerns(p, &drawing.source)) {
+            return None;
+        }
         let gathered = map.prefers_batches().then(|| Gathered::new(*map));
         let map = gathered.as_ref().map_or(*map, |g| g as &dyn Map);
         let context = PartContext { map, options, known: &known[k], to_px: scene.to_px, gradients, hairline };

@@ -7,6 +7,7 @@ pub(crate) mod bitmap;
 mod contours;
 mod digits;
 pub(crate) mod drawing;
+pub(crate) mod edit;
 pub(crate) mod gradient;
 pub(crate) mod image;
 pub(crate) mod letter_places;

@@ -1,5 +1,6 @@
 //! Options for warping a document.
 
+use super::edit::Edit;
 use super::gradient::GradientPainter;
 use super::image::Images;
 use super::letter_places::LetterPlaces;
@@ -164,6 +165,8 @@ pub struct WarpOptions {
     /// Number of decimals in written coordinates. `None`: as many as keep rounding below a hundredth of the tolerance, or a tenth of that
     /// of a small contour, and smooth joints smooth.
     pub precision: Option<u8>,
+    /// What is done to the shapes instead of bending them by the map, which then says nothing.
+    pub edit: Option<Edit>,
     /// Treatment of strokes.
     pub strokes: Strokes,
     /// Treatment of text.
@@ -203,6 +206,7 @@ impl WarpOptions {
         Self {
             refit,
             precision: None,
+            edit: None,
             strokes: Strokes::default(),
             text: TextMode::default(),
             structure: Structure::default(),
@@ -218,6 +222,12 @@ impl WarpOptions {
             same_view: false,
             overhang: true,
         }
+    }
+
+    /// Options for an edit instead of a warp.
+    #[must_use]
+    pub fn editing(self, edit: Edit) -> Self {
+        edit.options(self).with_edit(Some(edit))
     }
 
     /// Returns `true` if paint servers of this kind follow the map.
@@ -258,6 +268,7 @@ macro_rules! setters {
 setters! {
     refit: refit::Options, with_refit;
     precision: Option<u8>, with_precision;
+    edit: Option<Edit>, with_edit;
     strokes: Strokes, with_strokes;
     text: TextMode, with_text;
     structure: Structure, with_structure;

@@ -197,6 +197,18 @@ pub(crate) struct WarpedPart {
 }
 
 impl WarpedPart {
+    /// Returns `true` for a part that got no fewer segments, and reports it as it was.
+    pub(super) fn stays(&mut self) -> bool {
+        let r = &mut self.report;
+        let stays = r.segments_out >= r.segments_in;
+        if stays {
+            (r.segments_out, r.max_error, r.share, self.rounding) = (r.segments_in, 0.0, 0.0, 0.0);
+            (r.assurance, r.unresolved) = (Assurance::Exact, None);
+            r.over_budget.clear();
+        }
+        stays
+    }
+
     /// The text of a path of the part.
     pub(crate) fn text(&self, path: &BezPath) -> String {
         path_data_by(path, self.smooth, |_| [self.decimals; 2])

@@ -2,7 +2,11 @@
 
 use super::shared::{SharedEdges, Span};
 use crate::budget::Budget;
+use bezierfit::parts::SMOOTH_JOINT;
 use std::sync::Arc;
+
+/// Largest [`Options::corner`]: a little less than a quarter turn.
+const MAX_CORNER: f64 = 1.5;
 
 /// Options of [`warp_path`](super::warp_path).
 ///
@@ -21,6 +25,9 @@ pub struct Options {
     pub certify: bool,
     /// Merge consecutive pieces across smooth joints where that saves nodes.
     pub merge: bool,
+    /// Joints that turn by less than this, in radians, are smooth, so that pieces merge across them: by default half a degree, since
+    /// drawings round their coordinates. Less than a quarter turn.
+    pub corner: f64,
     /// Edges that merging leaves alone, so that neighbouring shapes stay watertight.
     pub shared: Arc<SharedEdges>,
     /// Hold small contours to what [`suited`] finds for them, too, instead of to `tolerance` alone. A contour is a subpath here.
@@ -39,6 +46,7 @@ impl Options {
             tolerance,
             certify: false,
             merge: false,
+            corner: SMOOTH_JOINT,
             shared: Arc::default(),
             suited: false,
             spans: Arc::default(),
@@ -62,6 +70,12 @@ impl Options {
     #[must_use]
     pub fn with_merge(self, merge: bool) -> Self {
         Self { merge, ..self }
+    }
+
+    /// Sets [`Options::corner`].
+    #[must_use]
+    pub fn with_corner(self, corner: f64) -> Self {
+        Self { corner: corner.clamp(0.0, MAX_CORNER), ..self }
     }
 
     /// Sets [`Options::shared`].

@@ -1,0 +1,51 @@
+//! What is done to shapes without bending them: the parameters of `simplify` and `outline`, read like those of a deformation.
+
+use pathwarp::Error;
+use pathwarp::param::{Args, Frame, Param, Settings};
+use pathwarp_svg::Edit;
+
+/// Tolerance of [`SIMPLIFY`] as a fraction of the artwork's diagonal, if none is given: half a pixel of a thousand.
+const SIMPLIFY_TOLERANCE: f64 = 5e-4;
+
+/// A kind of edit.
+#[derive(Debug)]
+pub(crate) struct EditInfo {
+    /// Name of the command.
+    pub(crate) name: &'static str,
+    pub(crate) params: &'static [Param],
+    /// Default tolerance as a fraction of the artwork's diagonal; `None` if it is that of deformations.
+    pub(crate) tolerance: Option<f64>,
+    read: fn(&Settings<'_>) -> Result<Edit, Error>,
+}
+
+impl PartialEq for EditInfo {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+pub(crate) static SIMPLIFY: EditInfo = EditInfo {
+    name: "simplify",
+    params: &[Param::angle("corners", "Joints that turn by more than this stay corners.")
+        .default("15deg")
+        .within(0.0, 80.0)],
+    tolerance: Some(SIMPLIFY_TOLERANCE),
+    read: |s| Ok(Edit::Simplify { corner: s.number("corners")?.to_radians() }),
+};
+
+pub(crate) static OUTLINE: EditInfo =
+    EditInfo { name: "outline", params: &[], tolerance: None, read: |_| Ok(Edit::Outline) };
+
+/// An edit with its values as given.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct EditChoice {
+    pub(crate) info: &'static EditInfo,
+    pub(crate) args: Args,
+}
+
+impl EditChoice {
+    /// The edit of artwork in this frame.
+    pub(crate) fn read(&self, frame: &Frame) -> Result<Edit, Error> {
+        (self.info.read)(&Settings::new(self.info.params, &self.args, frame)?)
+    }
+}

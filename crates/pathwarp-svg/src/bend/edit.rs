@@ -1,0 +1,57 @@
+//! What may be done to shapes instead of bending them.
+
+use super::image::Images;
+use super::options::{Gradients, Patterns, Strokes, TextMode, WarpOptions};
+use crate::scene::model::Part;
+use crate::source::tags::ElementId;
+use crate::source::text::SourceText;
+use pathwarp::map::{Formula, Real};
+
+/// What is done to the selected shapes instead of bending them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Edit {
+    /// Paths get the fewest nodes within the tolerance. A path that would not get fewer stays as it is written.
+    Simplify {
+        /// Joints that turn by more than this, in radians, stay corners.
+        corner: f64,
+    },
+    /// Strokes and text become filled outlines.
+    Outline,
+}
+
+impl Edit {
+    /// The options for it: what it does not ask for stays as it is.
+    pub(super) fn options(self, options: WarpOptions) -> WarpOptions {
+        let options = options.with_images(Images::Keep);
+        match self {
+            Self::Simplify { corner } => {
+                let refit = options.refit.clone().with_merge(true).with_corner(corner);
+                let options = options.with_refit(refit).with_strokes(Strokes::Keep).with_text(TextMode::Skip);
+                options.with_gradients(Gradients::Keep).with_patterns(Patterns::Keep)
+            }
+            Self::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
+        }
+    }
+
+    /// Returns `true` if a part may change.
+    pub(super) fn concerns(self, part: &Part, source: &SourceText) -> bool {
+        let tag = |e: Option<ElementId>| e.map_or("", |e| &*source.elements[e].tag);
+        match self {
+            // Of other elements, none has fewer nodes as a path.
+            Self::Simplify { .. } => {
+                part.owner.is_none() && matches!(tag(part.source), "path" | "polygon" | "polyline")
+            }
+            Self::Outline => part.stroke.is_some() || tag(part.owner) == "text",
+        }
+    }
+}
+
+/// The identity without saying so, so that paths are fitted.
+pub(crate) struct Still;
+
+impl Formula for Still {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y)
+    }
+}
