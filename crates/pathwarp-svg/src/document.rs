@@ -2,6 +2,7 @@
 
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
+use crate::bend::edit::Edit;
 use crate::bend::letters::placed_outlines;
 use crate::bend::options::{OnError, PageFit, Strokes, Structure, WarpOptions};
 use crate::bend::outcome::{Notes, WarpedDocument};
@@ -376,8 +377,9 @@ impl Document {
             let svg = self.drawing.source.as_in_file().into_owned();
             return Ok(WarpedDocument { svg, ..WarpedDocument::default() });
         }
-        let divided = bends.divided(&self.drawing)?;
-        let drawing = divided.as_ref().unwrap_or(&self.drawing);
+        let simplifies = matches!(document.edit, Some(Edit::Simplify { .. }));
+        let own = if simplifies { Some(self.drawing.at_originals()?) } else { bends.divided(&self.drawing)? };
+        let drawing = own.as_ref().unwrap_or(&self.drawing);
         match tiles::laid_out(drawing, bends)? {
             Some(tiled) => warp(&tiled, bends),
             None => warp(drawing, bends),

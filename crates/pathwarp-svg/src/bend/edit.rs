@@ -1,7 +1,7 @@
 //! What may be done to shapes instead of bending them.
 
 use super::image::Images;
-use super::options::{Gradients, Patterns, Strokes, TextMode, WarpOptions};
+use super::options::{Clones, Gradients, Patterns, Strokes, TextMode, WarpOptions};
 use crate::scene::model::Part;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
@@ -28,7 +28,8 @@ impl Edit {
             Self::Simplify { corner } => {
                 let refit = options.refit.clone().with_merge(true).with_corner(corner);
                 let options = options.with_refit(refit).with_strokes(Strokes::Keep).with_text(TextMode::Skip);
-                options.with_gradients(Gradients::Keep).with_patterns(Patterns::Keep)
+                let options = options.with_gradients(Gradients::Keep).with_patterns(Patterns::Keep);
+                options.with_clones(Clones::Follow)
             }
             Self::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
         }

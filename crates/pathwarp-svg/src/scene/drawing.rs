@@ -5,7 +5,7 @@ use super::far::Far;
 use super::geometry::{GeometryReader, MM_PER_INCH};
 use super::lettering::{self, line::TextLine};
 use super::letters;
-use super::model::{Part, Scene};
+use super::model::{Group, Node, Part, Scene};
 use super::resolve::{self, Tiling};
 use super::shape::{self, Shape};
 use crate::source::read::{self, ReadOptions};
@@ -17,6 +17,7 @@ use crate::source::tree::{self, Missed};
 use pathwarp::Error;
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Rect, Size};
+use std::collections::HashMap;
 use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
 use svgtypes::{Length, LengthUnit};
@@ -91,6 +92,35 @@ impl Drawing {
     /// Resolves the drawing again, with clip paths and masks for each of the bends that their users have.
     pub(crate) fn divided(&self, division: Vec<Option<usize>>) -> Result<Self, Error> {
         self.resolved_again(None, division)
+    }
+
+    /// The drawing in which the shapes that `use` elements show are those that they copy, once each: the largest copy stands for all.
+    /// Shapes that are drawn themselves as well are no copies.
+    pub(crate) fn at_originals(&self) -> Result<Self, Error> {
+        let mut drawing = self.resolved_again(None, self.division.clone())?;
+        let Some(scene) = drawing.scene.get_mut() else { return Ok(drawing) };
+        let is_use = |p: &Part| p.owner.is_some_and(|e| self.source.elements[e].tag == "use");
+        let mut largest: HashMap<ElementId, (f64, Option<usize>)> = HashMap::new();
+        for (i, part) in scene.parts.iter().enumerate() {
+            let (size, copy) = if is_use(part) { (stretch(part.frame), Some(i)) } else { (f64::INFINITY, None) };
+            if let Some(drawn) = part.drawn.filter(|_| part.owner.is_none() || copy.is_some()) {
+                let known = largest.entry(drawn).or_insert((size, copy));
+                if size > known.0 {
+                    *known = (size, copy);
+                }
+            }
+        }
+        for (drawn, copy) in largest.into_iter().filter_map(|(drawn, (_, copy))| Some((drawn, copy?))) {
+            (scene.parts[copy].source, scene.parts[copy].owner) = (Some(drawn), None);
+        }
+        let masks = scene.masks.iter_mut().map(|m| &mut m.root);
+        let clips = scene.clips.iter_mut().map(|c| &mut c.root);
+        let mut groups: Vec<&mut Group> = masks.chain(clips).chain([&mut scene.root]).collect();
+        while let Some(g) = groups.pop() {
+            g.owner = g.owner.filter(|e| self.source.elements[*e].tag != "use");
+            groups.extend(g.children.iter_mut().filter_map(|n| if let Node::Group(g) = n { Some(&mut **g) } else { None }));
+        }
+        Ok(drawing)
     }
 
     fn resolved_again(&self, tiling: Option<Tiling<'_>>, division: Vec<Option<usize>>) -> Result<Self, Error> {
