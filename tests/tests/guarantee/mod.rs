@@ -5,6 +5,7 @@
 
 mod contours;
 mod curves;
+mod edits;
 mod measure;
 mod paths;
 mod written;

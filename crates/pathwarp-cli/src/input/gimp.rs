@@ -17,13 +17,13 @@ use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use pathwarp::budget::Budget;
 use pathwarp::fold::{Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect};
-use pathwarp::map::{Chain, Class, Map};
+use pathwarp::map::{Class, Map, Undeclared};
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe, Step};
 use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_gimp::{GimpPath, Stroke, to_json, to_svg};
-use pathwarp_svg::{Document, OnError, ReadOptions};
+use pathwarp_svg::{Document, Edit, OnError, ReadOptions};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -100,7 +100,9 @@ impl GimpArtwork {
     fn write(&self, warped: &WarpedPaths, request: &WarpRequest<'_>) -> Result<(WarpedResult, Vec<String>), Failure> {
         let canvas = self.file.canvas();
         // Coordinates that have not moved are not rounded.
-        let stays = |b: &BuiltRecipe| b.map.class() == Class::Affine(Affine::IDENTITY) && b.placement.copies.is_empty();
+        let stays = |b: &BuiltRecipe| {
+            request.edit.is_none() && b.map.class() == Class::Affine(Affine::IDENTITY) && b.placement.copies.is_empty()
+        };
         let unmoved = request.built.parts.iter().all(stays);
         let precision = request.options.precision.or((!unmoved).then(|| {
             let contours = self.outlines.iter().flat_map(|o| request.contours(o));
@@ -195,6 +197,9 @@ impl Artwork for GimpArtwork {
                 "--{param} is for SVG files; convert the paths to SVG first (`pathwarp convert`)"
             )));
         }
+        if request.edit == Some(Edit::Outline) {
+            return Err(Failure::usage("GIMP's paths have no strokes that could become outlines"));
+        }
         let mut warped = self.warp_paths(request)?;
         let empty = self.selected.is_empty();
         if empty {
@@ -238,7 +243,7 @@ const WORTH_THREADS: usize = 1000;
 
 /// What bends a part of the paths.
 struct PartBend<'a> {
-    map: &'a Chain,
+    map: &'a dyn Map,
     places: Vec<Affine>,
     refit: refit::Options,
     survey: Survey<'a>,
@@ -259,7 +264,10 @@ impl GimpArtwork {
         let places = if copies.is_empty() { vec![Affine::IDENTITY] } else { copies.clone() };
         let segments: usize = outlines().map(|o| o.segs().count()).sum();
         let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), segments);
-        PartBend { map: &built.map, places, refit, survey, segments }
+        let Some(Edit::Simplify { corner }) = request.edit else {
+            return PartBend { map: &built.map, places, refit, survey, segments };
+        };
+        PartBend { map: &Undeclared, places, refit: refit.with_merge(true).with_corner(corner), survey, segments }
     }
 
     fn warp_paths(&self, request: &WarpRequest<'_>) -> Result<WarpedPaths, Failure> {
@@ -271,7 +279,9 @@ impl GimpArtwork {
         spent.map_err(Error::from)?;
         let warp = |place: usize| {
             let b = &bends[self.part(place)];
-            let strokes = warp_strokes(self.path(self.selected[place]), &b.places, b.map, &b.refit);
+            let path = self.path(self.selected[place]);
+            let strokes = warp_strokes(path, &b.places, b.map, &b.refit);
+            let strokes = if request.edit.is_some() { strokes.map(|w| w.or_fewer(path)) } else { strokes };
             (strokes, b.survey.orientation(&self.outlines[place], false))
         };
         let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> = if segments < WORTH_THREADS {

@@ -12,6 +12,19 @@ pub(super) struct WarpedStrokes {
     pub(super) report: PathReport,
 }
 
+impl WarpedStrokes {
+    /// The strokes of `path`, unless these have fewer segments.
+    pub(super) fn or_fewer(self, path: &GimpPath) -> Self {
+        let segments = self.report.segments_in;
+        if self.report.segments_out < segments {
+            return self;
+        }
+        let mut report = PathReport::default();
+        (report.segments_in, report.segments_out) = (segments, segments);
+        Self { strokes: path.strokes.clone(), report }
+    }
+}
+
 /// Warps the strokes of `path`, one copy for each of `places`.
 pub(super) fn warp_strokes(
     path: &GimpPath,

@@ -108,6 +108,12 @@ impl Artwork for PictureArtwork {
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built: BuiltParts { whole: built, .. }, options, .. } = request;
+        if let Some(edit) = &options.edit {
+            return Err(Failure::usage(format!(
+                "{} works on the paths of drawings; a picture has none",
+                edit.info.name
+            )));
+        }
         if !built.placement.copies.is_empty() {
             return Err(Failure::usage(
                 "the deformation repeats the artwork, which works for drawings only, not for pictures",

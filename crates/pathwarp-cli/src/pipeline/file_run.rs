@@ -3,6 +3,7 @@
 use super::plan::Job;
 use super::{beyond, links};
 use crate::advice::{self, Flags};
+use crate::edits::SIMPLIFY;
 use crate::failure::Failure;
 use crate::input::{Artwork, Baseline, Input, WarpRequest, WarpedResult, Which};
 use crate::options::{CommonOptions, FrameChoice, Given};
@@ -156,13 +157,25 @@ impl Batch<'_> {
 
     /// The decisions made on the user's behalf.
     fn notes(&self, built: &BuiltRecipe, framed: &[String], shapes: &[ReportedShape]) -> Vec<String> {
+        let mut notes: Vec<String> = self.simplified(shapes).into_iter().collect();
         if !self.options.explain {
-            return Vec::new();
+            return notes;
         }
-        let mut notes = framed.to_vec();
+        notes.extend_from_slice(framed);
         notes.extend(self.in_flags(built, |e| &e.notes));
         notes.extend(strokes(shapes));
         notes
+    }
+
+    /// The numbers of nodes before and after, and the largest error, if that is what the run is for.
+    fn simplified(&self, shapes: &[ReportedShape]) -> Option<String> {
+        let asked = self.options.edit.as_ref().is_some_and(|e| e.info == &SIMPLIFY) && !self.options.quiet;
+        let sum = |of: fn(&ReportedShape) -> usize| shapes.iter().map(of).sum::<usize>();
+        let (before, after) = (sum(|s| s.segments_in), sum(|s| s.segments_out));
+        let error = shapes.iter().map(|s| s.max_error).fold(0.0, f64::max);
+        let error =
+            if (1e-3..1e4).contains(&error) || error == 0.0 { format!("{error:.3}") } else { format!("{error:.2e}") };
+        asked.then(|| format!("{before} nodes became {after}, within {error} units of the original"))
     }
 
     /// Messages of all steps, with parameters as flags.

@@ -1,6 +1,7 @@
 //! Writes the report, input by input, so that a large batch need not be held in memory.
 
 use crate::failure::Failure;
+use crate::options::CommonOptions;
 use crate::output::{Draft, PendingFile};
 use crate::readable;
 use crate::report::{FileReport, Totals};
@@ -17,8 +18,14 @@ pub(super) struct ReportFile {
 
 impl ReportFile {
     /// Starts the report of a run of `recipe`.
-    pub(super) fn new(mut draft: Draft, recipe: &Recipe, started: Instant) -> Result<Self, Failure> {
-        let steps: Vec<&str> = recipe.steps.iter().map(|s| s.deformation.as_str()).collect();
+    pub(super) fn new(
+        mut draft: Draft,
+        recipe: &Recipe,
+        options: &CommonOptions,
+        started: Instant,
+    ) -> Result<Self, Failure> {
+        let deformations = || recipe.steps.iter().map(|s| s.deformation.as_str()).collect();
+        let steps: Vec<&str> = options.edit.as_ref().map_or_else(deformations, |e| vec![e.info.name]);
         let head = [
             ("tool", json(&"pathwarp")?),
             ("version", json(&env!("CARGO_PKG_VERSION"))?),

@@ -1,6 +1,6 @@
 //! The maps of a drawing, each with the part of the drawing that it bends.
 
-use super::edit::{Edit, Still};
+use super::edit::Edit;
 use super::options::WarpOptions;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{PartRole, Referrer, Scene};
@@ -9,7 +9,7 @@ use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use pathwarp::Error;
 use pathwarp::kurbo::Affine;
-use pathwarp::map::{AffineMap, Class, Map};
+use pathwarp::map::{AffineMap, Class, Map, Undeclared};
 use std::ops::Range;
 
 /// A map with the options for what it bends.
@@ -23,7 +23,7 @@ impl<'a> Bend<'a> {
     pub(crate) fn new(map: &'a dyn Map, options: WarpOptions) -> Self {
         let map = match options.edit {
             None => map,
-            Some(Edit::Simplify { .. }) => &Still,
+            Some(Edit::Simplify { .. }) => &Undeclared,
             Some(_) => &AffineMap(Affine::IDENTITY),
         };
         Self { map, options }

@@ -5,7 +5,6 @@ use super::options::{Clones, Gradients, Patterns, Strokes, TextMode, WarpOptions
 use crate::scene::model::Part;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
-use pathwarp::map::{Formula, Real};
 
 /// What is done to the selected shapes instead of bending them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,14 +44,5 @@ impl Edit {
             }
             Self::Outline => part.stroke.is_some() || tag(part.owner) == "text",
         }
-    }
-}
-
-/// The identity without saying so, so that paths are fitted.
-pub(crate) struct Still;
-
-impl Formula for Still {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        (x, y)
     }
 }

@@ -118,7 +118,9 @@ impl Drawing {
         let mut groups: Vec<&mut Group> = masks.chain(clips).chain([&mut scene.root]).collect();
         while let Some(g) = groups.pop() {
             g.owner = g.owner.filter(|e| self.source.elements[*e].tag != "use");
-            groups.extend(g.children.iter_mut().filter_map(|n| if let Node::Group(g) = n { Some(&mut **g) } else { None }));
+            groups.extend(
+                g.children.iter_mut().filter_map(|n| if let Node::Group(g) = n { Some(&mut **g) } else { None }),
+            );
         }
         Ok(drawing)
     }

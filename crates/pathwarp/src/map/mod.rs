@@ -75,7 +75,7 @@ pub use nets::{BicubicNet, Net, bspline, complete_net};
 pub(crate) use newton::INVERSE_WORK;
 pub use newton::NewtonInverse;
 pub use piecewise::{Coons, Sides};
-pub use projective::AffineMap;
+pub use projective::{AffineMap, Undeclared};
 pub use rational_bezier::RationalBezier;
 pub use traits::Map;
 

@@ -1,7 +1,7 @@
 //! Affine and projective maps as [`Map`]s: the two classes that keep straight lines.
 
 use super::batch::Lane;
-use super::{Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier, RationalDegree};
+use super::{Class, Crease, Creases, Formula, Homography, Jet, Level, Map, RationalBezier, RationalDegree, Real};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -105,6 +105,26 @@ impl Map for Homography {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         self.inverted().map(|h| Arc::new(h) as Arc<dyn Map>)
+    }
+}
+
+/// The identity, which does not say that it is one: what it is asked to bend is fitted, so that
+/// [`warp_path`](crate::refit::warp_path) with [`merge`](crate::refit::Options::merge) gives a path the fewest nodes.
+///
+/// ```
+/// use pathwarp::{Outline, map::Undeclared, refit};
+///
+/// let five = Outline::from_svg("M0,0C10,0 20,1 30,3S50,8 60,12S80,22 85,25S95,31 100,35")?;
+/// let options = refit::Options::new(0.5).with_merge(true).with_corner(0.2);
+/// assert!(refit::warp_path(&five, &Undeclared, &options)?.report.segments_out < 3);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Undeclared;
+
+impl Formula for Undeclared {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y)
     }
 }
 
