@@ -105,8 +105,7 @@ impl<S: Source> StretchFitter<'_, S> {
         } else {
             let bound = error * REPORT_MARGIN;
             let bound = larger(error, if bound < self.tolerance { bound } else { self.tolerance });
-            report.max_error = larger(bound, report.max_error);
-            report.assurance = report.assurance.min(Assurance::Checked);
+            report.add_error(bound, Assurance::Checked);
         }
         out.push(piece);
     }

@@ -418,6 +418,10 @@ pub const SMOOTH_JOINT: f64 = 0.0087;
 /// Test: *figures* (at 0).
 pub const SURE_CORNER: f64 = 0.009;
 
+/// A line more than this many times as long as the next is an edge and no chord of a flattened curve. Flattened rounded rectangles keep
+/// their sides; at 1, flattened ellipses keep most of their chords.
+pub(crate) const LONG_EDGE: f64 = 8.0;
+
 /// Places per segment at which a merged piece may end. 1: +7.6 % pieces, −56.9 % work; 4: +2.0 % pieces, −25.4 % work; 16: −1.7 % pieces, +29.6 % work.
 /// Test: *figures* (at 1).
 pub const MERGE_GRID: usize = 8;
@@ -516,3 +520,17 @@ pub(crate) const CARRY_BELOW: f64 = 0.7;
 
 /// Segments for which eight samples of a carried cubic are taken.
 pub(crate) const SEGMENTS_PER_BATCH: usize = 4;
+
+// Quadratics
+
+/// Samples for each piece of a quadratic spline, and twice as many for the shortest run.
+pub(crate) const SPLINE_SAMPLES: usize = 16;
+
+/// Rounds of a spline's fit, …
+pub(crate) const SPLINE_ROUNDS: usize = 30;
+
+/// … after this many of which the largest residual is brought down.
+pub(crate) const SPLINE_WEIGHTED: usize = 5;
+
+/// Share of the tolerance for errors of splines at and between their samples.
+pub(crate) const SPLINE_ACCEPTED: f64 = 0.99;

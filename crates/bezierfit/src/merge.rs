@@ -415,7 +415,7 @@ impl<F: FitOwn> OwnPieces<F> {
     fn append_segment(&mut self, i: usize, out: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
         let (from, to, own) = self.fitted(i)?;
         let (from, to) = (*from, *to);
-        report.add(own.clone());
+        report.add_part(own);
         out.extend_from_slice(&self.pieces[from..to]);
         Ok(())
     }

@@ -1,13 +1,14 @@
 //! Options of a fit.
 
+use crate::error::Error;
 use crate::limits::SMOOTH_JOINT;
 
 /// What is wanted of a fit.
 ///
 /// ```
-/// use bezierfit::Options;
+/// use bezierfit::{Degree, Options};
 ///
-/// let options = Options::new(0.01).with_prove(true).with_corner(15.0_f64.to_radians());
+/// let options = Options::new(0.01).with_degree(Degree::Quadratic).with_corner(15.0_f64.to_radians());
 /// assert_eq!(options.tolerance, 0.01);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,18 +16,46 @@ use crate::limits::SMOOTH_JOINT;
 pub struct Options {
     /// Largest allowed Hausdorff distance between the source and the output, both ways.
     pub tolerance: f64,
-    /// Prove the error where the source is a quotient of polynomials, instead of measuring it by dense sampling.
+    /// Prove the error where the source is a quotient of polynomials, instead of measuring it by dense sampling. Cubics only.
     pub prove: bool,
     /// Joints of a path that turn by less than this, in radians, are smooth: by default half a degree, since drawings round their
     /// coordinates.
     pub corner: f64,
+    /// Let pieces run across smooth joints. On by default.
+    pub merge: bool,
+    /// What the pieces are. Cubics by default.
+    pub degree: Degree,
+    /// How many pieces there may be. As many as the tolerance needs by default.
+    pub pieces: Pieces,
+}
+
+/// What pieces are, besides lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Degree {
+    /// Cubics.
+    Cubic,
+    /// Quadratics, as the `glyf` table of fonts holds them. Where they join smoothly, the joint is midway between the control points, so
+    /// that it need not be stored.
+    Quadratic,
+}
+
+/// A number of pieces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pieces {
+    /// As few as the tolerance allows.
+    Fewest,
+    /// At most this many: if the tolerance needs more, these with nearly the least error that they reach, which the report tells.
+    AtMost(usize),
+    /// This many, with nearly the least error that they reach, whatever the tolerance.
+    Exactly(usize),
 }
 
 impl Options {
     /// Within `tolerance`, measured.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, prove: false, corner: SMOOTH_JOINT }
+        let (degree, pieces) = (Degree::Cubic, Pieces::Fewest);
+        Self { tolerance, prove: false, corner: SMOOTH_JOINT, merge: true, degree, pieces }
     }
 
     /// Sets [`Options::prove`].
@@ -39,5 +68,31 @@ impl Options {
     #[must_use]
     pub fn with_corner(self, corner: f64) -> Self {
         Self { corner, ..self }
+    }
+
+    /// Sets [`Options::merge`].
+    #[must_use]
+    pub fn with_merge(self, merge: bool) -> Self {
+        Self { merge, ..self }
+    }
+
+    /// Sets [`Options::degree`].
+    #[must_use]
+    pub fn with_degree(self, degree: Degree) -> Self {
+        Self { degree, ..self }
+    }
+
+    /// Sets [`Options::pieces`].
+    #[must_use]
+    pub fn with_pieces(self, pieces: Pieces) -> Self {
+        Self { pieces, ..self }
+    }
+
+    /// Refuses what makes no sense.
+    pub(crate) fn checked(&self) -> Result<(), Error> {
+        if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
+            return Err(Error::Tolerance(self.tolerance));
+        }
+        if self.corner >= 0.0 { Ok(()) } else { Err(Error::Corner(self.corner)) }
     }
 }

@@ -1,12 +1,15 @@
 //! Fits of whole curves and paths.
 
+use crate::error::Error;
 use crate::limits::ONE_SIDED_STEP;
-use crate::merge::{MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
-use crate::options::Options;
+use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
+use crate::options::{Degree, Options};
+use crate::pieces::limited;
 use crate::report::{Assurance, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::sample::{Lane, Lanes, fma};
 use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
+use crate::spline::Run;
 use crate::stretch::StretchFitter;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
 
@@ -14,19 +17,24 @@ use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Fitted {
-    /// Lines and cubics.
+    /// Lines, and cubics or quadratics.
     pub path: BezPath,
     /// How far the path is from the source.
     pub report: Report,
 }
 
-/// Covers a curve with few cubics and lines, within `options.tolerance`. The curve may have corners and cusps where it
+/// Evaluations of a source by [`fit`], at most, for each smooth part between its [breaks](Source::breaks). Usual curves need some
+/// hundreds for each piece. Where it is reached, the rest of the part is listed as unresolved. Only quadratics, and a given number of
+/// pieces, which takes several fits, may need a multiple.
+pub const MAX_EVALUATIONS: usize = 2_000_000;
+
+/// Covers a curve with few pieces, within `options.tolerance`. The curve may have corners, cusps and jumps where it
 /// [says](Source::breaks) so.
 ///
 /// Places at which the tolerance could not be met are listed in the report.
 ///
 /// # Errors
-/// The curve is not finite somewhere.
+/// The curve is not finite somewhere, or the options make no sense.
 ///
 /// ```
 /// use bezierfit::{Options, fit};
@@ -39,34 +47,135 @@ pub struct Fitted {
 /// let fitted = fit(&spiral, &Options::new(0.01))?;
 /// assert!(fitted.report.max_error <= 0.01 && fitted.report.unresolved.is_empty());
 /// assert!(fitted.path.segments().count() <= 16);
-/// # Ok::<(), bezierfit::NotFinite>(())
+/// # Ok::<(), bezierfit::Error>(())
 /// ```
-pub fn fit<S: Source>(source: &S, options: &Options) -> Result<Fitted, NotFinite> {
+pub fn fit<S: Source>(source: &S, options: &Options) -> Result<Fitted, Error> {
+    limited(options, |options| Ok(fitted(source, options)?))
+}
+
+fn fitted<S: Source>(source: &S, options: &Options) -> Result<Fitted, NotFinite> {
+    let mut out = Fitted { path: BezPath::new(), report: Report::default() };
+    let mut memory = ReachMemory::default();
+    let parts = parts(source, options.tolerance)?;
+    let mut rest = &parts[..];
+    while let Some(first) = rest.first() {
+        let count = 1 + rest[1..].iter().take_while(|p| !p.jumps).count();
+        let start = first.ends[0].p;
+        if options.degree == Degree::Quadratic {
+            out.path.move_to(start);
+            splines(&rest[..count], options, &mut out)?;
+        } else {
+            let pieces = merged_parts(&rest[..count], options, &mut memory, &mut out.report)?;
+            append(&mut out.path, start, &pieces, false);
+        }
+        rest = &rest[count..];
+    }
+    Ok(out)
+}
+
+/// A smooth part of a curve, with its own parameter from 0 to 1.
+struct Part<'a, S> {
+    source: &'a S,
+    t0: f64,
+    t1: f64,
+    ends: [BreakPoint; 2],
+    /// It begins elsewhere than the part before ends.
+    jumps: bool,
+}
+
+impl<S> Clone for Part<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S> Copy for Part<'_, S> {}
+
+impl<S> Part<'_, S> {
+    fn at(&self, t: f64) -> f64 {
+        if t == 1.0 { self.t1 } else { self.t0 + (self.t1 - self.t0) * t }
+    }
+
+    fn is_whole(&self) -> bool {
+        (self.t0, self.t1) == (0.0, 1.0)
+    }
+}
+
+impl<S: Source> Source for Part<'_, S> {
+    fn eval(&self, t: f64) -> (Point, Vec2) {
+        let (p, d) = self.source.eval(self.at(t));
+        (p, d * (self.t1 - self.t0))
+    }
+
+    fn points(&self, t: &Lane, out: &mut Lanes) {
+        self.source.points(&t.map(|t| self.at(t)), out);
+    }
+
+    fn is_simple(&self) -> bool {
+        self.source.is_simple()
+    }
+
+    fn quotient(&self) -> Option<Quotient> {
+        // The denominator of a part would be another one.
+        self.source.quotient().filter(|q| q.below == 0 || self.is_whole())
+    }
+
+    fn denominators(&self, t: &Lane) -> Lane {
+        self.source.denominators(t)
+    }
+
+    fn place(&self, t: f64) -> Point {
+        self.source.place(self.at(t))
+    }
+
+    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+        if t == 0.0 || t == 1.0 {
+            return Ok(self.ends[usize::from(t == 1.0)]);
+        }
+        let end = self.source.end(self.at(t))?;
+        Ok(BreakPoint { t, speed: end.speed * (self.t1 - self.t0), ..end })
+    }
+}
+
+/// The parts between the breaks of a source.
+fn parts<S: Source>(source: &S, tolerance: f64) -> Result<Vec<Part<'_, S>>, NotFinite> {
     let mut places = source.breaks();
     places.retain(|t| *t > 0.0 && *t < 1.0);
     places.push(1.0);
     places.sort_by(f64::total_cmp);
     places.dedup();
-    let (mut pieces, mut report) = (Vec::new(), Report::default());
-    let slow = SlowSpots::default();
     let inner = places.len() > 1;
+    let mut out: Vec<Part<'_, S>> = Vec::with_capacity(places.len());
     let mut t0 = 0.0;
     for t1 in places {
-        let from = if inner { beside(source, t0, 1.0)? } else { source.end(t0)? };
-        let to = if inner { beside(source, t1, -1.0)? } else { source.end(t1)? };
-        let mut fitter = StretchFitter::new(source, &slow, options.tolerance, (options.prove, 0.0), f64::INFINITY);
-        fitter.cover(&from, &to, &mut pieces, &mut report)?;
+        let [mut from, mut to] = if inner {
+            [beside(source, t0, 1.0)?, beside(source, t1, -1.0)?]
+        } else {
+            [source.end(t0)?, source.end(t1)?]
+        };
+        let mut jumps = false;
+        if let Some(last) = out.last() {
+            jumps = last.ends[1].p.distance(from.p) > JUMP * tolerance;
+            if !jumps {
+                from.p = last.ends[1].p;
+            }
+        }
+        for (t, end) in [(0.0, &mut from), (1.0, &mut to)] {
+            (end.t, end.speed) = (t, end.speed * (t1 - t0));
+        }
+        out.push(Part { source, t0, t1, ends: [from, to], jumps });
         t0 = t1;
     }
-    let start = source.eval(0.0).0;
-    let mut path = BezPath::new();
-    append(&mut path, start, &pieces, false);
-    Ok(Fitted { path, report })
+    Ok(out)
 }
+
+/// A gap wider than this share of the tolerance is a jump.
+const JUMP: f64 = 0.01;
 
 /// The end of a smooth part at `t`, with the tangent and the speed a little further inside.
 fn beside<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint, NotFinite> {
-    let (p, _) = source.eval(t);
+    // The limit from the left, where the curve jumps.
+    let (p, _) = source.eval(if side < 0.0 && t < 1.0 { t.next_down() } else { t });
     let near = source.end(t + side * ONE_SIDED_STEP)?;
     let along = if side > 0.0 { near.away } else { near.into };
     if !p.is_finite() {
@@ -75,11 +184,92 @@ fn beside<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint, NotFin
     Ok(BreakPoint { t, p, speed: near.speed, into: along, away: along })
 }
 
-/// Replaces the segments of a path by few cubics and lines, within `options.tolerance`. Corners stay: joints that turn by more than
-/// `options.corner`.
+/// The pieces of parts that follow each other. They run on across smooth joints of parts that need no more than two.
+fn merged_parts<S: Source>(
+    parts: &[Part<'_, S>],
+    options: &Options,
+    memory: &mut ReachMemory,
+    report: &mut Report,
+) -> Result<Vec<Piece>, NotFinite> {
+    let slow = SlowSpots::default();
+    let mut covered = Vec::with_capacity(parts.len());
+    for part in parts {
+        let (mut pieces, mut report) = (Vec::new(), Report::default());
+        let left = MAX_EVALUATIONS as f64;
+        let mut fitter = StretchFitter::new(part, &slow, options.tolerance, (options.prove, 0.0), left);
+        fitter.cover(&part.ends[0], &part.ends[1], &mut pieces, &mut report)?;
+        covered.push((part, pieces, report));
+    }
+    let mut out = Vec::new();
+    let mut i = 0;
+    while i < covered.len() {
+        let mut run = SegmentRun::new(parts[0].is_simple(), 8);
+        let joined = if options.merge && covered.len() > 1 {
+            run.extend(&covered[i..], options.corner, |(part, pieces, _)| {
+                let form = if options.prove { part.quotient().and_then(Quotient::provable) } else { None };
+                let is_line = matches!(pieces[..], [Piece::Line(_)]);
+                Ok((pieces.len() <= 2).then(|| RunSegment::new(**part, form, part.ends, is_line)))
+            })?
+        } else {
+            0
+        };
+        let known = |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+            pieces.extend(&covered[i + k].1);
+            report.add_part(&covered[i + k].2);
+            Ok(())
+        };
+        if joined < 2 {
+            known(0, &mut out, report)?;
+            i += 1;
+        } else {
+            fewest(&run, OwnPieces::new(joined, known), options, memory, &mut out, report)?;
+            i += joined;
+        }
+    }
+    Ok(out)
+}
+
+/// Appends the fewest pieces of a run.
+fn fewest<S: Source + Clone>(
+    run: &SegmentRun<S>,
+    own: OwnPieces<impl FitOwn>,
+    options: &Options,
+    memory: &mut ReachMemory,
+    pieces: &mut Vec<Piece>,
+    report: &mut Report,
+) -> Result<(), NotFinite> {
+    let proof = run.segments.first().is_some_and(RunSegment::is_provable);
+    let settings = MergeSettings { tolerance: options.tolerance, proof, marks: false, again: false };
+    let mut reaches = Reaches::new(run, own, settings, memory);
+    let legs = reaches.fewest()?;
+    let (mut own, legs) = refined(run, reaches.own, legs, settings, memory)?;
+    let assurance = if proof { Assurance::Certified } else { Assurance::Checked };
+    own.append(legs, assurance, pieces, report)
+}
+
+/// Appends quadratics for parts that follow each other.
+fn splines<S: Source>(parts: &[Part<'_, S>], options: &Options, out: &mut Fitted) -> Result<(), NotFinite> {
+    let mut rest = parts;
+    while let Some(first) = rest.first() {
+        let smooth = |w: &[Part<'_, S>]| {
+            let (u, v) = (w[0].ends[1].into, w[1].ends[0].away);
+            options.merge && u.cross(v).atan2(u.dot(v)).abs() <= options.corner
+        };
+        let count = 1 + rest.windows(2).take_while(|w| smooth(w)).count();
+        let ends = [first.ends[0], rest[count - 1].ends[1]];
+        let run = Run { curves: &rest[..count], tolerance: options.tolerance };
+        run.cover(ends, &mut out.path, &mut out.report)?;
+        rest = &rest[count..];
+    }
+    Ok(())
+}
+
+/// Replaces the segments of a path by few, within `options.tolerance`. Corners stay: joints that turn by more than `options.corner`.
+///
+/// With [`Degree::Quadratic`], cubics become quadratics; without [`Options::merge`], each on its own.
 ///
 /// # Errors
-/// The path has coordinates that are not finite.
+/// The path has coordinates that are not finite, or the options make no sense.
 ///
 /// ```
 /// use bezierfit::{Options, simplify};
@@ -89,9 +279,13 @@ fn beside<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint, NotFin
 /// let circle = Circle::new((0.0, 0.0), 100.0).to_path(1e-12);
 /// let simple = simplify(&circle, &Options::new(0.1))?;
 /// assert_eq!(simple.path.segments().count(), 4);
-/// # Ok::<(), bezierfit::NotFinite>(())
+/// # Ok::<(), bezierfit::Error>(())
 /// ```
-pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
+pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, Error> {
+    limited(options, |options| Ok(simplified(path, options)?))
+}
+
+fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let elements = path.elements();
@@ -109,14 +303,37 @@ pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> 
             return Err(NotFinite { t: 0.0, at: start });
         }
         let mut pieces = Vec::with_capacity(segments.len());
-        let mut i = 0;
-        while i < segments.len() {
-            i += smooth_run(&segments[i..], options, &mut memory, &mut pieces, &mut out.report)?;
+        let mut rest = &segments[..];
+        if options.degree == Degree::Quadratic {
+            out.path.move_to(start);
+            while !rest.is_empty() {
+                rest = &rest[quadratics(rest, options, &mut out)?..];
+            }
+            if closed {
+                out.path.close_path();
+            }
+        } else {
+            while !rest.is_empty() {
+                rest = &rest[smooth_run(rest, options, &mut memory, &mut pieces, &mut out.report)?..];
+            }
+            append(&mut out.path, start, &pieces, closed);
         }
-        append(&mut out.path, start, &pieces, closed);
         first += count + 1;
     }
     Ok(out)
+}
+
+/// The first segments as a run, as far as they join smoothly, and their number.
+fn joined(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
+    let mut run = SegmentRun::new(true, segments.len().min(64));
+    let most = if options.merge { segments.len() } else { 1 };
+    let count = run.extend(&segments[..most], options.corner, |segment| {
+        let form = if options.prove { segment.quotient() } else { None };
+        let ends = [segment.end(0.0)?, segment.end(1.0)?];
+        let is_line = matches!(segment.seg, PathSeg::Line(_));
+        Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends, is_line)))
+    })?;
+    Ok((run, count))
 }
 
 /// Appends the pieces of the first segments, as far as they join smoothly, and returns their number.
@@ -127,32 +344,101 @@ fn smooth_run(
     pieces: &mut Vec<Piece>,
     report: &mut Report,
 ) -> Result<usize, NotFinite> {
-    let mut run = SegmentRun::new(true, segments.len().min(64));
-    let joined = run.extend(segments, options.corner, |segment| {
-        let form = if options.prove { segment.quotient() } else { None };
-        let ends = [segment.end(0.0)?, segment.end(1.0)?];
-        Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends, matches!(segment.seg, PathSeg::Line(_)))))
-    })?;
-    if joined < 2 {
-        let piece = segments.first().map(Segment::piece);
-        pieces.extend(piece);
+    let (run, count) = joined(segments, options)?;
+    let itself = |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+        pieces.push(segments[i].piece());
+        report.add_error(0.0, Assurance::Exact);
+        Ok(())
+    };
+    if count < 2 {
+        itself(0, pieces, report)?;
         return Ok(1);
     }
-    let own = OwnPieces::new(joined, |i: usize, pieces: &mut Vec<Piece>, _: &mut Report| {
-        pieces.push(segments[i].piece());
-        Ok(())
-    });
-    let settings = MergeSettings { tolerance: options.tolerance, proof: options.prove, marks: false, again: false };
-    let mut reaches = Reaches::new(&run, own, settings, memory);
-    let legs = reaches.fewest()?;
-    let (mut own, legs) = refined(&run, reaches.own, legs, settings, memory)?;
-    let assurance = if options.prove { Assurance::Certified } else { Assurance::Checked };
-    own.append(legs, assurance, pieces, report)?;
-    Ok(joined)
+    fewest(&run, OwnPieces::new(count, itself), options, memory, pieces, report)?;
+    Ok(count)
+}
+
+/// Appends quadratics for the first segments, as far as they join smoothly, and returns their number.
+fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Result<usize, NotFinite> {
+    let (run, count) = joined(segments, options)?;
+    let one = &segments[0];
+    match one.seg {
+        PathSeg::Line(l) if count < 2 => out.path.line_to(l.p1),
+        PathSeg::Quad(q) if count < 2 => out.path.quad_to(q.p1, q.p2),
+        _ if count == 0 => {
+            // It has no length, or slow spots to be divided at.
+            let slow = |t: f64| one.eval(t);
+            let breaks = Broken { curve: slow, at: one.slow_spots() };
+            if one.c[1..].iter().any(|c| c.hypot2() > 0.0) {
+                splines(&parts(&breaks, options.tolerance)?, options, out)?;
+            }
+            return Ok(1);
+        }
+        _ => {
+            let ends = [run.segments[0].from, run.segments[count - 1].to];
+            let curves = &segments[..count];
+            Run { curves, tolerance: options.tolerance }.cover(ends, &mut out.path, &mut out.report)?;
+            return Ok(count);
+        }
+    }
+    out.report.add_error(0.0, Assurance::Exact);
+    Ok(1)
+}
+
+/// A curve that is broken at slow spots.
+struct Broken<F> {
+    curve: F,
+    at: SlowSpots,
+}
+
+impl<F: Fn(f64) -> (Point, Vec2)> Source for Broken<F> {
+    fn eval(&self, t: f64) -> (Point, Vec2) {
+        (self.curve)(t)
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.at.all().to_vec()
+    }
+}
+
+/// A whole path as a source, each of its segments over an equal share of the parameter.
+#[derive(Debug, Clone)]
+pub struct PathSource {
+    segments: Vec<Segment>,
+}
+
+impl PathSource {
+    /// From a path. `None` if it has no segments.
+    #[must_use]
+    pub fn new(path: &BezPath) -> Option<Self> {
+        let segments: Vec<Segment> = path.segments().map(Segment::new).collect();
+        (!segments.is_empty()).then_some(Self { segments })
+    }
+}
+
+impl Source for PathSource {
+    fn eval(&self, t: f64) -> (Point, Vec2) {
+        let n = self.segments.len();
+        let i = ((t * n as f64) as usize).min(n - 1);
+        let (p, d) = self.segments[i].eval(t * n as f64 - i as f64);
+        (p, d * n as f64)
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        let n = self.segments.len() as f64;
+        let slow = |(i, s): (usize, &Segment)| s.slow_spots().map(|t| (i as f64 + t) / n).all().to_vec();
+        let mut out: Vec<f64> = (1..self.segments.len()).map(|i| i as f64 / n).collect();
+        out.extend(self.segments.iter().enumerate().flat_map(slow));
+        out
+    }
+
+    fn is_simple(&self) -> bool {
+        true
+    }
 }
 
 /// Writes pieces as a subpath. In a closed one, a last line is left to the close command.
-fn append(path: &mut BezPath, start: Point, pieces: &[Piece], closed: bool) {
+pub(crate) fn append(path: &mut BezPath, start: Point, pieces: &[Piece], closed: bool) {
     path.move_to(start);
     let by_close = closed && matches!(pieces.last(), Some(Piece::Line(_)));
     for piece in &pieces[..pieces.len() - usize::from(by_close)] {

@@ -33,6 +33,15 @@ pub enum Assurance {
     Exact,
 }
 
+/// What is known of the error of a piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PieceReport {
+    /// Largest distance between the piece and its part of the curve.
+    pub error: f64,
+    /// Basis of `error`.
+    pub assurance: Assurance,
+}
+
 /// What is known of the error of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
@@ -42,24 +51,34 @@ pub struct Report {
     pub assurance: Assurance,
     /// [Places](crate::Source::place) at which the tolerance was not met.
     pub unresolved: Vec<Point>,
+    /// The pieces, in order.
+    pub pieces: Vec<PieceReport>,
 }
 
 impl Default for Report {
     fn default() -> Self {
-        Self { max_error: 0.0, assurance: Assurance::Exact, unresolved: Vec::new() }
+        Self { max_error: 0.0, assurance: Assurance::Exact, unresolved: Vec::new(), pieces: Vec::new() }
     }
 }
 
 impl Report {
     /// Accounts for a piece with this error.
+    #[inline]
     pub fn add_error(&mut self, error: f64, assurance: Assurance) {
+        self.pieces.push(PieceReport { error, assurance });
         self.max_error = self.max_error.max(error);
         self.assurance = self.assurance.min(assurance);
     }
 
     /// Adds the report of another part.
     pub fn add(&mut self, part: Self) {
-        self.add_error(part.max_error, part.assurance);
-        self.unresolved.extend(part.unresolved);
+        self.add_part(&part);
+    }
+
+    pub(crate) fn add_part(&mut self, part: &Self) {
+        self.max_error = self.max_error.max(part.max_error);
+        self.assurance = self.assurance.min(part.assurance);
+        self.unresolved.extend(&part.unresolved);
+        self.pieces.extend(&part.pieces);
     }
 }

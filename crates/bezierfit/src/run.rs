@@ -1,9 +1,21 @@
 //! Segments in a row as one curve, known by samples at even parameters of each.
 
-use crate::limits::{EVEN_CURVATURE, LEAST_REFINED, MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
+use crate::limits::{
+    EVEN_CURVATURE, LEAST_REFINED, LONG_EDGE, MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES, STRAIGHT_TURN,
+};
 use crate::sample::{Evenly, Lane, Lanes};
 use crate::source::{BreakPoint, NotFinite, Quotient, Source, images};
 use kurbo::{Point, Vec2};
+
+/// What a segment of a run was drawn as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Curve,
+    /// A line that a map has bent.
+    Bent,
+    /// A line that is one still. No curve takes in a part of it.
+    Straight,
+}
 
 /// One segment of a run.
 #[derive(Clone)]
@@ -15,8 +27,7 @@ pub struct RunSegment<S> {
     pub from: BreakPoint,
     /// See `from`.
     pub to: BreakPoint,
-    /// It is a line, which stays one: only other lines may continue it.
-    is_line: bool,
+    kind: Kind,
     /// The curvature at both ends.
     curvature: [Curvature; 2],
 }
@@ -41,12 +52,34 @@ impl Curvature {
 impl<S> RunSegment<S> {
     /// A segment without slow spots, with its ends, its form if proofs are wanted, and `true` if it is a line.
     pub fn new(source: S, form: Option<Quotient>, [from, to]: [BreakPoint; 2], is_line: bool) -> Self {
-        Self { source, form, from, to, is_line, curvature: [Curvature::default(); 2] }
+        let kind = if is_line { Kind::Straight } else { Kind::Curve };
+        Self { source, form, from, to, kind, curvature: [Curvature::default(); 2] }
+    }
+
+    /// The same, drawn as a line that is none any more.
+    #[must_use]
+    pub fn bent(self) -> Self {
+        Self { kind: Kind::Bent, ..self }
     }
 
     /// Returns `true` if proofs are wanted and possible.
     pub fn is_provable(&self) -> bool {
         self.form.is_some()
+    }
+
+    /// Returns `true` if no piece runs from this segment into the next: at corners, and where a straight edge ends. Short chords in a row
+    /// are a flattened curve, so lines go on into lines unless one of them is much longer.
+    fn parts(&self, next: &Self, corner: f64) -> bool {
+        let turn = self.to.into.cross(next.from.away).atan2(self.to.into.dot(next.from.away)).abs();
+        let edge = match (self.kind, next.kind) {
+            (Kind::Straight, Kind::Curve) | (Kind::Curve, Kind::Straight) => true,
+            (Kind::Straight, Kind::Straight) if turn > STRAIGHT_TURN => {
+                let [a, b] = [self, next].map(|s| s.from.p.distance(s.to.p));
+                a.max(b) > LONG_EDGE * a.min(b)
+            }
+            _ => false,
+        };
+        edge || turn > corner || self.form.is_some() != next.form.is_some()
     }
 }
 
@@ -125,12 +158,8 @@ impl<S: Source> SegmentRun<S> {
     ) -> Result<usize, NotFinite> {
         for (i, item) in items.iter().enumerate() {
             let Some(next) = segment(item)? else { return Ok(i) };
-            let parts = |last: &RunSegment<S>| {
-                let (into, away) = (last.to.into, next.from.away);
-                let turn = into.cross(away).atan2(into.dot(away)).abs();
-                turn > corner || last.form.is_some() != next.form.is_some() || last.is_line != next.is_line
-            };
-            if self.segments.last().is_some_and(parts) || !self.push(next)? {
+            let parts = self.segments.last().is_some_and(|last| last.parts(&next, corner));
+            if parts || !self.push(next)? {
                 return Ok(i);
             }
         }

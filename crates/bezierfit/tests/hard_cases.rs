@@ -3,24 +3,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use bezierfit::{Fitted, Offset, Options, Source, fit, simplify};
+use common::distance;
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveNearest, PathSeg, Point, Vec2};
 use std::cell::Cell;
-
-/// The Hausdorff distance between a curve and a path, by samples of both.
-fn distance(source: &impl Source, path: &BezPath) -> f64 {
-    const SAMPLES: usize = 4000;
-    let curve: Vec<Point> = (0..=SAMPLES).map(|i| source.eval(i as f64 / SAMPLES as f64).0).collect();
-    let off = |p: &Point| path.segments().map(|s| s.nearest(*p, 1e-12).distance_sq).fold(f64::INFINITY, f64::min);
-    let there = curve.iter().map(off).fold(0.0, f64::max).sqrt();
-    // The way back is measured to the polygon through the samples.
-    let nearest = |p: Point| {
-        let sides = curve.windows(2).map(|w| kurbo::Line::new(w[0], w[1]).nearest(p, 0.0).distance_sq);
-        sides.fold(f64::INFINITY, f64::min)
-    };
-    let places = path.segments().flat_map(|s| (0..=40).map(move |i| s.eval(f64::from(i) / 40.0)));
-    there.max(places.map(nearest).fold(0.0, f64::max).sqrt())
-}
 
 /// Fits a source, and checks the distance, the number of pieces and that of evaluations.
 fn check(name: &str, source: &impl Source, tolerance: f64, most: usize) -> Fitted {

@@ -10,6 +10,11 @@ pub(super) const CHUNK_CORNER: f64 = 0.18;
 #[cfg(feature = "parallel")]
 pub(super) const WORTH_THREADS: usize = 4 * CHUNK;
 
+/// A contour that an affine map moves keeps its nodes, unless it has more than this many times as many as it needs. 1: letters beside a
+/// swirl lose nodes that nobody asked to move; without a limit, outlines of dashes there have twice as many pieces as elsewhere.
+/// Test: `few_nodes::what_is_only_moved_keeps_its_nodes_unless_they_are_far_too_many` (at 1 and 1000).
+pub(super) const MANY_NODES: usize = 2;
+
 /// A segment whose control polygon is shorter than this, relative to its coordinates, is a point: differences of equal
 /// coordinates after rounding. It becomes a line. Set to 0, no test changes, as `straight` recognises such segments too; set
 /// too high, it drops visible ones.

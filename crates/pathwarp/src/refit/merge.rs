@@ -211,15 +211,17 @@ impl<'a> Merger<'a> {
         }
         let [first, last] = &part.jets;
         let ends = [source.end_with(0.0, first.p, first), source.end_with(1.0, last.p, last)];
-        // A line that stays one is not bent by what follows.
-        let is_line = matches!(part.seg, Seg::Line(_)) && {
+        let is_straight = || {
             let q = ends[1].p - ends[0].p;
             let along = |v: Vec2| v.cross(q).abs() <= STRAIGHT_TURN * q.hypot() && v.dot(q) > 0.0;
             let off = |t: f64| (source.eval(t).0 - ends[0].p).cross(q).abs();
             let limit = STRAIGHT_TOLERANCE * options.tolerance * q.hypot();
             along(ends[0].away) && along(ends[1].into) && [0.27, 0.5, 0.81].into_iter().all(|t| off(t) <= limit)
         };
-        Some(RunSegment::new(source, form, ends, is_line))
+        let is_line = matches!(part.seg, Seg::Line(_));
+        let bent = is_line && !is_straight();
+        let segment = RunSegment::new(source, form, ends, is_line);
+        Some(if bent { segment.bent() } else { segment })
     }
 
     /// Appends the fewest pieces for a run that begins with segment `start`.

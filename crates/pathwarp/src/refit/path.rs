@@ -1,7 +1,7 @@
 //! Whole paths, subpath by subpath.
 
 use super::gather;
-use super::limits::{CHUNK, CHUNK_CORNER};
+use super::limits::{CHUNK, CHUNK_CORNER, MANY_NODES};
 use super::merge::{self, MergeMemory, Merger};
 use super::options::Options;
 use super::parallel::in_parallel;
@@ -218,13 +218,14 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
         let ends = nodes.next(seg)?;
         fitter.parts(seg, ends, fitter.options.shared.contains(seg), &mut parts).map_err(lost)?;
     }
-    // What a map moves as it is keeps its control points.
-    if !parts.is_empty() && parts.iter().all(Part::is_affine) {
+    let found = Merger::new(fitter, &parts, memory).merged().map_err(lost)?;
+    // What a map moves as it is keeps its control points, unless it has many more than it needs: flattened curves, outlines of dashes.
+    if !parts.is_empty() && parts.len() <= MANY_NODES * found.0.len() && parts.iter().all(Part::is_affine) {
         let (mut pieces, mut report) = (Vec::with_capacity(parts.len()), Report::default());
         parts.iter().try_for_each(|p| fitter.fit_part(p, &mut pieces, &mut report)).map_err(lost)?;
         return Ok((pieces, report));
     }
-    Merger::new(fitter, &parts, memory).merged().map_err(lost)
+    Ok(found)
 }
 
 /// Cuts a long subpath into chunks that are refitted on their own: of [`CHUNK`] segments, or up to the next corner after them if

@@ -83,3 +83,40 @@ fn a_hundred_thousand_nodes_are_few_pieces() {
     let many = warped(&circle(100_000), &swirl, 0.014).unwrap().segments_out;
     assert!(many <= two + 1, "{many} pieces, {two} of two arcs");
 }
+
+/// A polygon of places at angles from `from` on, closed.
+fn polygon(places: impl Iterator<Item = Point>) -> Outline {
+    let mut all: Vec<Point> = places.collect();
+    all.push(all[0]);
+    let segs: Vec<Seg> = all.windows(2).map(|w| Seg::Line(kurbo::Line::new(w[0], w[1]))).collect();
+    Outline { subpaths: vec![Subpath { start: all[0], segs, closed: true }] }
+}
+
+/// Chords of a circle, each of which turns by less than a corner.
+fn chords(middle: Point, radius: f64, n: usize) -> impl Iterator<Item = Point> {
+    (0..n).map(move |i| middle + Vec2::from_angle(TAU * i as f64 / n as f64) * radius)
+}
+
+#[test]
+fn flattened_circles_are_few_pieces_where_some_chords_stay_straight() {
+    let bend = Registry::builtin().get("wave").unwrap().build_from(&Args::new(), &frame()).unwrap().map;
+    let swirl = Swirl::new(Point::new(60.0, 40.0), 25.0).build().unwrap().map;
+    for map in [bend, swirl] {
+        for n in [4000, 8000] {
+            let many = warped(&polygon(chords(Point::new(52.0, 47.0), 20.0, n)), &map, 0.02).unwrap().segments_out;
+            assert!(many <= 12, "{n}: {many}");
+        }
+    }
+}
+
+#[test]
+fn what_is_only_moved_keeps_its_nodes_unless_they_are_far_too_many() {
+    // Far from the swirl.
+    let swirl = Swirl::new(Point::new(60.0, 40.0), 25.0).build().unwrap().map;
+    let away = Point::new(500.0, 500.0);
+    let flattened = warped(&polygon(chords(away, 20.0, 1500)), &swirl, 0.02).unwrap();
+    assert!(flattened.segments_out <= 8, "{flattened:?}");
+    let round = Outline::from_svg("M500 500C503 500 506 501 509 503C512 505 514 508 515 512L500 520Z").unwrap();
+    let kept = warp_path(&round, &swirl, &Options::new(0.02).with_merge(true)).unwrap();
+    assert_eq!(kept.path.to_svg(), round.to_bez_path(1e-9).to_svg());
+}

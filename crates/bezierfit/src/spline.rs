@@ -1,0 +1,425 @@
+//! Quadratics: a smooth run as a quadratic spline, whose inner points on the curve lie midway between control points.
+//!
+//! A spline of n pieces has n control points; the first and the last lie on the end tangents, so 2n − 2 numbers are free. They minimise the
+//! residuals along the normals at the foot points of samples, by banded normal equations, in turn with the foot points. Weights that
+//! grow with the residual (Lawson) bring the largest one down. The least n whose spline passes its check is taken. A single piece has no
+//! freedom: its control point is where the end tangents meet.
+
+use crate::limits::{
+    REPORT_MARGIN, SPLINE_ACCEPTED, SPLINE_ROUNDS, SPLINE_SAMPLES, SPLINE_WEIGHTED, STRAIGHT_TOLERANCE,
+};
+use crate::report::{Assurance, Report};
+use crate::source::{BreakPoint, NotFinite, Source};
+use kurbo::{BezPath, Point, Vec2};
+
+/// Control points of a spline, at most: a longer run is divided.
+const MOST: usize = 48;
+/// Stretches shorter than this share of a curve are not divided.
+const SHORTEST: f64 = 1e-6;
+/// Share of the residual along the tangent: it keeps the system regular.
+const ALONG: f64 = 0.02;
+
+/// A stretch of one of the curves of a run.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    curve: usize,
+    t: [f64; 2],
+}
+
+/// Curves that follow each other smoothly, and the tolerance.
+pub(crate) struct Run<'a, S> {
+    pub(crate) curves: &'a [S],
+    pub(crate) tolerance: f64,
+}
+
+/// Samples of a stretch: points, the length up to each, and its share of the parameter.
+struct Samples {
+    p: Vec<Point>,
+    length: Vec<f64>,
+    param: Vec<f64>,
+}
+
+impl<S: Source> Run<'_, S> {
+    /// Appends the fewest quadratics from the current point of `path`.
+    pub(crate) fn cover(
+        &self,
+        ends: [BreakPoint; 2],
+        path: &mut BezPath,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
+        let all = (0..self.curves.len()).map(|curve| Span { curve, t: [0.0, 1.0] }).collect();
+        let mut stack: Vec<(Vec<Span>, [BreakPoint; 2])> = vec![(all, ends)];
+        while let Some((spans, ends)) = stack.pop() {
+            let size = spans.iter().map(|s| s.t[1] - s.t[0]).fold(0.0, f64::max);
+            let last_resort = spans.len() == 1 && size < SHORTEST;
+            if self.fit(&spans, &ends, last_resort, path, report)? {
+                continue;
+            }
+            let half = spans.len() / 2;
+            let (mut before, mut after) = (spans[..half].to_vec(), spans[half..].to_vec());
+            if let [Span { curve, t: [t0, t1] }] = spans[..] {
+                let mid = 0.5 * (t0 + t1);
+                (before, after) = (vec![Span { curve, t: [t0, mid] }], vec![Span { curve, t: [mid, t1] }]);
+            }
+            let Span { curve, t } = after[0];
+            let mid = self.curves[curve].end(t[0])?;
+            stack.push((after, [mid, ends[1]]));
+            stack.push((before, [ends[0], mid]));
+        }
+        Ok(())
+    }
+
+    /// Appends a line or a spline for a stretch. Returns `false` if it needs too many pieces.
+    fn fit(
+        &self,
+        spans: &[Span],
+        ends: &[BreakPoint; 2],
+        last_resort: bool,
+        path: &mut BezPath,
+        report: &mut Report,
+    ) -> Result<bool, NotFinite> {
+        let mut samples = self.samples(spans, 2 * SPLINE_SAMPLES, ends)?;
+        if let Some(error) = samples.straight(STRAIGHT_TOLERANCE * self.tolerance) {
+            path.line_to(ends[1].p);
+            report.add_error(error, Assurance::Checked);
+            return Ok(true);
+        }
+        let (mut n, mut least) = (1, 1);
+        let mut found: Option<(Spline, f64)> = None;
+        while found.as_ref().is_none_or(|(s, _)| s.c.len() > least) {
+            // Upwards until one fits, then downwards.
+            let now = found.as_ref().map_or(n, |(s, _)| s.c.len() - 1);
+            let wanted = SPLINE_SAMPLES * now / spans.len();
+            if samples.p.len() <= wanted * spans.len() {
+                samples = self.samples(spans, wanted.next_power_of_two(), ends)?;
+            }
+            match Spline::best(now, &samples, ends, self.tolerance) {
+                Ok(fits) => found = Some(fits),
+                Err(_) if found.is_some() => break,
+                Err(error) => {
+                    least = now + 1;
+                    if now >= MOST || last_resort {
+                        break;
+                    }
+                    // The error goes with the third to fourth power of the length.
+                    let ratio = (error / self.tolerance).min(1e6).powf(0.25);
+                    n = ((now as f64 * ratio * 0.9) as usize).clamp(now + 1, 2 * now + 2).min(MOST);
+                }
+            }
+        }
+        let Some((spline, error)) = found else {
+            if last_resort {
+                path.line_to(ends[1].p);
+                report.add_error(samples.straight(f64::INFINITY).unwrap_or(self.tolerance), Assurance::Checked);
+                report.unresolved.push(ends[0].p);
+            }
+            return Ok(last_resort);
+        };
+        for k in 0..spline.c.len() {
+            path.quad_to(spline.c[k], spline.joint(k + 1));
+            report.add_error((error * REPORT_MARGIN).min(self.tolerance), Assurance::Checked);
+        }
+        Ok(true)
+    }
+
+    /// `each` intervals between samples of every span.
+    fn samples(&self, spans: &[Span], each: usize, ends: &[BreakPoint; 2]) -> Result<Samples, NotFinite> {
+        let all = each * spans.len() + 1;
+        let (mut p, mut length) = (vec![ends[0].p], vec![0.0]);
+        for span in spans {
+            let [t0, t1] = span.t;
+            for i in 1..=each {
+                let t = t0 + (t1 - t0) * i as f64 / each as f64;
+                let q = self.curves[span.curve].eval(t).0;
+                if !q.is_finite() {
+                    return Err(NotFinite { t, at: self.curves[span.curve].place(t) });
+                }
+                length.push(length[p.len() - 1] + q.distance(p[p.len() - 1]));
+                p.push(q);
+            }
+        }
+        p[all - 1] = ends[1].p;
+        let param = (0..all).map(|i| i as f64 / (all - 1) as f64).collect();
+        Ok(Samples { p, length, param })
+    }
+}
+
+impl Samples {
+    /// The largest distance from the chord, if it is at most `limit` and the samples advance along it.
+    fn straight(&self, limit: f64) -> Option<f64> {
+        let (a, b) = (self.p[0], self.p[self.p.len() - 1]);
+        let (q, length) = (b - a, a.distance(b));
+        let advances = self.p.windows(2).all(|w| (w[1] - w[0]).dot(q) >= 0.0);
+        let worst = self.p.iter().map(|p| (*p - a).cross(q).abs()).fold(0.0, f64::max) / length.max(f64::MIN_POSITIVE);
+        ((advances || limit == f64::INFINITY) && worst <= limit).then_some(worst)
+    }
+
+    /// Shares along which pieces are laid out to begin with: of the parameter, the length, and the turn to the power that makes pieces
+    /// of circles of different radii equally hard.
+    fn layouts(&self) -> [Vec<f64>; 3] {
+        let n = self.p.len();
+        let mut turned = vec![0.0; n];
+        for i in 1..n {
+            let step = self.length[i] - self.length[i - 1];
+            let turn = if i + 1 < n {
+                let (u, v) = (self.p[i] - self.p[i - 1], self.p[i + 1] - self.p[i]);
+                u.cross(v).atan2(u.dot(v)).abs()
+            } else {
+                0.0
+            };
+            turned[i] = turned[i - 1] + step.powf(0.25) * turn.powf(0.75) + 1e-3 * step.powf(0.25);
+        }
+        let shares = |v: &[f64]| v.iter().map(|x| x / v[n - 1].max(f64::MIN_POSITIVE)).collect();
+        [self.param.clone(), shares(&self.length), shares(&turned)]
+    }
+}
+
+/// A quadratic spline.
+#[derive(Debug, Clone)]
+struct Spline {
+    ends: [Point; 2],
+    /// Control points.
+    c: Vec<Point>,
+}
+
+impl Spline {
+    /// The point between pieces `k` − 1 and `k`.
+    fn joint(&self, k: usize) -> Point {
+        match k {
+            0 => self.ends[0],
+            _ if k == self.c.len() => self.ends[1],
+            _ => self.c[k - 1].midpoint(self.c[k]),
+        }
+    }
+
+    /// The point and its two derivatives at `u`, from 0 to the number of pieces.
+    fn at(&self, u: f64) -> (Point, Vec2, Vec2) {
+        let k = (u as usize).min(self.c.len() - 1);
+        let (p, c, q, s) = (self.joint(k), self.c[k], self.joint(k + 1), u - k as f64);
+        let (d0, d1) = (c - p, q - c);
+        (p + (d0 * (2.0 - s) + d1 * s) * s, (d0 * (1.0 - s) + d1 * s) * 2.0, (d1 - d0) * 2.0)
+    }
+
+    /// Moves a foot point towards the place nearest to `p`, and returns the distance, signed by the side.
+    fn settle(&self, p: Point, u: &mut f64, steps: usize) -> f64 {
+        let n = self.c.len() as f64;
+        let (mut r, mut d) = (Vec2::ZERO, Vec2::ZERO);
+        for step in 0..=steps {
+            let (q, d1, d2) = self.at(*u);
+            (r, d) = (q - p, d1);
+            if step < steps {
+                let slope = d1.hypot2();
+                let full = slope + r.dot(d2);
+                let by = r.dot(d1) / if full > 0.3 * slope { full } else { slope + f64::MIN_POSITIVE };
+                *u = (*u - by.clamp(-0.5, 0.5)).clamp(0.0, n);
+            }
+        }
+        r.hypot().copysign(d.cross(r))
+    }
+
+    /// The best spline of `n` pieces with its checked error; otherwise the least error found.
+    fn best(n: usize, samples: &Samples, ends: &[BreakPoint; 2], tolerance: f64) -> Result<(Self, f64), f64> {
+        let mut least = f64::INFINITY;
+        for layout in samples.layouts() {
+            let mut u: Vec<f64> = layout.iter().map(|s| s * n as f64).collect();
+            let Some((spline, error)) = Self::fitted(n, samples, ends, &mut u, tolerance) else { continue };
+            least = least.min(error);
+            if error <= SPLINE_ACCEPTED * tolerance
+                && let Some(checked) = spline.checked(samples, &mut u)
+                && checked <= SPLINE_ACCEPTED * tolerance
+            {
+                return Ok((spline, checked));
+            }
+            if n == 1 {
+                break;
+            }
+        }
+        Err(least.max(1.001 * tolerance))
+    }
+
+    /// Fits in rounds from the foot points `u`. Returns the largest error at the samples.
+    fn fitted(
+        n: usize,
+        samples: &Samples,
+        ends: &[BreakPoint; 2],
+        u: &mut [f64],
+        tolerance: f64,
+    ) -> Option<(Self, f64)> {
+        let [from, to] = ends;
+        if n == 1 {
+            let (q, turn) = (to.p - from.p, from.away.cross(to.into));
+            let [a, b] = [q.cross(to.into) / turn, from.away.cross(q) / turn];
+            let spline = Self { ends: [from.p, to.p], c: vec![from.p + from.away * a] };
+            let worst = |spline: &Self, u: &mut [f64]| {
+                u.iter_mut().zip(&samples.p).map(|(u, p)| spline.settle(*p, u, 6).abs()).fold(0.0, f64::max)
+            };
+            return (a > 0.0 && b > 0.0 && spline.c[0].is_finite()).then(|| {
+                let error = worst(&spline, u);
+                (spline, error)
+            });
+        }
+        let mut weights = vec![1.0; u.len()];
+        let mut normals = tangents(samples);
+        let mut best: Option<(Self, f64, Vec<f64>)> = None;
+        let mut errors = vec![0.0; u.len()];
+        for round in 0..SPLINE_ROUNDS {
+            let Some(spline) = solve(n, samples, ends, u, &weights, &normals) else { break };
+            let mut worst = 0.0f64;
+            for (i, p) in samples.p.iter().enumerate() {
+                errors[i] = spline.settle(*p, &mut u[i], 2).abs();
+                worst = worst.max(errors[i]);
+                normals[i] = spline.at(u[i]).1.normalize();
+            }
+            (u[0], u[samples.p.len() - 1]) = (0.0, n as f64);
+            if !worst.is_finite() {
+                break;
+            }
+            if best.as_ref().is_none_or(|b| worst < b.1) {
+                best = Some((spline, worst, u.to_vec()));
+            }
+            let least = best.as_ref().map_or(f64::INFINITY, |b| b.1);
+            if least <= SPLINE_ACCEPTED * 0.98 * tolerance || (round >= SPLINE_WEIGHTED && least > 4.0 * tolerance) {
+                break;
+            }
+            if round >= SPLINE_WEIGHTED {
+                weights.iter_mut().zip(&errors).for_each(|(w, e)| *w *= 0.02 + e / worst);
+                let most = weights.iter().copied().fold(0.0, f64::max);
+                weights.iter_mut().for_each(|w| *w = (*w / most).max(1e-6));
+            }
+        }
+        let (spline, worst, feet) = best?;
+        u.copy_from_slice(&feet);
+        Some((spline, worst))
+    }
+
+    /// The largest error at and between the samples; `None` if they may have missed something.
+    fn checked(&self, samples: &Samples, u: &mut [f64]) -> Option<f64> {
+        let errors: Vec<f64> = samples.p.iter().zip(u.iter_mut()).map(|(p, u)| self.settle(*p, u, 4)).collect();
+        let slopes: Vec<Vec2> = u.iter().map(|u| self.at(*u).1).collect();
+        let steady = u.windows(2).all(|w| w[1] >= w[0] - 1e-9 && w[1] - w[0] < 1.0)
+            && slopes.windows(2).all(|w| w[0].dot(w[1]) > 0.5 * w[0].hypot() * w[1].hypot());
+        let top = errors.windows(3).map(|w| crate::sample::extreme([w[0], w[1], w[2]])).fold(0.0, f64::max);
+        (steady && errors.iter().all(|e| e.is_finite())).then(|| errors.iter().map(|e| e.abs()).fold(top, f64::max))
+    }
+}
+
+/// Unit tangents at the samples.
+fn tangents(samples: &Samples) -> Vec<Vec2> {
+    let n = samples.p.len();
+    let along = |i: usize| samples.p[(i + 1).min(n - 1)] - samples.p[i.saturating_sub(1)];
+    (0..n).map(|i| along(i) / along(i).hypot().max(f64::MIN_POSITIVE)).collect()
+}
+
+/// Unknowns that a piece depends on, and so the width of the band.
+const BAND: usize = 6;
+
+/// The spline of `n` ≥ 2 pieces with the least weighted squares of the residuals.
+fn solve(
+    n: usize,
+    samples: &Samples,
+    [from, to]: &[BreakPoint; 2],
+    u: &[f64],
+    weights: &[f64],
+    tangents: &[Vec2],
+) -> Option<Spline> {
+    let size = 2 * n - 2;
+    let mut band = vec![[0.0; BAND]; size];
+    let mut right = vec![0.0; size];
+    for (j, p) in samples.p.iter().enumerate() {
+        let k = (u[j] as usize).min(n - 1);
+        let s = u[j] - k as f64;
+        let (w0, w1, w2) = ((1.0 - s) * (1.0 - s), 2.0 * s * (1.0 - s), s * s);
+        // Shares of the control points k − 1, k, k + 1, and what does not depend on them.
+        let first = if k > 0 { 0.5 * w0 } else { 0.0 };
+        let last = if k + 1 < n { 0.5 * w2 } else { 0.0 };
+        let share = [first, w1 + first + last, last];
+        let mut known = p.to_vec2();
+        if k == 0 {
+            known -= from.p.to_vec2() * w0;
+        }
+        if k + 1 == n {
+            known -= to.p.to_vec2() * w2;
+        }
+        let t = tangents[j];
+        for (direction, weight) in [(Vec2::new(-t.y, t.x), weights[j]), (t, weights[j] * ALONG * ALONG)] {
+            let mut row = [(0, 0.0); BAND];
+            let (mut count, mut rest) = (0, known.dot(direction));
+            for (i, share) in share.into_iter().enumerate().filter(|(_, s)| *s != 0.0) {
+                let c = k + i - 1;
+                let mut put = |at: usize, v: f64| {
+                    row[count] = (at, v * share);
+                    count += 1;
+                };
+                if c == 0 {
+                    put(0, from.away.dot(direction));
+                    rest -= share * from.p.to_vec2().dot(direction);
+                } else if c + 1 == n {
+                    put(size - 1, -to.into.dot(direction));
+                    rest -= share * to.p.to_vec2().dot(direction);
+                } else {
+                    put(2 * c - 1, direction.x);
+                    put(2 * c, direction.y);
+                }
+            }
+            for (a, (i, v)) in row[..count].iter().enumerate() {
+                right[*i] += weight * v * rest;
+                for (k, w) in &row[a..count] {
+                    band[*i][k - i] += weight * v * w;
+                }
+            }
+        }
+    }
+    let x = solve_banded(band, right)?;
+    let floor = 1e-4 * samples.length[samples.p.len() - 1] / n as f64;
+    let c = (0..n).map(|k| match k {
+        0 => from.p + from.away * x[0].max(floor),
+        _ if k + 1 == n => to.p - to.into * x[size - 1].max(floor),
+        _ => Point::new(x[2 * k - 1], x[2 * k]),
+    });
+    Some(Spline { ends: [from.p, to.p], c: c.collect() })
+}
+
+/// Solves a symmetric system, given the upper half of its band, by L·D·Lᵀ.
+fn solve_banded(mut band: Vec<[f64; BAND]>, mut x: Vec<f64>) -> Option<Vec<f64>> {
+    let n = x.len();
+    let most = band.iter().map(|b| b[0]).fold(0.0, f64::max);
+    for i in 0..n {
+        let pivot = band[i][0] + 1e-13 * most;
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        band[i][0] = pivot;
+        for d in 1..BAND.min(n - i) {
+            let factor = band[i][d] / pivot;
+            for e in d..BAND.min(n - i) {
+                let by = factor * band[i][e];
+                band[i + d][e - d] -= by;
+            }
+            x[i + d] -= factor * x[i];
+        }
+    }
+    for i in (0..n).rev() {
+        let sum: f64 = (1..BAND.min(n - i)).map(|d| band[i][d] * x[i + d]).sum();
+        x[i] = (x[i] - sum) / band[i][0];
+    }
+    Some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn banded_systems_are_solved() {
+        let mut band = vec![[0.0; BAND]; 9];
+        for (i, b) in band.iter_mut().enumerate() {
+            *b = [10.0 + i as f64, 1.0, -2.0, 0.5, 0.25, 0.1];
+        }
+        let want: Vec<f64> = (0..9).map(|i| f64::from(i) - 3.5).collect();
+        let entry = |i: usize, j: usize| if j - i < BAND { band[i][j - i] } else { 0.0 };
+        let right = (0..9).map(|i| (0..9).map(|j| entry(i.min(j), i.max(j)) * want[j]).sum()).collect();
+        for (x, want) in solve_banded(band.clone(), right).unwrap().iter().zip(want) {
+            assert!((x - want).abs() < 1e-9);
+        }
+    }
+}
