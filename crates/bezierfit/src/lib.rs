@@ -25,6 +25,7 @@ mod breaks;
 mod chebyshev;
 mod check;
 mod distances;
+mod error;
 mod fit;
 mod judge;
 mod limits;
@@ -41,15 +42,18 @@ mod sample;
 mod sampled;
 mod source;
 mod stretch;
+mod stroke;
 mod tables;
 mod trial;
 
-pub use offset::Offset;
+pub use error::Error;
+pub use offset::{Offset, offset};
 pub use options::Options;
 pub use path::{Fitted, Segment, fit, simplify};
 pub use report::{Assurance, Piece, Report};
 pub use sample::{Lane, Lanes};
 pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
+pub use stroke::stroke;
 
 /// Parts of the fitter for callers that put it together themselves. They may change in any release.
 #[doc(hidden)]

@@ -1,8 +1,31 @@
 //! Curves beside a curve.
 
-use crate::path::Segment;
+use crate::error::Error;
+use crate::options::Options;
+use crate::path::{Fitted, Segment, fit};
+use crate::report::Report;
 use crate::source::Source;
-use kurbo::{PathSeg, Point, Vec2};
+use kurbo::{BezPath, Join, PathEl, PathSeg, Point, Vec2};
+
+/// The path at a distance from another: to its left where y points up, to its right where y points down; on the other side if the
+/// distance is negative.
+///
+/// # Errors
+/// The path has coordinates that are not finite.
+pub fn offset(path: &BezPath, distance: f64, _join: Join, options: &Options) -> Result<Fitted, Error> {
+    let mut out = Fitted { path: BezPath::new(), report: Report::default() };
+    for segment in path.segments() {
+        let side = fit(&Offset::new(segment, distance), options)?;
+        let skip = usize::from(!out.path.is_empty());
+        let linked = side.path.elements().iter().skip(skip).copied();
+        if let (1, Some(PathEl::MoveTo(p))) = (skip, side.path.elements().first()) {
+            out.path.line_to(*p);
+        }
+        out.path.extend(linked);
+        out.report.add(side.report);
+    }
+    Ok(out)
+}
 
 /// The curve at a distance from a segment: to its left where y points up, to its right where y points down; on the other side if the
 /// distance is negative.
