@@ -152,7 +152,7 @@ fn smooth_run(
 }
 
 /// Writes pieces as a subpath. In a closed one, a last line is left to the close command.
-fn append(path: &mut BezPath, start: Point, pieces: &[Piece], closed: bool) {
+pub(crate) fn append(path: &mut BezPath, start: Point, pieces: &[Piece], closed: bool) {
     path.move_to(start);
     let by_close = closed && matches!(pieces.last(), Some(Piece::Line(_)));
     for piece in &pieces[..pieces.len() - usize::from(by_close)] {
@@ -195,6 +195,11 @@ impl Segment {
             PathSeg::Line(l) => Piece::Line(l),
             other => Piece::Cubic(other.to_cubic()),
         }
+    }
+
+    /// As kurbo's segment.
+    pub(crate) fn segment(&self) -> PathSeg {
+        self.seg
     }
 
     /// The first and the second derivative.
