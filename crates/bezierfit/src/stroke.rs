@@ -41,7 +41,7 @@ const MOST_DASHES: f64 = 20_000.0;
 ///
 /// let path = BezPath::from_svg("M0 0H100V100H0Z").unwrap();
 /// let outline = stroke(&path, &Stroke::new(10.0).with_join(Join::Miter), &Options::new(0.1))?;
-/// assert_eq!(outline.path.to_svg(), "M-5,-5L105,-5L105,105L-5,105ZM95,5L5,5L5,95L95,95Z");
+/// assert_eq!(outline.path.to_svg(), "M5,5 L95,5 L95,95 L5,95 Z M-5,-5 L-5,105 L105,105 L105,-5 Z");
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitted, Error> {
@@ -496,7 +496,9 @@ impl Side<'_> {
             Join::Round => vec![Edge::arc([p, q], corner.at, turn)],
             // A miter is as many times the width as one over the cosine of half the turn.
             Join::Miter if (0.5 * turn).cos() * style.miter_limit >= 1.0 => {
-                let tip = p + corner.into * (self.pen.half * (0.5 * turn.abs()).tan());
+                // The tangent of half the turn.
+                let along = corner.into.cross(corner.away).abs() / (1.0 + corner.into.dot(corner.away));
+                let tip = p + corner.into * (self.pen.half * along);
                 vec![Edge::line(p, tip), Edge::line(tip, q)]
             }
             Join::Miter | Join::Bevel => vec![Edge::line(p, q)],
