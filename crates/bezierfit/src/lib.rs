@@ -45,17 +45,19 @@ mod sampled;
 mod source;
 mod spline;
 mod stretch;
+mod stroke;
 mod tables;
 mod trial;
 
 pub use error::Error;
-pub use offset::Offset;
+pub use offset::{Offset, offset};
 pub use options::{Degree, Options, Pieces};
 pub use path::{Fitted, MAX_EVALUATIONS, PathSource, Segment, fit, simplify};
 pub use points::fit_points;
 pub use report::{Assurance, Piece, PieceReport, Report};
 pub use sample::{Lane, Lanes};
 pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
+pub use stroke::stroke;
 
 /// Parts of the fitter for callers that put it together themselves. They may change in any release.
 #[doc(hidden)]
@@ -71,6 +73,7 @@ pub mod parts {
     pub use crate::sample::{CHECKED, FITTED, fma, spaced};
     pub use crate::source::tangent_beside;
     pub use crate::stretch::StretchFitter;
+    pub use crate::stroke::{Edge, EdgeCurve, contours};
 }
 
 /// The README's example, tested.

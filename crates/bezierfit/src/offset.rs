@@ -1,8 +1,31 @@
 //! Curves beside a curve.
 
-use crate::path::Segment;
-use crate::source::Source;
-use kurbo::{PathSeg, Point, Vec2};
+use crate::error::Error;
+use crate::options::Options;
+use crate::path::{Fitted, Segment, fit};
+use crate::report::Report;
+use crate::source::{BreakPoint, NotFinite, Source};
+use kurbo::{BezPath, Join, ParamCurve, PathEl, PathSeg, Point, Vec2};
+
+/// The path at a distance from another: to its left where y points up, to its right where y points down; on the other side if the
+/// distance is negative.
+///
+/// # Errors
+/// The path has coordinates that are not finite.
+pub fn offset(path: &BezPath, distance: f64, _join: Join, options: &Options) -> Result<Fitted, Error> {
+    let mut out = Fitted { path: BezPath::new(), report: Report::default() };
+    for segment in path.segments() {
+        let side = fit(&Offset::new(segment, distance), options)?;
+        let skip = usize::from(!out.path.is_empty());
+        let linked = side.path.elements().iter().skip(skip).copied();
+        if let (1, Some(PathEl::MoveTo(p))) = (skip, side.path.elements().first()) {
+            out.path.line_to(*p);
+        }
+        out.path.extend(linked);
+        out.report.add(side.report);
+    }
+    Ok(out)
+}
 
 /// The curve at a distance from a segment: to its left where y points up, to its right where y points down; on the other side if the
 /// distance is negative.
@@ -12,58 +35,165 @@ use kurbo::{PathSeg, Point, Vec2};
 pub struct Offset {
     segment: Segment,
     distance: f64,
+    /// Power basis of a vector along the segment that vanishes at no end, and the factor a + b·t that makes it the derivative.
+    along: [Vec2; 3],
+    factor: [f64; 2],
+    /// What is added at the start and at the end, and a share of each in between.
+    shift: [Vec2; 2],
 }
 
-/// Samples between which the curvature reaches that of the distance once at most.
-const SAMPLES: usize = 64;
+/// Samples between which the curvature reaches that of the distance once at most, or twice, which is looked for.
+const SAMPLES: usize = 32;
+
+/// Handles shorter than this, against the control polygon, have no direction.
+const NO_HANDLE: f64 = 1e-9;
 
 impl Offset {
     /// Beside a segment of a path.
     #[must_use]
     pub fn new(segment: PathSeg, distance: f64) -> Self {
-        Self { segment: Segment::new(segment), distance }
+        let c = segment.to_cubic();
+        let [d0, d1, d2] = [c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2].map(|d| d * 3.0);
+        let least = NO_HANDLE * (d0.hypot() + d1.hypot() + d2.hypot());
+        let (along, factor) = match [d0, d2].map(|d| d.hypot() <= least) {
+            [true, true] => ([d1, Vec2::ZERO, Vec2::ZERO], [0.0, 0.0]),
+            [true, false] => ([d1 * 2.0, d2 - d1 * 2.0, Vec2::ZERO], [0.0, 1.0]),
+            [false, true] => ([d0, d1 * 2.0 - d0, Vec2::ZERO], [1.0, -1.0]),
+            [false, false] => ([d0, (d1 - d0) * 2.0, d0 - d1 * 2.0 + d2], [1.0, 0.0]),
+        };
+        Self { segment: Segment::new(segment), distance, along, factor, shift: [Vec2::ZERO; 2] }
     }
 
-    /// The derivatives of the segment, a little inside if it stops at its end.
-    fn derivatives(&self, t: f64) -> [Vec2; 2] {
-        let [first, second] = self.segment.derivatives(t);
-        if first.hypot() > 1e-9 * second.hypot() {
-            return [first, second];
+    /// The segment that it is beside.
+    #[must_use]
+    pub fn segment(&self) -> PathSeg {
+        self.segment.segment()
+    }
+
+    /// The distance from it.
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// The same curve from `start` to `end`, which are near its ends, with a share of the difference everywhere.
+    #[must_use]
+    pub fn with_ends(mut self, [start, end]: [Point; 2]) -> Self {
+        self.shift = [Vec2::ZERO; 2];
+        self.shift = [start - self.eval(0.0).0, end - self.eval(1.0).0];
+        self
+    }
+
+    /// The part between two parameters.
+    #[must_use]
+    pub(crate) fn part(&self, t0: f64, t1: f64) -> Self {
+        let [a, b] = self.shift;
+        let shift = [t0, t1].map(|t| a * (1.0 - t) + b * t);
+        Self { shift, ..Self::new(self.segment().subsegment(t0..t1), self.distance) }
+    }
+
+    /// The same curve in the other direction.
+    #[must_use]
+    pub(crate) fn reversed(&self) -> Self {
+        let [a, b] = self.shift;
+        Self { shift: [b, a], ..Self::new(self.segment().reverse(), -self.distance) }
+    }
+
+    /// The vector along the segment with its derivative, a little beside where it vanishes, and the speed for its unit.
+    fn along(&self, t: f64) -> (Vec2, Vec2, f64) {
+        let [q0, q1, q2] = self.along;
+        let at = |t: f64| ((q2 * t + q1) * t + q0, q2 * (2.0 * t) + q1);
+        let (mut q, mut dq) = at(t);
+        if q.hypot2() <= 1e-24 * (q0.hypot2() + q1.hypot2() + q2.hypot2()) {
+            (q, dq) = at(if t < 0.5 { t + 1e-7 } else { t - 1e-7 });
         }
-        self.segment.derivatives(if t < 0.5 { t + 1e-7 } else { t - 1e-7 })
+        let factor = if self.factor == [0.0; 2] { 2.0 * t * (1.0 - t) } else { self.factor[0] + self.factor[1] * t };
+        (q, dq, factor * q.hypot())
     }
 
-    /// Zero where the curve has a cusp.
-    fn stop(&self, t: f64) -> f64 {
-        let [first, second] = self.derivatives(t);
-        first.hypot().powi(3) - self.distance * first.cross(second)
+    /// The unit tangent of the segment.
+    #[must_use]
+    pub(crate) fn direction(&self, t: f64) -> Vec2 {
+        let (q, _, _) = self.along(t);
+        q / q.hypot()
+    }
+
+    /// The speed along the segment's direction: negative where the curve runs backwards, zero where it has a cusp.
+    pub(crate) fn speed(&self, t: f64) -> f64 {
+        let (q, dq, speed) = self.along(t);
+        speed - self.distance * q.cross(dq) / q.hypot2()
+    }
+
+    /// The parameters of the cusps.
+    pub(crate) fn cusps(&self) -> Vec<f64> {
+        let at = |i: usize| i as f64 / SAMPLES as f64;
+        let speeds: Vec<f64> = (0..=SAMPLES).map(|i| self.speed(at(i))).collect();
+        let mut ends: Vec<f64> = (0..=SAMPLES).map(at).collect();
+        // Two cusps between samples have the least speed between them.
+        for i in 1..SAMPLES {
+            let [a, b, c] = [speeds[i - 1], speeds[i], speeds[i + 1]];
+            if a * b > 0.0 && b * c > 0.0 && b.abs() < a.abs().min(c.abs()) {
+                let (mut low, mut high) = (at(i - 1), at(i + 1));
+                for _ in 0..30 {
+                    let (u, v) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+                    let [u_speed, v_speed] = [u, v].map(|t| self.speed(t) * b.signum());
+                    if u_speed < v_speed {
+                        high = v
+                    } else {
+                        low = u
+                    }
+                    if u_speed.min(v_speed) < 0.0 {
+                        ends.push(if u_speed < v_speed { u } else { v });
+                        break;
+                    }
+                }
+            }
+        }
+        ends.sort_by(f64::total_cmp);
+        let crossing = |w: &[f64]| {
+            let (mut a, mut b) = (w[0], w[1]);
+            let before = self.speed(a);
+            if before * self.speed(b) >= 0.0 {
+                return None;
+            }
+            for _ in 0..50 {
+                let mid = 0.5 * (a + b);
+                *if before * self.speed(mid) > 0.0 { &mut a } else { &mut b } = mid;
+            }
+            Some(b)
+        };
+        ends.windows(2).filter_map(crossing).filter(|t| *t > 0.0 && *t < 1.0).collect()
     }
 }
 
 impl Source for Offset {
     fn eval(&self, t: f64) -> (Point, Vec2) {
-        let [first, _] = self.derivatives(t);
-        let speed = first.hypot();
-        let normal = Vec2::new(-first.y, first.x) / speed;
-        (self.segment.eval(t).0 + normal * self.distance, first * (self.stop(t) / speed.powi(3)))
+        let (q, dq, speed) = self.along(t);
+        let along = q / q.hypot();
+        let [a, b] = self.shift;
+        let p = self.segment.eval(t).0 + Vec2::new(-along.y, along.x) * self.distance + a * (1.0 - t) + b * t;
+        (p, along * (speed - self.distance * q.cross(dq) / q.hypot2()) + (b - a))
     }
 
     fn breaks(&self) -> Vec<f64> {
-        let mut out = Vec::new();
-        let at = |i: usize| i as f64 / SAMPLES as f64;
-        for i in 0..SAMPLES {
-            let (mut a, mut b) = (at(i), at(i + 1));
-            let before = self.stop(a);
-            if before * self.stop(b) >= 0.0 {
-                continue;
-            }
-            for _ in 0..60 {
-                let mid = 0.5 * (a + b);
-                *if before * self.stop(mid) > 0.0 { &mut a } else { &mut b } = mid;
-            }
-            out.push(b);
-        }
+        let mut out = self.cusps();
         out.extend(self.segment.slow_spots().all());
         out
+    }
+
+    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+        let (p, d) = self.eval(t);
+        if !(p.is_finite() && d.is_finite()) {
+            return Err(NotFinite { t, at: self.place(t) });
+        }
+        let (along, speed) = (self.direction(t), self.speed(t));
+        let beside = |t: f64| along * if self.speed(t.clamp(0.0, 1.0)) < 0.0 { -1.0 } else { 1.0 };
+        let [before, after] = [self.speed(t - 1e-3), self.speed(t + 1e-3)];
+        if speed.abs() > 1e-6 * before.abs().max(after.abs()) && d != Vec2::ZERO {
+            let d_unit = d / d.hypot();
+            return Ok(BreakPoint { t, p, speed: d.hypot(), into: d_unit, away: d_unit });
+        }
+        let [into, away] = [t - 1e-3, t + 1e-3].map(|s| if (0.0..=1.0).contains(&s) { s } else { 2.0 * t - s });
+        Ok(BreakPoint { t, p, speed: 0.0, into: beside(into), away: beside(away) })
     }
 }

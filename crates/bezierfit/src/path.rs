@@ -483,6 +483,11 @@ impl Segment {
         }
     }
 
+    /// As kurbo's segment.
+    pub(crate) fn segment(&self) -> PathSeg {
+        self.seg
+    }
+
     /// The first and the second derivative.
     pub(crate) fn derivatives(&self, t: f64) -> [Vec2; 2] {
         let [_, c1, c2, c3] = self.c;

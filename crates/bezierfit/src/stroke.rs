@@ -1,0 +1,669 @@
+//! Outlines of strokes: sides, joins and caps as exact curves, which are fitted once.
+//!
+//! The outline of a stroke is made of [`Edge`]s: curves beside the path's, lines, and arcs. On the inner side of a corner, the edges end where
+//! they cross; where they are too short for that, they are linked by way of the corner. All parts of the outline then turn around what
+//! they cover in one direction, so that nothing inside is bare under the nonzero rule.
+
+use crate::error::Error;
+use crate::merge::{MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
+use crate::offset::Offset;
+use crate::options::Options;
+use crate::path::{Fitted, append};
+use crate::report::{Assurance, Piece, Report};
+use crate::run::{RunSegment, SegmentRun};
+use crate::source::{BreakPoint, NotFinite, SlowSpots, Source};
+use crate::stretch::StretchFitter;
+use kurbo::{
+    Arc, BezPath, Cap, CubicBez, Join, Line, ParamCurve, PathEl, PathSeg, Point, Stroke, Vec2, common::solve_quadratic,
+};
+use std::f64::consts::PI;
+
+/// Share of the tolerance for gaps between sides that are closed without a join.
+pub(crate) const GAP_SHARE: f64 = 0.3;
+
+/// Share of the tolerance within which a segment is a point, so that a path that nearly comes back to its start is closed there.
+const POINT_SHARE: f64 = 0.02;
+
+/// Length of a dash that stands for a dot, as a fraction of the width.
+const DOT: f64 = 1e-5;
+
+/// Dashes of a path, at most. More look like a grey line, and are drawn as one.
+const MOST_DASHES: f64 = 20_000.0;
+
+/// The outline of a path's stroke, to be filled by the nonzero rule, within `options.tolerance`.
+///
+/// # Errors
+/// The path has coordinates that are not finite.
+///
+/// ```
+/// use bezierfit::{Options, stroke};
+/// use kurbo::{BezPath, Join, Shape, Stroke};
+///
+/// let path = BezPath::from_svg("M0 0H100V100H0Z").unwrap();
+/// let outline = stroke(&path, &Stroke::new(10.0).with_join(Join::Miter), &Options::new(0.1))?;
+/// assert_eq!(outline.path.to_svg(), "M5,5 L95,5 L95,95 L5,95 Z M-5,-5 L-5,105 L105,105 L105,-5 Z");
+/// # Ok::<(), bezierfit::Error>(())
+/// ```
+pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitted, Error> {
+    let contours = contours(path, style, options.tolerance)?;
+    let mut out = Fitted { path: BezPath::new(), report: Report::default() };
+    let mut memory = ReachMemory::default();
+    let inner = Options { tolerance: (1.0 - 0.5 * GAP_SHARE - POINT_SHARE) * options.tolerance, ..*options };
+    for contour in contours {
+        let pieces = fitted(&contour, &inner, &mut memory, &mut out.report)?;
+        append(&mut out.path, contour[0].p0, &pieces, true);
+    }
+    if out.report.max_error > 0.0 {
+        out.report.max_error += options.tolerance - inner.tolerance;
+    }
+    Ok(out)
+}
+
+/// A smooth part of an outline.
+#[derive(Debug, Clone, Copy)]
+pub struct Edge {
+    /// Its start, which is the end of the edge before.
+    pub p0: Point,
+    /// Its end.
+    pub p1: Point,
+    /// The curve between.
+    pub curve: EdgeCurve,
+}
+
+/// The curve of an [`Edge`].
+#[derive(Debug, Clone, Copy)]
+pub enum EdgeCurve {
+    /// A line.
+    Line,
+    /// A part of a circle.
+    Arc(Arc),
+    /// Beside a segment of the path, without cusps.
+    Side(Offset),
+}
+
+impl Edge {
+    fn line(p0: Point, p1: Point) -> Self {
+        Self { p0, p1, curve: EdgeCurve::Line }
+    }
+
+    fn arc([p0, p1]: [Point; 2], center: Point, sweep: f64) -> Self {
+        let from = p0 - center;
+        let radius = from.hypot();
+        Self { p0, p1, curve: EdgeCurve::Arc(Arc::new(center, (radius, radius), from.atan2(), sweep, 0.0)) }
+    }
+
+    fn reversed(&self) -> Self {
+        let curve = match self.curve {
+            EdgeCurve::Line => EdgeCurve::Line,
+            EdgeCurve::Arc(a) => EdgeCurve::Arc(a.reversed()),
+            EdgeCurve::Side(s) => EdgeCurve::Side(s.reversed()),
+        };
+        Self { p0: self.p1, p1: self.p0, curve }
+    }
+
+    fn is_line(&self) -> bool {
+        matches!(self.curve, EdgeCurve::Line)
+    }
+
+    /// The part between two parameters.
+    fn part(&self, t0: f64, t1: f64) -> Self {
+        if (t0, t1) == (0.0, 1.0) {
+            return *self;
+        }
+        let (p0, p1) = (self.eval(t0).0, self.eval(t1).0);
+        let curve = match self.curve {
+            EdgeCurve::Side(s) => EdgeCurve::Side(s.part(t0, t1)),
+            other => other,
+        };
+        Self { p0, p1, curve }
+    }
+
+    /// The same with other ends, which are near.
+    fn with_ends(self, p0: Point, p1: Point) -> Self {
+        let curve = match self.curve {
+            EdgeCurve::Side(s) if (p0, p1) != (self.p0, self.p1) => EdgeCurve::Side(s.with_ends([p0, p1])),
+            other => other,
+        };
+        Self { p0, p1, curve }
+    }
+
+    /// Its piece, if it needs no fit.
+    fn piece(&self) -> Option<Piece> {
+        self.is_line().then(|| Piece::Line(Line::new(self.p0, self.p1)))
+    }
+}
+
+impl Source for Edge {
+    fn eval(&self, t: f64) -> (Point, Vec2) {
+        let (p, d) = match self.curve {
+            EdgeCurve::Line => (self.p0.lerp(self.p1, t), self.p1 - self.p0),
+            EdgeCurve::Arc(a) => {
+                let from = Vec2::from_angle(a.start_angle + a.sweep_angle * t) * a.radii.x;
+                (a.center + from, Vec2::new(-from.y, from.x) * a.sweep_angle)
+            }
+            EdgeCurve::Side(s) => s.eval(t),
+        };
+        (
+            if t == 0.0 {
+                self.p0
+            } else if t == 1.0 {
+                self.p1
+            } else {
+                p
+            },
+            d,
+        )
+    }
+
+    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+        let (p, d) = self.eval(t);
+        match self.curve {
+            EdgeCurve::Side(s) => Ok(BreakPoint { p, ..s.end(t)? }),
+            _ => {
+                let speed = d.hypot();
+                let unit = if speed > 0.0 { d / speed } else { Vec2::ZERO };
+                Ok(BreakPoint { t, p, speed, into: unit, away: unit })
+            }
+        }
+    }
+}
+
+/// The outline of a stroke, of closed contours, before anything is fitted. What of the tolerance is spent on it is at most half of
+/// [`GAP_SHARE`], at joints that turn very little, and [`POINT_SHARE`].
+///
+/// # Errors
+/// The path has coordinates that are not finite.
+pub fn contours(path: &BezPath, style: &Stroke, tolerance: f64) -> Result<Vec<Vec<Edge>>, NotFinite> {
+    let control = |e: &PathEl| match *e {
+        PathEl::MoveTo(p) | PathEl::LineTo(p) => vec![p],
+        PathEl::QuadTo(p, q) => vec![p, q],
+        PathEl::CurveTo(p, q, r) => vec![p, q, r],
+        PathEl::ClosePath => vec![],
+    };
+    if let Some(at) = path.elements().iter().flat_map(control).find(|p| !p.is_finite()) {
+        return Err(NotFinite { t: 0.0, at });
+    }
+    let mut out = Vec::new();
+    let half = 0.5 * style.width.abs();
+    if !(half > 0.0 && half.is_finite()) {
+        return Ok(out);
+    }
+    let pen = Pen { style, half, gap: GAP_SHARE * tolerance, point: POINT_SHARE * tolerance };
+    let mut dashes = style.dash_pattern.to_vec();
+    if style.start_cap != Cap::Butt || style.end_cap != Cap::Butt {
+        // kurbo drops dashes of zero length, which show their caps.
+        dashes.iter_mut().for_each(|d| *d = d.max(DOT * style.width));
+    }
+    if dash_count(path, &dashes) < MOST_DASHES {
+        let dashed = kurbo::dash(path.iter(), style.dash_offset, &dashes).collect();
+        subpaths(&dashed).for_each(|s| pen.draw(&s, &mut out));
+    } else {
+        subpaths(path).for_each(|s| pen.draw(&s, &mut out));
+    }
+    Ok(out)
+}
+
+/// A bound for the number of dashes along a path; infinite if there is no pattern.
+fn dash_count(path: &BezPath, dashes: &[f64]) -> f64 {
+    let period: f64 = dashes.iter().sum();
+    if !(period > 0.0 && dashes.iter().all(|d| *d >= 0.0 && d.is_finite())) {
+        return f64::INFINITY;
+    }
+    let legs = |s: PathSeg| {
+        let c = s.to_cubic();
+        c.p0.distance(c.p1) + c.p1.distance(c.p2) + c.p2.distance(c.p3)
+    };
+    path.segments().map(legs).sum::<f64>() / period * dashes.len() as f64
+}
+
+/// The subpaths of a path, each as a path.
+fn subpaths(path: &BezPath) -> impl Iterator<Item = BezPath> + '_ {
+    let elements = path.elements();
+    let starts = (0..elements.len()).filter(|i| matches!(elements[*i], PathEl::MoveTo(_)));
+    let ends = starts.clone().skip(1).chain([elements.len()]);
+    starts.zip(ends).map(|(i, j)| BezPath::from_vec(elements[i..j].to_vec()))
+}
+
+/// How two parts of a path meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Meeting {
+    /// At a node.
+    Node,
+    /// Inside of a segment, at a cusp.
+    Cusp,
+    /// Inside of a segment that goes on.
+    Inside,
+}
+
+/// A part of a path along which it never stops, and how it meets the next.
+struct Stretch {
+    seg: PathSeg,
+    meeting: Meeting,
+}
+
+/// A corner, or the end of a path.
+struct Corner {
+    at: Point,
+    /// The directions before and after.
+    into: Vec2,
+    away: Vec2,
+    meeting: Meeting,
+}
+
+impl Corner {
+    /// The angle by which the path turns.
+    fn turn(&self) -> f64 {
+        let turn = self.into.cross(self.away).atan2(self.into.dot(self.away));
+        if turn == -PI { PI } else { turn }
+    }
+}
+
+/// What strokes are drawn with.
+struct Pen<'a> {
+    style: &'a Stroke,
+    half: f64,
+    /// Longest gap between sides that is closed without a join.
+    gap: f64,
+    /// Size of what is a point.
+    point: f64,
+}
+
+impl Pen<'_> {
+    /// Appends the contours of a subpath.
+    fn draw(&self, path: &BezPath, out: &mut Vec<Vec<Edge>>) {
+        let closed = matches!(path.elements().last(), Some(PathEl::ClosePath));
+        let stretches = self.stretches(path, closed);
+        let [Some(first), Some(last)] = [stretches.first(), stretches.last()] else {
+            if path.elements().len() > 1 {
+                self.dot(path, out);
+            }
+            return;
+        };
+        let corner = |i: usize| {
+            let (before, after) = (&stretches[i], &stretches[(i + 1) % stretches.len()]);
+            let (into, away) = (direction(&before.seg, 1.0), direction(&after.seg, 0.0));
+            Corner { at: before.seg.end(), into, away, meeting: before.meeting }
+        };
+        let corners: Vec<Corner> = (0..stretches.len()).map(corner).collect();
+        let left = self.side(&stretches, &corners, closed, self.half);
+        let right = self.side(&stretches, &corners, closed, -self.half);
+        let back = right.iter().rev().map(Edge::reversed);
+        if closed {
+            out.extend([left, back.collect()]);
+            return;
+        }
+        let mut contour = left;
+        self.cap(self.style.end_cap, last.seg.end(), direction(&last.seg, 1.0), &mut contour);
+        contour.extend(back);
+        self.cap(self.style.start_cap, first.seg.start(), -direction(&first.seg, 0.0), &mut contour);
+        out.push(joined(contour));
+    }
+
+    /// A subpath without length.
+    fn dot(&self, path: &BezPath, out: &mut Vec<Vec<Edge>>) {
+        let Some(PathEl::MoveTo(at)) = path.elements().first().copied() else { return };
+        let along = path.segments().last().map_or(Vec2::ZERO, |s| s.end() - at);
+        let along = if along == Vec2::ZERO { Vec2::new(1.0, 0.0) } else { along / along.hypot() };
+        let mut contour = Vec::new();
+        for (cap, along) in [(self.style.end_cap, along), (self.style.start_cap, -along)] {
+            if cap != Cap::Butt {
+                self.cap(cap, at, along, &mut contour);
+            }
+        }
+        if contour.len() > 1 {
+            out.push(contour);
+        }
+    }
+
+    /// Appends a cap from the left to the right of a path that ends at `at`.
+    fn cap(&self, cap: Cap, at: Point, along: Vec2, out: &mut Vec<Edge>) {
+        let left = Vec2::new(-along.y, along.x) * self.half;
+        let (p0, p1, ahead) = (at + left, at - left, along * self.half);
+        match cap {
+            Cap::Butt => out.push(Edge::line(p0, p1)),
+            Cap::Round => out.push(Edge::arc([p0, p1], at, -PI)),
+            Cap::Square => {
+                let corners = [p0, p0 + ahead, p1 + ahead, p1];
+                out.extend(corners.windows(2).map(|w| Edge::line(w[0], w[1])));
+            }
+        }
+    }
+
+    /// Cuts a path where it stops or nearly does, and drops what is a point.
+    fn stretches(&self, path: &BezPath, closed: bool) -> Vec<Stretch> {
+        let Some(PathEl::MoveTo(start)) = path.elements().first().copied() else { return Vec::new() };
+        let mut segments: Vec<PathSeg> = Vec::new();
+        let mut at = start;
+        for seg in path.segments() {
+            let c = seg.to_cubic();
+            if [c.p1, c.p2, c.p3].iter().all(|p| p.distance(at) <= self.point) {
+                continue;
+            }
+            segments.push(moved(seg, at, seg.end()));
+            at = seg.end();
+        }
+        if let (true, Some(last)) = (closed, segments.last_mut()) {
+            *last = moved(*last, last.start(), start);
+        }
+        let mut out = Vec::new();
+        for seg in segments {
+            self.cut(seg, &mut out);
+        }
+        out
+    }
+
+    /// Appends the stretches of a segment.
+    fn cut(&self, seg: PathSeg, out: &mut Vec<Stretch>) {
+        let c = match seg {
+            PathSeg::Line(_) => return out.push(Stretch { seg, meeting: Meeting::Node }),
+            other => self.without_short_handles(other.to_cubic()),
+        };
+        let legs = [c.p1 - c.p0, c.p2 - c.p0, c.p3 - c.p0];
+        let longest = legs.iter().copied().fold(Vec2::ZERO, |a, b| if b.hypot2() > a.hypot2() { b } else { a });
+        let line = longest / longest.hypot();
+        // Straight to rounding, or so that neither it nor its sides are off by more.
+        let rounding = 1e-12 * longest.hypot().max(c.p0.to_vec2().hypot());
+        let off = rounding.max(0.05 * self.point * (longest.hypot() / self.half).min(1.0));
+        if legs.iter().all(|v| v.cross(line).abs() <= off) {
+            return self.straight(&c, line, out);
+        }
+        let mut t0 = 0.0;
+        let mut slow: Vec<f64> =
+            SlowSpots::of_cubic(&c).all().iter().copied().filter(|t| *t > 1e-6 && *t < 1.0 - 1e-6).collect();
+        slow.sort_by(f64::total_cmp);
+        for t in slow {
+            let part = PathSeg::Cubic(c.subsegment(t0..t));
+            // Where it turns within less than can be seen, it has a cusp.
+            let (speed, change) = slowness(&c, t);
+            let is_cusp = speed * speed <= self.point * change;
+            out.push(Stretch { seg: part, meeting: if is_cusp { Meeting::Cusp } else { Meeting::Inside } });
+            t0 = t;
+        }
+        let last = if t0 == 0.0 { c } else { c.subsegment(t0..1.0) };
+        out.push(Stretch { seg: PathSeg::Cubic(last), meeting: Meeting::Node });
+    }
+
+    /// Appends a cubic on a straight line: lines between the places where it turns back.
+    fn straight(&self, c: &CubicBez, line: Vec2, out: &mut Vec<Stretch>) {
+        let x = [c.p0, c.p1, c.p2, c.p3].map(|p| (p - c.p0).dot(line));
+        let d = [x[1] - x[0], x[2] - x[1], x[3] - x[2]];
+        let roots = solve_quadratic(d[0], 2.0 * (d[1] - d[0]), d[0] - 2.0 * d[1] + d[2]);
+        let mut turns: Vec<f64> = roots.into_iter().filter(|t| *t > 0.0 && *t < 1.0).collect();
+        turns.push(1.0);
+        let mut at = c.p0;
+        for t in turns {
+            let to = if t == 1.0 { c.p3 } else { c.eval(t) };
+            if to.distance(at) > self.point {
+                if let Some(before) = out.last_mut().filter(|_| at != c.p0) {
+                    before.meeting = Meeting::Cusp;
+                }
+                out.push(Stretch { seg: PathSeg::Line(Line::new(at, to)), meeting: Meeting::Node });
+                at = to;
+            }
+        }
+        if let Some(last) = out.last_mut().filter(|_| at != c.p0) {
+            last.seg = moved(last.seg, last.seg.start(), c.p3);
+        }
+    }
+
+    /// Handles that are points have no direction.
+    fn without_short_handles(&self, mut c: CubicBez) -> CubicBez {
+        let least = (0.1 * self.point).min(1e-4 * (c.p3 - c.p0).hypot());
+        if c.p1.distance(c.p0) <= least {
+            c.p1 = c.p0;
+        }
+        if c.p2.distance(c.p3) <= least {
+            c.p2 = c.p3;
+        }
+        c
+    }
+
+    /// The edges on one side of a path, with their joins.
+    fn side(&self, stretches: &[Stretch], corners: &[Corner], closed: bool, distance: f64) -> Vec<Edge> {
+        let mut side = Side { pen: self, distance, edges: Vec::with_capacity(2 * stretches.len()) };
+        for (i, stretch) in stretches.iter().enumerate() {
+            let first = side.edges.len();
+            side.edges.extend(beside(&stretch.seg, distance).into_iter().map(|edge| Kept { edge, from: 0.0, to: 1.0 }));
+            if i > 0 {
+                side.join(first - 1, first, &corners[i - 1]);
+            }
+        }
+        if let (true, Some(corner)) = (closed, corners.last()) {
+            let last = side.edges.len() - 1;
+            side.join(last, 0, corner);
+        }
+        let kept = side.edges.iter().map(|k| k.edge.part(k.from, k.to));
+        // Parts of one edge meet where the edges do, to the last bit.
+        let mut edges: Vec<Edge> = kept.collect();
+        for i in 0..edges.len() {
+            let next = (i + 1) % edges.len();
+            if next != 0 || closed {
+                edges[next].p0 = edges[i].p1;
+            }
+        }
+        if closed { joined_round(edges) } else { edges }
+    }
+}
+
+/// An edge of which the part between two parameters is kept.
+struct Kept {
+    edge: Edge,
+    from: f64,
+    to: f64,
+}
+
+/// One side of a stroke under construction.
+struct Side<'a> {
+    pen: &'a Pen<'a>,
+    distance: f64,
+    edges: Vec<Kept>,
+}
+
+impl Side<'_> {
+    /// Joins an edge to a later one, or to the first.
+    fn join(&mut self, a: usize, b: usize, corner: &Corner) {
+        let [p, q] = [self.edges[a].edge.p1, self.edges[b].edge.p0];
+        let turn = corner.turn();
+        let small = p.distance(q) <= self.pen.gap && corner.into.dot(corner.away) > 0.0;
+        if corner.meeting == Meeting::Inside || small {
+            let at = p.midpoint(q);
+            let from = self.edges[a].edge;
+            self.edges[a].edge = from.with_ends(from.p0, at);
+            let to = self.edges[b].edge;
+            self.edges[b].edge = to.with_ends(at, to.p1);
+            return;
+        }
+        let links = if self.distance * turn > 0.0 {
+            if let Some((s, t)) = crossing(&self.edges[a].edge, &self.edges[b].edge, self.distance) {
+                self.edges[a].to = s;
+                self.edges[b].from = t;
+                return;
+            }
+            vec![Edge::line(p, corner.at), Edge::line(corner.at, q)]
+        } else {
+            self.outer([p, q], turn, corner)
+        };
+        let links = links.into_iter().map(|edge| Kept { edge, from: 0.0, to: 1.0 });
+        let place = if b > a { b } else { self.edges.len() };
+        self.edges.splice(place..place, links);
+    }
+
+    /// The join on the outer side of a corner.
+    fn outer(&self, [p, q]: [Point; 2], turn: f64, corner: &Corner) -> Vec<Edge> {
+        let style = self.pen.style;
+        match style.join {
+            _ if corner.meeting == Meeting::Cusp => vec![Edge::arc([p, q], corner.at, turn)],
+            Join::Round => vec![Edge::arc([p, q], corner.at, turn)],
+            // A miter is as many times the width as one over the cosine of half the turn.
+            Join::Miter if (0.5 * turn).cos() * style.miter_limit >= 1.0 => {
+                // The tangent of half the turn.
+                let along = corner.into.cross(corner.away).abs() / (1.0 + corner.into.dot(corner.away));
+                let tip = p + corner.into * (self.pen.half * along);
+                vec![Edge::line(p, tip), Edge::line(tip, q)]
+            }
+            Join::Miter | Join::Bevel => vec![Edge::line(p, q)],
+        }
+    }
+}
+
+/// The curves beside a segment, cut at their cusps.
+fn beside(seg: &PathSeg, distance: f64) -> Vec<Edge> {
+    if let PathSeg::Line(l) = seg {
+        let along = (l.p1 - l.p0) / l.length();
+        let off = Vec2::new(-along.y, along.x) * distance;
+        return vec![Edge::line(l.p0 + off, l.p1 + off)];
+    }
+    let whole = Offset::new(*seg, distance);
+    let mut ends = whole.cusps();
+    ends.push(1.0);
+    let mut t0 = 0.0;
+    let mut out: Vec<Edge> = Vec::with_capacity(ends.len());
+    for t in ends {
+        let part = if (t0, t) == (0.0, 1.0) { whole } else { Offset::new(seg.subsegment(t0..t), distance) };
+        let p0 = out.last().map_or_else(|| part.eval(0.0).0, |e| e.p1);
+        out.push(Edge { p0, p1: part.eval(1.0).0, curve: EdgeCurve::Side(part) });
+        t0 = t;
+    }
+    out
+}
+
+/// The direction of a segment at its start or its end.
+fn direction(seg: &PathSeg, t: f64) -> Vec2 {
+    match seg {
+        PathSeg::Line(l) => (l.p1 - l.p0) / l.length(),
+        _ => Offset::new(*seg, 0.0).direction(t),
+    }
+}
+
+/// A segment with other ends.
+fn moved(seg: PathSeg, start: Point, end: Point) -> PathSeg {
+    if (seg.start(), seg.end()) == (start, end) {
+        return seg;
+    }
+    match seg {
+        PathSeg::Line(_) => PathSeg::Line(Line::new(start, end)),
+        other => {
+            let c = other.to_cubic();
+            PathSeg::Cubic(CubicBez::new(start, c.p1 + (start - c.p0), c.p2 + (end - c.p3), end))
+        }
+    }
+}
+
+/// The speed of a cubic, and the size of its second derivative.
+fn slowness(c: &CubicBez, t: f64) -> (f64, f64) {
+    let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
+    let u = 1.0 - t;
+    let first = (d0 * (u * u) + d1 * (2.0 * u * t) + d2 * (t * t)) * 3.0;
+    let second = ((d1 - d0) * u + (d2 - d1) * t) * 6.0;
+    (first.hypot(), second.hypot())
+}
+
+/// Where the last half of one edge on the inner side of a corner crosses the first half of the next, as parameters. Both strokes then
+/// cover what is cut off.
+fn crossing(a: &Edge, b: &Edge, distance: f64) -> Option<(f64, f64)> {
+    /// Newton steps; each doubles the digits.
+    const STEPS: usize = 12;
+    let forward = |e: &Edge| match e.curve {
+        EdgeCurve::Side(s) => s.speed(0.5) > 0.0,
+        _ => true,
+    };
+    if !(forward(a) && forward(b)) {
+        return None;
+    }
+    let (mut s, mut t) = (1.0_f64, 0.0_f64);
+    let size = a.p0.distance(a.p1) + b.p0.distance(b.p1);
+    for _ in 0..STEPS {
+        let ((p, u), (q, v)) = (a.eval(s), b.eval(t));
+        let gap = q - p;
+        if gap.hypot() <= 1e-14 * size {
+            break;
+        }
+        let det = v.cross(u);
+        s += v.cross(gap) / det;
+        t += u.cross(gap) / det;
+        if !((0.0..=2.0).contains(&s) && (-1.0..=1.0).contains(&t)) {
+            return None;
+        }
+    }
+    let (at, u) = a.eval(s);
+    let (to, v) = b.eval(t);
+    let met = to.distance(at) <= 1e-9 * size;
+    // The sides turn as the path does where they cross.
+    let inner = u.cross(v) * distance > 0.0;
+    (met && inner && (0.5..1.0).contains(&s) && t > 0.0 && t <= 0.5).then_some((s, t))
+}
+
+/// The same contour with lines that go on as one.
+fn joined(contour: Vec<Edge>) -> Vec<Edge> {
+    let mut out: Vec<Edge> = Vec::with_capacity(contour.len());
+    for e in contour {
+        match out.last_mut() {
+            Some(last) if goes_on(last, &e) => last.p1 = e.p1,
+            _ => out.push(e),
+        }
+    }
+    out.retain(|e| !(e.is_line() && e.p0 == e.p1));
+    out
+}
+
+/// As [`joined`], across the start as well.
+fn joined_round(contour: Vec<Edge>) -> Vec<Edge> {
+    let mut out = joined(contour);
+    if let [first, .., last] = &out[..]
+        && goes_on(last, first)
+    {
+        out[0].p0 = last.p0;
+        out.pop();
+    }
+    out
+}
+
+/// Returns `true` if two lines have the same direction.
+fn goes_on(a: &Edge, b: &Edge) -> bool {
+    let (u, v) = (a.p1 - a.p0, b.p1 - b.p0);
+    let same = u.dot(v) > 0.0 && u.cross(v).abs() <= 1e-10 * u.hypot() * v.hypot();
+    a.is_line() && b.is_line() && (same || u == Vec2::ZERO || v == Vec2::ZERO)
+}
+
+/// Fits a contour, with few pieces across smooth joints.
+fn fitted(
+    contour: &[Edge],
+    options: &Options,
+    memory: &mut ReachMemory,
+    report: &mut Report,
+) -> Result<Vec<Piece>, NotFinite> {
+    let slow = SlowSpots::default();
+    let fit_one = |edge: &Edge, pieces: &mut Vec<Piece>, report: &mut Report| {
+        if let Some(piece) = edge.piece() {
+            pieces.push(piece);
+            return Ok(());
+        }
+        let ends = [edge.end(0.0)?, edge.end(1.0)?];
+        let mut fitter = StretchFitter::new(edge, &slow, options.tolerance, (false, 0.0), f64::INFINITY);
+        fitter.cover(&ends[0], &ends[1], pieces, report)
+    };
+    let mut pieces = Vec::with_capacity(contour.len());
+    let mut i = 0;
+    while i < contour.len() {
+        let mut run = SegmentRun::new(false, contour.len() - i);
+        let joined = run.extend(&contour[i..], options.corner, |edge| {
+            let ends = [edge.end(0.0)?, edge.end(1.0)?];
+            Ok(Some(RunSegment::new(*edge, None, ends, edge.is_line())))
+        })?;
+        if joined < 2 {
+            fit_one(&contour[i], &mut pieces, report)?;
+            i += 1;
+            continue;
+        }
+        let own = OwnPieces::new(joined, |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+            fit_one(&contour[i + k], pieces, report)
+        });
+        let settings = MergeSettings { tolerance: options.tolerance, proof: false, marks: false, again: false };
+        let mut reaches = Reaches::new(&run, own, settings, memory);
+        let legs = reaches.fewest()?;
+        let (mut own, legs) = refined(&run, reaches.own, legs, settings, memory)?;
+        own.append(legs, Assurance::Checked, &mut pieces, report)?;
+        i += joined;
+    }
+    Ok(pieces)
+}
