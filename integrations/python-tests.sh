@@ -10,7 +10,7 @@ if ! "$python" -c 'import ensurepip, venv, sys; sys.exit(sys.version_info < (3, 
 fi
 env=target/python-tests
 [ -x "$env/bin/python" ] || "$python" -m venv "$env"
-packages="maturin>=1.9,<2 numpy pytest mypy fonttools svgpathtools setuptools wheel"
+packages="maturin>=1.9,<2 numpy pytest mypy fonttools svgpathtools lxml pillow tqdm setuptools wheel"
 # vpype needs Python 3.11.
 with_vpype=$("$env/bin/python" -c 'import sys; print(int(sys.version_info >= (3, 11)))')
 [ "$with_vpype" = 0 ] || packages="$packages vpype>=1.15"

@@ -3,6 +3,7 @@
 use crate::advice::{self, Flags};
 use crate::terminal;
 use pathwarp::GeometryError;
+use pathwarp::budget::Exceeded;
 use pathwarp::kurbo::Point;
 use std::fmt::Display;
 use std::path::Path;
@@ -16,6 +17,8 @@ pub(crate) enum Failure {
     Usage(String),
     /// A file cannot be read or parsed.
     Input(String),
+    /// A picture takes more work than a limit allows: message, limit and exit code.
+    Limited(String, Exceeded, u8),
     /// An output cannot be written.
     Output(String),
     /// The geometry does not allow it.
@@ -76,6 +79,7 @@ impl Failure {
             Self::Clap(e) => u8::try_from(e.exit_code()).unwrap_or(2),
             Self::Usage(_) => 2,
             Self::Input(_) => 3,
+            Self::Limited(_, _, code) => *code,
             Self::Geometry(_) => 4,
             Self::Output(_) => 5,
             Self::Library { error, .. } => match **error {
@@ -99,7 +103,7 @@ impl Failure {
     pub(crate) fn message(&self, flags: &Flags) -> String {
         match self {
             Self::Clap(e) => e.to_string(),
-            Self::Usage(m) | Self::Input(m) | Self::Output(m) | Self::Geometry(m) => m.clone(),
+            Self::Usage(m) | Self::Input(m) | Self::Limited(m, ..) | Self::Output(m) | Self::Geometry(m) => m.clone(),
             Self::Library { error, input, .. } => {
                 let message = advice::error(error, flags);
                 input.as_ref().map_or_else(|| message.clone(), |i| prefixed(i, &message))
@@ -116,6 +120,7 @@ impl Failure {
     pub(crate) fn about(self, name: &str) -> Self {
         match self {
             Self::Input(m) => Self::Input(prefixed(name, &m)),
+            Self::Limited(m, exceeded, code) => Self::Limited(prefixed(name, &m), exceeded, code),
             Self::Geometry(m) => Self::Geometry(prefixed(name, &m)),
             Self::Library { error, of_recipe, .. } => {
                 let concerns_input = match *error {
@@ -149,6 +154,11 @@ impl From<pathwarp::Error> for Failure {
 
 impl From<pathwarp_raster::Error> for Failure {
     fn from(e: pathwarp_raster::Error) -> Self {
-        Self::Input(advice::picture(&e))
+        use pathwarp_raster::Error::{TooLarge, TooMuch};
+        let message = advice::picture(&e);
+        match e {
+            TooLarge { exceeded, .. } | TooMuch(exceeded) => Self::Limited(message, exceeded, 3),
+            _ => Self::Input(message),
+        }
     }
 }

@@ -5,6 +5,7 @@ use pathwarp::Outline;
 use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp_cli::embed::PointMap;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Points mapped by one call of the map: few enough for the stack and the first cache.
 const BLOCK: usize = 256;
@@ -24,28 +25,36 @@ pub(crate) fn bounds(points: ArrayView2<'_, f64>) -> Option<Rect> {
     all.map(|[x0, y0, x1, y1]| Rect::new(x0, y0, x1, y1))
 }
 
-/// The finite points as one polyline.
-pub(crate) fn cloud(points: ArrayView2<'_, f64>) -> Outline {
-    let points: Vec<Point> =
-        points.rows().into_iter().map(|p| Point::new(p[0], p[1])).filter(|p| p.is_finite()).collect();
+/// The finite points as one polyline, as far as it gets until `stop` is `true`.
+pub(crate) fn cloud(points: ArrayView2<'_, f64>, stop: &AtomicBool) -> Outline {
+    let rows = points.rows().into_iter().take_while(|_| !stop.load(Ordering::Relaxed));
+    let points: Vec<Point> = rows.map(|p| Point::new(p[0], p[1])).filter(|p| p.is_finite()).collect();
     Outline::from_points(&points, false)
 }
 
-/// Maps `from` to `to`, of the same shape; without `from`, `to` in place.
-pub(crate) fn map(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut2<'_, f64>) {
+/// Maps `from` to `to`, of the same shape; without `from`, `to` in place. Points are left out once `stop` is `true`.
+pub(crate) fn map(
+    map: &PointMap,
+    from: Option<ArrayView2<'_, f64>>,
+    mut to: ArrayViewMut2<'_, f64>,
+    stop: &AtomicBool,
+) {
     let to: Vec<_> = to.axis_chunks_iter_mut(Axis(0), CHUNK).collect();
     match from {
         Some(from) => {
             let from: Vec<_> = from.axis_chunks_iter(Axis(0), CHUNK).collect();
-            from.into_par_iter().zip(to).for_each(|(from, to)| chunk(map, Some(from), to));
+            from.into_par_iter().zip(to).for_each(|(from, to)| chunk(map, Some(from), to, stop));
         }
-        None => to.into_par_iter().for_each(|to| chunk(map, None, to)),
+        None => to.into_par_iter().for_each(|to| chunk(map, None, to, stop)),
     }
 }
 
-fn chunk(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut2<'_, f64>) {
+fn chunk(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut2<'_, f64>, stop: &AtomicBool) {
     let (mut source, mut image) = ([Point::ORIGIN; BLOCK], [Point::ORIGIN; BLOCK]);
     for start in (0..to.nrows()).step_by(BLOCK) {
+        if stop.load(Ordering::Relaxed) {
+            return;
+        }
         let rows = start..(start + BLOCK).min(to.nrows());
         let (source, image) = (&mut source[..rows.len()], &mut image[..rows.len()]);
         match &from {
@@ -79,10 +88,18 @@ fn read(from: ArrayView2<'_, f64>, points: &mut [Point]) {
 }
 
 /// The Jacobians at `points`: `out[i]` is [[∂x'/∂x, ∂x'/∂y], [∂y'/∂x, ∂y'/∂y]].
-pub(crate) fn jacobian(map: &PointMap, points: ArrayView2<'_, f64>, mut out: ArrayViewMut3<'_, f64>) {
+pub(crate) fn jacobian(
+    map: &PointMap,
+    points: ArrayView2<'_, f64>,
+    mut out: ArrayViewMut3<'_, f64>,
+    stop: &AtomicBool,
+) {
     let out: Vec<_> = out.axis_chunks_iter_mut(Axis(0), BLOCK).collect();
     let points: Vec<_> = points.axis_chunks_iter(Axis(0), BLOCK).collect();
     points.into_par_iter().zip(out).for_each(|(points, mut out)| {
+        if stop.load(Ordering::Relaxed) {
+            return;
+        }
         let (mut at, mut columns) = ([Point::ORIGIN; BLOCK], [[Vec2::ZERO; 2]; BLOCK]);
         let n = points.nrows();
         read(points, &mut at[..n]);

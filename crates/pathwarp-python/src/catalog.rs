@@ -14,10 +14,10 @@ pub(crate) fn catalog() -> String {
     Value::from(all).to_string()
 }
 
-/// The names of the options of a warp, with their help.
+/// The names of the options of a warp, with their help and the words that they can be.
 #[pyfunction]
-pub(crate) fn option_help() -> Vec<(&'static str, String)> {
-    embed::option_names().collect()
+pub(crate) fn option_help() -> Vec<(&'static str, String, Vec<&'static str>)> {
+    embed::option_names().map(|(name, help)| (name, help, embed::option_words(name))).collect()
 }
 
 fn deformation(registry: &Registry, info: &Info) -> Value {

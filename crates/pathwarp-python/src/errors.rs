@@ -2,6 +2,7 @@
 
 use pathwarp_cli::embed::{Error, ErrorKind};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 /// The exception for an error.
 pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
@@ -12,15 +13,26 @@ pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
         ErrorKind::Limit => "LimitError",
         _ => "InternalError",
     };
-    raised(py, class, &error.message)
+    let d = &error.details;
+    let built = || {
+        let attributes = PyDict::new(py);
+        attributes.set_item("parameter", d.parameter.as_deref())?;
+        attributes.set_item("value", d.value.as_deref())?;
+        match d.at {
+            Some(at) => attributes.set_item("place", (at.x, at.y))?,
+            None => attributes.set_item("place", d.file.as_deref())?,
+        }
+        if let Some(exceeded) = d.limit {
+            attributes.set_item("limit", exceeded.limit.name())?;
+            attributes.set_item("needs", Some(exceeded.enough()).filter(|n| n.is_finite()))?;
+        }
+        py.import("pathwarp._errors")?.getattr(class)?.call((&d.with_dashes,), Some(&attributes))
+    };
+    built().map_or_else(|e: PyErr| e, PyErr::from_value)
 }
 
 /// An exception about a wrong argument.
 pub(crate) fn usage(py: Python<'_>, message: &str) -> PyErr {
-    raised(py, "UsageError", message)
-}
-
-fn raised(py: Python<'_>, class: &str, message: &str) -> PyErr {
-    let made = py.import("pathwarp._errors").and_then(|m| m.getattr(class)).and_then(|c| c.call1((message,)));
+    let made = py.import("pathwarp._errors").and_then(|m| m.getattr("UsageError")).and_then(|c| c.call1((message,)));
     made.map_or_else(|e| e, PyErr::from_value)
 }

@@ -17,7 +17,7 @@ mod _native {
     #[pymodule_export]
     use super::threads::use_threads;
     #[pymodule_export]
-    use super::warper::Warper;
+    use super::warper::{Warper, path_box};
     use super::{Bound, PyModule, PyModuleMethods as _, PyResult};
 
     #[pymodule_init]

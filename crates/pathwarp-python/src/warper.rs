@@ -1,7 +1,7 @@
 //! The class `Warper`: [`pathwarp_cli::embed::Warper`] for Python. Work is done without the interpreter's lock.
 
 use crate::errors::{exception, usage};
-use crate::threads::on_threads;
+use crate::threads::{on_threads, on_threads_alone};
 use crate::{arrays, outline};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pathwarp::Outline;
@@ -9,11 +9,14 @@ use pathwarp::deform::Registry;
 use pathwarp::refit::Assurance;
 use pathwarp_cli::embed::{self, Error, PointMap};
 use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyBytes, PyDict};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Deformations one after another, with options.
 #[pyclass(frozen, module = "pathwarp._native")]
@@ -80,12 +83,12 @@ impl Warper {
         if let Some(out) = out.as_ref().filter(|o| o.is(points)) {
             let mut target = out.try_readwrite().map_err(|e| borrowed(&e))?;
             let mut target = target.as_array_mut();
-            let map = || {
-                let map = self.point_map(target.view())?;
-                arrays::map(&map, None, target.view_mut());
+            on_threads(py, |stop| {
+                let map = self.point_map(target.view(), stop)?;
+                arrays::map(&map, None, target.view_mut(), stop);
                 Ok(())
-            };
-            done(py, py.detach(|| on_threads(map)))?;
+            })
+            .and_then(|mapped| done(py, mapped))?;
             return Ok(out.clone());
         }
         let out = out.unwrap_or_else(|| PyArray2::zeros(py, points.dims(), false));
@@ -98,12 +101,12 @@ impl Warper {
         let source = points.try_readonly().map_err(|e| borrowed(&e))?;
         let mut target = out.try_readwrite().map_err(|e| borrowed(&e))?;
         let (source, mut target) = (source.as_array(), target.as_array_mut());
-        let map = || {
-            let map = self.point_map(source)?;
-            arrays::map(&map, Some(source), target.view_mut());
+        on_threads(py, |stop| {
+            let map = self.point_map(source, stop)?;
+            arrays::map(&map, Some(source), target.view_mut(), stop);
             Ok(())
-        };
-        done(py, py.detach(|| on_threads(map)))?;
+        })
+        .and_then(|mapped| done(py, mapped))?;
         Ok(out)
     }
 
@@ -118,56 +121,102 @@ impl Warper {
         let source = points.try_readonly()?;
         let mut target = out.try_readwrite()?;
         let (source, mut target) = (source.as_array(), target.as_array_mut());
-        let map = || {
-            let map = self.point_map(source)?;
-            arrays::jacobian(&map, source, target.view_mut());
+        on_threads(py, |stop| {
+            let map = self.point_map(source, stop)?;
+            arrays::jacobian(&map, source, target.view_mut(), stop);
             Ok(())
-        };
-        done(py, py.detach(|| on_threads(map)))?;
+        })
+        .and_then(|mapped| done(py, mapped))?;
         Ok(out)
     }
 
     /// Bends a path: its data and report.
     fn warp_path<'py>(&self, py: Python<'py>, data: &str) -> PyResult<(String, Bound<'py, PyDict>)> {
-        let warped = done(py, py.detach(|| on_threads(|| self.0.warp_path(data))))?;
+        let (warper, data) = (self.0.clone(), data.to_owned());
+        let warped = on_threads_alone(py, || Ok(()), move |stop| warper.stopped_by(stop).warp_path(&data))?;
+        let warped = done(py, warped)?;
         let report = report(py, &warped)?;
         Ok((warped.path.data, report))
     }
 
-    /// Bends a path of verbs and coordinates.
+    /// Bends a path of verbs and coordinates, to lines and cubics or quadratics.
     fn warp_verbs<'py>(
         &self,
         py: Python<'py>,
         verbs: &str,
         coordinates: PyReadonlyArray1<'py, f64>,
+        quadratic: bool,
     ) -> PyResult<VerbsOut<'py>> {
         let path = outline::path(verbs, coordinates.as_slice()?).map_err(|e| usage(py, &e))?;
         let outline = Outline::from(&path);
-        let warped = done(py, py.detach(|| on_threads(|| self.0.warp_outline(&outline))))?;
+        let warper = self.0.clone();
+        let warped = on_threads_alone(
+            py,
+            || Ok(()),
+            move |stop| {
+                let warper = warper.stopped_by(stop);
+                if quadratic { warper.warp_outline_to_quadratics(&outline) } else { warper.warp_outline(&outline) }
+            },
+        )?;
+        let warped = done(py, warped)?;
         let (verbs, coordinates) = outline::verbs(&warped.path.path);
         Ok((verbs, coordinates.into_pyarray(py), report(py, &warped)?))
     }
 
     /// Warps drawings: for each its bytes, the report as JSON, its warnings, and the notes that `explain` asks for; or the exception.
+    /// `progress` is called with the number of those that are done.
     fn warp_drawings<'py>(
         &self,
         py: Python<'py>,
         drawings: Vec<(PyBackedBytes, Option<PathBuf>)>,
+        progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let warp = |(data, name): &(PyBackedBytes, Option<PathBuf>)| self.0.warp_drawing(data, name.as_deref());
-        let warped: Vec<_> = py.detach(|| on_threads(|| drawings.par_iter().map(warp).collect()));
+        let (warper, finished) = (self.0.clone(), Arc::new(AtomicUsize::new(0)));
+        let counted = Arc::clone(&finished);
+        let mut told = 0;
+        let mut tell = || {
+            let now = finished.load(Ordering::Relaxed);
+            let news = progress.as_ref().filter(|_| now > told);
+            told = now;
+            news.map_or(Ok(()), |p| p.call1((now,)).map(drop))
+        };
+        let warped: Vec<_> = on_threads_alone(py, &mut tell, move |stop| {
+            let warper = warper.stopped_by(stop);
+            let warp = |(data, name): &(PyBackedBytes, Option<PathBuf>)| {
+                let warped = (!stop.load(Ordering::Relaxed)).then(|| warper.warp_drawing(data, name.as_deref()));
+                counted.fetch_add(1, Ordering::Relaxed);
+                warped
+            };
+            drawings.par_iter().filter_map(warp).collect()
+        })?;
+        tell()?;
         let result = |warped: Result<embed::Drawing, Error>| match warped {
             Ok(d) => (PyBytes::new(py, &d.bytes), d.report, d.warnings, d.notes).into_bound_py_any(py),
-            Err(e) => exception(py, &e).into_bound_py_any(py),
+            Err(e) => match exception(py, &e) {
+                e if e.is_instance_of::<PyException>(py) => e.into_bound_py_any(py),
+                // Ctrl-C while the exception was made.
+                e => Err(e),
+            },
         };
         warped.into_iter().map(result).collect()
     }
 }
 
 impl Warper {
-    fn point_map(&self, points: numpy::ndarray::ArrayView2<'_, f64>) -> Result<PointMap, Error> {
-        self.0.point_map(|| arrays::bounds(points), || arrays::cloud(points))
+    fn point_map(
+        &self,
+        points: numpy::ndarray::ArrayView2<'_, f64>,
+        stop: &'static AtomicBool,
+    ) -> Result<PointMap, Error> {
+        self.0.stopped_by(stop).point_map(|| arrays::bounds(points), || arrays::cloud(points, stop))
     }
+}
+
+/// The box of path data: x, y, width, height. `None` if it is empty or malformed.
+#[pyfunction]
+pub(crate) fn path_box(data: &str) -> Option<[f64; 4]> {
+    let b = Outline::from_svg(data).ok()?.bounding_box()?;
+    Some([b.x0, b.y0, b.width(), b.height()])
 }
 
 /// Checks that an array holds pairs.

@@ -4,6 +4,7 @@ import doctest
 import inspect
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -60,6 +61,11 @@ def test_types():
     mypy = pytest.importorskip("mypy.api")
     out, errors, status = mypy.run(["--strict", "--config-file", str(HERE / "pyproject.toml"), str(HERE / "tests/typed.py")])
     assert status == 0, out + errors
+    wrong = HERE / "tests/typed_wrong.py"
+    out, _, _ = mypy.run(["--strict", "--config-file", str(HERE / "pyproject.toml"), str(wrong)])
+    lines = wrong.read_text().splitlines()
+    first = lines.index('arc = deform.arc(bend=0.4)') + 2
+    assert {int(n) for n in re.findall(r"typed_wrong.py:(\d+): error", out)} == set(range(first, len(lines) + 1)), out
 
 
 def test_fonttools_pens():

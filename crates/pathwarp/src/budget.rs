@@ -5,7 +5,7 @@
 //! are about to do, long loops ask in between, and an error names the limit.
 
 use std::fmt;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use thiserror::Error;
 
 /// A quantity that is limited.
@@ -124,11 +124,22 @@ pub struct Limits {
     scale: f64,
     /// Pixels of the input's pictures.
     pixels: f64,
+    stop: Option<Stop>,
+}
+
+/// A switch that ends work early. It is static, as limits are copied to wherever work is counted.
+#[derive(Debug, Clone, Copy)]
+struct Stop(&'static AtomicBool);
+
+impl PartialEq for Stop {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.0, other.0)
+    }
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { given: [None; Limit::ALL.len()], scale: 1.0, pixels: 0.0 }
+        Self { given: [None; Limit::ALL.len()], scale: 1.0, pixels: 0.0, stop: None }
     }
 }
 
@@ -144,6 +155,16 @@ impl Limits {
     pub fn with(mut self, limit: Limit, most: f64) -> Self {
         self.given[limit as usize] = Some(most);
         self
+    }
+
+    /// Lets a switch end the work: once it is `true`, every limit is exceeded.
+    #[must_use]
+    pub fn stopped_by(self, switch: &'static AtomicBool) -> Self {
+        Self { stop: Some(Stop(switch)), ..self }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stop.is_some_and(|s| s.0.load(Ordering::Relaxed))
     }
 
     /// The limits for an input of `bytes`: those that were not set grow in proportion above a mebibyte. They never shrink.
@@ -181,7 +202,11 @@ impl Limits {
     pub fn check(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
         let most = self.of(limit);
         // An amount that is not a number exceeds every limit.
-        if amount <= most { Ok(()) } else { Err(Exceeded { limit, most, needed: amount, cut: false }) }
+        if amount <= most && !self.is_stopped() {
+            Ok(())
+        } else {
+            Err(Exceeded { limit, most, needed: amount, cut: false })
+        }
     }
 }
 
@@ -266,6 +291,9 @@ impl Budget {
     /// The work that is left.
     #[must_use]
     pub fn left(&self) -> f64 {
+        if self.limits.is_stopped() {
+            return 0.0;
+        }
         (self.limits().of(Limit::Work) - self.work.load(Ordering::Relaxed) as f64 / 16.0).max(0.0)
     }
 
@@ -340,6 +368,15 @@ mod tests {
         assert_eq!(Limits::default().for_input(7), Limits::default());
         let raised = Limits::default().with(Limit::Work, 2.0 * Limit::Work.base());
         assert_eq!(raised.of(Limit::Memory), 2.0 * Limit::Memory.base());
+    }
+
+    #[test]
+    fn a_switch_ends_the_work() {
+        static SWITCH: AtomicBool = AtomicBool::new(false);
+        let budget = Budget::new(Limits::none().stopped_by(&SWITCH).for_input(9));
+        assert!(budget.spend(1.0).is_ok() && budget.left() > 0.0 && budget.take(Limit::Bytes, 1.0).is_ok());
+        SWITCH.store(true, Ordering::Relaxed);
+        assert!(budget.exceeded().is_some() && budget.left() == 0.0 && budget.take(Limit::Bytes, 1.0).is_err());
     }
 
     /// A second and 60 MB beside the decoded picture for each ten megapixels.

@@ -173,6 +173,19 @@ pub enum GeometryError {
 }
 
 impl GeometryError {
+    /// The point that the error is about, if it is about one.
+    #[must_use]
+    pub fn place(&self) -> Option<Point> {
+        match self {
+            Self::Infinity { at, .. }
+            | Self::NotFinite { at, .. }
+            | Self::Coincident { at, .. }
+            | Self::WrongSide { at, .. }
+            | Self::NotClosed { end: at, .. } => Some(*at),
+            _ => None,
+        }
+    }
+
     /// Returns the same error, naming the shape it happened on.
     #[must_use]
     pub fn on_shape(mut self, name: &str) -> Self {

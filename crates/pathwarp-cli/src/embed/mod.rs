@@ -19,7 +19,7 @@ mod names;
 mod points;
 mod warper;
 
-pub use error::{Error, ErrorKind};
-pub use names::{option_names, preset};
+pub use error::{Details, Error, ErrorKind};
+pub use names::{option_names, option_words, preset};
 pub use points::PointMap;
 pub use warper::{Drawing, Path, Warper};

@@ -1,7 +1,7 @@
 //! Names: presets that stand for a deformation, and options and parameters in messages.
 
 use crate::advice;
-use crate::options::OPTIONS;
+use crate::options::{CommonOption, OPTIONS};
 use crate::steps::INVERSE;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::Kind;
@@ -60,6 +60,12 @@ const OF_THE_PROGRAM: [&str; 11] = [
 /// The common options that work in memory, with their help.
 pub fn option_names() -> impl Iterator<Item = (&'static str, String)> {
     OPTIONS.iter().filter(|o| !OF_THE_PROGRAM.contains(&o.name)).map(|o| (o.name, o.help()))
+}
+
+/// The words that an option's value can be; none if it is no choice.
+#[must_use]
+pub fn option_words(name: &str) -> Vec<&'static str> {
+    OPTIONS.iter().find(|o| o.name == name).map(CommonOption::words).unwrap_or_default()
 }
 
 /// Checks that an option works in memory.

@@ -1,8 +1,9 @@
 //! [`Warper`]: a recipe with its options, applied in memory.
 
 use super::error::{Error, guarded};
-use super::names::{check_option, meaning};
+use super::names::{check_option, meaning, option_names};
 use super::points::PointMap;
+use crate::advice;
 use crate::failure::Failure;
 use crate::input::{Fold, no_document};
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
@@ -11,18 +12,22 @@ use crate::steps::in_lower_case;
 use crate::{pipeline, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
-use pathwarp::deform::Registry;
+use pathwarp::deform::{Info, Registry};
 use pathwarp::fold::Survey;
-use pathwarp::kurbo::Rect;
+use pathwarp::kurbo::{BezPath, CubicBez, PathEl, Point, Rect};
 use pathwarp::param::{Args, Frame, Kind};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
-use pathwarp::refit;
+use pathwarp::refit::{self, Assurance};
 use pathwarp_svg::WarpedPath;
 use std::path::Path as FilePath;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Options of a warp that a path without a drawing can have.
 const PATH_OPTIONS: [&str; 6] = ["frame", "tolerance", "certify", "merge", "precision", "limit"];
+
+/// What lacks where there is no box.
+const NEEDS_FRAME: &str = "which percentages and defaults refer to: give it (--frame X,Y,W,H)";
 
 /// Deformations one after another, with the options of a warp.
 #[derive(Clone)]
@@ -33,6 +38,10 @@ pub struct Warper {
     /// The same with the contents of files.
     resolved: Recipe,
     given: Given,
+    /// It was inverted: its frame is the source's, which nothing else tells.
+    inverted: bool,
+    /// Ends the work once it is `true`.
+    stop: Option<&'static AtomicBool>,
 }
 
 /// The image of a path.
@@ -44,6 +53,8 @@ pub struct Path {
     pub folds: usize,
     /// Warnings of the deformations.
     pub warnings: Vec<String>,
+    /// The tolerance of the fit.
+    pub tolerance: f64,
 }
 
 /// A warped drawing or picture.
@@ -72,11 +83,8 @@ impl Warper {
         }
         for (param, value) in values {
             let (param, value) = (param.as_ref(), value.as_ref());
-            let known = || info.params.iter().map(|p| p.name);
             let Some(declared) = info.params.iter().find(|p| p.name == param) else {
-                let names: Vec<&str> = known().collect();
-                let unknown = crate::advice::unknown("parameter", param, known());
-                return Err(Error::usage(format!("{}: {unknown}; there are {}", info.name, names.join(", "))));
+                return Err(Error::usage(format!("{name}: {}", unknown(info, param))).about(param, value));
             };
             if declared.kind == Kind::Save {
                 return Err(Error::usage(format!("{param} writes a file, which only the program does")));
@@ -106,7 +114,7 @@ impl Warper {
     fn of(registry: &Registry, typed: Recipe, given: Given) -> Result<Self, Error> {
         let mut resolved = typed.clone();
         guarded(registry, || references::resolve_files(registry, &mut resolved, &Reading::default()))?;
-        Ok(Self { registry: registry.clone(), typed, resolved, given })
+        Ok(Self { registry: registry.clone(), typed, resolved, given, inverted: false, stop: None })
     }
 
     /// Sets an option of the command line, without its dashes; a switch has the value `true`. An option that may be given several
@@ -115,10 +123,11 @@ impl Warper {
     /// # Errors
     /// There is no such option, it is one of the program, or the value is wrong.
     pub fn set_option(&mut self, name: &str, value: &str) -> Result<(), Error> {
-        check_option(name).map_err(Error::usage)?;
+        let about = |e: Error| e.about(name, value);
+        check_option(name).map_err(|e| about(Error::usage(e)))?;
         let mut given = self.given.clone();
-        given.set(name, value).map_err(Error::usage)?;
-        guarded(&self.registry, || given.read())?;
+        given.set(name, value).map_err(|e| about(Error::usage(e)))?;
+        guarded(&self.registry, || given.read()).map_err(about)?;
         self.given = given;
         Ok(())
     }
@@ -135,13 +144,19 @@ impl Warper {
         };
         let (typed, given) = joined(&self.typed, &later.typed);
         let (resolved, _) = joined(&self.resolved, &later.resolved);
-        Self { registry: self.registry.clone(), typed, resolved, given }
+        Self { typed, resolved, given, inverted: self.inverted || later.inverted, ..self.clone() }
     }
 
-    /// The recipe that undoes this one. Percentages and defaults need the option `frame`, the box of the source.
+    /// The recipe that undoes this one. It needs the option `frame`, the box of the source, before it is used.
     #[must_use]
     pub fn inverted(&self) -> Self {
-        Self { typed: self.typed.inverted(), resolved: self.resolved.inverted(), ..self.clone() }
+        Self { typed: self.typed.inverted(), resolved: self.resolved.inverted(), inverted: true, ..self.clone() }
+    }
+
+    /// The same, ended by a switch: once it is `true`, work stops with an error of the kind [`ErrorKind::Limit`](super::ErrorKind::Limit).
+    #[must_use]
+    pub fn stopped_by(&self, switch: &'static AtomicBool) -> Self {
+        Self { stop: Some(switch), ..self.clone() }
     }
 
     /// The names of the deformations.
@@ -174,12 +189,27 @@ impl Warper {
         cloud: impl FnOnce() -> Outline,
     ) -> Result<PointMap, Error> {
         guarded(&self.registry, || {
-            let options = self.given.read()?;
-            let frame = plain_frame(&options, bounds)?;
+            let options = self.options()?;
+            let bounds = match options.frame {
+                // Without a point nothing depends on the box.
+                FrameChoice::Default | FrameChoice::Artwork => bounds().unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0)),
+                _ => Rect::ZERO,
+            };
+            let frame = plain_frame(&options, || Some(bounds))?;
             let alone = self.typed.steps.len() == 1 && !self.typed.steps.iter().any(|s| s.inverse);
             let outline = if alone { Outline::default() } else { cloud() };
-            let budget = Arc::new(Budget::new(options.reading.limits));
-            let built = self.build(&frame, &outline, &budget)?;
+            let built_in = |frame: &Frame| self.build(frame, &outline, &Arc::new(Budget::new(options.reading.limits)));
+            let built = built_in(&frame).map_err(|failure| {
+                // If a box with a size mends it, that is what lacks.
+                let roomy = Frame::new(bounds.inflate(1.0, 1.0));
+                let flat = frame.rect.is_zero_area();
+                let lacks = flat && !matches!(options.frame, FrameChoice::Rect(_)) && built_in(&roomy).is_ok();
+                if lacks {
+                    Failure::usage(format!("the box of the points has no size, {NEEDS_FRAME}"))
+                } else {
+                    failure
+                }
+            })?;
             // Points are mapped as often as the program around this likes.
             Ok(PointMap::new(built.unlimited()))
         })
@@ -199,15 +229,39 @@ impl Warper {
     /// # Errors
     /// As [`Warper::warp_path`].
     pub fn warp_outline(&self, outline: &Outline) -> Result<Path, Error> {
+        self.bent(outline, 1.0)
+    }
+
+    /// Bends an outline to lines and quadratics, as TrueType has them: half of the tolerance is for the cubics, half for theirs.
+    ///
+    /// # Errors
+    /// As [`Warper::warp_path`].
+    pub fn warp_outline_to_quadratics(&self, outline: &Outline) -> Result<Path, Error> {
+        let mut bent = self.bent(outline, 0.5)?;
+        let room = bent.tolerance;
+        let cubic = |el: &PathEl| matches!(el, PathEl::CurveTo(..));
+        if bent.path.path.elements().iter().any(cubic) {
+            bent.path.path = quadratic(&bent.path.path, room);
+            bent.path.data = bent.path.path.to_svg();
+            let report = &mut bent.path.report;
+            report.max_error += room;
+            report.segments_out = bent.path.path.segments().count();
+            report.assurance = Assurance::Checked;
+        }
+        Ok(bent)
+    }
+
+    /// Bends an outline within a share of the tolerance.
+    fn bent(&self, outline: &Outline, share: f64) -> Result<Path, Error> {
         guarded(&self.registry, || {
             if let Some(other) = self.given.names().find(|name| !PATH_OPTIONS.contains(name)) {
                 let known = PATH_OPTIONS.join(", ");
                 return Err(Failure::usage(format!("{other} is not an option of a single path, which has {known}")));
             }
-            let options = self.given.read()?;
+            let options = self.options()?;
             let bounds = outline.bounding_box();
             let frame = plain_frame(&options, || bounds)?;
-            let tolerance = options.tolerance_for(bounds, &frame)?;
+            let tolerance = share * options.tolerance_for(bounds, &frame)?;
             let budget = Arc::new(Budget::new(options.reading.limits));
             let built = self.build(&frame, outline, &budget)?;
             let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
@@ -221,7 +275,7 @@ impl Warper {
             let folds = Fold::of(&orientation, &orientation).count;
             built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;
             let warnings = built.steps.into_iter().flat_map(|s| s.explanation.warnings).collect();
-            Ok(Path { path, folds, warnings })
+            Ok(Path { path, folds, warnings, tolerance })
         })
     }
 
@@ -232,12 +286,23 @@ impl Warper {
     /// The drawing cannot be read, a value is wrong, or the geometry does not allow the deformation.
     pub fn warp_drawing(&self, bytes: &[u8], name: Option<&FilePath>) -> Result<Drawing, Error> {
         guarded(&self.registry, || {
+            self.options()?;
             self.given.check_conflicts().map_err(Failure::Usage)?;
             let name = name.unwrap_or(FilePath::new(""));
-            let done = pipeline::warp_bytes(&self.registry, &self.resolved, &self.given, name, bytes)?;
+            let done = pipeline::warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, name, bytes)?;
             let report = serde_json::to_string(&done.report).map_err(|e| Failure::Output(e.to_string()))?;
             Ok(Drawing { bytes: done.bytes, report, warnings: done.report.warnings, notes: done.notes })
         })
+    }
+
+    /// The options as read, with the switch. An inverse needs a frame.
+    fn options(&self) -> Result<CommonOptions, Failure> {
+        let mut options = self.given.read()?;
+        if self.inverted && matches!(options.frame, FrameChoice::Default) {
+            return Err(Failure::usage(format!("an inverse does not know the box of the source, {NEEDS_FRAME}")));
+        }
+        options.reading.stop(self.stop);
+        Ok(options)
     }
 
     /// Builds the recipe without a drawing.
@@ -252,6 +317,39 @@ impl Warper {
         let built = built.map_err(Failure::of_recipe)?;
         built.failure().map_or(Ok(built.clone()), |e| Err(Failure::of_recipe(e)))
     }
+}
+
+/// Describes a parameter that a deformation does not have. Options are often given beside parameters, so theirs may be meant.
+fn unknown(info: &Info, param: &str) -> String {
+    if check_option(param).is_ok() {
+        return format!("`{param}` is an option, not a parameter; give it as an option");
+    }
+    let params = || info.params.iter().map(|p| p.name);
+    let names: Vec<&str> = params().collect();
+    let known = params().chain(option_names().map(|(name, _)| name));
+    let unknown = advice::unknown("parameter", param, known);
+    if unknown.ends_with('?') { unknown } else { format!("{unknown}; there are {}", names.join(", ")) }
+}
+
+/// A path with quadratics within `accuracy` in place of its cubics.
+fn quadratic(path: &BezPath, accuracy: f64) -> BezPath {
+    let mut out = BezPath::new();
+    let mut at = Point::ORIGIN;
+    for el in path.elements() {
+        match *el {
+            PathEl::CurveTo(a, b, end) => {
+                let cubic = CubicBez::new(at, a, b, end);
+                // A spline has few points of its own; a cubic that none is close to has quadratics that stand alone.
+                match cubic.approx_spline(accuracy) {
+                    Some(spline) => spline.to_quads().for_each(|q| out.quad_to(q.p1, q.p2)),
+                    None => cubic.to_quads(accuracy).for_each(|(.., q)| out.quad_to(q.p1, q.p2)),
+                }
+            }
+            other => out.push(other),
+        }
+        at = el.end_point().unwrap_or(at);
+    }
+    out
 }
 
 /// The frame for artwork that is not a drawing.

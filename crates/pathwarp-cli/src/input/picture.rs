@@ -57,7 +57,7 @@ impl PictureArtwork {
         let (width, height) = header_size(bytes)?;
         let size = (f64::from(width), f64::from(height));
         let counted = work::picture(&budget, Pixel::Decoded, size);
-        counted.map_err(|e| Failure::Input(too_much("reading a picture", size, &e, "")))?;
+        counted.map_err(|e| Failure::Limited(too_much("reading a picture", size, &e, ""), e, 3))?;
         let picture = Picture::read_within(bytes, &budget.limits())?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
@@ -136,8 +136,8 @@ impl Artwork for PictureArtwork {
         warnings.extend(orientation.folded_against(&orientation).map(|at| folds::warning("the picture", &[], at)));
         let (visible, size) = size(bounds, options.image_size)?;
         let smaller = "give a smaller --image-size, or ";
-        let too_much = |e: &Exceeded| Failure::Geometry(too_much("warping it to a picture", size, e, smaller));
-        work::picture(&self.budget, Pixel::Warped, size).map_err(|e| too_much(&e))?;
+        let too_much = |e| Failure::Limited(too_much("warping it to a picture", size, &e, smaller), e, 4);
+        work::picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
         let size = (size.0 as u32, size.1 as u32);
         let inverse = inverse(&map, area, &self.budget);
         let warp = ImageWarp {
@@ -149,7 +149,7 @@ impl Artwork for PictureArtwork {
             size,
         };
         let pixmap = warp_image(&warp)?;
-        self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(&e)))?;
+        self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
         let warped = Picture { pixmap, profile: self.picture.profile.clone() };
         Ok(WarpedArtwork {
             result: WarpedResult::Bytes(warped.write(self.format)?),

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use pathwarp::budget::Limits;
 use pathwarp_svg::{GenericFamilies, ReadOptions, check_fonts};
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 /// The options about reading drawings, which every command that reads one has.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -31,6 +32,11 @@ impl Reading {
     /// Checks that what was named as fonts are fonts.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         Ok(check_fonts(&self.fonts.paths)?)
+    }
+
+    /// Lets a switch end the work.
+    pub(crate) fn stop(&mut self, switch: Option<&'static AtomicBool>) {
+        self.limits = switch.map_or(self.limits, |switch| self.limits.stopped_by(switch));
     }
 
     /// The same as options of the library.

@@ -9,6 +9,7 @@ use crate::report::FileReport;
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// The outcome of a warp in memory.
 pub(crate) struct InMemory {
@@ -19,15 +20,17 @@ pub(crate) struct InMemory {
 }
 
 /// Warps the content of a file called `name` by a recipe whose file references have been looked up. Linked pictures are looked up
-/// beside `name`, which is empty if there is no such place.
+/// beside `name`, which is empty if there is no such place. The switch `stop` ends the work.
 pub(crate) fn warp_bytes(
     registry: &Registry,
     recipe: &Recipe,
     given: &Given,
+    stop: Option<&'static AtomicBool>,
     name: &Path,
     bytes: &[u8],
 ) -> Result<InMemory, Failure> {
-    let options = given.keeping_pages().read()?;
+    let mut options = given.keeping_pages().read()?;
+    options.reading.stop(stop);
     let batch = Batch { registry, recipe, options: &options, given, flags: Flags::of(registry) };
     let warped = Input::of_bytes(bytes, name, &options, None).and_then(|mut input| batch.warp(&mut input));
     let warped = warped.map_err(|f| f.about(&display(name)))?;

@@ -10,13 +10,17 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 from typing import Any, Dict, Mapping, Tuple, Union
+
+from . import deform
 
 from ._catalog import Info, Parameter, deformations, find, options, python_name
 from ._deformation import Deformation, Frame, Steps, Warped, WarpedPath
 from ._errors import GeometryError, InputError, InternalError, LimitError, PathwarpError, UsageError
 from ._native import __version__, use_threads
+from ._reports import PathReport, Report, Selection, ShapeReport, Skipped
 
 __all__ = [
     "Deformation",
@@ -27,12 +31,18 @@ __all__ = [
     "InternalError",
     "LimitError",
     "Parameter",
+    "PathReport",
     "PathwarpError",
+    "Report",
+    "Selection",
+    "ShapeReport",
+    "Skipped",
     "Steps",
     "UsageError",
     "Warped",
     "WarpedPath",
     "__version__",
+    "deform",
     "deformations",
     "options",
     "use_threads",
@@ -45,7 +55,9 @@ for _error in (PathwarpError, UsageError, InputError, GeometryError, LimitError,
 
 
 def warp_path(d: Any, deformation: Steps, /, **values: Any) -> WarpedPath:
-    """Bends SVG path data by a deformation, and returns path data.
+    """Bends a path by a deformation, and returns path data.
+
+    `d` is SVG path data, a path of svgpathtools, an element with an attribute `d`, or points, which become a polyline.
 
     `values` are parameters of the deformation, if that is given by its name, and the options `tolerance`, `frame`, `certify`,
     `merge`, `precision` and `limit`: `warp_path("M0,0 H100", "arc", bend=0.4, tolerance=0.01)`.
@@ -55,7 +67,7 @@ def warp_path(d: Any, deformation: Steps, /, **values: Any) -> WarpedPath:
 
 
 def warp_svg(
-    svg: Union[bytes, bytearray, memoryview, str],
+    svg: Any,
     deformation: Steps,
     /,
     *,
@@ -63,6 +75,9 @@ def warp_svg(
     **values: Any,
 ) -> Warped:
     """Warps a drawing, and returns the file that the command line would write.
+
+    `svg` is the content of a file (bytes, or a text that begins with `<`), its name (a Path, or another text), an open file, an element or
+    tree of ElementTree or lxml, or an array of pixels.
 
     `deformation` is a name, a Deformation, a list of them, or the Path of a recipe. `values` are parameters of the deformation, if that
     is given by its name, and options: `warp_svg(svg, "arc", bend=0.4, fit="grow")`.
@@ -79,5 +94,8 @@ def _divided(deformation: Steps, values: Mapping[str, Any]) -> Tuple[Deformation
     if isinstance(deformation, str):
         return Deformation(deformation, **parameters), given
     if parameters:
-        raise UsageError(f"{', '.join(parameters)}: not an option; parameters belong to the deformation itself")
+        name = next(iter(parameters))
+        near = difflib.get_close_matches(name, known, 1, 0.75)
+        hint = f"did you mean `{near[0]}`?" if near else "parameters belong to the deformation itself"
+        raise UsageError(f"`{name}` is not an option; {hint}", parameter=name)
     return Deformation.chain(deformation), given

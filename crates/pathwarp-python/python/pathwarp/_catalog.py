@@ -64,13 +64,17 @@ def deformations() -> Mapping[str, Info]:
 @functools.lru_cache(maxsize=None)
 def options() -> Mapping[str, str]:
     """The options of a warp with their help, by their names in Python."""
-    return {python_name(name): help for name, help in _native.option_help()}
+    return {python_name(name): help for name, help, _ in _native.option_help()}
 
 
-def names() -> set[str]:
-    """The names of all parameters and options on the command line."""
-    of_steps = {p["name"] for d in json.loads(_native.catalog()) for p in d["parameters"]}
-    return of_steps | {name for name, _ in _native.option_help()}
+def words() -> Mapping[str, Tuple[str, ...]]:
+    """The names of all parameters and options on the command line, with the words that they can be."""
+    known = {name: tuple(words) for name, _, words in _native.option_help()}
+    for d in json.loads(_native.catalog()):
+        for p in d["parameters"]:
+            known[p["name"]] = known.get(p["name"], ()) + tuple(p["choices"])
+    frames = ("artwork", "viewbox", "ink", "baseline-ascent", "baseline-capheight", "baseline-xheight")
+    return {**known, "frame": frames}
 
 
 def python_name(name: str) -> str:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native, _values
-from ._errors import InputError, PathwarpError, UsageError
+from . import _inputs, _native, _show, _values
+from ._errors import InputError, PathwarpError, UsageError, in_python
+from ._reports import PathReport, Report
 
 Frame = Union[str, Sequence[float]]
 """A box: (x, y, width, height), or one of the names that the option `frame` has on the command line."""
@@ -20,13 +21,17 @@ Steps = Union[str, "Deformation", "os.PathLike[str]", Sequence[Union[str, "Defor
 
 
 class WarpedPath(str):
-    """Path data. `report` tells how it was made."""
+    """Path data. `report` tells how it was made. Notebooks show it."""
 
-    report: Dict[str, Any]
+    report: PathReport
+
+    def _repr_svg_(self) -> Optional[str]:
+        box = _native.path_box(self)
+        return None if box is None else _show.page(self, box)
 
 
 class Warped(bytes):
-    """A warped drawing: the bytes of the file.
+    """A warped drawing or picture: the bytes of the file. Notebooks show it.
 
     `report` tells what was done, shape by shape, as the command line's `--report` does; `warnings` holds what the command line would
     print. `notes` are the decisions that the option `explain` asks for.
@@ -37,15 +42,24 @@ class Warped(bytes):
     """What the caller should know: artwork that folds over, leaves the page, or cannot be bent as it should."""
 
     _json: str
-    _report: Optional[Dict[str, Any]] = None
+    _report: Optional[Report] = None
 
     @property
-    def report(self) -> Dict[str, Any]:
+    def report(self) -> Report:
         """What was done, shape by shape."""
         # Read when it is asked for: for small drawings that takes a while.
         if self._report is None:
             self._report = json.loads(self._json)
-        return self._report
+        return cast(Report, self._report)
+
+    def _repr_svg_(self) -> Optional[str]:
+        return _show.svg(self)
+
+    def _repr_png_(self) -> Optional[bytes]:
+        return bytes(self) if self.startswith(b"\x89PNG\r\n") else None
+
+    def _repr_jpeg_(self) -> Optional[bytes]:
+        return bytes(self) if self.startswith(b"\xff\xd8\xff") else None
 
 
 class Deformation:
@@ -132,51 +146,72 @@ class Deformation:
         """
         framed = self if frame is None else self.with_options(frame=frame)
         if framed._warper.frame is None:
-            raise UsageError("inverse: percentages and defaults refer to the box of the source; give frame=(x, y, width, height)")
+            raise UsageError(
+                "an inverse does not know the box of the source, which percentages and defaults refer to: "
+                "give it (frame=(x, y, width, height))"
+            )
         return self._of(framed._warper.inverted(), framed._options)
 
-    def map(self, points: ArrayLike, out: Optional[NDArray[np.float64]] = None) -> NDArray[np.float64]:
-        """Maps points, an array of shape (n, 2), or (2,) for one.
+    @overload
+    def map(self, points: complex, *, out: None = None) -> complex: ...  # type: ignore[overload-overlap]
+    @overload
+    def map(
+        self, points: NDArray[np.complexfloating[Any, Any]], *, out: Optional[NDArray[np.complex128]] = None
+    ) -> NDArray[np.complex128]: ...
+    @overload
+    def map(self, points: ArrayLike, *, out: Optional[NDArray[np.float64]] = None) -> NDArray[np.float64]: ...
+    def map(self, points: Any, *, out: Any = None) -> Any:
+        """Maps points, an array of shape (n, 2), or (2,) for one, or complex numbers x + yj in an array of any shape.
 
         An array of float64 is read where it is. `out` receives the result; it may be `points`. Where the map is undefined, the
         result is NaN. Large arrays are mapped on all processors; the result does not depend on their number.
         """
-        source = np.asarray(points, dtype=np.float64)
-        if source.ndim == 1 and source.shape == (2,):
-            single = self._warper.map(source.reshape(1, 2), None if out is None else out.reshape(1, 2))
-            return single.reshape(2) if out is None else out
-        _check_points(source)
-        if out is not None and not (isinstance(out, np.ndarray) and out.dtype == np.float64 and out.ndim == 2):
-            raise UsageError("out: must be an array of float64 with the shape of the points")
-        return self._warper.map(source, out)
+        source, of_numbers = _inputs.coordinates(points)
+        if of_numbers is not None:
+            _check_out(out, np.complex128, of_numbers)
+            numbers = self._warper.map(source).view(np.complex128).reshape(of_numbers)
+            if out is None:
+                return complex(numbers[()]) if isinstance(points, complex) else numbers
+            out[...] = numbers
+            return out
+        shape = (2,) if np.shape(points) == (2,) else source.shape
+        _check_out(out, np.float64, shape)
+        if shape != (2,):
+            return self._warper.map(source, out)
+        single = self._warper.map(source)[0]
+        if out is None:
+            return single
+        out[:] = single
+        return out
 
     def jacobian(self, points: ArrayLike) -> NDArray[np.float64]:
-        """The derivatives at points: an array of shape (n, 2, 2), or (2, 2) for one point.
+        """The derivatives at points: an array of shape (n, 2, 2), or (2, 2) for one point; the shape of complex numbers, and (2, 2).
 
         `j[i]` is [[∂x'/∂x, ∂x'/∂y], [∂y'/∂x, ∂y'/∂y]] at point i: `j[i] @ v` is the image of a small step v.
         """
-        source = np.asarray(points, dtype=np.float64)
-        if source.ndim == 1 and source.shape == (2,):
-            return self._warper.jacobian(source.reshape(1, 2))[0]
-        _check_points(source)
-        return self._warper.jacobian(source)
+        source, of_numbers = _inputs.coordinates(points)
+        jacobians = self._warper.jacobian(source)
+        if of_numbers is not None:
+            return jacobians.reshape(*of_numbers, 2, 2)
+        return jacobians[0] if np.shape(points) == (2,) else jacobians
 
     def warp_path(self, d: Any, /, **options: Any) -> WarpedPath:
-        """Bends SVG path data, or a path of svgpathtools, and returns path data.
+        """Bends a path, and returns path data.
+
+        `d` is SVG path data, a path of svgpathtools, an element with an attribute `d`, or points, which become a polyline.
 
         Options: `tolerance` (the largest distance from the exact result), `frame`, `certify`, `merge`, `precision`, `limit`.
         """
-        data, report = self._with(options).warp_path(_values.text(d, "d"))
+        data, report = self._with(options).warp_path(_inputs.path(d))
         warped = WarpedPath(data)
         warped.report = report
         return warped
 
-    def warp_svg(
-        self, svg: Union[bytes, bytearray, memoryview, str], /, *, name: Union[str, "os.PathLike[str]", None] = None, **options: Any
-    ) -> Warped:
+    def warp_svg(self, svg: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **options: Any) -> Warped:
         """Warps a drawing, or a picture in PNG, JPEG or WebP, and returns the file that the command line would write.
 
-        `name` is the drawing's file, for messages and for linked pictures beside it. All options of the command line work that do
+        `svg` is the content of the file (bytes, or a text that begins with `<`), its name (a Path, or another text), an open file, an
+        element or tree of ElementTree or lxml, or an array of pixels. `name` is the drawing's file, for messages and for linked pictures beside it. All options of the command line work that do
         not name outputs: `tolerance`, `strokes`, `fit`, `format="pdf"`… `pathwarp.options()` lists them with their help.
         """
         (done,) = self.warp_svgs([svg], names=None if name is None else [name], **options)
@@ -186,21 +221,41 @@ class Deformation:
 
     def warp_svgs(
         self,
-        svgs: Iterable[Union[bytes, bytearray, memoryview, str]],
+        svgs: Iterable[Any],
         /,
         *,
         names: Optional[Iterable[Union[str, "os.PathLike[str]"]]] = None,
+        progress: Optional[Callable[[int], object]] = None,
         **options: Any,
     ) -> List[Union[Warped, PathwarpError]]:
         """Warps many drawings, on all processors, and returns the results in their order, each as by `warp_svg`.
 
-        In place of a drawing that cannot be warped stands the exception, so one bad file does not stop the others.
+        In place of a drawing that cannot be warped stands the exception, so one bad file does not stop the others. `progress` is called
+        from time to time, and at the end, with the number of drawings that are done.
         """
-        data = [svg.encode() if isinstance(svg, str) else bytes(svg) for svg in svgs]
-        named: List[Optional[str]] = [None] * len(data) if names is None else [os.fspath(name) for name in names]
-        if len(named) != len(data):
-            raise UsageError(f"names: has {len(named)} entries for {len(data)} drawings")
-        return [_warped(result) for result in self._with(options).warp_drawings(list(zip(data, named)))]
+        if _inputs.is_one(svgs):
+            raise UsageError(f"warp_svgs takes a list of drawings, not one ({type(svgs).__name__}); warp_svg warps one")
+        given = list(svgs)
+        named: List[Any] = [None] * len(given) if names is None else list(names)
+        if len(named) != len(given):
+            raise UsageError(f"names: has {len(named)} entries for {len(given)} drawings")
+        results: List[Union[Warped, PathwarpError, None]] = [None] * len(given)
+        read: List[Tuple[int, bytes, Optional[str]]] = []
+        for i, (drawing, name) in enumerate(zip(given, named)):
+            try:
+                content, file = _inputs.drawing(drawing)
+                read.append((i, content, file if name is None else os.fsdecode(name)))
+            except PathwarpError as e:
+                results[i] = e
+        unread = len(given) - len(read)
+        tell = progress and (lambda done: progress(unread + done))
+        done = self._with(options).warp_drawings([(content, name) for _, content, name in read], tell)
+        for (i, _, _), result in zip(read, done):
+            results[i] = _warped(result)
+        return [r for r in results if r is not None]
+
+    def _repr_svg_(self) -> Optional[str]:
+        return _show.grid(self)
 
     def __repr__(self) -> str:
         return f"<pathwarp.Deformation {' + '.join(self.steps)}>"
@@ -236,7 +291,7 @@ def _warped(result: Union[Tuple[bytes, str, List[str], List[str]], PathwarpError
         return result
     content, report, warnings, notes = result
     made = Warped(content)
-    made._json, made.warnings, made.notes = report, warnings, notes
+    made._json, made.warnings, made.notes = report, [*map(in_python, warnings)], [*map(in_python, notes)]
     return made
 
 
@@ -247,6 +302,11 @@ def _unpickled(recipe: str, folder: str, options: List[Tuple[str, str]]) -> Defo
     return made
 
 
-def _check_points(points: NDArray[np.float64]) -> None:
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise UsageError(f"points: has shape {points.shape}; it must be (n, 2)")
+def _check_out(out: Any, dtype: Any, shape: Tuple[int, ...]) -> None:
+    if out is None:
+        return
+    if not isinstance(out, np.ndarray) or out.dtype != dtype or out.shape != shape:
+        has = f"{out.dtype} of shape {out.shape}" if isinstance(out, np.ndarray) else type(out).__name__
+        raise UsageError(f"out: is {has}; it must be an array of {np.dtype(dtype)} of shape {shape}, as the points")
+    if not out.flags.writeable:
+        raise UsageError("out: is read-only")

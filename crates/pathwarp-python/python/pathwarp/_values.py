@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from typing import Any, Iterable, List, Mapping, Tuple
 
+import numpy as np
+
 from ._catalog import find
 from ._errors import UsageError
 
@@ -35,7 +37,7 @@ def _pairs(values: Mapping[str, Any], repeated: Iterable[str]) -> Iterable[Tuple
         several = name in repeated and isinstance(value, (list, tuple)) and not _is_point(value)
         for one in value if several else [value]:
             as_text = text(one, name)
-            if not (isinstance(one, bool) and not one):
+            if not (isinstance(one, (bool, np.bool_)) and not one):
                 yield name.rstrip("_").replace("_", "-"), as_text
 
 
@@ -43,8 +45,12 @@ def text(value: Any, name: str = "value") -> str:
     """One value as text: numbers with all their digits, points as `x,y`, lists of points as `x,y x,y`."""
     if isinstance(value, str):
         return value
-    if isinstance(value, bool):
+    if isinstance(value, (bytes, bytearray)):
+        return os.fsdecode(bytes(value))
+    if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
+    if getattr(value, "shape", None) == ():
+        value = value.item()
     if isinstance(value, os.PathLike):
         return os.fsdecode(value)
     if hasattr(value, "d") and callable(value.d):
@@ -59,20 +65,21 @@ def text(value: Any, name: str = "value") -> str:
         items = list(value)
     except TypeError:
         raise UsageError(f"{name}: {type(value).__name__} is not a number, text, point or list of points") from None
-    points = any(isinstance(item, complex) or not _is_number(item) for item in items)
+    points = any(not _is_number(item) for item in items)
     return (" " if points else ",").join(text(item, name) for item in items)
 
 
 def _number(value: Any) -> str:
     if hasattr(value, "__index__"):
         return str(int(value))
-    if not hasattr(value, "__float__") or getattr(value, "ndim", 0):
+    if not hasattr(value, "__float__") or np.ndim(value):
         raise TypeError
     return repr(float(value))
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) or (hasattr(value, "__float__") and not getattr(value, "ndim", 0))
+    real = not isinstance(value, (complex, np.complexfloating))
+    return real and (isinstance(value, (int, float)) or (hasattr(value, "__float__") and not getattr(value, "ndim", 0)))
 
 
 def _is_point(value: Any) -> bool:
