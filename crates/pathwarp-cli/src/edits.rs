@@ -7,6 +7,10 @@ use pathwarp_svg::Edit;
 /// Tolerance of [`SIMPLIFY`] as a fraction of the artwork's diagonal, if none is given: half a pixel of a thousand.
 const SIMPLIFY_TOLERANCE: f64 = 5e-4;
 
+/// Joints that turn by more than these degrees are corners: of paths, and of polylines.
+const CORNERS: f64 = 15.0;
+const POLYLINE_CORNERS: f64 = 30.0;
+
 /// A kind of edit.
 #[derive(Debug)]
 pub(crate) struct EditInfo {
@@ -26,11 +30,17 @@ impl PartialEq for EditInfo {
 
 pub(crate) static SIMPLIFY: EditInfo = EditInfo {
     name: "simplify",
-    params: &[Param::angle("corners", "Joints that turn by more than this stay corners.")
-        .default("15deg")
-        .within(0.0, 80.0)],
+    params: &[
+        Param::angle("corners", "Joints that turn by more than this stay corners [default: 15deg, of polylines 30deg]")
+            .within(0.0, 80.0),
+        Param::flag("polylines", "Draw curves through the vertices of paths that are all straight lines"),
+    ],
     tolerance: Some(SIMPLIFY_TOLERANCE),
-    read: |s| Ok(Edit::Simplify { corner: s.number("corners")?.to_radians() }),
+    read: |s| {
+        let polylines = s.flag("polylines")?;
+        let usual = if polylines { POLYLINE_CORNERS } else { CORNERS };
+        Ok(Edit::Simplify { corner: s.number_if("corners")?.unwrap_or(usual).to_radians(), polylines })
+    },
 };
 
 pub(crate) static OUTLINE: EditInfo =

@@ -39,6 +39,7 @@ pub mod check;
 pub mod decimal;
 pub mod deform;
 pub mod distance;
+pub mod edit;
 mod error;
 pub mod fold;
 pub(crate) mod formula;

@@ -264,7 +264,7 @@ impl GimpArtwork {
         let places = if copies.is_empty() { vec![Affine::IDENTITY] } else { copies.clone() };
         let segments: usize = outlines().map(|o| o.segs().count()).sum();
         let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), segments);
-        let Some(Edit::Simplify { corner }) = request.edit else {
+        let Some(Edit::Simplify { corner, .. }) = request.edit else {
             return PartBend { map: &built.map, places, refit, survey, segments };
         };
         PartBend { map: &Undeclared, places, refit: refit.with_merge(true).with_corner(corner), survey, segments }

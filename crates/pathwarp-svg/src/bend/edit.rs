@@ -5,6 +5,9 @@ use super::options::{Clones, Gradients, Patterns, Strokes, TextMode, WarpOptions
 use crate::scene::model::Part;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
+use pathwarp::edit::through_vertices;
+use pathwarp::refit::{self, RefittedPath};
+use pathwarp::{GeometryError, Outline};
 
 /// What is done to the selected shapes instead of bending them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +17,8 @@ pub enum Edit {
     Simplify {
         /// Joints that turn by more than this, in radians, stay corners.
         corner: f64,
+        /// Contours of straight lines become curves through their vertices.
+        polylines: bool,
     },
     /// Strokes and text become filled outlines.
     Outline,
@@ -24,13 +29,25 @@ impl Edit {
     pub(super) fn options(self, options: WarpOptions) -> WarpOptions {
         let options = options.with_images(Images::Keep);
         match self {
-            Self::Simplify { corner } => {
+            Self::Simplify { corner, .. } => {
                 let refit = options.refit.clone().with_merge(true).with_corner(corner);
                 let options = options.with_refit(refit).with_strokes(Strokes::Keep).with_text(TextMode::Skip);
                 let options = options.with_gradients(Gradients::Keep).with_patterns(Patterns::Keep);
                 options.with_clones(Clones::Follow)
             }
             Self::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
+        }
+    }
+
+    /// The outline in a way that is no map; `None` if the outline is refitted.
+    pub(super) fn edited(
+        self,
+        outline: &Outline,
+        options: &refit::Options,
+    ) -> Result<Option<RefittedPath>, GeometryError> {
+        match self {
+            Self::Simplify { polylines: true, .. } => through_vertices(outline, options),
+            Self::Simplify { .. } | Self::Outline => Ok(None),
         }
     }
 

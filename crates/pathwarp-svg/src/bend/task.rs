@@ -11,7 +11,7 @@ use crate::scene::model::Part;
 use crate::source::number::arcs_data;
 use pathwarp::kurbo::{Affine, BezPath};
 use pathwarp::map::Map;
-use pathwarp::refit::{self, KnownShapes, PathReport};
+use pathwarp::refit::{self, KnownShapes, PathReport, RefittedPath};
 use pathwarp::{GeometryError, Outline};
 use std::sync::Arc;
 
@@ -113,6 +113,14 @@ impl<'a> PartTask<'a> {
     pub(super) fn bend(&self, outline: &Outline, contours: &[f64]) -> Result<BentPath, GeometryError> {
         let spans = self.options().refit.shared.spans(outline, contours);
         let options = self.refit(self.allowed()).with_spans(self.digits.allowed(&spans));
+        if let Some(edited) = self
+            .options()
+            .edit
+            .and_then(|e| e.edited(outline, &self.refit(allowed(self.finest, self.rounding))).transpose())
+        {
+            let RefittedPath { path, report, .. } = edited?;
+            return Ok(BentPath { path: self.to_local(path), data: None, report });
+        }
         if let Some((image, report)) = with_arcs(self.map, outline, &options)? {
             let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };
             let fine = ROUNDING * allowed(self.finest, self.rounding) / stretch(self.write).max(f64::MIN_POSITIVE);

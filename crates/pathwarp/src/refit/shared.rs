@@ -6,6 +6,7 @@
 use super::split;
 use crate::outline::{Outline, Seg};
 use kurbo::Point;
+use std::collections::HashSet;
 
 /// The segments that occur more than once in a drawing, in either direction, and how closely they are to be followed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -25,13 +26,19 @@ impl SharedEdges {
         Self::held(outlines.into_iter().map(|o| (o, &[][..])))
     }
 
-    /// The same for contours with tolerances of their own: one for each subpath of an outline, or none.
+    /// The same for contours with tolerances of their own: one for each subpath of an outline, or none. A contour that comes again as a
+    /// whole, from the same start and with the same tolerance, shares nothing with the first one: both become the same.
     #[must_use]
     pub fn held<'a>(outlines: impl IntoIterator<Item = (&'a Outline, &'a [f64])>) -> Self {
-        let (mut all, mut nodes) = (Vec::new(), Vec::new());
+        let (mut all, mut nodes, mut whole) = (Vec::new(), Vec::new(), HashSet::new());
         for (outline, contours) in outlines {
             for (i, s) in outline.subpaths.iter().enumerate() {
                 let held = contours.get(i).copied();
+                let directed = s.segs.iter().flat_map(|g| [mixed(&[g.start(), g.end()]), fingerprint(g)]);
+                let contour = directed.fold(u64::from(s.closed), |sum, word| mixed_in(sum, word));
+                if !whole.insert((contour, held.map(f64::to_bits))) {
+                    continue;
+                }
                 all.extend(s.segs.iter().map(|g| (fingerprint(g), held.unwrap_or(f64::INFINITY))));
                 if let Some(held) = held {
                     nodes.extend(s.segs.iter().map(Seg::start).chain([s.end()]).map(|p| (mixed(&[p]), held)));
@@ -45,6 +52,11 @@ impl SharedEdges {
     /// Returns `true` if `seg` is shared.
     pub(super) fn contains(&self, seg: &Seg) -> bool {
         !self.twice.is_empty() && found(&self.twice, fingerprint(seg)).is_some()
+    }
+
+    /// Returns `true` if one of the segments is shared.
+    pub(crate) fn holds_any(&self, segs: &[Seg]) -> bool {
+        segs.iter().any(|s| self.contains(s))
     }
 
     /// Divides an outline whose subpaths have these tolerances into spans of one tolerance each.
@@ -119,16 +131,19 @@ fn fingerprint(seg: &Seg) -> u64 {
     }
 }
 
-/// Multiplies each coordinate into the hash and folds the product, so that every bit counts.
+/// A hash of points, in which every bit of a coordinate counts.
 #[inline(always)]
 fn mixed(points: &[Point]) -> u64 {
+    points.iter().fold(points.len() as u64, |hash, p| mixed_in(mixed_in(hash, p.x.to_bits()), p.y.to_bits()))
+}
+
+/// Multiplies a word into a hash and folds the product.
+#[inline(always)]
+fn mixed_in(hash: u64, word: u64) -> u64 {
     /// 2⁶⁴ divided by the golden ratio, odd.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
-    let mix = |hash: u64, word: u64| {
-        let product = u128::from(hash ^ word) * u128::from(FACTOR);
-        product as u64 ^ (product >> 64) as u64
-    };
-    points.iter().fold(points.len() as u64, |hash, p| mix(mix(hash, p.x.to_bits()), p.y.to_bits()))
+    let product = u128::from(hash ^ word) * u128::from(FACTOR);
+    product as u64 ^ (product >> 64) as u64
 }
 
 #[cfg(test)]
@@ -143,6 +158,16 @@ mod tests {
         let known: Vec<bool> = a.segs().map(|s| shared.contains(s)).collect();
         assert_eq!(known, [true, false, true, false]);
         assert_eq!(SharedEdges::among([&a]), SharedEdges::default());
+    }
+
+    #[test]
+    fn a_contour_that_comes_again_as_a_whole_shares_nothing() {
+        let of = |d: &str| Outline::from_svg(d).unwrap();
+        let a = of("M0,0 C1,2 3,4 5,5 L9,9 Z");
+        assert_eq!(SharedEdges::among([&a, &a]), SharedEdges::default());
+        for other in ["M5,5 L9,9 L0,0 C1,2 3,4 5,5 Z", "M0,0 L9,9 L5,5 C3,4 1,2 0,0 Z", "M0,0 C1,2 3,4 5,5 L9,9"] {
+            assert!(SharedEdges::among([&a, &a, &of(other)]).contains(&a.subpaths[0].segs[0]), "{other}");
+        }
     }
 
     #[test]
