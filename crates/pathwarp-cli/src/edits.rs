@@ -2,6 +2,7 @@
 
 use pathwarp::Error;
 use pathwarp::param::{Args, Frame, Param, Settings};
+use pathwarp::recipe::{Recipe, Step};
 use pathwarp_svg::Edit;
 
 /// Tolerance of [`SIMPLIFY`] as a fraction of the artwork's diagonal, if none is given: half a pixel of a thousand.
@@ -46,6 +47,8 @@ pub(crate) static SIMPLIFY: EditInfo = EditInfo {
 pub(crate) static OUTLINE: EditInfo =
     EditInfo { name: "outline", params: &[], tolerance: None, read: |_| Ok(Edit::Outline) };
 
+pub(crate) static EDITS: [&EditInfo; 2] = [&SIMPLIFY, &OUTLINE];
+
 /// An edit with its values as given.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EditChoice {
@@ -58,4 +61,9 @@ impl EditChoice {
     pub(crate) fn read(&self, frame: &Frame) -> Result<Edit, Error> {
         (self.info.read)(&Settings::new(self.info.params, &self.args, frame)?)
     }
+}
+
+/// The recipe of an edit, in which nothing moves: its frame is what lengths refer to.
+pub(crate) fn still() -> Recipe {
+    Recipe { steps: vec![Step::new("affine", Args::new())] }
 }

@@ -32,6 +32,12 @@ impl Warper {
         done(py, py.detach(|| embed::Warper::new(&Registry::builtin(), name, &values))).map(Self)
     }
 
+    /// An edit of shapes, such as `simplify`.
+    #[staticmethod]
+    fn edit(py: Python<'_>, name: &str, values: Vec<(String, String)>) -> PyResult<Self> {
+        done(py, embed::Warper::edit(&Registry::builtin(), name, &values)).map(Self)
+    }
+
     /// The recipe in the text of a recipe file.
     #[staticmethod]
     fn from_recipe(py: Python<'_>, text: &str, folder: PathBuf, external: bool) -> PyResult<Self> {

@@ -65,7 +65,7 @@ pub use bend::letter_places::LetterPlaces;
 pub use bend::options::{Clones, Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
 pub use bend::outcome::{Overhang, ShapeReport, Skipped, WarpedDocument};
 pub use bend::picture::{BentImage, PictureError};
-pub use bend::plain::{WarpedPath, warp_path};
+pub use bend::plain::{WarpedPath, edit_path, warp_path};
 pub use bend::warning::Warning;
 pub use document::Document;
 pub use embed::Origin;

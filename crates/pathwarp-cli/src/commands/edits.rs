@@ -1,7 +1,7 @@
 //! `pathwarp simplify` and `outline`: edits of shapes, with the inputs and outputs of every deformation.
 
 use super::deformation::mistaken;
-use crate::edits::{EditChoice, EditInfo, OUTLINE, SIMPLIFY};
+use crate::edits::{EDITS, EditChoice, EditInfo, OUTLINE, SIMPLIFY, still};
 use crate::failure::Failure;
 use crate::options::{Given, inputs_arg, reading_args, some_options};
 use crate::pipeline;
@@ -9,11 +9,7 @@ use crate::status::Status;
 use crate::steps;
 use clap::{ArgMatches, Command};
 use pathwarp::deform::Registry;
-use pathwarp::param::Args;
-use pathwarp::recipe::{Recipe, Step};
 use std::ffi::OsString;
-
-pub(super) const NAMES: [&str; 2] = [SIMPLIFY.name, OUTLINE.name];
 
 /// The common options that say what is read and where the result goes.
 const SHARED: [&str; 20] = [
@@ -77,12 +73,11 @@ fn declared(info: &'static EditInfo, about: &'static str) -> Command {
 
 /// Runs the edit `name`.
 pub(super) fn run(registry: &Registry, name: &str, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
-    let info = if name == SIMPLIFY.name { &SIMPLIFY } else { &OUTLINE };
+    let info =
+        EDITS.into_iter().find(|e| e.name == name).ok_or_else(|| Failure::usage(format!("there is no {name}")))?;
     let mut given = Given::inputs_and_options(m);
     given.check_conflicts().map_err(Failure::Usage)?;
     mistaken(words, &given)?;
     given.edit = Some(EditChoice { info, args: steps::param_values(info.params, m) });
-    // Nothing moves; the frame of the step is what lengths refer to.
-    let recipe = Recipe { steps: vec![Step::new("affine", Args::new())] };
-    pipeline::run(registry, &recipe, &given, None)
+    pipeline::run(registry, &still(), &given, None)
 }

@@ -26,7 +26,7 @@ mod text;
 mod unwarp;
 
 use crate::advice::{self, mistakes};
-use crate::edits::{OUTLINE, SIMPLIFY};
+use crate::edits::{EDITS, OUTLINE, SIMPLIFY};
 use crate::failure::Failure;
 use crate::options::Given;
 use crate::plugins::{self, Plugins};
@@ -191,7 +191,7 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
         schema::NAME => schema::run(registry),
         text::NAME => text::run(registry, m, first),
         paths::NAME => paths::run(m),
-        _ if edits::NAMES.contains(&name) => edits::run(registry, name, m, first),
+        _ if EDITS.iter().any(|e| e.name == name) => edits::run(registry, name, m, first),
         convert::NAME => convert::run(m),
         render::NAME => render::run(m),
         gallery::NAME => gallery::run(registry, m),

@@ -4,6 +4,7 @@ use super::error::{Error, guarded};
 use super::names::{check_option, meaning, option_names};
 use super::points::PointMap;
 use crate::advice;
+use crate::edits::{EDITS, EditChoice, still};
 use crate::failure::Failure;
 use crate::input::{Fold, no_document};
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
@@ -18,7 +19,7 @@ use pathwarp::kurbo::{BezPath, CubicBez, PathEl, Point, Rect};
 use pathwarp::param::{Args, Frame, Kind};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit::{self, Assurance};
-use pathwarp_svg::WarpedPath;
+use pathwarp_svg::{Edit, WarpedPath};
 use std::path::Path as FilePath;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -97,6 +98,28 @@ impl Warper {
             }
         }
         Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
+    }
+
+    /// An edit of shapes, as by the command of this name: `simplify` or `outline`, with values as a user would type them.
+    ///
+    /// # Errors
+    /// There is no such edit or parameter.
+    pub fn edit(registry: &Registry, name: &str, values: &[(impl AsRef<str>, impl AsRef<str>)]) -> Result<Self, Error> {
+        let unknown = || Error::usage(advice::unknown("edit", name, EDITS.iter().map(|e| e.name)));
+        let info = *EDITS.iter().find(|e| e.name == name).ok_or_else(unknown)?;
+        let mut args = Args::new();
+        for (param, value) in values {
+            let (param, value) = (param.as_ref(), value.as_ref());
+            if !info.params.iter().any(|p| p.name == param) {
+                let known = info.params.iter().map(|p| p.name).chain(option_names().map(|(name, _)| name));
+                let said = format!("{name}: {}", advice::unknown("parameter", param, known));
+                return Err(Error::usage(said).about(param, value));
+            }
+            args.push(param, value);
+        }
+        let mut given = Given::default();
+        given.edit = Some(EditChoice { info, args });
+        Self::of(registry, still(), given)
     }
 
     /// The recipe in the text of a recipe file. Paths in it refer to `folder`; absolute ones are allowed only if `external`.
@@ -268,8 +291,13 @@ impl Warper {
             let refit = refit.with_suited(options.tolerance.is_none());
             let copies = &built.placement.copies;
             let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };
-            let path = pathwarp_svg::warp_path(&repeated, &built.map, &refit.with_budget(budget), options.precision)
-                .map_err(pathwarp::Error::from)?;
+            let (refit, digits) = (refit.with_budget(budget), options.precision);
+            let path = match options.edit.as_ref().map(|e| e.read(&frame)).transpose()? {
+                None => pathwarp_svg::warp_path(&repeated, &built.map, &refit, digits),
+                Some(Edit::Outline) => return Err(Failure::usage("a path has no stroke that could become an outline")),
+                Some(edit) => pathwarp_svg::edit_path(outline, edit, &refit, digits),
+            };
+            let path = path.map_err(pathwarp::Error::from)?;
             let survey = Survey::new(&built.map, repeated.bounding_box(), repeated.segs().count());
             let orientation = survey.orientation_of_copies(outline, copies, true);
             let folds = Fold::of(&orientation, &orientation).count;

@@ -45,6 +45,9 @@ __all__ = [
     "deform",
     "deformations",
     "options",
+    "outline",
+    "simplify",
+    "simplify_path",
     "use_threads",
     "warp_path",
     "warp_svg",
@@ -84,6 +87,40 @@ def warp_svg(
     """
     chosen, given = _divided(deformation, values)
     return chosen.warp_svg(svg, name=name, **given)
+
+
+def simplify(
+    svg: Any,
+    /,
+    *,
+    corners: Any = None,
+    polylines: bool = False,
+    name: Union[str, "os.PathLike[str]", None] = None,
+    **options: Any,
+) -> Warped:
+    """Gives the paths of a drawing the fewest nodes within `tolerance`, as `pathwarp simplify` does, and returns the file.
+
+    `svg` is what `warp_svg` takes. Joints that turn by more than `corners` degrees stay corners (15, of polylines 30). With `polylines`,
+    contours of straight lines become curves through their vertices.
+    """
+    edit = Deformation._edit("simplify", {"corners": corners, "polylines": polylines})
+    return edit.warp_svg(svg, name=name, **options)
+
+
+def simplify_path(d: Any, /, *, corners: Any = None, polylines: bool = False, **options: Any) -> WarpedPath:
+    """The same for a path, given as for `warp_path`.
+
+        >>> import pathwarp
+        >>> pathwarp.simplify_path("M0,0 C5,0 10,.5 15,1.5 C20,2.5 25,4 30,6 L60,60", tolerance=0.1)
+        'M0,0 C10.04,0 20.05,2.02 30,6 L60,60'
+    """
+    edit = Deformation._edit("simplify", {"corners": corners, "polylines": polylines})
+    return edit.warp_path(d, **options)
+
+
+def outline(svg: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **options: Any) -> Warped:
+    """Turns the strokes and text of a drawing into filled outlines, as `pathwarp outline` does, and returns the file."""
+    return Deformation._edit("outline", {}).warp_svg(svg, name=name, **options)
 
 
 def _divided(deformation: Steps, values: Mapping[str, Any]) -> Tuple[Deformation, Dict[str, Any]]:

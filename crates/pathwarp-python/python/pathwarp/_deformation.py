@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union, cast, overload
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -114,6 +114,11 @@ class Deformation:
         else:
             text, folder = recipe, ""
         return cls._of(_native.Warper.from_recipe(text, folder, allow_external), [])
+
+    @classmethod
+    def _edit(cls, name: str, values: Mapping[str, Any]) -> "Deformation":
+        """What the command `name` does to shapes without bending them."""
+        return cls._of(_native.Warper.edit(name, _values.options(values)), [])
 
     def to_recipe(self, folder: Union[str, "os.PathLike[str]"] = "") -> str:
         """The text of a recipe file in `folder`, for `pathwarp run`."""

@@ -2,12 +2,13 @@
 
 use super::arcs::with_arcs;
 use super::digits::{Digits, allowed};
+use super::edit::Edit;
 use super::stubs;
-use crate::source::number::arcs_data;
+use crate::source::number::{arcs_data, path_data};
 use pathwarp::kurbo::BezPath;
-use pathwarp::map::Map;
+use pathwarp::map::{AffineMap, Map, Undeclared};
 use pathwarp::outline::Subpath;
-use pathwarp::refit::{self, PathReport, SharedEdges, suited};
+use pathwarp::refit::{self, PathReport, RefittedPath, SharedEdges, suited};
 use pathwarp::{GeometryError, Outline};
 
 /// The image of a path.
@@ -20,6 +21,33 @@ pub struct WarpedPath {
     pub path: BezPath,
     /// Statistics.
     pub report: PathReport,
+}
+
+/// Edits a path and writes it as path data, as [`Document::warp`](crate::Document::warp) with the option
+/// [`edit`](crate::WarpOptions::edit) writes that of a `<path>`. It has no stroke that could become an outline.
+///
+/// # Errors
+/// A coordinate is not finite, or the work exceeds the budget of the options.
+pub fn edit_path(
+    outline: &Outline,
+    edit: Edit,
+    options: &refit::Options,
+    precision: Option<u8>,
+) -> Result<WarpedPath, GeometryError> {
+    if let Edit::Simplify { corner, .. } = edit {
+        let options = options.clone().with_merge(true).with_corner(corner);
+        let simple = match edit.edited(outline, &options)? {
+            None => warp_path(outline, &Undeclared, &options, precision)?,
+            Some(RefittedPath { path, report, .. }) => {
+                let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
+                WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report }
+            }
+        };
+        if simple.report.segments_out < simple.report.segments_in {
+            return Ok(simple);
+        }
+    }
+    warp_path(outline, &AffineMap::IDENTITY, options, precision)
 }
 
 /// Maps a path and writes its image as path data, as [`Document::warp`](crate::Document::warp) writes that of a `<path>` in root

@@ -1,0 +1,41 @@
+"""Edits of shapes: few nodes, outlines."""
+
+import math
+import re
+
+import pathwarp
+import pytest
+
+CIRCLE = [(100 * math.cos(t), 100 * math.sin(t)) for t in (2 * math.pi * i / 72 for i in range(72))]
+
+
+def drawing(content):
+    return f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='-150 -150 300 300'>{content}</svg>"
+
+
+def test_a_polygon_becomes_a_round_curve():
+    d = "M" + " ".join(f"{x:.3f},{y:.3f}" for x, y in CIRCLE) + "Z"
+    path = pathwarp.simplify_path(d, polylines=True, tolerance=0.1)
+    numbers = [float(n) for n in re.findall(r"-?[\d.]+", path)]
+    assert path.count("C") <= 5 and path.report["segments_in"] == 72
+    assert all(abs(math.hypot(*p) - 100) < 0.2 for p in zip(numbers[::6], numbers[1::6]))
+    done = pathwarp.simplify(drawing(f"<path id='a' d='{d}'/>"), polylines=True, tolerance=0.1)
+    assert done.count(b"C") <= 5 and done.report["shapes"][0]["segments_out"] <= 5
+
+
+def test_what_gets_no_fewer_nodes_stays():
+    svg = drawing("<rect width='3' height='4'/><path d='M0 0l9 0l0 9z'/>")
+    assert pathwarp.simplify(svg) == svg.encode()
+    assert pathwarp.simplify_path("M0,0 L9,0 L9,9 Z").count("L") == 2
+
+
+def test_strokes_become_outlines():
+    done = pathwarp.outline(drawing("<path d='M-50 0H50' stroke='red' stroke-width='10'/>"), structure="flatten")
+    assert b"stroke-width" not in done and done.report["shapes"][0]["outlined_strokes"] == 1
+
+
+def test_misspelt_parameters_are_said():
+    with pytest.raises(pathwarp.UsageError, match="did you mean `tolerance`"):
+        pathwarp.simplify(drawing(""), tolerence=1)
+    with pytest.raises(pathwarp.UsageError, match="corners"):
+        pathwarp.simplify_path("M0,0 H9", corners="wide")
