@@ -9,8 +9,8 @@ use kurbo::{BezPath, Point};
 /// Edges of a contour that is a polygon on purpose rather than a curve in small steps.
 const FEW_EDGES: usize = 4;
 
-/// Smooth curves through the vertices of contours of straight lines, within `options.tolerance` of each vertex: corners are vertices at
-/// which a contour turns by more than [`corner`](Options::corner). `None` if a contour has something else than lines, has no more than
+/// Smooth curves through the vertices of contours of straight lines, within a contour's tolerance of each vertex: that of `contours`, or
+/// `options.tolerance` for those beyond its end. Corners are vertices at which a contour turns by more than [`corner`](Options::corner). `None` if a contour has something else than lines, has no more than
 /// four, or shares an edge with another, which would come apart.
 ///
 /// # Errors
@@ -21,23 +21,28 @@ const FEW_EDGES: usize = 4;
 ///
 /// let hexagon = Outline::from_svg("M10,0L5,8.66L-5,8.66L-10,0L-5,-8.66L5,-8.66Z")?;
 /// let options = Options::new(0.1).with_corner(70.0_f64.to_radians());
-/// let round = through_vertices(&hexagon, &options)?.unwrap();
+/// let round = through_vertices(&hexagon, &options, &[])?.unwrap();
 /// assert!(round.report.segments_out < 6);
 /// # Ok::<(), pathwarp::Error>(())
 /// ```
-pub fn through_vertices(outline: &Outline, options: &Options) -> Result<Option<RefittedPath>, GeometryError> {
+pub fn through_vertices(
+    outline: &Outline,
+    options: &Options,
+    contours: &[f64],
+) -> Result<Option<RefittedPath>, GeometryError> {
     let is_line = |s: &Seg| matches!(s, Seg::Line(_));
     let stays =
         |s: &Subpath| s.segs.len() <= FEW_EDGES || !s.segs.iter().all(is_line) || options.shared.holds_any(&s.segs);
     if outline.subpaths.iter().any(stays) {
         return Ok(None);
     }
-    let fitter = bezierfit::Options::new(options.tolerance).with_corner(options.corner);
     let (mut path, mut report) = (BezPath::new(), PathReport::default());
-    for s in &outline.subpaths {
+    for (i, s) in outline.subpaths.iter().enumerate() {
+        let tolerance = contours.get(i).copied().unwrap_or(options.tolerance);
+        let fitter = bezierfit::Options::new(tolerance).with_corner(options.corner);
         let points: Vec<Point> = [s.start].into_iter().chain(s.segs.iter().map(Seg::end)).collect();
         let fitted = fit_points(&points, s.closed, &fitter).map_err(refused)?;
-        report.add(reported(&fitted, options.tolerance));
+        report.add(reported(&fitted, tolerance));
         report.segments_in += s.segs.len();
         path.extend(fitted.path);
     }

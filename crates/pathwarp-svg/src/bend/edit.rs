@@ -44,9 +44,10 @@ impl Edit {
         self,
         outline: &Outline,
         options: &refit::Options,
+        contours: &[f64],
     ) -> Result<Option<RefittedPath>, GeometryError> {
         match self {
-            Self::Simplify { polylines: true, .. } => through_vertices(outline, options),
+            Self::Simplify { polylines: true, .. } => through_vertices(outline, options, contours),
             Self::Simplify { .. } | Self::Outline => Ok(None),
         }
     }

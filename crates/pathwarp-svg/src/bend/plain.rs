@@ -36,7 +36,7 @@ pub fn edit_path(
 ) -> Result<WarpedPath, GeometryError> {
     if let Edit::Simplify { corner, .. } = edit {
         let options = options.clone().with_merge(true).with_corner(corner);
-        let simple = match edit.edited(outline, &options)? {
+        let simple = match edit.edited(outline, &options, &[])? {
             None => warp_path(outline, &Undeclared, &options, precision)?,
             Some(RefittedPath { path, report, .. }) => {
                 let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };

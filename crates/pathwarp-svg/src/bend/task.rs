@@ -113,13 +113,11 @@ impl<'a> PartTask<'a> {
     pub(super) fn bend(&self, outline: &Outline, contours: &[f64]) -> Result<BentPath, GeometryError> {
         let spans = self.options().refit.shared.spans(outline, contours);
         let options = self.refit(self.allowed()).with_spans(self.digits.allowed(&spans));
-        if let Some(edited) = self
-            .options()
-            .edit
-            .and_then(|e| e.edited(outline, &self.refit(allowed(self.finest, self.rounding))).transpose())
-        {
-            let RefittedPath { path, report, .. } = edited?;
-            return Ok(BentPath { path: self.to_local(path), data: None, report });
+        if let Some(edit) = self.options().edit {
+            let held: Vec<f64> = (0..contours.len()).map(|i| self.allowed_of(i)).collect();
+            if let Some(RefittedPath { path, report, .. }) = edit.edited(outline, &self.refit(self.allowed()), &held)? {
+                return Ok(BentPath { path: self.to_local(path), data: None, report });
+            }
         }
         if let Some((image, report)) = with_arcs(self.map, outline, &options)? {
             let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };

@@ -3,12 +3,13 @@
 use crate::chore::{ChoreError, at};
 use crate::files;
 use crate::shell::{pipe, stages, words};
+use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The guides, whose pictures are named relative to them.
-const GUIDES: [&str; 3] = ["README.md", "docs/lettering.md", "docs/solid.md"];
+const GUIDES: [&str; 4] = ["README.md", "docs/lettering.md", "docs/paths.md", "docs/solid.md"];
 /// In the command of a picture of a model.
 const PREVIEW: &str = "--preview out.png";
 /// In a command on a folder of drawings.
@@ -32,6 +33,12 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             }
             if command.contains(PREVIEW) {
                 preview(root, program, &png, command)?;
+                continue;
+            }
+            if let [_, simplify, source, ..] = &words(command)[..]
+                && simplify == "simplify"
+            {
+                nodes(root, program, &png, (source, command))?;
                 continue;
             }
             let mut drawing = Vec::new();
@@ -82,6 +89,35 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     let file = png.display().to_string();
     let render = ["render", "-", "--width", WIDTH, "--background", "white", "-o", &file].map(str::to_owned);
     pipe(root, program, &render, sheet.as_bytes()).map(drop)
+}
+
+/// The picture of a command that makes nodes fewer: the drawing before and after, with its nodes.
+fn nodes(root: &Path, program: &Path, png: &Path, (source, command): (&str, &str)) -> Result<(), ChoreError> {
+    /// Radius of a node, and what one drawing is moved down by, in shares of its height.
+    const NODE: f64 = 0.008;
+    const DOWN: f64 = 1.05;
+    let before = fs::read_to_string(root.join(source)).map_err(at(&root.join(source)))?;
+    let stage = stages(command).remove(0);
+    let after = String::from_utf8(pipe(root, program, &stage, &[])?).map_err(|e| e.to_string())?;
+    let view = before.split_once("viewBox=\"0 0 ").and_then(|v| v.1.split_once('"')).ok_or("no viewBox")?.0;
+    let (width, height) = view.split_once(' ').ok_or("no viewBox")?;
+    let height: f64 = height.parse().map_err(|_| "no viewBox")?;
+    let mut sheet = String::new();
+    for (row, drawing) in [&before, &after].into_iter().enumerate() {
+        let _ = write!(sheet, "<g transform='translate(0 {})'>", row as f64 * DOWN * height);
+        for data in drawing.split(" d=\"").skip(1).filter_map(|d| d.split_once('"')).map(|d| d.0) {
+            let _ = write!(sheet, "<path fill='#c9d3e6' d='{data}'/>");
+            let outline = Outline::from_svg(data).map_err(|e| e.to_string())?;
+            for p in outline.segs().map(Seg::start) {
+                let _ = write!(sheet, "<circle fill='#c2321f' cx='{}' cy='{}' r='{}'/>", p.x, p.y, NODE * height);
+            }
+        }
+        sheet.push_str("</g>");
+    }
+    let open = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {}'>", (1.0 + DOWN) * height);
+    let file = png.display().to_string();
+    let render = ["render", "-", "--width", WIDTH, "--background", "white", "-o", &file].map(str::to_owned);
+    pipe(root, program, &render, format!("{open}{sheet}</svg>").as_bytes()).map(drop)
 }
 
 /// The picture of a command that draws one itself, and whose result is a model.
