@@ -14,6 +14,7 @@
 //! 5. **Break points** (`breaks`). The sixth root of error ÷ tolerance measures difficulty. Break points go to its quantiles,
 //!    with fewer pieces tried first and single break points bisected, until every piece fits.
 //! 6. **Merging** (`run`, `trial`, `distances`, `merge`), if asked for: the fewest cubics across smooth joints of several curves.
+//! 7. **Quadratics** (`spline`) instead of cubics, and a given number of pieces (`pieces`), which is a search for the tolerance.
 //!
 //! `limits` holds every threshold of these stages, with the reason for its value.
 

@@ -66,18 +66,24 @@ impl Report {
     #[inline]
     pub fn add_error(&mut self, error: f64, assurance: Assurance) {
         self.pieces.push(PieceReport { error, assurance });
+        self.add_bound(error, assurance);
+    }
+
+    fn add_bound(&mut self, error: f64, assurance: Assurance) {
         self.max_error = self.max_error.max(error);
         self.assurance = self.assurance.min(assurance);
     }
 
     /// Adds the report of another part.
     pub fn add(&mut self, part: Self) {
-        self.add_part(&part);
+        self.add_bound(part.max_error, part.assurance);
+        self.unresolved.extend(part.unresolved);
+        self.pieces.extend(part.pieces);
     }
 
+    /// The same, of a report that stays.
     pub(crate) fn add_part(&mut self, part: &Self) {
-        self.max_error = self.max_error.max(part.max_error);
-        self.assurance = self.assurance.min(part.assurance);
+        self.add_bound(part.max_error, part.assurance);
         self.unresolved.extend(&part.unresolved);
         self.pieces.extend(&part.pieces);
     }

@@ -16,14 +16,24 @@ use kurbo::{BezPath, Point, Vec2};
 const MOST: usize = 48;
 /// Stretches shorter than this share of a curve are not divided.
 const SHORTEST: f64 = 1e-6;
+/// Samples to a piece, at least, that measure an error: it has corners where the curvature of the curve or of the spline jumps.
+const CLOSELY: f64 = 64.0;
+/// By how much samples are refined for that, at most.
+const MOST_CLOSELY: f64 = 32.0;
+/// Error that is recorded for what fails a check.
+const MISSED: f64 = 1.001;
 /// Share of the residual along the tangent: it keeps the system regular.
 const ALONG: f64 = 0.02;
 
-/// A stretch of one of the curves of a run.
+/// Pieces of a run of several curves, at most.
+const TOGETHER: usize = 24;
+
+/// A stretch of one of the curves of a run, and the number of pieces that it needs alone.
 #[derive(Debug, Clone, Copy)]
 struct Span {
     curve: usize,
     t: [f64; 2],
+    pieces: usize,
 }
 
 /// Curves that follow each other smoothly, and the tolerance.
@@ -32,94 +42,154 @@ pub(crate) struct Run<'a, S> {
     pub(crate) tolerance: f64,
 }
 
-/// Samples of a stretch: points, the length up to each, and its share of the parameter.
+/// Samples of a stretch: points, the length up to each, and its share of the pieces by what the curves need alone.
 struct Samples {
     p: Vec<Point>,
     length: Vec<f64>,
-    param: Vec<f64>,
+    share: Vec<f64>,
+}
+
+/// Spans that are covered together.
+struct Covered {
+    spans: Vec<Span>,
+    ends: [BreakPoint; 2],
+    /// A line if there is none.
+    spline: Option<Spline>,
+    error: f64,
+    resolved: bool,
+}
+
+impl Covered {
+    fn pieces(&self) -> usize {
+        self.spline.as_ref().map_or(1, |s| s.c.len())
+    }
 }
 
 impl<S: Source> Run<'_, S> {
-    /// Appends the fewest quadratics from the current point of `path`.
+    /// Appends few quadratics from the current point of `path`: the fewest for each curve, then fewer for several together, as many as
+    /// gain by it.
     pub(crate) fn cover(
         &self,
         ends: [BreakPoint; 2],
         path: &mut BezPath,
         report: &mut Report,
     ) -> Result<(), NotFinite> {
-        let all = (0..self.curves.len()).map(|curve| Span { curve, t: [0.0, 1.0] }).collect();
-        let mut stack: Vec<(Vec<Span>, [BreakPoint; 2])> = vec![(all, ends)];
-        while let Some((spans, ends)) = stack.pop() {
-            let size = spans.iter().map(|s| s.t[1] - s.t[0]).fold(0.0, f64::max);
-            let last_resort = spans.len() == 1 && size < SHORTEST;
-            if self.fit(&spans, &ends, last_resort, path, report)? {
-                continue;
+        let mut alone = Vec::with_capacity(self.curves.len());
+        for (curve, source) in self.curves.iter().enumerate() {
+            let from = if curve == 0 { ends[0] } else { source.end(0.0)? };
+            let to = if curve + 1 == self.curves.len() { ends[1] } else { source.end(1.0)? };
+            self.alone(Span { curve, t: [0.0, 1.0], pieces: 1 }, [from, to], &mut alone)?;
+        }
+        let mut i = 0;
+        while i < alone.len() {
+            let mut group: Option<Covered> = None;
+            let (mut end, mut stride) = (i + 1, 1);
+            while end < alone.len() {
+                let to = (end + stride).min(alone.len());
+                let now = group.as_ref().map_or(alone[i].pieces(), Covered::pieces);
+                let most = now + alone[end..to].iter().map(Covered::pieces).sum::<usize>() - 1;
+                let spans: Vec<Span> = alone[i..to].iter().flat_map(|c| c.spans.iter().copied()).collect();
+                let is_line = |c: &Covered| c.spline.is_none();
+                let found = if now > TOGETHER || most > 2 * TOGETHER || alone[i..to].iter().any(is_line) {
+                    None
+                } else {
+                    self.together(spans, [alone[i].ends[0], alone[to - 1].ends[1]], most)?
+                };
+                match found {
+                    Some(found) => (group, end, stride) = (Some(found), to, 2 * stride),
+                    None if stride > 1 => stride = 1,
+                    None => break,
+                }
             }
-            let half = spans.len() / 2;
-            let (mut before, mut after) = (spans[..half].to_vec(), spans[half..].to_vec());
-            if let [Span { curve, t: [t0, t1] }] = spans[..] {
-                let mid = 0.5 * (t0 + t1);
-                (before, after) = (vec![Span { curve, t: [t0, mid] }], vec![Span { curve, t: [mid, t1] }]);
-            }
-            let Span { curve, t } = after[0];
-            let mid = self.curves[curve].end(t[0])?;
-            stack.push((after, [mid, ends[1]]));
-            stack.push((before, [ends[0], mid]));
+            group.as_ref().unwrap_or(&alone[i]).append(self.tolerance, path, report);
+            i = end;
         }
         Ok(())
     }
 
-    /// Appends a line or a spline for a stretch. Returns `false` if it needs too many pieces.
-    fn fit(
-        &self,
-        spans: &[Span],
-        ends: &[BreakPoint; 2],
-        last_resort: bool,
-        path: &mut BezPath,
-        report: &mut Report,
-    ) -> Result<bool, NotFinite> {
-        let mut samples = self.samples(spans, 2 * SPLINE_SAMPLES, ends)?;
-        if let Some(error) = samples.straight(STRAIGHT_TOLERANCE * self.tolerance) {
-            path.line_to(ends[1].p);
-            report.add_error(error, Assurance::Checked);
-            return Ok(true);
-        }
-        let (mut n, mut least) = (1, 1);
-        let mut found: Option<(Spline, f64)> = None;
-        while found.as_ref().is_none_or(|(s, _)| s.c.len() > least) {
-            // Upwards until one fits, then downwards.
-            let now = found.as_ref().map_or(n, |(s, _)| s.c.len() - 1);
-            let wanted = SPLINE_SAMPLES * now / spans.len();
-            if samples.p.len() <= wanted * spans.len() {
-                samples = self.samples(spans, wanted.next_power_of_two(), ends)?;
+    /// Appends what covers a curve by itself, divided if it needs too many pieces.
+    fn alone(&self, span: Span, ends: [BreakPoint; 2], out: &mut Vec<Covered>) -> Result<(), NotFinite> {
+        let mut stack = vec![(span, ends)];
+        while let Some((span, ends)) = stack.pop() {
+            let [t0, t1] = span.t;
+            let mut samples = self.samples(&[span], 2 * SPLINE_SAMPLES, &ends)?;
+            if let Some(error) = samples.straight(STRAIGHT_TOLERANCE * self.tolerance) {
+                out.push(Covered { spans: vec![span], ends, spline: None, error, resolved: true });
+                continue;
             }
-            match Spline::best(now, &samples, ends, self.tolerance) {
-                Ok(fits) => found = Some(fits),
-                Err(_) if found.is_some() => break,
-                Err(error) => {
-                    least = now + 1;
-                    if now >= MOST || last_resort {
-                        break;
+            // Upwards by the error, which goes with the third to fourth power of the length, then back to the least that fits.
+            let (mut n, mut too_few) = (1, 0);
+            let mut found = None;
+            while n <= MOST && too_few < n {
+                if samples.p.len() <= SPLINE_SAMPLES * n {
+                    samples = self.samples(&[span], (SPLINE_SAMPLES * n).next_power_of_two(), &ends)?;
+                }
+                match self.best(&[span], n, &samples, &ends)? {
+                    Ok(fits) => (found, n) = (Some(fits), n - 1),
+                    Err(_) if found.is_some() => break,
+                    Err(error) => {
+                        too_few = n;
+                        let more = n as f64 * (error / self.tolerance).min(1e6).powf(0.25) * 0.85;
+                        n = (more as usize).clamp(n + 1, 2 * n + 2);
                     }
-                    // The error goes with the third to fourth power of the length.
-                    let ratio = (error / self.tolerance).min(1e6).powf(0.25);
-                    n = ((now as f64 * ratio * 0.9) as usize).clamp(now + 1, 2 * now + 2).min(MOST);
                 }
             }
-        }
-        let Some((spline, error)) = found else {
-            if last_resort {
-                path.line_to(ends[1].p);
-                report.add_error(samples.straight(f64::INFINITY).unwrap_or(self.tolerance), Assurance::Checked);
-                report.unresolved.push(ends[0].p);
+            if let Some((spline, error)) = found {
+                let span = Span { pieces: spline.c.len(), ..span };
+                out.push(Covered { spans: vec![span], ends, spline: Some(spline), error, resolved: true });
+            } else if t1 - t0 < SHORTEST {
+                let error = samples.straight(f64::INFINITY).unwrap_or(self.tolerance);
+                out.push(Covered { spans: vec![span], ends, spline: None, error, resolved: error <= self.tolerance });
+            } else {
+                let t = 0.5 * (t0 + t1);
+                let mid = self.curves[span.curve].end(t)?;
+                stack.push((Span { t: [t, t1], ..span }, [mid, ends[1]]));
+                stack.push((Span { t: [t0, t], ..span }, [ends[0], mid]));
             }
-            return Ok(last_resort);
-        };
-        for k in 0..spline.c.len() {
-            path.quad_to(spline.c[k], spline.joint(k + 1));
-            report.add_error((error * REPORT_MARGIN).min(self.tolerance), Assurance::Checked);
         }
-        Ok(true)
+        Ok(())
+    }
+
+    /// The fewest pieces for several spans, if that is at most `most`.
+    fn together(&self, spans: Vec<Span>, ends: [BreakPoint; 2], most: usize) -> Result<Option<Covered>, NotFinite> {
+        let each = (SPLINE_SAMPLES * most).div_ceil(spans.len()).next_power_of_two().max(8);
+        let samples = self.samples(&spans, each, &ends)?;
+        let mut found = None;
+        for n in (1..=most).rev() {
+            match self.best(&spans, n, &samples, &ends)? {
+                Ok(fits) => found = Some(fits),
+                Err(_) => break,
+            }
+        }
+        Ok(found.map(|(spline, error)| Covered { spans, ends, spline: Some(spline), error, resolved: true }))
+    }
+
+    /// The best spline of `n` pieces with its error, measured at samples as close as it needs; otherwise the least error found.
+    fn best(
+        &self,
+        spans: &[Span],
+        n: usize,
+        samples: &Samples,
+        ends: &[BreakPoint; 2],
+    ) -> Result<Result<(Spline, f64), f64>, NotFinite> {
+        let (spline, error, u) = match Spline::best(n, samples, ends, self.tolerance) {
+            Ok(found) => found,
+            Err(error) => return Ok(Err(error)),
+        };
+        let step = u.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+        let by = (step * CLOSELY).ceil().min(MOST_CLOSELY) as usize;
+        if by < 2 {
+            return Ok(Ok((spline, error)));
+        }
+        let closer = self.samples(spans, by * (samples.p.len() - 1) / spans.len(), ends)?;
+        let mut feet: Vec<f64> = (0..closer.p.len())
+            .map(|i| {
+                let (k, part) = (i / by, (i % by) as f64 / by as f64);
+                u[k] + (u[(k + 1).min(u.len() - 1)] - u[k]) * part
+            })
+            .collect();
+        let error = spline.checked(&closer, &mut feet).filter(|e| *e <= SPLINE_ACCEPTED * self.tolerance);
+        Ok(error.map(|e| (spline, e)).ok_or(MISSED * self.tolerance))
     }
 
     /// `each` intervals between samples of every span.
@@ -139,8 +209,28 @@ impl<S: Source> Run<'_, S> {
             }
         }
         p[all - 1] = ends[1].p;
-        let param = (0..all).map(|i| i as f64 / (all - 1) as f64).collect();
-        Ok(Samples { p, length, param })
+        let pieces: usize = spans.iter().map(|s| s.pieces).sum();
+        let mut share = vec![0.0];
+        for span in spans {
+            let (from, step) = (share[share.len() - 1], span.pieces as f64 / (pieces * each) as f64);
+            share.extend((1..=each).map(|i| from + step * i as f64));
+        }
+        Ok(Samples { p, length, share })
+    }
+}
+
+impl Covered {
+    /// Appends its line or its quadratics.
+    fn append(&self, tolerance: f64, path: &mut BezPath, report: &mut Report) {
+        let error = if self.resolved { (self.error * REPORT_MARGIN).min(tolerance) } else { self.error };
+        match &self.spline {
+            None => path.line_to(self.ends[1].p),
+            Some(s) => (0..s.c.len()).for_each(|k| path.quad_to(s.c[k], s.joint(k + 1))),
+        }
+        (0..self.pieces()).for_each(|_| report.add_error(error, Assurance::Checked));
+        if !self.resolved {
+            report.unresolved.push(self.ends[0].p);
+        }
     }
 }
 
@@ -154,7 +244,7 @@ impl Samples {
         ((advances || limit == f64::INFINITY) && worst <= limit).then_some(worst)
     }
 
-    /// Shares along which pieces are laid out to begin with: of the parameter, the length, and the turn to the power that makes pieces
+    /// Shares along which pieces are laid out to begin with: by what the curves need alone, the length, and the turn to the power that makes pieces
     /// of circles of different radii equally hard.
     fn layouts(&self) -> [Vec<f64>; 3] {
         let n = self.p.len();
@@ -170,7 +260,7 @@ impl Samples {
             turned[i] = turned[i - 1] + step.powf(0.25) * turn.powf(0.75) + 1e-3 * step.powf(0.25);
         }
         let shares = |v: &[f64]| v.iter().map(|x| x / v[n - 1].max(f64::MIN_POSITIVE)).collect();
-        [self.param.clone(), shares(&self.length), shares(&turned)]
+        [self.share.clone(), shares(&self.length), shares(&turned)]
     }
 }
 
@@ -217,8 +307,8 @@ impl Spline {
         r.hypot().copysign(d.cross(r))
     }
 
-    /// The best spline of `n` pieces with its checked error; otherwise the least error found.
-    fn best(n: usize, samples: &Samples, ends: &[BreakPoint; 2], tolerance: f64) -> Result<(Self, f64), f64> {
+    /// The best spline of `n` pieces with its error and the foot points of the samples; otherwise the least error found.
+    fn best(n: usize, samples: &Samples, ends: &[BreakPoint; 2], tolerance: f64) -> Result<(Self, f64, Vec<f64>), f64> {
         let mut least = f64::INFINITY;
         for layout in samples.layouts() {
             let mut u: Vec<f64> = layout.iter().map(|s| s * n as f64).collect();
@@ -228,13 +318,13 @@ impl Spline {
                 && let Some(checked) = spline.checked(samples, &mut u)
                 && checked <= SPLINE_ACCEPTED * tolerance
             {
-                return Ok((spline, checked));
+                return Ok((spline, checked, u));
             }
             if n == 1 {
                 break;
             }
         }
-        Err(least.max(1.001 * tolerance))
+        Err(least.max(MISSED * tolerance))
     }
 
     /// Fits in rounds from the foot points `u`. Returns the largest error at the samples.

@@ -5,7 +5,7 @@
 
 mod common;
 
-use bezierfit::{Fitted, Offset, Options, Source, fit, simplify};
+use bezierfit::{Degree, Fitted, Offset, Options, PathSource, Source, fit, fit_points, simplify};
 use common::distance;
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveNearest, PathSeg, Point, Vec2};
 use std::cell::Cell;
@@ -47,7 +47,8 @@ fn polyline(points: &[(f64, f64)], close: bool) -> BezPath {
     path
 }
 
-/// kurbo's issues 601, 602, 603 and 604 panic, hang and leave the drawing on polygons like these; 342 was about lines among curves.
+/// kurbo's issues 601 and 603 (a panic on a sliver), 602 (a hang on a fold) and 604 (a control point 19,000 units away on a nearly flat
+/// polygon), with their coordinates and tolerances.
 #[test]
 fn polygons_keep_their_corners() {
     let sliver = polyline(&[(1.0, 0.7), (4.1, 2.0), (4.4, 2.1), (0.0, 0.0)], true);
@@ -59,12 +60,72 @@ fn polygons_keep_their_corners() {
             assert_eq!(simple.path, path, "{tolerance}");
         }
     }
+    // The same polygons as one curve, with what those fits were given: corners where its sides meet.
+    for path in [sliver_and_fold(0), sliver_and_fold(1)] {
+        let fitted = fit(&PathSource::new(&path).unwrap(), &Options::new(2.0)).unwrap();
+        let error = distance(&PathSource::new(&path).unwrap(), &fitted.path);
+        assert!(error <= 2.0 && fitted.report.unresolved.is_empty(), "{error}");
+    }
     let mixed = BezPath::from_svg("M0 0H50C77.6 0 100 22.4 100 50V100").unwrap();
     let simple = simplify(&mixed, &Options::new(0.01)).unwrap();
     assert_eq!(simple.path.segments().count(), 3);
 }
 
-/// kurbo's issues 344, 300 and 268 hang or give NaN on such offsets: an end without a handle, curves on one line, radii of curvature
+/// The sliver of kurbo's issue 601 and the fold of 602.
+fn sliver_and_fold(which: usize) -> BezPath {
+    match which {
+        0 => polyline(&[(1.0, 0.7), (4.1, 2.0), (4.4, 2.1), (0.0, 0.0)], true),
+        _ => polyline(&[(10.0, 2.0), (20.0, 0.0), (0.0, 0.0)], false),
+    }
+}
+
+/// As points of smooth curves, too, nothing leaves their neighbourhood: kurbo's issues 604 and 605, where end tangents were missing.
+#[test]
+fn flat_polygons_stay_flat() {
+    let points = [(415.74, 324.0), (440.0, 324.5), (460.0, 325.49), (480.0, 325.0), (493.93, 324.0)].map(Point::from);
+    for tolerance in [0.01, 0.25, 2.0, 16.0] {
+        for degree in [Degree::Cubic, Degree::Quadratic] {
+            let options = Options::new(tolerance).with_degree(degree).with_corner(2.0);
+            let fitted = fit_points(&points, false, &options).unwrap();
+            assert!(points.iter().all(|p| common::off(*p, &fitted.path) <= tolerance));
+            let bounds = kurbo::Shape::bounding_box(&fitted.path);
+            assert!(bounds.x0 >= 415.7 && bounds.x1 <= 494.0 && bounds.y0 > 323.0 && bounds.y1 < 326.5, "{bounds:?}");
+        }
+    }
+}
+
+/// kurbo's issue 268: a path of smooth runs and corners, simplified at 0.18 (crosses its corners) and 0.3 (a panic).
+#[test]
+fn corners_between_smooth_runs_are_not_crossed() {
+    // Petals of many cubics around a middle, corners where they meet.
+    let mut path = BezPath::new();
+    let at = |u: f64| {
+        let (r, a) = (100.0 * (5.0 * u).sin().abs(), u);
+        Point::new(200.0 + r * a.cos(), 200.0 + r * a.sin())
+    };
+    let along = |u: f64| (at(u + 1e-6) - at(u - 1e-6)) / 2e-6;
+    let petal = std::f64::consts::PI / 5.0;
+    let n = 24;
+    path.move_to(at(0.0));
+    for k in 0..10 * n {
+        let [u, v] = [k, k + 1].map(|i| petal * f64::from(i) / f64::from(n));
+        let [from, to] = [along(u + 2e-6), along(v - 2e-6)].map(|d| d * (petal / f64::from(n) / 3.0));
+        path.curve_to(at(u) + from, at(v) - to, at(v));
+    }
+    path.close_path();
+    for tolerance in [0.18, 0.3] {
+        let simple = simplify(&path, &Options::new(tolerance)).unwrap();
+        let error = distance(&PathSource::new(&path).unwrap(), &simple.path);
+        assert!(error <= tolerance, "{error}");
+        assert!(simple.path.segments().count() <= 40, "{}", simple.path.segments().count());
+        for k in 0..10 {
+            let corner = at(petal * f64::from(k));
+            assert!(simple.path.segments().any(|s| s.start().distance(corner) < 1e-9));
+        }
+    }
+}
+
+/// kurbo's issues 344 (at −8 within 0.01) and 300 hang or give NaN on such offsets: an end without a handle, curves on one line, radii of curvature
 /// below the distance.
 #[test]
 fn offsets_break_at_their_cusps() {

@@ -15,17 +15,25 @@ pub fn distance(source: &impl Source, path: &BezPath) -> f64 {
     const SAMPLES: usize = 4000;
     let curve: Vec<Point> = (0..=SAMPLES).map(|i| source.eval(i as f64 / SAMPLES as f64).0).collect();
     let there = curve.iter().map(|p| off(*p, path)).fold(0.0, f64::max);
-    // The way back: from the nearest sample on to the nearest point beside it.
+    // The way back: from samples that are nearer than their neighbours on to the nearest point beside them.
     let nearest = |p: Point| {
-        let d = |t: f64| source.eval(t.clamp(0.0, 1.0)).0.distance(p);
-        let i = (0..=SAMPLES).min_by(|i, j| curve[*i].distance_squared(p).total_cmp(&curve[*j].distance_squared(p)));
-        let i = i.unwrap_or(0) as f64 / SAMPLES as f64;
-        let (mut low, mut high) = (i - 1.0 / SAMPLES as f64, i + 1.0 / SAMPLES as f64);
-        for _ in 0..40 {
-            let (a, b) = (low + 0.38 * (high - low), high - 0.38 * (high - low));
-            *if d(a) < d(b) { &mut high } else { &mut low } = if d(a) < d(b) { b } else { a };
+        let square: Vec<f64> = curve.iter().map(|q| q.distance_squared(p)).collect();
+        let mut best = square.iter().copied().fold(f64::INFINITY, f64::min).sqrt();
+        for i in 0..=SAMPLES {
+            let [before, after] = [i.saturating_sub(1), (i + 1).min(SAMPLES)];
+            let reach = best + curve[i].distance(curve[before]).max(curve[i].distance(curve[after]));
+            if square[i] > square[before] || square[i] > square[after] || square[i] > reach * reach {
+                continue;
+            }
+            let d = |t: f64| source.eval(t).0.distance(p);
+            let [mut low, mut high] = [before, after].map(|k| k as f64 / SAMPLES as f64);
+            for _ in 0..40 {
+                let (a, b) = (low + 0.38 * (high - low), high - 0.38 * (high - low));
+                *if d(a) < d(b) { &mut high } else { &mut low } = if d(a) < d(b) { b } else { a };
+            }
+            best = best.min(d(low));
         }
-        d(low).min(d(i))
+        best
     };
     let places = path.segments().flat_map(|s| (0..=40).map(move |i| s.eval(f64::from(i) / 40.0)));
     there.max(places.map(nearest).fold(0.0, f64::max))
