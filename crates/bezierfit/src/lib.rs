@@ -21,6 +21,8 @@
 // Loops over eight lanes run by index through several arrays at once, the form that LLVM vectorises.
 #![allow(clippy::needless_range_loop)]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
+// The types without it are `parts`.
+#![allow(missing_debug_implementations)]
 
 mod breaks;
 mod chebyshev;

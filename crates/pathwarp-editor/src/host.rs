@@ -5,6 +5,7 @@ use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_svg::Document;
+use std::fmt;
 use std::path::Path;
 
 /// The program around the editor. Errors are sentences for the user.
@@ -48,6 +49,15 @@ pub struct Opened {
     pub recipe: Recipe,
     /// The file is the result of an earlier run, so saving replaces it.
     pub is_result: bool,
+}
+
+impl fmt::Debug for Opened {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Opened")
+            .field("recipe", &self.recipe)
+            .field("is_result", &self.is_result)
+            .finish_non_exhaustive()
+    }
 }
 
 /// A drawing, ready to be bent again and again.
@@ -98,6 +108,7 @@ pub enum Fineness {
 }
 
 /// A drawing under a recipe.
+#[derive(Debug)]
 pub struct Bent {
     /// The text of the result.
     pub svg: String,

@@ -10,6 +10,7 @@ use lyon_tessellation::{BuffersBuilder, FillOptions, FillRule, FillTessellator, 
 use pathwarp::kurbo::{Point, Rect};
 
 /// Triangles in the plane of the drawing.
+#[derive(Debug)]
 pub struct FlatMesh {
     /// Vertices.
     pub points: Vec<Point>,

@@ -2,6 +2,7 @@
 
 use kurbo::BezPath;
 use pathwarp::budget::Limits;
+use std::fmt;
 
 /// Resolution of the pictures that stand for filters, in pixels per inch, if none is given: the usual one for print.
 pub(crate) const PRINT: f64 = 300.0;
@@ -17,6 +18,15 @@ pub struct Options<'a> {
     pub picture_dpi: Option<f64>,
     /// Limits on the pictures, embedded ones and those that stand for filters.
     pub limits: Limits,
+}
+
+impl fmt::Debug for Options<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Options")
+            .field("picture_dpi", &self.picture_dpi)
+            .field("limits", &self.limits)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Default for Options<'_> {

@@ -12,6 +12,7 @@ use pathwarp::Error;
 use pathwarp::deform::{Built, Deformation, Info};
 use pathwarp::map::{CreaseKind, Map as _};
 use pathwarp::param::{Axis, Settings};
+use std::fmt;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -22,6 +23,12 @@ pub struct Plugin {
     version: u32,
     abilities: Abilities,
     program: Arc<Program>,
+}
+
+impl fmt::Debug for Plugin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Plugin").field("name", &self.info.name).field("version", &self.version).finish_non_exhaustive()
+    }
 }
 
 impl Plugin {

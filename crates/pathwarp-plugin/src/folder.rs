@@ -14,7 +14,7 @@ pub const FOLDER_VARIABLE: &str = "PATHWARP_PLUGINS";
 const PREFIX: &str = "pathwarp-";
 
 /// The plug-ins that were found.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Found {
     /// Those that can be used, by name.
     pub plugins: Vec<Plugin>,

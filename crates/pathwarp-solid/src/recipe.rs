@@ -8,6 +8,7 @@ use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded, Limits};
 use pathwarp::recipe::Recipe;
 use pathwarp::{Error, GeometryError};
+use std::fmt;
 use std::sync::Arc;
 
 /// A recipe with every parameter settled.
@@ -21,6 +22,12 @@ pub struct BuiltRecipe3 {
     pub frames: Vec<Frame3>,
     /// What searches of inverses spend.
     budget: Arc<Budget>,
+}
+
+impl fmt::Debug for BuiltRecipe3 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("BuiltRecipe3").field("map", &self.map).field("frames", &self.frames).finish_non_exhaustive()
+    }
 }
 
 impl BuiltRecipe3 {

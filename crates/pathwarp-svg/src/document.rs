@@ -369,6 +369,7 @@ impl Document {
     /// As [`Document::warp`].
     pub fn warp_each(&self, bends: &[(&dyn Map, &WarpOptions)]) -> Result<WarpedDocument, Error> {
         let each = bends.iter().map(|(map, options)| Bend::new(*map, (*options).clone())).collect();
+        bends.iter().try_for_each(|(_, options)| options.refit.check())?;
         let document = bends.first().map_or_else(|| WarpOptions::new(refit::Options::new(1.0)), |b| b.1.clone());
         let bends = &Bends::new(&self.drawing.source, each, &document);
         // If nothing moves, return the source unchanged.

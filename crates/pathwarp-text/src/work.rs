@@ -10,6 +10,7 @@ use skrifa::raw::tables::glyf::{Glyf, Glyph};
 use skrifa::raw::tables::loca::Loca;
 use skrifa::{FontRef, GlyphId};
 use std::collections::HashMap;
+use std::fmt;
 
 /// Most work of one glyph. Ornaments and coloured glyphs of sound fonts take some ten thousand.
 pub const MOST_WORK: u64 = 200_000;
@@ -29,6 +30,12 @@ pub struct GlyphWork<'a> {
     /// By the address of the paint.
     paints: HashMap<usize, u64>,
     coloured: HashMap<u32, u64>,
+}
+
+impl fmt::Debug for GlyphWork<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("GlyphWork").field("glyphs", &self.glyphs).finish_non_exhaustive()
+    }
 }
 
 impl<'a> GlyphWork<'a> {

@@ -42,7 +42,19 @@ pub enum Error {
     },
     /// The geometry forbids the deformation.
     #[error(transparent)]
-    Geometry(#[from] GeometryError),
+    Geometry(GeometryError),
+    /// A tolerance that no curve can keep, or every curve does.
+    #[error("{}", GeometryError::Tolerance(*.0))]
+    Tolerance(f64),
+}
+
+impl From<GeometryError> for Error {
+    fn from(e: GeometryError) -> Self {
+        match e {
+            GeometryError::Tolerance(tolerance) => Self::Tolerance(tolerance),
+            e => Self::Geometry(e),
+        }
+    }
 }
 
 /// The drawing, or a path that controls the deformation, does not allow it.
@@ -162,6 +174,9 @@ pub enum GeometryError {
     /// Warping takes more work than a limit allows.
     #[error("warping takes {0}")]
     Limit(Exceeded),
+    /// A tolerance that no curve can keep, or every curve does: [`Error::Tolerance`].
+    #[error("the tolerance {0} is not a positive, finite number; give the largest distance that is allowed")]
+    Tolerance(f64),
     /// A map has no inverse.
     #[error("{what} has no inverse: {why}")]
     NoInverse {

@@ -53,11 +53,7 @@ pub mod refit;
 pub mod search;
 pub mod solve;
 
+pub use bezierfit as fit;
 pub use error::{Error, GeometryError};
 pub use kurbo;
 pub use outline::{Outline, Seg, Subpath};
-
-/// The README's examples, tested.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/library.md")]
-struct Readme;

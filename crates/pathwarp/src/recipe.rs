@@ -26,7 +26,7 @@ use crate::ambiguity::{SAMPLES, ambiguity};
 use crate::budget::{Budget, Limits};
 use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
-use crate::map::{Chain, Class, CreasedInverse, Map, NewtonInverse};
+use crate::map::{Chain, Class, Map, inverse_over};
 use crate::outline::Outline;
 use crate::outline::Seg;
 use crate::param::{Args, Frame, Kind, Param};
@@ -81,7 +81,7 @@ pub struct Recipe {
 }
 
 /// A recipe with every parameter settled.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct BuiltRecipe {
     /// All steps composed.
     pub map: Chain,
@@ -109,7 +109,7 @@ pub struct Portion<'a> {
 }
 
 /// A recipe whose steps hold for parts of the artwork, with every parameter settled.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct BuiltParts {
     /// All steps in order, as for artwork that all of them hold for.
     pub whole: BuiltRecipe,
@@ -450,10 +450,7 @@ type Counting<'a> = (&'a dyn Fn(&BuiltRecipe, &Portion<'_>) -> Result<(), Geomet
 
 /// The inverse of a map: its closed form, or Newton's method over the frame.
 fn inverse(built: &Built, frame: &Frame, budget: &Arc<Budget>) -> Arc<dyn Map> {
-    /// Distance beyond the frame at which a solution is accepted, as a share of its diagonal: strokes and handles extend past it.
-    const REACH: f64 = 0.25;
-    let over = || NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH);
-    let inverse = built.map.inverse().unwrap_or_else(|| CreasedInverse::of(&built.map, over()));
+    let inverse = inverse_over(&built.map, frame.rect);
     inverse.within(budget).unwrap_or(inverse)
 }
 

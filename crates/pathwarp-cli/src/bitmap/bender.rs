@@ -33,6 +33,7 @@ const SEARCHED: f64 = 500.0;
 const SEARCHED_STRICTLY: f64 = 2000.0;
 
 /// Bends the bitmaps and gradients of drawings by one map.
+#[derive(Debug)]
 pub struct Bender {
     map: Arc<dyn Map>,
     /// Pixels per inch; `None`: as many as keep every detail.

@@ -4,7 +4,7 @@ use pathwarp::kurbo::{Point, Vec2};
 use pathwarp::map::{Chain, Creases, Jet, Map};
 
 /// A recipe built for some points: the map, and where it is defined.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct PointMap {
     map: Chain,
     creases: Creases,

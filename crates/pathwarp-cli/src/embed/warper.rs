@@ -20,6 +20,7 @@ use pathwarp::param::{Args, Frame, Kind};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit::{self, Assurance};
 use pathwarp_svg::{Edit, WarpedPath};
+use std::fmt;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -45,8 +46,15 @@ pub struct Warper {
     stop: Option<&'static AtomicBool>,
 }
 
+impl fmt::Debug for Warper {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Warper").field("recipe", &self.typed).finish_non_exhaustive()
+    }
+}
+
 /// The image of a path.
 #[derive(Debug, Clone, PartialEq)]
+#[must_use]
 pub struct Path {
     /// The path and its statistics.
     pub path: WarpedPath,
@@ -60,6 +68,7 @@ pub struct Path {
 
 /// A warped drawing or picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[must_use]
 pub struct Drawing {
     /// The file.
     pub bytes: Vec<u8>,

@@ -10,6 +10,7 @@
 use super::image_warp::in_pixels;
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Creases, Jet, Map};
+use std::fmt;
 
 /// Pixels of the result per side of a cell.
 const PIXELS: f64 = 2.0;
@@ -41,6 +42,12 @@ pub struct GridInverse<'a> {
     cell: Vec2,
     /// A residual below this needs no second step.
     close: f64,
+}
+
+impl fmt::Debug for GridInverse<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("GridInverse").field("map", &self.map).finish_non_exhaustive()
+    }
 }
 
 #[derive(Debug, Clone, Copy)]

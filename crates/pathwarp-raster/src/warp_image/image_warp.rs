@@ -5,7 +5,7 @@ use pathwarp::map::{Jet, Map};
 use tiny_skia::Pixmap;
 
 /// A bitmap, a map, and the part of the plane that the result shows.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct ImageWarp<'a> {
     /// The bitmap.
     pub source: &'a Pixmap,

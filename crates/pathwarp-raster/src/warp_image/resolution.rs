@@ -9,6 +9,7 @@ use super::shade::{Colors, Shade, shade};
 use crate::error::Error;
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use pathwarp::map::Map;
+use std::fmt;
 use tiny_skia::Pixmap;
 
 /// Pixels along each side of the first picture, without its margin.
@@ -77,6 +78,12 @@ pub struct SmoothShade<'a> {
     pub tolerance: ShadeTolerance,
     /// Largest number of pixels per unit of the plane, reached if nothing less suffices.
     pub finest: f64,
+}
+
+impl fmt::Debug for SmoothShade<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SmoothShade").field("map", &self.map).field("target", &self.target).finish_non_exhaustive()
+    }
 }
 
 impl SmoothShade<'_> {

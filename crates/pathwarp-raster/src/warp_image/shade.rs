@@ -10,6 +10,7 @@ use crate::pixmap::new_pixmap;
 use kurbo::{Affine, BezPath, Point};
 use pathwarp::budget::Limits;
 use pathwarp::map::{Gathered, Map};
+use std::fmt;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
 /// Largest error of a place in pixels if a tile is traced.
@@ -35,6 +36,12 @@ pub struct Shade<'a> {
     pub size: (u32, u32),
     /// The shape in the plane that alone is seen, with two pixels around it; `None` if everything is.
     pub shape: Option<&'a BezPath>,
+}
+
+impl fmt::Debug for Shade<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Shade").field("size", &self.size).finish_non_exhaustive()
+    }
 }
 
 /// Warps a paint. Pixels without an inverse, and those far from the shape, have the colour of the nearest in their row, or else of the

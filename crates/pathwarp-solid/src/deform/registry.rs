@@ -1,12 +1,19 @@
 //! The registry: the deformations of space that a program knows, by name.
 
 use super::entry::Deformation3;
+use std::fmt;
 use std::sync::Arc;
 
 /// The deformations of space that a program knows.
 #[derive(Clone)]
 pub struct Registry3 {
     entries: Vec<Arc<dyn Deformation3>>,
+}
+
+impl fmt::Debug for Registry3 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Registry3").field("entries", &self.entries.len()).finish_non_exhaustive()
+    }
 }
 
 impl Registry3 {

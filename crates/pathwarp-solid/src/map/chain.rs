@@ -6,12 +6,19 @@ use super::jet::Jet3;
 use super::traits::Map3;
 use glam::DVec3;
 use pathwarp::budget::Budget;
+use std::fmt;
 use std::sync::Arc;
 
 /// Maps one after another; the first is applied first. Neighbouring collineations are folded into one.
 #[derive(Clone, Default)]
 pub struct Chain3 {
     steps: Vec<Arc<dyn Map3>>,
+}
+
+impl fmt::Debug for Chain3 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Chain3").field("steps", &self.steps.len()).finish_non_exhaustive()
+    }
 }
 
 impl Chain3 {

@@ -16,6 +16,7 @@ use crate::box3::Box3;
 use glam::{DMat3, DVec3};
 use pathwarp::budget::Budget;
 use pathwarp::search::{Search, is_over};
+use std::fmt;
 use std::sync::Arc;
 
 /// Fewest starting points along a side of the box.
@@ -56,6 +57,12 @@ pub struct NewtonInverse3 {
     map_work: f64,
     /// What searches spend.
     budget: Option<Arc<Budget>>,
+}
+
+impl fmt::Debug for NewtonInverse3 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("NewtonInverse3").field("domain", &self.domain).finish_non_exhaustive()
+    }
 }
 
 impl NewtonInverse3 {

@@ -3,6 +3,7 @@
 use super::picture::{BentImage, PictureError};
 use pathwarp::kurbo::{Affine, BezPath, Point, Rect};
 use pathwarp::map::Map;
+use std::fmt;
 
 /// Paints bent gradients.
 pub trait GradientPainter: Send + Sync {
@@ -43,6 +44,12 @@ pub struct GradientRequest<'a> {
     pub strict: bool,
     /// Colours jump, so that only the highest resolution shows them right.
     pub sharp: bool,
+}
+
+impl fmt::Debug for GradientRequest<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("GradientRequest").field("area", &self.area).field("map", &self.map).finish_non_exhaustive()
+    }
 }
 
 /// A colour of a bent gradient.

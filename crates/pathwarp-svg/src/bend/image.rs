@@ -34,6 +34,12 @@ pub struct ImageRequest<'a> {
     pub to_px: Affine,
 }
 
+impl fmt::Debug for ImageRequest<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ImageRequest").field("bytes", &self.data.len()).field("map", &self.map).finish_non_exhaustive()
+    }
+}
+
 /// Treatment of bitmaps.
 #[derive(Clone, Default)]
 #[non_exhaustive]

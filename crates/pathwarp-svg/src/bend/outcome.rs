@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A warped document.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct WarpedDocument {
     /// Text of the file.
     pub svg: String,

@@ -14,6 +14,7 @@ use pathwarp::{GeometryError, Outline};
 /// The image of a path.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct WarpedPath {
     /// SVG path data, rounded. Arcs whose images are circles again stay arcs.
     pub data: String,
@@ -72,6 +73,7 @@ pub fn warp_path(
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
+    options.check()?;
     let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
     let held = |s: &Subpath| if options.suited { suited(options.tolerance, s.diagonal()) } else { options.tolerance };
     let contours: Vec<f64> = outline.subpaths.iter().map(held).collect();

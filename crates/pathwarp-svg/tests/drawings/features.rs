@@ -179,7 +179,7 @@ fn identity_looks_the_same() {
 #[test]
 fn oblique_looks_like_the_renderers_transform() {
     for (name, body) in FEATURES {
-        check(name, &drawing(body), oblique(), &warp_options());
+        let _ = check(name, &drawing(body), oblique(), &warp_options());
     }
 }
 
@@ -187,8 +187,8 @@ fn oblique_looks_like_the_renderers_transform() {
 fn flattened_it_looks_the_same() {
     let options = warp_options().with_structure(Structure::Flatten);
     for (name, body) in FEATURES {
-        check(name, &drawing(body), Affine::IDENTITY, &options);
-        check(name, &drawing(body), oblique(), &options);
+        let _ = check(name, &drawing(body), Affine::IDENTITY, &options);
+        let _ = check(name, &drawing(body), oblique(), &options);
     }
 }
 
@@ -196,7 +196,7 @@ fn flattened_it_looks_the_same() {
 fn outlined_strokes_look_the_same() {
     let options = warp_options().with_strokes(Strokes::Outline);
     for (name, body) in FEATURES.iter().filter(|f| f.1.contains("stroke")) {
-        check(name, &drawing(body), oblique(), &options);
+        let _ = check(name, &drawing(body), oblique(), &options);
     }
 }
 
@@ -205,7 +205,7 @@ fn page_size_and_view_box_make_a_frame_of_their_own() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='30mm' height='60' viewBox='-20 5 90 50' \
                preserveAspectRatio='xMaxYMin'><circle cx='20' cy='30' r='15' stroke='red'/></svg>";
     for map in [Affine::IDENTITY, oblique()] {
-        check("viewBox", svg, map, &warp_options());
+        let _ = check("viewBox", svg, map, &warp_options());
     }
 }
 

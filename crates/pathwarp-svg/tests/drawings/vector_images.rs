@@ -68,7 +68,7 @@ fn they_look_like_the_renderers_transform() {
     for (name, body) in drawings() {
         for structure in [Structure::Auto, Structure::Flatten] {
             for map in [oblique(), Affine::IDENTITY] {
-                check(name, &drawing(&body), map, &warp_options().with_structure(structure));
+                let _ = check(name, &drawing(&body), map, &warp_options().with_structure(structure));
             }
         }
     }

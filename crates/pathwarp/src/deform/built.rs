@@ -155,6 +155,12 @@ pub struct InSpace {
     pub files: Vec<SpaceFile>,
 }
 
+impl fmt::Debug for InSpace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("InSpace").field("files", &self.files).finish_non_exhaustive()
+    }
+}
+
 /// A file of the artwork on its surface.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SpaceFile {

@@ -1,12 +1,19 @@
 //! The registry: the deformations that a program knows, by name.
 
 use super::entry::Deformation;
+use std::fmt;
 use std::sync::Arc;
 
 /// The deformations that a program knows.
 #[derive(Clone)]
 pub struct Registry {
     entries: Vec<Arc<dyn Deformation>>,
+}
+
+impl fmt::Debug for Registry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.entries.iter().map(|e| e.info().name)).finish()
+    }
 }
 
 impl Registry {

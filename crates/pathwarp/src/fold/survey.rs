@@ -17,6 +17,7 @@ const GRID: usize = 24;
 const FOR_ANY_PROOF: usize = 2 * GRID * GRID;
 
 /// Examines the shapes of a drawing for folds of one map.
+#[derive(Debug)]
 pub struct Survey<'a> {
     map: &'a dyn Map,
     creases: Creases,
@@ -24,6 +25,7 @@ pub struct Survey<'a> {
 }
 
 /// Signs known before any shape is sampled.
+#[derive(Debug)]
 enum Knowledge {
     /// The map is affine and folds nothing.
     Affine,

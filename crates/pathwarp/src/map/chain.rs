@@ -1,9 +1,9 @@
 //! Composition of maps.
 
 use super::batch::{Lane, WIDTH};
-use super::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree};
+use super::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree, inverse_over};
 use crate::budget::Budget;
-use kurbo::{Affine, Point};
+use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
 /// A composition of maps, the first applied first. Neighbouring affine and projective steps fold into one.
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// let chain = Chain::new([step(Affine::scale(2.0)), step(Affine::translate((1.0, 0.0)))]);
 /// assert_eq!(chain.class(), Class::Affine(Affine::new([2.0, 0.0, 0.0, 2.0, 1.0, 0.0])));
 /// ```
-#[derive(Clone, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Chain {
     steps: Vec<Arc<dyn Map>>,
 }
@@ -56,6 +56,44 @@ impl Chain {
         }
     }
 
+    /// The same chain with a step more.
+    ///
+    /// ```
+    /// use pathwarp::kurbo::{Affine, Point};
+    /// use pathwarp::map::{AffineMap, Chain, Map, from_fn};
+    ///
+    /// let chain = Chain::default().then(AffineMap(Affine::scale(2.0))).then(from_fn(|p| Point::new(p.x, p.y + p.x * p.x)));
+    /// assert_eq!(chain.point(Point::new(1.0, 1.0)), Point::new(2.0, 6.0));
+    /// ```
+    #[must_use]
+    pub fn then(mut self, step: impl Map + 'static) -> Self {
+        self.push(Arc::new(step));
+        self
+    }
+
+    /// The inverse over `area`, a box in the plane of the source: of each step in closed form where there is one ([`Map::inverse`]), or else
+    /// by Newton's method over the box of the area's image.
+    ///
+    /// ```
+    /// use pathwarp::kurbo::{Affine, Point, Rect};
+    /// use pathwarp::map::{AffineMap, Chain, Map, from_fn};
+    ///
+    /// let wave = from_fn(|p| Point::new(p.x, p.y + (p.x / 20.0).sin() * 5.0));
+    /// let chain = Chain::default().then(wave).then(AffineMap(Affine::rotate(0.3)));
+    /// let back = chain.inverse_over(Rect::new(0.0, 0.0, 100.0, 100.0));
+    /// let p = Point::new(30.0, 40.0);
+    /// assert!(back.point(chain.point(p)).distance(p) < 1e-9);
+    /// ```
+    #[must_use]
+    pub fn inverse_over(&self, area: Rect) -> Self {
+        let (mut area, mut back) = (area, Vec::with_capacity(self.steps.len()));
+        for step in &self.steps {
+            back.push(inverse_over(step, area));
+            area = image_box(&**step, area).unwrap_or(area);
+        }
+        Self::new(back.into_iter().rev())
+    }
+
     /// The steps that remain after folding.
     #[must_use]
     pub fn steps(&self) -> &[Arc<dyn Map>] {
@@ -70,6 +108,18 @@ impl Chain {
             Self { steps: steps.collect() }
         })
     }
+}
+
+/// The box of the image of a grid on `area`, as far as it is defined.
+fn image_box(map: &dyn Map, area: Rect) -> Option<Rect> {
+    const SIDE: u32 = 33;
+    let share = |i: u32| f64::from(i) / f64::from(SIDE - 1);
+    let at = |i, j| area.origin() + Vec2::new(share(i) * area.width(), share(j) * area.height());
+    let grid: Vec<Point> = (0..SIDE * SIDE).map(|k| at(k % SIDE, k / SIDE)).collect();
+    let mut images = vec![Point::ORIGIN; grid.len()];
+    map.points(&grid, &mut images);
+    let images = images.into_iter().filter(|p| p.is_finite());
+    images.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))
 }
 
 /// Points passed from step to step at a time: few enough for the stack.
@@ -304,8 +354,7 @@ mod tests {
             assert_eq!(jets[i], c.jet(ps[i]));
             assert!(jets[i].p.distance(points[i]) < 1e-15 && c.point(ps[i]) == points[i]);
             let h = 1e-6;
-            let dx =
-                (c.point(ps[i] + kurbo::Vec2::new(h, 0.0)) - c.point(ps[i] - kurbo::Vec2::new(h, 0.0))) / (2.0 * h);
+            let dx = (c.point(ps[i] + Vec2::new(h, 0.0)) - c.point(ps[i] - Vec2::new(h, 0.0))) / (2.0 * h);
             assert!((dx - jets[i].dx).hypot() < 1e-8);
         }
     }

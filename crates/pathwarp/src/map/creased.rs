@@ -4,8 +4,17 @@ use super::newton::NewtonInverse;
 use super::{Crease, CreaseKind, Creases, Jet, Level, Map};
 use crate::budget::Budget;
 use crate::search::Search;
-use kurbo::Point;
+use kurbo::{Point, Rect};
 use std::sync::Arc;
+
+/// The inverse of a map over `area`, a box in its source: in closed form if there is one ([`Map::inverse`]), or else by Newton's method,
+/// whose answers may lie a quarter of the box's diagonal outside, as strokes and handles do. It has the creases of the map.
+#[must_use]
+pub fn inverse_over(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
+    const REACH: f64 = 0.25;
+    let by_newton = || CreasedInverse::of(map, NewtonInverse::over(Arc::clone(map), area, REACH));
+    map.inverse().unwrap_or_else(by_newton)
+}
 
 /// Newton's inverse of a map in smooth pieces.
 pub(crate) struct CreasedInverse {

@@ -3,6 +3,7 @@
 use super::{Class, Creases, Jet, Map, RationalBezier, RationalDegree};
 use kurbo::Point;
 use std::collections::HashMap;
+use std::fmt;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -16,6 +17,12 @@ pub struct Gathered<'a> {
     map: &'a dyn Map,
     points: Mutex<Memory<Point>>,
     jets: Mutex<Memory<Jet>>,
+}
+
+impl fmt::Debug for Gathered<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Gathered").field("map", &self.map).finish_non_exhaustive()
+    }
 }
 
 /// Answers by the bits of their point.

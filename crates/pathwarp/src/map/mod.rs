@@ -5,6 +5,8 @@
 //!
 //! # Writing a map
 //!
+//! [`from_fn`] makes one of a closure.
+//!
 //! Implement [`Formula`]: one function from (x, y) to (x, y), generic over the number type ([`Real`]). Run on `f64` it gives
 //! values, run on [`Dual`] numbers it gives derivatives. Implement [`Map`] itself if derivatives have a cheaper closed form; only
 //! [`Map::jet`], the value and both partial derivatives at a point, is required.
@@ -45,6 +47,7 @@ mod creased;
 pub(crate) mod curves;
 mod dual;
 mod formula;
+mod from_fn;
 mod gathered;
 mod homography;
 mod jet;
@@ -63,10 +66,11 @@ pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
 pub use class::{Class, RationalDegree};
 pub use crease::{Crease, CreaseKind, Creases, Level};
-pub(crate) use creased::CreasedInverse;
+pub use creased::inverse_over;
 pub use curves::{Pace, Side};
 pub use dual::{Dual, Real};
 pub use formula::Formula;
+pub use from_fn::{FromFn, FromFnWith, from_fn, from_fn_with};
 pub use gathered::Gathered;
 pub use homography::Homography;
 pub use jet::Jet;

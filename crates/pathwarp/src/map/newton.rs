@@ -20,6 +20,7 @@ use super::{Jet, Map};
 use crate::budget::Budget;
 use crate::search::{Search, is_over};
 use kurbo::{Point, Rect, Vec2};
+use std::fmt;
 use std::sync::Arc;
 
 /// Fewest starting points along a side of the box.
@@ -64,6 +65,12 @@ pub struct NewtonInverse {
     pub(crate) jet_work: f64,
     /// What searches spend.
     budget: Option<Arc<Budget>>,
+}
+
+impl fmt::Debug for NewtonInverse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("NewtonInverse").field("map", &self.map).field("domain", &self.domain).finish_non_exhaustive()
+    }
 }
 
 #[derive(Debug, Clone, Copy)]

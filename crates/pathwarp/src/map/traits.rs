@@ -4,6 +4,7 @@ use super::batch::{Lane, WIDTH};
 use super::{Class, Creases, Jet, RationalBezier, RationalDegree};
 use crate::budget::Budget;
 use kurbo::Point;
+use std::fmt;
 use std::sync::Arc;
 
 /// A differentiable map of the plane, in root user units, y down.
@@ -142,69 +143,91 @@ pub trait Map: Send + Sync {
 }
 
 /// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
+macro_rules! forward {
+    () => {
+        fn jet(&self, p: Point) -> Jet {
+            (**self).jet(p)
+        }
+        fn point(&self, p: Point) -> Point {
+            (**self).point(p)
+        }
+        fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+            (**self).jets(ps, out);
+        }
+        fn points(&self, ps: &[Point], out: &mut [Point]) {
+            (**self).points(ps, out);
+        }
+        fn class(&self) -> Class {
+            (**self).class()
+        }
+        fn creases(&self, out: &mut Creases) {
+            (**self).creases(out);
+        }
+        fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+            (**self).branch(inside)
+        }
+        fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+            (**self).image(curve)
+        }
+        fn rational_degree(&self) -> Option<RationalDegree> {
+            (**self).rational_degree()
+        }
+        fn denominator(&self, p: Point) -> f64 {
+            (**self).denominator(p)
+        }
+        fn inverse(&self) -> Option<Arc<dyn Map>> {
+            (**self).inverse()
+        }
+        fn work(&self) -> f64 {
+            (**self).work()
+        }
+        fn jet_work(&self) -> f64 {
+            (**self).jet_work()
+        }
+        fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+            (**self).within(budget)
+        }
+        fn prefers_batches(&self) -> bool {
+            (**self).prefers_batches()
+        }
+        fn differentiates(&self) -> bool {
+            (**self).differentiates()
+        }
+        fn remembers(&self) -> bool {
+            (**self).remembers()
+        }
+        fn prepare(&self, points: &[Point], jets: &[Point]) {
+            (**self).prepare(points, jets);
+        }
+        fn points_and_jets(&self, points: (&[Point], &mut [Point]), jets: (&[Point], &mut [Jet])) {
+            (**self).points_and_jets(points, jets);
+        }
+        fn lanes(&self, x: &mut Lane, y: &mut Lane) {
+            (**self).lanes(x, y);
+        }
+        fn denominators(&self, x: &Lane, y: &Lane) -> Lane {
+            (**self).denominators(x, y)
+        }
+    };
+}
+
 impl<M: Map + ?Sized> Map for Arc<M> {
-    fn jet(&self, p: Point) -> Jet {
-        (**self).jet(p)
-    }
-    fn point(&self, p: Point) -> Point {
-        (**self).point(p)
-    }
-    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        (**self).jets(ps, out);
-    }
-    fn points(&self, ps: &[Point], out: &mut [Point]) {
-        (**self).points(ps, out);
-    }
-    fn class(&self) -> Class {
-        (**self).class()
-    }
-    fn creases(&self, out: &mut Creases) {
-        (**self).creases(out);
-    }
-    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        (**self).branch(inside)
-    }
-    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        (**self).image(curve)
-    }
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        (**self).rational_degree()
-    }
-    fn denominator(&self, p: Point) -> f64 {
-        (**self).denominator(p)
-    }
-    fn inverse(&self) -> Option<Arc<dyn Map>> {
-        (**self).inverse()
-    }
-    fn work(&self) -> f64 {
-        (**self).work()
-    }
-    fn jet_work(&self) -> f64 {
-        (**self).jet_work()
-    }
-    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-        (**self).within(budget)
-    }
-    fn prefers_batches(&self) -> bool {
-        (**self).prefers_batches()
-    }
-    fn differentiates(&self) -> bool {
-        (**self).differentiates()
-    }
-    fn remembers(&self) -> bool {
-        (**self).remembers()
-    }
-    fn prepare(&self, points: &[Point], jets: &[Point]) {
-        (**self).prepare(points, jets);
-    }
-    fn points_and_jets(&self, points: (&[Point], &mut [Point]), jets: (&[Point], &mut [Jet])) {
-        (**self).points_and_jets(points, jets);
-    }
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-        (**self).lanes(x, y);
-    }
-    fn denominators(&self, x: &Lane, y: &Lane) -> Lane {
-        (**self).denominators(x, y)
+    forward!();
+}
+
+/// Of pointers that are not shared, those to `dyn Map` are maps, as every [`Formula`](super::Formula) is one, and any crate may write a
+/// formula for a reference or a box of its own type.
+impl Map for &(dyn Map + '_) {
+    forward!();
+}
+
+impl Map for Box<dyn Map + '_> {
+    forward!();
+}
+
+impl fmt::Debug for dyn Map + '_ {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Map({:?})", self.class())
     }
 }
 
@@ -317,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn arc_forwards_every_method() {
+    fn pointers_forward_every_method() {
         let direct = Recorder::default();
         call_all(&direct);
         let expected = direct.0.into_inner().unwrap();
@@ -333,6 +356,12 @@ mod tests {
         let erased: Arc<dyn Map> = shared.clone();
         call_all(&erased);
         assert_eq!(*shared.0.lock().unwrap(), expected);
+        let lent = Recorder::default();
+        call_all(&(&lent as &dyn Map));
+        assert_eq!(*lent.0.lock().unwrap(), expected);
+        let boxed: Box<dyn Map> = Box::new(Arc::clone(&shared));
+        call_all(&boxed);
+        assert_eq!(shared.0.lock().unwrap()[expected.len()..], expected);
     }
 
     /// A map written with `jet` alone has batches that agree with it to the last bit.

@@ -1,7 +1,8 @@
 //! Drawing commands to an outline.
 
 use super::{EllipticArc, Outline, Seg, Subpath};
-use kurbo::{BezPath, CubicBez, Line, PathEl, Point, QuadBez, Vec2};
+use kurbo::{BezPath, Circle, CubicBez, Ellipse, Line, PathEl, Point, QuadBez, Rect, Shape, Vec2};
+use std::f64::consts::FRAC_PI_2;
 
 /// Builds an [`Outline`] from drawing commands as in SVG: a drawing command after a close starts a new subpath at the start of the
 /// closed one.
@@ -78,6 +79,61 @@ impl Builder {
     pub fn finish(mut self) -> Outline {
         self.done.extend(self.open.take());
         Outline { subpaths: self.done }
+    }
+}
+
+impl From<BezPath> for Outline {
+    fn from(path: BezPath) -> Self {
+        Self::from(&path)
+    }
+}
+
+impl From<Rect> for Outline {
+    fn from(r: Rect) -> Self {
+        Self::from_points(&[r.origin(), (r.x1, r.y0).into(), (r.x1, r.y1).into(), (r.x0, r.y1).into()], true)
+    }
+}
+
+/// Arcs stay arcs.
+impl From<Circle> for Outline {
+    fn from(c: Circle) -> Self {
+        Self::from(Ellipse::new(c.center, (c.radius, c.radius), 0.0))
+    }
+}
+
+/// Arcs stay arcs.
+impl From<Ellipse> for Outline {
+    fn from(e: Ellipse) -> Self {
+        let (radii, turn) = e.radii_and_rotation();
+        let (a, b) = (Vec2::from_angle(turn) * radii.x, Vec2::from_angle(turn + FRAC_PI_2) * radii.y);
+        // Quarters, as for a circle of SVG.
+        let quarter = |i: i32| EllipticArc::new(e.center(), a, b, f64::from(i) * FRAC_PI_2, FRAC_PI_2);
+        let mut arcs = [0, 1, 2, 3].map(quarter);
+        for i in 0..4 {
+            arcs[i].p1 = arcs[(i + 1) % 4].p0;
+        }
+        let start = arcs[0].p0;
+        Self { subpaths: vec![Subpath { start, segs: arcs.map(Seg::Arc).to_vec(), closed: true }] }
+    }
+}
+
+impl Outline {
+    /// A shape of kurbo. Lines, rectangles, paths and circles are taken as they are, others as curves within `tolerance` of them.
+    ///
+    /// ```
+    /// use pathwarp::{Outline, kurbo::{Circle, RoundedRect}};
+    ///
+    /// let button = Outline::from_shape(&RoundedRect::new(0.0, 0.0, 90.0, 30.0, 8.0), 0.01);
+    /// assert_eq!(button.bounding_box().map(|b| (b.width(), b.height())), Some((90.0, 30.0)));
+    /// assert_eq!(Outline::from_shape(&Circle::new((0.0, 0.0), 3.0), 0.01), Circle::new((0.0, 0.0), 3.0).into());
+    /// ```
+    #[must_use]
+    pub fn from_shape(shape: &impl Shape, tolerance: f64) -> Self {
+        match (shape.as_circle(), shape.as_rect()) {
+            (Some(circle), _) => circle.into(),
+            (_, Some(rect)) => rect.into(),
+            _ => shape.to_path(tolerance).into(),
+        }
     }
 }
 

@@ -76,6 +76,7 @@ fn refit(
     options: &Options,
     memory: &mut MergeMemory,
 ) -> Result<RefittedPath, GeometryError> {
+    options.check()?;
     let mut out = PathWriter::default();
     let counted = map.within(&options.budget);
     let map = counted.as_deref().unwrap_or(map);

@@ -41,7 +41,7 @@ use crate::outline::Outline;
 /// Sets [`PathReport::unresolved`] if coordinates are so large that their rounding exceeds the tolerance.
 ///
 /// # Errors
-/// [`GeometryError::Infinity`] if the path meets a point at which the map is undefined or not finite, and
+/// [`GeometryError::Tolerance`] if a tolerance is not a positive, finite number, [`GeometryError::Infinity`] if the path meets a point at which the map is undefined or not finite, and
 /// [`GeometryError::NotFinite`] if the path itself has such coordinates. They call the shape "path"; see
 /// [`GeometryError::on_shape`].
 ///
@@ -57,6 +57,7 @@ use crate::outline::Outline;
 /// assert!(warped.report.max_error <= 0.01);
 /// ```
 pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<RefittedPath, GeometryError> {
+    options.check()?;
     let own;
     let options = if options.suited && options.spans.is_empty() {
         let contours: Vec<f64> = outline.subpaths.iter().map(|s| suited(options.tolerance, s.diagonal())).collect();

@@ -2,6 +2,7 @@
 
 use super::shared::{SharedEdges, Span};
 use crate::budget::Budget;
+use crate::error::GeometryError;
 use bezierfit::parts::SMOOTH_JOINT;
 use std::sync::Arc;
 
@@ -52,6 +53,16 @@ impl Options {
             spans: Arc::default(),
             budget: Arc::default(),
         }
+    }
+
+    /// Checks the tolerances.
+    ///
+    /// # Errors
+    /// One is not positive, or not finite.
+    pub fn check(&self) -> Result<(), GeometryError> {
+        let mut all = [self.tolerance].into_iter().chain(self.spans.iter().map(|s| s.tolerance));
+        let wrong = |t: &f64| !(t.is_finite() && *t > 0.0);
+        all.find(wrong).map_or(Ok(()), |t| Err(GeometryError::Tolerance(t)))
     }
 
     /// Sets [`Options::tolerance`].
@@ -122,5 +133,5 @@ impl Options {
 pub fn suited(tolerance: f64, diagonal: f64) -> f64 {
     const OF_CONTOUR: f64 = 2e-3;
     const LEAST: f64 = 1e-3;
-    (OF_CONTOUR * diagonal).clamp(LEAST * tolerance, tolerance)
+    (OF_CONTOUR * diagonal).max(LEAST * tolerance).min(tolerance)
 }

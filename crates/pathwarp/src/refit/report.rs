@@ -102,6 +102,7 @@ pub(super) fn extent(path: &BezPath) -> f64 {
 /// The image of a path.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct RefittedPath {
     /// Lines and cubics.
     pub path: BezPath,

@@ -285,7 +285,7 @@ impl Source for SourceCurve<'_> {
     {
         let (mut points, mut ends) = (points.peekable(), ends.peekable());
         let first = points.peek().map(|(s, _)| *s).or_else(|| ends.peek().map(|(s, _)| *s));
-        let Some(map) = first.map(|s| s.map).filter(|m| m.prefers_batches()) else { return };
+        let Some(map) = first.map(|s| s.map).filter(Map::prefers_batches) else { return };
         let values: Vec<Point> = points.flat_map(|(s, t)| s.sampled(&t)).collect();
         let jets: Vec<Point> = ends.map(|(s, t)| s.at(t)).collect();
         map.prepare(&values, &jets);

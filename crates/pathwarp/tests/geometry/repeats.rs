@@ -96,7 +96,7 @@ fn letters_that_come_again_take_little_work_and_no_more_pieces() {
         let work_alone = counted.1.swap(0, Ordering::Relaxed);
         let unmerged = options.clone().with_merge(false);
         for line in &lines {
-            warp_path(line, &counted, &unmerged).unwrap();
+            let _ = warp_path(line, &counted, &unmerged).unwrap();
         }
         let work_unmerged = counted.1.swap(0, Ordering::Relaxed);
         let known = KnownShapes::among(&lines, &counted, &options);
@@ -121,7 +121,7 @@ fn knowledge_is_the_same_every_time() {
     assert_eq!(known, KnownShapes::among(&lines, &map, &options));
     let first = known.warp_path(&lines[3], &map, &options).unwrap();
     for line in &lines {
-        known.warp_path(line, &map, &options).unwrap();
+        let _ = known.warp_path(line, &map, &options).unwrap();
     }
     assert_eq!(first, known.warp_path(&lines[3], &map, &options).unwrap());
     assert_eq!(KnownShapes::among(&lines[..8], &map, &options), KnownShapes::default());
