@@ -196,7 +196,7 @@ fn the_distance_is_kept_for_many_pairs() {
                     t.beyond += usize::from(beyond);
                     t.turned += usize::from(turned);
                     if turned {
-                        println!("{i}: a smooth joint turns by {:.2}° near {:?}: {}", f.turn, f.near, map.name);
+                        println!("{i}: a smooth joint turns by {:.2}° near {:?}: {}\n   {d}", f.turn, f.near, map.name);
                     }
                     if beyond {
                         let what = format!("{i}: {:.3} tolerances near {:?}: {}\n   {d}", f.ratio, f.near, map.name);

@@ -191,7 +191,9 @@ fn gather(folder: &Path, out: &mut Vec<String>) {
         let paths = xml.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "path")));
         let whole = |d: &&str| svgtypes::PathParser::from(*d).all(|s| s.is_ok());
         let short = |d: &&str| (2..=MAX_COMMANDS).contains(&svgtypes::PathParser::from(*d).count());
-        out.extend(paths.filter_map(|n| n.attribute("d")).filter(whole).filter(short).filter(closed).map(str::to_owned));
+        out.extend(
+            paths.filter_map(|n| n.attribute("d")).filter(whole).filter(short).filter(closed).map(str::to_owned),
+        );
     }
 }
 

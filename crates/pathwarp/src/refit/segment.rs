@@ -117,7 +117,12 @@ impl SegmentFitter<'_> {
     }
 
     /// Appends the image of a part, without what connects it with its neighbours.
-    pub(super) fn fit_inside(&self, part: &Part, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
+    pub(super) fn fit_inside(
+        &self,
+        part: &Part,
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
         let Some(cut) = &part.cut else { return self.fit(&part.seg, part.jets.each_ref(), pieces, report) };
         let [first, last] = part.jets.each_ref();
         let affine = cut.branch.as_ref().map(Map::class);
