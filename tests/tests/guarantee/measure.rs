@@ -117,6 +117,12 @@ pub fn kink(
     // What is too short to be seen has no direction.
     let written: Vec<&Curve> = written.iter().filter(|c| c.at(0.0).distance(c.at(0.5)) > 1e-3 * room).collect();
     let (n, m) = (written.len(), source.len());
+    let places = image(&source.iter().flat_map(|c| [0.0, 0.3, 0.5].map(|t| c.at(t))).collect::<Vec<_>>());
+    let short: Vec<bool> =
+        places.chunks(3).map(|p| p[0].distance(p[1]).max(p[0].distance(p[2])) <= 1e-3 * room).collect();
+    // The next curve with a length, `by` curves on each time.
+    let beyond =
+        |from: usize, by: usize| (1..=m).map(|k| (from + k * by) % m).find(|i| closed && !short[*i]).unwrap_or(from);
     let mut worst = (0.0, Point::ORIGIN);
     for i in (if closed { 0 } else { 1 })..n {
         let (a, b) = (written[(i + n - 1) % n], written[i]);
@@ -129,12 +135,13 @@ pub fn kink(
         // The places of the source that come near the joint: where the path meets itself, several.
         let reach = room + exact.points.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
         let near = (0..exact.points.len()).filter(|k| exact.points[*k].distance(p) <= reach).map(|k| exact.at[k]);
+        let near = near.filter(|(at, _)| !short[*at]);
         let mut corner = 0.0_f64;
         for (at, t) in near {
             // The image just before and after, across a joint of the source.
             let (before, after) = match t {
-                0.0 => ((if at > 0 || closed { (at + m - 1) % m } else { at }, 1.0), (at, 0.0)),
-                1.0 => ((at, 1.0), (if at + 1 < m || closed { (at + 1) % m } else { at }, 0.0)),
+                0.0 => ((beyond(at, m - 1), 1.0), (at, 0.0)),
+                1.0 => ((at, 1.0), (beyond(at, 1), 0.0)),
                 t => ((at, t), (at, t)),
             };
             // Far enough on both sides for a crease near the sample.
@@ -148,7 +155,14 @@ pub fn kink(
                 source[after.0].at(after.1 + beside + STEP),
             ]);
             let (u, v) = (q[1] - q[0], q[3] - q[2]);
-            corner = corner.max(u.cross(v).atan2(u.dot(v)).abs());
+            // At a tear the image leaves for the other side, whatever the directions.
+            let torn = q[1].distance(q[2]) > 10.0 * (2.0 * beside / STEP) * u.hypot().max(v.hypot());
+            let turned = if torn || u == Vec2::ZERO || v == Vec2::ZERO {
+                std::f64::consts::PI
+            } else {
+                u.cross(v).atan2(u.dot(v)).abs()
+            };
+            corner = corner.max(turned);
         }
         // Beside the joint, a curve turns as well.
         let off = turn.abs() - 2.0 * corner;

@@ -121,7 +121,9 @@ fn measured(d: &str, maps: &Maps) -> Option<Found> {
     }
     for ((s, w), held) in source.iter().zip(&written).zip(contours::tolerances(&source, tolerance)) {
         for (n, last) in [(32, false), (320, true)] {
-            let (exact, ours) = ([sampled(s, &image, n, held)], [sampled(w, &same, n, held)]);
+            // A crease close to an end of a curve may hide beside a turn the other way.
+            let height = if last { 0.125 * held } else { held };
+            let (exact, ours) = ([sampled(s, &image, n, height)], [sampled(w, &same, n, height)]);
             if !all_finite(&exact) {
                 return None;
             }
@@ -194,7 +196,7 @@ fn the_distance_is_kept_for_many_pairs() {
                     t.beyond += usize::from(beyond);
                     t.turned += usize::from(turned);
                     if turned {
-                        println!("{i}: a smooth joint turns by {:.2}° near {:?}: {}", f.turn, f.near, map.name);
+                        println!("{i}: a smooth joint turns by {:.2}° near {:?}: {}\n   {d}", f.turn, f.near, map.name);
                     }
                     if beyond {
                         let what = format!("{i}: {:.3} tolerances near {:?}: {}\n   {d}", f.ratio, f.near, map.name);

@@ -191,8 +191,24 @@ fn gather(folder: &Path, out: &mut Vec<String>) {
         let paths = xml.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "path")));
         let whole = |d: &&str| svgtypes::PathParser::from(*d).all(|s| s.is_ok());
         let short = |d: &&str| (2..=MAX_COMMANDS).contains(&svgtypes::PathParser::from(*d).count());
-        out.extend(paths.filter_map(|n| n.attribute("d")).filter(whole).filter(short).map(str::to_owned));
+        out.extend(
+            paths.filter_map(|n| n.attribute("d")).filter(whole).filter(short).filter(closed).map(str::to_owned),
+        );
     }
+}
+
+/// Whether every subpath is closed in the text: a filled open line encloses nothing, which the program leaves open.
+fn closed(d: &&str) -> bool {
+    use svgtypes::PathSegment as S;
+    let mut open = false;
+    svgtypes::PathParser::from(*d).map_while(Result::ok).all(|s| {
+        let fits = match s {
+            S::MoveTo { .. } => !open,
+            _ => open,
+        };
+        open = !matches!(s, S::ClosePath { .. });
+        fits
+    }) && !open
 }
 
 /// A path, with the name of its kind.

@@ -139,14 +139,12 @@ fn straight_extremes(level: impl Fn(Point) -> f64, (a, b): (f64, f64), seg: &Seg
 fn sampled(seg: &Seg, f: impl Fn(f64) -> (f64, f64)) -> (Vec<(f64, f64)>, f64) {
     let h = 1.0 / f64::from(SAMPLES);
     let mut knots: Vec<(f64, f64)> = (0..=SAMPLES).map(|i| f64::from(i) * h).map(&f).collect();
-    for i in 1..SAMPLES as usize {
-        let [a, b, c] = [knots[i - 1].1, knots[i].1, knots[i + 1].1];
+    let last = SAMPLES as usize;
+    for i in 0..=last {
+        let [a, b, c] = [knots[i.saturating_sub(1)].1, knots[i].1, knots[(i + 1).min(last)].1];
         if b.abs() <= a.abs() && b.abs() <= c.abs() && a * c > 0.0 && a * b >= 0.0 {
-            // The vertex of the parabola through three samples.
-            let t = knots[i].0 + 0.5 * h * (a - c) / (a - 2.0 * b + c);
-            if t.is_finite() {
-                knots.push(f(t));
-            }
+            let (from, to) = ((knots[i].0 - h).max(0.0), (knots[i].0 + h).min(1.0));
+            knots.extend(dip(&f, knots[i], [from, to], (a - b).abs().max((c - b).abs())));
         }
     }
     knots.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -154,6 +152,39 @@ fn sampled(seg: &Seg, f: impl Fn(f64) -> (f64, f64)) -> (Vec<(f64, f64)>, f64) {
     let size = seg.bounding_box().size();
     let ulps = seg.extent() / size.width.max(size.height).max(f64::MIN_POSITIVE);
     (knots, most * (1e-14 + 4.0 * f64::EPSILON * ulps).min(1e-3))
+}
+
+/// The place between two others where a function that is least at a sample, or beyond zero already, comes nearest to zero. `None` if
+/// its rise to the neighbouring samples tells that it stays away.
+fn dip(f: impl Fn(f64) -> (f64, f64), least: (f64, f64), [from, to]: [f64; 2], rise: f64) -> Option<(f64, f64)> {
+    const GOLDEN: f64 = 0.381_966_011_250_105;
+    /// A function falls no further between two samples than it rises to the next, or twice that.
+    const FALL: f64 = 2.0;
+    const STEPS: usize = 40;
+    let sign = if least.1 < 0.0 { -1.0 } else { 1.0 };
+    if sign * least.1 > FALL * rise {
+        return None;
+    }
+    // Away from an end of the segment, the function rises at once, or falls.
+    if least.0 == from || least.0 == to {
+        let beside = least.0 + 1e-6 * (from + to - 2.0 * least.0);
+        if sign * f(beside).1 >= sign * least.1 {
+            return None;
+        }
+    }
+    let (mut a, mut b, mut best) = (from, to, least);
+    for _ in 0..STEPS {
+        let ends = [a + GOLDEN * (b - a), b - GOLDEN * (b - a)].map(&f);
+        let nearer = usize::from(sign * ends[1].1 < sign * ends[0].1);
+        if sign * ends[nearer].1 < sign * best.1 {
+            best = ends[nearer];
+        }
+        if sign * best.1 < 0.0 && best.0 != least.0 {
+            break;
+        }
+        *if nearer == 0 { &mut b } else { &mut a } = ends[1 - nearer].0;
+    }
+    (best.0 != least.0).then_some(best)
 }
 
 /// The behaviour of a map at a crease.
@@ -264,7 +295,21 @@ impl Creases {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kurbo::{CubicBez, Line, QuadBez};
+    use kurbo::{CubicBez, Line, ParamCurve, QuadBez};
+
+    /// A long segment may go through a small field between two samples, beside its end or not.
+    #[test]
+    fn a_field_is_found_between_samples() {
+        let disc = Level::Field(Arc::new(|p: Point| p.to_vec2().hypot() - 40.0));
+        for (from, to) in [(-45.0, 2000.0), (-1000.0, 1010.0), (-2000.0, 45.0), (-30_000.0, 70_000.0)] {
+            for y in [0.0, 20.0, 39.0, 39.99] {
+                let (mut ts, line) = (Vec::new(), Line::new((from, y), (to, y + 1e-3)));
+                disc.crossings(&Seg::Line(line), &mut ts);
+                let off = |t: &f64| (line.eval(*t).to_vec2().hypot() - 40.0).abs();
+                assert!(ts.len() == 2 && ts.iter().all(|t| off(t) < 1e-7), "{from} {y}: {ts:?}");
+            }
+        }
+    }
 
     /// Straight and nearly straight segments are as accurate as curved ones.
     #[test]

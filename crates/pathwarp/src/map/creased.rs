@@ -56,8 +56,10 @@ impl Map for CreasedInverse {
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        let map = self.map.branch(self.whole.solve(inside)?.p)?;
-        Some(Arc::new(OnBranch { whole: Arc::clone(&self.whole), map }))
+        let inside = self.whole.solve(inside)?.p;
+        let map = self.map.branch(inside)?;
+        let sides = self.kinks.iter().map(|k| (k.clone(), k.at(inside))).collect();
+        Some(Arc::new(OnBranch { whole: Arc::clone(&self.whole), map, sides }))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -74,6 +76,17 @@ impl Map for CreasedInverse {
 struct OnBranch {
     whole: Arc<NewtonInverse>,
     map: Arc<dyn Map>,
+    /// The map's creases with their values in the branch.
+    sides: Vec<(Level, f64)>,
+}
+
+impl OnBranch {
+    /// Returns `true` if `p` is in the branch, or at its boundary.
+    fn holds(&self, p: Point) -> bool {
+        /// Rounding, as a share of the value inside.
+        const NOISE: f64 = 1e-9;
+        self.sides.iter().all(|(level, inside)| level.at(p) * inside.signum() >= -NOISE * inside.abs())
+    }
 }
 
 impl Map for OnBranch {
@@ -82,7 +95,10 @@ impl Map for OnBranch {
     }
 
     fn jet(&self, q: Point) -> Jet {
-        let Some(near) = self.whole.solve(q) else { return Jet::UNDEFINED };
+        // Where the ends of a closed strip meet, a point comes from both.
+        let near = self.whole.solve(q).filter(|near| self.holds(near.p));
+        let near = near.or_else(|| self.whole.solve_where(q, |p| self.holds(p))).or_else(|| self.whole.solve(q));
+        let Some(near) = near else { return Jet::UNDEFINED };
         let mut search = Search::default();
         let found = self.whole.newton(&*self.map, near.p, q, &mut search);
         self.whole.counted((found, search)).unwrap_or(Jet::UNDEFINED)

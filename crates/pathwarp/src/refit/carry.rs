@@ -58,7 +58,7 @@ impl<'a> Site<'a> {
     /// Fits its segments one by one.
     pub(super) fn own(self) -> impl FitOwn {
         move |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-            self.fitter.fit_part(&self.parts[i], pieces, report)
+            self.fitter.fit_inside(&self.parts[i], pieces, report)
         }
     }
 

@@ -108,22 +108,24 @@ impl<'a> Merger<'a> {
         let corner = self.fitter.options.corner;
         let smooth = |w: &[Part]| {
             let [before, after] = w else { return false };
-            let torn = before.is_torn(1) || after.is_torn(0);
+            let torn = before.bridge(1).is_some() || after.bridge(0).is_some();
             !torn && may_be_smooth([&before.seg, &after.seg], [&before.jets[1], &after.jets[0]], corner)
         };
         let mut i = 0;
         while i < self.parts.len() {
             let end = i + 1 + self.parts[i..].windows(2).take_while(|w| smooth(w)).count();
+            self.pieces.extend(self.parts[i].bridge(0));
             while i < end {
                 i += if i + 1 < end { self.joined(i, end)? } else { self.single(i)? };
             }
+            self.pieces.extend(self.parts[end - 1].bridge(1));
         }
         Ok((self.pieces, self.report))
     }
 
     /// Appends the pieces of a segment that cannot be in a run, and returns 1.
     fn single(&mut self, i: usize) -> Result<usize, NotFinite> {
-        self.fitter.fit_part(&self.parts[i], &mut self.pieces, &mut self.report)?;
+        self.fitter.fit_inside(&self.parts[i], &mut self.pieces, &mut self.report)?;
         Ok(1)
     }
 

@@ -110,11 +110,21 @@ impl SegmentFitter<'_> {
 
     /// Appends the image of a part. Where the map tears, a line connects it with its neighbour.
     pub(super) fn fit_part(&self, part: &Part, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
+        pieces.extend(part.bridge(0));
+        self.fit_inside(part, pieces, report)?;
+        pieces.extend(part.bridge(1));
+        Ok(())
+    }
+
+    /// Appends the image of a part, without what connects it with its neighbours.
+    pub(super) fn fit_inside(
+        &self,
+        part: &Part,
+        pieces: &mut Vec<Piece>,
+        report: &mut Report,
+    ) -> Result<(), NotFinite> {
         let Some(cut) = &part.cut else { return self.fit(&part.seg, part.jets.each_ref(), pieces, report) };
         let [first, last] = part.jets.each_ref();
-        if let Some(p) = cut.torn[0] {
-            pieces.push(Piece::Line(Line::new(p, first.p)));
-        }
         let affine = cut.branch.as_ref().map(Map::class);
         if let (Some(Class::Affine(m)), false) = (affine, matches!(part.seg, Seg::Arc(_))) {
             pieces.push(match part.seg.transformed(m) {
@@ -130,9 +140,6 @@ impl SegmentFitter<'_> {
             if flipped {
                 reverse(&mut pieces[start..]);
             }
-        }
-        if let Some(p) = cut.torn[1] {
-            pieces.push(Piece::Line(Line::new(last.p, p)));
         }
         Ok(())
     }
@@ -294,8 +301,9 @@ impl Part {
         branch.is_some_and(|b| matches!(b.class(), Class::Affine(_)))
     }
 
-    /// Returns `true` if the map tears at the start (0) or at the end (1).
-    pub(super) fn is_torn(&self, end: usize) -> bool {
-        self.cut.as_ref().is_some_and(|c| c.torn[end].is_some())
+    /// The line from the neighbour at the start (0), or to that at the end (1), if the map tears there.
+    pub(super) fn bridge(&self, end: usize) -> Option<Piece> {
+        let (torn, own) = (self.cut.as_ref()?.torn[end]?, self.jets[end].p);
+        Some(Piece::Line(if end == 0 { Line::new(torn, own) } else { Line::new(own, torn) }))
     }
 }

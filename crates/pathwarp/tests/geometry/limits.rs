@@ -51,6 +51,33 @@ fn a_tear_is_bridged_by_a_line_unless_it_is_rounding() {
     assert_eq!(pieces(0.002), smooth + 1);
 }
 
+/// The smoothly joined segments on both sides of a tear are merged; from one side's limit to the other's there is a line.
+#[test]
+fn a_tear_between_merged_segments_is_bridged_by_a_line() {
+    let d = "M400 300C420 300 440 300 460 300S520 300 540 300S580 300 600 300";
+    for d in [
+        d.to_owned(),
+        Outline::from_svg(d).unwrap().subpaths[0].segs.iter().rev().fold(String::new(), |d, s| {
+            let s = s.reversed().to_cubic();
+            let start = if d.is_empty() { format!("M{} {}", s.p0.x, s.p0.y) } else { d };
+            format!("{start}C{} {} {} {} {} {}", s.p1.x, s.p1.y, s.p2.x, s.p2.y, s.p3.x, s.p3.y)
+        }),
+    ] {
+        let torn = warp(&d, &Step(40.0), 0.1);
+        let edge = Side(0.0).point(Point::new(500.0, 300.0));
+        let mut last = Point::ORIGIN;
+        let lines = torn.path.elements().iter().filter_map(|e| {
+            let from = std::mem::replace(&mut last, e.end_point().unwrap());
+            matches!(e, PathEl::LineTo(_)).then_some([from, last])
+        });
+        let [[mut a, mut b]] = lines.collect::<Vec<_>>()[..] else { panic!("{:?}", torn.path) };
+        if a.y > b.y {
+            (a, b) = (b, a);
+        }
+        assert!(a.distance(edge) < 1e-9 && b.distance(edge + Vec2::new(0.0, 40.0)) < 1e-9, "{a:?} {b:?}");
+    }
+}
+
 struct Same;
 impl Formula for Same {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {

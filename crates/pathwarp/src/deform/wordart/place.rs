@@ -100,8 +100,8 @@ pub(super) fn least_distorting<E>(
 ) -> Result<Rect, E> {
     /// Logarithms of the proportions tried: between 1:20 and 20:1.
     const RANGE: f64 = 3.0;
-    /// Steps of golden section: the proportion is found to 1 %.
-    const STEPS: usize = 14;
+    /// Steps of golden section: the proportion is found to a millionth, since where rounding ends a search it must not show.
+    const STEPS: usize = 32;
     let of = |log: f64| {
         let area = (rect.width() * rect.height()).sqrt();
         Rect::from_center_size(rect.center(), Size::new(area * (0.5 * log).exp(), area * (-0.5 * log).exp()))
@@ -109,12 +109,15 @@ pub(super) fn least_distorting<E>(
     let cost = |log: f64| Ok(map(of(log))?.map_or((f64::INFINITY, 1.0), |m| distortion(rect, &*m)));
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut a, mut b) = (-RANGE, RANGE);
+    let tried = |log: f64| Ok((log, cost(log)?.0));
+    let (mut x, mut y) = (tried(b - golden * (b - a))?, tried(a + golden * (b - a))?);
     for _ in 0..STEPS {
-        let (x, y) = (b - golden * (b - a), a + golden * (b - a));
-        if cost(x)?.0 <= cost(y)?.0 {
-            b = y;
+        if x.1 <= y.1 {
+            (b, y) = (y.0, x);
+            x = tried(b - golden * (b - a))?;
         } else {
-            a = x;
+            (a, x) = (x.0, y);
+            y = tried(a + golden * (b - a))?;
         }
     }
     let best = 0.5 * (a + b);
