@@ -36,6 +36,8 @@ mod options;
 mod path;
 mod proof;
 mod quick;
+#[cfg(feature = "area")]
+mod region;
 mod report;
 mod run;
 mod sample;
@@ -47,9 +49,11 @@ mod tables;
 mod trial;
 
 pub use error::Error;
-pub use offset::{Offset, offset};
+pub use offset::Offset;
 pub use options::Options;
 pub use path::{Fitted, Segment, fit, simplify};
+#[cfg(feature = "area")]
+pub use region::{offset, union};
 pub use report::{Assurance, Piece, Report};
 pub use sample::{Lane, Lanes};
 pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};

@@ -166,6 +166,8 @@ pub struct WarpOptions {
     pub precision: Option<u8>,
     /// Treatment of strokes.
     pub strokes: Strokes,
+    /// Outlines of strokes become simple: they cross neither themselves nor each other within one path.
+    pub union: bool,
     /// Treatment of text.
     pub text: TextMode,
     /// Method of writing the file.
@@ -204,6 +206,7 @@ impl WarpOptions {
             refit,
             precision: None,
             strokes: Strokes::default(),
+            union: false,
             text: TextMode::default(),
             structure: Structure::default(),
             selection: Selection::default(),
@@ -259,6 +262,7 @@ setters! {
     refit: refit::Options, with_refit;
     precision: Option<u8>, with_precision;
     strokes: Strokes, with_strokes;
+    union: bool, with_union;
     text: TextMode, with_text;
     structure: Structure, with_structure;
     selection: Selection, with_selection;
