@@ -163,10 +163,13 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
     let warped = refit::warp_path(&whole, t.map, &refit)?;
     let mut report = warped.report;
     let most = contours.iter().map(|i| expansion(*i)).fold(0.0, f64::max);
-    report.max_error += if t.own.is_empty() { expansion(DRAWING) } else { most };
+    report.max_error += united + if t.own.is_empty() { expansion(DRAWING) } else { most };
+    // Shares add up to the whole but for rounding.
+    if (allowed..allowed * (1.0 + 1e-12)).contains(&report.max_error) {
+        report.max_error = allowed;
+    }
     report.assurance = report.assurance.min(Assurance::Checked);
     let path = if options.union { outline::united(warped.path, united) } else { warped.path };
-    report.max_error += united;
     Ok((t.to_local(path), report))
 }
 
