@@ -41,6 +41,8 @@ mod pieces;
 mod points;
 mod proof;
 mod quick;
+#[cfg(feature = "area")]
+mod region;
 mod report;
 mod run;
 mod sample;
@@ -53,10 +55,12 @@ mod tables;
 mod trial;
 
 pub use error::Error;
-pub use offset::{Offset, offset};
+pub use offset::Offset;
 pub use options::{Degree, Options, Pieces};
 pub use path::{Fitted, MAX_EVALUATIONS, PathSource, Segment, fit, simplify};
 pub use points::fit_points;
+#[cfg(feature = "area")]
+pub use region::{offset, union};
 pub use report::{Assurance, Piece, PieceReport, Report};
 pub use sample::{Lane, Lanes};
 pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};

@@ -1,31 +1,8 @@
 //! Curves beside a curve.
 
-use crate::error::Error;
-use crate::options::Options;
-use crate::path::{Fitted, Segment, fit};
-use crate::report::Report;
+use crate::path::Segment;
 use crate::source::{BreakPoint, NotFinite, Source};
-use kurbo::{BezPath, Join, ParamCurve, PathEl, PathSeg, Point, Vec2};
-
-/// The path at a distance from another: to its left where y points up, to its right where y points down; on the other side if the
-/// distance is negative.
-///
-/// # Errors
-/// The path has coordinates that are not finite.
-pub fn offset(path: &BezPath, distance: f64, _join: Join, options: &Options) -> Result<Fitted, Error> {
-    let mut out = Fitted { path: BezPath::new(), report: Report::default() };
-    for segment in path.segments() {
-        let side = fit(&Offset::new(segment, distance), options)?;
-        let skip = usize::from(!out.path.is_empty());
-        let linked = side.path.elements().iter().skip(skip).copied();
-        if let (1, Some(PathEl::MoveTo(p))) = (skip, side.path.elements().first()) {
-            out.path.line_to(*p);
-        }
-        out.path.extend(linked);
-        out.report.add(side.report);
-    }
-    Ok(out)
-}
+use kurbo::{ParamCurve, PathSeg, Point, Vec2};
 
 /// The curve at a distance from a segment: to its left where y points up, to its right where y points down; on the other side if the
 /// distance is negative.
@@ -44,6 +21,9 @@ pub struct Offset {
 
 /// Samples between which the curvature reaches that of the distance once at most, or twice, which is looked for.
 const SAMPLES: usize = 32;
+
+/// Cusps nearer to each other or to an end are none.
+const NEAR: f64 = 1e-7;
 
 /// Handles shorter than this, against the control polygon, have no direction.
 const NO_HANDLE: f64 = 1e-9;
@@ -126,6 +106,14 @@ impl Offset {
 
     /// The parameters of the cusps.
     pub(crate) fn cusps(&self) -> Vec<f64> {
+        // Far from any: the segment turns in a circle of twice the distance at most.
+        let is_calm = |i: u32| {
+            let (q, dq, speed) = self.along(f64::from(i) / 8.0);
+            (self.distance * q.cross(dq)).abs() <= 0.5 * speed * q.hypot2() && speed > 0.0
+        };
+        if (0..=8).all(is_calm) {
+            return Vec::new();
+        }
         let at = |i: usize| i as f64 / SAMPLES as f64;
         let speeds: Vec<f64> = (0..=SAMPLES).map(|i| self.speed(at(i))).collect();
         let mut ends: Vec<f64> = (0..=SAMPLES).map(at).collect();
@@ -162,7 +150,16 @@ impl Offset {
             }
             Some(b)
         };
-        ends.windows(2).filter_map(crossing).filter(|t| *t > 0.0 && *t < 1.0).collect()
+        let mut out: Vec<f64> = Vec::new();
+        for t in ends.windows(2).filter_map(crossing).filter(|t| *t > NEAR && *t < 1.0 - NEAR) {
+            // Between two that are as near as this, it hardly moves.
+            if out.last().is_some_and(|last| t - last < NEAR) {
+                out.pop();
+            } else {
+                out.push(t);
+            }
+        }
+        out
     }
 }
 

@@ -18,11 +18,11 @@ use kurbo::{
 };
 use std::f64::consts::PI;
 
-/// Share of the tolerance for gaps between sides that are closed without a join.
-pub(crate) const GAP_SHARE: f64 = 0.3;
+/// Share of the tolerance for gaps between sides that are closed without a join, half of it from either side.
+const GAP_SHARE: f64 = 0.3;
 
-/// Share of the tolerance within which a segment is a point, so that a path that nearly comes back to its start is closed there.
-const POINT_SHARE: f64 = 0.02;
+/// What is a point, as a share of those gaps: a path that comes back to its start but for this is closed there.
+const POINT: f64 = 0.07;
 
 /// Length of a dash that stands for a dot, as a fraction of the width.
 const DOT: f64 = 1e-5;
@@ -45,10 +45,11 @@ const MOST_DASHES: f64 = 20_000.0;
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitted, Error> {
-    let contours = contours(path, style, options.tolerance)?;
+    let gap = GAP_SHARE * options.tolerance;
+    let contours = contours(path, style, false, gap)?;
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
-    let inner = Options { tolerance: (1.0 - 0.5 * GAP_SHARE - POINT_SHARE) * options.tolerance, ..*options };
+    let inner = Options { tolerance: options.tolerance - (0.5 + POINT) * gap, ..*options };
     for contour in contours {
         let pieces = fitted(&contour, &inner, &mut memory, &mut out.report)?;
         append(&mut out.path, contour[0].p0, &pieces, true);
@@ -56,6 +57,30 @@ pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitte
     if out.report.max_error > 0.0 {
         out.report.max_error += options.tolerance - inner.tolerance;
     }
+    Ok(out)
+}
+
+/// One side of an open path's stroke, at a distance from it, with joins.
+#[cfg(feature = "area")]
+pub(crate) fn beside_path(
+    path: &BezPath,
+    style: &Stroke,
+    distance: f64,
+    options: &Options,
+) -> Result<BezPath, NotFinite> {
+    let gap = GAP_SHARE * options.tolerance;
+    let pen = Pen { style, clipped: false, half: distance.abs(), gap, point: POINT * gap };
+    let mut out = BezPath::new();
+    let (stretches, corners) = pen.course(path, false);
+    if stretches.is_empty() {
+        return Ok(out);
+    }
+    let edges = pen.side(&stretches, &corners, false, distance);
+    let mut pieces = Vec::new();
+    for edge in &edges {
+        edge.fit(options.tolerance, &mut pieces, &mut Report::default())?;
+    }
+    append(&mut out, edges[0].p0, &pieces, false);
     Ok(out)
 }
 
@@ -127,9 +152,41 @@ impl Edge {
         Self { p0, p1, curve }
     }
 
-    /// Its piece, if it needs no fit.
-    fn piece(&self) -> Option<Piece> {
-        self.is_line().then(|| Piece::Line(Line::new(self.p0, self.p1)))
+    /// Appends pieces within a tolerance, found in less time than the fewest are, after at most so many halvings.
+    ///
+    /// # Errors
+    /// It is not finite.
+    pub fn draft(&self, tolerance: f64, halvings: usize, pieces: &mut Vec<Piece>) -> Result<(), NotFinite> {
+        if let EdgeCurve::Side(_) = self.curve {
+            // The cubic with the ends' derivatives is near enough more often than not.
+            let (v0, v1) = (self.eval(0.0).1 / 3.0, self.eval(1.0).1 / 3.0);
+            let cubic = CubicBez::new(self.p0, self.p0 + v0, self.p1 - v1, self.p1);
+            let off = |t: f64| cubic.eval(t).distance(self.eval(t).0);
+            if [0.2, 0.35, 0.5, 0.65, 0.8].into_iter().all(|t| off(t) <= 0.7 * tolerance) {
+                pieces.push(Piece::Cubic(cubic));
+                return Ok(());
+            }
+            if halvings > 0 {
+                let middle = self.eval(0.5).0;
+                let halves = [Self { p1: middle, ..self.part(0.0, 0.5) }, Self { p0: middle, ..self.part(0.5, 1.0) }];
+                return halves.iter().try_for_each(|h| h.draft(tolerance, halvings - 1, pieces));
+            }
+        }
+        self.fit(tolerance, pieces, &mut Report::default())
+    }
+
+    /// Appends its pieces.
+    ///
+    /// # Errors
+    /// It is not finite.
+    pub fn fit(&self, tolerance: f64, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
+        if self.is_line() {
+            pieces.push(Piece::Line(Line::new(self.p0, self.p1)));
+            return Ok(());
+        }
+        let slow = SlowSpots::default();
+        let [from, to] = [self.end(0.0)?, self.end(1.0)?];
+        StretchFitter::new(self, &slow, tolerance, (false, 0.0), f64::INFINITY).cover(&from, &to, pieces, report)
     }
 }
 
@@ -168,12 +225,12 @@ impl Source for Edge {
     }
 }
 
-/// The outline of a stroke, of closed contours, before anything is fitted. What of the tolerance is spent on it is at most half of
-/// [`GAP_SHARE`], at joints that turn very little, and [`POINT_SHARE`].
+/// The outline of a stroke, of closed contours, before anything is fitted. Gaps between sides up to `gap`, at joints that turn very
+/// little, are closed without a join; segments much smaller than that are points. If `clipped`, miters beyond the limit are cut off there.
 ///
 /// # Errors
 /// The path has coordinates that are not finite.
-pub fn contours(path: &BezPath, style: &Stroke, tolerance: f64) -> Result<Vec<Vec<Edge>>, NotFinite> {
+pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Result<Vec<Vec<Edge>>, NotFinite> {
     let control = |e: &PathEl| match *e {
         PathEl::MoveTo(p) | PathEl::LineTo(p) => vec![p],
         PathEl::QuadTo(p, q) => vec![p, q],
@@ -188,17 +245,22 @@ pub fn contours(path: &BezPath, style: &Stroke, tolerance: f64) -> Result<Vec<Ve
     if !(half > 0.0 && half.is_finite()) {
         return Ok(out);
     }
-    let pen = Pen { style, half, gap: GAP_SHARE * tolerance, point: POINT_SHARE * tolerance };
+    let pen = Pen { style, clipped, half, gap, point: POINT * gap };
     let mut dashes = style.dash_pattern.to_vec();
     if style.start_cap != Cap::Butt || style.end_cap != Cap::Butt {
         // kurbo drops dashes of zero length, which show their caps.
         dashes.iter_mut().for_each(|d| *d = d.max(DOT * style.width));
     }
-    if dash_count(path, &dashes) < MOST_DASHES {
-        let dashed = kurbo::dash(path.iter(), style.dash_offset, &dashes).collect();
-        subpaths(&dashed).for_each(|s| pen.draw(&s, &mut out));
-    } else {
-        subpaths(path).for_each(|s| pen.draw(&s, &mut out));
+    let is_dashed = dash_count(path, &dashes) < MOST_DASHES;
+    for subpath in subpaths(path) {
+        let start = subpath.elements().first().copied();
+        let is_point = subpath.elements().iter().flat_map(control).all(|p| start == Some(PathEl::MoveTo(p)));
+        if is_dashed && !is_point {
+            let dashed = kurbo::dash(subpath.iter(), style.dash_offset, &dashes).collect();
+            subpaths(&dashed).for_each(|s| pen.draw(&s, &mut out));
+        } else {
+            pen.draw(&subpath, &mut out);
+        }
     }
     Ok(out)
 }
@@ -217,7 +279,7 @@ fn dash_count(path: &BezPath, dashes: &[f64]) -> f64 {
 }
 
 /// The subpaths of a path, each as a path.
-fn subpaths(path: &BezPath) -> impl Iterator<Item = BezPath> + '_ {
+pub(crate) fn subpaths(path: &BezPath) -> impl Iterator<Item = BezPath> + '_ {
     let elements = path.elements();
     let starts = (0..elements.len()).filter(|i| matches!(elements[*i], PathEl::MoveTo(_)));
     let ends = starts.clone().skip(1).chain([elements.len()]);
@@ -261,6 +323,8 @@ impl Corner {
 /// What strokes are drawn with.
 struct Pen<'a> {
     style: &'a Stroke,
+    /// Miters are cut off at their limit.
+    clipped: bool,
     half: f64,
     /// Longest gap between sides that is closed without a join.
     gap: f64,
@@ -272,19 +336,13 @@ impl Pen<'_> {
     /// Appends the contours of a subpath.
     fn draw(&self, path: &BezPath, out: &mut Vec<Vec<Edge>>) {
         let closed = matches!(path.elements().last(), Some(PathEl::ClosePath));
-        let stretches = self.stretches(path, closed);
+        let (stretches, corners) = self.course(path, closed);
         let [Some(first), Some(last)] = [stretches.first(), stretches.last()] else {
             if path.elements().len() > 1 {
                 self.dot(path, out);
             }
             return;
         };
-        let corner = |i: usize| {
-            let (before, after) = (&stretches[i], &stretches[(i + 1) % stretches.len()]);
-            let (into, away) = (direction(&before.seg, 1.0), direction(&after.seg, 0.0));
-            Corner { at: before.seg.end(), into, away, meeting: before.meeting }
-        };
-        let corners: Vec<Corner> = (0..stretches.len()).map(corner).collect();
         let left = self.side(&stretches, &corners, closed, self.half);
         let right = self.side(&stretches, &corners, closed, -self.half);
         let back = right.iter().rev().map(Edge::reversed);
@@ -297,6 +355,18 @@ impl Pen<'_> {
         contour.extend(back);
         self.cap(self.style.start_cap, first.seg.start(), -direction(&first.seg, 0.0), &mut contour);
         out.push(joined(contour));
+    }
+
+    /// The stretches of a path, and the corner after each.
+    fn course(&self, path: &BezPath, closed: bool) -> (Vec<Stretch>, Vec<Corner>) {
+        let stretches = self.stretches(path, closed);
+        let corner = |i: usize| {
+            let (before, after) = (&stretches[i], &stretches[(i + 1) % stretches.len()]);
+            let (into, away) = (direction(&before.seg, 1.0), direction(&after.seg, 0.0));
+            Corner { at: before.seg.end(), into, away, meeting: before.meeting }
+        };
+        let corners = (0..stretches.len()).map(corner).collect();
+        (stretches, corners)
     }
 
     /// A subpath without length.
@@ -367,20 +437,29 @@ impl Pen<'_> {
         if legs.iter().all(|v| v.cross(line).abs() <= off) {
             return self.straight(&c, line, out);
         }
-        let mut t0 = 0.0;
-        let mut slow: Vec<f64> =
-            SlowSpots::of_cubic(&c).all().iter().copied().filter(|t| *t > 1e-6 && *t < 1.0 - 1e-6).collect();
+        let mut slow = SlowSpots::of_cubic(&c).all().to_vec();
+        slow.retain(|t| *t > 1e-6 && *t < 1.0 - 1e-6);
         slow.sort_by(f64::total_cmp);
-        for t in slow {
-            let part = PathSeg::Cubic(c.subsegment(t0..t));
+        let mut t0 = 0.0;
+        for t in slow.into_iter().chain([1.0]) {
+            let part = if (t0, t) == (0.0, 1.0) { c } else { c.subsegment(t0..t) };
             // Where it turns within less than can be seen, it has a cusp.
             let (speed, change) = slowness(&c, t);
-            let is_cusp = speed * speed <= self.point * change;
-            out.push(Stretch { seg: part, meeting: if is_cusp { Meeting::Cusp } else { Meeting::Inside } });
+            let meeting = match t {
+                1.0 => Meeting::Node,
+                _ if speed * speed <= self.point * change => Meeting::Cusp,
+                _ => Meeting::Inside,
+            };
+            let mut from = 0.0;
+            for at in swift_turns(&part) {
+                let seg = PathSeg::Cubic(part.subsegment(from..at));
+                out.push(Stretch { seg, meeting: Meeting::Inside });
+                from = at;
+            }
+            let rest = if from == 0.0 { part } else { part.subsegment(from..1.0) };
+            out.push(Stretch { seg: PathSeg::Cubic(rest), meeting });
             t0 = t;
         }
-        let last = if t0 == 0.0 { c } else { c.subsegment(t0..1.0) };
-        out.push(Stretch { seg: PathSeg::Cubic(last), meeting: Meeting::Node });
     }
 
     /// Appends a cubic on a straight line: lines between the places where it turns back.
@@ -501,6 +580,11 @@ impl Side<'_> {
                 let tip = p + corner.into * (self.pen.half * along);
                 vec![Edge::line(p, tip), Edge::line(tip, q)]
             }
+            Join::Miter if self.pen.clipped && corner.into != -corner.away => {
+                let reach = self.pen.half * (style.miter_limit - (0.5 * turn).cos()) / (0.5 * turn.abs()).sin();
+                let cut = [p, p + corner.into * reach.max(0.0), q - corner.away * reach.max(0.0), q];
+                cut.windows(2).map(|w| Edge::line(w[0], w[1])).collect()
+            }
             Join::Miter | Join::Bevel => vec![Edge::line(p, q)],
         }
     }
@@ -547,6 +631,15 @@ fn moved(seg: PathSeg, start: Point, end: Point) -> PathSeg {
             PathSeg::Cubic(CubicBez::new(start, c.p1 + (start - c.p0), c.p2 + (end - c.p3), end))
         }
     }
+}
+
+/// Parameters between which a cubic with a short handle turns from its direction into that of the rest.
+fn swift_turns(c: &CubicBez) -> impl Iterator<Item = f64> {
+    let [d0, d1, d2] = [c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2].map(Vec2::hypot);
+    let turn = |short: f64, other: f64| 4.0 * (0.5 * short / d1).min((short / other).sqrt());
+    let [first, last] = [turn(d0, d2), turn(d2, d0)];
+    let is_short = |t: &f64| *t > 1e-5 && *t < 0.3;
+    [Some(first).filter(is_short), Some(last).filter(is_short).map(|t| 1.0 - t)].into_iter().flatten()
 }
 
 /// The speed of a cubic, and the size of its second derivative.
@@ -632,16 +725,6 @@ fn fitted(
     memory: &mut ReachMemory,
     report: &mut Report,
 ) -> Result<Vec<Piece>, NotFinite> {
-    let slow = SlowSpots::default();
-    let fit_one = |edge: &Edge, pieces: &mut Vec<Piece>, report: &mut Report| {
-        if let Some(piece) = edge.piece() {
-            pieces.push(piece);
-            return Ok(());
-        }
-        let ends = [edge.end(0.0)?, edge.end(1.0)?];
-        let mut fitter = StretchFitter::new(edge, &slow, options.tolerance, (false, 0.0), f64::INFINITY);
-        fitter.cover(&ends[0], &ends[1], pieces, report)
-    };
     let mut pieces = Vec::with_capacity(contour.len());
     let mut i = 0;
     while i < contour.len() {
@@ -651,12 +734,12 @@ fn fitted(
             Ok(Some(RunSegment::new(*edge, None, ends, edge.is_line())))
         })?;
         if joined < 2 {
-            fit_one(&contour[i], &mut pieces, report)?;
+            contour[i].fit(options.tolerance, &mut pieces, report)?;
             i += 1;
             continue;
         }
         let own = OwnPieces::new(joined, |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-            fit_one(&contour[i + k], pieces, report)
+            contour[i + k].fit(options.tolerance, pieces, report)
         });
         let settings = MergeSettings { tolerance: options.tolerance, proof: false, marks: false, again: false };
         let mut reaches = Reaches::new(&run, own, settings, memory);

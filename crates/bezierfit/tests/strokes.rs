@@ -3,8 +3,11 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod polygon;
+
 use bezierfit::{Options, stroke};
-use kurbo::{BezPath, Cap, Join, Line, ParamCurve, ParamCurveNearest, PathSeg, Point, Shape, Stroke, Vec2};
+use kurbo::{BezPath, Cap, Join, ParamCurve, ParamCurveNearest, PathSeg, Point, Shape, Stroke, Vec2};
+use polygon::{Polygon, Random, random_path};
 
 const SHAPES: [(&str, &str); 34] = [
     ("leaf", "M50 10C90 40 90 70 50 90C10 70 10 40 50 10Z"),
@@ -46,58 +49,52 @@ const SHAPES: [(&str, &str); 34] = [
     ("line", "M20 20L80 60"),
 ];
 
-/// An outline as a polygon; kurbo's winding numbers of cubics are not always right.
-struct Polygon(Vec<Line>);
-
-impl Polygon {
-    fn of(path: &BezPath) -> Self {
-        let mut flat = BezPath::new();
-        kurbo::flatten(path, 1e-4, |e| flat.push(e));
-        Self(flat.segments().map(|s| Line::new(s.start(), s.end())).collect())
-    }
-
-    fn covers(&self, p: Point) -> bool {
-        let turn = |l: &Line| {
-            let is_left = (p.y - l.p0.y) * (l.p1.x - l.p0.x) < (p.x - l.p0.x) * (l.p1.y - l.p0.y);
-            match (l.p0.y <= p.y, l.p1.y <= p.y) {
-                (true, false) if !is_left => 1,
-                (false, true) if is_left => -1,
-                _ => 0,
-            }
-        };
-        self.0.iter().map(turn).sum::<i32>() != 0
+/// With round joins and caps, a stroke covers what is within half its width of the path. A loop that is narrower than the stroke may
+/// be bare inside, as in all renderers, if all of it is nearer than that.
+fn check(name: &str, path: &BezPath, width: f64, grid: i32) {
+    let style = Stroke::new(width).with_join(Join::Round).with_caps(Cap::Round);
+    let fitted = stroke(path, &style, &Options::new(0.01)).unwrap();
+    assert!(fitted.report.unresolved.is_empty(), "{name}, {width} wide: {:?}", fitted.report);
+    let outline = Polygon::of(&fitted.path);
+    let segs: Vec<PathSeg> = path.segments().collect();
+    for i in 0..grid * grid {
+        let at = |k: i32| f64::from(k) * 140.0 / f64::from(grid) - 20.0 + 0.37;
+        let p = Point::new(at(i % grid), at(i / grid));
+        let off = segs.iter().map(|s| s.nearest(p, 1e-6).distance_sq.sqrt()).fold(f64::INFINITY, f64::min);
+        let far = segs.iter().flat_map(|s| (0..=50).map(move |i| s.eval(f64::from(i) / 50.0).distance(p)));
+        if (off - 0.5 * width).abs() > 0.02 && far.fold(0.0, f64::max) > 0.5 * width + 1.0 {
+            let covered = outline.covers(p);
+            assert_eq!(covered, off < 0.5 * width, "{name}, {width} wide, at {p:?}, {off} away: {}", path.to_svg());
+        }
     }
 }
 
-/// With round joins and caps, a stroke covers what is within half its width of the path. A loop that is narrower than the stroke may
-/// be bare inside, as in all renderers, if all of it is nearer than that.
 #[test]
 fn round_strokes_cover_what_is_near_the_path() {
     for (name, d) in SHAPES {
-        let path = BezPath::from_svg(d).unwrap();
         for width in [0.1, 1.0, 4.0, 15.0, 40.0] {
-            let style = Stroke::new(width).with_join(Join::Round).with_caps(Cap::Round);
-            let fitted = stroke(&path, &style, &Options::new(0.01)).unwrap();
-            assert!(fitted.report.unresolved.is_empty(), "{name}, {width} wide: {:?}", fitted.report);
-            let outline = Polygon::of(&fitted.path);
-            let segs: Vec<PathSeg> = path.segments().collect();
-            for i in 0..60 * 60 {
-                let p = Point::new(f64::from(i % 60) * 2.3 - 19.0, f64::from(i / 60) * 2.3 - 19.0);
-                let off = segs.iter().map(|s| s.nearest(p, 1e-6).distance_sq.sqrt()).fold(f64::INFINITY, f64::min);
-                let far = segs.iter().flat_map(|s| (0..=50).map(move |i| s.eval(f64::from(i) / 50.0).distance(p)));
-                let enclosed = far.fold(0.0, f64::max) <= 0.5 * width + 1.0;
-                if (off - 0.5 * width).abs() > 0.02 && !enclosed {
-                    let covered = outline.covers(p);
-                    assert_eq!(
-                        covered,
-                        off < 0.5 * width,
-                        "{name}, {width} wide, at {p:?}: {off}, {}",
-                        fitted.path.to_svg()
-                    );
-                }
-            }
+            check(name, &BezPath::from_svg(d).unwrap(), width, 40);
         }
     }
+}
+
+fn check_random(seed: u64, paths: usize) {
+    let mut random = Random(seed);
+    for i in 0..paths {
+        let path = random_path(&mut random, i);
+        check(&format!("path {i}"), &path, [0.3, 2.0, 9.0, 33.0][i % 4], 30);
+    }
+}
+
+#[test]
+fn round_strokes_of_random_paths_cover_what_is_near_them() {
+    check_random(1, 150);
+}
+
+#[test]
+#[ignore = "takes a minute: cargo test --release -p bezierfit --test strokes -- --ignored"]
+fn round_strokes_of_two_thousand_random_paths_cover_what_is_near_them() {
+    check_random(2, 2000);
 }
 
 #[test]

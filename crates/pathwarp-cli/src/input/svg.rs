@@ -140,6 +140,7 @@ impl SvgArtwork {
         let warp = WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(options.strokes)
+            .with_union(options.union)
             .with_text(options.text)
             .with_structure(options.structure)
             .with_selection(self.selection(Which::Part(k)).clone())

@@ -87,6 +87,8 @@ pub(crate) struct CommonOptions {
     pub(crate) exclude: Vec<String>,
     pub(crate) precision: Option<u8>,
     pub(crate) strokes: Strokes,
+    /// Outlines of strokes become simple.
+    pub(crate) union: bool,
     pub(crate) text: TextMode,
     pub(crate) gradients: GradientChoice,
     pub(crate) patterns: Patterns,

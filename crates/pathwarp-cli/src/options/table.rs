@@ -201,6 +201,11 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
              0.1 mm), and outlines elsewhere",
         )
     },
+    stored(
+        "union",
+        OptionValue::Switch(|o| o.union = true),
+        "Make outlines of strokes simple, as cutters need them: no overlaps and no inner loops within a path",
+    ),
     CommonOption {
         default: Some("outline"),
         ..stored(

@@ -169,6 +169,8 @@ pub struct WarpOptions {
     pub edit: Option<Edit>,
     /// Treatment of strokes.
     pub strokes: Strokes,
+    /// Outlines of strokes become simple: they cross neither themselves nor each other within one path.
+    pub union: bool,
     /// Treatment of text.
     pub text: TextMode,
     /// Method of writing the file.
@@ -208,6 +210,7 @@ impl WarpOptions {
             precision: None,
             edit: None,
             strokes: Strokes::default(),
+            union: false,
             text: TextMode::default(),
             structure: Structure::default(),
             selection: Selection::default(),
@@ -270,6 +273,7 @@ setters! {
     precision: Option<u8>, with_precision;
     edit: Option<Edit>, with_edit;
     strokes: Strokes, with_strokes;
+    union: bool, with_union;
     text: TextMode, with_text;
     structure: Structure, with_structure;
     selection: Selection, with_selection;

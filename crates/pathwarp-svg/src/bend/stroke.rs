@@ -5,18 +5,23 @@ use super::outcome::StrokeOutcome;
 use super::task::PartTask;
 use super::width::StrokeWidth;
 use crate::scene::affine::stretch;
-use crate::scene::expand::{spend_dashes, spend_stroke, stroke_outlines};
+use crate::scene::stroked::{spend_dashes, spend_stroke, stroke_outlines};
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
-use pathwarp::{GeometryError, Outline};
+use pathwarp::{GeometryError, Outline, outline};
 use usvg::Stroke;
 
-/// Share of the tolerance for expanding a stroke; the rest is for refitting the outline. Twice as much needs two thirds of the
-/// segments, so a finer outline would cost more nodes than a finer refit saves.
-const EXPANSION: f64 = 0.5;
+/// Shares of the tolerance for the sides of a stroke, and for gaps between them, half of it from either side. The rest is for refitting the
+/// outline.
+const SIDES: f64 = 0.25;
+const GAPS: f64 = 0.3;
+const EXPANSION: f64 = SIDES + 0.5 * GAPS;
+
+/// Share of the tolerance for outlines that become simple.
+const UNION: f64 = 0.1;
 
 /// Share of the tolerance that an expansion may take before it is repeated.
-const MISSED: f64 = 0.6;
+const MISSED: f64 = 0.5;
 
 /// Finest expansion, in user units: rounding is coarser.
 const FINEST: f64 = 1e-9;
@@ -123,7 +128,7 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
     // Every contour's outline, with its index among those of the part.
     let expanded = |fine: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
         let one = |local: &Outline, places: &[Affine], first: usize| {
-            let each = stroke_outlines(local, s, |i| fine(first + i));
+            let each = stroke_outlines(local, s, |i| [SIDES, GAPS].map(|share| share / EXPANSION * fine(first + i)));
             let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(p.frame).repeated(places));
             each.into_iter().map(placed).collect::<Vec<_>>()
         };
@@ -147,19 +152,25 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
     }
     let expansion = |i: usize| fine(i, assumed) * found;
     let rest = |i: usize| (t.allowed_of(i) - expansion(i)).max((1.0 - MISSED) * t.allowed_of(i));
-    let mut refit = t.refit(rest(DRAWING));
+    let united = if options.union { UNION * t.allowed_of(DRAWING) } else { 0.0 };
+    let mut refit = t.refit(rest(DRAWING) - united);
     let contours: Vec<usize> = each.iter().flat_map(|(i, o)| vec![*i; o.subpaths.len()]).collect();
-    let outline = Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
+    let whole = Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
     if !t.own.is_empty() {
         let rests: Vec<f64> = contours.iter().map(|i| rest(*i)).collect();
-        refit = refit.with_spans(SharedEdges::default().spans(&outline, &rests));
+        refit = refit.with_spans(SharedEdges::default().spans(&whole, &rests));
     }
-    let warped = refit::warp_path(&outline, t.map, &refit)?;
+    let warped = refit::warp_path(&whole, t.map, &refit)?;
     let mut report = warped.report;
     let most = contours.iter().map(|i| expansion(*i)).fold(0.0, f64::max);
-    report.max_error += if t.own.is_empty() { expansion(DRAWING) } else { most };
+    report.max_error += united + if t.own.is_empty() { expansion(DRAWING) } else { most };
+    // Shares add up to the whole but for rounding.
+    if (allowed..allowed * (1.0 + 1e-12)).contains(&report.max_error) {
+        report.max_error = allowed;
+    }
     report.assurance = report.assurance.min(Assurance::Checked);
-    Ok((t.to_local(warped.path), report))
+    let path = if options.union { outline::united(warped.path, united) } else { warped.path };
+    Ok((t.to_local(path), report))
 }
 
 /// Largest factor by which lengths are stretched at the nodes of an expanded stroke, from the part's user space to root user

@@ -13,7 +13,7 @@
 use super::spot::{Pair, Spot, columns, ellipse, linear, tip, turn};
 use super::task::PartTask;
 use crate::scene::affine::stretch;
-use crate::scene::regular::is_point;
+use crate::scene::stroked::is_point;
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{AffineMap, Chain, Jet, Map};
 use pathwarp::outline::Subpath;

@@ -2,9 +2,9 @@
 
 use super::values::stroke_scale;
 use crate::bend::outcome::{StrokeOutcome, WarpedPart};
-use crate::scene::expand::stroke_outline;
 use crate::scene::model::Part;
 use crate::scene::seen::overlap;
+use crate::scene::stroked::stroke_outline;
 use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
 use pathwarp::{Outline, Seg};
 use std::borrow::Cow;

@@ -3,6 +3,7 @@
 mod arcs;
 #[path = "../common/mod.rs"]
 mod common;
+mod covers;
 mod degenerate_strokes;
 mod features;
 mod filters;

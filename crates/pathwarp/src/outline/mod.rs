@@ -13,6 +13,7 @@ mod boundary;
 mod builder;
 mod path;
 mod seg;
+mod stroke;
 mod svg;
 
 pub use arc::EllipticArc;
@@ -20,4 +21,5 @@ pub use boundary::boundary;
 pub use builder::Builder;
 pub use path::{Outline, Subpath};
 pub use seg::Seg;
+pub use stroke::united;
 pub use svg::PathDataError;

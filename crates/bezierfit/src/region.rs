@@ -1,0 +1,215 @@
+//! Areas: what outlines cover together, and areas that grow or shrink. linesweeper finds how their edges cross.
+
+use crate::error::Error;
+use crate::options::Options;
+use crate::path::{Fitted, simplify};
+use crate::report::{Assurance, Report};
+use crate::source::NotFinite;
+use crate::stroke::{beside_path, stroke, subpaths};
+use kurbo::{
+    BezPath, Cap, Join, ParamCurve, ParamCurveArclen, ParamCurveNearest, PathEl, PathSeg, Point, Shape, Stroke,
+};
+use linesweeper::topology::{BinaryWindingNumber, Topology};
+
+/// Share of the tolerance for crossings.
+const CROSSINGS: f64 = 0.02;
+
+/// Share of the tolerance for the edges of an area before fewer pieces are looked for.
+const EDGES: f64 = 0.3;
+
+/// Limit of miters, as the drawing of plans knows it.
+const MITER_LIMIT: f64 = 4.0;
+
+/// The area that a path covers under the nonzero rule, with outlines that meet neither themselves nor each other, within
+/// `tolerance`. Slivers that are narrower are dropped.
+///
+/// # Errors
+/// The path has coordinates that are not finite.
+///
+/// ```
+/// use kurbo::{BezPath, Shape};
+///
+/// let two = BezPath::from_svg("M0 0H60V60H0ZM40 40H100V100H40Z").unwrap();
+/// let one = bezierfit::union(&two, 0.01)?;
+/// assert_eq!(one.segments().count(), 8);
+/// assert!((one.area().abs() - 6800.0).abs() < 1e-3);
+/// # Ok::<(), bezierfit::Error>(())
+/// ```
+pub fn union(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
+    covered(path, &BezPath::new(), tolerance, |w| w.shape_a != 0)
+}
+
+/// Moves outlines by a distance. Closed subpaths are the outlines of an area under the nonzero rule, which grows, or shrinks if the distance
+/// is negative. Open subpaths become the path beside them: to their left where y points up, to their right where y points down; on
+/// the other side if the distance is negative. What would be nearer to the source than the distance is removed. Corners are joined as
+/// in strokes, miters up to four times the distance.
+///
+/// # Errors
+/// The path has coordinates that are not finite.
+///
+/// ```
+/// use bezierfit::{Options, offset};
+/// use kurbo::{BezPath, Join, Shape};
+///
+/// let square = BezPath::from_svg("M0 0H60V60H0Z").unwrap();
+/// let larger = offset(&square, 10.0, Join::Miter, &Options::new(0.01))?;
+/// assert!((larger.path.area().abs() - 6400.0).abs() < 1.0);
+/// let smaller = offset(&square, -10.0, Join::Miter, &Options::new(0.01))?;
+/// assert!((smaller.path.area().abs() - 1600.0).abs() < 1.0);
+/// assert!(offset(&square, -31.0, Join::Miter, &Options::new(0.01))?.path.is_empty());
+/// # Ok::<(), bezierfit::Error>(())
+/// ```
+pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> Result<Fitted, Error> {
+    let mut out = Fitted { path: BezPath::new(), report: Report::default() };
+    if !path.is_finite() || !distance.is_finite() {
+        return Err(NotFinite { t: 0.0, at: Point::new(f64::NAN, f64::NAN) }.into());
+    }
+    if distance == 0.0 {
+        out.path = path.clone();
+        return Ok(out);
+    }
+    let style = Stroke::new(2.0 * distance.abs()).with_join(join).with_caps(Cap::Round).with_miter_limit(MITER_LIMIT);
+    let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
+    let rest = Options { tolerance: (1.0 - EDGES - CROSSINGS) * options.tolerance, ..*options };
+    let mut area = BezPath::new();
+    for subpath in subpaths(path) {
+        if matches!(subpath.elements().last(), Some(PathEl::ClosePath)) {
+            area.extend(&subpath);
+            continue;
+        }
+        let edge = stroke(&subpath, &style, &fine)?;
+        let near = covered(&edge.path, &BezPath::new(), options.tolerance, |w| w.shape_a != 0)?;
+        let side = beside_path(&subpath, &style, distance, &fine)?;
+        for chain in along(&near, &side, options.tolerance) {
+            add(&mut out, &simplify(&chain, &rest)?, edge.report.clone());
+        }
+    }
+    // Edges inside of it do not count.
+    let area = union(&area, options.tolerance)?;
+    if !area.is_empty() {
+        let edge = stroke(&area, &style, &fine)?;
+        let segs: Vec<PathSeg> = area.segments().collect();
+        let moved = covered(&area, &edge.path, options.tolerance, |w| match distance > 0.0 {
+            true => w.shape_a != 0 || w.shape_b != 0,
+            false => w.shape_a != 0 && w.shape_b == 0,
+        })?;
+        let moved = at_least(distance.abs() - options.tolerance, &segs, &moved, &mut out.report);
+        add(&mut out, &simplify(&moved, &rest)?, edge.report);
+    }
+    if !out.path.is_empty() {
+        out.report.add_error((EDGES + CROSSINGS) * options.tolerance + out.report.max_error, Assurance::Checked);
+    }
+    Ok(out)
+}
+
+/// Adds a part with the report of its edges.
+fn add(out: &mut Fitted, part: &Fitted, edges: Report) {
+    out.path.extend(&part.path);
+    out.report.add(part.report.clone());
+    out.report.unresolved.extend(edges.unresolved);
+}
+
+/// The outlines of what is inside by the winding numbers of two paths.
+fn covered(
+    a: &BezPath,
+    b: &BezPath,
+    tolerance: f64,
+    inside: impl Fn(&BinaryWindingNumber) -> bool,
+) -> Result<BezPath, Error> {
+    if let Some(at) = [a, b].into_iter().find(|p| !p.is_finite()) {
+        return Err(NotFinite { t: 0.0, at: at.control_box().center() }.into());
+    }
+    let mut out = BezPath::new();
+    let box_of = |p: &BezPath| if p.is_empty() { 0.0 } else { extent(p) };
+    // Finer than this, numbers of the size are not compared.
+    let fine = (CROSSINGS * tolerance).max(64.0 * f64::EPSILON * box_of(a).max(box_of(b)));
+    let Ok(topology) = Topology::from_paths_binary(&closed(a), &closed(b), fine) else { return Ok(out) };
+    for contour in topology.contours(inside).contours() {
+        let around = contour.path.segments().map(|s| s.arclen(tolerance)).sum::<f64>();
+        if contour.path.area().abs() > 0.5 * tolerance * around {
+            out.extend(&contour.path);
+            if !matches!(contour.path.elements().last(), Some(PathEl::ClosePath)) {
+                out.close_path();
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// The outlines that are at least so far from the source. Where a stroke is wider than all that it encloses, its outline is bare inside.
+/// Places that are nearer in other outlines are reported.
+fn at_least(distance: f64, source: &[PathSeg], outlines: &BezPath, report: &mut Report) -> BezPath {
+    let boxes: Vec<_> = source.iter().map(Shape::bounding_box).collect();
+    let is_near = |p: &Point| {
+        let mut near = boxes.iter().zip(source).filter(|(b, _)| b.inflate(distance, distance).contains(*p));
+        near.any(|(_, s)| s.nearest(*p, 1e-3 * distance).distance_sq < distance * distance)
+    };
+    let mut out = BezPath::new();
+    for contour in subpaths(outlines) {
+        let middles: Vec<Point> = contour.segments().map(|s| s.eval(0.5)).collect();
+        let near: Vec<Point> = middles.iter().copied().filter(|p| distance > 0.0 && is_near(p)).collect();
+        if 2 * near.len() <= middles.len() {
+            out.extend(&contour);
+            report.unresolved.extend(near);
+        }
+    }
+    out
+}
+
+/// The largest magnitude of a path's coordinates.
+fn extent(path: &BezPath) -> f64 {
+    let b = path.control_box();
+    [b.x0, b.y0, b.x1, b.y1].into_iter().fold(0.0, |most, v| most.max(v.abs()))
+}
+
+/// The same path with all subpaths closed.
+fn closed(path: &BezPath) -> BezPath {
+    let mut out = BezPath::new();
+    for mut subpath in subpaths(path) {
+        if subpath.elements().len() > 1 {
+            subpath.close_path();
+            out.extend(&subpath);
+        }
+    }
+    out
+}
+
+/// The parts of closed outlines that run along an open path, in its direction.
+fn along(outlines: &BezPath, side: &BezPath, tolerance: f64) -> Vec<BezPath> {
+    let side: Vec<PathSeg> = side.segments().collect();
+    // Where on the side a point is, and how far from it.
+    let place = |p: Point| {
+        let each = side.iter().enumerate().map(|(i, s)| {
+            let near = s.nearest(p, 1e-3 * tolerance);
+            (near.distance_sq, i as f64 + near.t)
+        });
+        each.fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a })
+    };
+    let is_along = |s: &PathSeg| [0.1, 0.5, 0.9].into_iter().all(|t| place(s.eval(t)).0.sqrt() <= 0.8 * tolerance);
+    let mut out = Vec::new();
+    for contour in subpaths(outlines) {
+        let mut segs: Vec<PathSeg> = contour.segments().collect();
+        let kept: Vec<bool> = segs.iter().map(is_along).collect();
+        // Begin after what is left out.
+        let first = kept.iter().position(|k| !k).unwrap_or(0);
+        segs.rotate_left(first);
+        let mut runs: Vec<Vec<PathSeg>> = vec![Vec::new()];
+        for (i, s) in segs.iter().enumerate() {
+            match (kept[(first + i) % kept.len()], runs.last_mut()) {
+                (true, Some(run)) => run.push(*s),
+                (false, Some(run)) if !run.is_empty() => runs.push(Vec::new()),
+                _ => {}
+            }
+        }
+        for mut run in runs.into_iter().filter(|r| !r.is_empty()) {
+            let middle = run[run.len() / 2];
+            let from = place(middle.eval(0.25)).1;
+            if place(middle.eval(0.75)).1 < from {
+                run = run.iter().rev().map(PathSeg::reverse).collect();
+            }
+            out.push((place(run[0].eval(0.5)).1, BezPath::from_path_segments(run.into_iter())));
+        }
+    }
+    out.sort_by(|a, b| a.0.total_cmp(&b.0));
+    out.into_iter().map(|(_, chain)| chain).collect()
+}

@@ -1,0 +1,59 @@
+//! Outlines of strokes.
+
+use super::{EllipticArc, Outline, Seg, Subpath};
+use bezierfit::parts::{Edge, EdgeCurve, contours};
+use bezierfit::{NotFinite, Piece};
+use kurbo::{BezPath, Stroke, Vec2};
+
+/// Share of the tolerance for arcs as cubics. Their error falls with the sixth power of their number.
+const ARCS: f64 = 0.05;
+
+/// Halvings of a side before fewer pieces are looked for.
+const HALVINGS: usize = 4;
+
+/// The same of a dashed path: cubics beside an arc by this much all around are longer by as much for each radian, and dashes move on.
+const DASHED_ARCS: f64 = 0.01;
+
+impl Outline {
+    /// The area that a stroke along this path covers, to be filled by the nonzero rule, within `tolerance`; at joints whose sides are less
+    /// than `gap` apart, half of that more, since they have no join. If `clipped`, miters beyond their limit are cut off there.
+    ///
+    /// # Errors
+    /// The path is not finite.
+    pub fn stroked(&self, style: &Stroke, clipped: bool, [tolerance, gap]: [f64; 2]) -> Result<Self, NotFinite> {
+        let arcs = if style.dash_pattern.is_empty() { ARCS } else { DASHED_ARCS } * tolerance;
+        let contours = contours(&self.to_bez_path(arcs), style, clipped, gap)?;
+        let subpath = |contour: &Vec<Edge>| {
+            let mut segs = Vec::with_capacity(contour.len());
+            for edge in contour {
+                append(edge, tolerance - arcs, &mut segs)?;
+            }
+            Ok(Subpath { start: contour[0].p0, segs, closed: true })
+        };
+        Ok(Self { subpaths: contours.iter().map(subpath).collect::<Result<_, NotFinite>>()? })
+    }
+}
+
+/// The area that a path covers under the nonzero rule, with outlines that do not cross; the path itself if it is not finite.
+#[must_use]
+pub fn united(path: BezPath, tolerance: f64) -> BezPath {
+    bezierfit::union(&path, tolerance).unwrap_or(path)
+}
+
+/// Appends an edge of a stroke's outline.
+fn append(edge: &Edge, tolerance: f64, out: &mut Vec<Seg>) -> Result<(), NotFinite> {
+    if let EdgeCurve::Arc(arc) = edge.curve {
+        let r = arc.radii.x;
+        let (a, b) = (Vec2::new(r, 0.0), Vec2::new(0.0, r));
+        let arc = EllipticArc::new(arc.center, a, b, arc.start_angle, arc.sweep_angle);
+        out.push(Seg::Arc(EllipticArc { p0: edge.p0, p1: edge.p1, ..arc }));
+        return Ok(());
+    }
+    let mut pieces = Vec::new();
+    edge.draft(tolerance, HALVINGS, &mut pieces)?;
+    out.extend(pieces.into_iter().map(|p| match p {
+        Piece::Line(l) => Seg::Line(l),
+        Piece::Cubic(c) => Seg::Cubic(c),
+    }));
+    Ok(())
+}
