@@ -60,7 +60,7 @@ pub use options::{Degree, Options, Pieces};
 pub use path::{Fitted, MAX_EVALUATIONS, PathSource, Segment, fit, simplify};
 pub use points::fit_points;
 #[cfg(feature = "area")]
-pub use region::{offset, union};
+pub use region::{offset, union, union_even_odd};
 pub use report::{Assurance, Piece, PieceReport, Report};
 pub use sample::{Lane, Lanes};
 pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};

@@ -39,6 +39,14 @@ pub fn union(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
     covered(path, &BezPath::new(), tolerance, |w| w.shape_a != 0)
 }
 
+/// The same under the even-odd rule: the area that lies inside of an odd number of outlines.
+///
+/// # Errors
+/// The path has coordinates that are not finite.
+pub fn union_even_odd(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
+    covered(path, &BezPath::new(), tolerance, |w| w.shape_a % 2 != 0)
+}
+
 /// Moves outlines by a distance. Closed subpaths are the outlines of an area under the nonzero rule, which grows, or shrinks if the distance
 /// is negative. Open subpaths become the path beside them: to their left where y points up, to their right where y points down; on
 /// the other side if the distance is negative. What would be nearer to the source than the distance is removed. Corners are joined as

@@ -1,7 +1,9 @@
-//! What is done to shapes without bending them: the parameters of `simplify` and `outline`, read like those of a deformation.
+//! What is done to shapes without bending them: the parameters of `simplify`, `offset` and `outline`, read like those of a deformation.
 
 use pathwarp::Error;
-use pathwarp::param::{Args, Frame, Param, Settings};
+use pathwarp::edit::{Offset, Side};
+use pathwarp::kurbo::Join;
+use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{Recipe, Step};
 use pathwarp_svg::Edit;
 
@@ -47,7 +49,35 @@ pub(crate) static SIMPLIFY: EditInfo = EditInfo {
 pub(crate) static OUTLINE: EditInfo =
     EditInfo { name: "outline", params: &[], tolerance: None, read: |_| Ok(Edit::Outline) };
 
-pub(crate) static EDITS: [&EditInfo; 2] = [&SIMPLIFY, &OUTLINE];
+pub(crate) static OFFSET: EditInfo = EditInfo {
+    name: "offset",
+    params: &[
+        Param::length("by", Axis::Diagonal, "Distance by which outlines move, such as 2mm.").within(1e-9, 1e9).needed(),
+        Param::new("join", Kind::Choice(&["round", "miter", "bevel"]), "What becomes of corners that open.").default("round"),
+        Param::new(
+            "side",
+            Kind::Choice(&["outside", "inside", "both"]),
+            "outside: areas grow, and open paths run to their right, as one walks along them; inside: they shrink, and run to their left.",
+        )
+        .default("outside"),
+    ],
+    tolerance: None,
+    read: |s| {
+        let join = match s.choice("join")? {
+            "miter" => Join::Miter,
+            "bevel" => Join::Bevel,
+            _ => Join::Round,
+        };
+        let side = match s.choice("side")? {
+            "inside" => Side::Inside,
+            "both" => Side::Both,
+            _ => Side::Outside,
+        };
+        Ok(Edit::Offset(Offset { by: s.number("by")?, join, side, even_odd: false }))
+    },
+};
+
+pub(crate) static EDITS: [&EditInfo; 3] = [&SIMPLIFY, &OFFSET, &OUTLINE];
 
 /// An edit with its values as given.
 #[derive(Debug, Clone, PartialEq)]

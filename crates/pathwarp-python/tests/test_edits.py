@@ -39,3 +39,12 @@ def test_misspelt_parameters_are_said():
         pathwarp.simplify(drawing(""), tolerence=1)
     with pytest.raises(pathwarp.UsageError, match="corners"):
         pathwarp.simplify_path("M0,0 H9", corners="wide")
+
+
+def test_areas_grow_and_shrink():
+    d = pathwarp.offset_path("M0,0 H40 V40 H0 Z", 10, join="miter")
+    numbers = [float(n) for n in re.findall(r"-?[\d.]+", d)]
+    assert (min(numbers), max(numbers)) == pytest.approx((-10, 50), abs=0.01)
+    svg = drawing("<rect id='a' width='40' height='40'/>")
+    assert pathwarp.offset(svg, 5, side="inside").report["shapes"][0]["segments_out"] == 4
+    assert "nothing is left of a" in pathwarp.offset(svg, "30", side="inside").warnings[0]

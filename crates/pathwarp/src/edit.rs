@@ -3,8 +3,8 @@
 use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
 use crate::refit::{Options, PathReport, RefittedPath};
-use bezierfit::{Error, Fitted, fit_points};
-use kurbo::{BezPath, Point};
+use bezierfit::{Error, Fitted, fit_points, union_even_odd};
+use kurbo::{BezPath, Join, Point};
 
 /// Edges of a contour that is a polygon on purpose rather than a curve in small steps.
 const FEW_EDGES: usize = 4;
@@ -48,6 +48,73 @@ pub fn through_vertices(
     }
     report.segments_out = path.segments().count();
     Ok(Some(RefittedPath { path, spans: Vec::new(), report }))
+}
+
+/// The side to which [`moved`] moves outlines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Areas grow; open paths run to their right, as one walks along them.
+    Outside,
+    /// Areas shrink; open paths run to their left.
+    Inside,
+    /// Both at once.
+    Both,
+}
+
+/// How far [`moved`] moves outlines, and where to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Offset {
+    /// Distance in user units, above zero.
+    pub by: f64,
+    /// What becomes of corners that open; miters reach up to four times the distance.
+    pub join: Join,
+    /// The side.
+    pub side: Side,
+    /// Closed subpaths enclose an area by the even-odd rule, instead of the nonzero rule.
+    pub even_odd: bool,
+}
+
+/// The outlines at a distance from an outline: each point has that distance from it, within `options.tolerance`. Closed subpaths are an area,
+/// which grows or shrinks, and vanishes where it is too narrow; loops are removed.
+///
+/// # Errors
+/// A coordinate is not finite.
+///
+/// ```
+/// use pathwarp::edit::{Offset, Side, moved};
+/// use pathwarp::kurbo::{Join, Shape};
+/// use pathwarp::{Outline, refit::Options};
+///
+/// let square = Outline::from_svg("M0,0H60V60H0Z")?;
+/// let by = Offset { by: 10.0, join: Join::Miter, side: Side::Outside, even_odd: false };
+/// assert!((moved(&square, &by, &Options::new(0.01))?.path.area().abs() - 6400.0).abs() < 1.0);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+pub fn moved(outline: &Outline, offset: &Offset, options: &Options) -> Result<RefittedPath, GeometryError> {
+    /// Share of the tolerance for cubics in place of arcs.
+    const ARCS: f64 = 0.05;
+    let fine = ARCS * options.tolerance;
+    let fitter = bezierfit::Options::new(options.tolerance - fine).with_corner(options.corner);
+    let mut source = outline.to_bez_path(fine);
+    if offset.even_odd {
+        let open = outline.subpaths.iter().filter(|s| !s.closed).cloned().collect();
+        let mut area = union_even_odd(&source, fine).map_err(refused)?;
+        area.extend(Outline { subpaths: open }.to_bez_path(fine));
+        source = area;
+    }
+    let distances: &[f64] = match offset.side {
+        Side::Outside => &[1.0],
+        Side::Inside => &[-1.0],
+        Side::Both => &[1.0, -1.0],
+    };
+    let (mut path, mut report) = (BezPath::new(), PathReport::default());
+    for sign in distances {
+        let fitted = bezierfit::offset(&source, sign * offset.by, offset.join, &fitter).map_err(refused)?;
+        report.add(reported(&fitted, options.tolerance));
+        path.extend(fitted.path);
+    }
+    (report.segments_in, report.segments_out) = (outline.segs().count(), path.segments().count());
+    Ok(RefittedPath { path, spans: Vec::new(), report })
 }
 
 fn reported(fitted: &Fitted, tolerance: f64) -> PathReport {

@@ -1,7 +1,7 @@
-//! `pathwarp simplify` and `outline`: edits of shapes, with the inputs and outputs of every deformation.
+//! `pathwarp simplify`, `offset` and `outline`: edits of shapes, with the inputs and outputs of every deformation.
 
 use super::deformation::mistaken;
-use crate::edits::{EDITS, EditChoice, EditInfo, OUTLINE, SIMPLIFY, still};
+use crate::edits::{EDITS, EditChoice, EditInfo, OFFSET, OUTLINE, SIMPLIFY, still};
 use crate::failure::Failure;
 use crate::options::{Given, inputs_arg, reading_args, some_options};
 use crate::pipeline;
@@ -48,6 +48,22 @@ pub(super) fn simplify() -> Command {
             "Examples:\n  A traced drawing:\n    pathwarp simplify trace.svg -o clean.svg\n  Within a tenth of a millimetre, for a \
              cutter:\n    pathwarp simplify trace.svg --tolerance 0.1mm -o clean.dxf\n  A folder, in place:\n    pathwarp simplify icons/ \
              --recursive --in-place",
+        )
+}
+
+pub(super) fn offset() -> Command {
+    let about = "Let areas grow or shrink, and lines run beside themselves";
+    declared(&OFFSET, about)
+        .args(some_options(&["text"]).map(|a| a.help_heading("Options")))
+        .long_about(format!(
+            "{about}.\n\nEach point of the result has its distance from the source, within --tolerance. Loops and slivers are removed; what is \
+             narrower than the distance vanishes, and a note says so. A path is one area: its outlines unite, those of different paths do \
+             not. Strokes keep their width; text becomes outlines.",
+        ))
+        .after_help(
+            "Examples:\n  A sticker's edge around a badge:\n    pathwarp offset badge.svg --by 3mm -o edge.svg\n  Half of a laser's kerf, for \
+             a tight fit:\n    pathwarp offset parts.svg --by 0.1mm --join miter -o parts.dxf\n  Inlays, a little smaller than their \
+             holes:\n    pathwarp offset inlays.svg --by 0.2mm --side inside -o smaller.svg",
         )
 }
 

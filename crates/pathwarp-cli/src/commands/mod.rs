@@ -26,7 +26,7 @@ mod text;
 mod unwarp;
 
 use crate::advice::{self, mistakes};
-use crate::edits::{EDITS, OUTLINE, SIMPLIFY};
+use crate::edits::{EDITS, OFFSET, OUTLINE, SIMPLIFY};
 use crate::failure::Failure;
 use crate::options::Given;
 use crate::plugins::{self, Plugins};
@@ -104,7 +104,7 @@ fn root() -> Command {
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 20] = [
+const OTHERS: [(&str, Declare); 21] = [
     (edit::NAME, |_| edit::command()),
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
@@ -115,6 +115,7 @@ const OTHERS: [(&str, Declare); 20] = [
     (text::NAME, text::command),
     (paths::NAME, |_| paths::command()),
     (SIMPLIFY.name, |_| edits::simplify()),
+    (OFFSET.name, |_| edits::offset()),
     (OUTLINE.name, |_| edits::outline()),
     (convert::NAME, |_| convert::command()),
     (render::NAME, |_| render::command()),

@@ -4,7 +4,7 @@ use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult
 use super::folds::{self, Fold};
 use super::gimp_file::GimpFile;
 use super::gimp_format::{GimpFormat, format};
-use super::gimp_stroke::{WarpedStrokes, single_precision_error, warp_strokes};
+use super::gimp_stroke::{WarpedStrokes, moved_strokes, single_precision_error, warp_strokes};
 use super::read::display;
 use super::{preview, surface};
 use crate::export::{self, Exported};
@@ -280,8 +280,15 @@ impl GimpArtwork {
         let warp = |place: usize| {
             let b = &bends[self.part(place)];
             let path = self.path(self.selected[place]);
-            let strokes = warp_strokes(path, &b.places, b.map, &b.refit);
-            let strokes = if request.edit.is_some() { strokes.map(|w| w.or_fewer(path)) } else { strokes };
+            let strokes = match request.edit {
+                Some(Edit::Offset(offset)) => moved_strokes(&self.outlines[place], &offset, &b.refit),
+                _ => warp_strokes(path, &b.places, b.map, &b.refit),
+            };
+            let strokes = if matches!(request.edit, Some(Edit::Simplify { .. })) {
+                strokes.map(|w| w.or_fewer(path))
+            } else {
+                strokes
+            };
             (strokes, b.survey.orientation(&self.outlines[place], false))
         };
         let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> = if segments < WORTH_THREADS {

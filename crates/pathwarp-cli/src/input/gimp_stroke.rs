@@ -1,5 +1,6 @@
 //! GIMP strokes under a map.
 
+use pathwarp::edit::{self, Offset};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Class, Map};
 use pathwarp::refit::{self, PathReport};
@@ -58,6 +59,17 @@ pub(super) fn warp_strokes(
         out.report.add(r);
     }
     Ok(out)
+}
+
+/// The strokes at a distance from an outline.
+pub(super) fn moved_strokes(
+    outline: &Outline,
+    offset: &Offset,
+    options: &refit::Options,
+) -> Result<WarpedStrokes, GeometryError> {
+    let moved = edit::moved(outline, offset, options)?;
+    let strokes = Outline::from(&moved.path).subpaths.iter().map(Stroke::from_subpath).collect();
+    Ok(WarpedStrokes { strokes, report: moved.report })
 }
 
 fn transformed(stroke: &Stroke, m: Affine) -> Stroke {

@@ -126,6 +126,7 @@ impl Batch<'_> {
         warnings.extend(warped.page.warnings());
         let coarse = too_coarse(options.precision, &warped.shapes);
         let is_coarse = coarse.is_some();
+        warnings.extend(self.vanished(&warped.shapes));
         warnings.extend(coarse);
         let frame = first.rect;
         let report = FileReport {
@@ -176,6 +177,17 @@ impl Batch<'_> {
         let error =
             if (1e-3..1e4).contains(&error) || error == 0.0 { format!("{error:.3}") } else { format!("{error:.2e}") };
         asked.then(|| format!("{before} nodes became {after}, within {error} units of the original"))
+    }
+
+    /// The warning about shapes of which nothing is left.
+    fn vanished(&self, shapes: &[ReportedShape]) -> Option<String> {
+        const NAMED: usize = 5;
+        self.options.edit.as_ref()?;
+        let gone: Vec<&str> =
+            shapes.iter().filter(|s| s.segments_in > 0 && s.segments_out == 0).map(|s| s.id.as_str()).collect();
+        let more = if gone.len() > NAMED { format!(" and {} more", gone.len() - NAMED) } else { String::new() };
+        let named = gone[..gone.len().min(NAMED)].join(", ");
+        (!gone.is_empty()).then(|| format!("nothing is left of {named}{more}: narrower than the distance"))
     }
 
     /// Messages of all steps, with parameters as flags.

@@ -44,6 +44,8 @@ __all__ = [
     "__version__",
     "deform",
     "deformations",
+    "offset",
+    "offset_path",
     "options",
     "outline",
     "simplify",
@@ -116,6 +118,28 @@ def simplify_path(d: Any, /, *, corners: Any = None, polylines: bool = False, **
     """
     edit = Deformation._edit("simplify", {"corners": corners, "polylines": polylines})
     return edit.warp_path(d, **options)
+
+
+def offset(
+    svg: Any,
+    by: Any,
+    /,
+    *,
+    join: str = "round",
+    side: str = "outside",
+    name: Union[str, "os.PathLike[str]", None] = None,
+    **options: Any,
+) -> Warped:
+    """Lets areas of a drawing grow or shrink by a distance (`2`, `"2mm"`), and lines run beside themselves, as `pathwarp offset` does.
+
+    `join` is round, miter or bevel, `side` outside, inside or both.
+    """
+    return Deformation._edit("offset", {"by": by, "join": join, "side": side}).warp_svg(svg, name=name, **options)
+
+
+def offset_path(d: Any, by: Any, /, *, join: str = "round", side: str = "outside", **options: Any) -> WarpedPath:
+    """The same for a path, given as for `warp_path`."""
+    return Deformation._edit("offset", {"by": by, "join": join, "side": side}).warp_path(d, **options)
 
 
 def outline(svg: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **options: Any) -> Warped:

@@ -2,10 +2,10 @@
 
 use super::image::Images;
 use super::options::{Clones, Gradients, Patterns, Strokes, TextMode, WarpOptions};
-use crate::scene::model::Part;
+use crate::scene::model::{Part, PartRole};
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
-use pathwarp::edit::through_vertices;
+use pathwarp::edit::{Offset, moved, through_vertices};
 use pathwarp::refit::{self, RefittedPath};
 use pathwarp::{GeometryError, Outline};
 
@@ -22,6 +22,8 @@ pub enum Edit {
     },
     /// Strokes and text become filled outlines.
     Outline,
+    /// Areas grow or shrink, and open paths run beside themselves. Areas follow the rule of the fill.
+    Offset(Offset),
 }
 
 impl Edit {
@@ -36,6 +38,18 @@ impl Edit {
                 options.with_clones(Clones::Follow)
             }
             Self::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
+            Self::Offset(_) => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit),
+        }
+    }
+
+    /// The same edit of a part.
+    pub(super) fn of(self, part: &Part) -> Self {
+        match self {
+            Self::Offset(offset) => {
+                let even_odd = part.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd);
+                Self::Offset(Offset { even_odd, ..offset })
+            }
+            other => other,
         }
     }
 
@@ -48,6 +62,7 @@ impl Edit {
     ) -> Result<Option<RefittedPath>, GeometryError> {
         match self {
             Self::Simplify { polylines: true, .. } => through_vertices(outline, options, contours),
+            Self::Offset(offset) => moved(outline, &offset, options).map(Some),
             Self::Simplify { .. } | Self::Outline => Ok(None),
         }
     }
@@ -61,6 +76,7 @@ impl Edit {
                 part.owner.is_none() && matches!(tag(part.source), "path" | "polygon" | "polyline")
             }
             Self::Outline => part.stroke.is_some() || tag(part.owner) == "text",
+            Self::Offset(_) => part.role == PartRole::Paint && part.painted(),
         }
     }
 }

@@ -35,6 +35,12 @@ pub fn edit_path(
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
+    if let Edit::Offset(_) = edit
+        && let Some(RefittedPath { path, report, .. }) = edit.edited(outline, options, &[])?
+    {
+        let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
+        return Ok(WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report });
+    }
     if let Edit::Simplify { corner, .. } = edit {
         let options = options.clone().with_merge(true).with_corner(corner);
         let simple = match edit.edited(outline, &options, &[])? {

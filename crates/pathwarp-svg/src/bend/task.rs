@@ -115,7 +115,9 @@ impl<'a> PartTask<'a> {
         let options = self.refit(self.allowed()).with_spans(self.digits.allowed(&spans));
         if let Some(edit) = self.options().edit {
             let held: Vec<f64> = (0..contours.len()).map(|i| self.allowed_of(i)).collect();
-            if let Some(RefittedPath { path, report, .. }) = edit.edited(outline, &self.refit(self.allowed()), &held)? {
+            if let Some(RefittedPath { path, report, .. }) =
+                edit.of(self.part).edited(outline, &self.refit(self.allowed()), &held)?
+            {
                 return Ok(BentPath { path: self.to_local(path), data: None, report });
             }
         }
