@@ -5,6 +5,7 @@ use crate::limits::ONE_SIDED_STEP;
 use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
 use crate::options::{Degree, Options};
 use crate::pieces::limited;
+pub use crate::report::Fitted;
 use crate::report::{Assurance, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::sample::{Lane, Lanes, fma};
@@ -12,16 +13,6 @@ use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
 use crate::spline::Run;
 use crate::stretch::StretchFitter;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
-
-/// A path with what is known of its error.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Fitted {
-    /// Lines, and cubics or quadratics.
-    pub path: BezPath,
-    /// How far the path is from the source.
-    pub report: Report,
-}
 
 /// Evaluations of a source by [`fit`], at most, for each smooth part between its [breaks](Source::breaks). Usual curves need some
 /// hundreds for each piece. Where it is reached, the rest of the part is listed as unresolved. Only quadratics, and a given number of

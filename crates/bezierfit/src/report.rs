@@ -1,6 +1,6 @@
 //! Pieces, and what is known of their error.
 
-use kurbo::{CubicBez, Line, Point};
+use kurbo::{BezPath, CubicBez, Line, Point};
 
 /// One segment of the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,4 +87,14 @@ impl Report {
         self.unresolved.extend(&part.unresolved);
         self.pieces.extend(&part.pieces);
     }
+}
+
+/// A path with what is known of its error.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Fitted {
+    /// Lines, and cubics or quadratics.
+    pub path: BezPath,
+    /// How far the path is from the source.
+    pub report: Report,
 }
