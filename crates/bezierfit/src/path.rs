@@ -1,7 +1,7 @@
 //! Fits of whole curves and paths.
 
 use crate::error::Error;
-use crate::limits::ONE_SIDED_STEP;
+use crate::limits::{ONE_SIDED_STEP, SPLINE_CURVES, SPLINE_FIRST};
 use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
 use crate::options::{Degree, Options};
 use crate::pieces::limited;
@@ -367,8 +367,23 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
         }
         _ => {
             let ends = [run.segments[0].from, run.segments[count - 1].to];
-            let curves = &segments[..count];
-            Run { curves, tolerance: options.tolerance }.cover(ends, &mut out.path, &mut out.report)?;
+            let (mut curves, mut off) = (segments[..count].to_vec(), 0.0);
+            if count > SPLINE_CURVES {
+                // Long runs become few cubics first.
+                let close = Options { tolerance: SPLINE_FIRST * options.tolerance, ..*options };
+                let (mut pieces, mut report, mut memory) = (Vec::new(), Report::default(), ReachMemory::default());
+                let itself = |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+                    pieces.push(segments[i].piece());
+                    report.add_error(0.0, Assurance::Exact);
+                    Ok(())
+                };
+                fewest(&run, OwnPieces::new(count, itself), &close, &mut memory, &mut pieces, &mut report)?;
+                (curves, off) = (pieces.into_iter().map(Segment::from).collect(), report.max_error);
+            }
+            let first = out.report.pieces.len();
+            let run = Run { curves: &curves, tolerance: options.tolerance - off };
+            run.cover(ends, &mut out.path, &mut out.report)?;
+            out.report.widen(first, off);
             return Ok(count);
         }
     }
@@ -466,7 +481,7 @@ impl Segment {
         Self { seg, c }
     }
 
-    /// The segment itself.
+    /// The segment itself, raised to a cubic.
     fn piece(&self) -> Piece {
         match self.seg {
             PathSeg::Line(l) => Piece::Line(l),
@@ -492,6 +507,15 @@ impl Segment {
     /// Returns `true` if it has a length and no cusps.
     fn is_smooth(&self) -> bool {
         self.slow_spots().all().is_empty() && self.c[1..].iter().any(|c| c.hypot2() > 0.0)
+    }
+}
+
+impl From<Piece> for Segment {
+    fn from(piece: Piece) -> Self {
+        Self::new(match piece {
+            Piece::Line(l) => PathSeg::Line(l),
+            Piece::Cubic(c) => PathSeg::Cubic(c),
+        })
     }
 }
 

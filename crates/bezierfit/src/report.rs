@@ -74,6 +74,12 @@ impl Report {
         self.assurance = self.assurance.min(assurance);
     }
 
+    /// Adds an error to the pieces from number `first` on.
+    pub(crate) fn widen(&mut self, first: usize, by: f64) {
+        self.pieces[first..].iter_mut().for_each(|p| p.error += by);
+        self.max_error = self.pieces[first..].iter().map(|p| p.error).fold(self.max_error, f64::max);
+    }
+
     /// Adds the report of another part.
     pub fn add(&mut self, part: Self) {
         self.add_bound(part.max_error, part.assurance);

@@ -25,6 +25,8 @@ const MISSED: f64 = 1.001;
 /// Share of the residual along the tangent: it keeps the system regular.
 const ALONG: f64 = 0.02;
 
+/// Curves that are covered together, at most, so that the time is linear.
+const MOST_CURVES: usize = 128;
 /// Pieces of a run of several curves, at most.
 const TOGETHER: usize = 24;
 
@@ -90,7 +92,8 @@ impl<S: Source> Run<'_, S> {
                 let most = now + alone[end..to].iter().map(Covered::pieces).sum::<usize>() - 1;
                 let spans: Vec<Span> = alone[i..to].iter().flat_map(|c| c.spans.iter().copied()).collect();
                 let is_line = |c: &Covered| c.spline.is_none();
-                let found = if now > TOGETHER || most > 2 * TOGETHER || alone[i..to].iter().any(is_line) {
+                let too_many = now > TOGETHER || most > 2 * TOGETHER || to - i > MOST_CURVES;
+                let found = if too_many || alone[i..to].iter().any(is_line) {
                     None
                 } else {
                     self.together(spans, [alone[i].ends[0], alone[to - 1].ends[1]], most)?
