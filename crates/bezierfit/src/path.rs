@@ -19,6 +19,9 @@ use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
 /// pieces, which takes several fits, may need a multiple.
 pub const MAX_EVALUATIONS: usize = 2_000_000;
 
+/// Evaluations between two looks at their number, at most: of a plan of eight pieces and its repair.
+const ONE_ROUND: usize = 200_000;
+
 /// Covers a curve with few pieces, within `options.tolerance`. The curve may have corners, cusps and jumps where it
 /// [says](Source::breaks) so.
 ///
@@ -186,8 +189,8 @@ fn merged_parts<S: Source>(
     let mut covered = Vec::with_capacity(parts.len());
     for part in parts {
         let (mut pieces, mut report) = (Vec::new(), Report::default());
-        let left = MAX_EVALUATIONS as f64;
-        let mut fitter = StretchFitter::new(part, &slow, options.tolerance, (options.prove, 0.0), left);
+        let mut fitter = StretchFitter::new(part, &slow, options.tolerance, (options.prove, 0.0), f64::INFINITY);
+        fitter.most_evaluations = MAX_EVALUATIONS - ONE_ROUND;
         fitter.cover(&part.ends[0], &part.ends[1], &mut pieces, &mut report)?;
         covered.push((part, pieces, report));
     }

@@ -14,8 +14,9 @@ use kurbo::{BezPath, Point, Vec2};
 
 /// Control points of a spline, at most: a longer run is divided.
 const MOST: usize = 48;
-/// Stretches shorter than this share of a curve are not divided.
+/// Stretches shorter than this share of a curve are not divided, nor are any after so many.
 const SHORTEST: f64 = 1e-6;
+const MOST_STRETCHES: usize = 100;
 /// Samples to a piece, at least, that measure an error: it has corners where the curvature of the curve or of the spline jumps.
 const CLOSELY: f64 = 64.0;
 /// By how much samples are refined for that, at most.
@@ -113,7 +114,9 @@ impl<S: Source> Run<'_, S> {
     /// Appends what covers a curve by itself, divided if it needs too many pieces.
     fn alone(&self, span: Span, ends: [BreakPoint; 2], out: &mut Vec<Covered>) -> Result<(), NotFinite> {
         let mut stack = vec![(span, ends)];
+        let mut stretches = 0;
         while let Some((span, ends)) = stack.pop() {
+            stretches += 1;
             let [t0, t1] = span.t;
             let mut samples = self.samples(&[span], 2 * SPLINE_SAMPLES, &ends)?;
             if let Some(error) = samples.straight(STRAIGHT_TOLERANCE * self.tolerance) {
@@ -140,7 +143,7 @@ impl<S: Source> Run<'_, S> {
             if let Some((spline, error)) = found {
                 let span = Span { pieces: spline.c.len(), ..span };
                 out.push(Covered { spans: vec![span], ends, spline: Some(spline), error, resolved: true });
-            } else if t1 - t0 < SHORTEST {
+            } else if t1 - t0 < SHORTEST || stretches > MOST_STRETCHES {
                 let error = samples.straight(f64::INFINITY).unwrap_or(self.tolerance);
                 out.push(Covered { spans: vec![span], ends, spline: None, error, resolved: error <= self.tolerance });
             } else {
