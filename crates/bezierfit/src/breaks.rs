@@ -81,7 +81,7 @@ impl<S: Source> StretchFitter<'_, S> {
                 FitOutcome::Misses { piece, error, cusp, .. } => (piece, error, cusp),
             };
             let h = to.t - from.t;
-            if self.attempts >= self.most_attempts || h < MIN_STRETCH {
+            if self.is_spent() || h < MIN_STRETCH {
                 report.unresolved.push(self.source.place(0.5 * (from.t + to.t)));
                 report.add_error(error, Assurance::Checked);
                 out.push(piece);
@@ -149,7 +149,7 @@ impl<S: Source> StretchFitter<'_, S> {
             placements += 1;
             let has_cusp = |o: &FitOutcome| matches!(o, FitOutcome::Misses { cusp: Some(_), .. });
             let cusp = plan.outcomes[..n].iter().flatten().any(has_cusp);
-            if fits || cusp || self.attempts >= self.most_attempts {
+            if fits || cusp || self.is_spent() {
                 break;
             }
             let mut next = n;

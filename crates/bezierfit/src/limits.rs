@@ -534,3 +534,9 @@ pub(crate) const SPLINE_WEIGHTED: usize = 5;
 
 /// Share of the tolerance for errors of splines at and between their samples.
 pub(crate) const SPLINE_ACCEPTED: f64 = 0.99;
+
+/// Runs of more curves than this become few cubics first, so that circles of 100,000 cubics take linear time, …
+pub(crate) const SPLINE_CURVES: usize = 16;
+
+/// … within this share of the tolerance.
+pub(crate) const SPLINE_FIRST: f64 = 0.05;

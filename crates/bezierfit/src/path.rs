@@ -1,10 +1,11 @@
 //! Fits of whole curves and paths.
 
 use crate::error::Error;
-use crate::limits::ONE_SIDED_STEP;
+use crate::limits::{ONE_SIDED_STEP, SPLINE_CURVES, SPLINE_FIRST};
 use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
 use crate::options::{Degree, Options};
 use crate::pieces::limited;
+pub use crate::report::Fitted;
 use crate::report::{Assurance, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::sample::{Lane, Lanes, fma};
@@ -13,20 +14,13 @@ use crate::spline::Run;
 use crate::stretch::StretchFitter;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
 
-/// A path with what is known of its error.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Fitted {
-    /// Lines, and cubics or quadratics.
-    pub path: BezPath,
-    /// How far the path is from the source.
-    pub report: Report,
-}
-
 /// Evaluations of a source by [`fit`], at most, for each smooth part between its [breaks](Source::breaks). Usual curves need some
 /// hundreds for each piece. Where it is reached, the rest of the part is listed as unresolved. Only quadratics, and a given number of
 /// pieces, which takes several fits, may need a multiple.
 pub const MAX_EVALUATIONS: usize = 2_000_000;
+
+/// Evaluations between two looks at their number, at most: of a plan of eight pieces and its repair.
+const ONE_ROUND: usize = 200_000;
 
 /// Covers a curve with few pieces, within `options.tolerance`. The curve may have corners, cusps and jumps where it
 /// [says](Source::breaks) so.
@@ -195,8 +189,8 @@ fn merged_parts<S: Source>(
     let mut covered = Vec::with_capacity(parts.len());
     for part in parts {
         let (mut pieces, mut report) = (Vec::new(), Report::default());
-        let left = MAX_EVALUATIONS as f64;
-        let mut fitter = StretchFitter::new(part, &slow, options.tolerance, (options.prove, 0.0), left);
+        let mut fitter = StretchFitter::new(part, &slow, options.tolerance, (options.prove, 0.0), f64::INFINITY);
+        fitter.most_evaluations = MAX_EVALUATIONS - ONE_ROUND;
         fitter.cover(&part.ends[0], &part.ends[1], &mut pieces, &mut report)?;
         covered.push((part, pieces, report));
     }
@@ -376,8 +370,23 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
         }
         _ => {
             let ends = [run.segments[0].from, run.segments[count - 1].to];
-            let curves = &segments[..count];
-            Run { curves, tolerance: options.tolerance }.cover(ends, &mut out.path, &mut out.report)?;
+            let (mut curves, mut off) = (segments[..count].to_vec(), 0.0);
+            if count > SPLINE_CURVES {
+                // Long runs become few cubics first.
+                let close = Options { tolerance: SPLINE_FIRST * options.tolerance, ..*options };
+                let (mut pieces, mut report, mut memory) = (Vec::new(), Report::default(), ReachMemory::default());
+                let itself = |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+                    pieces.push(segments[i].piece());
+                    report.add_error(0.0, Assurance::Exact);
+                    Ok(())
+                };
+                fewest(&run, OwnPieces::new(count, itself), &close, &mut memory, &mut pieces, &mut report)?;
+                (curves, off) = (pieces.into_iter().map(Segment::from).collect(), report.max_error);
+            }
+            let first = out.report.pieces.len();
+            let run = Run { curves: &curves, tolerance: options.tolerance - off };
+            run.cover(ends, &mut out.path, &mut out.report)?;
+            out.report.widen(first, off);
             return Ok(count);
         }
     }
@@ -475,7 +484,7 @@ impl Segment {
         Self { seg, c }
     }
 
-    /// The segment itself.
+    /// The segment itself, raised to a cubic.
     fn piece(&self) -> Piece {
         match self.seg {
             PathSeg::Line(l) => Piece::Line(l),
@@ -506,6 +515,15 @@ impl Segment {
     /// Returns `true` if it has a length and no cusps.
     fn is_smooth(&self) -> bool {
         self.slow_spots().all().is_empty() && self.c[1..].iter().any(|c| c.hypot2() > 0.0)
+    }
+}
+
+impl From<Piece> for Segment {
+    fn from(piece: Piece) -> Self {
+        Self::new(match piece {
+            Piece::Line(l) => PathSeg::Line(l),
+            Piece::Cubic(c) => PathSeg::Cubic(c),
+        })
     }
 }
 

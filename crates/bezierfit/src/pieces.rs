@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::options::{Options, Pieces};
-use crate::path::Fitted;
+use crate::report::Fitted;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg};
 
 /// Fits tried on the way to the least error: it is then known to about a hundredth.

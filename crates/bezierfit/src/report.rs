@@ -1,6 +1,6 @@
 //! Pieces, and what is known of their error.
 
-use kurbo::{CubicBez, Line, Point};
+use kurbo::{BezPath, CubicBez, Line, Point};
 
 /// One segment of the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +74,12 @@ impl Report {
         self.assurance = self.assurance.min(assurance);
     }
 
+    /// Adds an error to the pieces from number `first` on.
+    pub(crate) fn widen(&mut self, first: usize, by: f64) {
+        self.pieces[first..].iter_mut().for_each(|p| p.error += by);
+        self.max_error = self.pieces[first..].iter().map(|p| p.error).fold(self.max_error, f64::max);
+    }
+
     /// Adds the report of another part.
     pub fn add(&mut self, part: Self) {
         self.add_bound(part.max_error, part.assurance);
@@ -87,4 +93,14 @@ impl Report {
         self.unresolved.extend(&part.unresolved);
         self.pieces.extend(&part.pieces);
     }
+}
+
+/// A path with what is known of its error.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Fitted {
+    /// Lines, and cubics or quadratics.
+    pub path: BezPath,
+    /// How far the path is from the source.
+    pub report: Report,
 }

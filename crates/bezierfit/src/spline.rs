@@ -14,8 +14,9 @@ use kurbo::{BezPath, Point, Vec2};
 
 /// Control points of a spline, at most: a longer run is divided.
 const MOST: usize = 48;
-/// Stretches shorter than this share of a curve are not divided.
+/// Stretches shorter than this share of a curve are not divided, nor are any after so many.
 const SHORTEST: f64 = 1e-6;
+const MOST_STRETCHES: usize = 100;
 /// Samples to a piece, at least, that measure an error: it has corners where the curvature of the curve or of the spline jumps.
 const CLOSELY: f64 = 64.0;
 /// By how much samples are refined for that, at most.
@@ -25,6 +26,8 @@ const MISSED: f64 = 1.001;
 /// Share of the residual along the tangent: it keeps the system regular.
 const ALONG: f64 = 0.02;
 
+/// Curves that are covered together, at most, so that the time is linear.
+const MOST_CURVES: usize = 128;
 /// Pieces of a run of several curves, at most.
 const TOGETHER: usize = 24;
 
@@ -90,7 +93,8 @@ impl<S: Source> Run<'_, S> {
                 let most = now + alone[end..to].iter().map(Covered::pieces).sum::<usize>() - 1;
                 let spans: Vec<Span> = alone[i..to].iter().flat_map(|c| c.spans.iter().copied()).collect();
                 let is_line = |c: &Covered| c.spline.is_none();
-                let found = if now > TOGETHER || most > 2 * TOGETHER || alone[i..to].iter().any(is_line) {
+                let too_many = now > TOGETHER || most > 2 * TOGETHER || to - i > MOST_CURVES;
+                let found = if too_many || alone[i..to].iter().any(is_line) {
                     None
                 } else {
                     self.together(spans, [alone[i].ends[0], alone[to - 1].ends[1]], most)?
@@ -110,7 +114,9 @@ impl<S: Source> Run<'_, S> {
     /// Appends what covers a curve by itself, divided if it needs too many pieces.
     fn alone(&self, span: Span, ends: [BreakPoint; 2], out: &mut Vec<Covered>) -> Result<(), NotFinite> {
         let mut stack = vec![(span, ends)];
+        let mut stretches = 0;
         while let Some((span, ends)) = stack.pop() {
+            stretches += 1;
             let [t0, t1] = span.t;
             let mut samples = self.samples(&[span], 2 * SPLINE_SAMPLES, &ends)?;
             if let Some(error) = samples.straight(STRAIGHT_TOLERANCE * self.tolerance) {
@@ -137,7 +143,7 @@ impl<S: Source> Run<'_, S> {
             if let Some((spline, error)) = found {
                 let span = Span { pieces: spline.c.len(), ..span };
                 out.push(Covered { spans: vec![span], ends, spline: Some(spline), error, resolved: true });
-            } else if t1 - t0 < SHORTEST {
+            } else if t1 - t0 < SHORTEST || stretches > MOST_STRETCHES {
                 let error = samples.straight(f64::INFINITY).unwrap_or(self.tolerance);
                 out.push(Covered { spans: vec![span], ends, spline: None, error, resolved: error <= self.tolerance });
             } else {

@@ -35,8 +35,10 @@ pub struct StretchFitter<'a, S> {
     pub(crate) attempts: usize,
     /// Evaluations besides those of attempts with their usual checks, so far.
     pub(crate) extra: Cell<usize>,
-    /// The number of attempts at which the work ends.
-    pub(crate) most_attempts: usize,
+    /// The number of attempts at which the work ends, …
+    most_attempts: usize,
+    /// … and that of evaluations.
+    pub(crate) most_evaluations: usize,
 }
 
 impl<'a, S: Source> StretchFitter<'a, S> {
@@ -50,7 +52,22 @@ impl<'a, S: Source> StretchFitter<'a, S> {
         let form = if prove { source.quotient().and_then(Quotient::provable) } else { None };
         let form = form.map(|f| Quotient { blur, ..f });
         let simple = blur == 0.0 && source.is_simple();
-        Self { source, slow, tolerance, form, simple, attempts: 0, extra: Cell::new(0), most_attempts }
+        Self {
+            source,
+            slow,
+            tolerance,
+            form,
+            simple,
+            attempts: 0,
+            extra: Cell::new(0),
+            most_attempts,
+            most_evaluations: usize::MAX,
+        }
+    }
+
+    /// Returns `true` if the work ends here.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.attempts >= self.most_attempts || self.evaluations() >= self.most_evaluations
     }
 
     /// Evaluations so far, at most.

@@ -5,7 +5,7 @@
 
 mod common;
 
-use bezierfit::{Degree, Fitted, Offset, Options, PathSource, Source, fit, fit_points, simplify};
+use bezierfit::{Degree, Fitted, Offset, Options, PathSource, Pieces, Source, fit, fit_points, simplify};
 use common::distance;
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveNearest, PathSeg, Point, Vec2};
 use std::cell::Cell;
@@ -212,7 +212,7 @@ fn what_is_not_finite_is_said() {
 
 #[test]
 fn a_circle_of_any_number_of_cubics_is_four() {
-    for n in [8, 40, 1000, 20_000] {
+    for n in [8, 40, 1000, 100_000] {
         let step = std::f64::consts::TAU / f64::from(n);
         let handle = 4.0 / 3.0 * (0.25 * step).tan() * 1000.0;
         let at = |i: i32| Vec2::from_angle(step * f64::from(i % n));
@@ -231,5 +231,36 @@ fn a_circle_of_any_number_of_cubics_is_four() {
                 .flat_map(|s| (0..=50).map(move |i| s.eval(f64::from(i) / 50.0).to_vec2().hypot()));
             assert!(radii.into_iter().all(|r| (r - 1000.0).abs() <= 1.0));
         }
+        let quadratics = simplify(&path, &Options::new(1.0).with_degree(Degree::Quadratic)).unwrap();
+        assert!(quadratics.path.segments().count() <= 10, "{n}: {}", quadratics.path.segments().count());
+        let radii = quadratics
+            .path
+            .segments()
+            .flat_map(|s| (0..=50).map(move |i| s.eval(f64::from(i) / 50.0).to_vec2().hypot()));
+        assert!(radii.into_iter().all(|r| (r - 1000.0).abs() <= 1.0) && quadratics.report.max_error <= 1.0);
+    }
+}
+
+#[test]
+fn noise_ends_and_is_said() {
+    let evaluations = Cell::new(0);
+    let noise = |t: f64| {
+        evaluations.set(evaluations.get() + 1);
+        let phase = 1e7 * t * t;
+        (Point::new(100.0 * t, 50.0 * phase.sin()), Vec2::new(100.0, 1e9 * t * phase.cos()))
+    };
+    for (degree, pieces) in
+        [(Degree::Cubic, Pieces::Fewest), (Degree::Quadratic, Pieces::Fewest), (Degree::Cubic, Pieces::AtMost(3))]
+    {
+        evaluations.set(0);
+        let fitted = fit(&noise, &Options::new(0.01).with_degree(degree).with_pieces(pieces));
+        match (pieces, fitted) {
+            (Pieces::Fewest, Ok(fitted)) => assert!(!fitted.report.unresolved.is_empty()),
+            (Pieces::AtMost(_), Ok(fitted)) => assert!(fitted.report.max_error > 10.0),
+            (_, Err(e)) => assert!(matches!(e, bezierfit::Error::TooFewPieces { .. }), "{e}"),
+            _ => {}
+        }
+        let most = if pieces == Pieces::Fewest { 1 } else { 60 } * bezierfit::MAX_EVALUATIONS;
+        assert!(evaluations.get() <= most, "{degree:?}: {}", evaluations.get());
     }
 }

@@ -92,7 +92,7 @@ impl Random {
                 // The handles cross almost as those of a cusp do.
                 let off = 10f64.powf(-2.0 + 2.0 * self.unit());
                 let c = CubicBez::new((0.0, 0.0), (100.0, 100.0), (off, 100.0 + off * self.unit()), (100.0, 0.0));
-                let c = [c.p0, c.p1, c.p2, c.p3].map(|p| p.to_vec2());
+                let c = [c.p0, c.p1, c.p2, c.p3].map(Point::to_vec2);
                 Box::new(move |t| bernstein(&c, t))
             }
             _ => {
