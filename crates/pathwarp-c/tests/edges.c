@@ -22,6 +22,7 @@ static void refused(pathwarp_status status, char *error, const char *words) {
 
 int main(void) {
     char *error, *bent;
+    pathwarp_status status;
     pathwarp_warper *swirl, *back;
     check(!pathwarp_new("swirl", NULL, NULL, 0, &swirl, &error), "swirl");
 
@@ -29,12 +30,15 @@ int main(void) {
     double points[] = {10, 20, 60, 50, 30, 30}, images[6], again[6];
     check(!pathwarp_inverse(swirl, &back, &error), "inverse");
     const char *unknown = "an inverse does not know the box of the source";
-    refused(pathwarp_map_points(back, points, images, 3, &error), error, unknown);
-    refused(pathwarp_warp_path(back, "M0,0 H9", &bent, NULL, &error), error, unknown);
+    status = pathwarp_map_points(back, points, images, 3, &error);
+    refused(status, error, unknown);
+    status = pathwarp_warp_path(back, "M0,0 H9", &bent, NULL, &error);
+    refused(status, error, unknown);
     const char *page = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M0,0H9V9z'/></svg>";
     uint8_t *result;
     size_t length;
-    refused(pathwarp_warp_drawing(back, (const uint8_t *)page, strlen(page), &result, &length, NULL, &error), error, unknown);
+    status = pathwarp_warp_drawing(back, (const uint8_t *)page, strlen(page), &result, &length, NULL, &error);
+    refused(status, error, unknown);
     check(!pathwarp_set_option(swirl, "frame", "0,0,100,100", &error), "frame");
     check(!pathwarp_set_option(back, "frame", "0,0,100,100", &error), "frame after inverse");
     check(!pathwarp_map_points(swirl, points, images, 3, &error), "forth");
@@ -46,14 +50,16 @@ int main(void) {
     pathwarp_warper *plain;
     check(!pathwarp_new("swirl", NULL, NULL, 0, &plain, &error), "plain");
     check(!pathwarp_map_points(plain, NULL, NULL, 0, &error) && !error, "no points");
-    refused(pathwarp_map_points(plain, points, images, 1, &error), error,
-            "the box of the points has no size, which percentages and defaults refer to: give it (frame X,Y,W,H)");
+    status = pathwarp_map_points(plain, points, images, 1, &error);
+    refused(status, error, "the box of the points has no size, which percentages and defaults refer to: give it (frame X,Y,W,H)");
     check(!pathwarp_map_points(swirl, points, images, 1, &error), "one point in a frame");
 
     /* Tolerances that no curve can keep, or every curve does. */
     const char *wrong[] = {"0", "-1", "nan", "inf", "-0", ""};
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-        refused(pathwarp_set_option(plain, "tolerance", wrong[i], &error), error, "tolerance: ");
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        status = pathwarp_set_option(plain, "tolerance", wrong[i], &error);
+        refused(status, error, "tolerance: ");
+    }
 
     pathwarp_free(plain);
     pathwarp_free(swirl);
