@@ -12,9 +12,37 @@ fi
 cargo build --quiet --locked --workspace
 out=target/c-tests
 mkdir -p "$out"
-flags=(-std=c11 -Wall -Wextra -Wpedantic -Werror -g -I crates/pathwarp-c/include crates/pathwarp-c/examples/bend.c)
-"$compiler" "${flags[@]}" -L target/debug -lpathwarp_c -Wl,-rpath,"$PWD/target/debug" -o "$out/bend"
-"$compiler" "${flags[@]}" target/debug/libpathwarp_c.a -lm -lpthread -ldl -o "$out/bend-static"
+# Installed as for a caller, with pkg-config and CMake as far as they are there.
+rm -rf "$out"/*
+prefix=$PWD/$out/installed
+crates/pathwarp-c/install.sh "$prefix" target/debug
+export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+if command -v pkg-config >/dev/null; then
+    shared=$(pkg-config --cflags --libs pathwarp)
+    static="$(pkg-config --cflags pathwarp) $prefix/lib/libpathwarp_c.a $(pkg-config --libs-only-l --static pathwarp | sed 's/-lpathwarp_c//')"
+else
+    echo "skipped: the C library's pkg-config file is not tested without pkg-config" >&2
+    shared="-I $prefix/include -L $prefix/lib -lpathwarp_c"
+    static="-I $prefix/include $prefix/lib/libpathwarp_c.a -lm -lpthread -ldl"
+fi
+flags=(-std=c11 -Wall -Wextra -Wpedantic -Werror -g)
+sed -n '/^```c$/,/^```$/p' crates/pathwarp-c/README.md | sed '1d;$d' >"$out/readme.c"
+build() {
+    # shellcheck disable=SC2086
+    "$compiler" "${flags[@]}" "$1" $shared -lm -Wl,-rpath,"$prefix/lib" -o "$out/$2"
+    # shellcheck disable=SC2086
+    "$compiler" "${flags[@]}" "$1" $static -lm -o "$out/$2-static"
+}
+build crates/pathwarp-c/examples/bend.c bend
+build crates/pathwarp-c/tests/edges.c edges
+build "$out/readme.c" readme
+if command -v cmake >/dev/null; then
+    cmake -S crates/pathwarp-c/examples -B "$out/cmake" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+    cmake --build "$out/cmake" >/dev/null
+    for program in bend bend-static; do "$out/cmake/$program" | cmp - <("$out/$program"); done
+else
+    echo "skipped: the C library's files for CMake are not tested without CMake" >&2
+fi
 # The header is C++, too.
 if command -v "${CXX:-c++}" >/dev/null; then
     "${CXX:-c++}" -Wall -Wextra -Werror -fsyntax-only -x c++ crates/pathwarp-c/include/pathwarp.h
@@ -26,6 +54,10 @@ if command -v valgrind >/dev/null; then
 else
     echo "skipped: leaks of the C library are not looked for without valgrind" >&2
 fi
+for program in edges edges-static; do "${run[@]}" "$out/$program"; done
+for program in readme readme-static; do
+    "${run[@]}" "$out/$program" | cmp - <("$out/bend" | head -1)
+done
 for program in bend bend-static; do
     "${run[@]}" "$out/$program" >"$out/printed.txt"
     # The path and the points are the command line's.

@@ -9,7 +9,8 @@
  *
  * A warper may be used by several threads at once, except while pathwarp_set_option changes it.
  *
- * Link with -lpathwarp_c (libpathwarp_c.so or libpathwarp_c.a; the latter also needs -lm -lpthread -ldl).
+ * Link with -lpathwarp_c (libpathwarp_c.so or libpathwarp_c.a; the latter also needs -lm -lpthread -ldl), or with what pkg-config or
+ * CMake's find_package say of `pathwarp` where install.sh has installed it.
  */
 #ifndef PATHWARP_H
 #define PATHWARP_H
@@ -48,14 +49,16 @@ pathwarp_status pathwarp_from_recipe(const char *text, const char *folder, pathw
 pathwarp_status pathwarp_then(const pathwarp_warper *first, const pathwarp_warper *second, pathwarp_warper **warper,
                               char **error);
 
-/* Makes the inverse. Set the option "frame" to the box of the source: percentages and defaults refer to it. */
+/* Makes the inverse. Before it is used, it or `of` needs the option "frame", the box of the source: percentages and defaults refer to
+ * it. */
 pathwarp_status pathwarp_inverse(const pathwarp_warper *of, pathwarp_warper **warper, char **error);
 
 /* Sets an option of the command line, such as "tolerance" or "frame"; a switch has the value "true". */
 pathwarp_status pathwarp_set_option(pathwarp_warper *warper, const char *name, const char *value, char **error);
 
 /* Maps `count` points, x and y in turn, from `from` to `to`. The two may be the same, but must not overlap otherwise. Where the map
- * is undefined, the result is NaN. Percentages refer to the option "frame", or the bounding box of the points. */
+ * is undefined, the result is NaN. Percentages refer to the option "frame", or the bounding box of the points, which a single point
+ * does not have. For no points, both may be NULL. */
 pathwarp_status pathwarp_map_points(const pathwarp_warper *warper, const double *from, double *to, size_t count, char **error);
 
 /* Bends SVG path data. *result is path data, within *max_error of the exact image; `max_error` may be NULL. Release *result with
