@@ -138,6 +138,8 @@ pub fn shifted(d: &str, by: [f64; 2]) -> String {
         let p = |abs: bool, x: f64, y: f64| if abs { (x + by[0], y + by[1]) } else { (x, y) };
         let name = |abs: bool, c: char| if abs { c } else { c.to_ascii_lowercase() };
         let _ = match s {
+            // The first point is absolute however it is written.
+            S::MoveTo { x, y, .. } if out.is_empty() => write!(out, "M{:?}", p(true, x, y)),
             S::MoveTo { abs, x, y } => write!(out, "{}{:?}", name(abs, 'M'), p(abs, x, y)),
             S::LineTo { abs, x, y } => write!(out, "{}{:?}", name(abs, 'L'), p(abs, x, y)),
             S::HorizontalLineTo { abs, x } => write!(out, "{}{:?}", name(abs, 'H'), p(abs, x, 0.0).0),

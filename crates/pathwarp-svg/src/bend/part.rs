@@ -151,6 +151,8 @@ fn filled(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
 fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> {
     /// Samples along a line.
     const SAMPLES: u32 = 16;
+    /// Share of the tolerance that a line may bend at the samples; between them it may be more.
+    const STRAIGHT: f64 = 0.95;
     let (p, outline, map) = (t.part, &t.outline, t.map);
     let on_line = |a: Point, b: Point, i: u32| a.lerp(b, f64::from(i) / f64::from(SAMPLES));
     let bends = |a: Point, b: Point| {
@@ -158,7 +160,7 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
         (1..SAMPLES).any(|i| {
             let q = map.point(on_line(a, b, i));
             let off = Line::new(from, to).nearest(q, tolerance).distance_sq.sqrt();
-            off > tolerance && q.is_finite()
+            off > STRAIGHT * tolerance && q.is_finite()
         })
     };
     let open = |s: &Subpath| !s.closed && s.start != s.end();

@@ -157,4 +157,37 @@ mod tests {
             }
         }
     }
+
+    /// A strip around a circle, whose ends meet, in two halves.
+    struct Ring;
+
+    impl Formula for Ring {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            let angle = x * std::f64::consts::TAU;
+            ((y + 1.0) * angle.cos(), (y + 1.0) * angle.sin())
+        }
+
+        fn creases(&self, out: &mut Creases) {
+            for x in [0.0, 0.5, 1.0] {
+                out.push(Crease::kink(Level::Line { a: 1.0, b: 0.0, c: -x }));
+            }
+        }
+
+        fn branch(&self, _: Point) -> Option<Arc<dyn Map>> {
+            Some(Arc::new(Self))
+        }
+    }
+
+    #[test]
+    fn where_the_ends_of_a_strip_meet_each_branch_goes_to_its_own() {
+        let map: Arc<dyn Map> = Arc::new(Ring);
+        let back = CreasedInverse::of(&map, NewtonInverse::over(Arc::clone(&map), Rect::new(0.0, -0.5, 1.0, 0.5), 0.1));
+        for (side, x) in [(0.3, 0.0), (-0.3, 1.0)] {
+            let branch = back.branch(Point::new(0.9, side)).unwrap();
+            for r in [0.7, 1.0, 1.3] {
+                let end = branch.point(Point::new(r, 0.0));
+                assert!(end.distance(Point::new(x, r - 1.0)) < 1e-12, "{side} {r}: {end:?}");
+            }
+        }
+    }
 }
