@@ -232,7 +232,8 @@ fn a_circle_of_any_number_of_cubics_is_four() {
             assert!(radii.into_iter().all(|r| (r - 1000.0).abs() <= 1.0));
         }
         let quadratics = simplify(&path, &Options::new(1.0).with_degree(Degree::Quadratic)).unwrap();
-        assert!(quadratics.path.segments().count() <= 10, "{n}: {}", quadratics.path.segments().count());
+        // Eleven that touch the circle at both ends are off by (sec α + cos α)/2 − 1 at α = π/11: 0.86 thousandths.
+        assert!(quadratics.path.segments().count() <= 11, "{n}: {}", quadratics.path.segments().count());
         let radii = quadratics
             .path
             .segments()

@@ -1,5 +1,7 @@
 //! Random sources: each is covered within the tolerance, by a measurement of its own, and the work is counted.
 //!
+//! Of the first 60,000, one is missed: a rational curve (number 3,522), whose fit is off by 1.31 of the tolerance and reports 0.77.
+//!
 //! A million of them: `SOURCES=1000000 cargo test --release -p bezierfit --test random -- --nocapture`
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
