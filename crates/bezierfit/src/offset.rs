@@ -126,9 +126,9 @@ impl Offset {
                     let (u, v) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
                     let [u_speed, v_speed] = [u, v].map(|t| self.speed(t) * b.signum());
                     if u_speed < v_speed {
-                        high = v
+                        high = v;
                     } else {
-                        low = u
+                        low = u;
                     }
                     if u_speed.min(v_speed) < 0.0 {
                         ends.push(if u_speed < v_speed { u } else { v });

@@ -152,11 +152,11 @@ impl Edge {
         Self { p0, p1, curve }
     }
 
-    /// Appends pieces within a tolerance, found in less time than the fewest are, after at most so many halvings.
+    /// Appends pieces within a tolerance, found in less time than the fewest are.
     ///
     /// # Errors
     /// It is not finite.
-    pub fn draft(&self, tolerance: f64, halvings: usize, pieces: &mut Vec<Piece>) -> Result<(), NotFinite> {
+    pub fn draft(&self, tolerance: f64, pieces: &mut Vec<Piece>) -> Result<(), NotFinite> {
         if let EdgeCurve::Side(_) = self.curve {
             // The cubic with the ends' derivatives is near enough more often than not.
             let (v0, v1) = (self.eval(0.0).1 / 3.0, self.eval(1.0).1 / 3.0);
@@ -165,11 +165,6 @@ impl Edge {
             if [0.2, 0.35, 0.5, 0.65, 0.8].into_iter().all(|t| off(t) <= 0.7 * tolerance) {
                 pieces.push(Piece::Cubic(cubic));
                 return Ok(());
-            }
-            if halvings > 0 {
-                let middle = self.eval(0.5).0;
-                let halves = [Self { p1: middle, ..self.part(0.0, 0.5) }, Self { p0: middle, ..self.part(0.5, 1.0) }];
-                return halves.iter().try_for_each(|h| h.draft(tolerance, halvings - 1, pieces));
             }
         }
         self.fit(tolerance, pieces, &mut Report::default())

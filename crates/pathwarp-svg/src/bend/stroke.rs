@@ -13,7 +13,7 @@ use usvg::Stroke;
 
 /// Shares of the tolerance for the sides of a stroke, and for gaps between them, half of it from either side. The rest is for refitting the
 /// outline.
-const SIDES: f64 = 0.25;
+const SIDES: f64 = 0.15;
 const GAPS: f64 = 0.3;
 const EXPANSION: f64 = SIDES + 0.5 * GAPS;
 
@@ -151,9 +151,10 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
         found = largest(&each);
     }
     let expansion = |i: usize| fine(i, assumed) * found;
-    let rest = |i: usize| (t.allowed_of(i) - expansion(i)).max((1.0 - MISSED) * t.allowed_of(i));
-    let united = if options.union { UNION * t.allowed_of(DRAWING) } else { 0.0 };
-    let mut refit = t.refit(rest(DRAWING) - united);
+    let finest = t.own.iter().copied().fold(allowed, f64::min);
+    let united = if options.union { UNION * finest } else { 0.0 };
+    let rest = |i: usize| (t.allowed_of(i) - expansion(i)).max((1.0 - MISSED) * t.allowed_of(i)) - united;
+    let mut refit = t.refit(rest(DRAWING));
     let contours: Vec<usize> = each.iter().flat_map(|(i, o)| vec![*i; o.subpaths.len()]).collect();
     let whole = Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
     if !t.own.is_empty() {

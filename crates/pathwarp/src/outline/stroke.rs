@@ -8,9 +8,6 @@ use kurbo::{BezPath, Stroke, Vec2};
 /// Share of the tolerance for arcs as cubics. Their error falls with the sixth power of their number.
 const ARCS: f64 = 0.05;
 
-/// Halvings of a side before fewer pieces are looked for.
-const HALVINGS: usize = 4;
-
 /// The same of a dashed path: cubics beside an arc by this much all around are longer by as much for each radian, and dashes move on.
 const DASHED_ARCS: f64 = 0.01;
 
@@ -50,7 +47,7 @@ fn append(edge: &Edge, tolerance: f64, out: &mut Vec<Seg>) -> Result<(), NotFini
         return Ok(());
     }
     let mut pieces = Vec::new();
-    edge.draft(tolerance, HALVINGS, &mut pieces)?;
+    edge.draft(tolerance, &mut pieces)?;
     out.extend(pieces.into_iter().map(|p| match p {
         Piece::Line(l) => Seg::Line(l),
         Piece::Cubic(c) => Seg::Cubic(c),
