@@ -89,7 +89,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
         let near = covered(&edge.path, &BezPath::new(), options.tolerance, |w| w.shape_a != 0)?;
         let side = beside_path(&subpath, &style, distance, &fine)?;
         for chain in along(&near, &side, options.tolerance) {
-            add(&mut out, &simplify(&chain, &rest)?, edge.report.clone());
+            add(&mut out, &simplify(&chain, &rest)?, edge.report.clone(), (distance.abs(), options));
         }
     }
     // Edges inside of it do not count.
@@ -102,7 +102,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
             false => w.shape_a != 0 && w.shape_b == 0,
         })?;
         let moved = at_least(distance.abs() - options.tolerance, &segs, &moved, &mut out.report);
-        add(&mut out, &simplify(&moved, &rest)?, edge.report);
+        add(&mut out, &simplify(&moved, &rest)?, edge.report, (distance.abs(), options));
     }
     if !out.path.is_empty() {
         out.report.add_error((EDGES + CROSSINGS) * options.tolerance + out.report.max_error, Assurance::Checked);
@@ -111,10 +111,13 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
 }
 
 /// Adds a part with the report of its edges.
-fn add(out: &mut Fitted, part: &Fitted, edges: Report) {
+fn add(out: &mut Fitted, part: &Fitted, edges: Report, (distance, options): (f64, &Options)) {
     out.path.extend(&part.path);
     out.report.add(part.report.clone());
-    out.report.unresolved.extend(edges.unresolved);
+    // What lies further from the result than the distance has no part in it.
+    let reach = (distance + options.tolerance).powi(2);
+    let edge = |p: &Point| part.path.segments().any(|s| s.nearest(*p, options.tolerance).distance_sq <= reach);
+    out.report.unresolved.extend(edges.unresolved.into_iter().filter(edge));
 }
 
 /// The outlines of what is inside by the winding numbers of two paths.
