@@ -58,7 +58,8 @@ fn beyond_edges(a: &Pixmap, b: &Pixmap) -> usize {
         (y - 1..=y + 1).all(|y| (x - 1..=x + 1).all(|x| of(alpha(p, x, y))))
     };
     let off = |x: usize, y: usize| {
-        let (full, bare): (fn(u8) -> bool, fn(u8) -> bool) = (|v| v > 127, |v| v < 128);
+        let full: fn(u8) -> bool = |v| v > 127;
+        let bare: fn(u8) -> bool = |v| v < 128;
         (alpha(a, x, y) > 127) != (alpha(b, x, y) > 127)
             && (all(a, x, y, full) || all(a, x, y, bare))
             && (all(b, x, y, full) || all(b, x, y, bare))
