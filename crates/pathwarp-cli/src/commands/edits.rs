@@ -70,7 +70,7 @@ pub(super) fn offset() -> Command {
 pub(super) fn outline() -> Command {
     let about = "Turn strokes and text into filled outlines";
     declared(&OUTLINE, about)
-        .args(some_options(&["text"]).map(|a| a.help_heading("Options")))
+        .args(some_options(&["text", "union"]).map(|a| a.help_heading("Options")))
         .long_about(format!(
             "{about}.\n\nThe outline of a stroke, with its joins, caps and dashes, is within --tolerance of what the stroke covers. Shapes \
              without a stroke stay as they are.",
