@@ -77,7 +77,8 @@ fn words_of_other_programs_name_the_command() {
             ("perspective a.svg --scale 2", 2, "--help lists the options"),
             ("sphere a.svg", 2, "--onto sphere:"),
             ("dxf a.svg", 2, "convert IN.svg -o OUT.dxf"),
-            ("offset a.svg 2mm", 2, "outlines are not moved in or out"),
+            ("kerf a.svg 2mm", 2, "offset IN.svg --by"),
+            ("expand a.svg", 2, "outline IN.svg"),
             ("inkscape", 2, "install inkscape"),
         ],
     );

@@ -95,7 +95,13 @@ fn all_finite(s: &[Sampled]) -> bool {
 /// Measures a pair. `None`: the program refuses it, or says that it misses the tolerance.
 fn measured(d: &str, maps: &Maps) -> Option<Found> {
     let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d=\"{d}\"/></svg>");
-    let done = maps.warper.warp_drawing(text.as_bytes(), None).ok()?;
+    let mut warper = maps.warper.clone();
+    if maps.name.starts_with("inverse of") {
+        // The box of the artwork stands for that of the source, which is not known.
+        let b = Outline::from_svg(d).ok()?.bounding_box()?;
+        warper.set_option("frame", &format!("{},{},{},{}", b.x0, b.y0, b.width(), b.height())).ok()?;
+    }
+    let done = warper.warp_drawing(text.as_bytes(), None).ok()?;
     let report: Value = serde_json::from_str(&done.report).unwrap();
     let of = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
     let tolerance = of(&report["tolerance"]);
@@ -108,7 +114,7 @@ fn measured(d: &str, maps: &Maps) -> Option<Found> {
     let written = out.split_once("<path d=\"")?.1.split_once('"')?.0;
     // Areas: an open subpath is closed by a straight line in the source.
     let (source, written) = (curves::closed(curves::read(d)), curves::closed(curves::read(written)));
-    let points = maps.warper.point_map(|| Some(frame), || Outline::from_svg(d).unwrap_or_default()).ok()?;
+    let points = warper.point_map(|| Some(frame), || Outline::from_svg(d).unwrap_or_default()).ok()?;
     let image = |ps: &[Point]| {
         let mut out = vec![Point::ORIGIN; ps.len()];
         points.points(ps, &mut out);

@@ -70,7 +70,7 @@ pub fn random_path(random: &mut Random, i: usize) -> BezPath {
             _ => path.curve_to(a, b, c),
         }
     }
-    if i % 2 == 0 {
+    if i.is_multiple_of(2) {
         path.close_path();
     }
     path

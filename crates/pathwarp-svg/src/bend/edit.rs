@@ -1,7 +1,5 @@
 //! What may be done to shapes instead of bending them.
 
-use super::image::Images;
-use super::options::{Clones, Gradients, Patterns, Strokes, TextMode, WarpOptions};
 use crate::scene::model::{Part, PartRole};
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
@@ -27,21 +25,6 @@ pub enum Edit {
 }
 
 impl Edit {
-    /// The options for it: what it does not ask for stays as it is.
-    pub(super) fn options(self, options: WarpOptions) -> WarpOptions {
-        let options = options.with_images(Images::Keep);
-        match self {
-            Self::Simplify { corner, .. } => {
-                let refit = options.refit.clone().with_merge(true).with_corner(corner);
-                let options = options.with_refit(refit).with_strokes(Strokes::Keep).with_text(TextMode::Skip);
-                let options = options.with_gradients(Gradients::Keep).with_patterns(Patterns::Keep);
-                options.with_clones(Clones::Follow)
-            }
-            Self::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
-            Self::Offset(_) => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit),
-        }
-    }
-
     /// The same edit of a part.
     pub(super) fn of(self, part: &Part) -> Self {
         match self {

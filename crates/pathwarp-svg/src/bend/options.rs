@@ -227,10 +227,20 @@ impl WarpOptions {
         }
     }
 
-    /// Options for an edit instead of a warp.
+    /// Options for an edit instead of a warp: what it does not ask for stays as it is.
     #[must_use]
     pub fn editing(self, edit: Edit) -> Self {
-        edit.options(self).with_edit(Some(edit))
+        let options = self.with_edit(Some(edit)).with_images(Images::Keep).with_overhang(false);
+        match edit {
+            Edit::Simplify { corner, .. } => {
+                let refit = options.refit.clone().with_merge(true).with_corner(corner);
+                let options = options.with_refit(refit).with_strokes(Strokes::Keep).with_text(TextMode::Skip);
+                let options = options.with_gradients(Gradients::Keep).with_patterns(Patterns::Keep);
+                options.with_clones(Clones::Follow)
+            }
+            Edit::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
+            Edit::Offset(_) => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit).with_overhang(true),
+        }
     }
 
     /// Returns `true` if paint servers of this kind follow the map.

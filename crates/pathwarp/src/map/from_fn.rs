@@ -66,7 +66,7 @@ impl<F, J> fmt::Debug for FromFnWith<F, J> {
 
 /// Step of the differences at the origin. It grows with the root of the coordinates, so that neither their rounding nor the map's bends
 /// count for much.
-const STEP: f64 = 1.0 / 1024.0;
+const STEP: f64 = 1.0 / 4096.0;
 
 impl<F: Fn(Point) -> Point + Send + Sync> FromFn<F> {
     /// The derivative along `way`: of fourth order from both sides, or of second order from one where the map has no value on the other.

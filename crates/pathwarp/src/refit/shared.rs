@@ -35,7 +35,7 @@ impl SharedEdges {
             for (i, s) in outline.subpaths.iter().enumerate() {
                 let held = contours.get(i).copied();
                 let directed = s.segs.iter().flat_map(|g| [mixed(&[g.start(), g.end()]), fingerprint(g)]);
-                let contour = directed.fold(u64::from(s.closed), |sum, word| mixed_in(sum, word));
+                let contour = directed.fold(u64::from(s.closed), mixed_in);
                 if !whole.insert((contour, held.map(f64::to_bits))) {
                     continue;
                 }
