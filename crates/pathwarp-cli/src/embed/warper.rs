@@ -14,8 +14,9 @@ use crate::{pipeline, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
 use pathwarp::deform::{Info, Registry};
+use pathwarp::fit::{self, Degree};
 use pathwarp::fold::Survey;
-use pathwarp::kurbo::{BezPath, CubicBez, PathEl, Point, Rect};
+use pathwarp::kurbo::{PathEl, Point, Rect};
 use pathwarp::param::{Args, Frame, Kind};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit::{self, Assurance};
@@ -270,13 +271,14 @@ impl Warper {
     /// As [`Warper::warp_path`].
     pub fn warp_outline_to_quadratics(&self, outline: &Outline) -> Result<Path, Error> {
         let mut bent = self.bent(outline, 0.5)?;
-        let room = bent.tolerance;
         let cubic = |el: &PathEl| matches!(el, PathEl::CurveTo(..));
         if bent.path.path.elements().iter().any(cubic) {
-            bent.path.path = quadratic(&bent.path.path, room);
+            let options = fit::Options::new(bent.tolerance).with_degree(Degree::Quadratic);
+            let fitted = fit::simplify(&bent.path.path, &options).map_err(|e| Error::usage(e.to_string()))?;
+            bent.path.path = fitted.path;
             bent.path.data = bent.path.path.to_svg();
             let report = &mut bent.path.report;
-            report.max_error += room;
+            report.max_error += fitted.report.max_error;
             report.segments_out = bent.path.path.segments().count();
             report.assurance = Assurance::Checked;
         }
@@ -366,27 +368,6 @@ fn unknown(info: &Info, param: &str) -> String {
     let known = params().chain(option_names().map(|(name, _)| name));
     let unknown = advice::unknown("parameter", param, known);
     if unknown.ends_with('?') { unknown } else { format!("{unknown}; there are {}", names.join(", ")) }
-}
-
-/// A path with quadratics within `accuracy` in place of its cubics.
-fn quadratic(path: &BezPath, accuracy: f64) -> BezPath {
-    let mut out = BezPath::new();
-    let mut at = Point::ORIGIN;
-    for el in path.elements() {
-        match *el {
-            PathEl::CurveTo(a, b, end) => {
-                let cubic = CubicBez::new(at, a, b, end);
-                // A spline has few points of its own; a cubic that none is close to has quadratics that stand alone.
-                match cubic.approx_spline(accuracy) {
-                    Some(spline) => spline.to_quads().for_each(|q| out.quad_to(q.p1, q.p2)),
-                    None => cubic.to_quads(accuracy).for_each(|(.., q)| out.quad_to(q.p1, q.p2)),
-                }
-            }
-            other => out.push(other),
-        }
-        at = el.end_point().unwrap_or(at);
-    }
-    out
 }
 
 /// The frame for artwork that is not a drawing.
