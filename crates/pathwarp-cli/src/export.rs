@@ -5,11 +5,12 @@ use crate::format::Format;
 use crate::options::CommonOptions;
 use crate::units::{MM_PER_PX, units_per_px};
 use pathwarp::Outline;
+use pathwarp::edit::united;
 use pathwarp::kurbo::Affine;
 use pathwarp::param::Frame;
 use pathwarp_dxf::Shape;
 use pathwarp_svg::usvg_tree::{self, ExactOutlines};
-use pathwarp_svg::{Document, Plot, ReadOptions, Selection, compressed};
+use pathwarp_svg::{Document, Plot, PlotShape, ReadOptions, Selection, compressed};
 use std::path::Path;
 
 /// Strokes that are wider than this many mm are hardly meant as lines to cut.
@@ -86,7 +87,13 @@ fn dxf(doc: &Document, options: &CommonOptions, tolerance: Option<f64>) -> Resul
         options.tolerance_for(bounds, &frame)
     };
     let tolerance = tolerance.map_or_else(default, Ok)?;
-    let outlines: Vec<Outline> = plot.shapes.iter().map(|s| s.outline.transformed(to_mm)).collect();
+    let outline = |s: &PlotShape| -> Result<Outline, Failure> {
+        let rule = s.even_odd.filter(|_| options.union);
+        let united = rule.map(|even_odd| united(&s.outline, even_odd, tolerance)).transpose();
+        let united = united.map_err(pathwarp::Error::from)?.flatten();
+        Ok(united.as_ref().unwrap_or(&s.outline).transformed(to_mm))
+    };
+    let outlines: Vec<Outline> = plot.shapes.iter().map(outline).collect::<Result<_, _>>()?;
     let shapes = plot.shapes.iter().zip(&outlines);
     let shapes: Vec<Shape<'_>> = shapes
         .map(|(s, outline)| Shape { layer: s.layer.as_deref().unwrap_or_default(), color: s.color, outline })

@@ -4,7 +4,10 @@ use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
 use crate::refit::{Options, PathReport, RefittedPath};
 use bezierfit::{Error, Fitted, fit_points, union_even_odd};
-use kurbo::{BezPath, Join, Point};
+use kurbo::{BezPath, Join, Point, Shape};
+
+/// Share of the tolerance for cubics in place of arcs.
+const ARCS: f64 = 0.05;
 
 /// Edges of a contour that is a polygon on purpose rather than a curve in small steps.
 const FEW_EDGES: usize = 4;
@@ -91,8 +94,6 @@ pub struct Offset {
 /// # Ok::<(), pathwarp::Error>(())
 /// ```
 pub fn moved(outline: &Outline, offset: &Offset, options: &Options) -> Result<RefittedPath, GeometryError> {
-    /// Share of the tolerance for cubics in place of arcs.
-    const ARCS: f64 = 0.05;
     let fine = ARCS * options.tolerance;
     let fitter = bezierfit::Options::new(options.tolerance - fine).with_corner(options.corner);
     let mut source = outline.to_bez_path(fine);
@@ -115,6 +116,33 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options) -> Result<Re
     }
     (report.segments_in, report.segments_out) = (outline.segs().count(), path.segments().count());
     Ok(RefittedPath { path, spans: Vec::new(), report })
+}
+
+/// The area of a fill as outlines that meet neither themselves nor each other, within `tolerance`. `None` if they do not as it is.
+///
+/// # Errors
+/// A coordinate is not finite.
+///
+/// ```
+/// use pathwarp::{Outline, edit::united};
+///
+/// let cross = Outline::from_svg("M20,0H40V60H20ZM0,20H60V40H0Z")?;
+/// assert_eq!(united(&cross, false, 0.01)?.unwrap().segs().count(), 12);
+/// let ring = Outline::from_svg("M0,0H60V60H0ZM20,20V40H40V20Z")?;
+/// assert_eq!(united(&ring, false, 0.01)?, None);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+pub fn united(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Option<Outline>, GeometryError> {
+    let fine = ARCS * tolerance;
+    let path = outline.to_bez_path(fine);
+    let unite = if even_odd { union_even_odd } else { bezierfit::union };
+    let area = unite(&path, tolerance - fine).map_err(refused)?;
+    let united = Outline::from(&area);
+    // Overlaps change the area or the number of outlines. Only closed ones enclose it.
+    let room = tolerance * path.perimeter(tolerance);
+    let closed = outline.subpaths.iter().all(|s| s.closed || s.start == s.end());
+    let simple = closed && united.subpaths.len() == outline.subpaths.len();
+    Ok((!simple || (area.area().abs() - path.area().abs()).abs() > room).then_some(united))
 }
 
 fn reported(fitted: &Fitted, tolerance: f64) -> PathReport {

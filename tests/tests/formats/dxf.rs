@@ -28,6 +28,26 @@ fn kinds(file: &Dxf) -> BTreeMap<&str, usize> {
     out
 }
 
+/// Two bars that cross are cut twice where they overlap, unless they are united: twelve edges then, with a total length that is that of the
+/// cross alone. Other paths, strokes and what is simple already stay apart and as they are.
+#[test]
+fn filled_shapes_are_united_within_a_path() {
+    let dir = tempfile::tempdir().unwrap();
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100'>\
+               <path d='M40,10H60V90H40ZM10,40H90V60H10Z'/><path d='M40,10H60V20H40Z' fill='red'/>\
+               <path d='M0,0L9,9M0,9L9,0' fill='none' stroke='blue'/></svg>";
+    let length = |file: &Dxf| -> f64 {
+        let walk =
+            |line: &Vec<_>| -> f64 { line.windows(2).map(|w: &[pathwarp::kurbo::Point]| w[0].distance(w[1])).sum() };
+        file.polylines().iter().map(walk).sum()
+    };
+    let strokes = 2.0 * 9.0 * 2f64.sqrt();
+    let apart = length(&dxf(dir.path(), &["convert", "-"], svg.as_bytes()).0);
+    let united = length(&dxf(dir.path(), &["convert", "-", "--union"], svg.as_bytes()).0);
+    assert!((apart - (400.0 + 60.0 + strokes)).abs() < 0.01, "{apart}");
+    assert!((united - (320.0 + 60.0 + strokes)).abs() < 0.1, "{united}");
+}
+
 /// The same drawing in px, mm, inch and points gives the same file: exact, in mm, y up.
 #[test]
 fn sizes_are_true_and_curves_exact() {

@@ -28,7 +28,7 @@ pub(super) fn command() -> Command {
             "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
              drawing, or .dxf with its outlines in mm; - or none writes to standard output",
         ))
-        .args(some_options(&["format", "dxf-curves", "tolerance", "quiet"]))
+        .args(some_options(&["format", "dxf-curves", "tolerance", "union", "quiet"]))
         .arg(
             Arg::new("split")
                 .long("split")

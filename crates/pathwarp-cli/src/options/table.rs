@@ -204,7 +204,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     stored(
         "union",
         OptionValue::Switch(|o| o.union = true),
-        "Make outlines of strokes simple, as cutters need them: no overlaps and no inner loops within a path",
+        "Make outlines of strokes simple, and in a DXF those of filled shapes, as cutters need them: no overlaps and no inner loops within a path",
     ),
     CommonOption {
         default: Some("outline"),

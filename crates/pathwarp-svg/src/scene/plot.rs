@@ -35,6 +35,8 @@ pub struct PlotShape {
     pub color: Option<[u8; 3]>,
     /// Outline in root user space.
     pub outline: Arc<Outline>,
+    /// Whether the fill, if there is one, follows the even-odd rule.
+    pub even_odd: Option<bool>,
     /// Width of the stroke in px, if there is one.
     pub stroke_width: Option<f64>,
 }
@@ -129,6 +131,7 @@ impl Walk<'_> {
             layer: p.element().and_then(|e| self.layers.layer(self.source, e)),
             color: paint.and_then(color),
             outline,
+            even_odd: fill.map(|f| f.rule() == usvg::FillRule::EvenOdd),
             stroke_width: stroke.map(|s| f64::from(s.width().get()) * scale),
         });
     }
