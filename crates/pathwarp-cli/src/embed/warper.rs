@@ -16,7 +16,7 @@ use pathwarp::budget::Budget;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::fit::{self, Degree};
 use pathwarp::fold::Survey;
-use pathwarp::kurbo::{PathEl, Point, Rect};
+use pathwarp::kurbo::{PathEl, Rect};
 use pathwarp::param::{Args, Frame, Kind};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit::{self, Assurance};
