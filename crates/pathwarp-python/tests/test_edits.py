@@ -47,4 +47,4 @@ def test_areas_grow_and_shrink():
     assert (min(numbers), max(numbers)) == pytest.approx((-10, 50), abs=0.01)
     svg = drawing("<rect id='a' width='40' height='40'/>")
     assert pathwarp.offset(svg, 5, side="inside").report["shapes"][0]["segments_out"] == 4
-    assert "nothing is left of a" in pathwarp.offset(svg, "30", side="inside").warnings[0]
+    assert any("nothing is left of a" in w for w in pathwarp.offset(svg, "30", side="inside").warnings)

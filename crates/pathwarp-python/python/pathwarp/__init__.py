@@ -114,7 +114,7 @@ def simplify_path(d: Any, /, *, corners: Any = None, polylines: bool = False, **
 
         >>> import pathwarp
         >>> pathwarp.simplify_path("M0,0 C5,0 10,.5 15,1.5 C20,2.5 25,4 30,6 L60,60", tolerance=0.1)
-        'M0,0 C10.04,0 20.05,2.02 30,6 L60,60'
+        'M0,0 C10.261,0 20.473,2.189 30,6 L60,60'
     """
     edit = Deformation._edit("simplify", {"corners": corners, "polylines": polylines})
     return edit.warp_path(d, **options)
