@@ -70,7 +70,12 @@ export async function editWith({ uid, as = program, ...variables }, file, ...arg
     child.once("exit", (code) => reject(new Error(`edit ended with ${code}: ${errors}`)));
   });
   const ended = new Promise((resolve) => child.once("exit", (code, signal) => resolve(code ?? signal)));
-  return { address, child, ended, stop: () => child.kill("SIGKILL") };
+  /** Ends the program; its port is free when the promise is kept. */
+  const stop = () => {
+    child.kill("SIGKILL");
+    return ended;
+  };
+  return { address, child, ended, stop };
 }
 
 let browser;

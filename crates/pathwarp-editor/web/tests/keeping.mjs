@@ -19,7 +19,7 @@ async function within(test, variables = {}, isReadOnly = false) {
     await test({ dir, state, page, start, editor });
     check(page.problems.length === 0, page.problems.join("; "));
   } finally {
-    editor.stop();
+    await editor.stop();
     chmodSync(dir, 0o755);
     await page.context().close();
   }
@@ -40,7 +40,7 @@ export const drawings_have_their_own_drafts = () => within(async ({ dir, page, s
   await openFile(page, "other.svg");
   await choose(page, "Arc");
   const arc = await paths(page);
-  editor.stop();
+  await editor.stop();
   await start();
   // The page finds the program again by itself.
   await page.waitForSelector("#gone", { state: "hidden" });
@@ -101,7 +101,7 @@ export const typed_values_are_saved = () => within(async ({ dir, page }) => {
 export const without_the_program_nothing_changes = () => within(async ({ dir, page, start, editor }) => {
   await choose(page, "Flag");
   await page.click("#save-as");
-  editor.stop();
+  await editor.stop();
   await page.waitForSelector("#gone:not([hidden])");
   const said = await page.textContent("#gone");
   check(said.includes(`here, run “pathwarp edit ${dir}/logo.svg”`) && said.includes("are kept"), said);
@@ -139,7 +139,7 @@ export const a_drag_ends_with_the_program = () => within(async ({ page, start, e
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x + 20, y + 20, { steps: 5 });
-  editor.stop();
+  await editor.stop();
   await page.waitForSelector("#gone:not([hidden])");
   await start();
   await page.waitForSelector("#gone", { state: "hidden" });
@@ -155,7 +155,7 @@ export const a_drag_ends_with_the_program = () => within(async ({ page, start, e
 export const strangers_at_the_port_learn_no_token = () => within(async ({ page, start, editor }) => {
   const { port, searchParams } = new URL(editor.address);
   const token = searchParams.get("token");
-  editor.stop();
+  await editor.stop();
   await page.waitForSelector("#gone:not([hidden])");
   const asked = [];
   const stranger = createServer((request, answer) => {
