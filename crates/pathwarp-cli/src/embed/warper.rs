@@ -13,11 +13,11 @@ use crate::steps::in_lower_case;
 use crate::{pipeline, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
-use pathwarp::deform::{Info, Registry};
+use pathwarp::deform::Registry;
 use pathwarp::fit::{self, Degree};
 use pathwarp::fold::Survey;
 use pathwarp::kurbo::{PathEl, Rect};
-use pathwarp::param::{Args, Frame, Kind};
+use pathwarp::param::{Args, Frame, Kind, Param};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit::{self, Assurance};
 use pathwarp_svg::{Edit, WarpedPath};
@@ -91,42 +91,23 @@ impl Warper {
         let mut args = Args::new();
         if let Some((param, value)) = preset {
             args.push(param, value);
-        }
-        for (param, value) in values {
-            let (param, value) = (param.as_ref(), value.as_ref());
-            let Some(declared) = info.params.iter().find(|p| p.name == param) else {
-                return Err(Error::usage(format!("{name}: {}", unknown(info, param))).about(param, value));
-            };
-            if declared.kind == Kind::Save {
-                return Err(Error::usage(format!("{param} writes a file, which only the program does")));
-            }
-            if preset.is_some_and(|(p, _)| p == param) {
+            if values.iter().any(|(given, _)| given.as_ref() == param) {
                 return Err(Error::usage(format!("{param}: `{name}` is one already")));
             }
-            if !(declared.kind == Kind::Flag && value == "false") {
-                args.push(param, in_lower_case(declared, value));
-            }
         }
+        typed(name, info.params, values, &mut args)?;
         Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
     }
 
-    /// An edit of shapes, as by the command of this name: `simplify` or `outline`, with values as a user would type them.
+    /// An edit of shapes, as by the command of this name: `simplify`, `offset` or `outline`, with values as a user would type them.
     ///
     /// # Errors
     /// There is no such edit or parameter.
     pub fn edit(registry: &Registry, name: &str, values: &[(impl AsRef<str>, impl AsRef<str>)]) -> Result<Self, Error> {
-        let unknown = || Error::usage(advice::unknown("edit", name, EDITS.iter().map(|e| e.name)));
-        let info = *EDITS.iter().find(|e| e.name == name).ok_or_else(unknown)?;
+        let missing = || Error::usage(advice::unknown("edit", name, EDITS.iter().map(|e| e.name)));
+        let info = *EDITS.iter().find(|e| e.name == name).ok_or_else(missing)?;
         let mut args = Args::new();
-        for (param, value) in values {
-            let (param, value) = (param.as_ref(), value.as_ref());
-            if !info.params.iter().any(|p| p.name == param) {
-                let known = info.params.iter().map(|p| p.name).chain(option_names().map(|(name, _)| name));
-                let said = format!("{name}: {}", advice::unknown("parameter", param, known));
-                return Err(Error::usage(said).about(param, value));
-            }
-            args.push(param, value);
-        }
+        typed(name, info.params, values, &mut args)?;
         let mut given = Given::default();
         given.edit = Some(EditChoice { info, args });
         Self::of(registry, still(), given)
@@ -358,14 +339,35 @@ impl Warper {
     }
 }
 
-/// Describes a parameter that a deformation does not have. Options are often given beside parameters, so theirs may be meant.
-fn unknown(info: &Info, param: &str) -> String {
+/// Adds values for the parameters of the deformation or edit `name`.
+fn typed(
+    name: &str,
+    params: &[Param],
+    values: &[(impl AsRef<str>, impl AsRef<str>)],
+    args: &mut Args,
+) -> Result<(), Error> {
+    for (param, value) in values {
+        let (param, value) = (param.as_ref(), value.as_ref());
+        let Some(declared) = params.iter().find(|p| p.name == param) else {
+            return Err(Error::usage(format!("{name}: {}", unknown(params, param))).about(param, value));
+        };
+        if declared.kind == Kind::Save {
+            return Err(Error::usage(format!("{param} writes a file, which only the program does")));
+        }
+        if !(declared.kind == Kind::Flag && value == "false") {
+            args.push(param, in_lower_case(declared, value));
+        }
+    }
+    Ok(())
+}
+
+/// Describes a parameter that there is not. Options are often given beside parameters, so theirs may be meant.
+fn unknown(params: &[Param], param: &str) -> String {
     if check_option(param).is_ok() {
         return format!("`{param}` is an option, not a parameter; give it as an option");
     }
-    let params = || info.params.iter().map(|p| p.name);
-    let names: Vec<&str> = params().collect();
-    let known = params().chain(option_names().map(|(name, _)| name));
+    let names: Vec<&str> = params.iter().map(|p| p.name).collect();
+    let known = names.iter().copied().chain(option_names().map(|(name, _)| name));
     let unknown = advice::unknown("parameter", param, known);
     if unknown.ends_with('?') { unknown } else { format!("{unknown}; there are {}", names.join(", ")) }
 }
