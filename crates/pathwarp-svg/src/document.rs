@@ -379,7 +379,7 @@ impl Document {
             return Ok(WarpedDocument { svg, ..WarpedDocument::default() });
         }
         let simplifies = matches!(document.edit, Some(Edit::Simplify { .. }));
-        let own = if simplifies { Some(self.drawing.at_originals()?) } else { bends.divided(&self.drawing)? };
+        let own = if simplifies { self.drawing.at_originals()? } else { bends.divided(&self.drawing)? };
         let drawing = own.as_ref().unwrap_or(&self.drawing);
         match tiles::laid_out(drawing, bends)? {
             Some(tiled) => warp(&tiled, bends),

@@ -198,6 +198,11 @@ pub(crate) struct WarpedPart {
 }
 
 impl WarpedPart {
+    /// Returns `true` unless nothing is left of the part.
+    pub(crate) fn draws(&self) -> bool {
+        !self.path.is_empty() || self.stroke.outline().is_some()
+    }
+
     /// Returns `true` for a part that got no fewer segments, and reports it as it was.
     pub(super) fn stays(&mut self) -> bool {
         let r = &mut self.report;

@@ -35,26 +35,22 @@ pub fn edit_path(
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
-    if let Edit::Offset(_) = edit
-        && let Some(RefittedPath { path, report, .. }) = edit.edited(outline, options, &[])?
-    {
-        let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
-        return Ok(WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report });
-    }
-    if let Edit::Simplify { corner, .. } = edit {
-        let options = options.clone().with_merge(true).with_corner(corner);
-        let simple = match edit.edited(outline, &options, &[])? {
-            None => warp_path(outline, &Undeclared, &options, precision)?,
-            Some(RefittedPath { path, report, .. }) => {
-                let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
-                WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report }
-            }
-        };
-        if simple.report.segments_out < simple.report.segments_in {
-            return Ok(simple);
+    let (simplifies, options) = match edit {
+        Edit::Simplify { corner, .. } => (true, &options.clone().with_merge(true).with_corner(corner)),
+        _ => (false, options),
+    };
+    let edited = match edit.edited(outline, options, &[])? {
+        Some(RefittedPath { path, report, .. }) => {
+            let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
+            WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report }
         }
+        None if simplifies => warp_path(outline, &Undeclared, options, precision)?,
+        None => return warp_path(outline, &AffineMap::IDENTITY, options, precision),
+    };
+    if simplifies && edited.report.segments_out >= edited.report.segments_in {
+        return warp_path(outline, &AffineMap::IDENTITY, options, precision);
     }
-    warp_path(outline, &AffineMap::IDENTITY, options, precision)
+    Ok(edited)
 }
 
 /// Maps a path and writes its image as path data, as [`Document::warp`](crate::Document::warp) writes that of a `<path>` in root

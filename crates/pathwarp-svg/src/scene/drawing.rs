@@ -95,11 +95,14 @@ impl Drawing {
     }
 
     /// The drawing in which the shapes that `use` elements show are those that they copy, once each: the largest copy stands for all.
-    /// Shapes that are drawn themselves as well are no copies.
-    pub(crate) fn at_originals(&self) -> Result<Self, Error> {
-        let mut drawing = self.resolved_again(None, self.division.clone())?;
-        let Some(scene) = drawing.scene.get_mut() else { return Ok(drawing) };
+    /// Shapes that are drawn themselves as well are no copies. `None` if there are no copies.
+    pub(crate) fn at_originals(&self) -> Result<Option<Self>, Error> {
         let is_use = |p: &Part| p.owner.is_some_and(|e| self.source.elements[e].tag == "use");
+        if !self.scene().parts.iter().any(is_use) {
+            return Ok(None);
+        }
+        let mut drawing = self.resolved_again(None, self.division.clone())?;
+        let Some(scene) = drawing.scene.get_mut() else { return Ok(Some(drawing)) };
         let mut largest: HashMap<ElementId, (f64, Option<usize>)> = HashMap::new();
         for (i, part) in scene.parts.iter().enumerate() {
             let (size, copy) = if is_use(part) { (stretch(part.frame), Some(i)) } else { (f64::INFINITY, None) };
@@ -122,7 +125,7 @@ impl Drawing {
                 g.children.iter_mut().filter_map(|n| if let Node::Group(g) = n { Some(&mut **g) } else { None }),
             );
         }
-        Ok(drawing)
+        Ok(Some(drawing))
     }
 
     fn resolved_again(&self, tiling: Option<Tiling<'_>>, division: Vec<Option<usize>>) -> Result<Self, Error> {

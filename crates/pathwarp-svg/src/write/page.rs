@@ -6,7 +6,7 @@ use super::input::WriteInput;
 use crate::bend::bends::Bend;
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::options::PageFit;
-use crate::bend::outcome::{Overhang, PartOutcome};
+use crate::bend::outcome::{Overhang, PartOutcome, WarpedPart};
 use crate::scene::filter_area;
 use crate::scene::model::{Group, Node, PartRole};
 use crate::scene::seen::{clip_box, is_seen, overlap};
@@ -288,6 +288,7 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
             let seen = is_seen(p) && p.role == PartRole::Paint && p.owner.or(p.source).is_none_or(|e| m.counts[e]);
             let frame = input.written(p.slot, p.frame);
             let warped = input.warped(*i);
+            let seen = seen && warped.is_none_or(WarpedPart::draws);
             let near = |r: Rect| Some(bound(p, warped, frame)).filter(|b| r.union(*b) == r);
             let all = seen.then(|| m.room.and_then(near).unwrap_or_else(|| painted_box(p, warped, frame)))?;
             m.page.map_or(Some(all), |page| overlap(all, from_page(input, *i, frame, page)?))
