@@ -12,6 +12,8 @@ pub enum Error {
     Tolerance(f64),
     /// The corner angle is negative or not a number.
     Corner(f64),
+    /// How the edges of an area cross was not found.
+    Crossings,
     /// Corners and gaps ask for more pieces than were allowed.
     TooFewPieces {
         /// The pieces that were allowed.
@@ -33,6 +35,7 @@ impl std::fmt::Display for Error {
             Self::NotFinite(e) => e.fmt(f),
             Self::Tolerance(v) => write!(f, "the tolerance must be a number above zero, not {v}"),
             Self::Corner(v) => write!(f, "the corner angle must be a number from zero on, not {v}"),
+            Self::Crossings => f.write_str("how the edges of the area cross was not found; another tolerance may help"),
             Self::TooFewPieces { allowed, least } => {
                 write!(f, "{allowed} pieces are too few: corners and gaps need {least}")
             }

@@ -80,7 +80,7 @@ pub mod parts {
     pub use crate::sample::{CHECKED, FITTED, fma, spaced};
     pub use crate::source::tangent_beside;
     pub use crate::stretch::StretchFitter;
-    pub use crate::stroke::{Edge, EdgeCurve, contours};
+    pub use crate::stroke::{Edge, EdgeCurve, contours, drawn_dashes};
 }
 
 /// The README's example, tested.

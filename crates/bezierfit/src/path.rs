@@ -224,7 +224,7 @@ fn merged_parts<S: Source>(
 }
 
 /// Appends the fewest pieces of a run.
-fn fewest<S: Source + Clone>(
+pub(crate) fn fewest<S: Source + Clone>(
     run: &SegmentRun<S>,
     own: OwnPieces<impl FitOwn>,
     options: &Options,
@@ -282,17 +282,14 @@ pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, Error> {
 fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
-    let elements = path.elements();
-    let mut first = 0;
-    while first < elements.len() {
-        let count = elements[first + 1..].iter().take_while(|e| !matches!(e, PathEl::MoveTo(_))).count();
-        let subpath = BezPath::from_vec(elements[first..=first + count].to_vec());
-        let closed = matches!(elements[first + count], PathEl::ClosePath);
-        let segments: Vec<Segment> = subpath.segments().map(Segment::new).collect();
-        let start = match elements[first] {
-            PathEl::MoveTo(p) => p,
-            _ => segments.first().map_or(Point::ORIGIN, |s| s.seg.start()),
+    for subpath in subpaths(path) {
+        let elements = subpath.elements();
+        let (Some(PathEl::MoveTo(start)), closed) =
+            (elements.first().copied(), matches!(elements.last(), Some(PathEl::ClosePath)))
+        else {
+            continue;
         };
+        let segments: Vec<Segment> = subpath.segments().map(Segment::new).collect();
         if !start.is_finite() {
             return Err(NotFinite { t: 0.0, at: start });
         }
@@ -312,7 +309,6 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
             }
             append(&mut out.path, start, &pieces, closed);
         }
-        first += count + 1;
     }
     Ok(out)
 }
@@ -330,6 +326,15 @@ fn joined(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment
     Ok((run, count))
 }
 
+/// Appends one of the segments as it is.
+fn unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite> {
+    |i, pieces, report| {
+        pieces.push(segments[i].piece());
+        report.add_error(0.0, Assurance::Exact);
+        Ok(())
+    }
+}
+
 /// Appends the pieces of the first segments, as far as they join smoothly, and returns their number.
 fn smooth_run(
     segments: &[Segment],
@@ -339,11 +344,7 @@ fn smooth_run(
     report: &mut Report,
 ) -> Result<usize, NotFinite> {
     let (run, count) = joined(segments, options)?;
-    let itself = |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-        pieces.push(segments[i].piece());
-        report.add_error(0.0, Assurance::Exact);
-        Ok(())
-    };
+    let mut itself = unchanged(segments);
     if count < 2 {
         itself(0, pieces, report)?;
         return Ok(1);
@@ -375,12 +376,14 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
                 // Long runs become few cubics first.
                 let close = Options { tolerance: SPLINE_FIRST * options.tolerance, ..*options };
                 let (mut pieces, mut report, mut memory) = (Vec::new(), Report::default(), ReachMemory::default());
-                let itself = |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-                    pieces.push(segments[i].piece());
-                    report.add_error(0.0, Assurance::Exact);
-                    Ok(())
-                };
-                fewest(&run, OwnPieces::new(count, itself), &close, &mut memory, &mut pieces, &mut report)?;
+                fewest(
+                    &run,
+                    OwnPieces::new(count, unchanged(segments)),
+                    &close,
+                    &mut memory,
+                    &mut pieces,
+                    &mut report,
+                )?;
                 (curves, off) = (pieces.into_iter().map(Segment::from).collect(), report.max_error);
             }
             let first = out.report.pieces.len();
@@ -444,6 +447,14 @@ impl Source for PathSource {
     fn is_simple(&self) -> bool {
         true
     }
+}
+
+/// The subpaths of a path, each as a path.
+pub(crate) fn subpaths(path: &BezPath) -> impl Iterator<Item = BezPath> + '_ {
+    let elements = path.elements();
+    let starts = (0..elements.len()).filter(|i| matches!(elements[*i], PathEl::MoveTo(_)));
+    let ends = starts.clone().skip(1).chain([elements.len()]);
+    starts.zip(ends).map(|(i, j)| BezPath::from_vec(elements[i..j].to_vec()))
 }
 
 /// Writes pieces as a subpath. In a closed one, a last line is left to the close command.

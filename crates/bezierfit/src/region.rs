@@ -2,20 +2,26 @@
 
 use crate::error::Error;
 use crate::options::Options;
-use crate::path::{Fitted, simplify};
+use crate::path::{Fitted, simplify, subpaths};
 use crate::report::{Assurance, Report};
 use crate::source::NotFinite;
-use crate::stroke::{beside_path, stroke, subpaths};
+use crate::stroke::{beside_path, stroke};
 use kurbo::{
-    BezPath, Cap, Join, ParamCurve, ParamCurveArclen, ParamCurveNearest, PathEl, PathSeg, Point, Shape, Stroke,
+    Affine, BezPath, Cap, Join, ParamCurve, ParamCurveArclen, ParamCurveNearest, PathEl, PathSeg, Point, Shape, Stroke,
 };
 use linesweeper::topology::{BinaryWindingNumber, Topology};
+use std::panic::{self, AssertUnwindSafe};
 
 /// Share of the tolerance for crossings.
 const CROSSINGS: f64 = 0.02;
 
 /// Share of the tolerance for the edges of an area before fewer pieces are looked for.
 const EDGES: f64 = 0.3;
+
+/// Angles by which paths are turned before the sweep, in radians, one after the other until it succeeds. linesweeper 0.5 fails most where
+/// edges lie along the axes, as they do in drawings: of 14,553 offsets of the paths of drawings it panics on 12 as they lie, and on none
+/// turned by the first angle.
+const TURNS: [f64; 6] = [0.3, 1.1, 0.7, 2.0, 2.6, 1.4];
 
 /// Limit of miters, as the drawing of plans knows it.
 const MITER_LIMIT: f64 = 4.0;
@@ -24,7 +30,7 @@ const MITER_LIMIT: f64 = 4.0;
 /// `tolerance`. Slivers that are narrower are dropped.
 ///
 /// # Errors
-/// The path has coordinates that are not finite.
+/// The path has coordinates that are not finite, or it is not found how its edges cross.
 ///
 /// ```
 /// use kurbo::{BezPath, Shape};
@@ -42,7 +48,7 @@ pub fn union(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
 /// The same under the even-odd rule: the area that lies inside of an odd number of outlines.
 ///
 /// # Errors
-/// The path has coordinates that are not finite.
+/// As [`union`].
 pub fn union_even_odd(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
     covered(path, &BezPath::new(), tolerance, |w| w.shape_a % 2 != 0)
 }
@@ -53,7 +59,7 @@ pub fn union_even_odd(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> 
 /// in strokes, miters up to four times the distance.
 ///
 /// # Errors
-/// The path has coordinates that are not finite.
+/// As [`union`].
 ///
 /// ```
 /// use bezierfit::{Options, offset};
@@ -134,11 +140,16 @@ fn covered(
     let box_of = |p: &BezPath| if p.is_empty() { 0.0 } else { extent(p) };
     // Finer than this, numbers of the size are not compared.
     let fine = (CROSSINGS * tolerance).max(64.0 * f64::EPSILON * box_of(a).max(box_of(b)));
-    let Ok(topology) = Topology::from_paths_binary(&closed(a), &closed(b), fine) else { return Ok(out) };
-    for contour in topology.contours(inside).contours() {
+    let swept = |turn: &f64| {
+        let turned = [a, b].map(|p| Affine::rotate(*turn) * closed(p));
+        let sweep = || Some(Topology::from_paths_binary(&turned[0], &turned[1], fine).ok()?.contours(&inside));
+        Some((panic::catch_unwind(AssertUnwindSafe(sweep)).ok()??, Affine::rotate(-turn)))
+    };
+    let (contours, back) = TURNS.iter().find_map(swept).ok_or(Error::Crossings)?;
+    for contour in contours.contours() {
         let around = contour.path.segments().map(|s| s.arclen(tolerance)).sum::<f64>();
         if contour.path.area().abs() > 0.5 * tolerance * around {
-            out.extend(&contour.path);
+            out.extend(back * contour.path.clone());
             if !matches!(contour.path.elements().last(), Some(PathEl::ClosePath)) {
                 out.close_path();
             }

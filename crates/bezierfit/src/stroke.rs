@@ -5,10 +5,10 @@
 //! they cover in one direction, so that nothing inside is bare under the nonzero rule.
 
 use crate::error::Error;
-use crate::merge::{MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
+use crate::merge::{OwnPieces, ReachMemory};
 use crate::offset::Offset;
 use crate::options::Options;
-use crate::path::{Fitted, append};
+use crate::path::{Fitted, append, fewest, subpaths};
 use crate::report::{Assurance, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::source::{BreakPoint, NotFinite, SlowSpots, Source};
@@ -27,7 +27,7 @@ const POINT: f64 = 0.07;
 /// Length of a dash that stands for a dot, as a fraction of the width.
 const DOT: f64 = 1e-5;
 
-/// Dashes of a path, at most. More look like a grey line, and are drawn as one.
+/// Dashes of a path, at most.
 const MOST_DASHES: f64 = 20_000.0;
 
 /// The outline of a path's stroke, to be filled by the nonzero rule, within `options.tolerance`.
@@ -177,6 +177,7 @@ impl Edge {
     pub fn fit(&self, tolerance: f64, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
         if self.is_line() {
             pieces.push(Piece::Line(Line::new(self.p0, self.p1)));
+            report.add_error(0.0, Assurance::Exact);
             return Ok(());
         }
         let slow = SlowSpots::default();
@@ -246,7 +247,7 @@ pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Resu
         // kurbo drops dashes of zero length, which show their caps.
         dashes.iter_mut().for_each(|d| *d = d.max(DOT * style.width));
     }
-    let is_dashed = dash_count(path, &dashes) < MOST_DASHES;
+    let is_dashed = drawn_dashes(path.segments().map(|s| s.to_cubic()), &dashes) > 0.0;
     for subpath in subpaths(path) {
         let start = subpath.elements().first().copied();
         let is_point = subpath.elements().iter().flat_map(control).all(|p| start == Some(PathEl::MoveTo(p)));
@@ -260,25 +261,18 @@ pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Resu
     Ok(out)
 }
 
-/// A bound for the number of dashes along a path; infinite if there is no pattern.
-fn dash_count(path: &BezPath, dashes: &[f64]) -> f64 {
-    let period: f64 = dashes.iter().sum();
-    if !(period > 0.0 && dashes.iter().all(|d| *d >= 0.0 && d.is_finite())) {
-        return f64::INFINITY;
+/// A bound for the number of dashes that are drawn along these curves. 0 if none are: there is no pattern, or it has so many dashes that they
+/// look like a grey line, which is drawn as a line.
+pub fn drawn_dashes(curves: impl Iterator<Item = CubicBez>, pattern: &[f64]) -> f64 {
+    /// A dash and a gap.
+    const PAIR: f64 = 2.0;
+    let period: f64 = pattern.iter().sum();
+    if !(period > 0.0 && pattern.iter().all(|d| *d >= 0.0 && d.is_finite())) {
+        return 0.0;
     }
-    let legs = |s: PathSeg| {
-        let c = s.to_cubic();
-        c.p0.distance(c.p1) + c.p1.distance(c.p2) + c.p2.distance(c.p3)
-    };
-    path.segments().map(legs).sum::<f64>() / period * dashes.len() as f64
-}
-
-/// The subpaths of a path, each as a path.
-pub(crate) fn subpaths(path: &BezPath) -> impl Iterator<Item = BezPath> + '_ {
-    let elements = path.elements();
-    let starts = (0..elements.len()).filter(|i| matches!(elements[*i], PathEl::MoveTo(_)));
-    let ends = starts.clone().skip(1).chain([elements.len()]);
-    starts.zip(ends).map(|(i, j)| BezPath::from_vec(elements[i..j].to_vec()))
+    let legs = |c: CubicBez| c.p0.distance(c.p1) + c.p1.distance(c.p2) + c.p2.distance(c.p3);
+    let count = curves.map(legs).sum::<f64>() / period * pattern.len() as f64 / PAIR;
+    if count < MOST_DASHES { count } else { 0.0 }
 }
 
 /// How two parts of a path meet.
@@ -736,11 +730,7 @@ fn fitted(
         let own = OwnPieces::new(joined, |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
             contour[i + k].fit(options.tolerance, pieces, report)
         });
-        let settings = MergeSettings { tolerance: options.tolerance, proof: false, marks: false, again: false };
-        let mut reaches = Reaches::new(&run, own, settings, memory);
-        let legs = reaches.fewest()?;
-        let (mut own, legs) = refined(&run, reaches.own, legs, settings, memory)?;
-        own.append(legs, Assurance::Checked, &mut pieces, report)?;
+        fewest(&run, own, options, memory, &mut pieces, report)?;
         i += joined;
     }
     Ok(pieces)

@@ -87,8 +87,30 @@ fn areas_grow_and_shrink_by_their_distance() {
     }
 }
 
+/// Needles, edges along the axes and edges on each other, with which a sweep has most trouble: none of them panics.
 #[test]
-#[ignore = "known fault: an area that has a needle, keeps a piece beside it when it shrinks by 2, and the report does not say so"]
+fn degenerate_areas_are_swept() {
+    let mut random = Random(5);
+    for _ in 0..60 {
+        let mut corner = || Point::new((random.share() * 5.0).round() * 20.0, (random.share() * 5.0).round() * 20.0);
+        let mut path = BezPath::new();
+        for _ in 0..4 {
+            path.move_to(corner());
+            path.line_to(corner());
+            path.curve_to(corner(), corner(), corner());
+            path.line_to(corner());
+            path.close_path();
+        }
+        assert!(union(&path, TOLERANCE).is_ok(), "{}", path.to_svg());
+        for by in [-20.0, -1.0, 1.0, 20.0] {
+            assert!(offset(&path, by, Join::Miter, &Options::new(TOLERANCE)).is_ok(), "{} by {by}", path.to_svg());
+        }
+    }
+    assert!(union(&BezPath::new(), TOLERANCE).unwrap().is_empty());
+}
+
+#[test]
+#[ignore = "known fault: an area that has a needle, shrunk by 9, is off by 2.4 tolerances at one place, and the report does not say so"]
 fn random_areas_grow_and_shrink_by_their_distance() {
     let mut random = Random(3);
     let unresolved: usize = (0..16).map(|i| check_area(&random_path(&mut random, 2 * i))).sum();

@@ -52,13 +52,14 @@ use pathwarp::deform::Registry;
 use pathwarp_solid::deform::Registry3;
 use status::Status;
 use std::ffi::OsString;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{self, AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 /// Runs the program on the process's arguments.
 #[must_use]
 #[expect(clippy::needless_pass_by_value, reason = "a program hands over its registry here, once")]
 pub fn main_with(registry: Registry) -> ExitCode {
+    keep_sweeps_quiet();
     watch::allow();
     run(&registry, std::env::args_os())
 }
@@ -67,6 +68,17 @@ pub fn main_with(registry: Registry) -> ExitCode {
 #[must_use]
 pub fn command(registry: &Registry) -> clap::Command {
     commands::build(registry)
+}
+
+/// Prints nothing of the panics of linesweeper 0.5, which fails on the edges of some areas. The fitter catches them and sweeps another way
+/// (`TURNS` in `bezierfit`), and says so if none succeeds.
+fn keep_sweeps_quiet() {
+    let print = panic::take_hook();
+    panic::set_hook(Box::new(move |panic| {
+        if !panic.location().is_some_and(|at| at.file().contains("linesweeper")) {
+            print(panic);
+        }
+    }));
 }
 
 /// Runs the program on `args`, the first of which is the program's name.

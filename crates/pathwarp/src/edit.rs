@@ -3,7 +3,7 @@
 use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
 use crate::refit::{Options, PathReport, RefittedPath};
-use bezierfit::{Error, Fitted, fit_points, union_even_odd};
+use bezierfit::{Fitted, fit_points, union_even_odd};
 use kurbo::{BezPath, Join, Point, Shape};
 
 /// Share of the tolerance for cubics in place of arcs.
@@ -13,8 +13,8 @@ const ARCS: f64 = 0.05;
 const FEW_EDGES: usize = 4;
 
 /// Smooth curves through the vertices of contours of straight lines, within a contour's tolerance of each vertex: that of `contours`, or
-/// `options.tolerance` for those beyond its end. Corners are vertices at which a contour turns by more than [`corner`](Options::corner). `None` if a contour has something else than lines, has no more than
-/// four, or shares an edge with another, which would come apart.
+/// `options.tolerance` for those beyond its end. Corners are vertices at which a contour turns by more than [`corner`](Options::corner).
+/// `None` if a contour has something else than lines, has no more than four, or shares an edge with another, which would come apart.
 ///
 /// # Errors
 /// A vertex is not finite.
@@ -44,7 +44,7 @@ pub fn through_vertices(
         let tolerance = contours.get(i).copied().unwrap_or(options.tolerance);
         let fitter = bezierfit::Options::new(tolerance).with_corner(options.corner);
         let points: Vec<Point> = [s.start].into_iter().chain(s.segs.iter().map(Seg::end)).collect();
-        let fitted = fit_points(&points, s.closed, &fitter).map_err(refused)?;
+        let fitted = fit_points(&points, s.closed, &fitter)?;
         report.add(reported(&fitted, tolerance));
         report.segments_in += s.segs.len();
         path.extend(fitted.path);
@@ -99,7 +99,7 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options) -> Result<Re
     let mut source = outline.to_bez_path(fine);
     if offset.even_odd {
         let open = outline.subpaths.iter().filter(|s| !s.closed).cloned().collect();
-        let mut area = union_even_odd(&source, fine).map_err(refused)?;
+        let mut area = union_even_odd(&source, fine)?;
         area.extend(Outline { subpaths: open }.to_bez_path(fine));
         source = area;
     }
@@ -110,7 +110,7 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options) -> Result<Re
     };
     let (mut path, mut report) = (BezPath::new(), PathReport::default());
     for sign in distances {
-        let fitted = bezierfit::offset(&source, sign * offset.by, offset.join, &fitter).map_err(refused)?;
+        let fitted = bezierfit::offset(&source, sign * offset.by, offset.join, &fitter)?;
         report.add(reported(&fitted, options.tolerance));
         path.extend(fitted.path);
     }
@@ -136,7 +136,7 @@ pub fn united(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Optio
     let fine = ARCS * tolerance;
     let path = outline.to_bez_path(fine);
     let unite = if even_odd { union_even_odd } else { bezierfit::union };
-    let area = unite(&path, tolerance - fine).map_err(refused)?;
+    let area = unite(&path, tolerance - fine)?;
     let united = Outline::from(&area);
     // Overlaps change the area or the number of outlines. Only closed ones enclose it.
     let room = tolerance * path.perimeter(tolerance);
@@ -151,9 +151,4 @@ fn reported(fitted: &Fitted, tolerance: f64) -> PathReport {
     (out.max_error, out.share, out.assurance) = (r.max_error, r.max_error / tolerance, r.assurance);
     out.over_budget.clone_from(&r.unresolved);
     out
-}
-
-fn refused(e: Error) -> GeometryError {
-    let at = if let Error::NotFinite(e) = e { e.at } else { Point::ORIGIN };
-    GeometryError::Infinity { shape: "path".to_owned(), at }
 }

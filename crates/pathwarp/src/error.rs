@@ -177,6 +177,12 @@ pub enum GeometryError {
     /// A tolerance that no curve can keep, or every curve does: [`Error::Tolerance`].
     #[error("the tolerance {0} is not a positive, finite number; give the largest distance that is allowed")]
     Tolerance(f64),
+    /// How the edges of an area cross was not found.
+    #[error("how the edges of {shape} cross was not found; another tolerance may help, or leave this shape out")]
+    Crossings {
+        /// The shape's id.
+        shape: String,
+    },
     /// A map has no inverse.
     #[error("{what} has no inverse: {why}")]
     NoInverse {
@@ -185,6 +191,17 @@ pub enum GeometryError {
         /// The reason.
         why: String,
     },
+}
+
+impl From<bezierfit::Error> for GeometryError {
+    fn from(e: bezierfit::Error) -> Self {
+        let shape = "path".to_owned();
+        match e {
+            bezierfit::Error::NotFinite(e) => Self::NotFinite { shape, at: e.at },
+            bezierfit::Error::Tolerance(t) => Self::Tolerance(t),
+            _ => Self::Crossings { shape },
+        }
+    }
 }
 
 impl GeometryError {
@@ -204,7 +221,7 @@ impl GeometryError {
     /// Returns the same error, naming the shape it happened on.
     #[must_use]
     pub fn on_shape(mut self, name: &str) -> Self {
-        if let Self::Infinity { shape, .. } | Self::NotFinite { shape, .. } = &mut self {
+        if let Self::Infinity { shape, .. } | Self::NotFinite { shape, .. } | Self::Crossings { shape } = &mut self {
             name.clone_into(shape);
         }
         self

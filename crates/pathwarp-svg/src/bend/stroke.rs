@@ -8,7 +8,7 @@ use crate::scene::affine::stretch;
 use crate::scene::stroked::{spend_dashes, spend_stroke, stroke_outlines};
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
-use pathwarp::{GeometryError, Outline, outline};
+use pathwarp::{GeometryError, Outline, fit};
 use usvg::Stroke;
 
 /// Shares of the tolerance for the sides of a stroke, and for gaps between them, half of it from either side. The rest is for refitting the
@@ -170,7 +170,7 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
         report.max_error = allowed;
     }
     report.assurance = report.assurance.min(Assurance::Checked);
-    let path = if options.union { outline::united(warped.path, united) } else { warped.path };
+    let path = if options.union { fit::union(&warped.path, united)? } else { warped.path };
     Ok((t.to_local(path), report))
 }
 

@@ -7,9 +7,6 @@ use pathwarp::kurbo::{self, Affine, Cap, Join, Point};
 use pathwarp::{Outline, Seg, Subpath};
 use usvg::{LineCap, LineJoin, Stroke};
 
-/// Limit on the dashes of a path. More would take long and look like a grey line.
-const MOST_DASHES: f64 = 20_000.0;
-
 /// The work of one of the segments below: there are fewer, and fitting them is counted, too.
 const EXPANDED: f64 = 15.0;
 
@@ -37,7 +34,7 @@ pub(crate) fn stroke_outlines(
     stroke: &Stroke,
     fine: impl Fn(usize) -> [f64; 2],
 ) -> Vec<(usize, Outline)> {
-    let style = style(local, stroke);
+    let style = style(stroke);
     let clipped = stroke.linejoin() == LineJoin::MiterClip;
     let outline = |(i, s): (usize, &Subpath)| {
         let one = Outline { subpaths: vec![s.clone()] };
@@ -48,7 +45,7 @@ pub(crate) fn stroke_outlines(
 }
 
 /// A stroke's style as kurbo's.
-fn style(local: &Outline, stroke: &Stroke) -> kurbo::Stroke {
+fn style(stroke: &Stroke) -> kurbo::Stroke {
     let cap = match stroke.linecap() {
         LineCap::Butt => Cap::Butt,
         LineCap::Round => Cap::Round,
@@ -64,7 +61,6 @@ fn style(local: &Outline, stroke: &Stroke) -> kurbo::Stroke {
         .with_join(join)
         .with_miter_limit(f64::from(stroke.miterlimit().get()));
     match stroke.dasharray() {
-        Some(_) if drawn_dashes(local, stroke) == 0.0 => style,
         Some(dashes) => style.with_dashes(f64::from(stroke.dashoffset()), dashes.iter().copied().map(f64::from)),
         None => style,
     }
@@ -120,25 +116,6 @@ pub(crate) fn spend_stroke(local: &Outline, stroke: &Stroke, budget: &Budget) ->
 
 /// A bound for the number of dashes that are drawn of a stroke.
 fn drawn_dashes(local: &Outline, stroke: &Stroke) -> f64 {
-    let Some(dashes) = stroke.dasharray() else { return 0.0 };
-    let dashes: Vec<f64> = dashes.iter().map(|d| f64::from(*d)).collect();
-    let count = dash_count(local, &dashes);
-    if count < MOST_DASHES { count } else { 0.0 }
-}
-
-/// A bound for the number of dashes along an outline; infinite if they have no length.
-fn dash_count(local: &Outline, dashes: &[f64]) -> f64 {
-    /// A dash and a gap.
-    const PAIR: f64 = 2.0;
-    let period: f64 = dashes.iter().sum();
-    if period > 0.0 { rough_length(local) / period * dashes.len() as f64 / PAIR } else { f64::INFINITY }
-}
-
-/// Length of the control polygons, an upper bound of the path's length.
-fn rough_length(o: &Outline) -> f64 {
-    let leg = |s: &Seg| {
-        let c = s.to_cubic();
-        c.p0.distance(c.p1) + c.p1.distance(c.p2) + c.p2.distance(c.p3)
-    };
-    o.segs().map(leg).sum()
+    let pattern: Vec<f64> = stroke.dasharray().into_iter().flatten().map(|d| f64::from(*d)).collect();
+    local.drawn_dashes(&pattern)
 }

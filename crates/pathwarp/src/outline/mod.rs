@@ -21,5 +21,4 @@ pub use boundary::boundary;
 pub use builder::Builder;
 pub use path::{Outline, Subpath};
 pub use seg::Seg;
-pub use stroke::united;
 pub use svg::PathDataError;

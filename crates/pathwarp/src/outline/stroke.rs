@@ -1,9 +1,9 @@
 //! Outlines of strokes.
 
 use super::{EllipticArc, Outline, Seg, Subpath};
-use bezierfit::parts::{Edge, EdgeCurve, contours};
+use bezierfit::parts::{Edge, EdgeCurve, contours, drawn_dashes};
 use bezierfit::{NotFinite, Piece};
-use kurbo::{BezPath, Stroke, Vec2};
+use kurbo::{Stroke, Vec2};
 
 /// Share of the tolerance for arcs as cubics. Their error falls with the sixth power of their number.
 const ARCS: f64 = 0.05;
@@ -29,12 +29,12 @@ impl Outline {
         };
         Ok(Self { subpaths: contours.iter().map(subpath).collect::<Result<_, NotFinite>>()? })
     }
-}
 
-/// The area that a path covers under the nonzero rule, with outlines that do not cross; the path itself if it is not finite.
-#[must_use]
-pub fn united(path: BezPath, tolerance: f64) -> BezPath {
-    bezierfit::union(&path, tolerance).unwrap_or(path)
+    /// A bound for the number of dashes that [`stroked`](Self::stroked) draws; 0 if there are none, or so many that a line is drawn instead.
+    #[must_use]
+    pub fn drawn_dashes(&self, pattern: &[f64]) -> f64 {
+        drawn_dashes(self.segs().map(Seg::to_cubic), pattern)
+    }
 }
 
 /// Appends an edge of a stroke's outline.
