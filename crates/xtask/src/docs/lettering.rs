@@ -7,8 +7,8 @@ pub(super) const PAGE: CookbookPage = CookbookPage {
     pictures: "images/lettering-on-paths",
     intro: "# Lettering on paths
 
-Text in a drawing, and outlines made by [`pathwarp text`](lettering.md), record their baselines and the extent of each letter.
-Other outlines do not: for those, `--frame X,Y,W,H` gives the box and `bend --baseline` the height.
+Text in a drawing, and outlines made by [`pathwarp text`](lettering.md), record their baselines and the extent of each letter. For
+other outlines, give the box by `--frame X,Y,W,H` and the height by `bend --baseline`.
 
 ```sh
 pathwarp text 'Summit Camp' | pathwarp bend - --along 'M0,120 Q250,0 500,120' --glyphs rotate --fit page -o out.svg
@@ -16,7 +16,7 @@ pathwarp text 'Summit Camp' | pathwarp bend - --along 'M0,120 Q250,0 500,120' --
 
 ## Frames
 
-The frame is the box that a deformation maps to its shape. `--frame` can take it from the lettering instead of the artwork's bounding box:
+The frame is the box that a deformation maps to its shape. `--frame` takes it from the lettering instead of the artwork's bounding box:
 
 | `--frame` | bottom | top | left and right |
 |---|---|---|---|
@@ -28,17 +28,17 @@ The frame is the box that a deformation maps to its shape. `--frame` can take it
 | `artwork` | the bounding box of all artwork | | |
 
 With several lines, the frame runs from the baseline of the lowest to the top of the highest. Descenders stay below the curve.
-Baselines must be horizontal; rotated text is refused with a message. After another step (`+`) the letters are ordinary outlines,
-so these frames and setting letter by letter work in the first step only.
+Baselines must be horizontal: pathwarp refuses rotated text with a message. After another step (`+`) the letters are ordinary
+outlines, so these frames and setting letter by letter work in the first step only.
 
 The default is `artwork`: in an envelope, a word with descenders should fill the shape, not hang out of it. `bend` instead puts the
-baseline of lettering on its curve (`baseline-ascent`), as other programs do when they set type on a path, provided that the artwork is
-all lettering and neither `--frame` nor `--baseline` is given. `--explain` reports which applies.
+baseline of lettering on its curve (`baseline-ascent`), as other programs do when they set type on a path, if the artwork is all
+lettering and you give neither `--frame` nor `--baseline`. `--explain` says which applies.
 
 ## Letters
 
-`bend --glyphs` sets how letters sit on the curve. Every choice but `bend` applies one affine map per letter, so nodes are
-preserved. Other programs call `rotate` Rainbow, `--skew` Skew, `--ribbon` 3D Ribbon and `stair` Stair Step.
+`bend --glyphs` says how letters sit on the curve. Every choice but `bend` moves each letter by an affine map, and so keeps its
+nodes. Other programs call `rotate` Rainbow, `--skew` Skew, `--ribbon` 3D Ribbon and `stair` Stair Step.
 
 | `--glyphs` | keeps | limits |
 |---|---|---|
@@ -49,8 +49,8 @@ preserved. Other programs call `rotate` Rainbow, `--skew` Skew, `--ribbon` 3D Ri
 | `stair` | shape and orientation; letters only move | steep curves tear words apart |
 
 Letters set one by one keep their size, times `--width`, and their spacing. `--stretch fit` spreads them over the curve, `scale` scales
-them to fit it, and `repeat` repeats the line for as long as there is room. Warnings are about ink that overlaps; letters that only
-come close give none. Letters of joined scripts, such as Arabic, come apart when set one by one: bend them instead.
+them to fit it, and `repeat` repeats the line for as long as there is room. pathwarp warns about ink that overlaps, not about letters
+that only come close. Letters of joined scripts, such as Arabic, come apart when set one by one: bend them instead.
 ",
     entries: &[
         CookbookEntry {
