@@ -1,13 +1,14 @@
 //! The promise, measured from outside: the distance between the exact image of the source text and the output of the program as people
 //! run it, for many pairs of a path and a map; every fifth path is one of a drawing.
 //! `PATHWARP_PAIRS=100000 cargo test -p pathwarp-tests guarantee -- --nocapture` measures as many as it says, with paths of the drawings
-//! in the folder `PATHWARP_DRAWINGS`, and prints the table of docs/benchmarks.md.
+//! in the folder `PATHWARP_DRAWINGS`, and prints the table of docs/benchmarks.md. `PATHWARP_STROKES` does the same for strokes.
 
 mod contours;
 mod curves;
 mod edits;
 mod measure;
 mod paths;
+mod strokes;
 mod written;
 
 use curves::Curve;
@@ -78,6 +79,12 @@ fn maps() -> Vec<Maps> {
     all.extend(inverses);
     all.extend(chains);
     all
+}
+
+/// `simplify` in place of a map.
+fn simplified() -> Maps {
+    let warper = Warper::edit(&REGISTRY, "simplify", &[] as &[(&str, &str)]).unwrap();
+    Maps { name: "simplify".to_owned(), warper }
 }
 
 /// What a pair gives: the largest distance in tolerances, the sharpest false turn in degrees.
@@ -175,7 +182,7 @@ struct Tally {
 fn the_distance_is_kept_for_many_pairs() {
     let wanted: usize = std::env::var("PATHWARP_PAIRS").ok().and_then(|n| n.parse().ok()).unwrap_or(4000);
     let first: usize = std::env::var("PATHWARP_FIRST").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
-    let (maps, next) = (maps(), AtomicUsize::new(first));
+    let (maps, simplified, next) = (maps(), simplified(), AtomicUsize::new(first));
     let tallies: Mutex<BTreeMap<&'static str, Tally>> = Mutex::default();
     let failures: Mutex<Vec<String>> = Mutex::default();
     std::thread::scope(|scope| {
@@ -188,7 +195,7 @@ fn the_distance_is_kept_for_many_pairs() {
                     }
                     let mut random = Random::new(i as u64);
                     let (kind, d) = if i % 5 == 4 { drawn(&mut random) } else { path(&mut random) };
-                    let map = &maps[random.below(maps.len())];
+                    let map = if i % 10 == 9 { &simplified } else { &maps[random.below(maps.len())] };
                     let found = measured(&d, map);
                     let mut tallies = tallies.lock().unwrap();
                     let t = tallies.entry(kind).or_default();
