@@ -80,6 +80,9 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
     let written = Polygon::of(&curves::read(written), 0.2 * tolerance);
     let points = warper.point_map(|| Some(frame), || Outline::from_svg(d).unwrap_or_default()).ok()?;
     let source = curves::read(d);
+    if source.is_empty() {
+        return None;
+    }
     let same = |ps: &[Point]| ps.to_vec();
     // Chords a hundredth of the tolerance from the line, as far as that is to be had.
     let lines = Polygon(

@@ -3,9 +3,10 @@
 use pathwarp::kurbo::{Point, Vec2};
 use pathwarp::map::{Class, Map};
 use pathwarp::outline::{EllipticArc, Subpath};
-use pathwarp::refit::{self, Assurance, PathReport};
+use pathwarp::refit::{self, Assurance, PathReport, Span};
 use pathwarp::{GeometryError, Outline, Seg};
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Largest sweep of a written arc. The centre of a longer one depends on its rounded ends too much: without bound at half a turn.
 const LONGEST: f64 = 2.0 / 3.0 * PI;
@@ -41,7 +42,12 @@ pub(super) fn with_arcs(
         if all.iter().flatten().all(Option::is_none) {
             return Ok(None);
         }
-        let subpaths = outline.subpaths.iter().zip(&all).map(|(s, arcs)| subpath(s, arcs, map, options, &mut report));
+        let mut first = 0;
+        let subpaths = outline.subpaths.iter().zip(&all).map(|(s, arcs)| {
+            let image = subpath((s, first), arcs, map, options, &mut report);
+            first += s.segs.len();
+            image
+        });
         Outline { subpaths: subpaths.collect::<Result<_, _>>()? }
     };
     let image = Outline { subpaths: image.subpaths.into_iter().map(short_arcs).collect() };
@@ -100,17 +106,18 @@ fn center(p: Point, q: Point, r: Point) -> Option<Point> {
     (p + to).is_finite().then_some(p + to)
 }
 
-/// The image of a subpath with the images of its arcs. What lies between them is refitted.
+/// The image of a subpath with the images of its arcs. What lies between them is refitted. `first` is the index of its first segment in
+/// the outline.
 fn subpath(
-    s: &Subpath,
+    (s, first): (&Subpath, usize),
     arcs: &[Option<EllipticArc>],
     map: &dyn Map,
     options: &refit::Options,
     report: &mut PathReport,
 ) -> Result<Subpath, GeometryError> {
     let mut out = Subpath { start: map.point(s.start), segs: Vec::with_capacity(s.segs.len()), closed: s.closed };
-    let mut rest = s.segs.iter().zip(arcs).peekable();
-    while let Some((g, arc)) = rest.next() {
+    let mut rest = s.segs.iter().zip(arcs).zip(first..).peekable();
+    while let Some(((g, arc), from)) = rest.next() {
         if let Some(arc) = arc {
             let p0 = out.end();
             out.segs.push(Seg::Arc(EllipticArc { p0, ..*arc }));
@@ -119,14 +126,26 @@ fn subpath(
             continue;
         }
         let mut run = Subpath { start: g.start(), segs: vec![*g], closed: false };
-        while let Some((g, _)) = rest.next_if(|(_, arc)| arc.is_none()) {
+        while let Some(((g, _), _)) = rest.next_if(|((_, arc), _)| arc.is_none()) {
             run.segs.push(*g);
         }
-        let refitted = refit::warp_path(&Outline { subpaths: vec![run] }, map, options)?;
+        let options = options.clone().with_spans(within(&options.spans, from..from + run.segs.len()));
+        let refitted = refit::warp_path(&Outline { subpaths: vec![run] }, map, &options)?;
         report.add(refitted.report);
         out.segs.extend(Outline::from(&refitted.path).subpaths.into_iter().flat_map(|s| s.segs));
     }
     Ok(out)
+}
+
+/// The spans of some of the segments.
+fn within(spans: &[Span], segments: Range<usize>) -> Vec<Span> {
+    let mut end = 0;
+    let each = spans.iter().map(|s| {
+        let start = end;
+        end += s.segments;
+        Span { segments: end.min(segments.end).saturating_sub(start.max(segments.start)), ..*s }
+    });
+    each.filter(|s| s.segments > 0).collect()
 }
 
 /// Divides long arcs.
