@@ -1,66 +1,8 @@
 //! The deformations with their parameters as a page needs them: everything follows from the registry's tables.
 
-use crate::openings::variants;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Axis, Kind, Param};
 use serde_json::{Value, json};
-
-/// Names for people who bend by hand; the registry's own are those of the command line. Others are shown as they are.
-const LABELS: [(&str, &str); 15] = [
-    ("shaper", "Cage"),
-    ("warp", "Style"),
-    ("wordart", "Text shape"),
-    ("bilinear", "Four corners"),
-    ("birational", "Two rows"),
-    ("polar", "Ring"),
-    ("ffd", "Grid"),
-    ("triangle", "Triangle net"),
-    ("mls", "Pins"),
-    ("projective", "Perspective"),
-    ("anamorph", "Anamorphosis"),
-    ("mobius", "Möbius"),
-    ("expr", "Formula"),
-    ("similitude", "Turn and scale"),
-    ("affine", "Transform"),
-];
-
-/// Paths with a fixed number of points, by deformation and parameter; others, such as skeletons, may have any number.
-const FIXED: [(&str, &str); 9] = [
-    ("shaper", "shaper"),
-    ("shaper", "net"),
-    ("shaper", "base"),
-    ("shaper", "target"),
-    ("mesh", "net"),
-    ("bilinear", "target"),
-    ("projective", "target"),
-    ("projective", "base"),
-    ("similitude", "target"),
-];
-/// A parameter that takes the place of others.
-struct Instead {
-    deformation: &'static str,
-    param: &'static str,
-    /// Those that cannot go with it.
-    others: &'static [&'static str],
-    /// The value of another one that goes with it, unless the user gives one.
-    with: Option<(&'static str, &'static str)>,
-}
-
-const INSTEAD: [Instead; 3] = [
-    // A file's own region is in the units of the drawing that it was made for.
-    Instead { deformation: "mesh", param: "mesh", others: &["net", "psd"], with: Some(("region", "artwork")) },
-    Instead { deformation: "mesh", param: "psd", others: &["net", "mesh"], with: None },
-    Instead { deformation: "ffd", param: "lattice", others: &["degree"], with: None },
-];
-/// Names of parameters for people, where the registry's own could be taken for something else.
-const PARAM_LABELS: [(&str, &str, &str); 4] = [
-    ("warp", "horizontal", "Distort horizontally"),
-    ("warp", "vertical", "Distort vertically"),
-    ("mesh", "mesh", "File of points"),
-    ("mesh", "psd", "Photoshop file"),
-];
-/// The deformation whose rows have equally many points, which are control points of one curve each.
-const ROWS: &str = "birational";
 
 /// Describes all deformations, in menu order. `foreign` are names in other programs, with the deformation that each means.
 pub(crate) fn catalogue(registry: &Registry, foreign: &[(&str, &str)]) -> Value {
@@ -86,12 +28,12 @@ fn deformation(info: &Info) -> Value {
     let params = info.params.iter().filter(|p| p.kind != Kind::Save);
     json!({
         "name": info.name,
-        "label": LABELS.iter().find(|(name, _)| *name == info.name).map(|(_, label)| label),
+        "label": info.by_hand.label,
         "title": info.title,
         "group": info.group,
         "about": info.about,
         "params": params.map(|p| param(info, p)).collect::<Value>(),
-        "variants": variants(info.name).map(|v| json!({ "label": v.label, "param": v.param })).collect::<Value>(),
+        "variants": info.by_hand.variants.iter().map(|v| json!({ "label": v.label, "param": v.param })).collect::<Value>(),
         "gallery": info.gallery.map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
     })
 }
@@ -110,14 +52,14 @@ fn param(info: &Info, p: &Param) -> Value {
         Kind::Text(notation) => out["notation"] = json!(notation),
         Kind::Numbers(n) => out["count"] = json!(n),
         Kind::Length(axis) => out["axis"] = json!(axis_word(axis)),
-        Kind::Path if info.name == ROWS => out["points"] = json!("rows"),
-        Kind::Path if !FIXED.contains(&(info.name, p.name)) => out["points"] = json!("any"),
+        Kind::Path if info.by_hand.rows => out["points"] = json!("rows"),
+        Kind::Path if !info.by_hand.fixed.contains(&p.name) => out["points"] = json!("any"),
         _ => {}
     }
-    if let Some((.., label)) = PARAM_LABELS.iter().find(|(d, name, _)| (*d, *name) == (info.name, p.name)) {
+    if let Some((_, label)) = info.by_hand.labels.iter().find(|(name, _)| *name == p.name) {
         out["label"] = json!(label);
     }
-    if let Some(i) = INSTEAD.iter().find(|i| (i.deformation, i.param) == (info.name, p.name)) {
+    if let Some(i) = info.by_hand.instead.iter().find(|i| i.param == p.name) {
         out["instead"] = json!({ "others": i.others, "with": i.with });
     }
     if let Some(default) = p.default {
@@ -166,21 +108,15 @@ mod tests {
             let expected: Vec<_> = info.params.iter().filter(|p| p.kind != Kind::Save).map(|p| p.name).collect();
             assert_eq!(names, expected);
         }
-        for (name, param) in FIXED {
-            let params = registry.get(name).map(|e| e.info().params).unwrap_or_default();
-            assert!(params.iter().any(|p| p.name == param && p.kind == Kind::Path), "{name} {param}");
-        }
-        let named = PARAM_LABELS.iter().map(|(name, param, _)| (*name, *param)).chain(INSTEAD.iter().flat_map(|i| {
-            let others = i.others.iter().copied().chain([i.param]).chain(i.with.map(|(param, _)| param));
-            others.map(|param| (i.deformation, param))
-        }));
-        for (name, param) in named {
-            let params = registry.get(name).map(|e| e.info().params).unwrap_or_default();
-            assert!(params.iter().any(|p| p.name == param), "{name} {param}");
-        }
-        assert!(registry.get(ROWS).is_some());
-        for (name, _) in LABELS {
-            assert!(registry.get(name).is_some(), "{name}");
+        for info in registry.entries().iter().map(|e| e.info()) {
+            let (hand, has) = (info.by_hand, |name: &str| info.params.iter().any(|p| p.name == name));
+            let pairs = [hand.labels, hand.neutral, hand.showing].concat();
+            let instead =
+                hand.instead.iter().flat_map(|i| i.others.iter().copied().chain([i.param]).chain(i.with.map(|w| w.0)));
+            let variants = hand.variants.iter().map(|v| v.param);
+            let all =
+                pairs.iter().map(|(name, _)| *name).chain(hand.fixed.iter().copied()).chain(instead).chain(variants);
+            all.for_each(|name| assert!(has(name), "{} {name}", info.name));
         }
         assert_eq!(all.as_array().unwrap().len(), registry.entries().len());
     }

@@ -5,7 +5,7 @@ use crate::draft::{Draft, Kept, NO_FOLDER};
 use crate::grips::grips;
 use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened};
-use crate::openings::{Variant, example, opening, variants};
+use crate::openings::{example, of_variant, opening};
 use crate::picture::Picture;
 use crate::presets;
 use crate::protocol::{PageStep, recipe, steps};
@@ -14,6 +14,7 @@ use crate::saving;
 use crate::stretch::stretch;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use pathwarp::deform::{Info, Variant};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::Map as _;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
@@ -264,8 +265,8 @@ impl Session {
         let host = Arc::clone(&self.host);
         let entry = host.registry().get(deformation).ok_or_else(|| format!("there is no deformation {deformation}"))?;
         let frame = self.frame_after(given)?;
-        let args = match variant_of(deformation, variant)? {
-            Some(variant) => variant.values(frame, false),
+        let args = match variant_of(entry.info(), variant)? {
+            Some(variant) => of_variant(variant, frame, false),
             None => opening(entry.info(), frame),
         };
         Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args, ..PageStep::default() })
@@ -321,8 +322,8 @@ impl Session {
         let entry = self.host.registry().get(deformation);
         let entry = entry.ok_or_else(|| format!("there is no deformation {deformation}"))?;
         let frame = self.opened.artwork.frame();
-        let args = match variant_of(deformation, variant)? {
-            Some(variant) => variant.values(frame, true),
+        let args = match variant_of(entry.info(), variant)? {
+            Some(variant) => of_variant(variant, frame, true),
             None => example(entry.info(), frame),
         };
         Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args, ..PageStep::default() })
@@ -418,10 +419,10 @@ fn is_svg(file: &Path) -> bool {
 }
 
 /// The variant of a deformation with this label.
-fn variant_of(deformation: &str, label: Option<&str>) -> Result<Option<&'static Variant>, String> {
+fn variant_of(info: &Info, label: Option<&str>) -> Result<Option<&'static Variant>, String> {
     let Some(label) = label else { return Ok(None) };
-    let found = variants(deformation).find(|v| v.label == label);
-    found.map(Some).ok_or_else(|| format!("{deformation} has no variant {label}"))
+    let found = info.by_hand.variants.iter().find(|v| v.label == label);
+    found.map(Some).ok_or_else(|| format!("{} has no variant {label}", info.name))
 }
 
 /// The steps that a page shows.

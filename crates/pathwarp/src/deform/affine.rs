@@ -3,7 +3,7 @@
 //! x' = a·x + c·y + e, y' = b·x + d·y + f. By parts, about a fixed point O: first scale, then skew, then rotate, then move.
 
 use super::built::Built;
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::AffineMap;
 use crate::param::{Axis, Kind, Param, Settings};
@@ -140,6 +140,10 @@ impl Affine {
 
 static INFO: Info = Info::new("affine", "scale, skew, rotate and move, or apply any matrix")
     .group("Basics")
+    .by_hand(ByHand {
+        label: Some("Transform"),
+        ..ByHand::NONE
+    })
     .about("Scales, skews, rotates and moves the artwork, in this order, about a point; or applies a matrix as SVG writes it. Control \
 points are moved exactly; no node is added.")
     .source("SVG 2, section 8.5 (the transform property)")

@@ -9,7 +9,7 @@
 //! corners lie on. G. Wolberg, *Digital Image Warping* (1990), §3.6.
 
 use super::built::Built;
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors, FourToFour};
 use crate::error::Error;
 use crate::map::polynomial::bernstein::Scaled;
@@ -61,6 +61,12 @@ impl Bilinear {
 
 static INFO: Info = Info::new("bilinear", "stretch artwork to four corners, its sides divided evenly")
     .group("Envelopes")
+    .by_hand(ByHand {
+        label: Some("Four corners"),
+        fixed: &["target"],
+        neutral: &[("target", "0%,100% 100%,100% 100%,0% 0%,0%")],
+        ..ByHand::NONE
+    })
     .guides(&["target", "base"], 1)
     .about("Takes the corners of the artwork's box (or the Base) to the four anchors of the Target. Verticals and horizontals stay straight \
 and keep their even spacing, where projective would crowd them towards the far side; slanting lines become parabolas.\n\nBoth start \

@@ -6,7 +6,7 @@
 //! CAGD 2015.
 
 use super::built::{Built, Explanation, Role};
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use super::ffd::{MAX_CELLS, MAX_DEGREE};
 use crate::error::{Error, GeometryError, within};
 use crate::map::{self, AffineMap, Class, Map, Rows};
@@ -125,6 +125,15 @@ impl Birational {
 
 static INFO: Info = Info::new("birational", "bend artwork between two rows of points; verticals or horizontals stay straight")
     .group("Envelopes")
+    .by_hand(ByHand {
+        label: Some("Two rows"),
+        rows: true,
+        neutral: &[
+            ("top", "0%,0% 33.3333%,0% 66.6667%,0% 100%,0%"),
+            ("bottom", "0%,100% 33.3333%,100% 66.6667%,100% 100%,100%"),
+        ],
+        ..ByHand::NONE
+    })
     .guides(&["top", "bottom"], 2)
     .about("Draw the new top and bottom of the artwork as two rows of equally many points from left to right: \
 verticals stay straight lines between them, which is what lettering wants. Or give --left and --right from top to bottom: \

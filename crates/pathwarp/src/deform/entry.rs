@@ -74,6 +74,8 @@ pub struct Info {
     pub gallery: Option<Gallery>,
     /// The paths that selected ones stand for where a user selects guides and artwork together.
     pub guides: Guides,
+    /// What else a page needs where people bend by hand.
+    pub by_hand: ByHand,
 }
 
 impl Info {
@@ -95,6 +97,7 @@ impl Info {
             letters: false,
             gallery: None,
             guides: Guides { params: &[], usual: 0 },
+            by_hand: ByHand::NONE,
         }
     }
 
@@ -164,6 +167,12 @@ impl Info {
         Self { guides: Guides { params, usual }, ..self }
     }
 
+    /// Sets what a page needs where people bend by hand.
+    #[must_use]
+    pub const fn by_hand(self, by_hand: ByHand) -> Self {
+        Self { by_hand, ..self }
+    }
+
     /// Names the presets that a gallery draws one by one.
     #[must_use]
     pub const fn gallery(self, gallery: Gallery) -> Self {
@@ -178,6 +187,67 @@ pub struct Guides {
     pub params: &'static [&'static str],
     /// The number of paths taken unless the user says otherwise; the rest is artwork.
     pub usual: usize,
+}
+
+/// What a page needs where people bend by hand, as far as it does not follow from the parameters.
+///
+/// Coordinates of points in values are percentages of the frame; path data is laid from the box 0,0,100,100 onto it.
+#[derive(Debug, Clone, Copy)]
+pub struct ByHand {
+    /// A name for people; `None` if the deformation's own will do.
+    pub label: Option<&'static str>,
+    /// Names for people of parameters whose own could be taken for something else.
+    pub labels: Pairs,
+    /// Path parameters with a fixed number of points; others may have any number.
+    pub fixed: &'static [&'static str],
+    /// The path parameters are rows of equally many points, the control points of one curve each.
+    pub rows: bool,
+    /// First values, which move nothing yet and give every handle its place. If there are none, the defaults or [`Info::demo`] serve.
+    pub neutral: Pairs,
+    /// Values that show the effect, where [`Info::demo`] suits its own drawing only.
+    pub showing: Pairs,
+    /// Other ways to begin.
+    pub variants: &'static [Variant],
+    /// Parameters that take the place of others.
+    pub instead: &'static [Instead],
+}
+
+impl ByHand {
+    /// Nothing beyond the parameters.
+    pub const NONE: Self = Self {
+        label: None,
+        labels: &[],
+        fixed: &[],
+        rows: false,
+        neutral: &[],
+        showing: &[],
+        variants: &[],
+        instead: &[],
+    };
+}
+
+/// Another way to begin with a deformation.
+#[derive(Debug, Clone, Copy)]
+pub struct Variant {
+    /// Its name for people.
+    pub label: &'static str,
+    /// The parameter that takes the place of the usual ones.
+    pub param: &'static str,
+    /// Path data that moves nothing.
+    pub neutral: &'static str,
+    /// Path data that shows the effect.
+    pub showing: &'static str,
+}
+
+/// A parameter that takes the place of others.
+#[derive(Debug, Clone, Copy)]
+pub struct Instead {
+    /// Its name.
+    pub param: &'static str,
+    /// Those that cannot go with it.
+    pub others: &'static [&'static str],
+    /// The value of another one that goes with it, unless the user gives one.
+    pub with: Option<(&'static str, &'static str)>,
 }
 
 /// The presets of a deformation, as a gallery draws them: the artwork once under each.

@@ -5,7 +5,7 @@
 //! every side resolved.
 
 use super::built::Built;
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
 use crate::map::{Class, Crease, Creases, Dual, Jet, Level, Map};
@@ -112,6 +112,10 @@ impl Expr {
 
 static INFO: Info = Info::new("expr", "move every point by a formula for x and y")
     .group("Formulas")
+    .by_hand(ByHand {
+        label: Some("Formula"),
+        ..ByHand::NONE
+    })
     .about("Formulas for the new x and y; a coordinate without one stays. Numbers, + - * / and ^ or ** (power), brackets, and\n  \
 x y      the point, in user units, y downwards\n  \
 u v      the same within the artwork's box, from 0 to 1, from the left and the top\n  \

@@ -13,7 +13,7 @@
 //! other handles alone, since p̂ₖ there is of second order: F(pₖ) = qₖ with that M for derivative (for α ≥ 1).
 
 use super::built::{Built, Role};
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors;
 use crate::error::{Error, GeometryError, within};
 use crate::map::{AffineMap, Formula, Real};
@@ -113,6 +113,17 @@ pub enum Stiffness {
 
 static INFO: Info = Info::new("mls", "move points of the artwork, and let the rest follow")
     .group("Points")
+    .by_hand(ByHand {
+        label: Some("Pins"),
+        neutral: &[
+            ("pair", "0%,0%:0%,0%"),
+            ("pair", "100%,0%:100%,0%"),
+            ("pair", "100%,100%:100%,100%"),
+            ("pair", "0%,100%:0%,100%"),
+            ("pair", "50%,50%:50%,50%"),
+        ],
+        ..ByHand::NONE
+    })
     .guides(&["to", "from"], 2)
     .about("Moves points of the artwork; everything else follows smoothly, most where it is near. --pair moves a \
 point, --pin holds one where it is, --from and --to take the anchors of two paths, in order.\n\n--kind rigid keeps shapes as stiff as \

@@ -12,7 +12,7 @@
 //! Needham, *Visual Complex Analysis* (1997), chapter 3.
 
 use super::built::{Built, Explanation, Overlay, Role};
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors;
 use crate::error::{Error, GeometryError, show};
 use crate::map::polynomial::bernstein::Scaled;
@@ -109,6 +109,10 @@ impl Mobius {
 
 static INFO: Info = Info::new("mobius", "take circles to circles, by a pole, three points or coefficients")
     .group("Classics")
+    .by_hand(ByHand {
+        label: Some("Möbius"),
+        ..ByHand::NONE
+    })
     .guides(&["to", "from"], 0)
     .about("Straight lines become arcs of circles, circles stay circles, and angles are kept: small squares stay small squares. The \
 simplest way in is the pole, the point that goes to infinity: artwork grows towards it and shrinks away from it. Or give three \

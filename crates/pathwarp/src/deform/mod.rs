@@ -47,7 +47,7 @@ pub use built::{
     Built, Explanation, Failure, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile, Undefined,
 };
 pub use bulge::Bulge;
-pub use entry::{Case, Deformation, Example, Gallery, Guides, Info, Law, Pairs};
+pub use entry::{ByHand, Case, Deformation, Example, Gallery, Guides, Info, Instead, Law, Pairs, Variant};
 pub use envelope::{Envelope, Keep, Spread};
 pub use expr::Expr;
 pub use ffd::Ffd;

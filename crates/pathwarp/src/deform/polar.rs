@@ -13,7 +13,7 @@
 //! by a straight line, and the recipe warns of it. Elementary.
 
 use super::built::{Built, Seam};
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings, word_space};
@@ -174,6 +174,10 @@ impl Polar {
 
 static INFO: Info = Info::new("polar", "bend artwork into an arch or a whole ring")
     .group("Bends")
+    .by_hand(ByHand {
+        label: Some("Ring"),
+        ..ByHand::NONE
+    })
     .with_letters()
     .about("Verticals become rays, horizontals become arcs about one centre. The inner edge keeps its length, the outer one is stretched; \
 --inner and --outer set the radii instead. A negative sweep bends downwards (a smile). The middle of the artwork stays where it is, \

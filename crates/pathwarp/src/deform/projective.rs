@@ -4,7 +4,7 @@
 //! Image Warping*, 1989, §2.2). Straight lines stay straight.
 
 use super::built::Built;
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, FourToFour};
 use crate::error::Error;
 use crate::map::{AffineMap, Class, Map};
@@ -53,6 +53,12 @@ impl Projective {
 
 static INFO: Info = Info::new("projective", "put artwork in perspective: four points to four points, lines stay straight")
     .group("Perspective and anamorphosis")
+    .by_hand(ByHand {
+        label: Some("Perspective"),
+        fixed: &["target", "base"],
+        neutral: &[("target", "0%,100% 100%,100% 100%,0% 0%,0%")],
+        ..ByHand::NONE
+    })
     .guides(&["target", "base"], 1)
     .about("Takes the four anchors of the Base (by default the corners of the artwork's box) to the four anchors of the Target. \
 Straight lines stay straight and keep their two nodes.\n\nBoth start with the side that lies lowest on the screen, left to right, \

@@ -3,7 +3,7 @@
 //! In complex numbers z ↦ P + (z − A)·(Q − P)/(B − A).
 
 use super::built::{Built, Role};
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors};
 use crate::error::{Error, GeometryError};
 use crate::map::AffineMap;
@@ -54,6 +54,12 @@ impl Similitude {
 
 static INFO: Info = Info::new("similitude", "turn, scale and shift by two anchors; shapes stay the same")
     .group("Basics")
+    .by_hand(ByHand {
+        label: Some("Turn and scale"),
+        fixed: &["target"],
+        neutral: &[("target", "0%,100% 100%,100%")],
+        ..ByHand::NONE
+    })
     .guides(&["target", "base"], 1)
     .about("Takes the first anchor of the Base to the first of the Target and the second to the second, as drawn. Everything is \
 turned, scaled evenly and shifted; nothing is bent, and no node is added.")

@@ -4,7 +4,7 @@ use super::net::{Net, Push};
 use super::onto::Onto;
 use super::{Anamorph, Look};
 use crate::deform::built::{Built, SpaceFile};
-use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Info, Law, Pairs};
 use crate::error::Error;
 use crate::param::{Axis, Kind, Param, Settings};
 
@@ -12,6 +12,11 @@ pub(in crate::deform) struct Entry;
 
 pub(super) static INFO: Info = Info::new("anamorph", "draw artwork that looks right from one place: road markings, mugs, domes")
     .group("Perspective and anamorphosis")
+    .by_hand(ByHand {
+        label: Some("Anamorphosis"),
+        showing: &[("distance", "300%"), ("onto", "cylinder:radius=80%")],
+        ..ByHand::NONE
+    })
     .about("Stretches the artwork so that it looks as drawn to an eye at one place.\n\n\
 On a surface: give the position of the eye (--distance, --eye or --eye-height) and the surface that the artwork is projected onto (--onto). The result is \
 that surface laid flat, true to size, to be painted, cut or printed:\n  \

@@ -3,7 +3,7 @@
 use super::letters::LetterSetting;
 use super::{Align, Bend, Stretch};
 use crate::deform::built::Built;
-use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Info, Law, Pairs};
 use crate::error::Error;
 use crate::param::{Axis, Kind, NamedText, Param, Settings, is_spiral};
 use kurbo::Vec2;
@@ -14,6 +14,10 @@ pub(in crate::deform) struct Entry;
 pub(super) static INFO: Info = Info::new("bend", "bend artwork along a path")
     .baseline("baseline")
     .group("Bends")
+    .by_hand(ByHand {
+        neutral: &[("along", "M0,50 C33.3333,50 66.6667,50 100,50")],
+        ..ByHand::NONE
+    })
     .guides(&["along"], 1)
     .about("The artwork follows a path, the skeleton: horizontals run along it, verticals stand on it. The skeleton may \
 have any number of lines, curves and arcs, open or closed. Nothing is stretched unless you ask: --stretch scale sizes the artwork \

@@ -4,7 +4,7 @@ use super::columns::Room;
 use super::ring::{Corners, SIDES};
 use super::{Envelope, Keep, Spread};
 use crate::deform::built::Built;
-use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Info, Law, Pairs, Variant};
 use crate::error::Error;
 use crate::param::{Axis, Kind, NamedPath, Param, Settings};
 use std::sync::Arc;
@@ -13,6 +13,19 @@ pub(in crate::deform) struct Entry;
 
 pub(super) static INFO: Info = Info::new("envelope", "put artwork into any closed shape, or between curves")
     .group("Envelopes")
+    .by_hand(ByHand {
+        neutral: &[
+            ("top", "M0,0 C33.3333,0 66.6667,0 100,0"),
+            ("bottom", "M0,100 C33.3333,100 66.6667,100 100,100"),
+        ],
+        variants: &[Variant {
+            label: "Closed shape",
+            param: "envelope",
+            neutral: "M0,100 L50,100 L100,100 L100,50 L100,0 L50,0 L0,0 L0,50 Z",
+            showing: "M10,95 L50,120 L90,95 L100,50 L90,5 L50,-20 L10,5 L0,50 Z",
+        }],
+        ..ByHand::NONE
+    })
     .guides(&["envelope"], 1)
     .with_letters()
     .about("The artwork's box is laid onto a shape, and the artwork follows. Name a closed path (--envelope, for instance an object of \

@@ -4,7 +4,7 @@ use super::save::{self, MAX_CELLS, MAX_DEGREE};
 use super::{Ffd, Grid, SIDES};
 use crate::deform::built::{Built, SavedFile};
 use crate::deform::change::Change;
-use crate::deform::entry::{Case, Deformation, Example, Info, Law};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Info, Instead, Law};
 use crate::error::Error;
 use crate::map::Lattice;
 use crate::param::{Axis, Kind, NamedText, Param, Settings};
@@ -14,6 +14,12 @@ pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("ffd", "pull artwork about by a grid of control points")
     .group("Lattices and nets")
+    .by_hand(ByHand {
+        label: Some("Grid"),
+        neutral: &[("degree", "3x3")],
+        instead: &[Instead { param: "lattice", others: &["degree"], with: None }],
+        ..ByHand::NONE
+    })
     .about("A grid of control points lies over the artwork. Move some of them, and the artwork near them follows smoothly. Points are \
 named i,j: column from the left, row from the top, both from 0. A grid of degree 3x2 has 4 by 3 of them; higher degrees bend \
 more finely.\n\nOr move points of the artwork themselves (--pin), and the grid follows with the smallest change.\n\n\

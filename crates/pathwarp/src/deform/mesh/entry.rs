@@ -3,7 +3,7 @@
 use super::quilt::Quilt;
 use super::{Mesh, Source};
 use crate::deform::built::Built;
-use crate::deform::entry::{Case, Deformation, Example, Info, Law};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Info, Instead, Law};
 use crate::error::Error;
 use crate::param::{Kind, NamedText, Param, Settings};
 use kurbo::Rect;
@@ -12,6 +12,23 @@ pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("mesh", "bend artwork by a mesh of bicubic patches, or by a Photoshop warp")
     .group("Lattices and nets")
+    .by_hand(ByHand {
+        labels: &[("mesh", "File of points"), ("psd", "Photoshop file")],
+        fixed: &["net"],
+        neutral: &[(
+            "net",
+            "M0,0 C16.6667,0 33.3333,0 50,0 C66.6667,0 83.3333,0 100,0 \
+             M0,33.3333 C16.6667,33.3333 33.3333,33.3333 50,33.3333 C66.6667,33.3333 83.3333,33.3333 100,33.3333 \
+             M0,66.6667 C16.6667,66.6667 33.3333,66.6667 50,66.6667 C66.6667,66.6667 83.3333,66.6667 100,66.6667 \
+             M0,100 C16.6667,100 33.3333,100 50,100 C66.6667,100 83.3333,100 100,100",
+        )],
+        // A file's own region is in the units of the drawing that it was made for.
+        instead: &[
+            Instead { param: "mesh", others: &["net", "psd"], with: Some(("region", "artwork")) },
+            Instead { param: "psd", others: &["net", "mesh"], with: None },
+        ],
+        ..ByHand::NONE
+    })
     .guides(&["net"], 1)
     .about("A quilt of patches, side by side in rows and columns, each with sixteen control points; neighbours share the points of their common \
 sides. Give it as a path with one line of curves per row of control points (--net: a path of 4 lines with one curve each is one \

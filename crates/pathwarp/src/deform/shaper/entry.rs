@@ -3,7 +3,7 @@
 use super::net::{Bottom, from_rows};
 use super::{Cage, Shaper};
 use crate::deform::built::Built;
-use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Info, Law, Pairs, Variant};
 use crate::error::{Error, within};
 use crate::param::{Kind, Param, Settings};
 
@@ -11,6 +11,22 @@ pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("shaper", "bend artwork into a closed path of four curved sides")
     .group("Envelopes")
+    .by_hand(ByHand {
+        label: Some("Cage"),
+        fixed: &["shaper", "net", "base", "target"],
+        neutral: &[(
+            "shaper",
+            "M0,100 C33.3333,100 66.6667,100 100,100 C100,66.6667 100,33.3333 100,0 C66.6667,0 33.3333,0 0,0 C0,33.3333 0,66.6667 0,100 Z",
+        )],
+        variants: &[Variant {
+            label: "Cage, 16 points",
+            param: "net",
+            neutral: "M0,100 C33.3333,100 66.6667,100 100,100 M0,66.6667 C33.3333,66.6667 66.6667,66.6667 100,66.6667 \
+                      M0,33.3333 C33.3333,33.3333 66.6667,33.3333 100,33.3333 M0,0 C33.3333,0 66.6667,0 100,0",
+            showing: "M0,100 C33,110 67,90 100,100 M0,67 C10,40 50,110 100,67 M0,33 C50,-10 90,60 100,33 M0,0 C33,10 67,-10 100,0",
+        }],
+        ..ByHand::NONE
+    })
     .guides(&["shaper", "base", "target"], 1)
     .about("Draw a closed path with four anchors: that is the shape. The artwork's box (or the base) is laid onto it, side by \
 side, and everything inside follows smoothly. With a target, the shaper's corners are then moved there, so that its \

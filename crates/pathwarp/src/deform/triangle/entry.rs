@@ -3,7 +3,7 @@
 use super::Triangle;
 use crate::deform::built::Built;
 use crate::deform::change::Change;
-use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Info, Law, Pairs};
 use crate::error::Error;
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Point, Vec2};
@@ -12,6 +12,10 @@ pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("triangle", "pull artwork about by a triangular net of control points")
     .group("Lattices and nets")
+    .by_hand(ByHand {
+        label: Some("Triangle net"),
+        ..ByHand::NONE
+    })
     .about("Lays a triangle over the artwork, with control points along its sides and inside it, and lets the artwork follow \
 them. Degree 1 has the three corners; degree 2 the middles of the sides too; degree 3 one more in the middle. The higher \
 the degree, the more local each point's pull. A triangle bends less stiffly than a rectangular net of the same degree, and treats \

@@ -2,7 +2,7 @@
 
 use super::{Style, Warp};
 use crate::deform::built::Built;
-use crate::deform::entry::{Case, Deformation, Example, Gallery, Info, Law};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Gallery, Info, Law};
 use crate::deform::envelope::Keep;
 use crate::error::Error;
 use crate::param::{Kind, Param, Settings};
@@ -31,6 +31,11 @@ pub(super) const NAMES: &[&str] = &[
 pub(super) static INFO: Info = Info::new("warp", "bend artwork in one of fifteen styles: arc, flag, fisheye, …")
     .gallery(Gallery { set: "styles", title: "styles", presets: "style", bend: Some("bend"), axis: Some("axis") })
     .group("Envelopes")
+    .by_hand(ByHand {
+        label: Some("Style"),
+        labels: &[("horizontal", "Distort horizontally"), ("vertical", "Distort vertically")],
+        ..ByHand::NONE
+    })
     .about("The warp styles that drawing programs share, by the nets measured on the best known of them: arc, arc-lower, arc-upper, arch, bulge, \
 shell-lower, shell-upper, flag, wave, fish, rise, fisheye, inflate, squeeze, twist. --bend sets the amount and the direction; \
 `pathwarp gallery` draws them all. Photoshop's names (warpArc) work too.\n\nBends beyond 100% continue by the same \

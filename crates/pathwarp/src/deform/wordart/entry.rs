@@ -2,7 +2,7 @@
 
 use super::{ShapeBox, TextShape, WordArt};
 use crate::deform::built::Built;
-use crate::deform::entry::{Case, Deformation, Example, Gallery, Info, Law};
+use crate::deform::entry::{ByHand, Case, Deformation, Example, Gallery, Info, Law};
 use crate::error::Error;
 use crate::param::{Axis, Kind, Param, Settings};
 use std::sync::Arc;
@@ -56,6 +56,10 @@ pub(super) const NAMES: &[&str] = &[
 pub(super) static INFO: Info = Info::new("wordart", "put artwork into one of the forty text shapes of office programs")
     .gallery(Gallery { set: "wordart", title: "text shapes", presets: "preset", bend: None, axis: None })
     .group("Envelopes")
+    .by_hand(ByHand {
+        label: Some("Text shape"),
+        ..ByHand::NONE
+    })
     .with_letters()
     .about("The text effects that word processors and presentations offer under Transform, from their published formulas: \
 plain, triangle, chevron, arch-up, ring-inside, wave1, inflate, slant-up, cascade-up and the others below; \
