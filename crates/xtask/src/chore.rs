@@ -43,3 +43,8 @@ pub(crate) fn paths(arguments: &ArgMatches, name: &str) -> Vec<PathBuf> {
 pub(crate) fn at<E: std::fmt::Display>(path: &Path) -> impl Fn(E) -> ChoreError {
     move |error| format!("{}: {error}", path.display())
 }
+
+/// Bytes as hexadecimal digits.
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

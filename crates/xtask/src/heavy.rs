@@ -2,9 +2,10 @@
 //! `docs/reliability.md`. It fails if one is refused. Files that lie in the folder's own folders of these names are run, too.
 
 use crate::chore::{Chore, ChoreError, at, program_option, workspace};
-use crate::hostile::{Used, measure};
+use crate::hostile::measure;
+use crate::process::Usage;
+use crate::shell;
 use crate::speed::generated::Random;
-use crate::{files, shell};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp_raster::{Picture, PictureFormat, Pixmap};
 use std::f64::consts::TAU;
@@ -57,7 +58,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
         make(kind, &own)?;
         let (mut count, mut largest, mut before) = (0, 0.0_f64, refused.len());
         let mut most = [(0.0, String::new()), (0.0, String::new())];
-        for file in files::below(&own, |_| true)? {
+        for file in shell::files_below(&own, |_| true)? {
             let used = measure(&program, line, &file, scratch.path())?;
             let size = std::fs::metadata(&file).map_err(at(&file))?.len() as f64;
             let (size, promised) = promise(&file, size)?;
@@ -80,13 +81,13 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
 }
 
 /// What was used and promised of time and memory.
-fn shares(used: &Used, [seconds, megabytes]: [f64; 2]) -> [(f64, f64, &'static str); 2] {
-    [(used.seconds, seconds, "s"), (used.megabytes, megabytes, "MB")]
+fn shares(used: &Usage, [seconds, megabytes]: [f64; 2]) -> [(f64, f64, &'static str); 2] {
+    [(used.cpu, seconds, "s"), (used.megabytes(), megabytes, "MB")]
 }
 
 /// The size of a file in megabytes, or megapixels, and the seconds and megabytes promised.
 fn promise(file: &Path, bytes: f64) -> Result<(f64, [f64; 2]), ChoreError> {
-    if files::ends_in(file, &["svg"]) {
+    if shell::ends_in(file, &["svg"]) {
         let begun = (bytes / MEBIBYTE).ceil();
         return Ok((bytes / 1e6, [5.0 * begun, 400.0 + 100.0 * begun]));
     }

@@ -2,12 +2,11 @@
 //! `docs/reliability.md`: exit code, processor time and memory. It fails if a run breaks the promise.
 
 use crate::chore::{Chore, ChoreError, at, program_option, workspace};
-use crate::{files, shell};
+use crate::process::{Job, Usage};
+use crate::shell;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
-use wait4::Wait4 as _;
 
 /// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
@@ -40,7 +39,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     table += &DRAWINGS.map(|(heading, _)| heading).join(" | ");
     table += " |\n|---|---|---|---|---|---|\n";
     let mut broken = Vec::new();
-    for file in files::below(folder, |f| !files::ends_in(f, &["md"]))? {
+    for file in shell::files_below(folder, |f| !shell::ends_in(f, &["md"]))? {
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let size = std::fs::metadata(&file).map_err(at(&file))?.len();
         let lines: Vec<String> = match file.extension().and_then(|e| e.to_str()) {
@@ -51,10 +50,10 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
         let mut cells = Vec::new();
         for line in &lines {
             let used = measure(&program, line, &file, scratch.path())?;
-            if used.broken() {
+            if is_broken(&used) {
                 broken.push(format!("{name}: {line}"));
             }
-            cells.push(used.cell());
+            cells.push(cell(&used));
         }
         cells.resize(DRAWINGS.len(), String::new());
         let _ = writeln!(table, "| {name} | {:.1} kB | {} |", size as f64 / 1e3, cells.join(" | "));
@@ -62,35 +61,19 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     if broken.is_empty() { Ok(table) } else { Err(format!("{table}\nthe promise is broken by {}", broken.join("; "))) }
 }
 
-/// Exit code and cost of a run.
-pub(crate) struct Used {
-    /// `None`: it was killed.
-    pub(crate) code: Option<i32>,
-    pub(crate) seconds: f64,
-    pub(crate) megabytes: f64,
+fn is_broken(used: &Usage) -> bool {
+    used.code.is_none_or(|c| c > 5) || used.cpu >= SECONDS || used.megabytes() >= MEGABYTES
 }
 
-impl Used {
-    fn broken(&self) -> bool {
-        self.code.is_none_or(|c| c > 5) || self.seconds >= SECONDS || self.megabytes >= MEGABYTES
-    }
-
-    fn cell(&self) -> String {
-        let code = self.code.map_or_else(|| "killed".to_owned(), |c| c.to_string());
-        format!("{code}: {:.2} s, {:.0} MB", self.seconds, self.megabytes)
-    }
+fn cell(used: &Usage) -> String {
+    let code = used.code.map_or_else(|| "killed".to_owned(), |c| c.to_string());
+    format!("{code}: {:.2} s, {:.0} MB", used.cpu, used.megabytes())
 }
 
-pub(crate) fn measure(program: &Path, line: &str, file: &Path, scratch: &Path) -> Result<Used, ChoreError> {
+/// Runs a command line on a file: `IN` is the file, `OUT` a new one.
+pub(crate) fn measure(program: &Path, line: &str, file: &Path, scratch: &Path) -> Result<Usage, ChoreError> {
     let (input, output) = (file.to_string_lossy(), scratch.join("out"));
     let word = |w: String| w.replace("IN", &input).replace("OUT", &output.to_string_lossy());
     let args = shell::words(line).into_iter().map(|w| if w == "IN" || w.starts_with("OUT") { word(w) } else { w });
-    let mut command = std::process::Command::new(program);
-    command.args(args).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    let done = command.spawn().and_then(|mut child| child.wait4()).map_err(at(program))?;
-    Ok(Used {
-        code: done.status.code(),
-        seconds: (done.rusage.utime + done.rusage.stime).as_secs_f64(),
-        megabytes: done.rusage.maxrss as f64 / 1e6,
-    })
+    Job::new(program, args).usage()
 }

@@ -4,15 +4,13 @@ mod browser;
 mod chore;
 mod corpus;
 mod docs;
-mod files;
 mod heavy;
 mod hostile;
 mod new_deformation;
 mod outputs;
 mod package;
-mod parallel;
+mod process;
 mod refit_report;
-mod semver;
 mod shell;
 mod speed;
 
@@ -21,7 +19,7 @@ use clap::Command;
 use std::process::ExitCode;
 
 /// Every chore, declared with its options in a separate file.
-const CHORES: [Chore; 12] = [
+const CHORES: [Chore; 11] = [
     new_deformation::CHORE,
     corpus::CHORE,
     refit_report::CHORE,
@@ -31,7 +29,6 @@ const CHORES: [Chore; 12] = [
     heavy::CHORE,
     package::CHORE,
     package::REPRODUCIBLE,
-    semver::CHORE,
     docs::CHORE,
     browser::CHORE,
 ];

@@ -1,10 +1,12 @@
-//! Runs the command lines that pages show, with pipes but without a shell.
+//! Runs the command lines that pages show, with pipes but without a shell; lists files, and spreads work over threads.
 
 use crate::chore::{ChoreError, at};
 use clap::ArgMatches;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{fs, thread};
 
 /// The program named by `--program`, or else one built in release mode.
 pub(crate) fn program(root: &Path, arguments: &ArgMatches) -> Result<PathBuf, ChoreError> {
@@ -93,13 +95,65 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
     pipe(root, program, &last, &drawing).map(drop)
 }
 
+/// Every wanted file below a folder, sorted by its whole path.
+pub(crate) fn files_below(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Result<Vec<PathBuf>, ChoreError> {
+    let mut out = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).map_err(at(&folder))? {
+            let path = entry.map_err(at(&folder))?.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if wanted(&path) {
+                out.push(path);
+            }
+        }
+    }
+    out.sort();
+    Ok(out)
+}
+
+/// Returns `true` for a file with one of these extensions.
+pub(crate) fn ends_in(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|e| extensions.iter().any(|known| e == *known))
+}
+
+/// Applies `f` to every item, on as many threads as the machine has, and returns the results in order.
+pub(crate) fn in_parallel<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let taken = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
+        taken.map_while(|i| Some((i, f(items.get(i)?)))).collect::<Vec<_>>()
+    };
+    let mut found = thread::scope(|scope| {
+        let threads = thread::available_parallelism().map_or(1, usize::from);
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        let join = |w: thread::ScopedJoinHandle<'_, _>| w.join().unwrap_or_else(|p| std::panic::resume_unwind(p));
+        workers.into_iter().flat_map(join).collect::<Vec<_>>()
+    });
+    found.sort_unstable_by_key(|(i, _)| *i);
+    found.into_iter().map(|(_, result)| result).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn splits_pipelines_into_stages() {
         let all = stages("pathwarp text 'a | b' | pathwarp bend - -o out.svg");
         assert_eq!(all, [vec!["text", "a | b"], vec!["bend", "-", "-o", "-"]]);
+    }
+
+    #[test]
+    fn results_keep_the_order_of_the_items() {
+        let items: Vec<u64> = (0..50).collect();
+        let slow_first = |n: &u64| {
+            thread::sleep(Duration::from_micros(2000 - 40 * n));
+            n * n
+        };
+        assert_eq!(in_parallel(&items, slow_first), items.iter().map(|n| n * n).collect::<Vec<_>>());
+        assert!(in_parallel(&[], slow_first).is_empty());
     }
 }

@@ -6,25 +6,28 @@
 //!
 //! Not seen: the frame, how sharp bitmaps are, what is outside of the page.
 
-mod chromium;
-mod measure;
-#[cfg(test)]
-mod tests;
-
 use crate::chore::{Chore, ChoreError, at, path_option, program_option, workspace};
-use crate::{files, parallel, shell};
-use chromium::{Browsers, Shown};
+use crate::shell;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use measure::{Bend, Gap, Picture, ToPixels, compare};
-use pathwarp_raster::encode_png;
-use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
+use pathwarp_raster::{decode_png, encode_png};
+use resvg::tiny_skia::{IntSize, Pixmap, PremultipliedColorU8};
+use serde::Deserialize;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs;
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::process::{self, Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use tempfile::TempDir;
+
+mod measure;
+#[cfg(test)]
+mod tests;
 
 /// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
@@ -165,7 +168,7 @@ impl Judge {
         let mut drawings = Vec::new();
         for input in inputs {
             if input.is_dir() {
-                drawings.extend(files::below(input, |f| files::ends_in(f, &["svg"]))?);
+                drawings.extend(shell::files_below(input, |f| shell::ends_in(f, &["svg"]))?);
             } else {
                 drawings.push(input.clone());
             }
@@ -173,7 +176,7 @@ impl Judge {
         if drawings.is_empty() {
             return Err("there is no drawing".into());
         }
-        let found = parallel::map(&drawings, |file| self.one(file));
+        let found = shell::in_parallel(&drawings, |file| self.one(file));
         Ok(found.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     }
 
@@ -181,7 +184,7 @@ impl Judge {
     fn copied(&self, file: &Path) -> Result<PathBuf, ChoreError> {
         let file = file.canonicalize().map_err(at(file))?;
         let (folder, name) = file.parent().zip(file.file_name()).ok_or("a drawing has a name and a folder")?;
-        let mut copies = self.copies.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut copies = self.copies.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(copy) = copies.get(folder) {
             return Ok(copy.join(name));
         }
@@ -246,7 +249,7 @@ impl Judge {
         let number = self.count.fetch_add(1, Ordering::Relaxed);
         let result = file.with_file_name(format!(".bent-{number}.svg"));
         let [x, y] = bend.formulas(to_pixels);
-        let mut command = std::process::Command::new(&self.program);
+        let mut command = process::Command::new(&self.program);
         command
             .arg("expr")
             .arg(file)
@@ -303,7 +306,7 @@ impl Judge {
 }
 
 fn copy_folder(from: &Path, to: &Path) -> Result<(), ChoreError> {
-    for file in files::below(from, |_| true)? {
+    for file in shell::files_below(from, |_| true)? {
         let copy = to.join(file.strip_prefix(from).unwrap_or(&file));
         fs::create_dir_all(copy.parent().unwrap_or(to)).map_err(at(to))?;
         fs::copy(&file, &copy).map_err(at(&file))?;
@@ -336,4 +339,89 @@ fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec
         *pixel = PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap_or(*pixel);
     }
     encode_png(&out).map_err(|e| e.to_string())
+}
+
+/// What Chromium shows of a drawing.
+#[derive(Deserialize)]
+struct Shown {
+    /// It is not well-formed XML.
+    pub(super) broken: bool,
+    /// The page's extent in px.
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+    /// From user units to px.
+    pub(super) matrix: Option<[f64; 6]>,
+    #[serde(default, rename = "png", deserialize_with = "decoded")]
+    pub(super) picture: Option<Picture>,
+}
+
+fn decoded<'a, D: serde::Deserializer<'a>>(d: D) -> Result<Option<Picture>, D::Error> {
+    let wrong = |e: String| serde::de::Error::custom(e);
+    let bytes = STANDARD.decode(String::deserialize(d)?).map_err(|e| wrong(e.to_string()))?;
+    Ok(Some(Picture::new(&decode_png(&bytes).map_err(|e| wrong(e.to_string()))?)))
+}
+
+impl Picture {
+    pub(super) fn pixmap(&self) -> Result<Pixmap, String> {
+        let size = IntSize::from_wh(self.width as u32, self.height as u32).ok_or("an empty picture")?;
+        Pixmap::from_vec(self.data.clone(), size).ok_or_else(|| "a picture of a wrong size".to_owned())
+    }
+}
+
+/// As many browsers as are used at the same time; the next drawing takes one that is free.
+#[derive(Default)]
+struct Browsers(Mutex<Vec<Browser>>);
+
+struct Browser {
+    node: Child,
+    requests: ChildStdin,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Browsers {
+    /// Shows a file on a page of this size in px, each so many pixels wide; without one, only asks for its size.
+    pub(super) fn show(&self, file: &Path, size: Option<([f64; 2], f64)>) -> Result<Shown, String> {
+        let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut browser = free.map_or_else(Browser::start, Ok)?;
+        let mut request = serde_json::json!({ "file": file });
+        if let Some((size, scale)) = size {
+            request["size"] = size.map(|c| c as u32).to_vec().into();
+            request["scale"] = scale.into();
+        }
+        let answer = browser.ask(&request.to_string()).map_err(|e| format!("Chromium: {e}"))?;
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(browser);
+        let answer: serde_json::Value =
+            serde_json::from_str(&answer).map_err(|e| format!("Chromium: {e}: {answer}"))?;
+        if let Some(error) = answer.get("error") {
+            return Err(error.to_string());
+        }
+        serde_json::from_value(answer).map_err(|e| e.to_string())
+    }
+}
+
+impl Browser {
+    fn start() -> Result<Self, String> {
+        let script = workspace().join("crates/xtask/src/browser/pages.mjs");
+        let mut command = process::Command::new("node");
+        let started = command.arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+        let mut node = started.map_err(|e| format!("node does not start: {e}"))?;
+        let pipes = node.stdin.take().zip(node.stdout.take());
+        let (requests, answers) = pipes.ok_or("node has no pipes")?;
+        Ok(Self { node, requests, answers: BufReader::new(answers) })
+    }
+
+    fn ask(&mut self, request: &str) -> std::io::Result<String> {
+        writeln!(self.requests, "{request}")?;
+        let mut answer = String::new();
+        self.answers.read_line(&mut answer)?;
+        Ok(answer)
+    }
+}
+
+impl Drop for Browser {
+    /// Chromium ends with node.
+    fn drop(&mut self) {
+        let _ = self.node.kill();
+        let _ = self.node.wait();
+    }
 }

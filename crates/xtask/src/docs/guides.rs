@@ -1,15 +1,23 @@
 //! Pictures of the guides: pages written by hand, each picture drawn by the command below it.
 
 use crate::chore::{ChoreError, at};
-use crate::files;
-use crate::shell::{pipe, stages, words};
+use crate::shell::{self, pipe, stages, words};
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The guides, whose pictures are named relative to them.
-const GUIDES: [&str; 4] = ["README.md", "docs/lettering.md", "docs/paths.md", "docs/solid.md"];
+const GUIDES: [&str; 6] = [
+    "README.md",
+    "docs/lettering.md",
+    "docs/paths.md",
+    "docs/solid.md",
+    "docs/cookbook.md",
+    "docs/lettering-on-paths.md",
+];
+/// Guides whose pictures show the artwork beside the result.
+const COOKBOOKS: [&str; 2] = ["docs/cookbook.md", "docs/lettering-on-paths.md"];
 /// In the command of a picture of a model.
 const PREVIEW: &str = "--preview out.png";
 /// In a command on a folder of drawings.
@@ -26,6 +34,10 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             let png = folder_of(root, guide).join(png);
             if let Some(folder) = png.parent() {
                 fs::create_dir_all(folder).map_err(at(folder))?;
+            }
+            if COOKBOOKS.contains(&guide) {
+                shell::preview(root, program, command.trim_start_matches("pathwarp "), &png)?;
+                continue;
             }
             if command.contains(INTO) {
                 sheet(root, program, &png, command)?;
@@ -72,7 +84,7 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     let mut sheet = String::new();
     let mut columns = 0;
     for (row, folder) in [root.join(source), bent.path().to_owned()].iter().enumerate() {
-        let files = files::below(folder, |f| files::ends_in(f, &["svg"]))?;
+        let files = shell::files_below(folder, |f| shell::ends_in(f, &["svg"]))?;
         columns = files.len();
         for (column, file) in files.iter().enumerate() {
             let drawing = fs::read_to_string(file).map_err(at(file))?;

@@ -1,20 +1,16 @@
 //! `cargo xtask package`: what a release hands out. The program writes its own manual pages, completions and plug-ins into
-//! `target/package/`; cargo-deb packs them, and `tar` packs them with a static program.
+//! `target/package/`; cargo-deb packs them, and `tar` packs them with a static program. `cargo xtask reproducible` builds all of it twice,
+//! from copies of the sources in two folders, and compares the bytes.
 
-mod build;
-mod notices;
-mod reproducible;
-mod tree;
-
-pub(crate) use reproducible::CHORE as REPRODUCIBLE;
-
-use crate::chore::{Chore, ChoreError, at, path_option, workspace};
-use build::Build;
+use crate::chore::{Chore, ChoreError, at, hex, path_option, workspace};
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use std::fs;
+use contents::Tree;
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process;
-use tree::Tree;
+use std::{fs, process};
+
+mod contents;
 
 /// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
@@ -32,8 +28,8 @@ fn command() -> Command {
 
 fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let root = workspace().canonicalize().map_err(|e| e.to_string())?;
-    let (time, linked_statically) = (build::time(&root)?, arguments.get_flag("static"));
-    let build = Build { root: &root, target: &root.join("target"), linked_statically, time: &time };
+    let (time, linked_statically) = (&time(&root)?, arguments.get_flag("static"));
+    let build = Build { root: &root, target: &root.join("target"), linked_statically, time };
     let program = match arguments.get_one::<PathBuf>("program") {
         Some(program) => program.canonicalize().map_err(at(program))?,
         None => build.program()?,
@@ -78,4 +74,138 @@ fn succeed(command: &mut process::Command, advice: &str) -> Result<(), ChoreErro
     let name = command.get_program().to_string_lossy().into_owned();
     let status = command.status().map_err(|e| format!("{name}: {e}; {advice}"))?;
     if status.success() { Ok(()) } else { Err(format!("{name} ended with {status}; if it is missing, {advice}")) }
+}
+
+/// Separates flags in `CARGO_ENCODED_RUSTFLAGS`, so that they may contain spaces.
+const SEPARATOR: &str = "\x1f";
+
+/// A build of the program.
+struct Build<'a> {
+    /// The workspace.
+    root: &'a Path,
+    /// The target folder.
+    target: &'a Path,
+    /// The program needs no library at run time, not even the system's C library.
+    linked_statically: bool,
+    /// The time that packages bear, in seconds since 1970.
+    time: &'a str,
+}
+
+impl Build<'_> {
+    /// Builds the program and returns its path.
+    fn program(&self) -> Result<PathBuf, ChoreError> {
+        let host = host()?;
+        let mut cargo = process::Command::new(env!("CARGO"));
+        cargo.args(["build", "--release", "--locked", "--package", "pathwarp-cli", "--target", &host]);
+        cargo.arg("--target-dir").arg(self.target).current_dir(self.root);
+        cargo.env("CARGO_ENCODED_RUSTFLAGS", self.flags()?.join(SEPARATOR));
+        // The names of functions take a third of the program.
+        cargo.env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
+        if !cargo.status().map_err(|e| e.to_string())?.success() {
+            return Err("the program does not build".into());
+        }
+        let folder = self.target.join(host).join("release");
+        Ok(folder.join("pathwarp").with_extension(std::env::consts::EXE_EXTENSION))
+    }
+
+    /// Compiler flags. Messages of panics contain the paths of source files: paths of this machine are replaced.
+    fn flags(&self) -> Result<Vec<String>, ChoreError> {
+        let crates = cargo_home()?.join("registry/src");
+        let renamed = |from: &Path, to: &str| format!("--remap-path-prefix={}={to}", from.display());
+        let mut flags =
+            vec![renamed(&crates, "/crates"), renamed(self.root, "/pathwarp"), renamed(self.target, "/target")];
+        if self.linked_statically {
+            flags.push("-Ctarget-feature=+crt-static".into());
+        }
+        Ok(flags)
+    }
+}
+
+/// The target triple of this machine.
+fn host() -> Result<String, ChoreError> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let out = process::Command::new(&rustc).arg("-vV").output().map_err(at(Path::new(&rustc)))?;
+    let text = String::from_utf8_lossy(&out.stdout).into_owned();
+    let host = text.lines().find_map(|l| l.strip_prefix("host: ")).ok_or("rustc -vV names no host")?;
+    Ok(host.to_owned())
+}
+
+/// Cargo's folder, which has the sources of the crates.
+fn cargo_home() -> Result<PathBuf, ChoreError> {
+    let own = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    own.or_else(|| Some(std::env::home_dir()?.join(".cargo"))).ok_or_else(|| "set CARGO_HOME".into())
+}
+
+/// The time that packages bear: `SOURCE_DATE_EPOCH`, or else that of the last commit.
+fn time(root: &Path) -> Result<String, ChoreError> {
+    if let Ok(time) = std::env::var("SOURCE_DATE_EPOCH") {
+        return Ok(time);
+    }
+    let git = process::Command::new("git").args(["log", "-1", "--format=%ct"]).current_dir(root).output();
+    let time = git.ok().and_then(|out| String::from_utf8(out.stdout).ok()).unwrap_or_default().trim().to_owned();
+    if time.is_empty() { Err("this is no git repository: set SOURCE_DATE_EPOCH".into()) } else { Ok(time) }
+}
+
+/// See the module.
+pub(crate) const REPRODUCIBLE: Chore = Chore { command: reproducible_command, run: reproducible };
+
+/// The folders of the copies. Their lengths differ, so that a path that is left in the program would move what follows it.
+const COPIES: [&str; 2] = ["one", "a-second-folder/with a space"];
+
+fn reproducible_command() -> Command {
+    Command::new("reproducible")
+        .about("Build and pack the last commit in two folders and compare the bytes")
+        .arg(path_option("in", "DIR").help("The folder for the copies [default: a temporary one]"))
+        .arg(
+            Arg::new("static")
+                .long("static")
+                .action(ArgAction::SetTrue)
+                .help("Link statically, as package --static does"),
+        )
+}
+
+fn reproducible(arguments: &ArgMatches) -> Result<String, ChoreError> {
+    let root = workspace().canonicalize().map_err(|e| e.to_string())?;
+    let temporary = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let folder = match arguments.get_one::<PathBuf>("in") {
+        Some(folder) => folder.clone(),
+        None => temporary.path().to_owned(),
+    };
+    let time = &time(&root)?;
+    let mut sums = Vec::new();
+    for name in COPIES {
+        let copy = folder.join(name);
+        export(&root, &copy)?;
+        let copy = copy.canonicalize().map_err(at(&copy))?;
+        let linked_statically = arguments.get_flag("static");
+        let build = Build { root: &copy, target: &copy.join("target"), linked_statically, time };
+        let program = build.program()?;
+        let packed = pack(&build, &program)?;
+        sums.push([sum(&program)?, sum(&packed)?]);
+    }
+    let mut said = String::new();
+    for (i, what) in ["program", "package"].into_iter().enumerate() {
+        let _ = writeln!(said, "{what}: {}, {}", sums[0][i], sums[1][i]);
+    }
+    if sums[0] == sums[1] { Ok(said + "the same bytes") } else { Err(said + "the bytes differ") }
+}
+
+/// Writes the files of the last commit to a folder.
+fn export(root: &Path, to: &Path) -> Result<(), ChoreError> {
+    fs::create_dir_all(to).map_err(at(to))?;
+    let git = |args: &[&str]| {
+        let status = process::Command::new("git").args(args).current_dir(root).status();
+        if status.map_err(|e| format!("git: {e}"))?.success() { Ok(()) } else { Err(format!("git {args:?} failed")) }
+    };
+    let archive = to.join("sources.tar");
+    git(&["archive", "--output", &archive.display().to_string(), "HEAD"])?;
+    let tar = process::Command::new("tar").arg("--extract").arg("--file").arg(&archive).current_dir(to).status();
+    if !tar.map_err(|e| format!("tar: {e}"))?.success() {
+        return Err("tar failed".into());
+    }
+    fs::remove_file(&archive).map_err(at(&archive))
+}
+
+fn sum(file: &Path) -> Result<String, ChoreError> {
+    Ok(hex(&Sha256::digest(fs::read(file).map_err(at(file))?)))
 }

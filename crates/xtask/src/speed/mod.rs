@@ -3,17 +3,16 @@
 //! The yardstick is `usvg IN OUT` on the same file, which reads, resolves and writes a drawing without bending it. Both run as whole
 //! processes, in turn. Unless a row says otherwise, it compares CPU times and gives the median of paired runs.
 
-pub(crate) mod generated;
-mod process;
-mod rows;
-
 use crate::chore::{Chore, ChoreError, at, count_option, path_option, paths, program_option, workspace};
+use crate::process::{Job, Usage, paired};
 use crate::shell;
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use process::Job;
-use rows::Bench;
+use cpu_time::ProcessTime;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+pub(crate) mod generated;
 
 /// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
@@ -37,7 +36,7 @@ fn command() -> Command {
                 .long("only")
                 .value_name("PART")
                 .action(ArgAction::Append)
-                .value_parser(rows::PARTS.map(|p| p.0))
+                .value_parser(PARTS.map(|p| p.0))
                 .help("Measure this part only; may be given several times"),
         )
         .arg(program_option())
@@ -47,7 +46,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let number = |name: &str| arguments.get_one(name).copied().unwrap_or(1);
     let mut files = Vec::new();
     for folder in paths(arguments, "drawings") {
-        files.extend(svg_files(&folder)?);
+        files.extend(shell::files_below(&folder, |f| shell::ends_in(f, &["svg"]))?);
     }
     let count = number("count").clamp(1, files.len().max(1));
     let drawings = (0..count).filter_map(|i| files.get(i * files.len() / count).cloned()).collect();
@@ -65,7 +64,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     };
     let only: Vec<&String> = arguments.get_many("only").unwrap_or_default().collect();
     let mut table = String::from("| what | measured |\n|---|---|\n");
-    for (_, part) in rows::PARTS.iter().filter(|(name, _)| only.is_empty() || only.iter().any(|o| o == name)) {
+    for (_, part) in PARTS.iter().filter(|(name, _)| only.is_empty() || only.iter().any(|o| o == name)) {
         part(&bench, &mut table)?;
     }
     Ok(table)
@@ -82,17 +81,262 @@ fn check(usvg: &Path) -> Result<(), ChoreError> {
     }
 }
 
-/// Every SVG file below a folder, sorted.
-fn svg_files(folder: &Path) -> Result<Vec<PathBuf>, ChoreError> {
-    let mut out = Vec::new();
-    for entry in fs::read_dir(folder).map_err(at(folder))? {
-        let path = entry.map_err(at(folder))?.path();
-        if path.is_dir() {
-            out.extend(svg_files(&path)?);
-        } else if path.extension().is_some_and(|e| e == "svg") {
-            out.push(path);
-        }
+/// Everything that the rows need.
+struct Bench {
+    program: PathBuf,
+    usvg: PathBuf,
+    drawings: Vec<PathBuf>,
+    rounds: usize,
+    largest: usize,
+    font: String,
+    /// For generated drawings and results.
+    folder: PathBuf,
+}
+
+/// Measures and adds rows.
+type Part = fn(&Bench, &mut String) -> Result<(), ChoreError>;
+
+/// The parts of the table by name.
+const PARTS: [(&str, Part); 7] = [
+    ("drawings", drawings),
+    ("deformations", deformations),
+    ("segments", segments),
+    ("text", text),
+    ("growth", growth),
+    ("threads", threads),
+    ("files", files),
+];
+
+/// The default run: what the README shows first.
+const WARP: [&str; 5] = ["warp", "--style", "flag", "--bend", "40%"];
+/// Every deformation that bends, as its help suggests it.
+const DEFORMATIONS: [&[&str]; 20] = [
+    &["shaper", "--shaper", "M0,120 Q60,90 120,120 L110,0 Q60,30 10,0 Z"],
+    &["envelope", "--bottom", "M0,160 C120,100 260,220 400,150", "--height", "90"],
+    &["warp", "--style", "flag", "--bend", "40%"],
+    &["wordart", "--preset", "wave1"],
+    &["bilinear"],
+    &["birational", "--top", "0%,20% 30%,-60% 60%,90% 100%,0%", "--bottom", "0%,100% 35%,60% 60%,170% 100%,100%"],
+    &["bend", "--along", "M20,170 C180,60 356,60 516,170", "--stretch", "scale"],
+    &["bend", "--along", "0%,60% 25%,40% 50%,60% 75%,40% 100%,60%", "--spline", "3", "--stretch", "scale"],
+    &["polar"],
+    &["ffd", "--degree", "2x2", "--move", "1,1:0,-60%"],
+    &["ffd", "--pin", "50%,50%:50%,20%", "--pin", "90%,50%:95%,70%", "--pin", "10%,50%:10%,50%"],
+    &["triangle", "--move", "0,1,1:0,60%"],
+    &["mls", "--pin", "0%,100%", "--pin", "100%,100%", "--pair", "50%,0%:65%,-10%"],
+    &["projective", "--target", "0%,100% 100%,100% 75%,0% 25%,0%"],
+    &["wave"],
+    &["swirl"],
+    &["bulge"],
+    &["lens"],
+    &["mobius"],
+    &["expr", "--x", "x + w/40*sin(y/h*9)"],
+];
+/// Segments of the large generated path.
+const LARGE: usize = 30_000;
+/// Segments of the drawing for several threads.
+const THREADED: usize = 100_000;
+/// Segments of a path in drawings of many paths.
+const EACH: usize = 60;
+/// Files of a batch.
+const BATCH: usize = 3000;
+/// Paragraphs of the page of text.
+const PARAGRAPHS: usize = 85;
+/// Memory of the program itself in bytes; only what goes beyond is compared with the size of the input.
+const FIXED: f64 = 15e6;
+
+impl Bench {
+    fn warp(&self, file: &Path) -> Job {
+        self.deform(&WARP, file)
     }
-    out.sort();
-    Ok(out)
+
+    fn deform(&self, words: &[&str], file: &Path) -> Job {
+        let job = Job::new(&self.program, words.iter().copied());
+        job.with(&[&file.to_string_lossy(), "-o", &self.folder.join("warped.svg").to_string_lossy()])
+    }
+
+    fn resolve(&self, file: &Path) -> Job {
+        Job::new(&self.usvg, [file.to_owned(), self.folder.join("resolved.svg")])
+    }
+
+    fn generate(&self, name: &str, text: &str) -> Result<PathBuf, ChoreError> {
+        let file = self.folder.join(name);
+        fs::write(&file, text).map_err(at(&file))?;
+        Ok(file)
+    }
+
+    /// The pair with the median ratio of two jobs that must both succeed.
+    fn pair(&self, a: &Job, b: &Job) -> Result<(Usage, Usage), ChoreError> {
+        paired(a, b, self.rounds)?.ok_or_else(|| "a generated drawing was refused".into())
+    }
+
+    /// Compares two jobs over all drawings: ratio of the sums, median and largest ratio.
+    fn compare(&self, a: impl Fn(&Path) -> Job, b: impl Fn(&Path) -> Job) -> Result<String, ChoreError> {
+        let mut timed = Vec::with_capacity(self.drawings.len());
+        for file in &self.drawings {
+            if let Some((a, b)) = paired(&a(file), &b(file), self.rounds)? {
+                timed.push((a.cpu, b.cpu, file));
+            }
+        }
+        timed.sort_by(|x, y| (x.0 / x.1).total_cmp(&(y.0 / y.1)));
+        let (a, b) = timed.iter().fold((0.0, 0.0), |s, t| (s.0 + t.0, s.1 + t.1));
+        let (Some(middle), Some(last)) = (timed.get(timed.len() / 2), timed.last()) else {
+            return Err("neither program accepts any drawing".into());
+        };
+        let name = last.2.file_name().unwrap_or_default().to_string_lossy();
+        Ok(format!(
+            "sum {:.2}, median {:.2}, largest {:.2} ({name}: {:.0} ms)",
+            a / b,
+            middle.0 / middle.1,
+            last.0 / last.1,
+            last.0 * 1e3
+        ))
+    }
+}
+
+fn row(out: &mut String, what: &str, measured: &str) {
+    let _ = writeln!(out, "| {what} | {measured} |");
+}
+
+/// A ratio of CPU times with both of them.
+fn ratio((a, b): (Usage, Usage)) -> String {
+    format!("{:.2} ({:.0} and {:.0} ms)", a.cpu / b.cpu, a.cpu * 1e3, b.cpu * 1e3)
+}
+
+/// Peak memory beyond the fixed part, in multiples of the input.
+fn memory(usage: &Usage, file: &Path) -> Result<f64, ChoreError> {
+    let size = fs::metadata(file).map_err(at(file))?.len();
+    Ok((usage.peak as f64 - FIXED).max(0.0) / size as f64)
+}
+
+fn drawings(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
+    let n = b.drawings.len();
+    let (usvg, default) = (|f: &Path| b.resolve(f), |f: &Path| b.warp(f));
+    row(out, &format!("{n} drawings, default ÷ usvg"), &b.compare(default, usvg)?);
+    for options in [["--merge", "off"], ["--text", "skip"]] {
+        let what = format!("{n} drawings, `{}` ÷ usvg", options.join(" "));
+        row(out, &what, &b.compare(|f| b.warp(f).with(&options), usvg)?);
+    }
+    let unmerged = |f: &Path| b.warp(f).with(&["--merge", "off"]);
+    row(out, &format!("{n} drawings, default ÷ `--merge off`"), &b.compare(default, unmerged)?);
+    let certified = |f: &Path| b.warp(f).with(&["--certify"]);
+    row(out, &format!("{n} drawings, `--certify` ÷ default"), &b.compare(certified, default)?);
+    Ok(())
+}
+
+fn deformations(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
+    let n = b.drawings.len();
+    for words in DEFORMATIONS {
+        let what = format!("{n} drawings, `{}` ÷ usvg", words.join(" "));
+        row(out, &what, &b.compare(|f| b.deform(words, f), |f| b.resolve(f))?);
+    }
+    Ok(())
+}
+
+fn segments(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
+    let n = LARGE.min(b.largest);
+    for (kind, each) in [("in one path", n), ("in paths of 60", EACH)] {
+        let file = b.generate("segments.svg", &generated::flowers(n, each))?;
+        let (default, usvg) = (b.warp(&file), b.resolve(&file));
+        let what = format!("{n} smooth segments {kind}");
+        row(out, &format!("{what}, default ÷ usvg"), &ratio(b.pair(&default, &usvg)?));
+        let unmerged = default.with(&["--merge", "off"]);
+        row(out, &format!("{what}, `--merge off` ÷ usvg"), &ratio(b.pair(&unmerged, &usvg)?));
+        row(out, &format!("{what}, default ÷ `--merge off`"), &ratio(b.pair(&default, &unmerged)?));
+        row(out, &format!("{what}, `--certify` ÷ default"), &ratio(b.pair(&default.with(&["--certify"]), &default)?));
+    }
+    Ok(())
+}
+
+fn text(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
+    let file = b.generate("text.svg", &generated::page(PARAGRAPHS, &b.font))?;
+    let (default, usvg) = (b.warp(&file), b.resolve(&file));
+    let what = format!("{PARAGRAPHS} paragraphs of {} letters", generated::LETTERS);
+    row(out, &format!("{what}, default ÷ usvg"), &ratio(b.pair(&default, &usvg)?));
+    row(out, &format!("{what}, `--merge off` ÷ usvg"), &ratio(b.pair(&default.with(&["--merge", "off"]), &usvg)?));
+    row(out, &format!("{what}, `--text skip` ÷ usvg"), &ratio(b.pair(&default.with(&["--text", "skip"]), &usvg)?));
+    Ok(())
+}
+
+/// CPU time from 10³ segments on, in steps of ten, and memory at the largest.
+fn growth(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
+    let start = b.warp(&b.generate("small.svg", &generated::flowers(10, 10))?).median(b.rounds, |u| u.cpu)?;
+    for (kind, each) in [("one path", usize::MAX), ("paths of 60", EACH)] {
+        let (mut times, mut n, mut peak) = (Vec::new(), 1000, String::new());
+        while n <= b.largest {
+            let file = b.generate("growth.svg", &generated::flowers(n, each.min(n)))?;
+            // The largest take long enough to be measured well in one run.
+            let rounds = if n > THREADED { 1 } else { b.rounds };
+            let used = b.warp(&file).median(rounds, |u| u.cpu)?;
+            times.push((n as f64, used.cpu - start.cpu));
+            peak = format!("{:.1} at {n}", memory(&used, &file)?);
+            n *= 10;
+        }
+        let exponents = times.windows(2).map(|w| format!("{:.2}", (w[1].1 / w[0].1).ln() / (w[1].0 / w[0].0).ln()));
+        let list: Vec<String> = exponents.collect();
+        row(out, &format!("growth with segments, {kind}: exponent from 10³, decade by decade"), &list.join(", "));
+        row(out, &format!("peak memory beyond {:.0} MB ÷ bytes of the input, {kind}", FIXED / 1e6), &peak);
+    }
+    Ok(())
+}
+
+fn threads(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
+    let n = THREADED.min(b.largest);
+    for (kind, each) in [("in one path", n), ("in paths of 60", EACH)] {
+        let file = b.generate("threads.svg", &generated::flowers(n, each))?;
+        let what = format!("{n} segments {kind}, elapsed time with one thread ÷ two");
+        row(out, &what, &speedup(b, &b.warp(&file))?);
+    }
+    Ok(())
+}
+
+/// Elapsed time with one thread by that with two.
+fn speedup(b: &Bench, job: &Job) -> Result<String, ChoreError> {
+    let with = |jobs: &str| job.with(&["--jobs", jobs]).median(b.rounds, |u| u.wall);
+    let (one, two) = (with("1")?, with("2")?);
+    Ok(format!("{:.2} ({:.0} and {:.0} ms)", one.wall / two.wall, one.wall * 1e3, two.wall * 1e3))
+}
+
+/// A batch of files in one process, against usvg's crate. Both read every file and write another one, ours first under a temporary
+/// name.
+fn files(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
+    let (from, to) = (b.folder.join("batch"), b.folder.join("batch-warped"));
+    fs::create_dir_all(&from).map_err(at(&from))?;
+    // Drawings that both accept, repeated.
+    let accepted: Vec<&PathBuf> = b.drawings.iter().filter(|f| resolved(f).is_some()).collect();
+    let mut batch = Vec::with_capacity(BATCH);
+    for (i, file) in accepted.iter().cycle().take(BATCH).enumerate() {
+        let copy = from.join(format!("{i:04}.svg"));
+        fs::copy(file, &copy).map_err(at(file))?;
+        batch.push(copy);
+    }
+    let names = batch.iter().map(|f| f.clone().into_os_string());
+    let own = WARP.iter().map(Into::into).chain(names);
+    let job = Job::new(&b.program, own).with(&["--on-error", "skip", "--quiet", "--out-dir", &to.to_string_lossy()]);
+    row(out, &format!("{BATCH} files in one process, elapsed time with one thread ÷ two"), &speedup(b, &job)?);
+    let mut pairs = Vec::with_capacity(b.rounds);
+    for _ in 0..b.rounds {
+        let ours = job.with(&["--jobs", "1"]).run()?.ok_or("the batch was refused")?.cpu;
+        let started = ProcessTime::now();
+        for (i, file) in batch.iter().enumerate() {
+            let text = resolved(file).ok_or("usvg refused a drawing it had accepted")?;
+            let result = b.folder.join(format!("batch-resolved-{i}.svg"));
+            fs::write(&result, text).map_err(at(&result))?;
+        }
+        pairs.push((ours, ProcessTime::now().duration_since(started).as_secs_f64()));
+    }
+    pairs.sort_by(|x, y| (x.0 / x.1).total_cmp(&(y.0 / y.1)));
+    let (ours, theirs) = pairs[pairs.len() / 2];
+    let measured = format!("{:.2} ({:.0} and {:.0} ms)", ours / theirs, ours * 1e3, theirs * 1e3);
+    row(out, &format!("{BATCH} files in one process ÷ usvg's crate, which reads, resolves and writes each"), &measured);
+    Ok(())
+}
+
+/// A file's text as usvg's crate writes it; `None` if it refuses the file, or needs fonts for it.
+fn resolved(file: &Path) -> Option<String> {
+    let text = fs::read_to_string(file).ok()?;
+    if text.contains("<text") {
+        return None;
+    }
+    Some(usvg::Tree::from_str(&text, &usvg::Options::default()).ok()?.to_string(&usvg::WriteOptions::default()))
 }

@@ -9,50 +9,62 @@ use wait4::Wait4 as _;
 
 /// Time and memory of one run.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Usage {
+pub(crate) struct Usage {
+    /// The exit code; `None` if it was killed.
+    pub(crate) code: Option<i32>,
     /// User and system time in seconds.
-    pub(super) cpu: f64,
+    pub(crate) cpu: f64,
     /// Elapsed time in seconds.
-    pub(super) wall: f64,
+    pub(crate) wall: f64,
     /// Largest resident size in bytes.
-    pub(super) peak: u64,
+    pub(crate) peak: u64,
+}
+
+impl Usage {
+    pub(crate) fn megabytes(&self) -> f64 {
+        self.peak as f64 / 1e6
+    }
 }
 
 /// A program with its arguments.
 #[derive(Debug, Clone)]
-pub(super) struct Job {
+pub(crate) struct Job {
     program: PathBuf,
     args: Vec<OsString>,
 }
 
 impl Job {
-    pub(super) fn new(program: &Path, args: impl IntoIterator<Item = impl Into<OsString>>) -> Self {
+    pub(crate) fn new(program: &Path, args: impl IntoIterator<Item = impl Into<OsString>>) -> Self {
         Self { program: program.to_owned(), args: args.into_iter().map(Into::into).collect() }
     }
 
     /// The same with more arguments.
-    pub(super) fn with(&self, more: &[&str]) -> Self {
+    pub(crate) fn with(&self, more: &[&str]) -> Self {
         let args = self.args.iter().cloned().chain(more.iter().map(Into::into)).collect();
         Self { args, ..self.clone() }
     }
 
-    /// Runs it once. `None` if it refuses its input: an exit code above 1, which pathwarp uses for partial success.
-    pub(super) fn run(&self) -> Result<Option<Usage>, ChoreError> {
+    /// Runs it once.
+    pub(crate) fn usage(&self) -> Result<Usage, ChoreError> {
         let mut command = Command::new(&self.program);
         command.args(&self.args).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         let started = Instant::now();
-        let mut child = command.spawn().map_err(at(&self.program))?;
-        let done = child.wait4().map_err(at(&self.program))?;
-        let usage = Usage {
+        let done = command.spawn().and_then(|mut child| child.wait4()).map_err(at(&self.program))?;
+        Ok(Usage {
+            code: done.status.code(),
             cpu: (done.rusage.utime + done.rusage.stime).as_secs_f64(),
             wall: started.elapsed().as_secs_f64(),
             peak: done.rusage.maxrss,
-        };
-        Ok(done.status.code().is_some_and(|c| c <= 1).then_some(usage))
+        })
+    }
+
+    /// Runs it once. `None` if it refuses its input: an exit code above 1, which pathwarp uses for partial success.
+    pub(crate) fn run(&self) -> Result<Option<Usage>, ChoreError> {
+        Ok(Some(self.usage()?).filter(|used| used.code.is_some_and(|c| c <= 1)))
     }
 
     /// Runs it several times and returns the run with the median of `figure`.
-    pub(super) fn median(&self, rounds: usize, figure: fn(&Usage) -> f64) -> Result<Usage, ChoreError> {
+    pub(crate) fn median(&self, rounds: usize, figure: fn(&Usage) -> f64) -> Result<Usage, ChoreError> {
         let mut runs = Vec::with_capacity(rounds);
         for _ in 0..rounds {
             runs.push(self.run()?.ok_or_else(|| format!("{} failed", self.program.display()))?);
@@ -64,7 +76,7 @@ impl Job {
 
 /// Runs two jobs in turn and returns the pair with the median ratio of CPU times, so that a machine whose speed drifts slows both
 /// alike. `None` if either refuses its input.
-pub(super) fn paired(a: &Job, b: &Job, rounds: usize) -> Result<Option<(Usage, Usage)>, ChoreError> {
+pub(crate) fn paired(a: &Job, b: &Job, rounds: usize) -> Result<Option<(Usage, Usage)>, ChoreError> {
     let mut pairs = Vec::with_capacity(rounds);
     for _ in 0..rounds {
         let (Some(a), Some(b)) = (a.run()?, b.run()?) else { return Ok(None) };

@@ -1,15 +1,22 @@
-//! The icon paths that refitting is measured on, one path per line.
+//! `cargo xtask corpus`: the icon paths that refitting is measured on, one path per line.
 //!
 //! Fetches two icon sets with `npm pack`, takes every Nth file of each in the order of their names, scales them to a box of
 //! 0..1000, and writes them to `corpus/icons.txt`. Arcs become cubics of at most a quarter turn, so that every program that reads
 //! the file measures the same curves.
 
-use crate::chore::workspace;
+use crate::chore::{Chore, workspace};
+use clap::Command as ChoreCommand;
 use pathwarp::Outline;
 use pathwarp::kurbo::Affine;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+/// See the module.
+pub(crate) const CHORE: Chore = Chore {
+    command: || ChoreCommand::new("corpus").about("Fetch the icons that refitting is measured on (needs npm)"),
+    run: |_| fetch_all().map_err(|e| e.to_string()),
+};
 
 /// A package of icons on npm.
 struct IconSet {
@@ -35,7 +42,7 @@ const BOX: f64 = 1000.0;
 const ARC_TOLERANCE: f64 = f64::INFINITY;
 
 /// Fetches the icons, writes `corpus/icons.txt` beside the workspace's `Cargo.toml`, and returns a summary.
-pub(super) fn fetch_all() -> io::Result<String> {
+fn fetch_all() -> io::Result<String> {
     let folder = workspace().join("corpus");
     std::fs::create_dir_all(&folder)?;
     let mut lines = Vec::new();
