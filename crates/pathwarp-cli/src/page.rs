@@ -1,7 +1,7 @@
 //! The page of a drawing under `--fit`: which pages stay as they are, and what is said about the page.
 
-use crate::decimals::three_figures;
 use crate::options::{CommonOptions, FrameChoice};
+use crate::readable::three_figures;
 use crate::units::MM_PER_PX;
 use pathwarp::decimal::trimmed;
 use pathwarp::kurbo::Rect;

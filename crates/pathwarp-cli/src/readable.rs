@@ -1,6 +1,7 @@
 //! Text that came from files, made fit for a terminal: without control characters, which could move the cursor or rename the window,
 //! and not as long as a file.
 
+use pathwarp::decimal::trimmed;
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -60,6 +61,13 @@ fn escaped(text: &str, is_escaped: fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
+/// Formats a positive number with three significant figures.
+pub(crate) fn three_figures(v: f64) -> String {
+    /// No page is so small that more would matter.
+    const MOST_DECIMALS: f64 = 12.0;
+    trimmed(v, (2.0 - v.log10().floor()).clamp(0.0, MOST_DECIMALS) as usize)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,5 +89,11 @@ mod tests {
         assert!(shown.chars().count() < LONGEST + 50, "{shown}");
         let short = "x".repeat(LONGEST);
         assert_eq!(message(&short), short);
+    }
+
+    #[test]
+    fn three_figures_of_any_size() {
+        assert_eq!(three_figures(0.012_345), "0.0123");
+        assert_eq!(three_figures(1200.0), "1200");
     }
 }

@@ -4,8 +4,7 @@
 //! they take forever to read, and nothing can interrupt them, so a thread looks at the process from time to time. Ending it so
 //! is like an interruption: temporary files are removed, and no output is half written.
 
-use crate::temporaries;
-use crate::terminal;
+use crate::{temporaries, terminal};
 use cpu_time::ProcessTime;
 use memory_stats::memory_stats;
 use pathwarp::budget::{Exceeded, Limit, Limits};

@@ -1,9 +1,8 @@
 //! `pathwarp compare A.svg B.svg`: measures the distance between two drawings, path by path and pixel by pixel.
 
-use super::file_args;
-use crate::failure::Failure;
+use crate::commands::file_args::{file_arg, given_file};
+use crate::failure::{Failure, Status};
 use crate::options::{Given, reading_args};
-use crate::status::Status;
 use crate::{input, output, readable};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::budget::Exceeded;
@@ -20,16 +19,14 @@ use std::sync::Arc;
 /// Smallest visible difference of a colour channel, of 255.
 const VISIBLE: u8 = 16;
 
-pub(super) const NAME: &str = "compare";
-
-pub(super) fn command() -> Command {
+pub(super) fn compare_command() -> Command {
     let limit = |name: &'static str, value: &'static str, help: &'static str| {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(f64)).help(help)
     };
-    Command::new(NAME)
+    Command::new("compare")
         .about("Measure the distance between two drawings, path by path and pixel by pixel")
-        .arg(file_args::file("A", "An SVG file"))
-        .arg(file_args::file("B", "An SVG file"))
+        .arg(file_arg("A", "An SVG file"))
+        .arg(file_arg("B", "An SVG file"))
         .arg(
             Arg::new("width")
                 .long("width")
@@ -78,9 +75,9 @@ struct Pixels {
     visible_share: f64,
 }
 
-pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
+pub(super) fn compare_files(m: &ArgMatches) -> Result<Status, Failure> {
     let reading = Given::reading(m)?;
-    let document = |name: &str| input::document(file_args::given(m, name)?, &reading);
+    let document = |name: &str| input::document(given_file(m, name)?, &reading);
     let (a, b) = (document("A")?, document("B")?);
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
     let result = compare(&a, &b, size)?;

@@ -1,29 +1,29 @@
-//! `pathwarp convert art.xcf -o art.svg`: copies the paths of a file into another format, or a drawing into a PDF or DXF.
+//! What is in a file, taken out of it: `convert` copies paths into another format, or a drawing into a PDF or DXF; `paths` lists them;
+//! `unwarp` restores the source of a drawing that was written with `--embed-recipe`.
 
-use super::file_args;
-use crate::advice;
+use crate::commands::file_args::{file_arg, given_file, out_arg, target};
 use crate::export::{self, Exported};
-use crate::failure::Failure;
+use crate::failure::{Failure, Status};
 use crate::format::{Choice, Format};
 use crate::input::{self, GimpFile};
 use crate::options::{CommonOptions, Given, Reading, reading_args, some_options};
 use crate::output::{self, PendingFile};
 use crate::sources::Files;
-use crate::status::Status;
-use crate::terminal;
+use crate::{advice, readable, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command};
+use pathwarp::decimal::trimmed;
 use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
-use pathwarp_svg::ReadOptions;
+use pathwarp_svg::{Origin, ReadOptions};
+use serde::Serialize;
 use std::collections::{HashMap, HashSet};
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-pub(super) const NAME: &str = "convert";
-
-pub(super) fn command() -> Command {
-    Command::new(NAME)
+pub(super) fn convert_command() -> Command {
+    Command::new("convert")
         .about("Copy the paths of a file (GIMP files, SVG) into an SVG, a point list or a new XCF, or a drawing into a PDF or DXF")
-        .arg(file_args::file("FILE", "A GIMP file or an SVG; FILE#NAME copies one path of a GIMP file"))
-        .arg(file_args::out(
+        .arg(file_arg("FILE", "A GIMP file or an SVG; FILE#NAME copies one path of a GIMP file"))
+        .arg(out_arg(
             "OUT",
             "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
              drawing, or .dxf with its outlines in mm; - or none writes to standard output",
@@ -51,11 +51,11 @@ pub(super) fn command() -> Command {
         )
 }
 
-pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
-    let file = file_args::given(m, "FILE")?;
+pub(super) fn convert(m: &ArgMatches) -> Result<Status, Failure> {
+    let file = given_file(m, "FILE")?;
     let split = m.get_flag("split");
     // The files that --split writes are checked below.
-    let target = file_args::target(m, (!split).then_some(file))?;
+    let target = target(m, (!split).then_some(file))?;
     let options = Given::options(m).read()?;
     let choice = Choice { what: "paths are", among: FORMATS };
     let format = choice.format(target, options.format)?;
@@ -150,4 +150,169 @@ fn names(out: &Path, format: Format, paths: &[GimpPath]) -> Vec<PathBuf> {
         }
     };
     paths.iter().map(|p| out.with_file_name(format!("{stem}-{}.{extension}", unique(p)))).collect()
+}
+
+pub(super) fn paths_command() -> Command {
+    Command::new("paths")
+        .about("List the paths of a file: name, closed, anchors, points")
+        .arg(file_arg(
+            "FILE",
+            "An SVG file or a GIMP file (XCF, exported SVG, point list, GIMP 1 text); - is standard input",
+        ))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON with every point"))
+        .arg(
+            Arg::new("salvage")
+                .long("salvage")
+                .action(ArgAction::SetTrue)
+                .help("List the paths before the damage in a damaged GIMP file"),
+        )
+        .args(reading_args())
+        .after_help(
+            "Every anchor is listed as drawing programs store it: incoming handle, anchor, outgoing handle. Arcs are listed as \
+             cubics. Numbers of GIMP files are listed exactly as stored.\n\nExamples:\n  pathwarp paths samples/cages.svg\n  pathwarp paths --json samples/cages.svg\n  pathwarp paths art.xcf",
+        )
+}
+
+#[derive(Serialize)]
+struct PathList {
+    paths: Vec<ListedPath>,
+}
+
+#[derive(Serialize)]
+struct ListedPath {
+    name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    label: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    title: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    element: Option<String>,
+    /// GIMP's visibility switch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    visible: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bounds: Option<[f64; 4]>,
+    strokes: Vec<ListedStroke>,
+}
+
+#[derive(Serialize)]
+struct ListedStroke {
+    closed: bool,
+    anchors: usize,
+    points: Vec<[f64; 2]>,
+}
+
+pub(super) fn list_paths(m: &ArgMatches) -> Result<Status, Failure> {
+    let file = given_file(m, "FILE")?;
+    let reading = Given::reading(m)?;
+    let gimp = GimpFile::open(file, m.get_flag("salvage"), &reading.limits)?;
+    let mut paths = match &gimp {
+        Some(gimp) => gimp.paths().map(of_gimp).collect(),
+        None => of_drawing(&input::document(file, &reading)?),
+    };
+    let text = if m.get_flag("json") {
+        if gimp.is_some() {
+            // For GIMP files the JSON holds only stored data.
+            paths.iter_mut().for_each(|p| p.bounds = None);
+        }
+        readable::json(&PathList { paths }).map_err(|e| Failure::file(file, e))? + "\n"
+    } else {
+        table(&paths)
+    };
+    output::to_stdout(text.as_bytes())?;
+    let Some(damage) = gimp.and_then(|g| g.damage) else { return Ok(Status::Complete) };
+    terminal::warning(&format!("{}: {damage}", input::display(file)));
+    Ok(Status::Partial)
+}
+
+fn of_gimp(p: &GimpPath) -> ListedPath {
+    ListedPath {
+        name: p.name.clone(),
+        label: None,
+        title: None,
+        element: None,
+        visible: Some(p.visible),
+        bounds: p.bounds().map(|[x0, y0, x1, y1]| [x0, y0, x1 - x0, y1 - y0]),
+        strokes: p.strokes.iter().map(stroke).collect(),
+    }
+}
+
+fn of_drawing(doc: &pathwarp_svg::Document) -> Vec<ListedPath> {
+    doc.paths()
+        .into_iter()
+        .map(|p| ListedPath {
+            name: p.id,
+            label: p.label,
+            title: p.title,
+            element: Some(p.element),
+            visible: None,
+            bounds: p.outline.bounding_box().map(|b| [b.x0, b.y0, b.width(), b.height()]),
+            strokes: p.outline.subpaths.iter().map(|s| stroke(&Stroke::from_subpath(s))).collect(),
+        })
+        .collect()
+}
+
+fn stroke(s: &Stroke) -> ListedStroke {
+    ListedStroke { closed: s.closed, anchors: s.anchors(), points: s.points.clone() }
+}
+
+fn table(paths: &[ListedPath]) -> String {
+    let mut out = String::new();
+    let names: Vec<_> = paths.iter().map(|p| readable::name(&p.name)).collect();
+    let width = output::column(names.iter().map(AsRef::as_ref));
+    let what = if paths.iter().any(|p| p.visible.is_some()) { "visible" } else { "element" };
+    let _ = writeln!(out, "{:width$}  {what:8}  {:7}  {:>7}  x y width height", "name", "closed", "anchors");
+    for (p, name) in paths.iter().zip(names) {
+        let closed: Vec<&str> = p.strokes.iter().map(|s| if s.closed { "closed" } else { "open" }).collect();
+        let all_same = closed.windows(2).all(|w| w[0] == w[1]);
+        let closed = if closed.is_empty() {
+            "empty"
+        } else if all_same {
+            closed[0]
+        } else {
+            "mixed"
+        };
+        let anchors: Vec<String> = p.strokes.iter().map(|s| s.anchors.to_string()).collect();
+        let anchors = if anchors.len() > 6 {
+            format!("{} in {}", p.strokes.iter().map(|s| s.anchors).sum::<usize>(), anchors.len())
+        } else {
+            anchors.join("+")
+        };
+        let bounds = p.bounds.map_or(String::new(), |b| b.map(|v| trimmed(v, 6)).join(" "));
+        let what = p.visible.map(|v| if v { "visible" } else { "hidden" }).or(p.element.as_deref()).unwrap_or_default();
+        let _ = write!(out, "{name:width$}  {what:8}  {closed:7}  {anchors:>7}  {bounds}");
+        if let Some(l) = p.label.as_ref().or(p.title.as_ref()) {
+            let _ = write!(out, "  ({})", readable::name(l));
+        }
+        out.push('\n');
+    }
+    out
+}
+
+pub(super) fn unwarp_command() -> Command {
+    Command::new("unwarp")
+        .about("Restore the source of a drawing written with --embed-recipe, byte for byte")
+        .arg(file_arg("FILE", "The warped drawing; - is standard input"))
+        .arg(out_arg("OUT", "Write the source to this file; - or none writes to standard output"))
+        .arg(Arg::new("recipe").long("recipe").action(ArgAction::SetTrue).help("Write the recipe instead of the source"))
+        .args(reading_args())
+        .after_help("Example:\n  pathwarp unwarp warped.svg -o source.svg\n  pathwarp unwarp --recipe warped.svg -o recipe.toml")
+}
+
+pub(super) fn unwarp(m: &ArgMatches) -> Result<Status, Failure> {
+    let file = given_file(m, "FILE")?;
+    let target = target(m, [file])?;
+    let name = input::display(file);
+    let bytes = input::bytes(file)?;
+    let limits = Given::reading(m)?.limits.for_input(bytes.len());
+    let origin = Origin::of_file(&bytes, &name, &limits).map_err(|e| Failure::from(e).about(&name))?;
+    let lacks =
+        |what: &str| Failure::Input(format!("{name}: holds no {what}; only drawings written with --embed-recipe do"));
+    let origin = origin.ok_or_else(|| lacks("source"))?;
+    if m.get_flag("recipe") && origin.recipe.trim().is_empty() {
+        return Err(lacks("recipe"));
+    }
+    let bytes = if m.get_flag("recipe") { origin.recipe.into_bytes() } else { origin.source };
+    output::write(target, &bytes)?;
+    Ok(Status::Complete)
 }

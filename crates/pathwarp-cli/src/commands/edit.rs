@@ -1,24 +1,21 @@
 //! `pathwarp edit FILE`: bends a drawing by hand in the browser.
 
-use super::file_args;
+use crate::commands::file_args::{file_arg, given_file, out_arg, target};
 use crate::editing::EditorHost;
-use crate::failure::Failure;
+use crate::failure::{Failure, Status};
 use crate::options::{self, Given};
 use crate::plugins::Plugins;
-use crate::status::Status;
 use crate::{input, output, temporaries, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
 use pathwarp_editor::{News, Options, Purpose};
 use std::sync::Arc;
 
-pub(super) const NAME: &str = "edit";
-
-pub(super) fn command() -> Command {
-    Command::new(NAME)
+pub(super) fn edit_command() -> Command {
+    Command::new("edit")
         .about("Bend a drawing by hand in the browser, and see it while you drag")
-        .arg(file_args::file("FILE", "An SVG file, or a result of this command, to go on with it"))
-        .arg(file_args::out("OUT", "Save to this file; without it, the page offers a name beside the drawing"))
+        .arg(file_arg("FILE", "An SVG file, or a result of this command, to go on with it"))
+        .arg(out_arg("OUT", "Save to this file; without it, the page offers a name beside the drawing"))
         .arg(
             Arg::new("port")
                 .long("port")
@@ -38,15 +35,15 @@ pub(super) fn command() -> Command {
         )
 }
 
-pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
-    let file = file_args::given(m, "FILE")?;
+pub(super) fn edit(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
+    let file = given_file(m, "FILE")?;
     if output::is_stdout(file) {
         return Err(Failure::usage("edit needs a file: its results are saved beside it"));
     }
     file.metadata().map_err(|e| Failure::file(file, input::unreadable(file, &e)))?;
     let options = Options {
         file: file.to_owned(),
-        purpose: Purpose::Files { out: file_args::target(m, [file])?.map(ToOwned::to_owned) },
+        purpose: Purpose::Files { out: target(m, [file])?.map(ToOwned::to_owned) },
         port: m.get_one::<u16>("port").copied(),
         open: !m.get_flag("no-open"),
     };

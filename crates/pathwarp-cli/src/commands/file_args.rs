@@ -10,18 +10,18 @@ use std::path::{Path, PathBuf};
 const OUT: &str = "out";
 
 /// A required file.
-pub(super) fn file(name: &'static str, help: &'static str) -> Arg {
+pub(super) fn file_arg(name: &'static str, help: &'static str) -> Arg {
     Arg::new(name).required(true).value_parser(value_parser!(PathBuf)).help(help)
 }
 
 /// The file given for the required argument `name`.
-pub(super) fn given<'a>(m: &'a ArgMatches, name: &str) -> Result<&'a Path, Failure> {
+pub(super) fn given_file<'a>(m: &'a ArgMatches, name: &str) -> Result<&'a Path, Failure> {
     let file = m.get_one::<PathBuf>(name).map(PathBuf::as_path);
     file.ok_or_else(|| Failure::usage(format!("{name} is required")))
 }
 
 /// `-o, --out`.
-pub(super) fn out(value_name: &'static str, help: &'static str) -> Arg {
+pub(super) fn out_arg(value_name: &'static str, help: &'static str) -> Arg {
     Arg::new(OUT).short('o').long(OUT).value_name(value_name).value_parser(value_parser!(PathBuf)).help(help)
 }
 

@@ -1,9 +1,7 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
-use super::points;
-use crate::failure::Failure;
+use crate::failure::{Failure, Status};
 use crate::options::{Given, reading_args, rect};
-use crate::status::Status;
 use crate::{input, output, references, steps};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::GeometryError;
@@ -19,13 +17,11 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-pub(super) const NAME: &str = "map";
-
 /// The work of a point, in evaluations of the map with all that a fit does.
 const POINT: f64 = 0.25;
 
-pub(super) fn command(registry: &Registry) -> Command {
-    let mut c = Command::new(NAME)
+pub(super) fn map_command(registry: &Registry) -> Command {
+    let mut c = Command::new("map")
         .about("Map plain points, one x y per line, by a deformation")
         .subcommand_required(true)
         .arg_required_else_help(true)
@@ -68,7 +64,7 @@ pub(super) fn command(registry: &Registry) -> Command {
 }
 
 /// Runs `map`; `later` holds the parts of the chain after each `+`.
-pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
+pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
     let reading = Given::reading(m)?;
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
@@ -77,7 +73,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     references::resolve_names(registry, &mut recipe, |name| Err(input::no_document(name)))?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;
-    let points = points::parse(&String::from_utf8_lossy(&bytes), "two numbers x y")
+    let points = parse_points(&String::from_utf8_lossy(&bytes), "two numbers x y")
         .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
     let points: Vec<Point> = points.into_iter().map(|[x, y]| Point::new(x, y)).collect();
     let cloud = Outline::from_points(&points, false);
@@ -114,4 +110,29 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     }
     output::to_stdout(out.as_bytes())?;
     Ok(status)
+}
+
+/// Characters of a wrong line that a message shows.
+const SHOWN: usize = 60;
+
+/// Parses points of N coordinates, separated by spaces, commas or tabs. Empty lines and those that begin with `#` are skipped. The
+/// error starts with the line's number and says that the line is not `wanted`.
+pub(super) fn parse_points<const N: usize>(text: &str, wanted: &str) -> Result<Vec<[f64; N]>, String> {
+    let mut out = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let numbers: Result<Vec<f64>, _> =
+            line.split([' ', ',', '\t']).filter(|w| !w.is_empty()).map(str::parse::<f64>).collect();
+        match numbers.map(<[f64; N]>::try_from) {
+            Ok(Ok(point)) if point.iter().all(|c| c.is_finite()) => out.push(point),
+            _ => {
+                let shown: String = line.chars().take(SHOWN).collect();
+                return Err(format!("{}: `{shown}` is not {wanted}", i + 1));
+            }
+        }
+    }
+    Ok(out)
 }

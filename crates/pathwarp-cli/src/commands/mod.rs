@@ -1,39 +1,26 @@
 //! The command line: one subcommand per deformation of the registry, and one file per further subcommand, which holds its
 //! arguments and its run.
 
-mod check;
+mod about;
 mod compare;
-mod completions;
 mod convert;
-mod deformation;
 mod edit;
-mod edits;
 mod file_args;
-mod gallery;
 mod install;
-mod list;
-mod man;
 mod map;
-mod new_plugin;
-mod paths;
-mod points;
+mod plugin;
 mod render;
-mod run;
-mod schema;
-mod short_help;
 mod solid;
 mod text;
-mod unwarp;
+mod warp;
 
-use crate::advice::{self, mistakes};
-use crate::edits::{EDITS, OFFSET, OUTLINE, SIMPLIFY};
-use crate::failure::Failure;
+use crate::edits::{OFFSET, OUTLINE, SIMPLIFY};
+use crate::failure::{Failure, Status};
 use crate::options::Given;
 use crate::plugins::{self, Plugins};
-use crate::status::Status;
-use crate::{coming_from, output, watch};
+use crate::{advice, coming_from, mistakes, output, watch};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Arg, Command};
+use clap::{Arg, ArgMatches, Command};
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
 
@@ -62,8 +49,8 @@ On 2 to 5 no output file is touched. An interrupted run leaves the results it ha
 
 /// The whole command line.
 pub(crate) fn build(registry: &Registry) -> Command {
-    let deformations = registry.entries().iter().map(|e| deformation::command(e.info()));
-    root().subcommands(deformations).subcommands(OTHERS.iter().map(|(_, command)| command(registry)))
+    let deformations = registry.entries().iter().map(|e| warp::deformation_command(e.info()));
+    root().subcommands(deformations).subcommands(OTHERS.iter().map(|o| (o.declare)(registry)))
 }
 
 /// The command line with no other subcommand than the one that `word` names: declaring them all takes longer than warping a
@@ -71,10 +58,10 @@ pub(crate) fn build(registry: &Registry) -> Command {
 fn build_for(registry: &Registry, word: Option<&OsString>) -> Command {
     let word = word.and_then(|w| w.to_str()).unwrap_or_default();
     if let Some(entry) = registry.get(word) {
-        return root().subcommand(deformation::command(entry.info()));
+        return root().subcommand(warp::deformation_command(entry.info()));
     }
-    match OTHERS.iter().find(|(name, _)| *name == word) {
-        Some((_, command)) => root().subcommand(command(registry)),
+    match other(word) {
+        Some(o) => root().subcommand((o.declare)(registry)),
         None => build(registry),
     }
 }
@@ -100,37 +87,82 @@ fn root() -> Command {
         )
 }
 
-/// Declares a subcommand.
-type Declare = fn(&Registry) -> Command;
+/// A subcommand that is not a deformation.
+struct Subcommand {
+    name: &'static str,
+    declare: fn(&Registry) -> Command,
+    run: fn(&Call<'_>) -> Result<Status, Failure>,
+}
+
+/// A parsed command line.
+struct Call<'a> {
+    registry: &'a Registry,
+    plugins: &'a Plugins,
+    matches: &'a ArgMatches,
+    /// The words of the first part, and those of the parts after each `+`.
+    words: &'a [OsString],
+    later: &'a [&'a [OsString]],
+}
+
+const fn subcommand(
+    name: &'static str,
+    declare: fn(&Registry) -> Command,
+    run: fn(&Call<'_>) -> Result<Status, Failure>,
+) -> Subcommand {
+    Subcommand { name, declare, run }
+}
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 21] = [
-    (edit::NAME, |_| edit::command()),
-    (run::NAME, run::command),
-    (list::NAME, |_| list::command()),
-    (map::NAME, map::command),
-    (solid::NAME, |_| solid::command()),
-    (unwarp::NAME, |_| unwarp::command()),
-    (schema::NAME, |_| schema::command()),
-    (text::NAME, text::command),
-    (paths::NAME, |_| paths::command()),
-    (SIMPLIFY.name, |_| edits::simplify()),
-    (OFFSET.name, |_| edits::offset()),
-    (OUTLINE.name, |_| edits::outline()),
-    (convert::NAME, |_| convert::command()),
-    (render::NAME, |_| render::command()),
-    (gallery::NAME, gallery::command),
-    (compare::NAME, |_| compare::command()),
-    (check::NAME, |_| check::command()),
-    (new_plugin::NAME, |_| new_plugin::command()),
-    (install::NAME, |_| install::command()),
-    (completions::NAME, |_| completions::command()),
-    (man::NAME, |_| man::command()),
+static OTHERS: [Subcommand; 21] = [
+    subcommand("edit", |_| edit::edit_command(), |c| edit::edit(c.registry, c.plugins, c.matches)),
+    subcommand("run", warp::run_command, |c| warp::run_recipe(c.registry, c.matches, c.words)),
+    subcommand("list", |_| about::list_command(), |c| about::list(c.registry, c.plugins, c.matches)),
+    subcommand("map", map::map_command, |c| map::map(c.registry, c.matches, c.later)),
+    subcommand("solid", |_| solid::solid_command(), |c| solid::solid(c.matches, c.later)),
+    subcommand("unwarp", |_| convert::unwarp_command(), |c| convert::unwarp(c.matches)),
+    subcommand("schema", |_| about::schema_command(), |c| about::print_schema(c.registry)),
+    subcommand("text", text::text_command, |c| text::text(c.registry, c.matches, c.words)),
+    subcommand("paths", |_| convert::paths_command(), |c| convert::list_paths(c.matches)),
+    subcommand(
+        SIMPLIFY.name,
+        |_| warp::simplify_command(),
+        |c| warp::edit_shapes(c.registry, &SIMPLIFY, c.matches, c.words),
+    ),
+    subcommand(OFFSET.name, |_| warp::offset_command(), |c| warp::edit_shapes(c.registry, &OFFSET, c.matches, c.words)),
+    subcommand(
+        OUTLINE.name,
+        |_| warp::outline_command(),
+        |c| warp::edit_shapes(c.registry, &OUTLINE, c.matches, c.words),
+    ),
+    subcommand("convert", |_| convert::convert_command(), |c| convert::convert(c.matches)),
+    subcommand("render", |_| render::render_command(), |c| render::render(c.matches)),
+    subcommand("gallery", render::gallery_command, |c| render::gallery(c.registry, c.matches)),
+    subcommand("compare", |_| compare::compare_command(), |c| compare::compare_files(c.matches)),
+    subcommand("check", |_| plugin::check_command(), |c| plugin::check(c.registry, c.plugins, c.matches)),
+    subcommand(
+        "new-plugin",
+        |_| plugin::new_plugin_command(),
+        |c| {
+            let taken = |name: &str| name == "help" || other(name).is_some() || c.registry.get(name).is_some();
+            plugin::new_plugin(c.matches, taken)
+        },
+    ),
+    subcommand("install", |_| install::install_command(), |c| install::install(c.registry, c.matches)),
+    subcommand(
+        "completions",
+        |_| about::completions_command(),
+        |c| about::completions(c.registry, build(c.registry), c.matches),
+    ),
+    subcommand("man", |_| about::man_command(), |c| about::man(build(c.registry), c.matches)),
 ];
+
+fn other(name: &str) -> Option<&'static Subcommand> {
+    OTHERS.iter().find(|o| o.name == name)
+}
 
 /// Runs the subcommand that `args` names; the first of them is the program's name.
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
-    let (args, plugins) = plugins::load(registry, args, &OTHERS.map(|(name, _)| name))?;
+    let (args, plugins) = plugins::load(registry, args, &OTHERS.each_ref().map(|o| o.name))?;
     let result = dispatched(&plugins.added_to(registry), &args, &plugins);
     plugins.tell();
     result
@@ -150,7 +182,7 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     }
     let mut command = build_for(registry, first.get(1));
     if first.iter().any(|a| a == "-h") {
-        command = short_help::shortened(command, &first[1..], "pathwarp");
+        command = about::shortened(command, &first[1..], "pathwarp");
     }
     let matches = command
         .try_get_matches_from(first)
@@ -160,48 +192,24 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     };
     let reading = Given::reading(m)?;
     // An editor may be open for hours; it counts the work of every picture.
-    if name != edit::NAME {
+    if name != "edit" {
         watch::begin(reading.limits);
     }
     // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
-        return deformation::run(registry, name, m, first, &later).map_err(|e| match e {
+        return warp::deform(registry, name, m, first, &later).map_err(|e| match e {
             Failure::Clap(e) => suggested(registry, args, e),
             other => other,
         });
     }
-    if name == run::NAME {
-        return run::run(registry, m, first);
+    if name != "run" {
+        reading.check()?;
     }
-    reading.check()?;
-    if name != map::NAME && name != solid::NAME && !later.is_empty() {
+    if !["run", "map", "solid"].contains(&name) && !later.is_empty() {
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
-    match name {
-        edit::NAME => edit::run(registry, plugins, m),
-        list::NAME => list::run(registry, plugins, m),
-        check::NAME => check::run(registry, plugins, m),
-        new_plugin::NAME => {
-            let taken =
-                |name: &str| name == "help" || OTHERS.iter().any(|(n, _)| *n == name) || registry.get(name).is_some();
-            new_plugin::run(m, taken)
-        }
-        map::NAME => map::run(registry, m, &later),
-        solid::NAME => solid::run(m, &later),
-        unwarp::NAME => unwarp::run(m),
-        schema::NAME => schema::run(registry),
-        text::NAME => text::run(registry, m, first),
-        paths::NAME => paths::run(m),
-        _ if EDITS.iter().any(|e| e.name == name) => edits::run(registry, name, m, first),
-        convert::NAME => convert::run(m),
-        render::NAME => render::run(m),
-        gallery::NAME => gallery::run(registry, m),
-        compare::NAME => compare::run(m),
-        install::NAME => install::run(registry, m),
-        completions::NAME => completions::run(registry, build(registry), m),
-        man::NAME => man::run(build(registry), m),
-        other => Err(Failure::usage(format!("there is no command {other}"))),
-    }
+    let missing = || Failure::usage(format!("there is no command {name}"));
+    (other(name).ok_or_else(missing)?.run)(&Call { registry, plugins, matches: m, words: first, later: &later })
 }
 
 /// Words as one text.
@@ -236,7 +244,7 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
     };
     let is_help = args.get(1).is_some_and(|a| a == "help");
     let tip = match error.kind() {
-        ErrorKind::InvalidSubcommand if args.get(1).is_none_or(|a| a != solid::NAME) => {
+        ErrorKind::InvalidSubcommand if args.get(1).is_none_or(|a| a != "solid") => {
             let asked = args.get(2..).filter(|words| is_help && !words.is_empty()).map(joined);
             let word = asked.or_else(|| context(ContextKind::InvalidSubcommand)).unwrap_or_default();
             if let Some(meant) = mistakes::command(registry, &word) {

@@ -1,27 +1,31 @@
-//! `pathwarp render IN.svg -o OUT.png`: draws an SVG file as a picture.
+//! Pictures: `render` draws an SVG file, `gallery` artwork under every preset of a set on one sheet.
 
-use super::file_args;
 use crate::bitmap::encode;
-use crate::failure::Failure;
+use crate::commands::file_args::{file_arg, given_file, out_arg, target};
+use crate::failure::{Failure, Status};
 use crate::format::{Choice, Format, PICTURES};
 use crate::options::{Given, reading_args, some_options};
-use crate::status::Status;
-use crate::{advice, input, output, terminal};
-use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+use crate::{advice, export, input, output, terminal};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
+use pathwarp::deform::{Deformation, Gallery, Registry};
+use pathwarp::param::{Args, Axis, Frame, Kind};
+use pathwarp::refit;
 use pathwarp_raster::{Color, RenderOptions, Size};
-use pathwarp_svg::usvg_tree;
+use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
+use pathwarp_svg::{Document, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument, usvg_tree};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::path::Path;
 use std::str::FromStr as _;
 
-pub(super) const NAME: &str = "render";
-
-pub(super) fn command() -> Command {
+pub(super) fn render_command() -> Command {
     let pixels = |name: &'static str, help: &'static str| {
         Arg::new(name).long(name).value_name("PX").value_parser(value_parser!(u32).range(1..)).help(help)
     };
-    Command::new(NAME)
+    Command::new("render")
         .about("Draw an SVG file as a picture: PNG, JPEG or WebP")
-        .arg(file_args::file("INPUT", "An SVG file; - is standard input"))
-        .arg(file_args::out(
+        .arg(file_arg("INPUT", "An SVG file; - is standard input"))
+        .arg(out_arg(
             "OUT.png",
             "Write the picture to this file: .png, .jpg or .webp (without loss); - or none writes to standard output",
         ))
@@ -50,9 +54,9 @@ pub(super) fn command() -> Command {
         .args(reading_args())
 }
 
-pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
-    let file = file_args::given(m, "INPUT")?;
-    let target = file_args::target(m, [file])?;
+pub(super) fn render(m: &ArgMatches) -> Result<Status, Failure> {
+    let file = given_file(m, "INPUT")?;
+    let target = target(m, [file])?;
     let options = Given::options(m).read()?;
     let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
     let size = if let Some(&w) = m.get_one::<u32>("width") {
@@ -98,4 +102,205 @@ fn background(text: &str) -> Result<Background, String> {
     let c =
         svgtypes::Color::from_str(text).map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
     Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
+}
+
+/// The formats of sheets.
+const SHEETS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Png, Format::Jpeg, Format::WebP];
+
+/// Tolerance as a fraction of the artwork's diagonal: far below a pixel of any sheet.
+const TOLERANCE: f64 = 2e-4;
+
+/// The word for all sets together.
+const ALL: &str = "all";
+
+/// The deformations with presets.
+fn sets(registry: &Registry) -> impl Iterator<Item = (&dyn Deformation, Gallery)> {
+    registry.entries().iter().filter_map(|e| Some((&**e, e.info().gallery?)))
+}
+
+pub(super) fn gallery_command(registry: &Registry) -> Command {
+    let sets: Vec<&str> = sets(registry).map(|(_, g)| g.set).chain([ALL]).collect();
+    Command::new("gallery")
+        .about("Draw artwork under every preset of a set on one sheet")
+        .arg(file_arg("INPUT", "An SVG file; - is standard input"))
+        .arg(out_arg(
+            "SHEET.svg|SHEET.png",
+            "Write the sheet to this file: .svg, .svgz, .pdf, .png, .jpg or .webp; - or none writes SVG to standard output",
+        ))
+        .args(some_options(&["format", "quality"]))
+        .arg(
+            choice("set", sets[0], &sets)
+                .help("The set of presets to draw, or all of them"),
+        )
+        .arg(Arg::new(ALL).long(ALL).action(ArgAction::SetTrue).conflicts_with("set").help("The same as --set all"))
+        .arg(
+            Arg::new("bend")
+                .long("bend")
+                .value_name("NUMBER")
+                .allow_hyphen_values(true)
+                .default_value("50%")
+                .help("Amount of bend of the presets that bend"),
+        )
+        .arg(
+            choice("axis", "horizontal", &["horizontal", "vertical"])
+                .help("Direction in which artwork runs through the presets"),
+        )
+        .arg(
+            Arg::new("columns")
+                .long("columns")
+                .value_name("N")
+                .value_parser(value_parser!(u32).range(1..=64))
+                .default_value("4")
+                .help("Number of cells per row"),
+        )
+        .arg(
+            Arg::new("cell")
+                .long("cell")
+                .value_name("WxH")
+                .value_parser(cell)
+                .default_value("260x190")
+                .help("Size of a cell in px"),
+        )
+        .arg(
+            Arg::new("scale")
+                .long("scale")
+                .value_name("S")
+                .value_parser(value_parser!(f32))
+                .default_value("1")
+                .help("Pixels per px of a sheet that is a picture"),
+        )
+        .args(reading_args())
+        .after_help(
+            "All cells have the same scale, except that a much larger result is reduced to fit. Labels are outlines, so they look the \
+             same everywhere.\n\nExamples:\n  \
+             pathwarp gallery samples/logo.svg -o sheet.svg\n  \
+             pathwarp gallery samples/lettering.svg --set wordart --columns 5 -o sheet.png\n  \
+             pathwarp gallery samples/badge.svg --bend -30% --axis vertical -o sheet.svg",
+        )
+}
+
+/// An option with one of these words as its value.
+fn choice(name: &'static str, default: &'static str, words: &[&'static str]) -> Arg {
+    Arg::new(name)
+        .long(name)
+        .value_name(words.join("|"))
+        .value_parser(words.to_vec())
+        .hide_possible_values(true)
+        .default_value(default)
+}
+
+/// Parses `WxH`, each from 40 to 4000.
+fn cell(text: &str) -> Result<(f64, f64), String> {
+    let side = |t: &str| t.trim().parse::<f64>().ok().filter(|v| (40.0..=4000.0).contains(v));
+    let sides = text.split_once(['x', 'X', '×']).and_then(|(w, h)| side(w).zip(side(h)));
+    sides.ok_or_else(|| "is not WxH, such as 260x190, each from 40 to 4000".into())
+}
+
+pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
+    let file = given_file(m, "INPUT")?;
+    let target = target(m, [file])?;
+    let options = Given::options(m).read()?;
+    let format = Choice { what: "a sheet is", among: SHEETS }.format(target, options.format)?;
+    let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
+    let set = if m.get_flag(ALL) { ALL } else { word("set") };
+    let (bend, axis) = (word("bend"), word("axis"));
+    let doc = input::document(file, &options.reading)?;
+    let frame = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
+
+    let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
+    let presets: Vec<Preset<'_>> =
+        sets.iter().flat_map(|(entry, gallery)| presets(*entry, gallery, bend, axis)).collect();
+    let lettering = doc.lettering(&Selection::default());
+    let frame = Frame::new(frame);
+    let frame = if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame };
+    let draw = |p: &Preset<'_>| {
+        let WarpedDocument { svg, skipped, .. } = p.warp(&doc, &frame)?;
+        Ok((Cell { svg, label: p.name.to_owned() }, skipped))
+    };
+    let drawn: Vec<(Cell, Vec<Skipped>)> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
+    let (mut cells, skipped): (Vec<Cell>, Vec<_>) = drawn.into_iter().unzip();
+    let skipped = reasons(skipped.iter().flatten());
+    // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
+    if sets.iter().any(|(_, g)| g.bend.is_some()) {
+        let svg = doc.text().to_owned();
+        cells.insert(0, Cell { svg, label: "as it is".into() });
+    }
+    let layout = SheetOptions {
+        columns: m.get_one::<u32>("columns").map_or(4, |n| *n as usize),
+        cell: m.get_one::<(f64, f64)>("cell").copied().unwrap_or((260.0, 190.0)),
+        title: title(file, &sets, bend, axis),
+    };
+    let svg = sheet(&cells, &layout, &input::read_options(file, &options.reading))?;
+    let plain = ReadOptions::default().with_limits(options.reading.limits);
+    let bytes = if format.of_picture(None).is_some() {
+        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &plain)?;
+        let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
+        let drawn = RenderOptions { size, background: None }.render_within(&tree, &doc.budget().limits())?;
+        encode(drawn, format, options.quality)?
+    } else {
+        export::drawing(svg, format, &plain, &options, None)?.bytes
+    };
+    for reason in &skipped {
+        terminal::warning(&format!("{}: {reason}", input::display(file)));
+    }
+    output::write(target, &bytes)?;
+    Ok(Status::partial_if(!skipped.is_empty()))
+}
+
+/// Lists what is not warped, or is left out, in some cell: the first ones, and how many more there are.
+fn reasons<'a>(skipped: impl Iterator<Item = &'a Skipped>) -> Vec<String> {
+    const NAMED: usize = 10;
+    let all: BTreeSet<String> = skipped.map(|s| format!("{} is not warped: {}", s.id, s.why)).collect();
+    let more = all.len().saturating_sub(NAMED);
+    let mut out: Vec<String> = all.into_iter().take(NAMED).collect();
+    out.extend((more > 0).then(|| format!("and {more} more")));
+    out
+}
+
+/// The title of the sheet: the file, and the sets with the bend where it applies.
+fn title(file: &Path, sets: &[(&dyn Deformation, Gallery)], bend: &str, axis: &str) -> String {
+    let name = file.file_name().map_or_else(|| "standard input".into(), |n| n.to_string_lossy().into_owned());
+    if let [(_, only)] = sets
+        && only.bend.is_some()
+    {
+        return format!("{name}: bend {bend}{}", if axis == "vertical" { ", vertical" } else { "" });
+    }
+    let titles = sets.iter().map(|(_, g)| match g.bend {
+        Some(_) => format!("{} at {bend}", g.title),
+        None => g.title.to_owned(),
+    });
+    format!("{name}: {}", titles.collect::<Vec<_>>().join(", "))
+}
+
+/// A preset with its deformation's arguments.
+struct Preset<'a> {
+    entry: &'a dyn Deformation,
+    name: &'static str,
+    args: Args,
+}
+
+/// The presets of a deformation.
+fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: &str) -> Vec<Preset<'a>> {
+    let names = entry.info().params.iter().find(|p| p.name == gallery.presets).map(|p| p.kind);
+    let Some(Kind::NameOrFile(names)) = names else { return Vec::new() };
+    let preset = |&name: &&'static str| {
+        let mut args = Args::from_pairs(&[(gallery.presets, name)]);
+        for (param, value) in [(gallery.bend, bend), (gallery.axis, axis)] {
+            if let Some(param) = param {
+                args.push(param, value);
+            }
+        }
+        Preset { entry, name, args }
+    };
+    names.iter().map(preset).collect()
+}
+
+impl Preset<'_> {
+    /// The artwork under the preset.
+    fn warp(&self, doc: &Document, frame: &Frame) -> Result<WarpedDocument, Failure> {
+        let built = self.entry.build_from(&self.args, frame)?;
+        let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);
+        let options = WarpOptions::new(refit::Options::new(tolerance).with_budget(doc.budget().clone()));
+        Ok(doc.warp(&built.map, &options)?)
+    }
 }

@@ -1,6 +1,6 @@
 //! Errors for callers that are programs: a kind to branch on, a message without dashes before names, and its parts.
 
-use super::names::without_dashes;
+use super::without_dashes;
 use crate::advice::Flags;
 use crate::failure::Failure;
 use pathwarp::budget::Exceeded;

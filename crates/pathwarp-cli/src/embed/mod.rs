@@ -15,11 +15,175 @@
 //! ```
 
 mod error;
-mod names;
-mod points;
 mod warper;
 
 pub use error::{Details, Error, ErrorKind};
-pub use names::{option_names, option_words, preset};
-pub use points::PointMap;
 pub use warper::{Drawing, Path, Warper};
+
+use crate::advice;
+use crate::options::{CommonOption, OPTIONS};
+use crate::steps::INVERSE;
+use pathwarp::deform::{Info, Registry};
+use pathwarp::kurbo::{Point, Vec2};
+use pathwarp::map::{Chain, Creases, Jet, Map};
+use pathwarp::param::Kind;
+
+/// A parameter with the value that a preset's name gives it.
+type Setting = (&'static str, &'static str);
+
+/// The deformation that a name means, with the parameter and value if the name is that of a preset: `arc` is `warp` with the
+/// style `arc`. Deformations come first, then the presets in the order of the registry.
+pub(super) fn meaning<'a>(registry: &'a Registry, name: &str) -> Result<(&'a Info, Option<Setting>), String> {
+    let lower = name.to_ascii_lowercase();
+    if let Some(e) = registry.get(&lower) {
+        return Ok((e.info(), None));
+    }
+    if let Some((info, param, preset)) = preset(registry, &lower) {
+        return Ok((info, Some((param, preset))));
+    }
+    let presets = registry.entries().iter().flat_map(|e| presets(e.info()).1);
+    let known = registry.entries().iter().map(|e| e.info().name).chain(presets);
+    Err(advice::unknown("deformation", &lower, known))
+}
+
+/// The preset called `name`: its deformation, and the parameter that takes the preset's name.
+#[must_use]
+pub fn preset<'a>(registry: &'a Registry, name: &str) -> Option<(&'a Info, &'static str, &'static str)> {
+    registry.entries().iter().find_map(|e| {
+        let (param, names) = presets(e.info());
+        names.into_iter().find(|n| *n == name).map(|n| (e.info(), param, n))
+    })
+}
+
+/// The names of a deformation's presets, and the parameter that takes them.
+fn presets(info: &Info) -> (&'static str, Vec<&'static str>) {
+    let param = info.gallery.and_then(|g| info.params.iter().find(|p| p.name == g.presets));
+    match param.map(|p| (p.name, p.kind)) {
+        Some((name, Kind::NameOrFile(names) | Kind::Choice(names))) => (name, names.to_vec()),
+        _ => ("", Vec::new()),
+    }
+}
+
+/// Common options that name outputs or change what the program prints.
+const OF_THE_PROGRAM: [&str; 11] = [
+    "out",
+    "out-dir",
+    "in-place",
+    "recursive",
+    "dry-run",
+    "into",
+    "report",
+    "write-recipe",
+    "preview",
+    "jobs",
+    "quiet",
+];
+
+/// The common options that work in memory, with their help.
+pub fn option_names() -> impl Iterator<Item = (&'static str, String)> {
+    OPTIONS.iter().filter(|o| !OF_THE_PROGRAM.contains(&o.name)).map(|o| (o.name, o.help()))
+}
+
+/// The words that an option's value can be; none if it is no choice.
+#[must_use]
+pub fn option_words(name: &str) -> Vec<&'static str> {
+    OPTIONS.iter().find(|o| o.name == name).map(CommonOption::words).unwrap_or_default()
+}
+
+/// Checks that an option works in memory.
+pub(super) fn check_option(name: &str) -> Result<(), String> {
+    if OF_THE_PROGRAM.contains(&name) {
+        return Err(format!("{name} is an option of the program: in memory, results are returned"));
+    }
+    if !OPTIONS.iter().any(|o| o.name == name) {
+        return Err(advice::unknown("option", name, option_names().map(|(name, _)| name)));
+    }
+    Ok(())
+}
+
+/// A message with `--name` as `name`, where it is an option or a parameter.
+pub(super) fn without_dashes(message: &str, registry: &Registry) -> String {
+    let params = || registry.entries().iter().flat_map(|e| e.info().params);
+    let is_known =
+        |name: &str| name == INVERSE || OPTIONS.iter().any(|o| o.name == name) || params().any(|p| p.name == name);
+    let mut out = String::with_capacity(message.len());
+    let mut rest = message;
+    while let Some(at) = rest.find("--") {
+        let (before, after) = (&rest[..at], &rest[at + 2..]);
+        let length = after.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(after.len());
+        let starts = before.chars().next_back().map_or(out.is_empty(), |c| c.is_whitespace() || "(`“".contains(c));
+        out.push_str(before);
+        if !(starts && is_known(&after[..length])) {
+            out.push_str("--");
+        }
+        out.push_str(&after[..length]);
+        rest = &after[length..];
+    }
+    out + rest
+}
+
+/// A recipe built for some points: the map, and where it is defined.
+#[derive(Debug, Clone)]
+pub struct PointMap {
+    map: Chain,
+    creases: Creases,
+}
+
+impl PointMap {
+    pub(super) fn new(map: Chain) -> Self {
+        let mut creases = Creases::default();
+        map.creases(&mut creases);
+        Self { map, creases }
+    }
+
+    /// Maps `from` to `to`, of the same length. Points outside of the map's domain become NaN.
+    pub fn points(&self, from: &[Point], to: &mut [Point]) {
+        self.map.points(from, to);
+        if self.creases.items().is_empty() {
+            return;
+        }
+        for (p, image) in from.iter().zip(to) {
+            if !self.creases.defined_at(*p) {
+                *image = Jet::UNDEFINED.p;
+            }
+        }
+    }
+
+    /// The two columns of the Jacobian at each of `at`: the derivatives by x and by y.
+    pub fn jacobians(&self, at: &[Point], out: &mut [[Vec2; 2]]) {
+        let mut jets = vec![Jet::default(); at.len()];
+        self.map.jets(at, &mut jets);
+        for ((p, j), out) in at.iter().zip(&jets).zip(out) {
+            let j = if self.creases.defined_at(*p) { j } else { &Jet::UNDEFINED };
+            *out = [j.dx, j.dy];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_lose_their_dashes_and_other_text_does_not() {
+        let registry = Registry::builtin();
+        let plain = |m: &str| without_dashes(m, &registry);
+        assert_eq!(plain("--bottom: too small (--on-error skip)"), "bottom: too small (on-error skip)");
+        assert_eq!(plain("a--bottom.svg --wobble -- "), "a--bottom.svg --wobble -- ");
+    }
+
+    #[test]
+    fn presets_stand_for_their_deformation() {
+        let registry = Registry::builtin();
+        let (info, preset) = meaning(&registry, "Arc").unwrap();
+        assert_eq!((info.name, preset), ("warp", Some(("style", "arc"))));
+        assert_eq!(meaning(&registry, "wave").unwrap().0.name, "wave");
+        assert!(meaning(&registry, "shapre").unwrap_err().contains("did you mean `shaper`"));
+    }
+
+    #[test]
+    fn options_of_the_program_exist_and_are_refused() {
+        assert!(OF_THE_PROGRAM.iter().all(|n| OPTIONS.iter().any(|o| o.name == *n)));
+        assert!(check_option("out").is_err() && check_option("wobble").is_err() && check_option("tolerance").is_ok());
+    }
+}

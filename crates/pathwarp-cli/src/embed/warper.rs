@@ -1,16 +1,13 @@
 //! [`Warper`]: a recipe with its options, applied in memory.
 
 use super::error::{Error, guarded};
-use super::names::{check_option, meaning, option_names};
-use super::points::PointMap;
-use crate::advice;
+use super::{PointMap, check_option, meaning, option_names};
 use crate::edits::{EDITS, EditChoice, still};
 use crate::failure::Failure;
 use crate::input::{Fold, no_document};
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
-use crate::steps;
-use crate::steps::in_lower_case;
-use crate::{pipeline, recipe_file, references};
+use crate::steps::{self, in_lower_case};
+use crate::{advice, pipeline, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
 use pathwarp::deform::Registry;

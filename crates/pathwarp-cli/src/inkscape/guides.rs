@@ -1,8 +1,8 @@
 //! Sorts the selection into guides and artwork.
 
-use super::call::Call;
+use super::line::word;
 use super::names::{AUTOMATIC, GUIDES};
-use super::words::word;
+use super::stage::Call;
 use crate::failure::Failure;
 use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param};

@@ -1,13 +1,14 @@
 //! A recipe as the words of a command line: what it refers to, and the frame that makes it independent of the selection.
 
-use super::names::CHAIN;
-use super::stage::{Outcome, Stage};
+use super::names::{CHAIN, FILE, NONE, PERCENT, UNIT, UNITS};
+use super::stage::{Call, Outcome, Stage};
 use crate::advice;
 use crate::failure::Failure;
 use crate::input::split_reference;
-use crate::options::OPTIONS;
+use crate::options::{CommonOption, OPTIONS};
 use crate::steps::INVERSE;
 use crate::temporaries::Temporary;
+use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param, is_inline};
 use pathwarp::recipe::Recipe;
 use pathwarp_editor::selectors;
@@ -128,4 +129,156 @@ pub(super) fn elsewhere(line: Vec<String>, file: &Temporary, condition: impl Fn(
         _ => w,
     };
     line.into_iter().map(one).collect()
+}
+
+/// The words for the deformation's own parameters: `--bend=40%`.
+pub(super) fn words_of_deformation(info: &Info, call: &Call) -> Vec<String> {
+    info.params.iter().flat_map(|p| values(p, call).into_iter().map(|v| word(p.name, &v))).collect()
+}
+
+/// The words for the common options.
+pub(super) fn words_of_options(call: &Call) -> Vec<String> {
+    let given = |name: &str| call.value(name).filter(|v| *v != NONE);
+    let set = OPTIONS.iter().filter_map(|o| Some((o, given(o.name)?)));
+    // Pages stay in Inkscape unless a dialog says otherwise.
+    let default = |o: &CommonOption| if o.name == "fit" { Some("none") } else { o.default };
+    set.filter(|(o, v)| default(o) != Some(*v)).map(|(o, v)| word(o.name, v)).collect()
+}
+
+/// One word for an option with its value.
+pub(super) fn word(name: &str, value: &str) -> String {
+    if value == "true" { format!("--{name}") } else { format!("--{name}={value}") }
+}
+
+/// The values of a parameter as a user would type them.
+fn values(p: &Param, call: &Call) -> Vec<String> {
+    let plain = || call.value(p.name).filter(|v| *v != NONE);
+    let value = match p.kind {
+        Kind::Flag => return plain().filter(|v| *v == "true").map(ToOwned::to_owned).into_iter().collect(),
+        Kind::Number => {
+            let percent = call.value(&format!("{}{PERCENT}", p.name)).map(|v| format!("{}%", number(v)));
+            percent.or_else(|| plain().map(number))
+        }
+        Kind::Length(_) => plain().map(|v| {
+            let unit = call.value(&format!("{}{UNIT}", p.name));
+            let unit = UNITS.iter().find(|(name, ..)| Some(*name) == unit).map_or("", |(_, unit, _)| unit);
+            format!("{}{unit}", number(v))
+        }),
+        Kind::Angle | Kind::Count => plain().map(number),
+        Kind::NameOrFile(_) => {
+            let file = call.value(&format!("{}{FILE}", p.name));
+            file.or_else(plain).map(ToOwned::to_owned)
+        }
+        // A path is named by its label or id, with or without the mark.
+        Kind::Path => plain().map(reference),
+        _ if p.repeat => return lines(plain().unwrap_or_default()),
+        _ => plain().map(ToOwned::to_owned),
+    };
+    value.filter(|v| !p.default.is_some_and(|d| is_same(d, v))).into_iter().collect()
+}
+
+/// A number without the zeros behind it that Inkscape writes; other text as it is.
+fn number(text: &str) -> String {
+    match text.parse::<f64>() {
+        Ok(v) if v.is_finite() => v.to_string(),
+        _ => text.to_owned(),
+    }
+}
+
+/// Returns `true` if two values are the same text or number.
+fn is_same(default: &str, value: &str) -> bool {
+    let split = |t: &str| {
+        let end = t.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%').len();
+        t[..end].parse::<f64>().ok().map(|v| (v, t[end..].to_owned()))
+    };
+    default == value || split(default).is_some() && split(default) == split(value)
+}
+
+/// A path reference as typed into a dialog: a name alone is a path of the drawing.
+fn reference(text: &str) -> String {
+    let is_name = !text.contains('#') && !is_inline(text) && !std::path::Path::new(text).is_file();
+    if is_name { format!("#{text}") } else { text.to_owned() }
+}
+
+/// The lines of a text field. Inkscape passes line ends as they are, or as `\n`.
+fn lines(text: &str) -> Vec<String> {
+    let text = text.replace("\\n", "\n");
+    text.lines().map(str::trim).filter(|l| !l.is_empty()).map(ToOwned::to_owned).collect()
+}
+
+/// Changes a recipe: `bend=30%` sets a value, `bend=` removes it. Of several steps, the first that has the setting is changed, or else
+/// the first.
+///
+/// # Errors
+/// A line that is not of this form.
+pub(super) fn changed(words: &mut Vec<String>, changes: &str) -> Result<(), String> {
+    for line in lines(changes) {
+        let (name, value) = line.split_once('=').ok_or_else(|| format!("`{line}` is not of the form name=value"))?;
+        let (name, value) = (name.trim().trim_start_matches('-').replace(' ', "-").to_lowercase(), value.trim());
+        let is_it = |w: &String| {
+            let own = w.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(n, _)| n));
+            own == Some(name.as_str())
+        };
+        let mut steps: Vec<Vec<String>> = words.split(|w| w == CHAIN).map(<[String]>::to_vec).collect();
+        let found = steps.iter().position(|step| step.iter().any(is_it)).unwrap_or(0);
+        if let Some(step) = steps.get_mut(found) {
+            let at = step.iter().position(is_it).unwrap_or(step.len().min(1));
+            step.retain(|w| !is_it(w));
+            if !(value.is_empty() || value == "false") {
+                step.insert(at.min(step.len()), word(&name, value));
+            }
+        }
+        *words = steps.join(&CHAIN.to_owned());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::deform::Registry;
+    use std::ffi::OsString;
+
+    fn call(args: &[&str]) -> Call {
+        let all = ["pathwarp", "--inkscape-deformation=warp"].iter().chain(args).chain(&["f.svg"]);
+        Call::read(&all.map(OsString::from).collect::<Vec<_>>()).ok().unwrap()
+    }
+
+    #[test]
+    fn numbers_get_their_units_and_defaults_go() {
+        let registry = Registry::builtin();
+        let words = |name: &str, args: &[&str]| words_of_deformation(registry.get(name).unwrap().info(), &call(args));
+        assert_eq!(
+            words("warp", &["--tab=x", "--style=flag", "--bend_percent=40.000", "--horizontal_percent=0"]),
+            ["--style=flag", "--bend=40%"]
+        );
+        assert!(words("warp", &["--style=arc", "--bend_percent=50"]).is_empty());
+        assert_eq!(
+            words("wave", &["--height=2.50", "--height_unit=mm", "--length=60", "--length_unit=percent"]),
+            ["--height=2.5mm"]
+        );
+        assert_eq!(
+            words("mls", &["--pin=1,2\n 3,4 ", "--pair=0,0:1,1\\n5,5:6,6"]),
+            ["--pair=0,0:1,1", "--pair=5,5:6,6", "--pin=1,2", "--pin=3,4"]
+        );
+        assert_eq!(
+            words("shaper", &["--shaper=cage", "--reverse-shaper=true", "--net="]),
+            ["--shaper=#cage", "--reverse-shaper"]
+        );
+        assert_eq!(words_of_options(&call(&["--fit=grow", "--text=outline", "--tolerance="])), ["--fit=grow"]);
+        assert_eq!(words_of_options(&call(&["--fit=auto"])), ["--fit=auto"]);
+        assert!(words_of_options(&call(&["--fit=none"])).is_empty());
+    }
+
+    #[test]
+    fn changes_replace_add_and_remove() {
+        let mut words: Vec<String> = ["warp", "--style=flag", "--bend=40%"].map(ToOwned::to_owned).into();
+        changed(&mut words, "bend = 30%\nstyle=\nhorizontal=5%").unwrap();
+        assert_eq!(words, ["warp", "--horizontal=5%", "--bend=30%"]);
+        let mut chain: Vec<String> =
+            ["wave", "+", "warp", "--bend=40%", "--frame=0,0,9,9"].map(ToOwned::to_owned).into();
+        changed(&mut chain, "bend=30%\nheight=2").unwrap();
+        assert_eq!(chain, ["wave", "--height=2", "+", "warp", "--bend=30%", "--frame=0,0,9,9"]);
+        assert!(changed(&mut words, "bend 30").is_err());
+    }
 }

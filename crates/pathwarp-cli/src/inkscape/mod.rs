@@ -2,35 +2,40 @@
 //! --inkscape-deformation=warp --bend_percent=40 … /tmp/ink_ext_XXXXXX.svg`. The result goes to standard output; anything on
 //! standard error opens a window.
 //!
-//! A call is turned into the words of an ordinary command line (`words.rs`), which the ordinary pipeline runs (`stage.rs`).
+//! A call is turned into the words of an ordinary command line (`line.rs`), which the ordinary pipeline runs (`stage.rs`).
 
-mod affine;
-mod again;
-mod call;
-mod effect;
 mod guides;
-mod hand;
 pub(crate) mod inx;
 mod line;
 mod names;
-mod quoting;
 mod restoring;
 mod stage;
-mod words;
 
-use crate::advice::Flags;
-use crate::failure::Failure;
-use crate::output;
-use crate::plugins;
-use crate::status::Status;
-use call::{Call, Job};
+use crate::advice::{self, Flags};
+use crate::editing::EditorHost;
+use crate::failure::{Failure, Status};
+use crate::options::Given;
+use crate::{output, plugins, readable, watch};
+use guides::sorted;
+use line::{
+    allowed, by_id, changed, elsewhere, exclusions, existing, options_of, referred, settled, words_of,
+    words_of_deformation, words_of_options,
+};
+use names::{ADD, AGAIN, CHAIN, CHANGES, DISCARD, REPLACE, SHOW, is_job, joined, split};
 use pathwarp::deform::Registry;
-use stage::{Dispatch, Stage};
+use pathwarp::recipe::Recipe;
+use pathwarp_editor::{Options, Purpose};
+use pathwarp_svg::objects::{self, Guides, Object, objects};
+use restoring::{Restoration, Returned, as_by_hand, remembering, restored};
+use stage::{Call, Dispatch, Job, Scope, Stage, folder, temporary};
+use std::collections::{BTreeMap, HashSet};
 use std::ffi::OsString;
+use std::path::Path;
+use std::sync::Arc;
 
 /// Returns `true` if Inkscape started the program.
 pub(crate) fn is_call(args: &[OsString]) -> bool {
-    args.iter().skip(1).any(|a| names::is_job(&a.to_string_lossy()))
+    args.iter().skip(1).any(|a| is_job(&a.to_string_lossy()))
 }
 
 /// Does what Inkscape asks for.
@@ -45,10 +50,10 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) ->
     let (_, plugins) = plugins::load(registry, &["pathwarp".into(), word.into()], &[])?;
     let stage = Stage { registry: &plugins.added_to(registry), dispatch, call: &call };
     let done = match &call.job {
-        Job::Deformation(name) => effect::run(&stage, name),
-        Job::Edit => again::edit(&stage),
-        Job::Release => again::release(&stage),
-        Job::Hand => hand::run(&stage),
+        Job::Deformation(name) => warp(&stage, name),
+        Job::Edit => edit_again(&stage),
+        Job::Release => release(&stage),
+        Job::Hand => by_hand(&stage),
         Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, &f)),
     };
     let svg = done.map_err(|f| in_a_window(&stage, &f))?;
@@ -60,4 +65,221 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) ->
 fn in_a_window(stage: &Stage<'_>, failure: &Failure) -> Failure {
     let plain = stage.without_file(failure, &stage.call.file);
     Failure::Input(inx::labelled(&plain.message(&Flags::of(stage.registry))))
+}
+
+/// Warps the selected objects. Returns the drawing.
+fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
+    let call = stage.call;
+    let known = stage.registry.entries().iter().map(|e| e.info().name);
+    let entry = stage.registry.get(name).ok_or_else(|| Failure::usage(advice::unknown("deformation", name, known)))?;
+    let drawing = stage.drawing()?;
+    let all = objects(&drawing, &stage.limits())?;
+    let given = words_of_deformation(entry.info(), call);
+    let sorted = sorted(entry.info(), &all, call, &given)?;
+
+    let mode = call.value(AGAIN).unwrap_or_default();
+    let starts_again = |o: &&Object| {
+        let is_same = |r: &String| {
+            let line = split(r);
+            line.first().is_some_and(|w| w == name) && !line.iter().any(|w| w == CHAIN)
+        };
+        sorted.artwork.contains(&o.id)
+            && o.recipe.as_ref().is_some_and(|r| mode == REPLACE || mode != ADD && is_same(r))
+    };
+    let again: Vec<String> = all.iter().filter(starts_again).map(|o| o.id.clone()).collect();
+    let Restoration { svg, objects: returned } = restored(stage, &drawing, &again, call.is_on(DISCARD))?;
+
+    let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(sorted.words()).collect();
+    line = by_id(line, &all);
+    line.extend(words_of_options(call));
+    // Of the whole page, what is locked stays.
+    let whole = call.ids.is_empty();
+    if whole {
+        line.extend(exclusions(&all));
+    }
+    let outcome = stage.warp(&svg, &line, &Scope { ids: if whole { &[] } else { &sorted.artwork } })?;
+    stage.check(&svg, &outcome)?;
+
+    let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
+    let recipe = joined(&settled(stage, line, &outcome));
+    let result = remembering(stage, &svg, &outcome.svg, &sorted.artwork, &recipe, &guides)?;
+    as_by_hand(stage, &drawing, result, &returned)
+}
+
+/// Gives the sources of the selected objects back. Returns the drawing.
+fn release(stage: &Stage<'_>) -> Result<String, Failure> {
+    let drawing = stage.drawing()?;
+    let ids = targets(stage, &objects(&drawing, &stage.limits())?)?;
+    Ok(objects::restore(&drawing, &ids, &stage.limits())?.svg)
+}
+
+/// Warps the sources of the selected objects by their recipes, with changes. Returns the drawing, or nothing if the settings are only
+/// to be shown.
+fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
+    let call = stage.call;
+    let drawing = stage.drawing()?;
+    let all = objects(&drawing, &stage.limits())?;
+    let ids = targets(stage, &all)?;
+    if call.is_on(SHOW) {
+        anstream::eprintln!("{}", readable::message(&settings(&all, &ids)));
+        return Ok(String::new());
+    }
+    let Restoration { mut svg, objects: returned } = restored(stage, &drawing, &ids, call.is_on(DISCARD))?;
+    let mut runs: BTreeMap<String, Vec<&Returned>> = BTreeMap::new();
+    for r in &returned {
+        let mut line = split(&r.object.recipe);
+        changed(&mut line, call.value(CHANGES).unwrap_or_default()).map_err(Failure::Usage)?;
+        allowed(stage, &line)?;
+        runs.entry(joined(&line)).or_default().push(r);
+    }
+    for (line, members) in runs {
+        let line = existing(split(&line), &all);
+        let ids: Vec<String> = members.iter().map(|r| r.object.id.clone()).collect();
+        let referred = referred(&line);
+        let is_there = |id: &String| all.iter().any(|o| o.id == *id);
+        // A guide that is gone is replaced by the copy that the object carries.
+        let gone = !referred.iter().all(is_there);
+        let guides = match members.first() {
+            Some(m) if gone => m.object.guides.clone(),
+            _ => Guides::of(&svg, &referred, &stage.limits())?,
+        };
+        let copies = temporary(guides.file().as_bytes())?;
+        let run = elsewhere(line.clone(), &copies, |id| !is_there(id));
+        let outcome = stage.warp(&svg, &run, &Scope { ids: &ids })?;
+        stage.check(&svg, &outcome)?;
+        let recipe = joined(&settled(stage, line, &outcome));
+        svg = remembering(stage, &svg, &outcome.svg, &ids, &recipe, &guides)?;
+    }
+    as_by_hand(stage, &drawing, svg, &returned)
+}
+
+/// The warped objects that a selection means: those selected, else those inside, else those around.
+fn targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
+    let mut out: Vec<String> = Vec::new();
+    let warped = || all.iter().filter(|o| o.recipe.is_some());
+    for id in &stage.call.ids {
+        let itself = warped().find(|o| o.id == *id).map(|o| vec![o.id.clone()]);
+        // Of nested ones, the outer holds the inner in its source.
+        let inside = || {
+            let outer = warped().filter(|o| o.inside.contains(id));
+            let ids: Vec<String> =
+                outer.filter(|o| !warped().any(|p| o.inside.contains(&p.id))).map(|o| o.id.clone()).collect();
+            (!ids.is_empty()).then_some(ids)
+        };
+        let around = || {
+            let own = all.iter().find(|o| o.id == *id)?;
+            let found = own.inside.iter().find(|i| warped().any(|o| o.id == **i))?;
+            Some(vec![found.clone()])
+        };
+        out.extend(itself.or_else(inside).or_else(around).unwrap_or_default());
+    }
+    let mut seen = HashSet::new();
+    out.retain(|id| seen.insert(id.clone()));
+    // Objects inside another one come back with it.
+    let chosen = out.clone();
+    out.retain(|id| !all.iter().any(|o| o.id == *id && o.inside.iter().any(|i| chosen.contains(i))));
+    if out.is_empty() {
+        let what =
+            if stage.call.ids.is_empty() { "nothing is selected" } else { "the selected objects were not warped" };
+        return Err(Failure::usage(format!("{what}; select objects that one of these effects has warped")));
+    }
+    Ok(out)
+}
+
+/// The settings of warped objects, for people.
+fn settings(all: &[Object], ids: &[String]) -> String {
+    let one = |o: &Object| {
+        let line = split(o.recipe.as_deref().unwrap_or_default());
+        let (name, rest) = line.split_first().map_or(("", &[][..]), |(n, r)| (n.as_str(), r));
+        let values = rest.iter().map(|w| {
+            let Some(w) = w.strip_prefix("--") else { return format!("\n{w}") };
+            if w.contains('=') { format!("\n{w}") } else { format!("\n{w}=true") }
+        });
+        format!("{} ({name}):{}\n", o.label.as_ref().unwrap_or(&o.id), values.collect::<String>())
+    };
+    all.iter().filter(|o| ids.contains(&o.id)).map(one).collect::<Vec<_>>().join("\n")
+}
+
+/// The options of a warp that had none before, as in the dialogs.
+const USUAL: &str = "--clones=follow";
+
+/// Opens the page, and warps the selected objects by the steps that the user keeps. Returns the drawing, or nothing if no steps are
+/// kept.
+fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
+    let drawing = stage.drawing()?;
+    let all = objects(&drawing, &stage.limits())?;
+    let whole = stage.call.ids.is_empty();
+    let chosen = |o: &&Object| if whole { o.is_top && !o.is_locked } else { stage.call.ids.contains(&o.id) };
+    let artwork: Vec<String> = all.iter().filter(chosen).map(|o| o.id.clone()).collect();
+    if artwork.is_empty() {
+        return Err(Failure::usage("there is nothing to bend in the drawing"));
+    }
+    let again = warped_together(&all, &artwork);
+    // Objects whose nodes were moved since are bent as they are: starting again would undo that.
+    let (Restoration { svg, objects: returned }, again) =
+        match restored(stage, &drawing, if again.is_some() { &artwork } else { &[] }, false) {
+            Ok(restoration) => (restoration, again),
+            Err(_) => (restored(stage, &drawing, &[], false)?, None),
+        };
+
+    let mut options = again.as_ref().map_or_else(|| vec![USUAL.to_owned()], |line| options_of(line));
+    if whole && again.is_none() {
+        options.extend(exclusions(&all));
+    }
+    let scope = Scope { ids: if whole { &[] } else { &artwork } };
+    let opened = match &again {
+        // A result with its source and recipe in it opens with its steps.
+        Some(line) => stage.warp(&svg, &[&line[..], &["--embed-recipe".to_owned()]].concat(), &scope)?.svg,
+        None => svg.clone(),
+    };
+    let Some(recipe) = edited(stage, &opened, &options, &scope)? else { return Ok(String::new()) };
+    if recipe.steps.is_empty() {
+        return Ok(svg);
+    }
+    let line = [words_of(stage, &recipe), options].concat();
+    let outcome = stage.warp(&svg, &line, &scope)?;
+    stage.check(&svg, &outcome)?;
+    let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
+    let recipe = joined(&settled(stage, line, &outcome));
+    let result = remembering(stage, &svg, &outcome.svg, &artwork, &recipe, &guides)?;
+    as_by_hand(stage, &drawing, result, &returned)
+}
+
+/// The recipe by which all of these objects were warped, if they were warped by one whose guides are still there.
+fn warped_together(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
+    let mut recipes = all.iter().filter(|o| ids.contains(&o.id)).map(|o| o.recipe.as_ref());
+    let first = recipes.next()??;
+    let line = split(first);
+    let is_there = |id: &String| all.iter().any(|o| o.id == *id);
+    (recipes.all(|r| r == Some(first)) && referred(&line).iter().all(is_there)).then_some(line)
+}
+
+/// Opens the page on a drawing. Returns the steps that the user keeps.
+fn edited(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -> Result<Option<Recipe>, Failure> {
+    let mut given = Given::default();
+    let mut set = |name: &str, value: &str| given.set(name, value).map_err(Failure::Usage);
+    for word in options {
+        let own = word.trim_start_matches("--");
+        let (name, value) = own.split_once('=').unwrap_or((own, "true"));
+        set(name, value)?;
+    }
+    for id in scope.ids {
+        set("select", &format!("[id={id}]"))?;
+    }
+    if let Some(folder) = folder() {
+        set("base-dir", &folder.display().to_string())?;
+    }
+    let file = temporary(svg.as_bytes())?;
+    let document = std::env::var_os("DOCUMENT_PATH").filter(|p| !p.is_empty());
+    let name = document.and_then(|p| Some(Path::new(&p).file_name()?.to_string_lossy().into_owned()));
+    let drawing = name.unwrap_or_else(|| "Drawing".into());
+    let options = Options {
+        file: file.path().to_owned(),
+        purpose: Purpose::Program { name: "Inkscape".into(), drawing },
+        port: None,
+        open: true,
+    };
+    let host = Arc::new(EditorHost::new(stage.registry.clone(), Given::default().keeping_pages(), given));
+    watch::rest();
+    pathwarp_editor::serve(host, &options, |_| ()).map_err(Failure::Input)
 }

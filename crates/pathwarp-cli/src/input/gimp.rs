@@ -1,28 +1,26 @@
 //! GIMP paths as artwork: warped, and written in a format that GIMP reads.
 
-use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
-use super::folds::{self, Fold};
+use super::artwork::{self, Artwork, Baseline, Fold, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::beside;
+use super::files::{display, split_reference};
 use super::gimp_file::GimpFile;
-use super::gimp_format::{GimpFormat, format};
-use super::gimp_stroke::{WarpedStrokes, moved_strokes, single_precision_error, warp_strokes};
-use super::read::display;
-use super::{preview, surface};
 use crate::export::{self, Exported};
 use crate::failure::Failure;
-use crate::format::Format;
+use crate::format::{Choice, Format};
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::page::PageNews;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use pathwarp::budget::Budget;
+use pathwarp::edit::{self, Offset};
 use pathwarp::fold::{Orientation, Survey};
-use pathwarp::kurbo::{Affine, Rect};
+use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Class, Map, Undeclared};
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe, Step};
 use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
 use pathwarp::{Error, GeometryError, Outline};
-use pathwarp_gimp::{GimpPath, Stroke, to_json, to_svg};
+use pathwarp_gimp::{FileKind, GimpPath, Stroke, to_json, to_svg};
 use pathwarp_svg::{Document, Edit, OnError, ReadOptions};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -132,7 +130,7 @@ impl GimpArtwork {
         let before: Vec<GimpPath> = self.selected.iter().map(|&i| self.path(i).clone()).collect();
         let (before, after) = (to_svg(canvas, &before, None), to_svg(canvas, &warped.paths(self), None));
         let doc = Document::read(before.as_bytes(), &self.file_name(), &ReadOptions::default())?;
-        preview::draw(&doc, &after, built, &ReadOptions::default(), file)
+        beside::preview(&doc, &after, built, &ReadOptions::default(), file)
     }
 }
 
@@ -192,7 +190,7 @@ impl Artwork for GimpArtwork {
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options, .. } = request;
-        if let Some(param) = surface::requested(&built.whole) {
+        if let Some(param) = beside::surface_requested(&built.whole) {
             return Err(Failure::usage(format!(
                 "--{param} is for SVG files; convert the paths to SVG first (`pathwarp convert`)"
             )));
@@ -314,7 +312,7 @@ impl GimpArtwork {
             match result {
                 Ok(mut warped) => {
                     let fold = Fold::of(&orientation, &all[part]);
-                    out.warnings.extend(fold.at.map(|at| folds::warning(&path.name, &[], at)));
+                    out.warnings.extend(fold.at.map(|at| artwork::fold_warning(&path.name, &[], at)));
                     if self.format == GimpFormat::IntoXcf {
                         warped.report.max_error +=
                             warped.strokes.iter().map(single_precision_error).fold(0.0, f64::max);
@@ -394,4 +392,166 @@ fn copy_with_paths(from: &Path, copy: &Path, strokes: &[(usize, Vec<Stroke>)]) -
         pathwarp_gimp::rewrite(source, &mut to, strokes).map_err(|e| e.to_string())?;
         to.flush().map_err(|e| format!("cannot be written: {e}"))
     })
+}
+
+/// A path's strokes under a map.
+pub(super) struct WarpedStrokes {
+    pub(super) strokes: Vec<Stroke>,
+    pub(super) report: PathReport,
+}
+
+impl WarpedStrokes {
+    /// The strokes of `path`, unless these have fewer segments.
+    pub(super) fn or_fewer(self, path: &GimpPath) -> Self {
+        let segments = self.report.segments_in;
+        if self.report.segments_out < segments {
+            return self;
+        }
+        let mut report = PathReport::default();
+        (report.segments_in, report.segments_out) = (segments, segments);
+        Self { strokes: path.strokes.clone(), report }
+    }
+}
+
+/// Warps the strokes of `path`, one copy for each of `places`.
+pub(super) fn warp_strokes(
+    path: &GimpPath,
+    places: &[Affine],
+    map: &dyn Map,
+    options: &refit::Options,
+) -> Result<WarpedStrokes, GeometryError> {
+    let mut out = WarpedStrokes { strokes: Vec::new(), report: PathReport::default() };
+    let segments = |s: &Stroke| if s.closed { s.anchors() } else { s.anchors().saturating_sub(1) };
+    for (place, stroke) in places.iter().flat_map(|p| path.strokes.iter().map(move |s| (*p, s))) {
+        if let Class::Affine(m) = map.class() {
+            // Every control point is kept, including handles that belong to no segment.
+            let m = m * place;
+            out.strokes.push(if m == Affine::IDENTITY { stroke.clone() } else { transformed(stroke, m) });
+            out.report.segments_in += segments(stroke);
+            out.report.segments_out += segments(stroke);
+            continue;
+        }
+        let placed = transformed(stroke, place);
+        let Some(subpath) = placed.subpath() else { continue };
+        if subpath.segs.is_empty() {
+            out.strokes.push(warp_single_anchors(&placed, map)?);
+            continue;
+        }
+        let result = refit::warp_path(&Outline { subpaths: vec![subpath] }, map, options)?;
+        let outline = Outline::from(&result.path);
+        out.strokes.extend(outline.subpaths.iter().map(Stroke::from_subpath));
+        let r = result.report;
+        out.report.segments_in += r.segments_in;
+        out.report.segments_out += r.segments_out;
+        out.report.add(r);
+    }
+    Ok(out)
+}
+
+/// The strokes at a distance from an outline.
+pub(super) fn moved_strokes(
+    outline: &Outline,
+    offset: &Offset,
+    options: &refit::Options,
+) -> Result<WarpedStrokes, GeometryError> {
+    let moved = edit::moved(outline, offset, options)?;
+    let strokes = Outline::from(&moved.path).subpaths.iter().map(Stroke::from_subpath).collect();
+    Ok(WarpedStrokes { strokes, report: moved.report })
+}
+
+fn transformed(stroke: &Stroke, m: Affine) -> Stroke {
+    let points = stroke.points.iter().map(|&[x, y]| m * Point::new(x, y));
+    Stroke { closed: stroke.closed, points: points.map(|p| [p.x, p.y]).collect() }
+}
+
+/// Maps anchors that have no segment, and their handles by the map's derivative.
+fn warp_single_anchors(stroke: &Stroke, map: &dyn Map) -> Result<Stroke, GeometryError> {
+    let mut points = Vec::with_capacity(stroke.points.len());
+    for [incoming, anchor, outgoing] in stroke.triples() {
+        let j = map.jet(anchor);
+        let along = |v: Vec2| j.p + j.dx * v.x + j.dy * v.y;
+        let image = [along(incoming - anchor), j.p, along(outgoing - anchor)];
+        if image.iter().any(|p| !p.is_finite()) {
+            return Err(GeometryError::Infinity { shape: "path".to_owned(), at: anchor });
+        }
+        points.extend(image.map(|p| [p.x, p.y]));
+    }
+    Ok(Stroke { closed: stroke.closed, points })
+}
+
+/// Largest distance by which single precision, in which an XCF stores coordinates, moves a point of the stroke.
+pub(super) fn single_precision_error(s: &Stroke) -> f64 {
+    let off = |v: f64| f64::from(v as f32) - v;
+    s.points.iter().map(|&[x, y]| off(x).hypot(off(y))).fold(0.0, f64::max)
+}
+
+/// The form in which warped GIMP paths are written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum GimpFormat {
+    Paths(Format),
+    /// A copy of the input XCF.
+    IntoXcf,
+}
+
+/// The formats of GIMP paths.
+pub(crate) const PATHS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Dxf, Format::PointList];
+
+/// The format for the options and the target, `None` being standard output.
+///
+/// # Errors
+/// The options ask for something that this file cannot be written as.
+pub(super) fn format(options: &CommonOptions, input: &GimpFile, target: Option<&Path>) -> Result<GimpFormat, Failure> {
+    if options.embed_recipe {
+        return Err(Failure::usage(
+            "--embed-recipe is for SVG files; --write-recipe saves the recipe beside the result",
+        ));
+    }
+    if let Some(copy) = &options.into {
+        check_into(input, copy)?;
+        return Ok(GimpFormat::IntoXcf);
+    }
+    if target.is_some_and(|t| Format::of(t) == Some(Format::Xcf)) {
+        return Err(Failure::usage(
+            "an XCF holds more than paths; --into COPY.xcf writes a copy of the input with its paths warped (--into \
+             INPUT.xcf --in-place overwrites the input)",
+        ));
+    }
+    Ok(GimpFormat::Paths(Choice { what: "GIMP paths are", among: PATHS }.format(target, options.format)?))
+}
+
+/// Checks that the paths of `input` can be written into its copy.
+fn check_into(input: &GimpFile, copy: &Path) -> Result<(), Failure> {
+    let problem = match input.file.kind {
+        FileKind::Xcf(_) if input.damage.is_some() => "is damaged; write its paths to SVG or JSON (-o)",
+        FileKind::Xcf(_) => "",
+        FileKind::PackedXcf(_) => "is packed; unpack it first",
+        _ => "is not an XCF",
+    };
+    if !problem.is_empty() {
+        let file = display(&input.path);
+        return Err(Failure::usage(format!("--into copies a plain, undamaged XCF; {file} {problem}")));
+    }
+    if !copy.extension().is_some_and(|e| e.eq_ignore_ascii_case("xcf")) {
+        return Err(Failure::usage(format!("--into writes an XCF; give {} the extension .xcf", copy.display())));
+    }
+    Ok(())
+}
+
+/// The name of the SVG made from a GIMP input: `art.xcf.gz#Cage` gives `art-Cage.svg`. `None` for other inputs.
+pub(crate) fn svg_name(input: &Path) -> Option<String> {
+    const ENDINGS: [&str; 6] = [".xcf", ".xcf.gz", ".xcf.bz2", ".xcf.xz", ".json", ".txt"];
+    let text = input.to_string_lossy();
+    let (file, name) = if input.is_file() { (input.to_owned(), None) } else { split_reference(&text) };
+    let file = file.file_name()?.to_string_lossy().into_owned();
+    let stem = ENDINGS.iter().rev().find_map(|e| file.strip_suffix(e))?;
+    Some(match name {
+        Some(name) => format!("{stem}-{}.svg", file_name(name)),
+        None => format!("{stem}.svg"),
+    })
+}
+
+/// A path's name as part of a file name: letters and digits of any script are kept, everything else becomes a hyphen.
+pub(crate) fn file_name(name: &str) -> String {
+    let plain = name.chars().map(|c| if c.is_alphanumeric() || matches!(c, '_' | '.' | '-') { c } else { '-' });
+    plain.collect::<String>().trim_matches(['-', '.']).to_owned()
 }

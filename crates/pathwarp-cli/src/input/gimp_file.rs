@@ -1,6 +1,6 @@
 //! GIMP files: read for their paths, as artwork and as targets of path references.
 
-use super::reference_name::split_reference;
+use super::files::{is_named_xcf, split_reference};
 use crate::failure::Failure;
 use pathwarp::Error;
 use pathwarp::budget::Limits;
@@ -111,10 +111,4 @@ impl GimpFile {
             boxes.fold([1.0, 1.0], |[w, h], b| [w.max(b[2].ceil()), h.max(b[3].ceil())])
         })
     }
-}
-
-/// Returns `true` if `path` is named like an XCF, packed or not.
-pub(super) fn is_named_xcf(path: &Path) -> bool {
-    let name = path.to_string_lossy().to_ascii_lowercase();
-    [".xcf", ".xcf.gz", ".xcf.bz2", ".xcf.xz"].iter().any(|e| name.ends_with(e))
 }

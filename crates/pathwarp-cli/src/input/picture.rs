@@ -1,23 +1,19 @@
 //! Photographs (PNG, JPEG, WebP) as artwork: warped pixel by pixel, by the same maps as a drawing.
 
-use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
-use super::folds;
-use super::read::display;
-use super::reference_name::no_document;
+use super::artwork::{self, Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::files::{display, no_document};
 use crate::advice;
-use crate::bitmap::work::{self, Pixel};
-use crate::bitmap::{ROUNDING, inverse};
+use crate::bitmap::{self, Pixel, ROUNDING, inverse};
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use crate::options::{CommonOptions, FrameChoice};
 use crate::page::PageNews;
 use pathwarp::budget::{Budget, Exceeded};
-use pathwarp::fold;
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, Step};
-use pathwarp::{Error, Outline};
+use pathwarp::{Error, Outline, fold};
 use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, header_size, shown, warp_image};
 use pathwarp_svg::OnError;
 use std::path::Path;
@@ -56,7 +52,7 @@ impl PictureArtwork {
         let budget = Budget::new(options.reading.limits.for_input(bytes.len()));
         let (width, height) = header_size(bytes)?;
         let size = (f64::from(width), f64::from(height));
-        let counted = work::picture(&budget, Pixel::Decoded, size);
+        let counted = bitmap::count_picture(&budget, Pixel::Decoded, size);
         counted.map_err(|e| Failure::Limited(too_much("reading a picture", size, &e, ""), e, 3))?;
         let picture = Picture::read_within(bytes, &budget.limits())?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
@@ -133,11 +129,12 @@ impl Artwork for PictureArtwork {
             warnings.push(undefined_at(p));
         }
         let orientation = fold::orientation(&self.outline, true, &*map);
-        warnings.extend(orientation.folded_against(&orientation).map(|at| folds::warning("the picture", &[], at)));
+        warnings
+            .extend(orientation.folded_against(&orientation).map(|at| artwork::fold_warning("the picture", &[], at)));
         let (visible, size) = size(bounds, options.image_size)?;
         let smaller = "give a smaller --image-size, or ";
         let too_much = |e| Failure::Limited(too_much("warping it to a picture", size, &e, smaller), e, 4);
-        work::picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
+        bitmap::count_picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
         let size = (size.0 as u32, size.1 as u32);
         let inverse = inverse(&map, area, &self.budget);
         let warp = ImageWarp {

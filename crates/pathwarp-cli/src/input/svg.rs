@@ -1,12 +1,9 @@
 //! SVG drawings as artwork.
 
-use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
-use super::folds::{self, Fold};
-use super::read::{display, not_a_drawing, read_options};
-use super::{preview, surface};
-use crate::advice;
+use super::artwork::{self, Artwork, Baseline, Fold, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::beside;
+use super::files::{display, not_a_drawing, read_options};
 use crate::bitmap::Bender;
-use crate::export;
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
 use crate::options::{CommonOptions, FrameChoice, GradientChoice};
@@ -14,15 +11,14 @@ use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use crate::units::units_per_px;
-use crate::watch;
+use crate::{advice, export, watch};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
-use pathwarp::refit;
-use pathwarp::{Error, Outline};
+use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
     Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, WarpOptions,
     WarpedDocument,
@@ -236,10 +232,10 @@ impl SvgArtwork {
         let letters = LazyCell::new(|| {
             // Letters that are placed one by one do not follow the map.
             let letters = if places.letters.is_empty() { lettering.letters() } else { &[] };
-            folds::letters_by_shape(self.doc.selected(&options.selection).map(|s| (&*s.id, &*s.outline)), letters)
+            artwork::letters_by_shape(self.doc.selected(&options.selection).map(|s| (&*s.id, &*s.outline)), letters)
         });
         for (name, o) in &pictures {
-            warnings.extend(o.folded_against(&all).map(|at| folds::warning(name, &[], at)));
+            warnings.extend(o.folded_against(&all).map(|at| artwork::fold_warning(name, &[], at)));
         }
         for s in &warped.shapes {
             let Some((&id, o)) = by_id.get_key_value(s.id.as_str()).filter(|(id, _)| !out.contains_key(**id)) else {
@@ -248,8 +244,8 @@ impl SvgArtwork {
             let fold = Fold::of(o, &all);
             if let Some(at) = fold.at {
                 let orientation = |o: &Outline| survey.orientation_of_copies(o, &places.copies, true);
-                let letters = folds::folded(letters.get(id), &all, orientation);
-                warnings.push(folds::warning(id, &letters, at));
+                let letters = artwork::folded(letters.get(id), &all, orientation);
+                warnings.push(artwork::fold_warning(id, &letters, at));
             }
             out.insert(id, fold);
         }
@@ -426,15 +422,15 @@ impl Artwork for SvgArtwork {
         }
         warnings.extend(folds);
         warnings.extend(advice::outside(&self.doc.unread_images()));
-        surface::check(built)?;
+        beside::check_surface(built)?;
         let parts = built.parts.iter().zip(&options);
-        let surfaces = parts.map(|(part, options)| surface::files(&self.doc, part, options));
+        let surfaces = parts.map(|(part, options)| beside::surface_files(&self.doc, part, options));
         let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?.concat();
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
         let files = files.collect::<Result<_, _>>()?;
         let preview = common.preview.as_deref();
         let preview =
-            preview.map(|file| preview::draw(&self.doc, &warped.svg, built, &self.read, (file, common.quality)));
+            preview.map(|file| beside::preview(&self.doc, &warped.svg, built, &self.read, (file, common.quality)));
         let result = export::drawing(warped.svg, self.format, &self.read, common, Some(request.tolerance))?;
         warnings.extend(result.warnings);
         Ok(WarpedArtwork {

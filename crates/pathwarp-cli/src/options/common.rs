@@ -1,16 +1,19 @@
 //! The common options as typed values.
 
-use super::reading::Reading;
-use super::typed_box::TypedBox;
 use crate::edits::EditChoice;
 use crate::failure::Failure;
 use crate::format::Format;
-use pathwarp::kurbo::Rect;
-use pathwarp::param::{Axis, Frame, Length};
+use pathwarp::budget::{Limit, Limits};
+use pathwarp::kurbo::{Point, Rect, Size};
+use pathwarp::param::{Axis, Frame, Length, LengthUnit};
 use pathwarp::refit::RESOLUTION;
 use pathwarp_dxf::Curves;
-use pathwarp_svg::{Clones, LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
+use pathwarp_svg::{
+    Clones, GenericFamilies, LetteringFrame, OnError, PageFit, Patterns, ReadOptions, Strokes, Structure, TextMode,
+    check_fonts,
+};
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 /// Default tolerance as a fraction of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
 /// plotter draws.
@@ -133,4 +136,139 @@ impl CommonOptions {
         let share = self.edit.as_ref().and_then(|e| e.info.tolerance).unwrap_or(TOLERANCE_OF_DIAGONAL);
         Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * share } else { share }))
     }
+}
+
+/// The options about reading drawings, which every command that reads one has.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Reading {
+    /// Limits on the work that an input may cause.
+    pub(crate) limits: Limits,
+    /// Read linked files from anywhere, not only beside the input.
+    pub(crate) external: bool,
+    pub(crate) fonts: Fonts,
+    /// The folder that links are relative to; `None`: the input's.
+    pub(crate) base: Option<PathBuf>,
+}
+
+/// The fonts for text.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Fonts {
+    /// Files, and folders of them.
+    pub(crate) paths: Vec<PathBuf>,
+    /// Ignore the installed ones.
+    pub(crate) no_system: bool,
+    pub(crate) generic: GenericFamilies,
+}
+
+impl Reading {
+    /// Checks that what was named as fonts are fonts.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        Ok(check_fonts(&self.fonts.paths)?)
+    }
+
+    /// Lets a switch end the work.
+    pub(crate) fn stop(&mut self, switch: Option<&'static AtomicBool>) {
+        self.limits = switch.map_or(self.limits, |switch| self.limits.stopped_by(switch));
+    }
+
+    /// The same as options of the library.
+    pub(crate) fn read_options(&self) -> ReadOptions {
+        ReadOptions::default()
+            .with_limits(self.limits)
+            .with_external(self.external)
+            .with_fonts(self.fonts.paths.clone())
+            .with_system_fonts(!self.fonts.no_system)
+            .with_generic_families(self.fonts.generic.clone())
+    }
+}
+
+/// Position and size as typed; none is a percentage.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TypedBox([Length; 4]);
+
+impl TypedBox {
+    /// The box in user units of a drawing.
+    pub(crate) fn rect(&self, units_per_px: [f64; 2]) -> Rect {
+        let scale = Frame::new(Rect::ZERO).with_units_per_px(units_per_px);
+        let [x, y, w, h] = self.0;
+        let (x, y) = (x.in_units(Axis::X, &scale), y.in_units(Axis::Y, &scale));
+        Rect::from_origin_size(Point::new(x, y), Size::new(w.in_units(Axis::X, &scale), h.in_units(Axis::Y, &scale)))
+    }
+}
+
+/// Parses a positive, finite number.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if v > 0.0 && v.is_finite() => Ok(v),
+        _ => Err(format!("`{text}` is not a positive number")),
+    }
+}
+
+/// Parses a limit, `NAME=N` or `NAME=none`.
+pub(super) fn limit(text: &str, limits: &mut Limits) -> Result<(), String> {
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=N, such as work=1e9"))?;
+    let limit = Limit::named(name.trim()).ok_or_else(|| match name.trim() {
+        old @ ("comparisons" | "segments" | "letters" | "painting" | "evaluations") => {
+            format!(
+                "`{old}` is now part of the limit `work`: --limit work=N, of which a default run has {:.0e}",
+                Limits::default().of(Limit::Work)
+            )
+        }
+        "image-bytes" => "`image-bytes` is now part of the limit `bytes`: --limit bytes=N".to_owned(),
+        other => crate::advice::unknown("limit", other, Limit::ALL.into_iter().map(Limit::name)),
+    })?;
+    let most = if value.trim() == "none" { f64::INFINITY } else { positive(value.trim())? };
+    *limits = limits.with(limit, most);
+    Ok(())
+}
+
+/// Parses a positive length.
+pub(super) fn positive_length(text: &str) -> Result<Length, String> {
+    let length: Length = text.parse().map_err(|e| format!("`{text}` {e}"))?;
+    if length.value > 0.0 { Ok(length) } else { Err(format!("`{text}` is not positive")) }
+}
+
+/// Parses a size in pixels, `W` or `WxH`.
+pub(super) fn image_size(text: &str) -> Result<(u32, Option<u32>), String> {
+    let number = |t: &str| t.trim().parse::<u32>().ok().filter(|n| *n > 0);
+    let size = match text.split_once(['x', 'X', '×']) {
+        None => number(text).map(|w| (w, None)),
+        Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| (w, Some(h))),
+    };
+    size.ok_or_else(|| format!("`{text}` is neither W nor WxH in whole pixels"))
+}
+
+/// Parses a frame: one of its names, or a box.
+pub(super) fn frame(text: &str) -> Result<FrameChoice, String> {
+    Ok(match text {
+        "artwork" => FrameChoice::Artwork,
+        "viewbox" => FrameChoice::ViewBox,
+        "ink" => FrameChoice::Lettering(LetteringFrame::Ink),
+        "baseline-ascent" => FrameChoice::Lettering(LetteringFrame::BaselineAscent),
+        "baseline-capheight" => FrameChoice::Lettering(LetteringFrame::BaselineCapHeight),
+        "baseline-xheight" => FrameChoice::Lettering(LetteringFrame::BaselineXHeight),
+        "ascent-descent" => FrameChoice::Lettering(LetteringFrame::AscentDescent),
+        t => FrameChoice::Rect(rect(t)?),
+    })
+}
+
+/// Parses a box, `X,Y,W,H`.
+pub(crate) fn rect(text: &str) -> Result<TypedBox, String> {
+    let lengths: Result<Vec<Length>, _> = text.split(',').map(str::parse).collect();
+    match lengths.as_deref() {
+        Ok(&[x, y, w, h])
+            if w.value > 0.0 && h.value > 0.0 && [x, y, w, h].iter().all(|l| l.unit != LengthUnit::Percent) =>
+        {
+            Ok(TypedBox([x, y, w, h]))
+        }
+        _ => Err(format!(
+            "`{text}` is not one of artwork, viewbox, X,Y,W,H (lengths; W and H positive) or, for lettering, \
+             baseline-ascent, baseline-capheight, baseline-xheight, ascent-descent, ink"
+        )),
+    }
+}
+/// Parses a family's name.
+pub(super) fn family_name(text: &str) -> Result<String, String> {
+    let name = text.trim().trim_matches(['"', '\'']);
+    if name.is_empty() { Err("the name is empty".into()) } else { Ok(name.to_owned()) }
 }

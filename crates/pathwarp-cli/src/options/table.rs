@@ -1,11 +1,13 @@
 //! The table of common options: each is declared here, and nowhere else.
 
-use super::common::{CommonOptions, GradientChoice, OnFailure};
-use super::definition::{CommonOption, LeadingMinus, OptionValue};
-use super::parse;
+use super::common::{
+    CommonOptions, GradientChoice, OnFailure, family_name, frame, image_size, limit, positive, positive_length,
+};
 use crate::format::Format;
 use pathwarp_dxf::Curves;
 use pathwarp_svg::{Clones, PageFit, Patterns, Strokes, Structure, TextMode};
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
 
 /// An option without short name, default and conflicts, stored in recipes.
 const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
@@ -121,7 +123,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::Text {
                 name: "D",
                 minus: LeadingMinus::Number,
-                set: |o, text| parse::positive_length(text).map(|d| o.tolerance = Some(d)),
+                set: |o, text| positive_length(text).map(|d| o.tolerance = Some(d)),
             },
             "Largest distance between the exact curve and the output: user units, or a length such as 0.05mm. If it is given, it holds for \
              all contours alike",
@@ -147,7 +149,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::Text {
                 name: "artwork|viewbox|baseline-ascent|baseline-capheight|…|X,Y,W,H",
                 minus: LeadingMinus::Any,
-                set: |o, text| parse::frame(text).map(|f| o.frame = f),
+                set: |o, text| frame(text).map(|f| o.frame = f),
             },
             "Box that percentages and defaults refer to. For lettering (text, or output of `pathwarp text`) also \
              baseline-ascent, baseline-capheight, baseline-xheight (from the baseline up, between the ends of the \
@@ -226,27 +228,27 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     },
     family(
         "serif-family",
-        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.serif = Some(n)),
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.serif = Some(n)),
         "The family that serif stands for",
     ),
     family(
         "sans-serif-family",
-        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.sans_serif = Some(n)),
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.sans_serif = Some(n)),
         "The family that sans-serif stands for",
     ),
     family(
         "cursive-family",
-        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.cursive = Some(n)),
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.cursive = Some(n)),
         "The family that cursive stands for",
     ),
     family(
         "fantasy-family",
-        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.fantasy = Some(n)),
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.fantasy = Some(n)),
         "The family that fantasy stands for",
     ),
     family(
         "monospace-family",
-        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.monospace = Some(n)),
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.monospace = Some(n)),
         "The family that monospace stands for",
     ),
     CommonOption {
@@ -330,7 +332,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::Text {
                 name: "N",
                 minus: LeadingMinus::No,
-                set: |o, text| parse::positive(text).map(|dpi| o.image_dpi = Some(dpi)),
+                set: |o, text| positive(text).map(|dpi| o.image_dpi = Some(dpi)),
             },
             "Resolution of the warped bitmaps in a drawing, in pixels per inch of the drawing; also of what filters draw in \
              a PDF (there 300 by default)",
@@ -343,7 +345,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::Text {
                 name: "W[xH]",
                 minus: LeadingMinus::No,
-                set: |o, text| parse::image_size(text).map(|size| o.image_size = Some(size)),
+                set: |o, text| image_size(text).map(|size| o.image_size = Some(size)),
             },
             "Size in pixels of a warped PNG, JPEG or WebP",
         )
@@ -419,7 +421,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         reading: true,
         ..of_the_run(
             "limit",
-            OptionValue::List { name: "NAME=N", push: |o, text| parse::limit(text, &mut o.reading.limits) },
+            OptionValue::List { name: "NAME=N", push: |o, text| limit(text, &mut o.reading.limits) },
             "Raise or lower a limit on the work that an input may cause, such as work=1e9, or memory=none; may be given \
          several times. The limits are bytes, elements, pixels (of pictures), work, seconds (of processor time) and memory \
          (in bytes); without this option they grow with the size of the input and its pictures",
@@ -447,3 +449,85 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run("quiet", OptionValue::Switch(|o| o.quiet = true), "Print no warnings and no progress")
     },
 ];
+
+/// One common option.
+pub(crate) struct CommonOption {
+    /// Long name, and the key in a recipe's `[options]`.
+    pub(crate) name: &'static str,
+    pub(crate) short: Option<char>,
+    pub(crate) value: OptionValue,
+    /// Default, in words for help. The default of a [`Choice`](OptionValue::Choice) is one of its words.
+    pub(crate) default: Option<&'static str>,
+    /// Recipes store the option: it shapes the result, rather than naming files or changing what is printed.
+    pub(crate) stored: bool,
+    /// Every command that reads drawings has the option.
+    pub(crate) reading: bool,
+    /// Options that cannot be given together with this one.
+    pub(crate) conflicts: &'static [&'static str],
+    pub(crate) help: &'static str,
+}
+
+/// Sets an option whose value needs no parsing.
+pub(crate) type Set = fn(&mut CommonOptions);
+
+/// The kind of value an option takes, and how it updates [`CommonOptions`].
+pub(crate) enum OptionValue {
+    /// Present or absent; takes no value.
+    Switch(Set),
+    /// One of these words.
+    Choice(&'static [(&'static str, Set)]),
+    /// A whole number in a range.
+    Whole { name: &'static str, range: RangeInclusive<u16>, set: fn(&mut CommonOptions, u16) },
+    /// Text with its own syntax. The error names the fault without the option.
+    Text { name: &'static str, minus: LeadingMinus, set: fn(&mut CommonOptions, &str) -> Result<(), String> },
+    /// Text; may be given several times.
+    List { name: &'static str, push: fn(&mut CommonOptions, &str) -> Result<(), String> },
+    /// A file or folder.
+    File { name: &'static str, set: fn(&mut CommonOptions, PathBuf) },
+}
+
+/// Values that may start with a minus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum LeadingMinus {
+    No,
+    /// If it is a number.
+    Number,
+    Any,
+}
+
+impl CommonOption {
+    /// The help text with the default.
+    pub(crate) fn help(&self) -> String {
+        match self.default {
+            Some(d) => format!("{} [default: {d}]", self.help),
+            None => self.help.to_owned(),
+        }
+    }
+
+    /// Returns `true` if the option may be given several times.
+    pub(crate) fn repeats(&self) -> bool {
+        matches!(self.value, OptionValue::List { .. })
+    }
+
+    /// The words of a choice.
+    pub(crate) fn words(&self) -> Vec<&'static str> {
+        match &self.value {
+            OptionValue::Choice(words) => words.iter().map(|(word, _)| *word).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Checks a value as far as the kind alone decides: `Ok` if it is one of the words, in the range, or `true` for a switch.
+    pub(crate) fn check(&self, value: &str) -> Result<(), String> {
+        match &self.value {
+            OptionValue::Switch(_) if value != "true" => Err(format!("`{value}` is neither true nor false")),
+            OptionValue::Choice(words) if !words.iter().any(|(word, _)| *word == value) => {
+                Err(format!("`{value}` is not one of {}", self.words().join(", ")))
+            }
+            OptionValue::Whole { range, .. } if !value.parse().is_ok_and(|n| range.contains(&n)) => {
+                Err(format!("`{value}` is not a whole number from {} to {}", range.start(), range.end()))
+            }
+            _ => Ok(()),
+        }
+    }
+}

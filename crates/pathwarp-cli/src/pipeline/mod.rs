@@ -1,40 +1,29 @@
 //! The one run of every deformation: the outputs are planned, each input is opened, built, warped and reported
 //! (`file_run.rs`), and its files are put in place, all or none. Of several inputs, each is finished on its own.
 
-mod beyond;
 mod file_run;
-mod folders;
-mod inputs;
 mod links;
-mod memory;
-mod messages;
-mod naming;
 mod plan;
-mod progress;
-mod report_file;
-mod session;
+
+pub(crate) use file_run::{baseline, build, divided, explained, starts, warp_bytes};
+pub(crate) use plan::{Folders, InputFile, Inputs, Job};
 
 use crate::advice::Flags;
-use crate::failure::Failure;
+use crate::failure::{Failure, Status};
 use crate::input::{PREVIEW, display};
-use crate::options::{Given, OnFailure};
+use crate::options::{CommonOptions, Given, OnFailure};
 use crate::output::{self, Draft, PendingFile};
-use crate::status::Status;
-use crate::{recipe_file, references, temporaries, watch};
+use crate::page::PageCounts;
+use crate::report::{FileReport, ReportFile};
+use crate::{recipe_file, references, temporaries, terminal, watch};
 use file_run::{Batch, FileRun};
-pub(crate) use file_run::{baseline, build, divided, explained, starts};
-pub(crate) use folders::Folders;
-use indicatif::ProgressBar;
-pub(crate) use inputs::InputFile;
-pub(crate) use memory::warp_bytes;
+use indicatif::{ProgressBar, ProgressStyle};
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
 use pathwarp_svg::PageFit;
-pub(crate) use plan::{Inputs, Job};
 use rayon::prelude::*;
-use report_file::ReportFile;
-use session::Session;
 use std::convert;
+use std::io::IsTerminal;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
@@ -51,7 +40,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     let started = Instant::now();
     let mut options = given.read()?;
     watch::begin(options.reading.limits);
-    let inputs = inputs::inputs(&options)?;
+    let inputs = plan::inputs(&options)?;
     options.reading.check()?;
     let kind = Inputs { files: &inputs, kind: "input", replaceable: true, result: convert::identity };
     let jobs = kind.plan(registry, recipe, &options, from)?;
@@ -75,7 +64,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     let _empty_ones_removed_at_the_end = Folders::create(&options, &jobs)?;
     let draft = options.report.as_deref().map(Draft::new).transpose()?;
     let report = draft.map(|d| ReportFile::new(d, recipe, &options, started)).transpose()?;
-    let mut session = Session::new(&options, &batch.flags, report, jobs.len());
+    let mut session = Collected::new(&options, &batch.flags, report, jobs.len());
     run_jobs(&batch, &jobs, &mut session)?;
     if let Some(file) = &options.write_recipe {
         let text = recipe_file::write(registry, recipe, given, file.parent().unwrap_or(Path::new("")))?;
@@ -88,7 +77,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
 ///
 /// # Errors
 /// The only input fails, any fails and the options say to stop, or the recipe is at fault.
-fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Session<'_>) -> Result<(), Failure> {
+fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Collected<'_>) -> Result<(), Failure> {
     // A single input starts threads only when it has work for them.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = (jobs.len() > 1 || batch.options.jobs.is_some())
@@ -98,7 +87,7 @@ fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Session<'_>) -> Resul
         .transpose()
         .map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
     let at_once = pool.as_ref().map_or(1, |p| p.current_num_threads() * CHUNK_PER_THREAD);
-    let bar = progress::bar(jobs.len(), batch.options.quiet);
+    let bar = progress_bar(jobs.len(), batch.options.quiet);
     let stops = jobs.len() == 1 || batch.options.on_failure == OnFailure::Stop;
     let mut rest = jobs;
     while !rest.is_empty() {
@@ -141,4 +130,165 @@ fn one(batch: &Batch<'_>, job: &Job, files_wait: bool, bar: &ProgressBar) -> Res
         temporaries::count_finished();
     }
     Ok(run)
+}
+
+/// Most failures that are listed on the terminal; the report holds the rest.
+const LISTED: usize = 50;
+
+/// The results of the inputs so far.
+struct Collected<'a> {
+    options: &'a CommonOptions,
+    flags: &'a Flags,
+    report: Option<ReportFile>,
+    /// Number of inputs of the whole run.
+    inputs: usize,
+    /// Outputs that appear at the end.
+    pending: Vec<PendingFile>,
+    /// The inputs of which something was left out.
+    partial: Vec<String>,
+    done: usize,
+    failed: usize,
+    failures: Vec<String>,
+    pages: PageCounts,
+}
+
+impl<'a> Collected<'a> {
+    fn new(options: &'a CommonOptions, flags: &'a Flags, report: Option<ReportFile>, inputs: usize) -> Self {
+        Self {
+            options,
+            flags,
+            report,
+            inputs,
+            pending: Vec::new(),
+            partial: Vec::new(),
+            done: 0,
+            failed: 0,
+            failures: Vec::new(),
+            pages: PageCounts::default(),
+        }
+    }
+
+    /// Returns `true` if no input has been warped yet.
+    fn is_untried(&self) -> bool {
+        self.done == 0
+    }
+
+    /// Adds an input that was warped: prints its notes and warnings.
+    fn done(&mut self, run: FileRun) -> Result<(), Failure> {
+        let several = self.inputs > 1;
+        for note in &run.notes {
+            terminal::note(&if several { format!("{}: {note}", run.report.file) } else { note.clone() });
+        }
+        if !self.options.quiet {
+            run.page.note().iter().for_each(|note| terminal::note(note));
+            // The warnings about pages come last.
+            let counted = if several { run.page.warnings().len() } else { 0 };
+            warn(&run.report, run.report.warnings.len() - counted);
+        }
+        self.pages.add(&run.page, &run.report.file);
+        self.done += 1;
+        if run.partial {
+            self.partial.push(run.report.file.clone());
+        }
+        self.pending.extend(run.files);
+        self.report.as_mut().map_or(Ok(()), |r| r.add(&run.report))
+    }
+
+    /// Adds an input that was not warped. The message is printed at the end.
+    fn failed(&mut self, input: &Path, failure: &Failure) -> Result<(), Failure> {
+        let message = failure.message(self.flags);
+        self.failed += 1;
+        if self.failures.len() < LISTED {
+            self.failures.push(message.clone());
+        }
+        self.report.as_mut().map_or(Ok(()), |r| r.add(&FileReport::failed(display(input), message)))
+    }
+
+    /// Puts the last outputs in place, and prints the summary.
+    fn finish(mut self) -> Result<Status, Failure> {
+        if let Some(report) = self.report.take() {
+            self.pending.push(report.finish()?);
+        }
+        PendingFile::commit_all(std::mem::take(&mut self.pending))?;
+        if !self.options.quiet {
+            self.pages.warnings(self.inputs).iter().filter(|_| self.inputs > 1).for_each(|w| terminal::warning(w));
+        }
+        self.summarise();
+        Ok(Status::partial_if(!self.partial.is_empty() || self.failed > 0 || self.pages.are_blank()))
+    }
+
+    /// Names the inputs of which something was left out, as the exit code tells of them.
+    fn tell_partial(&self) {
+        const NAMED: usize = 5;
+        if self.partial.is_empty() || self.inputs < 2 || self.options.quiet {
+            return;
+        }
+        let names: Vec<&str> = self.partial.iter().take(NAMED).map(String::as_str).collect();
+        let more = self.partial.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let (n, all) = (self.partial.len(), self.inputs);
+        terminal::warning(&format!(
+            "{n} of {all} inputs were not warped in full, so the exit code is 1: {}{more}; the warnings and --report FILE say what was left",
+            names.join(", ")
+        ));
+    }
+
+    /// Lists the failures and counts them.
+    fn summarise(&self) {
+        self.tell_partial();
+        if self.failed == 0 {
+            return;
+        }
+        self.failures.iter().for_each(|f| terminal::error(f));
+        let more = self.failed - self.failures.len();
+        if more > 0 {
+            let advice = if self.options.report.is_some() { "the report lists" } else { "--report FILE lists" };
+            terminal::error(&format!("and {more} more; {advice} them all"));
+        }
+        let written = match self.done {
+            0 => "nothing was written".to_owned(),
+            1 => "the result of the other one is written".to_owned(),
+            n => format!("the results of the other {n} are written"),
+        };
+        terminal::error(&format!("{} of {} inputs failed; {written}", self.failed, self.inputs));
+    }
+}
+
+/// Most messages of a kind; the report holds the rest.
+const SHOWN: usize = 8;
+
+/// Prints the first `count` warnings, skipped shapes and missed tolerances.
+fn warn(r: &FileReport, count: usize) {
+    let of_file = |message: &str| format!("{}: {message}", r.file);
+    for w in r.warnings.iter().take(count.min(SHOWN)) {
+        terminal::warning(&of_file(w));
+    }
+    for s in r.skipped.iter().take(SHOWN) {
+        terminal::warning(&of_file(&format!("{} is not warped: {}", s.id, s.why)));
+    }
+    for s in r.shapes.iter().filter(|s| !s.over_budget.is_empty()).take(SHOWN) {
+        let [x, y] = s.over_budget[0];
+        let why = match s.unresolved {
+            Some(resolution) => format!("it is below the resolution of these coordinates, {resolution:.0e}"),
+            None => format!("the error there is up to {:.3e}", s.max_error),
+        };
+        terminal::warning(&of_file(&format!("{} misses the tolerance near {x:.4},{y:.4}: {why}", s.id)));
+    }
+    let more = count.saturating_sub(SHOWN) + r.skipped.len().saturating_sub(SHOWN);
+    if more > 0 {
+        terminal::warning(&of_file(&format!("and {more} more; --report FILE lists them all")));
+    }
+}
+
+/// A bar over `files` files, with rate and time left; hidden for a single one, on request, and if standard error is not a
+/// terminal.
+fn progress_bar(files: usize, quiet: bool) -> ProgressBar {
+    if quiet || files < 2 || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(files as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:32} {human_pos}/{human_len} files  {per_sec}  {eta} left") {
+        bar.set_style(style);
+    }
+    bar
 }

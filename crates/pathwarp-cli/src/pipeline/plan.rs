@@ -1,19 +1,20 @@
 //! The plan of a run: which output each input gets, checked before anything is read or written.
 
-use super::inputs::InputFile;
-use super::naming::{by_pattern, in_folder, is_pattern, unknown_placeholder};
 use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::input::unreadable;
+use crate::input::{svg_name, unreadable};
 use crate::options::CommonOptions;
 use crate::output::is_device;
 use crate::readable;
 use crate::references::{files_read, files_written};
 use crate::sources::Files;
 use pathwarp::recipe::{Recipe, Step};
+use std::collections::HashSet;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::io::IsTerminal as _;
+use std::path::{Component, Path, PathBuf};
+use walkdir::{DirEntry, WalkDir};
 
 /// One input with the files it gives.
 pub(crate) struct Job {
@@ -182,4 +183,205 @@ pub(super) fn listing(recipe: &Recipe, options: &CommonOptions, jobs: &[Job]) ->
         }
     }
     out
+}
+
+/// An input file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct InputFile {
+    pub(crate) path: PathBuf,
+    /// The folder of a file found in a folder, relative to it; else empty.
+    pub(crate) below: PathBuf,
+    /// The reason why a file found in a folder is not read.
+    pub(crate) refused: Option<&'static str>,
+}
+
+impl InputFile {
+    /// A file that is named itself.
+    pub(crate) fn named(path: impl Into<PathBuf>) -> Self {
+        Self { path: path.into(), below: PathBuf::new(), refused: None }
+    }
+}
+
+/// The inputs that the options name, in order; folders are replaced by the files in them, sorted by name.
+pub(super) fn inputs(options: &CommonOptions) -> Result<Vec<InputFile>, Failure> {
+    if options.inputs.is_empty() {
+        if std::io::stdin().is_terminal() {
+            return Err(Failure::usage(
+                "no drawing is named: write the file's name after the command; - reads what is typed",
+            ));
+        }
+        return Ok(vec![InputFile::named("-")]);
+    }
+    let mut out = Vec::with_capacity(options.inputs.len());
+    for input in &options.inputs {
+        if !input.is_dir() {
+            out.push(InputFile::named(input));
+        } else if options.recursive {
+            let before = out.len();
+            drawings_in(input, options, &mut out)?;
+            if out.len() == before {
+                return Err(Failure::file(input, "the folder holds no SVG files (.svg, .svgz)"));
+            }
+        } else {
+            return Err(Failure::file(input, "is a folder; -r warps the SVG files in it"));
+        }
+    }
+    Ok(out)
+}
+
+/// Adds the SVG files below `folder`, except hidden ones and the results of an earlier run.
+fn drawings_in(folder: &Path, options: &CommonOptions, out: &mut Vec<InputFile>) -> Result<(), Failure> {
+    let results = options.out_dir.as_deref().and_then(|dir| fixed_folder(dir).canonicalize().ok());
+    let is_wanted = |entry: &DirEntry| {
+        let hidden = entry.file_name().to_string_lossy().starts_with('.');
+        let is_results = || entry.path().canonicalize().ok() == results;
+        entry.depth() == 0 || !(hidden || entry.file_type().is_dir() && results.is_some() && is_results())
+    };
+    for entry in WalkDir::new(folder).sort_by_file_name().into_iter().filter_entry(is_wanted) {
+        let entry = entry.map_err(|e| Failure::file(e.path().unwrap_or(folder), format!("cannot be read: {e}")))?;
+        let path = entry.path();
+        let is_drawing =
+            path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
+        if is_drawing && !path.is_dir() {
+            let below = path.strip_prefix(folder).ok().and_then(Path::parent).unwrap_or(Path::new(""));
+            let refused = refused(&entry, folder, options.reading.external);
+            out.push(InputFile { path: path.to_owned(), below: below.to_owned(), refused });
+        }
+    }
+    Ok(())
+}
+
+/// The reason why a file in `folder` is not read, nor written with `--in-place`. Only the folder was named.
+fn refused(entry: &DirEntry, folder: &Path, external: bool) -> Option<&'static str> {
+    let path = entry.path();
+    if !path.is_file() {
+        return Some("is no regular file");
+    }
+    let leaves = || match (path.canonicalize(), folder.canonicalize()) {
+        (Ok(file), Ok(folder)) => !file.starts_with(folder),
+        _ => true,
+    };
+    let is_elsewhere = entry.path_is_symlink() && !external && leaves();
+    is_elsewhere.then_some("is a symbolic link that leads out of the folder; --allow-external follows it")
+}
+
+/// The part of a name that stands for the input's file name without extension.
+const STEM: &str = "{stem}";
+
+/// Returns `true` if `name` gives every input an output of its own.
+pub(super) fn is_pattern(name: &Path) -> bool {
+    name.to_string_lossy().contains(STEM)
+}
+
+/// The first `{word}` in a name that stands for nothing.
+pub(super) fn unknown_placeholder(name: &Path) -> Option<String> {
+    let name = name.to_string_lossy();
+    let inner = name.split('{').skip(1).filter_map(|rest| Some(rest.split_once('}')?.0));
+    let is_word = |w: &&str| w.chars().all(|c| c.is_alphanumeric() || "_-.:".contains(c));
+    inner.filter(is_word).find(|w| format!("{{{w}}}") != STEM).map(|w| format!("{{{w}}}"))
+}
+
+/// The folders of a pattern before the first with `{stem}`: the same for every input.
+pub(super) fn fixed_folder(pattern: &Path) -> PathBuf {
+    let is_fixed = |c: &Component<'_>| !is_pattern(Path::new(c.as_os_str()));
+    pattern.components().take_while(is_fixed).collect()
+}
+
+/// The output of `input` by the file name `pattern`. `below` is the input's folder below one given with `--recursive`; it is
+/// repeated. `None` if the input has no name.
+pub(super) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<PathBuf> {
+    let named = PathBuf::from(pattern.to_string_lossy().replace(STEM, &stem(input)?));
+    let file = named.file_name()?;
+    Some(named.parent().unwrap_or(Path::new("")).join(below).join(file))
+}
+
+/// The output of `input` in the folder `dir`, which may be a pattern: of a folder, or of a file with an extension. In a folder it
+/// has the input's name, with `extension` if given. `None` if the input has no name.
+pub(super) fn in_folder(dir: &Path, input: &Path, below: &Path, extension: Option<&str>) -> Option<PathBuf> {
+    let last = dir.file_name().unwrap_or_default();
+    if is_pattern(Path::new(last)) && dir.extension().is_some() {
+        return by_pattern(dir, input, below);
+    }
+    let name = own_name(input)?;
+    let name = extension.map_or(name.clone(), |e| name.with_extension(e));
+    let dir = if is_pattern(dir) { dir.to_string_lossy().replace(STEM, &stem(input)?).into() } else { dir.to_owned() };
+    Some(dir.join(below).join(name))
+}
+
+/// The file name of an input's result: its own, or that of the SVG made from a GIMP file.
+fn own_name(input: &Path) -> Option<PathBuf> {
+    if let Some(name) = svg_name(input) {
+        return Some(name.into());
+    }
+    input.file_name().filter(|name| *name != "-").map(PathBuf::from)
+}
+
+fn stem(input: &Path) -> Option<String> {
+    Some(own_name(input)?.file_stem()?.to_string_lossy().into_owned())
+}
+
+/// Folders that were created for the outputs. Those that stay empty are removed when this is dropped.
+pub(crate) struct Folders {
+    /// A folder stands before those in it.
+    made: Vec<PathBuf>,
+}
+
+impl Folders {
+    /// Creates the folders that are missing.
+    pub(crate) fn create(options: &CommonOptions, jobs: &[Job]) -> Result<Self, Failure> {
+        let pattern = |file: &Option<PathBuf>| file.as_deref().is_some_and(is_pattern);
+        let own_target = options.out_dir.is_some() || pattern(&options.out);
+        let targets = jobs.iter().filter(|_| own_target).flat_map(|j| &j.target);
+        let previews = jobs.iter().filter(|_| pattern(&options.preview)).flat_map(|j| &j.preview);
+        let folders: HashSet<&Path> = targets.chain(previews).filter_map(|file| file.parent()).collect();
+        let mut made = Self { made: Vec::new() };
+        for folder in folders {
+            made.create_one(folder)?;
+        }
+        Ok(made)
+    }
+
+    fn create_one(&mut self, folder: &Path) -> Result<(), Failure> {
+        let missing = |f: &&Path| !f.as_os_str().is_empty() && !f.exists();
+        let before = self.made.len();
+        self.made.extend(folder.ancestors().take_while(missing).map(Path::to_owned));
+        self.made[before..].reverse();
+        if folder.as_os_str().is_empty() {
+            return Ok(());
+        }
+        std::fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))
+    }
+}
+
+impl Drop for Folders {
+    fn drop(&mut self) {
+        // Only an empty folder can be removed.
+        for folder in self.made.iter().rev() {
+            let _ = std::fs::remove_dir(folder);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_and_folders() {
+        let input = Path::new("art/sub/cat.svg");
+        let named =
+            |dir: &str, below: &str, extension| in_folder(Path::new(dir), input, Path::new(below), extension).unwrap();
+        let name = |dir: &str, below: &str| named(dir, below, None);
+        assert_eq!(name("out", ""), Path::new("out/cat.svg"));
+        assert_eq!(name("out", "sub"), Path::new("out/sub/cat.svg"));
+        assert_eq!(name("out/{stem}", ""), Path::new("out/cat/cat.svg"));
+        assert_eq!(name("out/{stem}-bent.svg", "sub"), Path::new("out/sub/cat-bent.svg"));
+        assert_eq!(name("out/v1.2", ""), Path::new("out/v1.2/cat.svg"));
+        assert_eq!(by_pattern(Path::new("{stem}.png"), input, Path::new("")).unwrap(), Path::new("cat.png"));
+        assert_eq!(named("out", "sub", Some("pdf")), Path::new("out/sub/cat.pdf"));
+        assert_eq!(named("out/{stem}", "", Some("pdf")), Path::new("out/cat/cat.pdf"));
+        assert_eq!(named("out/{stem}.dxf", "", Some("pdf")), Path::new("out/cat.dxf"));
+        assert_eq!(in_folder(Path::new("out"), Path::new("-"), Path::new(""), None), None);
+        assert_eq!(fixed_folder(Path::new("out/a/{stem}/x.svg")), Path::new("out/a"));
+    }
 }

@@ -31,7 +31,7 @@ pub(super) fn options() -> Vec<Arg> {
 }
 
 /// The models, the common options and the box.
-pub(super) fn all() -> Vec<Arg> {
+pub(super) fn model_args() -> Vec<Arg> {
     let model = Arg::new(INPUT)
         .num_args(0..)
         .value_name("MODEL")
@@ -72,7 +72,7 @@ impl Own {
     pub(super) fn read(m: &ArgMatches) -> Result<Self, Failure> {
         let depth = length(m, "extrude")?
             .map(|l| l.in_units(Axis::X, &Frame::new(Rect::ZERO).with_units_per_px([MM_PER_PX; 2])));
-        Ok(Self { frame: frame(m)?, refine: length(m, "refine")?, depth })
+        Ok(Self { frame: given_frame(m)?, refine: length(m, "refine")?, depth })
     }
 }
 
@@ -99,7 +99,7 @@ pub(super) fn frame_arg() -> Arg {
 }
 
 /// The box given by `--box`.
-pub(super) fn frame(m: &ArgMatches) -> Result<Option<Box3>, Failure> {
+pub(super) fn given_frame(m: &ArgMatches) -> Result<Option<Box3>, Failure> {
     let Some(text) = m.get_one::<String>("box") else { return Ok(None) };
     let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
     match numbers[..] {

@@ -1,29 +1,30 @@
 //! `pathwarp solid …`: deforms meshes. One subcommand per deformation of space, and `map`, `run` and `list`.
 
 mod args;
-mod drawing;
-mod format;
-mod list;
-mod map;
+mod bend;
 mod model;
-mod polygons;
-mod preview;
 mod report;
-mod run;
-mod surfaces;
 mod warp;
-mod work;
 
-use crate::failure::Failure;
-use crate::options::Given;
-use crate::status::Status;
-use crate::steps;
-use clap::{ArgMatches, Command};
+use crate::commands::file_args::{file_arg, given_file};
+use crate::commands::map::parse_points;
+use crate::failure::{Failure, Status};
+use crate::options::{Given, reading_args};
+use crate::steps::{self, INVERSE};
+use crate::{input, output, recipe_file, references};
+use args::{Own, frame_arg, given_frame, model_args, options};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use pathwarp::GeometryError;
+use pathwarp::budget::Budget;
 use pathwarp::recipe::Recipe;
 use pathwarp_solid::deform::Registry3;
+use pathwarp_solid::glam::DVec3;
+use pathwarp_solid::map::{Creases3, Jet3, Map3};
+use pathwarp_solid::{Box3, Frame3, recipe};
 use std::ffi::OsString;
-
-pub(super) const NAME: &str = "solid";
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::sync::Arc;
 
 const ABOUT: &str = "Deform solids: meshes, curved surfaces and points in space";
 
@@ -36,38 +37,148 @@ All steps are composed; percentages of a later step refer to the model as it is 
 
 Exit codes: as of pathwarp itself (`pathwarp help`).";
 
-pub(super) fn command() -> Command {
+pub(super) fn solid_command() -> Command {
     let registry = Registry3::builtin();
     let deformations = registry.entries().iter().map(|e| warp::command(&e.about().info));
-    Command::new(NAME)
+    Command::new("solid")
         .about(ABOUT)
         .after_help(AFTER)
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands(deformations)
-        .subcommands([map::command(&registry), run::command(), list::command()])
+        .subcommands([map_command(&registry), run_command(), list_command()])
 }
 
 /// Runs a subcommand; `later` holds the parts of a chain after each `+`.
-pub(super) fn run(m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
+pub(super) fn solid(m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
     let registry = Registry3::builtin();
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
     match name {
-        map::NAME => map::run(&registry, m, later),
+        "map" => map(&registry, m, later),
         _ if registry.get(name).is_some() => {
             let mut recipe = Recipe { steps: vec![steps::step(&registry, name, m)] };
             let mut given = Given::default();
-            for part in steps::parts(&registry, later, &args::options())? {
+            for part in steps::parts(&registry, later, &options())? {
                 recipe.steps.push(part.step);
                 given = given.joined(&part.options)?;
             }
             let given = given.joined(&Given::inputs_and_options(m))?;
-            warp::run(&registry, &recipe, &given, &args::Own::read(m)?, None)
+            warp::run(&registry, &recipe, &given, &Own::read(m)?, None)
         }
         _ if !later.is_empty() => {
             Err(Failure::usage(format!("{name} is not a deformation of space; `+` chains deformations")))
         }
-        run::NAME => run::run(&registry, m),
-        _ => list::run(&registry),
+        "run" => run_recipe(&registry, m),
+        _ => list(&registry),
     }
+}
+
+fn list_command() -> Command {
+    Command::new("list").about("List the deformations of space")
+}
+
+fn list(registry: &Registry3) -> Result<Status, Failure> {
+    let width = registry.entries().iter().map(|e| e.about().info.name.len()).max().unwrap_or(0);
+    let mut out = String::new();
+    for e in registry.entries() {
+        let _ = writeln!(out, "{:width$}  {}", e.about().info.name, e.about().info.title);
+    }
+    out.push_str("\n`pathwarp help solid NAME` describes one; `+` chains several.\n");
+    output::to_stdout(out.as_bytes())?;
+    Ok(Status::Complete)
+}
+
+fn map_command(registry: &Registry3) -> Command {
+    let points = Arg::new("points")
+        .long("points")
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .default_value("-")
+        .help("File of points; - is standard input");
+    let jacobian =
+        Arg::new("jacobian").long("jacobian").action(ArgAction::SetTrue).help("Print the partial derivatives too");
+    let deformation = |info: &pathwarp::deform::Info| {
+        Command::new(info.name).about(info.title).args(steps::args(info)).args([
+            points.clone(),
+            jacobian.clone(),
+            frame_arg(),
+        ])
+    };
+    Command::new("map")
+        .about("Map plain points, one x y z per line, by a deformation of space")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .args(reading_args())
+        .after_help(
+            "Every input line produces one output line: x' y' z', with --jacobian followed by the nine partial derivatives \
+             x'x y'x z'x x'y y'y z'y x'z y'z z'z. Where the map is undefined, the line is nan nan nan and the exit code is 1. Empty \
+             lines and lines that start with # are skipped.\n\nExample:\n  echo 50 50 50 | pathwarp solid map ffd --move \
+             1,1,1:8,0,0 --box 0,0,0,100,100,100",
+        )
+        .subcommands(registry.entries().iter().map(|e| deformation(&e.about().info)))
+}
+
+/// Runs `map`; `later` holds the parts of the chain after each `+`.
+fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
+    let reading = Given::reading(m)?;
+    let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
+    let mut steps = Recipe { steps: vec![steps::step(registry, name, m)] };
+    steps.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
+    references::resolve_files(registry, &mut steps, &reading)?;
+    let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
+    let bytes = input::bytes(&file)?;
+    let points = parse_points(&String::from_utf8_lossy(&bytes), "three numbers x y z")
+        .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
+    let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
+    let around = Box3::around(points.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
+    let frame = Frame3::new(given_frame(m)?.unwrap_or(around));
+    let budget = Arc::new(Budget::new(reading.limits.for_input(bytes.len())));
+    let built = recipe::build_within(&steps, registry, frame, &points, &budget).map_err(Failure::of_recipe)?;
+    let map = &built.map;
+    let mut creases = Creases3::default();
+    map.creases(&mut creases);
+    let mut jets = vec![Jet3::default(); points.len()];
+    map.jets(&points, &mut jets);
+    if let Some(e) = built.exceeded() {
+        return Err(Failure::of_recipe(GeometryError::Limit(e).into()));
+    }
+    let mut out = String::new();
+    let mut status = Status::Complete;
+    for (p, j) in points.iter().zip(&jets) {
+        if creases.defined_at(*p) && j.p.is_finite() {
+            let _ = write!(out, "{} {} {}", j.p.x, j.p.y, j.p.z);
+        } else {
+            status = Status::Partial;
+            out.push_str("nan nan nan");
+        }
+        if m.get_flag("jacobian") {
+            j.d.to_cols_array().iter().for_each(|v| {
+                let _ = write!(out, " {v}");
+            });
+        }
+        out.push('\n');
+    }
+    output::to_stdout(out.as_bytes())?;
+    Ok(status)
+}
+
+fn run_command() -> Command {
+    Command::new("run")
+        .about("Run a recipe for solids that --write-recipe saved")
+        .arg(file_arg("RECIPE", "A recipe (TOML) with solid = true"))
+        .arg(
+            Arg::new(INVERSE)
+                .long(INVERSE)
+                .action(ArgAction::SetTrue)
+                .help("Apply the inverse of every step, the last first (give --box: the source's box)"),
+        )
+        .args(model_args())
+}
+
+fn run_recipe(registry: &Registry3, m: &ArgMatches) -> Result<Status, Failure> {
+    let file = given_file(m, "RECIPE")?;
+    let saved = recipe_file::read(registry, file, Given::reading(m)?.external)?;
+    let given = saved.options.overridden_by(&Given::inputs_and_options(m));
+    let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
+    warp::run(registry, &recipe, &given, &Own::read(m)?, Some(file))
 }

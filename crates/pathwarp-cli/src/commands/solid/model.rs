@@ -1,15 +1,19 @@
-//! Models: read from a file and written to one.
+//! Models: read from a file and written to one; their formats; drawings as models, true to size in millimetres.
 
-use super::drawing;
-use super::format::ModelFormat;
-use crate::advice;
 use crate::failure::Failure;
-use crate::input;
 use crate::options::Reading;
 use crate::output::PendingFile;
+use crate::units::MM_PER_PX;
+use crate::{advice, input};
+use pathwarp::Outline;
 use pathwarp::budget::Budget;
-use pathwarp_solid::mesh::{Mesh, MeshError, MeshFault, gltf, obj, ply, stl};
+use pathwarp::kurbo::{Affine, Point};
+use pathwarp_mesh::NamedShape;
+use pathwarp_solid::mesh::{
+    FlatShape, Mark, Mesh, MeshError, MeshFault, NONE, PolygonKind, extrude, gltf, obj, ply, stl,
+};
 use pathwarp_solid::patch::{Surface, bpt, json};
+use pathwarp_svg::Selection;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -41,7 +45,7 @@ impl Model {
             if file.as_os_str() == "-" {
                 return Err(Failure::Input(format!("{name}: a drawing must be a file; name it instead")));
             }
-            let mesh = drawing::read(&bytes, file, reading, depth.unwrap_or(0.0))?;
+            let mesh = read_drawing(&bytes, file, reading, depth.unwrap_or(0.0))?;
             return Ok(Self { name, content: Content::Mesh(mesh), budget, format: ModelFormat::Obj, drawn: true });
         }
         if depth.is_some() {
@@ -111,4 +115,162 @@ fn decimals(mesh: &Mesh) -> u8 {
     let decimals = FIGURES - size.log10().floor();
     // A cast of NaN gives 0.
     decimals.clamp(0.0, MOST) as u8
+}
+
+/// The format of a model's file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ModelFormat {
+    Obj,
+    Stl,
+    Ply,
+    /// Binary glTF.
+    Glb,
+    /// glTF as JSON.
+    Gltf,
+    /// Bézier patches as text.
+    Bpt,
+    /// Surfaces as JSON.
+    Surfaces,
+}
+
+/// Names, among the properties that a format has no room for.
+pub(super) const NAMES: &str = "names";
+
+/// Extensions and their formats.
+const EXTENSIONS: [(&str, ModelFormat); 7] = [
+    ("obj", ModelFormat::Obj),
+    ("stl", ModelFormat::Stl),
+    ("ply", ModelFormat::Ply),
+    ("glb", ModelFormat::Glb),
+    ("gltf", ModelFormat::Gltf),
+    ("bpt", ModelFormat::Bpt),
+    ("json", ModelFormat::Surfaces),
+];
+
+impl ModelFormat {
+    /// The format that an extension says.
+    pub(super) fn of(file: &Path) -> Option<Self> {
+        let extension = file.extension()?;
+        EXTENSIONS.into_iter().find(|(e, _)| extension.eq_ignore_ascii_case(e)).map(|(_, f)| f)
+    }
+
+    /// The format of a file without such an extension.
+    pub(super) fn sniffed(bytes: &[u8]) -> Self {
+        let json = || bytes.trim_ascii_start().starts_with(b"{");
+        if gltf::sniff(bytes) {
+            if json() { Self::Gltf } else { Self::Glb }
+        } else if ply::sniff(bytes) {
+            Self::Ply
+        } else if stl::sniff(bytes) {
+            Self::Stl
+        } else if json() {
+            Self::Surfaces
+        } else {
+            Self::Obj
+        }
+    }
+
+    /// The format of an output; of standard output that of the input.
+    ///
+    /// # Errors
+    /// The extension says another one.
+    pub(super) fn of_output(target: Option<&Path>, input: Self) -> Result<Self, Failure> {
+        let Some(target) = target else { return Ok(input) };
+        match (Self::of(target), target.extension()) {
+            (Some(format), _) => Ok(format),
+            (None, None) => Ok(input),
+            (None, Some(other)) => {
+                let all: Vec<String> = EXTENSIONS.iter().map(|(e, _)| format!(".{e}")).collect();
+                Err(Failure::usage(format!(
+                    "{}: a model is written as {}, not as .{}",
+                    target.display(),
+                    all.join(", "),
+                    other.to_string_lossy()
+                )))
+            }
+        }
+    }
+
+    /// Returns `true` for curved surfaces.
+    pub(super) fn is_curved(self) -> bool {
+        matches!(self, Self::Bpt | Self::Surfaces)
+    }
+
+    /// The properties of a mesh for which the format has no room.
+    pub(super) fn lost(self, mesh: &Mesh) -> Vec<&'static str> {
+        let marked = |f: fn(&Mark) -> bool| mesh.marks.iter().any(|(_, m)| f(m));
+        let kinds = |k: PolygonKind| mesh.polygons.iter().any(|p| p.kind == k);
+        let named = |t: &str| !t.is_empty() && t != "none";
+        let corners = |f: fn(&pathwarp_solid::mesh::Corner) -> u32| mesh.corners.iter().any(|c| f(c) != NONE);
+        let mut out = Vec::new();
+        let mut check = |lost: bool, what: &'static str| {
+            if lost {
+                out.push(what);
+            }
+        };
+        if matches!(self, Self::Stl | Self::Ply) {
+            check(marked(|m| matches!(m, Mark::Object(t) | Mark::Group(t) if !t.is_empty())), NAMES);
+            check(mesh.marks.iter().any(|(_, m)| matches!(m, Mark::Material(t) if named(t))), "materials");
+        }
+        if self == Self::Stl {
+            check(corners(|c| c.uv), "texture coordinates");
+            check(corners(|c| c.normal), "normals of vertices");
+            check(!mesh.colors.is_empty(), "colours");
+            check(kinds(PolygonKind::Line) || kinds(PolygonKind::Points), "lines and points");
+        }
+        if self == Self::Obj && mesh.is_translucent() {
+            out.push("the opacity of vertices");
+        }
+        if self == Self::Obj && mesh.assets.as_deref().is_some_and(|a| !a.is_empty()) {
+            out.push("materials, except for their names");
+        }
+        out
+    }
+}
+
+/// Distance in millimetres within which outlines are followed: finer than printers and cutters work.
+const TOLERANCE: f64 = 0.01;
+
+/// Reads a drawing: x from the left edge of the page, y from its bottom edge.
+fn read_drawing(bytes: &[u8], file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, Failure> {
+    let doc = input::document_of(bytes, file, reading)?;
+    let page = doc.user_to_px().transform_rect_bbox(doc.view_box());
+    let to_mm =
+        Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
+    let unit = to_mm.determinant().abs().sqrt();
+    let mut shapes = Vec::new();
+    let mut add = |name: &str, outline: &Outline, even_odd: bool| -> Result<(), Failure> {
+        let named = NamedShape { name, outline, even_odd };
+        let flat = pathwarp_mesh::flat(&named, TOLERANCE / unit, doc.budget())
+            .map_err(|e| Failure::Geometry(format!("{}: {}", input::display(file), advice::surface(&e))))?;
+        let points = flat.points.iter().map(|p| {
+            let p: Point = to_mm * *p;
+            [p.x, p.y]
+        });
+        let flat = FlatShape { name: name.to_owned(), points: points.collect(), triangles: flat.triangles };
+        if !flat.triangles.is_empty() {
+            shapes.push(flat);
+        }
+        Ok(())
+    };
+    let all = Selection::default();
+    let strokes = doc.strokes(&all, TOLERANCE / unit);
+    let strokes = strokes.map_err(|e| {
+        Failure::Input(format!("{}: the strokes take {e}; {}", input::display(file), advice::raise(&e)))
+    })?;
+    for (shape, stroke) in doc.selected(&all).zip(strokes) {
+        if shape.filled {
+            add(&shape.id, &shape.outline, shape.even_odd)?;
+        }
+        if let Some(stroke) = stroke {
+            let name = if shape.filled { format!("{} stroke", shape.id) } else { shape.id.clone() };
+            add(&name, &stroke, false)?;
+        }
+    }
+    if shapes.is_empty() {
+        return Err(Failure::file(file, "the drawing has no shapes with an area"));
+    }
+    let mut mesh = Mesh::default();
+    extrude(&mut mesh, &shapes, depth);
+    Ok(mesh)
 }

@@ -1,19 +1,17 @@
 //! `pathwarp solid DEFORMATION MODEL …`: deforms models by one deformation or a chain.
 
-use super::args::{self, Own};
-use super::format::ModelFormat;
-use super::model::{Content, Model};
-use super::work::{Done, Work};
-use super::{polygons, report, surfaces};
+use super::args::{Own, model_args};
+use super::bend::{Done, MeshSource, SurfaceSource, Work, bend_mesh, bend_surfaces};
+use super::model::{Content, Model, ModelFormat};
+use super::report;
 use crate::advice::Flags;
 use crate::catalogue::Catalogue;
-use crate::commands::deformation;
-use crate::failure::Failure;
+use crate::commands::warp::described;
+use crate::failure::{Failure, Status};
 use crate::input::display;
 use crate::options::{CommonOptions, Given};
 use crate::output::PendingFile;
 use crate::pipeline::{Folders, InputFile, Inputs, Job};
-use crate::status::Status;
 use crate::{recipe_file, references, terminal, watch};
 use clap::Command;
 use pathwarp::deform::Info;
@@ -22,7 +20,7 @@ use pathwarp_solid::deform::Registry3;
 use std::path::{Path, PathBuf};
 
 pub(super) fn command(info: &Info) -> Command {
-    deformation::described(info).args(args::all())
+    described(info).args(model_args())
 }
 
 /// Deforms models by a recipe, which was read from the file `from` if there is one.
@@ -136,10 +134,8 @@ impl Work<'_> {
             Model::read(&job.input, &self.options.reading, self.own.depth)?;
         let format = ModelFormat::of_output(job.target.as_deref(), format)?;
         match content {
-            Content::Mesh(mesh) => polygons::run(self, job, polygons::Source { name, mesh, format, drawn }, &budget),
-            Content::Surfaces(all) => {
-                surfaces::run(self, job, surfaces::Source { name, surfaces: all, format }, &budget)
-            }
+            Content::Mesh(mesh) => bend_mesh(self, job, MeshSource { name, mesh, format, drawn }, &budget),
+            Content::Surfaces(all) => bend_surfaces(self, job, SurfaceSource { name, surfaces: all, format }, &budget),
         }
     }
 }

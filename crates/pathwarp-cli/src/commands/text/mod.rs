@@ -1,21 +1,14 @@
 //! `pathwarp text WORDS -o OUT.svg`: sets text as outlines, which any deformation takes as its input.
 
-mod args;
-mod fonts;
 mod on_path;
 mod style;
-mod words;
 
-use super::file_args;
-use crate::advice::mistakes;
-use crate::export;
-use crate::failure::Failure;
+use crate::commands::file_args::{out_arg, target};
+use crate::failure::{Failure, Status};
 use crate::format::{Choice, DRAWINGS};
-use crate::options::Given;
-use crate::status::Status;
-use crate::{advice, output, terminal};
-use clap::{ArgMatches, Command};
-use fonts::Wanted;
+use crate::options::{Given, reading_args, some_options};
+use crate::{advice, export, input, mistakes, output, terminal};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::budget::{Exceeded, Limit, Limits, cost};
 use pathwarp::deform::Registry;
 use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering, write_set_lines};
@@ -23,31 +16,29 @@ use pathwarp_text::{Font, TextLimits, layout_within};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use style::Em;
+use style::{Em, Wanted};
 
-pub(super) const NAME: &str = "text";
-
-pub(super) fn command(registry: &Registry) -> Command {
-    Command::new(NAME)
+pub(super) fn text_command(registry: &Registry) -> Command {
+    Command::new("text")
         .about("Set text as outlines, the artwork of any deformation")
-        .args(args::args(registry))
-        .after_help(args::AFTER)
+        .args(args(registry))
+        .after_help(AFTER)
 }
 
 /// Sets the text and writes the drawing.
-pub(super) fn run(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
+pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
     let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
-    let target = file_args::target(m, read.chain(names.iter().map(Path::new)))?;
+    let target = target(m, read.chain(names.iter().map(Path::new)))?;
     let options = Given::options(m).read()?;
     let format = Choice { what: "lettering is", among: DRAWINGS }.format(target, options.format)?;
-    let texts = words::both(m)?;
+    let texts = both_texts(m)?;
     let em = Em::given(m)?;
     let style = style::style(m, &em)?;
-    let weight = m.get_one::<String>("weight").map(|w| fonts::weight_of(w)).transpose()?;
+    let weight = m.get_one::<String>("weight").map(|w| style::weight_of(w)).transpose()?;
     let (italic, synthesize) = (m.get_flag("italic"), m.get_flag("synthesize"));
     let read = options.reading.read_options();
-    let find = |name: &&str| fonts::find(name, weight.unwrap_or(fonts::REGULAR), italic, &read);
+    let find = |name: &&str| style::find_font(name, weight.unwrap_or(style::REGULAR), italic, &read);
     let files: Vec<FontFile> = names.iter().map(find).collect::<Result<_, _>>()?;
     let mut chosen: Vec<Font<'_>> = Vec::with_capacity(files.len() + 1);
     for (name, file) in names.iter().zip(&files) {
@@ -55,13 +46,13 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Re
     }
     chosen.push(Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))?);
     let first = names.first().copied().unwrap_or("the bundled font");
-    fonts::check_style(&chosen[0], first, &Wanted { weight, italic, synthesize }, &read)?;
+    style::check_style(&chosen[0], first, &Wanted { weight, italic, synthesize }, &read)?;
     let wanted = Wanted { weight, italic, synthesize };
     if let Some(has) = wanted.other_weight(&chosen[0]).filter(|_| !m.get_flag("quiet")) {
         let asked = m.get_one::<String>("weight").map_or("", String::as_str);
         terminal::warning(&format!("--weight {asked}: {first} has no such weight; {has:.0} is used"));
     }
-    let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
+    let chosen = style::with_variations(chosen, &style::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
 
     let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
     let most = |cost: f64| (limits.of(Limit::Work) / cost) as usize;
@@ -119,4 +110,186 @@ fn missing(chars: &[char], names: &[&str]) -> String {
     let fonts = if names.is_empty() { "the bundled font" } else { "the fonts" };
     let lack = if names.is_empty() { "lacks" } else { "lack" };
     format!("{fonts} {lack} {}{more}; name a font that has them with --font", shown.join(", "))
+}
+
+const SPACING: &str = "Spacing and lines";
+const SHAPING: &str = "Shaping";
+
+const AFTER: &str = "The outlines are the font's own curves. The page holds the ink and the lines; --margin adds room around them. \
+Every line is a group with data-baseline, every letter a path with data-glyph (position and advance). A character that no \
+font has is drawn as the first font draws missing characters; a warning names it, and the exit code is 1.
+
+Examples:
+  pathwarp text Welcome -o word.svg
+  pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg
+  pathwarp text LOVE MUSIC --align fill --gap 6% -o poster.svg
+  pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
+  pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
+  pathwarp text Welcome --size 40mm -o sign.dxf
+  pathwarp text 'HARBOUR COFFEE' --below 'SINCE 1887' --on circle:r=60mm -o badge.svg
+  pathwarp text 'Round and round' --on spiral:turns=2,inner=9mm,outer=40mm --size 8mm -o out.svg
+  pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' -o arc.svg";
+
+/// An option with a value that is parsed later, and may start with a minus.
+fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help(help)
+}
+
+/// An option with one of these words as its value.
+fn choice(name: &'static str, words: &'static [&'static str], help: &'static str) -> Arg {
+    Arg::new(name)
+        .long(name)
+        .value_name(words.join("|"))
+        .value_parser(words.to_vec())
+        .hide_possible_values(true)
+        .help(help)
+}
+
+/// All options, in the order of help.
+fn args(registry: &Registry) -> Vec<Arg> {
+    let mut all = text_and_font();
+    all.extend(on_path::args(registry));
+    all.extend(some_options(&["format", "dxf-curves", "tolerance"]));
+    all.extend(spacing().map(|a| a.help_heading(SPACING)));
+    all.extend(shaping().map(|a| a.help_heading(SHAPING)));
+    all.extend(reading_args());
+    all.push(Arg::new("quiet").short('q').long("quiet").action(ArgAction::SetTrue).help("Print no warnings"));
+    all
+}
+
+fn text_and_font() -> Vec<Arg> {
+    vec![
+        Arg::new("WORDS").num_args(0..).help(
+            "The text. \\n and every further argument start a new line; \\\\ is a backslash; - reads standard input",
+        ),
+        Arg::new("file")
+            .long("file")
+            .value_name("FILE")
+            .value_parser(value_parser!(PathBuf))
+            .conflicts_with("WORDS")
+            .help("Read the text from a file; - is standard input"),
+        out_arg(
+            "OUT.svg",
+            "Write the drawing to this file: .svg, .svgz, .pdf or .dxf; - or none writes to standard output",
+        ),
+        value(
+            "font",
+            "FILE|FAMILY",
+            "A font file (FILE#2 is the third font of a collection) or an installed family; further fonts supply the \
+             characters that the ones before lack [default: the bundled Noto Sans]",
+        )
+        .action(ArgAction::Append),
+        value("size", "LENGTH", "Size of the em; with a unit such as 20mm, the page has that unit too [default: 72]"),
+        value(
+            "weight",
+            "100-900|NAME",
+            "Weight within the family (thin, light, regular, medium, bold, black, …); sets the axis wght of a variable font",
+        ),
+        Arg::new("italic").long("italic").action(ArgAction::SetTrue).help("Use the family's italic"),
+        Arg::new("synthesize").long("synthesize").action(ArgAction::SetTrue).help(
+            "Make what a font lacks: a bolder weight by thickening its outlines, an italic by slanting them by 14°; without it, that is \
+             an error",
+        ),
+        value("variation", "AXIS=N,…", "Positions on the axes of a variable font, such as wght=600,wdth=80")
+            .action(ArgAction::Append),
+        value("fill", "COLOUR", "Colour, as in CSS [default: black]"),
+        value("margin", "LENGTH", "Margin around the text; percentages refer to the size [default: 0]"),
+    ]
+}
+
+fn spacing() -> impl Iterator<Item = Arg> {
+    [
+        value("letter-spacing", "LENGTH", "Space added between letters; percentages refer to the size [default: 0]"),
+        value("word-spacing", "LENGTH", "Space added to every word space; percentages refer to the size [default: 0]"),
+        value(
+            "line-height",
+            "LENGTH",
+            "Distance between baselines; percentages refer to the size [default: the font's line height]",
+        ),
+        value("gap", "LENGTH", "Distance between lines from ink to ink, instead of a line height, and between repeats on a path; percentages refer to the size")
+            .conflicts_with("line-height"),
+        choice(
+            "align",
+            &["start", "left", "center", "right", "justify", "fill"],
+            "Alignment of lines; justify widens the word spaces of shorter lines, fill sizes every line until its ink is as wide as \
+             that of the widest [default: start, on a path center]",
+        ),
+    ]
+    .into_iter()
+}
+
+fn shaping() -> impl Iterator<Item = Arg> {
+    [
+        choice("kerning", &["on", "off"], "Kern pairs of letters [default: on]"),
+        choice(
+            "ligatures",
+            &["auto", "on", "off"],
+            "Use optional ligatures; auto uses them unless letters are spaced [default: auto]",
+        ),
+        value("features", "TAG[=N],…", "OpenType features, such as ss01,liga=0,salt=2").action(ArgAction::Append),
+        choice(
+            "direction",
+            &["auto", "ltr", "rtl"],
+            "Base direction of the text; auto follows its first letter [default: auto]",
+        ),
+        value("language", "TAG", "Language of the text, such as sr, tr or nl; selects the forms a font has for it"),
+        value("script", "CODE", "Script of all text, such as Latn, Arab or Deva [default: that of each letter]"),
+    ]
+    .into_iter()
+}
+
+/// The text and the one of `--below`. Only the latter may be alone.
+fn both_texts(m: &ArgMatches) -> Result<[Option<String>; 2], Failure> {
+    let below = m.get_one::<String>("below").map(|t| unescaped(t));
+    let given = m.contains_id("file") || m.get_many::<String>("WORDS").is_some_and(|mut w| w.any(|w| !w.is_empty()));
+    let text = (given || below.is_none()).then(|| words(m)).transpose()?;
+    Ok([text, below])
+}
+
+/// The text of the arguments, a file or standard input.
+fn words(m: &ArgMatches) -> Result<String, Failure> {
+    let words: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
+    let file = match (m.get_one::<PathBuf>("file"), &words[..]) {
+        (Some(file), _) => file.clone(),
+        (None, ["-"]) => PathBuf::from("-"),
+        (None, []) => return Err(Failure::usage("text: give WORDS, or --file FILE; - reads standard input")),
+        (None, words) => return Ok(words.iter().map(|w| unescaped(w)).collect::<Vec<_>>().join("\n")),
+    };
+    let name = input::display(&file);
+    let text = String::from_utf8(input::bytes(&file)?)
+        .map_err(|e| Failure::Input(format!("{name}: is not UTF-8 text (byte {})", e.utf8_error().valid_up_to())))?;
+    // Drop a byte order mark, and the newline at the end of the file.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let text = text.strip_suffix('\n').unwrap_or(text);
+    Ok(text.strip_suffix('\r').unwrap_or(text).to_owned())
+}
+
+/// Replaces `\n` by a newline and `\\` by a backslash.
+fn unescaped(word: &str) -> String {
+    let mut out = String::with_capacity(word.len());
+    let mut chars = word.chars().peekable();
+    while let Some(c) = chars.next() {
+        match (c, chars.peek()) {
+            ('\\', Some('n')) => {
+                chars.next();
+                out.push('\n');
+            }
+            ('\\', Some('\\')) => {
+                chars.next();
+                out.push('\\');
+            }
+            _ => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn escapes() {
+        assert_eq!(unescaped(r"a\nb\\n\t\"), "a\nb\\n\\t\\");
+    }
 }

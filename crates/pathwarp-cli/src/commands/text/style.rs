@@ -1,10 +1,13 @@
-//! The style options.
+//! The style: size, spacing, and the fonts, found by file or family, at their weight and variations.
 
 use crate::failure::Failure;
+use crate::input;
 use clap::ArgMatches;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit, Settings};
-use pathwarp_text::{Align, Direction, Ligatures, TextStyle, features};
+use pathwarp_svg::{FontFile, ReadOptions, family_styles};
+use pathwarp_text::{Align, Direction, Font, Ligatures, TextStyle, Variation, features, variations};
+use std::path::Path;
 
 /// The size of the em, and the unit that it and the whole page have.
 pub(super) struct Em {
@@ -82,4 +85,166 @@ pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
         },
         features: all,
     })
+}
+
+/// Names of weights (OpenType 1.9.1, OS/2 usWeightClass).
+const WEIGHTS: [(&str, u16); 9] = [
+    ("thin", 100),
+    ("extralight", 200),
+    ("light", 300),
+    ("regular", 400),
+    ("medium", 500),
+    ("semibold", 600),
+    ("bold", 700),
+    ("extrabold", 800),
+    ("black", 900),
+];
+/// The weight of a family's regular font.
+pub(super) const REGULAR: u16 = 400;
+
+/// The style asked for.
+pub(super) struct Wanted {
+    pub(super) weight: Option<u16>,
+    pub(super) italic: bool,
+    /// Make what a font lacks.
+    pub(super) synthesize: bool,
+}
+
+impl Wanted {
+    /// The weight, if a font has neither it nor an axis for it.
+    fn weight_lacking(&self, font: &Font<'_>) -> Option<u16> {
+        /// Weights this far apart look alike: neighbouring names.
+        const NEAR: f64 = 150.0;
+        self.weight.filter(|w| (font.weight() - f64::from(*w)).abs() > NEAR && !has_axis(font, &["wght"]))
+    }
+
+    /// The weight that a font has instead of the one asked for.
+    pub(super) fn other_weight(&self, font: &Font<'_>) -> Option<f64> {
+        let wanted = f64::from(self.weight?);
+        let axis = font.axes().into_iter().find(|a| a.tag == "wght");
+        let has = axis.map_or(font.weight(), |a| wanted.max(a.min).min(a.max));
+        let made = self.synthesize && self.weight_lacking(font).is_some();
+        ((has - wanted).abs() >= 1.0 && !made).then_some(has)
+    }
+
+    /// Returns `true` if a font should be italic, and has neither that nor an axis for it.
+    fn italic_lacking(&self, font: &Font<'_>) -> bool {
+        self.italic && !font.is_italic() && !has_axis(font, &["ital", "slnt"])
+    }
+
+    /// Makes what a font lacks.
+    fn synthesized<'a>(&self, font: Font<'a>) -> Font<'a> {
+        /// Thickness of stems, as a share of the em, for each step of weight: em/24 from regular to bold (FreeType's
+        /// FT_GlyphSlot_Embolden).
+        const PER_WEIGHT: f64 = 1.0 / 24.0 / 300.0;
+        /// The angle of a synthesised oblique, degrees (CSS Fonts 4, font-style).
+        const SLANT: f64 = 14.0;
+        if !self.synthesize {
+            return font;
+        }
+        let (weight, slanted) = (self.weight_lacking(&font), self.italic_lacking(&font));
+        let more = weight.map_or(0.0, |w| f64::from(w) - font.weight()).max(0.0);
+        font.emboldened(more * PER_WEIGHT).slanted(if slanted { SLANT } else { 0.0 })
+    }
+}
+
+fn has_axis(font: &Font<'_>, tags: &[&str]) -> bool {
+    font.axes().iter().any(|a| tags.contains(&a.tag.as_str()))
+}
+
+/// Parses a weight: a number or a name.
+pub(super) fn weight_of(text: &str) -> Result<u16, Failure> {
+    let named = WEIGHTS.iter().find(|(name, _)| text.eq_ignore_ascii_case(name)).map(|(_, w)| *w);
+    let weight = named.or_else(|| text.parse().ok()).filter(|w| (1..=1000).contains(w));
+    weight.ok_or_else(|| {
+        let names: Vec<&str> = WEIGHTS.iter().map(|(name, _)| *name).collect();
+        Failure::usage(format!("--weight: `{text}` is neither a number from 1 to 1000 nor one of {}", names.join(", ")))
+    })
+}
+
+/// The positions on variation axes that `--variation` gives.
+pub(super) fn axis_positions(m: &ArgMatches) -> Result<Vec<Variation>, Failure> {
+    let mut all = Vec::new();
+    for list in m.get_many::<String>("variation").into_iter().flatten() {
+        all.extend(variations(list).map_err(|e| Failure::usage(format!("--variation: {e}")))?);
+    }
+    Ok(all)
+}
+
+/// Sets the fonts to their variations: `--variation` applies to the first font, `--weight` to every font with a weight axis.
+pub(super) fn with_variations<'a>(
+    fonts: Vec<Font<'a>>,
+    positions: &[Variation],
+    wanted: &Wanted,
+) -> Result<Vec<Font<'a>>, Failure> {
+    let mut out = Vec::with_capacity(fonts.len());
+    for (i, font) in fonts.into_iter().enumerate() {
+        let mut own = Vec::new();
+        let font = wanted.synthesized(font);
+        if let Some(w) = wanted.weight
+            && let Some(axis) = font.axes().iter().find(|a| a.tag == "wght")
+        {
+            own.extend(Variation::new("wght", f64::from(w).max(axis.min).min(axis.max)).ok());
+        }
+        let slant = font.axes().into_iter().find(|a| wanted.italic && matches!(a.tag.as_str(), "ital" | "slnt"));
+        if let Some(axis) = slant {
+            // An italic axis runs from 0 to 1, a slant axis counts degrees counterclockwise.
+            let end = if axis.tag == "ital" { axis.max } else { axis.min };
+            own.extend(Variation::new(&axis.tag, end).ok());
+        }
+        if i == 0 {
+            own.extend_from_slice(positions);
+        }
+        let font = if own.is_empty() {
+            font
+        } else {
+            font.with_variations(&own).map_err(|e| Failure::usage(format!("--variation: {e}")))?
+        };
+        out.push(font);
+    }
+    Ok(out)
+}
+
+/// Checks that the first font has the weight and the slant asked for, by itself, by an axis, or because it may be synthesised.
+pub(super) fn check_style(font: &Font<'_>, name: &str, wanted: &Wanted, read: &ReadOptions) -> Result<(), Failure> {
+    let lacking = wanted.weight_lacking(font);
+    let bolder = lacking.is_some_and(|w| f64::from(w) > font.weight());
+    let problem = match lacking {
+        Some(w) if !(wanted.synthesize && bolder) => format!("--weight: {name} has no weight near {w}"),
+        _ if wanted.italic_lacking(font) && !wanted.synthesize => format!("--italic: {name} has no italic"),
+        _ => return Ok(()),
+    };
+    let mut styles = family_styles(name, read);
+    if styles.is_empty() {
+        styles.push((font.weight().round() as u16, font.is_italic()));
+    }
+    let shown = styles.iter().map(|(w, italic)| format!("{w}{}", if *italic { " italic" } else { "" }));
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    let advice = match (wanted.synthesize, lacking) {
+        (true, _) => "; only bolder weights can be synthesised",
+        (false, Some(_)) if !bolder => "",
+        (false, _) => ", or make it with --synthesize",
+    };
+    Err(Failure::usage(format!("{problem}, only {shown}; name a font that has it with --font{advice}")))
+}
+
+/// Finds a font by its file or by its family.
+pub(super) fn find_font(name: &str, weight: u16, italic: bool, options: &ReadOptions) -> Result<FontFile, Failure> {
+    let read = |path: &Path, index| input::bytes(path).map(|bytes| FontFile { bytes, index });
+    let path = Path::new(name);
+    if path.is_file() {
+        return read(path, 0);
+    }
+    if let Some((file, index)) = name.rsplit_once('#')
+        && let Ok(index) = index.parse()
+    {
+        return read(Path::new(file), index);
+    }
+    let kinds = ["ttf", "otf", "ttc", "otc", "woff", "woff2", "pfb"];
+    let looks_like_file = name.contains(['/', '\\'])
+        || path.extension().and_then(|e| e.to_str()).is_some_and(|e| kinds.iter().any(|k| e.eq_ignore_ascii_case(k)));
+    if looks_like_file {
+        return read(path, 0);
+    }
+    Ok(pathwarp_svg::find_font(name, weight, italic, options)?)
 }

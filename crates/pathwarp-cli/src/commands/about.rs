@@ -1,0 +1,348 @@
+//! What the program says of itself: `list`, `schema`, `man`, `completions`, and help that fits a screen.
+
+use crate::catalogue::Catalogue as _;
+use crate::failure::{Failure, Status};
+use crate::options::OPTIONS;
+use crate::output::{self, PendingFile};
+use crate::plugins::Plugins;
+use crate::{advice, readable};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap_complete::Shell;
+use pathwarp::deform::{Info, Registry};
+use pathwarp::param::{Axis, Kind, Param};
+use serde_json::{Map, Value, json};
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+
+pub(super) fn list_command() -> Command {
+    Command::new("list")
+        .about("List the deformations")
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON, with every parameter"))
+}
+
+/// The deformations with their parameters, and the plug-ins that are broken.
+fn listed(registry: &Registry, plugins: &Plugins) -> Value {
+    let param = |p: &Param| {
+        let mut v =
+            json!({ "name": p.name, "kind": p.kind.name(), "help": p.help, "needed": p.needed, "repeat": p.repeat });
+        if let Kind::Length(axis) = p.kind {
+            v["axis"] = match axis {
+                Axis::X => json!("x"),
+                Axis::Y => json!("y"),
+                Axis::Diagonal => json!("diagonal"),
+            };
+        }
+        if p.range.0.is_finite() || p.range.1.is_finite() {
+            // JSON has no infinity: null.
+            v["range"] = json!([p.range.0, p.range.1]);
+        }
+        match p.kind {
+            Kind::Flag => v["flag"] = json!(true),
+            Kind::Choice(words) => v["choices"] = json!(words),
+            Kind::NameOrFile(names) => v["names"] = json!(names),
+            _ => v["value"] = json!(p.value_name()),
+        }
+        if let Some(default) = p.default {
+            v["default"] = json!(default);
+        }
+        v
+    };
+    let deformation = |i: &Info| {
+        let params: Vec<Value> = i.params.iter().map(param).collect();
+        let examples: Vec<&str> = i.examples.iter().map(|e| e.command).collect();
+        json!({
+            "name": i.name, "title": i.title, "group": i.group, "about": i.about, "source": i.source,
+            "parameters": params, "examples": examples, "plug-in": plugins.file(i.name),
+        })
+    };
+    let broken: Vec<Value> = plugins
+        .broken
+        .iter()
+        .map(|b| json!({ "name": b.name, "file": b.path.display().to_string(), "problem": b.fault.to_string() }))
+        .collect();
+    let deformations: Vec<Value> = registry.entries().iter().map(|e| deformation(e.info())).collect();
+    json!({ "deformations": deformations, "broken-plug-ins": broken })
+}
+
+pub(super) fn list(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
+    if m.get_flag("json") {
+        let text = readable::json(&listed(registry, plugins)).map_err(|e| Failure::Output(e.to_string()))?;
+        output::to_stdout((text + "\n").as_bytes())?;
+        return Ok(Status::Complete);
+    }
+    let infos: Vec<&Info> = registry.entries().iter().map(|e| e.info()).collect();
+    let width = infos.iter().map(|i| i.name.len()).max().unwrap_or(0);
+    let mut groups: Vec<&str> = Vec::new();
+    for i in &infos {
+        if !groups.contains(&i.group) {
+            groups.push(i.group);
+        }
+    }
+    let mut out = String::new();
+    let heading = anstyle::Style::new().bold();
+    for g in groups {
+        let _ = writeln!(out, "{heading}{g}{heading:#}");
+        for i in infos.iter().filter(|i| i.group == g) {
+            let _ = writeln!(out, "  {:width$}  {}", i.name, i.title);
+        }
+        out.push('\n');
+    }
+    if !plugins.broken.is_empty() {
+        let _ = writeln!(out, "{heading}Broken plug-ins{heading:#}");
+        for b in &plugins.broken {
+            let _ = writeln!(out, "  {:width$}  {} {}", b.name, b.path.display(), b.fault);
+        }
+        out.push_str("  `pathwarp check NAME` tries one again.\n\n");
+    }
+    out.push_str("`pathwarp help NAME` describes one; `+` chains several.\n");
+    let plain = if std::io::stdout().is_terminal() { out } else { anstream::adapter::strip_str(&out).to_string() };
+    output::to_stdout(plain.as_bytes())?;
+    Ok(Status::Complete)
+}
+
+pub(super) fn schema_command() -> Command {
+    Command::new("schema").about("Print the JSON schema of recipe files")
+}
+
+pub(super) fn print_schema(registry: &Registry) -> Result<Status, Failure> {
+    let text = serde_json::to_string_pretty(&schema(registry)).map_err(|e| Failure::usage(e.to_string()))? + "\n";
+    output::to_stdout(text.as_bytes())?;
+    Ok(Status::Complete)
+}
+
+fn schema(registry: &Registry) -> Value {
+    let steps: Vec<Value> = registry.entries().iter().map(|e| step_schema(e.info())).collect();
+    let stored = OPTIONS.iter().filter(|o| o.stored);
+    let options: Map<String, Value> = stored.map(|o| (o.name.to_owned(), json!({ "description": o.help() }))).collect();
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "pathwarp recipe",
+        "type": "object",
+        "required": ["pathwarp", "step"],
+        "additionalProperties": false,
+        "properties": {
+            "pathwarp": { "const": 1, "description": "The version of the format." },
+            "options": { "type": "object", "additionalProperties": false, "properties": options },
+            "step": { "type": "array", "minItems": 1, "items": { "oneOf": steps } },
+        },
+    })
+}
+
+fn step_schema(info: &Info) -> Value {
+    let mut properties = Map::new();
+    properties.insert("deformation".into(), json!({ "const": info.name, "description": info.title }));
+    properties.insert("inverse".into(), json!({ "type": "boolean", "description": "The inverse map." }));
+    properties.extend(info.params.iter().map(|p| (p.name.to_owned(), property(p))));
+    let mut required = vec!["deformation"];
+    required.extend(info.params.iter().filter(|p| p.needed).map(|p| p.name));
+    json!({ "type": "object", "required": required, "additionalProperties": false, "properties": properties })
+}
+
+fn property(p: &Param) -> Value {
+    let single = match p.kind {
+        Kind::Flag => json!({ "type": "boolean" }),
+        Kind::Number | Kind::Length(_) | Kind::Angle => json!({ "type": ["number", "string"] }),
+        Kind::Count => json!({ "type": ["integer", "string"] }),
+        Kind::Choice(words) => json!({ "enum": words }),
+        // The value may also be a file, so the names are only examples.
+        Kind::NameOrFile(names) => json!({ "type": "string", "examples": names }),
+        _ => json!({ "type": "string" }),
+    };
+    let mut v = if p.repeat { json!({ "anyOf": [single, { "type": "array", "items": single }] }) } else { single };
+    v["description"] = json!(p.help);
+    if let Some(d) = p.default {
+        v["default"] = json!(d);
+    }
+    for (key, limit) in [("minimum", p.range.0), ("maximum", p.range.1)] {
+        // A length or angle may be given in other units than its limits, so only plain numbers carry them.
+        if limit.is_finite() && matches!(p.kind, Kind::Number | Kind::Count) {
+            v[key] = json!(limit);
+        }
+    }
+    v
+}
+
+/// The id of the argument.
+const PAGE: &str = "PAGE";
+
+pub(super) fn man_command() -> Command {
+    Command::new("man")
+        .about("Print the manual page of the program, or of one command")
+        .arg(Arg::new(PAGE).value_name("NAME").help("A command or deformation [default: the program]"))
+        .arg(
+            Arg::new("out-dir")
+                .long("out-dir")
+                .value_name("DIR")
+                .value_parser(value_parser!(PathBuf))
+                .conflicts_with(PAGE)
+                .help("Write the pages of the program and of all commands to this folder: pathwarp.1, pathwarp-NAME.1"),
+        )
+        .after_help(
+            "Examples:\n  pathwarp man | man -l -\n  pathwarp man shaper | man -l -\n  pathwarp man --out-dir ~/.local/share/man/man1",
+        )
+}
+
+/// Prints the manual page of `whole`, the program's command line, or of a part of it.
+pub(super) fn man(whole: Command, m: &ArgMatches) -> Result<Status, Failure> {
+    if let Some(folder) = m.get_one::<PathBuf>("out-dir") {
+        return write_all(&whole, folder);
+    }
+    let page = match m.get_one::<String>(PAGE) {
+        None => page(whole)?,
+        Some(name) => {
+            let known = whole.get_subcommands().map(Command::get_name);
+            let part = whole.find_subcommand(name);
+            page(subcommand(part.ok_or_else(|| Failure::usage(advice::unknown("command", name, known)))?))?
+        }
+    };
+    output::to_stdout(&page)?;
+    Ok(Status::Complete)
+}
+
+/// Writes every page to a folder, or none.
+fn write_all(whole: &Command, folder: &Path) -> Result<Status, Failure> {
+    fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))?;
+    let all = std::iter::once(whole.clone()).chain(whole.get_subcommands().map(subcommand));
+    let files = all.map(|command| {
+        let file = folder.join(command.get_name()).with_extension("1");
+        PendingFile::new(&file, &page(command)?)
+    });
+    PendingFile::commit_all(files.collect::<Result<_, Failure>>()?)?;
+    Ok(Status::Complete)
+}
+
+/// A part of the program under the name of its page.
+fn subcommand(part: &Command) -> Command {
+    let name = part.get_name();
+    part.clone().name(format!("pathwarp-{name}")).bin_name(format!("pathwarp {name}"))
+}
+
+/// The text of a page.
+fn page(command: Command) -> Result<Vec<u8>, Failure> {
+    let mut out = Vec::new();
+    clap_mangen::Man::new(command).render(&mut out).map_err(|e| Failure::stdout(&e))?;
+    Ok(out)
+}
+
+pub(super) fn completions_command() -> Command {
+    Command::new("completions")
+        .about("Print completions for a shell")
+        .arg(Arg::new("SHELL").required(true).value_parser(value_parser!(Shell)))
+}
+
+/// Prints the completions of `whole`, the program's command line, with the values that parameters may have.
+pub(super) fn completions(registry: &Registry, mut whole: Command, m: &ArgMatches) -> Result<Status, Failure> {
+    for info in registry.infos() {
+        for p in info.params {
+            if let Kind::NameOrFile(names) | Kind::Choice(names) = p.kind {
+                whole = whole.mut_subcommand(info.name, |c| c.mut_arg(p.name, |a| a.value_parser(names.to_vec())));
+            }
+        }
+    }
+    let mut out = Vec::new();
+    if let Some(shell) = m.get_one::<Shell>("SHELL") {
+        clap_complete::generate(*shell, &mut whole, "pathwarp", &mut out);
+    }
+    output::to_stdout(&out)?;
+    Ok(Status::Complete)
+}
+
+/// The screen.
+const LINES: usize = 40;
+const COLUMNS: usize = 80;
+
+/// The common options that are shown; those about reading are not.
+const COMMON: [&str; 6] = ["out", "out-dir", "select", "tolerance", "fit", "preview"];
+
+/// The command line, with the help of the subcommand that `words` name made short. `line` is the name of the program.
+pub(super) fn shortened(command: Command, words: &[OsString], line: &str) -> Command {
+    let named = words.first().and_then(|w| Some(command.find_subcommand(w)?.get_name().to_owned()));
+    let Some(name) = named else { return command };
+    let line = format!("{line} {name}");
+    command.mut_subcommand(name, |c| {
+        let further = words[1..].first().is_some_and(|w| c.find_subcommand(w).is_some());
+        if further { shortened(c, &words[1..], &line) } else { fitted(c, &line) }
+    })
+}
+
+/// A command whose help has at most so many lines: a line for each option, and one example.
+fn fitted(command: Command, line: &str) -> Command {
+    let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    let lines: Vec<&str> = after.lines().map(str::trim).collect();
+    let example = lines.iter().position(|l| l.starts_with("pathwarp ") && !l.contains(" = ")).map(|i| {
+        let what = lines[..i].last().filter(|l| l.ends_with(':') && **l != "Examples:").unwrap_or(&"Example:");
+        format!("{what}\n  {}\n\n", lines[i])
+    });
+    let mut shown: Vec<String> =
+        command.get_arguments().filter(|a| is_wanted(a)).map(|a| a.get_id().to_string()).collect();
+    // Who has found `-h` needs no line about it.
+    let help = Arg::new("help").short('h').long("help").action(ArgAction::HelpShort).hide(true);
+    let after = format!("{}All options: {line} --help", example.unwrap_or_default());
+    let command = command.disable_help_flag(true).arg(help).term_width(COLUMNS).after_help(after);
+    loop {
+        let values = |a: &Arg| value_of(a).map_or(0, |v| v.len() + 3);
+        let width = |a: &Arg| a.get_long().map_or(0, |l| "      --".len() + l.len() + values(a));
+        let is_shown = |a: &Arg| shown.iter().any(|s| *a.get_id() == s.as_str());
+        let widest = command.get_arguments().filter(|a| is_shown(a)).map(width).max().unwrap_or_default();
+        // The parser of command lines puts a help that has less room on a line of its own.
+        let room = COLUMNS - widest.min(COLUMNS / 2) - 12;
+        let mut short = command.clone().mut_args(|a| {
+            let (hidden, help) = (!is_shown(&a), brief(&a, room));
+            let a = match value_of(&a) {
+                Some(name) if !a.is_positional() => a.value_name(name).hide_possible_values(true),
+                _ => a,
+            };
+            a.help(help).hide_short_help(hidden)
+        });
+        let too_long = short.render_help().to_string().lines().count() > LINES;
+        let stays = |s: &str| COMMON.contains(&s) || command.get_positionals().any(|a| *a.get_id() == s);
+        match shown.iter().rposition(|s| !stays(s)).filter(|_| too_long) {
+            Some(last) => drop(shown.remove(last)),
+            None => return short,
+        }
+    }
+}
+
+fn is_wanted(arg: &Arg) -> bool {
+    let wanted = match arg.get_help_heading() {
+        Some("Reading") => false,
+        Some("Common options") => COMMON.contains(&arg.get_id().as_str()),
+        _ => true,
+    };
+    wanted && !arg.is_hide_set() && !arg.is_hide_short_help_set()
+}
+
+/// The name of an option's value; of many words `WORD`.
+fn value_of(arg: &Arg) -> Option<String> {
+    const LONG: usize = 16;
+    let name = arg.get_value_names().filter(|_| arg.get_action().takes_values())?.first()?;
+    Some(if name.len() > LONG { "WORD".to_owned() } else { name.to_string() })
+}
+
+/// What fits in `room` columns of an option's help: its words, or the beginning of the text, with the default.
+fn brief(arg: &Arg, room: usize) -> String {
+    let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+    let (text, default) = help.split_once(" [default: ").unwrap_or((&help, ""));
+    let default = default.trim_end_matches(']');
+    let default = if default.is_empty() || default.len() > room / 3 { String::new() } else { format!(" [{default}]") };
+    let room = room - default.chars().count();
+    let words = arg.get_value_names().and_then(|n| n.first()).filter(|n| value_of(arg).is_some_and(|v| v != **n));
+    if let Some(words) = words.map(|n| n.replace('|', ", ")).filter(|w| w.len() <= room) {
+        return words + &default;
+    }
+    let ends = |signs: &[&str]| {
+        let all = signs.iter().flat_map(|s| text.match_indices(s)).map(|(i, _)| i);
+        all.filter(|i| text[..*i].chars().count() < room).max().unwrap_or_default()
+    };
+    let text = if text.chars().count() <= room {
+        text.trim_end_matches('.').to_owned()
+    } else if ends(&[". ", "; ", ": "]) > room / 2 {
+        text[..ends(&[". ", "; ", ": "])].to_owned()
+    } else {
+        text[..ends(&[" "])].trim_end_matches([',', ':', '(']).to_owned() + "…"
+    };
+    text + &default
+}

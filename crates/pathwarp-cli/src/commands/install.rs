@@ -1,0 +1,258 @@
+//! `pathwarp install gimp|inkscape`: installs the plug-in, with a copy of this program, in another program's folder.
+
+use crate::failure::{Failure, Status};
+use crate::inkscape::inx::{self, Program};
+use crate::output::{self, PendingFile};
+use crate::terminal;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use pathwarp::deform::Registry;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{self, Stdio};
+use std::{env, fs};
+
+pub(super) fn install_command() -> Command {
+    let flag = |name: &'static str, help: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).help(help);
+    let path = |name: &'static str, value: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf)).help(help)
+    };
+    Command::new("install")
+        .about("Install the plug-in for another program")
+        .arg(
+            Arg::new("WHAT")
+                .required(true)
+                .value_parser(["gimp", "inkscape"])
+                .help("gimp: the plug-in for GIMP 3; inkscape: a dialog for every deformation"),
+        )
+        .arg(
+            path(
+                "dir",
+                "DIR",
+                "The program's folder of plug-ins or extensions (Preferences > Folders > Plug-ins in GIMP, Preferences > System > \
+                 User extensions in Inkscape) [default: that of every one found]",
+            )
+            .visible_alias("folder"),
+        )
+        .arg(path(
+            "program",
+            "PATH",
+            "For Inkscape: call this program, by its name on the search path or an absolute path, instead of a copy of this one",
+        ))
+        .arg(flag("uninstall", "Remove the plug-in").visible_alias("remove"))
+        .arg(flag("dry-run", "Print the changes without making them"))
+        .after_help(
+            "Examples:\n  pathwarp install gimp\n  pathwarp install inkscape\n  pathwarp install inkscape --dry-run\n  pathwarp install \
+             inkscape --uninstall\n  pathwarp install inkscape --folder pkg/usr/share/inkscape/extensions --program pathwarp   # for a package",
+        )
+}
+
+pub(super) fn install(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
+    let is_gimp = m.get_one::<String>("WHAT").is_some_and(|w| w == "gimp");
+    let program = m.get_one::<PathBuf>("program").map(PathBuf::as_path);
+    if is_gimp && program.is_some() {
+        return Err(Failure::usage("--program is for Inkscape; the plug-in for GIMP has its own copy"));
+    }
+    let folders = match m.get_one::<PathBuf>("dir") {
+        Some(d) => vec![d.clone()],
+        None if is_gimp => gimp_folders(),
+        None => inkscape_folders(),
+    };
+    if folders.is_empty() {
+        let what =
+            if is_gimp { "GIMP 3; start GIMP 3 once, or name its plug-ins" } else { "Inkscape; name its extensions" };
+        return Err(Failure::usage(format!("found no folder of {what} folder with --dir")));
+    }
+    let home = |folder: &Path| if is_gimp { folder.join(PLUG_IN_NAME) } else { folder.join(HOME) };
+    let parts = || if is_gimp { gimp_parts() } else { inkscape_parts(registry, program) };
+    let dry = m.get_flag("dry-run");
+    let mut done = String::new();
+    for home in folders.iter().map(|f| home(f)) {
+        done += &if m.get_flag("uninstall") {
+            let names = if is_gimp { gimp_names().to_vec() } else { inkscape_installed(&home) };
+            uninstall_files(&home, &names, dry)?
+        } else {
+            install_files(&home, &parts()?, dry)?
+        };
+    }
+    output::to_stdout(done.as_bytes())?;
+    Ok(Status::Complete)
+}
+
+/// A file to install.
+struct Part {
+    /// Name relative to the plug-in's folder.
+    name: PathBuf,
+    content: Vec<u8>,
+    /// The file is a program.
+    runs: bool,
+}
+
+/// This program's own file.
+fn own_program() -> Result<Vec<u8>, Failure> {
+    let own = env::current_exe().and_then(fs::read);
+    own.map_err(|e| Failure::Input(format!("the program file cannot be read: {e}")))
+}
+
+/// A path in an environment variable.
+fn variable(name: &str) -> Option<PathBuf> {
+    env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from)
+}
+
+/// Writes the files below `home`. Returns a line for each.
+fn install_files(home: &Path, parts: &[Part], dry: bool) -> Result<String, Failure> {
+    let mut done = String::new();
+    let mut pending = Vec::new();
+    for part in parts {
+        let file = home.join(&part.name);
+        let _ = writeln!(done, "{} {}", if dry { "would write" } else { "wrote" }, file.display());
+        if !dry {
+            let folder = file.parent().unwrap_or(Path::new(""));
+            fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))?;
+            pending.push(PendingFile::new(&file, &part.content)?);
+        }
+    }
+    PendingFile::commit_all(pending)?;
+    #[cfg(unix)]
+    for file in parts.iter().filter(|p| p.runs && !dry).map(|p| home.join(&p.name)) {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).map_err(|e| Failure::output(&file, e))?;
+    }
+    Ok(done)
+}
+
+/// Removes those of the files that exist, and the folders if nothing else is in them. Returns a line for each file.
+fn uninstall_files(home: &Path, names: &[PathBuf], dry: bool) -> Result<String, Failure> {
+    let mut done = String::new();
+    let existing: Vec<PathBuf> = names.iter().map(|n| home.join(n)).filter(|f| f.exists()).collect();
+    if existing.is_empty() {
+        terminal::note(&format!("{} is not installed", home.display()));
+    }
+    for f in &existing {
+        let _ = writeln!(done, "{} {}", if dry { "would remove" } else { "removed" }, f.display());
+        if !dry {
+            fs::remove_file(f).map_err(|e| Failure::output(f, format!("cannot be removed: {e}")))?;
+        }
+    }
+    if !dry {
+        // A folder that holds other files stays.
+        for folder in existing.iter().filter_map(|f| f.parent()).filter(|f| *f != home) {
+            let _ = fs::remove_dir(folder);
+        }
+        let _ = fs::remove_dir(home);
+    }
+    Ok(done)
+}
+
+/// The plug-in's source. GIMP 3 looks for `plug-ins/NAME/NAME.py`.
+const PLUG_IN: &str = include_str!("../../plug-ins/gimp/pathwarp-gimp.py");
+const PLUG_IN_NAME: &str = "pathwarp-gimp";
+
+/// Names of the files, relative to the plug-in's folder: the script and the program.
+fn gimp_names() -> [PathBuf; 2] {
+    let program = Path::new("bin").join("pathwarp").with_extension(env::consts::EXE_EXTENSION);
+    [PathBuf::from(PLUG_IN_NAME).with_extension("py"), program]
+}
+
+/// The files, with names relative to the plug-in's folder.
+fn gimp_parts() -> Result<Vec<Part>, Failure> {
+    let [script, program] = gimp_names();
+    Ok(vec![
+        Part { name: script, content: PLUG_IN.as_bytes().to_vec(), runs: true },
+        Part { name: program, content: own_program()?, runs: true },
+    ])
+}
+
+/// The plug-ins folders of all versions of GIMP 3 that this user has started.
+fn gimp_folders() -> Vec<PathBuf> {
+    if let Some(own) = env::var_os("GIMP3_DIRECTORY") {
+        return vec![PathBuf::from(own).join("plug-ins")];
+    }
+    let home = variable("HOME").unwrap_or_default();
+    let roots = if cfg!(target_os = "windows") {
+        vec![variable("APPDATA").unwrap_or_default().join("GIMP")]
+    } else if cfg!(target_os = "macos") {
+        vec![home.join("Library/Application Support/GIMP")]
+    } else {
+        vec![
+            variable("XDG_CONFIG_HOME").unwrap_or_else(|| home.join(".config")).join("GIMP"),
+            home.join(".var/app/org.gimp.GIMP/config/GIMP"),
+            home.join("snap/gimp/current/.config/GIMP"),
+        ]
+    };
+    let mut out = Vec::new();
+    for root in roots {
+        for entry in fs::read_dir(&root).into_iter().flatten().flatten() {
+            if entry.file_name().to_string_lossy().starts_with("3.") && entry.path().is_dir() {
+                out.push(entry.path().join("plug-ins"));
+            }
+        }
+    }
+    out.sort();
+    out
+}
+
+/// The folder in Inkscape's folder of extensions.
+const HOME: &str = "pathwarp";
+
+/// The files, with names relative to the extension's folder. `program` is called instead of a copy of this one if it is given: a name
+/// on the search path, or a path.
+fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Part>, Failure> {
+    let copy = Path::new("pathwarp").with_extension(env::consts::EXE_EXTENSION);
+    let name = program.unwrap_or(&copy).display().to_string();
+    let location = match program {
+        None => "inx",
+        Some(p) if p.is_absolute() => "absolute",
+        Some(p) if p.components().count() == 1 => "path",
+        Some(p) => return Err(Failure::usage(format!("--program {}: give an absolute path or a name", p.display()))),
+    };
+    let descriptions = inx::files(registry, &Program { location, name });
+    let part = |(name, text): (String, String)| Part { name: name.into(), content: text.into_bytes(), runs: false };
+    let mut parts: Vec<Part> = descriptions.into_iter().map(part).collect();
+    if program.is_none() {
+        parts.push(Part { name: copy, content: own_program()?, runs: true });
+    }
+    Ok(parts)
+}
+
+/// The files that [`inkscape_parts`] may have written, by this or another version of the program.
+fn inkscape_installed(home: &Path) -> Vec<PathBuf> {
+    let is_ours = |name: &Path| {
+        let name = name.to_string_lossy();
+        name.starts_with("pathwarp-") && name.ends_with(".inx") || name == "pathwarp" || name == "pathwarp.exe"
+    };
+    let entries = fs::read_dir(home).into_iter().flatten().flatten();
+    let mut names: Vec<PathBuf> = entries.map(|e| PathBuf::from(e.file_name())).filter(|n| is_ours(n)).collect();
+    names.sort();
+    names
+}
+
+/// The extensions folders of every Inkscape that this user has.
+fn inkscape_folders() -> Vec<PathBuf> {
+    if let Some(own) = variable("INKSCAPE_PROFILE_DIR") {
+        return vec![own.join("extensions")];
+    }
+    let home = variable("HOME").unwrap_or_default();
+    let roots = if cfg!(target_os = "windows") {
+        vec![variable("APPDATA").unwrap_or_default().join("inkscape")]
+    } else if cfg!(target_os = "macos") {
+        vec![
+            home.join("Library/Application Support/org.inkscape.Inkscape/config/inkscape"),
+            home.join(".config/inkscape"),
+        ]
+    } else {
+        vec![
+            variable("XDG_CONFIG_HOME").unwrap_or_else(|| home.join(".config")).join("inkscape"),
+            home.join(".var/app/org.inkscape.Inkscape/config/inkscape"),
+            home.join("snap/inkscape/current/.config/inkscape"),
+        ]
+    };
+    let mut found: Vec<PathBuf> = roots.into_iter().filter(|r| r.is_dir()).collect();
+    if found.is_empty() {
+        // Inkscape is installed but was never started.
+        let mut ask = process::Command::new("inkscape");
+        let answer = ask.arg("--user-data-directory").stdin(Stdio::null()).stderr(Stdio::null()).output().ok();
+        let folder = answer.and_then(|a| String::from_utf8(a.stdout).ok()).map(|t| PathBuf::from(t.trim()));
+        found.extend(folder.filter(|f| f.is_absolute()));
+    }
+    found.into_iter().map(|r| r.join("extensions")).collect()
+}

@@ -1,0 +1,193 @@
+//! For authors of plug-ins: `new-plugin` writes one to start from, `check` checks it, or a deformation built in, as the tests do.
+
+use crate::failure::{Failure, Status};
+use crate::output::{self, PendingFile};
+use crate::plugins::{Plugins, is_file_name};
+use crate::{advice, readable};
+use clap::{Arg, ArgMatches, Command, value_parser};
+use pathwarp::check::{Check, frame, report};
+use pathwarp::deform::{Deformation, Registry};
+use pathwarp::kurbo::Point;
+use pathwarp::map::{Jet, Map};
+use pathwarp::param::Args;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub(super) fn check_command() -> Command {
+    Command::new("check")
+        .about("Check a deformation, built in or a plug-in: help, parameters, derivatives, inverse, laws, speed")
+        .arg(
+            Arg::new("WHAT")
+                .required(true)
+                .value_name("NAME|FILE")
+                .help("A deformation, or the file of a plug-in, which need not be installed"),
+        )
+        .after_help(
+            "The deformation is built from its demo values over the box 0,0,100,100. A law or case that does not hold is shown with \
+             the values and the place. A plug-in is started anew, even if it was broken before. The exit code is 1 if \
+             something is wrong.\n\nExamples:\n  pathwarp check wave\n  pathwarp check ./pathwarp-ripple.py",
+        )
+}
+
+pub(super) fn check(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
+    let what = m.get_one::<String>("WHAT").map_or("", String::as_str);
+    let by_file = || plugins.last_given().map(|p| p as &dyn Deformation);
+    let named = registry.get(what).map(|e| &**e as &dyn Deformation);
+    let entry = if is_file_name(Path::new(what)) { by_file() } else { named };
+    let Some(entry) = entry else {
+        return Err(match plugins.broken.iter().find(|b| b.name == what) {
+            Some(b) => b.fault.of(&b.path).into(),
+            None => {
+                Failure::usage(advice::unknown("deformation", what, registry.entries().iter().map(|e| e.info().name)))
+            }
+        });
+    };
+    let name = entry.info().name;
+    let mut out = match plugins.get(name) {
+        None => format!("{name}, built in\n"),
+        Some(p) => format!("{name}, the plug-in {}\n", p.path().display()),
+    };
+    let checks = report(entry);
+    let wrong: usize = checks.iter().filter(|c| !c.faults.is_empty()).count();
+    checks.iter().for_each(|check| show(check, &mut out));
+    if wrong == 0 {
+        if let Some(speed) = speed(entry) {
+            let _ = writeln!(out, "  ok    {:<10}  {speed}", "speed");
+        }
+        let _ = writeln!(out, "{name} is sound");
+    } else {
+        let _ = writeln!(out, "{name} fails {wrong} of {} checks", checks.len());
+    }
+    output::to_stdout(out.as_bytes())?;
+    Ok(Status::partial_if(wrong > 0))
+}
+
+/// The lines of one check.
+fn show(check: &Check, out: &mut String) {
+    let word = if check.faults.is_empty() { "ok  " } else { "FAIL" };
+    let _ = writeln!(out, "  {word}  {:<10}  {}", check.name, readable::message(&check.detail));
+    for fault in &check.faults {
+        let _ = writeln!(out, "        {:<10}  {}", "", readable::message(fault));
+    }
+}
+
+/// The time for a point and for a jet, alone and in large batches.
+fn speed(entry: &dyn Deformation) -> Option<String> {
+    /// Points in a batch.
+    const BATCH: usize = 4096;
+    /// Calls for single points.
+    const CALLS: usize = 50;
+    let map = entry.build_from(&Args::from_pairs(entry.info().demo), &frame()).ok()?.map;
+    let place = |i: usize| Point::new(3.0 + 0.0231 * i as f64, 97.0 - 0.0229 * i as f64);
+    let points: Vec<Point> = (0..BATCH).map(place).collect();
+    let (mut images, mut jets) = (points.clone(), vec![Jet::default(); BATCH]);
+    let clock = Instant::now();
+    map.points(&points, &mut images);
+    let point = clock.elapsed() / BATCH as u32;
+    let clock = Instant::now();
+    map.jets(&points, &mut jets);
+    let jet = clock.elapsed() / BATCH as u32;
+    let clock = Instant::now();
+    points.iter().take(CALLS).for_each(|p| {
+        let _ = map.point(*p);
+    });
+    let call = clock.elapsed() / CALLS as u32;
+    Some(format!(
+        "{point:.1?} for a point and {jet:.1?} for one with derivatives, in batches of {BATCH}; {call:.1?} for a single one"
+    ))
+}
+
+/// The words that stand for the name in the templates.
+const PLACEHOLDER: &str = "@NAME@";
+
+const PYTHON: &str = include_str!("../../plug-ins/new/plugin.py");
+const RUST: &str = include_str!("../../plug-ins/new/main.rs");
+const MANIFEST: &str = include_str!("../../plug-ins/new/Cargo.toml.in");
+
+pub(super) fn new_plugin_command() -> Command {
+    Command::new("new-plugin")
+        .about("Write a plug-in to start from: a deformation that is a program")
+        .arg(
+            Arg::new("LANGUAGE")
+                .required(true)
+                .value_parser(["python", "rust"])
+                .help("python: one file that speaks lines of text; rust: a crate without dependencies that speaks binary"),
+        )
+        .arg(Arg::new("NAME").required(true).help("Name of the deformation: lower-case words joined by hyphens"))
+        .arg(
+            Arg::new("dir")
+                .long("dir")
+                .value_name("DIR")
+                .default_value(".")
+                .value_parser(value_parser!(PathBuf))
+                .help("Folder to write to"),
+        )
+        .after_help(
+            "Existing files are not overwritten.\n\nExamples:\n  pathwarp new-plugin python ripple\n  pathwarp check \
+             ./pathwarp-ripple.py\n  pathwarp ripple logo.svg -o out.svg --plugin ./pathwarp-ripple.py\n\ndocs/writing-deformations.md \
+             goes on from there.",
+        )
+}
+
+/// Writes it. `taken` tells whether a name is that of a command.
+pub(super) fn new_plugin(m: &ArgMatches, taken: impl Fn(&str) -> bool) -> Result<Status, Failure> {
+    let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
+    let (language, name) = (word("LANGUAGE"), word("NAME"));
+    let is_word = |w: &str| !w.is_empty() && w.bytes().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
+    if !name.split('-').all(is_word) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
+        return Err(Failure::usage(format!("NAME: `{name}` is not lower-case words joined by hyphens")));
+    }
+    if taken(name) {
+        return Err(Failure::usage(format!("NAME: `{name}` is a command already; choose another name")));
+    }
+    let folder = m.get_one::<PathBuf>("dir").map_or(Path::new("."), PathBuf::as_path);
+    let program = format!("pathwarp-{name}");
+    let files = match language {
+        "python" => vec![(folder.join(program).with_extension("py"), PYTHON)],
+        _ => {
+            let home = folder.join(program);
+            vec![(home.join("Cargo.toml"), MANIFEST), (home.join("src/main.rs"), RUST)]
+        }
+    };
+    write(&files, name)?;
+    let first = files[0].0.display().to_string();
+    let home = folder.join(format!("pathwarp-{name}"));
+    let built = home.join("target/release").join(format!("pathwarp-{name}")).display().to_string();
+    let (build, file) = match language {
+        "python" => (String::new(), first),
+        _ => (format!("  cargo build --release --manifest-path {first}\n"), built),
+    };
+    let mut text = String::new();
+    for (file, _) in &files {
+        let _ = writeln!(text, "wrote {}", file.display());
+    }
+    let _ =
+        write!(text, "next:\n{build}  pathwarp check {file}\n  pathwarp {name} IN.svg -o OUT.svg --plugin {file}\n");
+    if let Some(folder) = pathwarp_plugin::folder() {
+        let _ = writeln!(text, "to install it, copy {file} to {}", folder.display());
+    }
+    output::to_stdout(text.as_bytes())?;
+    Ok(Status::Complete)
+}
+
+/// Writes the files, none of which may exist; scripts can be executed.
+fn write(files: &[(PathBuf, &str)], name: &str) -> Result<(), Failure> {
+    let mut pending = Vec::new();
+    for (file, template) in files {
+        if file.exists() {
+            return Err(Failure::output(file, "exists already"));
+        }
+        let folder = file.parent().unwrap_or(Path::new(""));
+        fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))?;
+        pending.push(PendingFile::new(file, template.replace(PLACEHOLDER, name).as_bytes())?);
+    }
+    PendingFile::commit_all(pending)?;
+    #[cfg(unix)]
+    for (file, _) in files.iter().filter(|(f, _)| f.extension().is_some_and(|e| e == "py")) {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(file, fs::Permissions::from_mode(0o755)).map_err(|e| Failure::output(file, e))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,396 @@
+//! A model on its way through a run: meshes and curved surfaces, built, deformed, reported and drawn.
+
+use super::args::Own;
+use super::model::{ModelFormat, NAMES, mesh_file, pending, unread};
+use super::report::{Run, SurfaceRun};
+use crate::advice::{self, Flags};
+use crate::bitmap::{self, Pixel, encode};
+use crate::failure::Failure;
+use crate::input::PREVIEW;
+use crate::options::CommonOptions;
+use crate::output::PendingFile;
+use crate::pipeline::Job;
+use pathwarp::budget::{Budget, Exceeded};
+use pathwarp::param::Axis;
+use pathwarp::recipe::Recipe;
+use pathwarp::{Error, GeometryError};
+use pathwarp_raster::Pixmap;
+use pathwarp_solid::deform::Registry3;
+use pathwarp_solid::glam::DVec3;
+use pathwarp_solid::mesh::{Deformed, Mesh, MeshFault, deform, refine};
+use pathwarp_solid::patch::{
+    DeformedPatches, PatchError, Surface, bpt, deform_patches, json, tessellate, tessellate_image,
+};
+use pathwarp_solid::picture::{Camera3, draw, samples};
+use pathwarp_solid::recipe::{self, BuiltRecipe3};
+use pathwarp_solid::{Box3, Frame3};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A run with everything looked up.
+pub(super) struct Work<'a> {
+    pub(super) registry: &'a Registry3,
+    pub(super) recipe: &'a Recipe,
+    pub(super) options: &'a CommonOptions,
+    pub(super) own: &'a Own,
+    pub(super) flags: &'a Flags,
+}
+
+/// A model that was deformed.
+pub(super) struct Done {
+    pub(super) files: Vec<PendingFile>,
+    pub(super) warnings: Vec<String>,
+    pub(super) notes: Vec<String>,
+    /// Omitted unless one is wanted.
+    pub(super) report: Option<String>,
+    /// Something was left out or missed the tolerance.
+    pub(super) partial: bool,
+}
+
+impl Work<'_> {
+    /// Builds the recipe for a model called `name` with these points.
+    pub(super) fn build(
+        &self,
+        name: &str,
+        bounds: Option<Box3>,
+        points: &[DVec3],
+        budget: &Arc<Budget>,
+    ) -> Result<(Frame3, BuiltRecipe3), Failure> {
+        let bounds = bounds.unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
+        let frame = Frame3::new(self.own.frame.unwrap_or(bounds));
+        let built = recipe::build_within(self.recipe, self.registry, frame, points, budget).map_err(|e| match e {
+            Error::Geometry(GeometryError::Limit(e)) => too_much(name, &e),
+            other => Failure::of_recipe(other),
+        })?;
+        Ok((frame, built))
+    }
+
+    /// Notes on the frame and the steps.
+    pub(super) fn notes(&self, frame: &Frame3, built: &BuiltRecipe3) -> Vec<String> {
+        let size = frame.bounds.size();
+        let first = format!("box: {:.6} × {:.6} × {:.6}", size.x, size.y, size.z);
+        let steps = built.steps.iter().flat_map(|s| &s.notes).map(|n| self.flags.in_text(n));
+        std::iter::once(first).chain(steps).collect()
+    }
+
+    /// Warnings of the steps.
+    pub(super) fn warnings(&self, built: &BuiltRecipe3) -> Vec<String> {
+        built.steps.iter().flat_map(|s| &s.warnings).map(|w| self.flags.in_text(w)).collect()
+    }
+
+    /// Files that parameters ask for, such as a saved lattice.
+    pub(super) fn saves(built: &BuiltRecipe3) -> Result<Vec<PendingFile>, Failure> {
+        let save = |f: &pathwarp::deform::SavedFile| PendingFile::new(Path::new(&f.name), f.text.as_bytes());
+        built.steps.iter().flat_map(|s| &s.saves).map(save).collect()
+    }
+}
+
+/// Fails if searches for an inverse have exceeded the limit. Nothing that was computed with it is used, not even another error.
+pub(super) fn check(name: &str, built: &BuiltRecipe3) -> Result<(), Failure> {
+    built.exceeded().map_or(Ok(()), |e| Err(too_much(name, &e)))
+}
+
+/// The failure of a map that takes too much work.
+fn too_much(name: &str, e: &Exceeded) -> Failure {
+    Failure::Geometry(format!("{name}: deforming takes {e}; {}", advice::raise(e)))
+}
+
+/// The failure of a point without image.
+pub(super) fn undefined(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Failure {
+    Failure::Geometry(format!(
+        "{name}: {what} at {x:.6},{y:.6},{z:.6} has no image: the map is infinite or undefined there; move its control points \
+         less, or choose another eye or region"
+    ))
+}
+
+/// A place in a message.
+pub(super) fn shown(p: DVec3) -> String {
+    format!("{:.6},{:.6},{:.6}", p.x, p.y, p.z)
+}
+
+/// A mesh as read, and the format to write.
+pub(super) struct MeshSource {
+    pub(super) name: String,
+    pub(super) mesh: Mesh,
+    pub(super) format: ModelFormat,
+    /// It was a drawing.
+    pub(super) drawn: bool,
+}
+
+/// Deforms a mesh.
+pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: &Arc<Budget>) -> Result<Done, Failure> {
+    let started = Instant::now();
+    let options = work.options;
+    let MeshSource { name, mut mesh, format, drawn } = source;
+    if format.is_curved() {
+        // Says so before the work.
+        mesh_file(&mesh, format, None)?;
+    }
+    let before = (options.report.is_some() || job.preview.is_some()).then(|| mesh.clone());
+    let (frame, built) = work.build(&name, mesh.bounds(), &mesh.positions, budget)?;
+    if let Some(length) = work.own.refine {
+        let within = length.in_units(Axis::X, &frame.front());
+        refine(&mut mesh, &built.map, within, budget).map_err(|e| match &e.problem {
+            MeshFault::Limit(_) => match unread(&name, &e) {
+                Failure::Input(m) => Failure::Input(m.replacen("; if", "; allow a larger --refine, or if", 1)),
+                other => other,
+            },
+            _ => unread(&name, &e),
+        })?;
+    }
+    let deformed = deform(&mut mesh, &built.map);
+    check(&name, &built)?;
+    let deformed = deformed.map_err(|e| undefined(&name, &format!("vertex {}", e.vertex + 1), e.at))?;
+
+    let mut warnings: Vec<String> = mesh.left_out.iter().map(|what| format!("left out: {what}")).collect();
+    let partial = !warnings.is_empty();
+    let mut lost = format.lost(&mesh);
+    // Nobody misses the names of a drawing's shapes in a file for a printer.
+    lost.retain(|what| !(drawn && *what == NAMES));
+    if !lost.is_empty() {
+        warnings.push(format!("the format of the result has no room for {}; .obj and .glb have", lost.join(", ")));
+    }
+    warnings.extend(work.warnings(&built));
+    warnings.extend(mesh_warnings(&deformed).into_iter().map(|w| work.flags.in_text(&w)));
+    if work.own.refine.is_none() {
+        warnings.extend(coarse(&deformed, &mesh));
+    }
+    let mut files = vec![pending(job.target.as_deref(), mesh_file(&mesh, format, options.precision)?)?];
+    files.extend(Work::saves(&built)?);
+    let mut report = None;
+    if let (Some(_), Some(before)) = (&options.report, &before) {
+        let run = Run {
+            recipe: work.recipe,
+            file: &name,
+            output: job.target.as_ref().map(|t| t.display().to_string()),
+            before,
+            after: &mesh,
+            deformed,
+            warnings: &warnings,
+            seconds: started.elapsed().as_secs_f64(),
+        };
+        report = Some(run.json()?);
+    }
+    if let (Some(file), Some(before)) = (&job.preview, &before) {
+        let guides: Vec<Vec<DVec3>> = built.steps.last().map(|s| s.guides.clone()).unwrap_or_default();
+        let eye = built.steps.iter().find_map(|s| s.eye);
+        let preview = Preview { before, after: &mesh, guides: &guides, eye };
+        files.push(PendingFile::new(file, &preview.file(file, options.quality, budget)?)?);
+    }
+    Ok(Done { files, warnings, notes: work.notes(&frame, &built), report, partial })
+}
+
+/// Warns of edges that should be curved, where that can be seen.
+fn coarse(deformed: &Deformed, mesh: &Mesh) -> Option<String> {
+    /// Distances below this share of the result's size are hardly seen.
+    const SEEN: f64 = 0.02;
+    /// The distance that is proposed instead, as a share of the size.
+    const FINE: f64 = 1e-3;
+    let size = mesh.bounds()?.diagonal();
+    let fine = 10f64.powf((FINE * size).log10().floor());
+    (deformed.bulge > SEEN * size).then(|| {
+        format!(
+            "edges stay straight, and their middles are up to {:.3} from where the map takes them: --refine {fine} subdivides them",
+            deformed.bulge
+        )
+    })
+}
+
+/// Warns of folds and tears.
+fn mesh_warnings(deformed: &Deformed) -> Vec<String> {
+    let fold = deformed.folded_at.map(|at| {
+        let (count, at) = (deformed.folded, shown(at));
+        format!("the map turns space inside out at {count} vertices, first at {at}: faces there point inwards")
+    });
+    let tear = deformed.torn_at.map(|at| {
+        let (count, at) = (deformed.torn, shown(at));
+        format!(
+            "the model is torn apart along {count} edges, first near {at}, where the moved region ends: keep the control points of \
+             that face in place (`freeze` of ffd), or choose another region"
+        )
+    });
+    fold.into_iter().chain(tear).collect()
+}
+
+/// The largest distance of a refitted surface, as a share of the model's size, unless one is given.
+const TOLERANCE: f64 = 1e-4;
+
+/// The distance of polygons in previews, as a share of the model's size: facets are not seen.
+const SEEN: f64 = 3e-4;
+
+/// Surfaces as read, and the format to write.
+pub(super) struct SurfaceSource {
+    pub(super) name: String,
+    pub(super) surfaces: Vec<Surface>,
+    pub(super) format: ModelFormat,
+}
+
+/// Deforms surfaces; written as a mesh, they are cut into polygons after that.
+pub(super) fn bend_surfaces(
+    work: &Work<'_>,
+    job: &Job,
+    source: SurfaceSource,
+    budget: &Arc<Budget>,
+) -> Result<Done, Failure> {
+    let started = Instant::now();
+    let options = work.options;
+    let SurfaceSource { name, mut surfaces, format } = source;
+    if !format.is_curved() && surfaces.iter().any(|s| !s.trims.is_empty()) {
+        return Err(Failure::usage(format!("{name}: trimmed surfaces are not cut into polygons; write .json")));
+    }
+    let points: Vec<DVec3> = surfaces.iter().flat_map(|s| s.points.iter().copied()).collect();
+    let bounds = Box3::around(points.iter().copied());
+    let (frame, built) = work.build(&name, bounds, &points, budget)?;
+    let within = work.own.refine.map(|l| l.in_units(Axis::X, &frame.front()));
+    let tolerance = within.unwrap_or_else(|| TOLERANCE * bounds.map_or(1.0, |b| b.diagonal()));
+    let before = surfaces.clone();
+    let done = deform_patches(&mut surfaces, &built.map, tolerance, budget);
+    check(&name, &built)?;
+    let done = done.map_err(|e| failed(&name, &e))?;
+    let mut warnings = work.warnings(&built);
+    let shape = shape_warnings(&done, format.is_curved().then_some(tolerance));
+    warnings.extend(shape.into_iter().map(|w| work.flags.in_text(&w)));
+    // Polygons are those of the source, with the images of its points: surfaces that are closed stay closed.
+    let image = |within: Option<f64>| -> Result<Mesh, Failure> {
+        let mesh = tessellate_image(&before, &built.map, within, budget).map_err(|e| surfaces_too_much(&name, &e))?;
+        check(&name, &built)?;
+        match mesh.positions.iter().all(|p| p.is_finite()) {
+            true => Ok(mesh),
+            false => Err(Failure::Input(format!("{name}: a place of the surfaces has no image"))),
+        }
+    };
+    let bytes = match format {
+        ModelFormat::Bpt => bpt::write(&surfaces).map_err(|e| Failure::usage(format!("{name}: {e}")))?.into_bytes(),
+        ModelFormat::Surfaces => {
+            json::write(&surfaces).map_err(|e| Failure::Output(format!("{name}: {e}")))?.into_bytes()
+        }
+        _ => {
+            let mesh = image(within)?;
+            let lost = format.lost(&mesh);
+            if !lost.is_empty() {
+                warnings.push(format!("the format of the result has no room for {}", lost.join(", ")));
+            }
+            mesh_file(&mesh, format, options.precision)?
+        }
+    };
+    let mut files = vec![pending(job.target.as_deref(), bytes)?];
+    files.extend(Work::saves(&built)?);
+    let mut report = None;
+    if options.report.is_some() {
+        let run = SurfaceRun {
+            recipe: work.recipe,
+            file: &name,
+            output: job.target.as_ref().map(|t| t.display().to_string()),
+            before: &before,
+            after: &surfaces,
+            done,
+            warnings: &warnings,
+            seconds: started.elapsed().as_secs_f64(),
+        };
+        report = Some(run.json()?);
+    }
+    if let Some(file) = &job.preview {
+        let guides: Vec<Vec<DVec3>> = built.steps.last().map(|s| s.guides.clone()).unwrap_or_default();
+        let eye = built.steps.iter().find_map(|s| s.eye);
+        let fine = bounds.map(|b| SEEN * b.diagonal());
+        let before = tessellate(&before, fine, budget).map_err(|e| surfaces_too_much(&name, &e))?;
+        let after = image(fine)?;
+        let preview = Preview { before: &before, after: &after, guides: &guides, eye };
+        files.push(PendingFile::new(file, &preview.file(file, options.quality, budget)?)?);
+    }
+    let mut notes = work.notes(&frame, &built);
+    notes.push(match done.refitted {
+        _ if !format.is_curved() => "the corners of all polygons are exact images".into(),
+        0 => format!("the images of {} surfaces are exact", done.exact),
+        n => format!("the images of {} surfaces are exact, and of {n} within {:.3e}", done.exact, done.distance),
+    });
+    if done.cut > 0 && format.is_curved() {
+        let (cut, all) = (done.cut, surfaces.len());
+        notes.push(format!("{cut} of them are cut along a crease of the map; the result has {all} surfaces"));
+    }
+    let partial = format.is_curved() && done.distance > tolerance;
+    Ok(Done { files, warnings, notes, report, partial })
+}
+
+fn failed(name: &str, e: &PatchError) -> Failure {
+    match e {
+        PatchError::Undefined { surface, at } => undefined(name, &format!("surface {}", surface + 1), *at),
+        PatchError::Limit(e) => surfaces_too_much(name, e),
+    }
+}
+
+fn surfaces_too_much(name: &str, e: &Exceeded) -> Failure {
+    Failure::Input(format!("{name}: the surfaces take {e}; allow a larger --refine, or {}", advice::raise(e)))
+}
+
+/// `tolerance` is that of refitted surfaces, if they are written.
+fn shape_warnings(done: &DeformedPatches, tolerance: Option<f64>) -> Vec<String> {
+    let fold = done.folded_at.map(|at| {
+        let (count, at) = (done.folded, shown(at));
+        format!("the map turns space inside out at {count} places of the surfaces, first at {at}")
+    });
+    let far = tolerance.filter(|t| done.distance > *t).map(|tolerance| {
+        format!(
+            "{} refitted surfaces are up to {:.3e} from their images instead of {tolerance:.3e}: the map has a crease there, such as \
+             the end of a region; cut the surfaces along it, or allow a larger --refine",
+            done.refitted, done.distance
+        )
+    });
+    let tear = done.torn_at.map(|at| {
+        format!(
+            "the surfaces are torn apart, for example near {}, where the moved region ends: keep the control points of that face in \
+             place (`freeze` of ffd), or choose another region",
+            shown(at)
+        )
+    });
+    fold.into_iter().chain(tear).chain(far).collect()
+}
+
+/// Pixels along a side of a panel.
+const SIDE: usize = 480;
+/// White pixels between panels.
+const GAP: usize = 8;
+
+/// What a preview shows.
+pub(super) struct Preview<'a> {
+    pub(super) before: &'a Mesh,
+    pub(super) after: &'a Mesh,
+    pub(super) guides: &'a [Vec<DVec3>],
+    /// The place from which nothing seems to change: the first camera.
+    pub(super) eye: Option<DVec3>,
+}
+
+impl Preview<'_> {
+    /// The picture, in the format of the file's extension.
+    pub(super) fn file(&self, file: &Path, quality: Option<u8>, budget: &Budget) -> Result<Vec<u8>, Failure> {
+        let format = PREVIEW.format(Some(file), None)?;
+        let whole = 2 * SIDE + GAP;
+        let size = u32::try_from(whole).unwrap_or(u32::MAX);
+        let too_large = || Failure::Output(format!("{}: too large to draw", file.display()));
+        let mut picture = Pixmap::new(size, size).ok_or_else(too_large)?;
+        picture.data_mut().fill(u8::MAX);
+        let boxes = [self.before.bounds(), self.after.bounds()].into_iter().flatten();
+        let scene = Box3::around(boxes.flat_map(|b| [b.min, b.max]));
+        let scene = scene.unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ONE });
+        let front = || Camera3::towards(DVec3::new(0.45, 0.4, 1.0), scene);
+        let first = self.eye.and_then(|eye| Camera3::at(eye, scene)).or_else(front);
+        let second = Camera3::towards(DVec3::new(1.0, 0.4, 0.35), scene);
+        for (row, (mesh, guides)) in [(self.before, &[][..]), (self.after, self.guides)].into_iter().enumerate() {
+            for (column, camera) in [first, second].into_iter().flatten().enumerate() {
+                let counted = bitmap::count_pixels(budget, Pixel::Sampled, samples(mesh, &camera, SIDE));
+                counted.map_err(|e| preview_too_much(&e))?;
+                let panel = draw(mesh, guides, &camera, SIDE);
+                for (y, line) in panel.chunks(4 * SIDE).enumerate() {
+                    let at = 4 * ((row * (SIDE + GAP) + y) * whole + column * (SIDE + GAP));
+                    picture.data_mut()[at..at + line.len()].copy_from_slice(line);
+                }
+            }
+        }
+        encode(picture, format, quality)
+    }
+}
+
+fn preview_too_much(e: &Exceeded) -> Failure {
+    Failure::Input(format!("the preview takes {e}; leave it out, or {}", advice::raise(e)))
+}

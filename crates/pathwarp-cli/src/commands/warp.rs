@@ -1,0 +1,222 @@
+//! Commands that warp files: `pathwarp DEFORMATION …` by one deformation or a chain, `run` by a saved recipe, and the edits `simplify`,
+//! `offset` and `outline`.
+
+use crate::commands::file_args::{file_arg, given_file};
+use crate::edits::{EditChoice, EditInfo, OFFSET, OUTLINE, SIMPLIFY, still};
+use crate::failure::{Failure, Status};
+use crate::options::{self, Given, OPTIONS, inputs_arg, reading_args, some_options};
+use crate::steps::{self, ChainPart, INVERSE};
+use crate::{mistakes, pipeline, recipe_file};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Command};
+use pathwarp::deform::{Info, Registry};
+use pathwarp::param::Kind;
+use pathwarp::recipe::{Recipe, Step};
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::fmt::Write as _;
+
+pub(super) fn deformation_command(info: &Info) -> Command {
+    described(info).args(options::args())
+}
+
+/// The subcommand of a deformation, of the plane or of space, with its help and its own parameters.
+pub(super) fn described(info: &Info) -> Command {
+    let mut examples = String::from("Examples:");
+    for e in info.examples {
+        let _ = write!(examples, "\n  {}:\n    pathwarp {}", e.what, e.command);
+    }
+    let _ = write!(examples, "\n\nSource: {}", info.source);
+    Command::new(info.name)
+        .aliases(steps::aliases(info.name))
+        .about(info.title)
+        .long_about(format!("{} — {}\n\n{}", info.name, info.title, info.about))
+        .after_help(examples)
+        .args(steps::args(info))
+}
+
+/// Runs the deformation `name`, chained with those in `later`.
+pub(super) fn deform(
+    registry: &Registry,
+    name: &str,
+    m: &ArgMatches,
+    words: &[OsString],
+    later: &[&[OsString]],
+) -> Result<Status, Failure> {
+    let first = ChainPart { step: steps::step(registry, name, m), options: Given::inputs_and_options(m) };
+    let mut parts = vec![first];
+    parts.extend(steps::parts(registry, later, &options::options_without_inputs().collect::<Vec<_>>())?);
+    let (recipe, given) = steps::chained(parts)?;
+    mistaken(words, &given)?;
+    pipeline::run(registry, &recipe, &given, None)
+}
+
+/// Refuses inputs that are parts of something else.
+pub(super) fn mistaken(words: &[OsString], given: &Given) -> Result<(), Failure> {
+    mistakes::inputs(words, given.inputs(), given.gives("out") || given.gives("out-dir"))
+        .map_or(Ok(()), |said| Err(Failure::Usage(said)))
+}
+
+pub(super) fn run_command(registry: &Registry) -> Command {
+    Command::new("run")
+        .about("Run a recipe file that --write-recipe saved")
+        .arg(file_arg("RECIPE", "A recipe (TOML)"))
+        .arg(
+            Arg::new(INVERSE)
+                .long(INVERSE)
+                .action(ArgAction::SetTrue)
+                .help("Apply the inverse of every step, the last first (give --frame: the source's box)"),
+        )
+        .args(options::args())
+        .args(parameters(registry))
+        .args_override_self(true)
+        .after_help(
+            "A recipe:\n  pathwarp = 1\n  [options]\n  tolerance = \"0.01\"\n  [[step]]\n  deformation = \"shaper\"\n  \
+             shaper = \"cage.svg#flag\"   # relative to the recipe's own folder\n  select = [\"#logo\"]           # this step holds for a part only; also exclude\n\nExamples:\n  pathwarp shaper logo.svg \
+             --shaper cage.svg -o out.svg --write-recipe flag.toml\n  pathwarp run flag.toml other.svg -o other-out.svg\n  pathwarp run \
+             flag.toml other.svg --bottom 2 -o other-out.svg   # overrides the recipe's value",
+        )
+}
+
+/// The parameters of all deformations, which override the recipe's: hidden, as the recipe decides which of them apply.
+fn parameters(registry: &Registry) -> Vec<Arg> {
+    let mut known: BTreeMap<&'static str, bool> = BTreeMap::new();
+    for p in registry.entries().iter().flat_map(|e| e.info().params) {
+        *known.entry(p.name).or_insert(true) &= p.kind == Kind::Flag;
+    }
+    let taken = |name: &str| name == INVERSE || OPTIONS.iter().any(|o| o.name == name);
+    let arg = |(name, is_flag): (&'static str, bool)| {
+        let arg = Arg::new(name).long(name).hide(true);
+        if is_flag { arg.action(ArgAction::SetTrue) } else { arg.action(ArgAction::Append).allow_hyphen_values(true) }
+    };
+    known.into_iter().filter(|(name, _)| !taken(name)).map(arg).collect()
+}
+
+/// Sets the parameters given on the command line in the only step that has them.
+fn override_parameters(registry: &Registry, recipe: &mut Recipe, m: &ArgMatches) -> Result<(), Failure> {
+    for id in m.ids() {
+        let name = id.as_str();
+        if m.value_source(name) != Some(ValueSource::CommandLine) || OPTIONS.iter().any(|o| o.name == name) {
+            continue;
+        }
+        let has = |step: &Step| {
+            registry.get(&step.deformation).is_some_and(|e| e.info().params.iter().any(|p| p.name == name))
+        };
+        if !registry.entries().iter().any(|e| e.info().params.iter().any(|p| p.name == name)) {
+            continue;
+        }
+        let mut steps: Vec<&mut Step> = recipe.steps.iter_mut().filter(|s| has(s)).collect();
+        let values = || m.get_raw(name).into_iter().flatten().map(|v| v.to_string_lossy().into_owned()).collect();
+        match steps.as_mut_slice() {
+            [only] => only.args.set(name, values()),
+            [] => return Err(Failure::usage(format!("no step of the recipe has --{name}"))),
+            several => {
+                let problem = "steps of the recipe have it; change it in the recipe";
+                return Err(Failure::usage(format!("--{name}: {} {problem}", several.len())));
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn run_recipe(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
+    let file = given_file(m, "RECIPE")?;
+    let mut saved = recipe_file::read(registry, file, Given::reading(m)?.external)?;
+    override_parameters(registry, &mut saved.recipe, m)?;
+    let given = saved.options.overridden_by(&Given::inputs_and_options(m));
+    mistaken(words, &given)?;
+    // The command line alone has no conflicts, so one that shows up now involves the recipe.
+    given.check_conflicts().map_err(|e| Failure::file(file, format!("[options] {e}")))?;
+    let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
+    pipeline::run(registry, &recipe, &given, Some(file))
+}
+
+/// The common options that say what is read and where the result goes.
+const SHARED: [&str; 20] = [
+    "out",
+    "format",
+    "out-dir",
+    "in-place",
+    "recursive",
+    "dry-run",
+    "into",
+    "salvage",
+    "tolerance",
+    "select",
+    "exclude",
+    "precision",
+    "structure",
+    "dxf-curves",
+    "on-error",
+    "report",
+    "preview",
+    "jobs",
+    "explain",
+    "quiet",
+];
+
+pub(super) fn simplify_command() -> Command {
+    let about = "Give paths the fewest nodes within a distance";
+    declared(&SIMPLIFY, about)
+        .long_about(format!(
+            "{about}.\n\nTraced drawings and those of many small steps get smooth curves with few nodes, each point of which is within \
+             --tolerance of the original, and the original of them. Ids, classes, groups and everything else stay as they are; so do \
+             paths that would not get fewer nodes, basic shapes, text and copies (use). The default tolerance is 5e-4 of the drawing's \
+             diagonal, and less for small contours.",
+        ))
+        .after_help(
+            "Examples:\n  A traced drawing:\n    pathwarp simplify trace.svg -o clean.svg\n  Within a tenth of a millimetre, for a \
+             cutter:\n    pathwarp simplify trace.svg --tolerance 0.1mm -o clean.dxf\n  A folder, in place:\n    pathwarp simplify icons/ \
+             --recursive --in-place",
+        )
+}
+
+pub(super) fn offset_command() -> Command {
+    let about = "Let areas grow or shrink, and lines run beside themselves";
+    declared(&OFFSET, about)
+        .args(some_options(&["text"]).map(|a| a.help_heading("Options")))
+        .long_about(format!(
+            "{about}.\n\nEach point of the result has its distance from the source, within --tolerance. Loops and slivers are removed; what is \
+             narrower than the distance vanishes, and a note says so. A path is one area: its outlines unite, those of different paths do \
+             not. Strokes keep their width; text becomes outlines.",
+        ))
+        .after_help(
+            "Examples:\n  A sticker's edge around a badge:\n    pathwarp offset badge.svg --by 3mm -o edge.svg\n  Half of a laser's kerf, for \
+             a tight fit:\n    pathwarp offset parts.svg --by 0.1mm --join miter -o parts.dxf\n  Inlays, a little smaller than their \
+             holes:\n    pathwarp offset inlays.svg --by 0.2mm --side inside -o smaller.svg",
+        )
+}
+
+pub(super) fn outline_command() -> Command {
+    let about = "Turn strokes and text into filled outlines";
+    declared(&OUTLINE, about)
+        .args(some_options(&["text", "union"]).map(|a| a.help_heading("Options")))
+        .long_about(format!(
+            "{about}.\n\nThe outline of a stroke, with its joins, caps and dashes, is within --tolerance of what the stroke covers. Shapes \
+             without a stroke stay as they are.",
+        ))
+        .after_help(
+            "Examples:\n  A logo for a program that knows no strokes and no fonts:\n    pathwarp outline logo.svg -o outlines.svg\n  Only \
+             the strokes:\n    pathwarp outline logo.svg --text skip -o outlines.svg",
+        )
+}
+
+fn declared(info: &'static EditInfo, about: &'static str) -> Command {
+    let own = info.params.iter().map(steps::param_arg);
+    let shared = some_options(&SHARED).map(|a| a.help_heading("Common options"));
+    Command::new(info.name).about(about).args([inputs_arg()]).args(own).args(shared).args(reading_args())
+}
+
+/// Runs an edit.
+pub(super) fn edit_shapes(
+    registry: &Registry,
+    info: &'static EditInfo,
+    m: &ArgMatches,
+    words: &[OsString],
+) -> Result<Status, Failure> {
+    let mut given = Given::inputs_and_options(m);
+    given.check_conflicts().map_err(Failure::Usage)?;
+    mistaken(words, &given)?;
+    given.edit = Some(EditChoice { info, args: steps::param_values(info.params, m) });
+    pipeline::run(registry, &still(), &given, None)
+}

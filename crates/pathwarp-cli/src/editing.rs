@@ -1,0 +1,291 @@
+//! Drawings in the editor: what `pathwarp-editor` needs from the command line.
+
+use crate::advice::Flags;
+use crate::bitmap::encode;
+use crate::failure::Failure;
+use crate::format::{Choice, DRAWINGS, Format, PICTURES};
+use crate::input::{Artwork as _, Baseline, SvgArtwork, WarpRequest, WarpedResult, Which, read_options};
+use crate::options::{CommonOptions, Given};
+use crate::output::PendingFile;
+use crate::{coming_from, export, pipeline, plugins, recipe_file, references};
+use pathwarp::Outline;
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::param::Frame;
+use pathwarp::recipe::{BuiltParts, BuiltRecipe, Recipe, Step};
+use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, Summary};
+use pathwarp_raster::{RenderOptions, Size};
+use pathwarp_svg::{Document, Origin, ReadOptions, usvg_tree};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A drawing in the editor.
+struct EditedArtwork {
+    svg: SvgArtwork,
+    registry: Arc<Registry>,
+    given: Given,
+    options: CommonOptions,
+    flags: Arc<Flags>,
+    /// The files of plug-ins that a command line has to name.
+    plugins: Vec<String>,
+    /// The folder of the drawing, where its results go.
+    folder: PathBuf,
+    /// The frame for the guides and the baseline of the last picture.
+    framed: Option<Framed>,
+}
+
+#[derive(Clone)]
+struct Framed {
+    guides: Vec<String>,
+    baseline: Baseline,
+    frame: Frame,
+}
+
+/// A recipe that is ready to be used.
+struct Ready {
+    resolved: Recipe,
+    built: BuiltParts,
+    tolerance: f64,
+}
+
+impl EditedArtwork {
+    fn new(
+        svg: SvgArtwork,
+        registry: &Arc<Registry>,
+        given: Given,
+        options: CommonOptions,
+        flags: &Arc<Flags>,
+    ) -> Self {
+        Self {
+            svg,
+            registry: Arc::clone(registry),
+            given,
+            options,
+            flags: Arc::clone(flags),
+            plugins: Vec::new(),
+            folder: PathBuf::new(),
+            framed: None,
+        }
+    }
+
+    fn with_plugins(self, files: &[String]) -> Self {
+        Self { plugins: files.to_vec(), ..self }
+    }
+
+    fn in_folder(self, folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), ..self }
+    }
+
+    /// Looks up references, chooses the frame and builds the steps.
+    fn ready(&mut self, recipe: &Recipe) -> Result<Ready, Failure> {
+        self.svg.renew_budget();
+        let mut resolved = recipe.clone();
+        references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
+        let guides = references::resolve_names(&self.registry, &mut resolved, |name| self.svg.path_named(name))?;
+        let baseline = resolved.steps.first().map_or(Baseline::None, |s| pipeline::baseline(&self.registry, s));
+        self.svg.restore(&self.options);
+        self.svg.remove_guides(guides.clone());
+        let frame = self.framed(guides, baseline)?;
+        let tolerance = self.options.tolerance_for(self.svg.painted_box(), &frame)?;
+        let parts = pipeline::divided(&mut self.svg, &resolved)?;
+        let known = (!resolved.steps.iter().any(Step::is_selective)).then_some(&frame);
+        let starts = pipeline::starts(&self.registry, &resolved, &self.svg, &parts, self.options.frame, known)?;
+        let built = pipeline::build(&self.registry, &resolved, &self.svg, &parts, &starts)?;
+        sound(&built)?;
+        Ok(Ready { resolved, built, tolerance })
+    }
+
+    /// The frame of all artwork.
+    fn framed(&mut self, guides: Vec<String>, baseline: Baseline) -> Result<Frame, Failure> {
+        if let Some(framed) = self.framed.as_ref().filter(|f| f.guides == guides && f.baseline == baseline) {
+            return Ok(framed.frame.clone());
+        }
+        let frame = self.svg.frame(Which::All, self.options.frame, self.svg.bounding_box(Which::All), baseline)?;
+        let frame = frame.with_units_per_px(self.svg.units_per_px());
+        self.framed = Some(Framed { guides, baseline, frame: frame.clone() });
+        Ok(frame)
+    }
+
+    fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
+        let Ready { resolved, built, tolerance } = self.ready(recipe)?;
+        let text = || recipe_file::write(&*self.registry, recipe, &self.given, &self.folder);
+        let embedded_recipe = (fineness == Fineness::Finished { embedded: true }).then(text).transpose()?;
+        let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
+        let same_view = !matches!(fineness, Fineness::Finished { .. });
+        let options = &self.options;
+        let suited = options.tolerance.is_none() && !matches!(fineness, Fineness::Draft(_));
+        let request =
+            WarpRequest { recipe, built: &built, options, tolerance, suited, embedded_recipe, same_view, edit: None };
+        if let Fineness::Draft(_) = fineness {
+            let svg = self.svg.draft(&request);
+            sound(&built)?;
+            let (svg, page) = svg?;
+            return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
+        }
+        let warped = self.svg.warp(&request);
+        sound(&built)?;
+        let warped = warped.map_err(|f| pipeline::explained(f, &built))?;
+        let WarpedResult::Bytes(bytes) = warped.result else {
+            return Err(Failure::Input("the result is not a drawing".into()));
+        };
+        let svg = String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?;
+        let shapes = &warped.shapes;
+        let fold = |s: &crate::report::ReportedShape| s.folded_at.map(|[x, y]| (s.id.clone(), Point::new(x, y)));
+        let summary = Summary {
+            segments_in: shapes.iter().map(|s| s.segments_in).sum(),
+            segments_out: shapes.iter().map(|s| s.segments_out).sum(),
+            max_error: shapes.iter().map(|s| s.max_error).fold(0.0, f64::max),
+            tolerance,
+            folds: shapes.iter().filter_map(fold).collect(),
+        };
+        let own = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
+        let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
+        warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
+        warnings.extend(warped.skipped.iter().map(|s| format!("{} is not bent: {}", s.id, s.why)));
+        let page = warped.page.change.map(|[_, after]| after);
+        Ok(Bent { svg, page, resolved, built: built.whole, summary: Some(summary), warnings })
+    }
+
+    fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+        result.map_err(|f| f.message(&self.flags))
+    }
+}
+
+/// The map of a plug-in may fail at any time. Nothing that was computed with it is used then.
+fn sound(built: &BuiltParts) -> Result<(), Failure> {
+    built.whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
+}
+
+impl Artwork for EditedArtwork {
+    fn document(&self) -> &Document {
+        self.svg.document()
+    }
+
+    fn frame(&self) -> Rect {
+        let known = self.framed.as_ref().map(|f| f.frame.rect);
+        known.or_else(|| self.svg.bounding_box(Which::All)).unwrap_or_else(|| self.document().view_box())
+    }
+
+    fn outlines(&self) -> Vec<&Outline> {
+        self.svg.outlines(Which::All)
+    }
+
+    fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
+        let bent = self.bent(recipe, fineness);
+        self.said(bent)
+    }
+
+    fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
+        let ready = self.ready(recipe);
+        self.said(ready).map(|r| (r.resolved, r.built.whole))
+    }
+
+    fn options(&self) -> Vec<(String, String)> {
+        let all = self.given.stored();
+        let stored = all.flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v)));
+        stored.chain(self.plugins.iter().map(|file| (plugins::OPTION.to_owned(), file.clone()))).collect()
+    }
+
+    fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
+        self.said(recipe_file::write(&*self.registry, recipe, &self.given, &self.folder))
+    }
+}
+
+/// The width of pictures, in px: enough for a screen in full.
+const PICTURE_WIDTH: u32 = 2000;
+
+/// The command line around the editor.
+pub(crate) struct EditorHost {
+    registry: Arc<Registry>,
+    /// Options where neither the user nor the drawing gives any.
+    usual: Given,
+    /// The options as given.
+    given: Given,
+    /// The files of plug-ins that a command line has to name.
+    plugins: Vec<String>,
+    flags: Arc<Flags>,
+}
+
+impl EditorHost {
+    pub(crate) fn new(registry: Registry, usual: Given, given: Given) -> Self {
+        let flags = Arc::new(Flags::of(&registry));
+        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags }
+    }
+
+    /// Names the files of plug-ins in command lines.
+    pub(crate) fn with_plugins(self, files: &[PathBuf]) -> Self {
+        Self { plugins: files.iter().map(|f| f.display().to_string()).collect(), ..self }
+    }
+
+    fn open_drawing(&self, file: &Path, bytes: &[u8]) -> Result<Opened, Failure> {
+        let reading = self.given.read()?.reading;
+        reading.check()?;
+        let limits = reading.limits.for_input(bytes.len());
+        let origin = Origin::of_file(bytes, "the drawing", &limits).unwrap_or(None);
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let (source, saved) = match &origin {
+            Some(origin) => {
+                let saved = recipe_file::from_text(&*self.registry, &origin.recipe, folder, reading.external);
+                (origin.source.as_slice(), Some(saved.map_err(|e| Failure::file(file, e))?))
+            }
+            None => (bytes, None),
+        };
+        let is_result = saved.is_some();
+        let (recipe, given) = match saved {
+            Some(saved) => (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given)),
+            None => (Recipe::default(), self.usual.overridden_by(&self.given)),
+        };
+        let options = given.read()?;
+        let svg = SvgArtwork::read(source, file, &options, None)?;
+        let artwork = EditedArtwork::new(svg, &self.registry, given, options, &self.flags);
+        let artwork = artwork.with_plugins(&self.plugins).in_folder(folder);
+        Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
+    }
+
+    fn converted(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), Failure> {
+        let options = self.given.read()?;
+        let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
+        let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
+        let read = read_options(to, &options.reading);
+        if format.of_picture(None).is_none() {
+            let exported = export::drawing(svg, format, &read, &options, None)?;
+            return Ok((exported.bytes, exported.warnings));
+        }
+        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the result", &ReadOptions::default())?;
+        let limits = options.reading.limits.for_input(svg.len());
+        let drawn =
+            RenderOptions { size: Size::Width(PICTURE_WIDTH), background: None }.render_within(&tree, &limits)?;
+        Ok((encode(drawn, format, None)?, Vec::new()))
+    }
+
+    fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+        result.map_err(|f| f.message(&self.flags))
+    }
+}
+
+impl Host for EditorHost {
+    fn registry(&self) -> &Registry {
+        &self.registry
+    }
+
+    fn foreign_words(&self) -> Vec<(&str, &str)> {
+        let named = coming_from::all().filter_map(|w| Some((w.subcommand()?, w.words)));
+        named.flat_map(|(name, words)| words.into_iter().map(move |w| (w, name))).collect()
+    }
+
+    fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String> {
+        self.said(self.open_drawing(file, bytes))
+    }
+
+    fn reference(&self, file: &Path) -> String {
+        recipe_file::from_here(file)
+    }
+
+    fn export(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), String> {
+        self.said(self.converted(svg, to))
+    }
+
+    fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String> {
+        self.said(PendingFile::new(to, bytes).and_then(|file| PendingFile::commit_all(vec![file])))
+    }
+}

@@ -1,0 +1,455 @@
+//! Inkscape's descriptions of extensions (`.inx`), from the registry and the table of common options.
+
+use crate::inkscape::names::{
+    ACTION, ADD, AGAIN, AUTOMATIC, CHANGES, DEFORMATION, DISCARD, FILE, GUIDES, NONE, PERCENT, REPLACE, SHOW, UNIT,
+    UNITS, WARNINGS,
+};
+use crate::options::{CommonOption, OPTIONS, OptionValue};
+use pathwarp::deform::{Guides, Info, Registry};
+use pathwarp::param::{Kind, Param};
+use std::fmt::Write as _;
+
+/// All descriptions: file name and content.
+pub(crate) fn files(registry: &Registry, program: &Program) -> Vec<(String, String)> {
+    let effects = registry.entries().iter().map(|e| {
+        let info = e.info();
+        (format!("pathwarp-{}.inx", info.name), inx(info, program))
+    });
+    effects.chain(others(program)).collect()
+}
+
+/// The command that the descriptions name: a file beside them, a program on the search path, or a path.
+pub(crate) struct Program {
+    /// `inx`, `path` or `absolute`.
+    pub(crate) location: &'static str,
+    pub(crate) name: String,
+}
+
+/// The common options that a dialog shows, in its order. The others make no sense for a part of an open drawing.
+const SHOWN: [&str; 11] =
+    ["fit", "clones", "strokes", "text", "gradients", "patterns", "images", "merge", "on-error", "tolerance", "frame"];
+
+/// Other defaults than the command line has: in Inkscape, clones show what happens to their original, and pages stay.
+const DEFAULTS: [(&str, &str); 2] = [("clones", "follow"), ("fit", "none")];
+
+/// Describes the effect.
+fn inx(info: &Info, program: &Program) -> String {
+    let name = format!("{} – {}", label(info.name), info.title);
+    let mut settings = String::new();
+    info.params.iter().for_each(|p| settings += &of_param(p));
+    if !info.guides.params.is_empty() {
+        settings += &guides(info.guides);
+    }
+    let mut options = String::new();
+    for name in SHOWN {
+        OPTIONS.iter().filter(|o| o.name == name).for_each(|o| options += &of_option(o, default(o)));
+    }
+    options += &again();
+    let pages = [("settings", "Settings", settings), ("options", "Options", options), ("help", "Help", help(info))];
+    let mut body =
+        format!("  <param name=\"{DEFORMATION}\" type=\"string\" gui-hidden=\"true\">{}</param>\n", info.name);
+    body += "  <param name=\"tab\" type=\"notebook\">\n";
+    for (page, title, content) in pages {
+        let _ = write!(body, "    <page name=\"{page}\" gui-text=\"{title}\">\n{content}    </page>\n");
+    }
+    body += "  </param>\n";
+    effect(&name, info.name, info.title, &body, Some(info.group), true, program)
+}
+
+/// The default of an option in a dialog.
+fn default(o: &CommonOption) -> &'static str {
+    let other = DEFAULTS.iter().find(|(name, _)| *name == o.name).map(|(_, value)| *value);
+    other.or(o.default).unwrap_or_default()
+}
+
+/// An effect in the menu, in a submenu of ours if `group` names one.
+fn effect(
+    name: &str,
+    id: &str,
+    tip: &str,
+    body: &str,
+    group: Option<&str>,
+    preview: bool,
+    program: &Program,
+) -> String {
+    let (name, tip) = (escaped(name), escaped(tip));
+    let inner = group.map_or_else(String::new, |g| format!("<submenu name=\"{}\"/>", escaped(g)));
+    let Program { location, name: file } = program;
+    let file = escaped(file);
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<inkscape-extension \
+         xmlns=\"http://www.inkscape.org/namespace/inkscape/extension\">\n  <name>{name}</name>\n  <id>org.pathwarp.{id}</id>\n  \
+         <dependency type=\"executable\" location=\"{location}\">{file}</dependency>\n{body}  <effect \
+         needs-live-preview=\"{preview}\">\n    <object-type>all</object-type>\n    <menu-tip>{tip}</menu-tip>\n    \
+         <effects-menu><submenu name=\"pathwarp\">{inner}</submenu></effects-menu>\n  </effect>\n  <script><command \
+         location=\"{location}\">{file}</command></script>\n</inkscape-extension>\n"
+    )
+}
+
+/// The choice of how many selected paths are guides.
+fn guides(guides: Guides) -> String {
+    let names: Vec<String> = guides.params.iter().map(|p| format!("“{}”", label(p))).collect();
+    let help = format!(
+        "Selected paths that are guides: the topmost is {}. By itself: {} of them, or none if a guide is named here or by its label ({}).",
+        names.join(", the next "),
+        guides.usual,
+        guides.params.join(", "),
+    );
+    let counts: Vec<String> = (0..=guides.params.len()).map(|n| n.to_string()).collect();
+    let options = counts.iter().map(|n| (n.as_str(), n.clone()));
+    let auto = (AUTOMATIC, "by itself".to_owned());
+    choice(GUIDES, "Guides in the selection", &help, std::iter::once(auto).chain(options), AUTOMATIC)
+}
+
+/// Options for objects that are warped already, and for messages.
+fn again() -> String {
+    let options = [
+        (AUTOMATIC, "change a warp of this kind, warp other results"),
+        (REPLACE, "start again from their sources"),
+        (ADD, "warp the results"),
+    ];
+    let help = "Objects that pathwarp has warped remember their sources.";
+    let options = options.into_iter().map(|(value, text)| (value, text.to_owned()));
+    let mut out = choice(AGAIN, "Objects warped before", help, options, AUTOMATIC);
+    let switches = [
+        (
+            DISCARD,
+            "Give up changes by hand",
+            "If the nodes of a warped object were moved, start again from its source all the same.",
+        ),
+        (
+            WARNINGS,
+            "Show warnings",
+            "Say in a window what was left unchanged or may look wrong. Leave this off for the preview.",
+        ),
+    ];
+    for (name, label, help) in switches {
+        Widget { name, kind: "bool", more: String::new(), label, help, content: "false".into() }.write(&mut out);
+    }
+    out
+}
+
+fn help(info: &Info) -> String {
+    let mut out = String::new();
+    for paragraph in info.about.split("\n\n") {
+        let _ = writeln!(out, "      <label>{}</label>", escaped(&labelled(paragraph)));
+    }
+    let _ = writeln!(out, "      <label appearance=\"url\">https://github.com/pathwarp/pathwarp</label>");
+    out
+}
+
+/// File name and content of each.
+fn others(program: &Program) -> [(String, String); 5] {
+    [
+        ("pathwarp-bend-by-hand.inx".into(), by_hand(program)),
+        ("pathwarp-edit-again.inx".into(), edit_again(program)),
+        ("pathwarp-release.inx".into(), release(program)),
+        ("pathwarp-xcf-input.inx".into(), xcf(program)),
+        ("pathwarp-dxf-output.inx".into(), dxf(program)),
+    ]
+}
+
+fn action(value: &str) -> String {
+    format!("  <param name=\"{ACTION}\" type=\"string\" gui-hidden=\"true\">{value}</param>\n")
+}
+
+fn by_hand(program: &Program) -> String {
+    let tip = "Drag points in the browser, and see the selected objects follow";
+    effect("Bend by hand…", "bend-by-hand", tip, &action("hand"), None, false, program)
+}
+
+fn edit_again(program: &Program) -> String {
+    let mut body = action("edit");
+    let text = "Warps the sources of the selected objects again, with the settings that they were warped with and the changes below. \
+                Guides are taken as they are now.";
+    body += &format!("  <label>{text}</label>\n");
+    let widget = |name, kind, more: &str, label, help, content: &str| {
+        let mut out = String::new();
+        Widget { name, kind, more: more.into(), label, help, content: content.into() }.write(&mut out);
+        out
+    };
+    body += &widget(
+        CHANGES,
+        "string",
+        " appearance=\"multiline\"",
+        "Changes, such as bend=30%",
+        "One setting per line, name=value; name= alone gives a setting its default. Nothing here: the same settings.",
+        "",
+    );
+    body += &widget(SHOW, "bool", "", "Only show the settings", "Shows the settings in a window.", "false");
+    body +=
+        &widget(DISCARD, "bool", "", "Give up changes by hand", "Also if nodes were moved since the warp.", "false");
+    body += &warnings();
+    effect("Edit warp again", "edit-again", "Warp the sources of warped objects again", &body, None, true, program)
+}
+
+fn warnings() -> String {
+    let mut out = String::new();
+    let help = "Say in a window what was left out or unchanged.";
+    Widget { name: WARNINGS, kind: "bool", more: String::new(), label: "Show warnings", help, content: "false".into() }
+        .write(&mut out);
+    out
+}
+
+fn release(program: &Program) -> String {
+    let tip = "Give warped objects their sources back";
+    effect("Release", "release", tip, &action("release"), None, false, program)
+}
+
+fn xcf(program: &Program) -> String {
+    let body = action("to-svg");
+    let kind = "<input>\n    <extension>.xcf</extension>\n    <mimetype>image/x-xcf</mimetype>\n    <filetypename>Paths of a GIMP \
+                image (*.xcf)</filetypename>\n    <filetypetooltip>The paths, exactly as GIMP stores them</filetypetooltip>\n  </input>";
+    file_type("Paths of a GIMP image", "xcf", &body, kind, program)
+}
+
+fn dxf(program: &Program) -> String {
+    let mut body = action("to-dxf");
+    OPTIONS
+        .iter()
+        .filter(|o| ["dxf-curves", "tolerance"].contains(&o.name))
+        .for_each(|o| body += &of_option(o, o.default.unwrap_or_default()));
+    body += &warnings();
+    let kind = "<output>\n    <extension>.dxf</extension>\n    <mimetype>image/vnd.dxf</mimetype>\n    <filetypename>Outlines in mm \
+                with true arcs, pathwarp (*.dxf)</filetypename>\n    <filetypetooltip>Circles and arcs stay circles and arcs, curves \
+                are exact splines</filetypetooltip>\n    <dataloss>true</dataloss>\n  </output>";
+    file_type("DXF with true arcs", "dxf", &body, kind, program)
+}
+
+/// A type of files to open or save.
+fn file_type(name: &str, id: &str, body: &str, kind: &str, program: &Program) -> String {
+    let Program { location, name: file } = program;
+    let file = escaped(file);
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<inkscape-extension \
+         xmlns=\"http://www.inkscape.org/namespace/inkscape/extension\">\n  <name>{name}</name>\n  <id>org.pathwarp.{id}</id>\n  \
+         <dependency type=\"executable\" location=\"{location}\">{file}</dependency>\n{body}  {kind}\n  <script><command \
+         location=\"{location}\">{file}</command></script>\n</inkscape-extension>\n"
+    )
+}
+
+/// Limits of numbers that have none: Inkscape's own default is 0 to 10.
+const FAR: f64 = 1e6;
+
+/// The range of a parameter's slider that its declaration leaves open.
+const NO_SLIDER: (f64, f64) = (0.0, 1.0);
+
+/// One `<param>`.
+struct Widget<'a> {
+    name: &'a str,
+    kind: &'a str,
+    /// More attributes, each with a space before it.
+    more: String,
+    label: &'a str,
+    help: &'a str,
+    content: String,
+}
+
+impl Widget<'_> {
+    fn write(&self, out: &mut String) {
+        let Self { name, kind, more, content, .. } = self;
+        let (label, help) = (escaped(self.label), escaped(&labelled(self.help)));
+        let _ = writeln!(
+            out,
+            "      <param name=\"{name}\" type=\"{kind}\"{more} gui-text=\"{label}\" gui-description=\"{help}\">{content}</param>"
+        );
+    }
+}
+
+/// A choice: pairs of value and label. The default comes first: Inkscape 1.2 takes the first option whatever is marked.
+fn choice<'a>(
+    name: &str,
+    title: &str,
+    help: &str,
+    options: impl Iterator<Item = (&'a str, String)>,
+    default: &str,
+) -> String {
+    let mut content = String::from("\n");
+    let (first, others): (Vec<_>, Vec<_>) = options.partition(|(value, _)| *value == default);
+    for (value, label) in first.iter().chain(&others) {
+        let _ = writeln!(content, "        <option value=\"{}\">{}</option>", escaped(value), escaped(label));
+    }
+    content += "      ";
+    let mut out = String::new();
+    Widget { name, kind: "optiongroup", more: " appearance=\"combo\"".into(), label: title, help, content }
+        .write(&mut out);
+    out
+}
+
+/// The elements for a parameter of a deformation; none for files that it saves, which a preview would write again and again.
+fn of_param(p: &Param) -> String {
+    let mut out = String::new();
+    let default = p.default.unwrap_or_default();
+    let title = label(p.name);
+    let own = title.as_str();
+    let widget = |name, kind, more, label, content| Widget { name, kind, more, label, help: p.help, content };
+    let number = default.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%');
+    match p.kind {
+        Kind::Save => {}
+        Kind::Flag => widget(p.name, "bool", String::new(), own, "false".into()).write(&mut out),
+        Kind::Number if default.ends_with('%') => {
+            let name = format!("{}{PERCENT}", p.name);
+            let more = float(p.ui, p.range, 100.0, 1);
+            widget(&name, "float", more, &format!("{title} (%)"), number.into()).write(&mut out);
+        }
+        Kind::Number if p.default.is_some() => {
+            widget(p.name, "float", float(p.ui, p.range, 1.0, 3), own, number.into()).write(&mut out);
+        }
+        Kind::Angle if p.default.is_some() => {
+            widget(p.name, "float", float(p.ui, p.range, 1.0, 1), &format!("{title} (°)"), number.into())
+                .write(&mut out);
+        }
+        Kind::Length(_) if p.default.is_some() => length(p, own, number, &mut out),
+        Kind::Count if p.default.is_some() => {
+            let (least, most) = (p.range.0.max(-1e4), p.range.1.min(1e4));
+            widget(p.name, "int", format!(" min=\"{least}\" max=\"{most}\""), own, number.into()).write(&mut out);
+        }
+        Kind::Choice(words) | Kind::NameOrFile(words) => {
+            let none = p.default.is_none() && !p.needed;
+            let first = none.then(|| (NONE, "–".to_owned()));
+            let all = first.into_iter().chain(words.iter().map(|w| (*w, (*w).to_owned())));
+            out += &choice(p.name, own, p.help, all, if none { NONE } else { default });
+            if matches!(p.kind, Kind::NameOrFile(_)) {
+                let name = format!("{}{FILE}", p.name);
+                widget(&name, "path", file("toml,json"), &format!("{title}: a file instead"), String::new())
+                    .write(&mut out);
+            }
+        }
+        Kind::File => widget(p.name, "path", file("json,toml,psd,svg"), own, String::new()).write(&mut out),
+        Kind::Path => {
+            widget(p.name, "string", String::new(), &format!("{title} (id or label)"), escaped(default))
+                .write(&mut out);
+        }
+        _ if p.repeat => {
+            let title = format!("{title}: {}, one per line", p.value_name());
+            widget(p.name, "string", " appearance=\"multiline\"".into(), &title, escaped(default)).write(&mut out);
+        }
+        _ => {
+            let title = if p.default.is_some() { title.clone() } else { format!("{title} ({})", p.value_name()) };
+            widget(p.name, "string", String::new(), &title, escaped(default)).write(&mut out);
+        }
+    }
+    out
+}
+
+/// A number with its unit beside it.
+fn length(p: &Param, title: &str, number: &str, out: &mut String) {
+    let least = if p.range.0 >= 0.0 { 0.0 } else { -FAR };
+    let more = format!(" precision=\"3\" min=\"{least}\" max=\"{FAR}\"");
+    let unit = p.default.unwrap_or_default()[number.len()..].trim();
+    let unit = UNITS.iter().find(|(_, u, _)| *u == unit).map_or("user", |(name, ..)| name);
+    out.push_str("      <hbox>\n");
+    Widget { name: p.name, kind: "float", more, label: title, help: p.help, content: number.into() }.write(out);
+    let units = UNITS.iter().map(|(name, _, label)| (*name, (*label).to_owned()));
+    out.push_str(&choice(&format!("{}{UNIT}", p.name), " ", "The unit.", units, unit));
+    out.push_str("      </hbox>\n");
+}
+
+/// Attributes of a float: with a slider where the declaration has one.
+fn float(ui: (f64, f64), range: (f64, f64), times: f64, precision: u8) -> String {
+    let (least, most) = if ui == NO_SLIDER && range != NO_SLIDER { range } else { ui };
+    let (least, most) = ((least * times).max(-FAR), (most * times).min(FAR));
+    let slider = if most - least < FAR { " appearance=\"full\"" } else { "" };
+    format!(" precision=\"{precision}\" min=\"{least}\" max=\"{most}\"{slider}")
+}
+
+fn file(types: &str) -> String {
+    format!(" mode=\"file\" filetypes=\"{types}\"")
+}
+
+/// The element for a common option; `default` is the word that is chosen at first.
+fn of_option(o: &CommonOption, default: &str) -> String {
+    let title = label(o.name);
+    match &o.value {
+        OptionValue::Choice(_) => {
+            let words = o.words().into_iter().map(|w| (w, w.to_owned()));
+            choice(o.name, &title, o.help, words, default)
+        }
+        _ => {
+            let mut out = String::new();
+            Widget {
+                name: o.name,
+                kind: "string",
+                more: String::new(),
+                label: &title,
+                help: &o.help(),
+                content: String::new(),
+            }
+            .write(&mut out);
+            out
+        }
+    }
+}
+
+/// Escapes text for XML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// The label of a name in kebab case: `reverse-shaper` becomes “Reverse shaper”.
+fn label(name: &str) -> String {
+    let text = name.replace('-', " ");
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
+}
+
+/// Text for people, with options as the dialogs label them: `--reverse-shaper` becomes “Reverse shaper”.
+pub(crate) fn labelled(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(i) = rest.find("--") {
+        let (before, after) = (&rest[..i], &rest[i + 2..]);
+        let len = after.find(|c: char| !(c.is_ascii_alphanumeric() || c == '-')).unwrap_or(after.len());
+        out.push_str(before);
+        if len == 0 || before.ends_with(|c: char| c.is_alphanumeric()) {
+            out.push_str("--");
+            rest = after;
+            continue;
+        }
+        let _ = write!(out, "“{}”", label(&after[..len]));
+        rest = &after[len..];
+    }
+    out + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every description is well-formed, has its own id, and passes only parameters that are understood.
+    #[test]
+    fn descriptions_are_sound() {
+        let registry = Registry::builtin();
+        let program = Program { location: "inx", name: "pathwarp".into() };
+        let all = files(&registry, &program);
+        assert!(all.len() > registry.entries().len() + 2);
+        let mut ids = std::collections::HashSet::new();
+        for (name, text) in &all {
+            let objects = pathwarp_svg::objects::objects(text, &pathwarp::budget::Limits::default());
+            assert!(objects.is_ok(), "{name}: {objects:?}");
+            let id = text.split("<id>").nth(1).and_then(|t| t.split("</id>").next()).unwrap();
+            assert!(
+                ids.insert(id) && id.chars().all(|c| c.is_ascii_alphanumeric() || ".-".contains(c)),
+                "{name}: {id}"
+            );
+            let mut names: Vec<&str> =
+                text.split("<param name=\"").skip(1).map(|t| t.split('"').next().unwrap()).collect();
+            let count = names.len();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), count, "{name}: a name occurs twice");
+        }
+        // Inkscape 1.2 takes the first option of a choice.
+        let bend = &all.iter().find(|(name, _)| name == "pathwarp-bend.inx").unwrap().1;
+        for (choice, first) in [("align", "middle"), ("clones", "follow"), ("fit", "none"), ("offset_unit", "user")] {
+            let options = bend.split(&format!("name=\"{choice}\"")).nth(1).unwrap();
+            assert!(options.split("<option value=\"").nth(1).unwrap().starts_with(first), "{choice}");
+        }
+    }
+
+    #[test]
+    fn options_read_as_in_the_dialogs() {
+        assert_eq!(labelled("use --reverse-shaper, or --by."), "use “Reverse shaper”, or “By”.");
+        assert_eq!(labelled("a -- b 1--2 --"), "a -- b 1--2 --");
+    }
+}

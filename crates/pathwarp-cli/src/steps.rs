@@ -1,0 +1,142 @@
+//! Steps of a recipe from the words of a command line.
+
+use crate::catalogue::Catalogue;
+use crate::failure::Failure;
+use crate::options::Given;
+use clap::{Arg, ArgAction, ArgMatches, Command};
+use pathwarp::deform::Info;
+use pathwarp::param::{Args, Kind, Param};
+use pathwarp::recipe::{Recipe, Step};
+use std::ffi::OsString;
+use std::fmt::Write as _;
+
+/// A part of a chain.
+pub(crate) struct ChainPart {
+    pub(crate) step: Step,
+    /// The common options in this part; they apply to the whole chain.
+    pub(crate) options: Given,
+}
+
+/// Other names of a deformation.
+pub(crate) fn aliases(name: &str) -> Option<&'static str> {
+    (name == "projective").then_some("perspective")
+}
+
+/// Where a step keeps the values of an option.
+type OfStep = fn(&mut Step) -> &mut Vec<String>;
+
+/// Options that apply to the whole chain if one part gives them, and else to the step of each part that does.
+const OF_STEPS: [(&str, OfStep); 2] = [("select", |s| &mut s.select), ("exclude", |s| &mut s.exclude)];
+
+/// Gives the steps of parts what is theirs alone: the selection, if several parts have one.
+pub(crate) fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mut Given)>) {
+    let mut parts: Vec<_> = parts.into_iter().collect();
+    for (name, of) in OF_STEPS {
+        if parts.iter().filter(|(_, options)| options.gives(name)).count() < 2 {
+            continue;
+        }
+        for (steps, options) in &mut parts {
+            let values = options.take(name);
+            steps.iter_mut().for_each(|step| of(step).extend(values.iter().cloned()));
+        }
+    }
+}
+
+/// The steps of all parts, and the options that hold for the whole chain.
+pub(crate) fn chained(mut parts: Vec<ChainPart>) -> Result<(Recipe, Given), Failure> {
+    assign(parts.iter_mut().map(|p| (std::slice::from_mut(&mut p.step), &mut p.options)));
+    // The first part's options come last, as its inputs do.
+    let mut options = parts.iter().skip(1).chain(parts.first()).map(|p| &p.options);
+    let given = options.try_fold(Given::default(), |all, options| all.joined(options))?;
+    Ok((Recipe { steps: parts.into_iter().map(|p| p.step).collect() }, given))
+}
+
+/// Parses the parts after each `+`, which take these common options.
+pub(crate) fn parts(
+    catalogue: &dyn Catalogue,
+    words: &[&[OsString]],
+    options: &[Arg],
+) -> Result<Vec<ChainPart>, Failure> {
+    words.iter().map(|words| part(catalogue, words, options)).collect()
+}
+
+fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Result<ChainPart, Failure> {
+    let mut c = Command::new("pathwarp … +")
+        .no_binary_name(true)
+        .disable_help_flag(true)
+        .disable_help_subcommand(true)
+        .subcommand_required(true);
+    for info in catalogue.infos() {
+        c = c.subcommand(
+            Command::new(info.name).aliases(aliases(info.name)).about(info.title).args(args(info)).args(options),
+        );
+    }
+    let mut m = c.try_get_matches_from(words)?;
+    let (name, sub) = m.remove_subcommand().ok_or_else(|| Failure::usage("a deformation must follow `+`"))?;
+    Ok(ChainPart { step: step(catalogue, &name, &sub), options: Given::options(&sub) })
+}
+
+/// The switch that every deformation has.
+pub(crate) const INVERSE: &str = "inverse";
+
+const HEADING: &str = "Options";
+
+/// The parameters of a deformation as clap arguments, without the common options.
+pub(crate) fn args(info: &Info) -> impl Iterator<Item = Arg> {
+    let inverse = Arg::new(INVERSE)
+        .long(INVERSE)
+        .action(ArgAction::SetTrue)
+        .help_heading(HEADING)
+        .help("Apply the inverse map, if there is one (give --frame: percentages refer to the source's box)");
+    info.params.iter().map(param_arg).chain([inverse])
+}
+
+pub(crate) fn param_arg(p: &Param) -> Arg {
+    let mut help = p.help.to_owned();
+    if let Some(d) = p.default {
+        let _ = write!(help, " [default: {d}]");
+    }
+    let arg = Arg::new(p.name).long(p.name).help(help).help_heading(HEADING);
+    if p.kind == Kind::Flag {
+        return arg.action(ArgAction::SetTrue);
+    }
+    // Coordinates may start with a minus, but a missing value must not swallow the next option.
+    arg.value_name(p.value_name())
+        .allow_hyphen_values(true)
+        .value_parser(
+            |t: &str| {
+                if t.starts_with("--") { Err("a value is missing before this option") } else { Ok(t.to_owned()) }
+            },
+        )
+        .action(if p.repeat { ArgAction::Append } else { ArgAction::Set })
+}
+
+/// The step that the parsed subcommand of the deformation `name` asks for.
+pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Step {
+    let args = param_values(catalogue.info(name).map_or(&[][..], |i| i.params), m);
+    Step { inverse: m.get_flag(INVERSE), ..Step::new(name, args) }
+}
+
+/// The values that a parsed command line gives for parameters.
+pub(crate) fn param_values(params: &[Param], m: &ArgMatches) -> Args {
+    let mut args = Args::new();
+    for p in params {
+        if p.kind == Kind::Flag {
+            if m.get_flag(p.name) {
+                args.push(p.name, "true");
+            }
+        } else {
+            for v in m.get_many::<String>(p.name).into_iter().flatten() {
+                args.push(p.name, in_lower_case(p, v));
+            }
+        }
+    }
+    args
+}
+
+/// A name that differs from a known one only in case, as that one.
+pub(crate) fn in_lower_case(p: &Param, value: &str) -> String {
+    let (Kind::NameOrFile(names) | Kind::Choice(names)) = p.kind else { return value.to_owned() };
+    let same = names.iter().find(|n| n.eq_ignore_ascii_case(value));
+    same.map_or_else(|| value.to_owned(), |n| (*n).to_owned())
+}
