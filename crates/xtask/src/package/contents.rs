@@ -145,7 +145,7 @@ fn licences_text(root: &Path) -> Result<String, ChoreError> {
 
 /// The packages of the workspace and their dependencies, as cargo resolves them for this machine.
 fn metadata(root: &Path) -> Result<Value, ChoreError> {
-    let platform = format!("--filter-platform={}", super::host()?);
+    let platform = format!("--filter-platform={}", host()?);
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["metadata", "--format-version=1", "--locked", &platform]).current_dir(root);
     let out = cargo.output().map_err(|e| e.to_string())?;
@@ -202,6 +202,15 @@ fn licences(folder: &Path) -> Result<Vec<PathBuf>, ChoreError> {
 
 fn read(file: &Path) -> Result<String, ChoreError> {
     fs::read(file).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).map_err(at(file))
+}
+
+/// The target triple of this machine.
+pub(super) fn host() -> Result<String, ChoreError> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let out = Command::new(&rustc).arg("-vV").output().map_err(at(Path::new(&rustc)))?;
+    let text = String::from_utf8_lossy(&out.stdout).into_owned();
+    let host = text.lines().find_map(|l| l.strip_prefix("host: ")).ok_or("rustc -vV names no host")?;
+    Ok(host.to_owned())
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 
 use crate::chore::{Chore, ChoreError, at, hex, path_option, workspace};
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use contents::Tree;
+use contents::{Tree, host};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -119,15 +119,6 @@ impl Build<'_> {
         }
         Ok(flags)
     }
-}
-
-/// The target triple of this machine.
-fn host() -> Result<String, ChoreError> {
-    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let out = process::Command::new(&rustc).arg("-vV").output().map_err(at(Path::new(&rustc)))?;
-    let text = String::from_utf8_lossy(&out.stdout).into_owned();
-    let host = text.lines().find_map(|l| l.strip_prefix("host: ")).ok_or("rustc -vV names no host")?;
-    Ok(host.to_owned())
 }
 
 /// Cargo's folder, which has the sources of the crates.

@@ -300,17 +300,22 @@ pub(super) fn bend_surfaces(
         files.push(PendingFile::new(file, &preview.file(file, options.quality, budget)?)?);
     }
     let mut notes = work.notes(&frame, &built);
-    notes.push(match done.refitted {
+    notes.extend(surface_notes(&done, format, surfaces.len()));
+    let partial = format.is_curved() && done.distance > tolerance;
+    Ok(Done { files, warnings, notes, report, partial })
+}
+
+/// What became of the surfaces, of which the result has `all`.
+fn surface_notes(done: &DeformedPatches, format: ModelFormat, all: usize) -> Vec<String> {
+    let mut notes = vec![match done.refitted {
         _ if !format.is_curved() => "the corners of all polygons are exact images".into(),
         0 => format!("the images of {} surfaces are exact", done.exact),
         n => format!("the images of {} surfaces are exact, and of {n} within {:.3e}", done.exact, done.distance),
-    });
+    }];
     if done.cut > 0 && format.is_curved() {
-        let (cut, all) = (done.cut, surfaces.len());
-        notes.push(format!("{cut} of them are cut along a crease of the map; the result has {all} surfaces"));
+        notes.push(format!("{} of them are cut along a crease of the map; the result has {all} surfaces", done.cut));
     }
-    let partial = format.is_curved() && done.distance > tolerance;
-    Ok(Done { files, warnings, notes, report, partial })
+    notes
 }
 
 fn failed(name: &str, e: &PatchError) -> Failure {
