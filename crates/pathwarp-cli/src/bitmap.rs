@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::{advice, watch};
-use pathwarp::budget::{Budget, Exceeded, Limit, Limits, cost};
+use pathwarp::budget::{Budget, Cost, Exceeded, Limit, Limits, cost};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Jet, Map, NewtonInverse};
 use pathwarp_raster::{
@@ -270,16 +270,15 @@ impl Map for Inverse {
         if self.count(ps.len()) { self.map.points(ps, out) } else { out.fill(Jet::UNDEFINED.p) }
     }
 
-    fn work(&self) -> f64 {
-        self.map.work()
+    fn cost(&self) -> Cost<'_> {
+        let cost = Cost::new(self.map.work());
+        if self.map.prefers_batches() { cost.batched(self) } else { cost }
     }
+}
 
-    fn prefers_batches(&self) -> bool {
-        self.map.prefers_batches()
-    }
-
+impl Batches for Inverse {
     fn differentiates(&self) -> bool {
-        self.map.differentiates()
+        self.map.cost().batches.is_some_and(Batches::differentiates)
     }
 }
 

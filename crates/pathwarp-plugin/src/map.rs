@@ -5,8 +5,9 @@ use crate::differences;
 use crate::fault::Fault;
 use crate::instance::Instance;
 use crate::pool::Program;
+use pathwarp::budget::Cost;
 use pathwarp::kurbo::{Point, Vec2};
-use pathwarp::map::{Creases, Jet, Map};
+use pathwarp::map::{Batches, Creases, Images, Jet, Map};
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
@@ -112,11 +113,27 @@ impl Map for ProgramMap {
         self.points_by(Ask::Points, ps, out);
     }
 
-    fn work(&self) -> f64 {
-        self.program.work()
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(self.program.work()).batched(self)
     }
 
-    fn points_and_jets(&self, (ps, images): (&[Point], &mut [Point]), (qs, jets): (&[Point], &mut [Jet])) {
+    fn creases(&self, out: &mut Creases) {
+        for crease in self.creases.items() {
+            out.push(crease.clone());
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        (!self.creases.items().is_empty()).then(|| Arc::new(self.beside(inside)) as Arc<dyn Map>)
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        self.abilities.inverse.then(|| Arc::new(Inverse(self.clone())) as Arc<dyn Map>)
+    }
+}
+
+impl Batches for ProgramMap {
+    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
         if !self.abilities.jacobian {
             self.points(ps, images);
             return self.jets(qs, jets);
@@ -134,24 +151,6 @@ impl Map for ProgramMap {
             self.write(Ask::Points, (ps, images), &values, point);
             self.write(Ask::Jets, (qs, jets), &derivatives, jet);
         }
-    }
-
-    fn creases(&self, out: &mut Creases) {
-        for crease in self.creases.items() {
-            out.push(crease.clone());
-        }
-    }
-
-    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        (!self.creases.items().is_empty()).then(|| Arc::new(self.beside(inside)) as Arc<dyn Map>)
-    }
-
-    fn inverse(&self) -> Option<Arc<dyn Map>> {
-        self.abilities.inverse.then(|| Arc::new(Inverse(self.clone())) as Arc<dyn Map>)
-    }
-
-    fn prefers_batches(&self) -> bool {
-        true
     }
 
     fn differentiates(&self) -> bool {
@@ -195,14 +194,12 @@ impl Map for Beside {
         self.map.points(&ps.iter().map(|p| self.moved(*p)).collect::<Vec<_>>(), out);
     }
 
-    fn work(&self) -> f64 {
-        self.map.work()
-    }
-
-    fn prefers_batches(&self) -> bool {
-        true
+    fn cost(&self) -> Cost<'_> {
+        self.map.cost().batched(self)
     }
 }
+
+impl Batches for Beside {}
 
 /// The inverse that a program gives. Its derivatives are those of the map, inverted.
 struct Inverse(ProgramMap);
@@ -238,7 +235,9 @@ impl Map for Inverse {
         Some(Arc::new(self.0.clone()))
     }
 
-    fn prefers_batches(&self) -> bool {
-        true
+    fn cost(&self) -> Cost<'_> {
+        Cost::NET.batched(self)
     }
 }
+
+impl Batches for Inverse {}

@@ -44,13 +44,10 @@ mod error;
 pub mod fold;
 pub(crate) mod formula;
 pub mod map;
-#[doc(hidden)]
 pub mod outline;
 pub mod param;
 pub mod recipe;
 pub mod refit;
-#[doc(hidden)]
-pub mod search;
 pub mod solve;
 
 pub use bezierfit as fit;

@@ -153,7 +153,7 @@ impl Recipe {
         let count = |out: &BuiltRecipe, portion: &Portion<'_>| {
             let samples = portion.outlines.iter().flat_map(|o| o.segs()).count() * (PER_SEGMENT + 1);
             let places = out.placement.copies.len().max(1) as f64;
-            let work = SAMPLE * places * samples as f64 * out.map.work();
+            let work = SAMPLE * places * samples as f64 * out.map.cost().work;
             budget.spend(work).map_err(GeometryError::Limit)
         };
         self.counted(registry, start, portions, (&count, budget))
@@ -406,7 +406,7 @@ impl BuiltRecipe {
     /// Returns the map without a limit on what inverses search: for maps that are used on and on.
     #[must_use]
     pub fn unlimited(&self) -> Chain {
-        self.map.spending(&Arc::new(Budget::new(Limits::none()))).unwrap_or_else(|| self.map.clone())
+        self.map.spending(&Arc::new(Budget::new(Limits::none())))
     }
 
     /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.

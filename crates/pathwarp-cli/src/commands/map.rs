@@ -85,7 +85,7 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let built = recipe.build_within(registry, Frame::new(frame), &std::iter::once(&cloud), &budget);
     let built = built.map_err(Failure::of_recipe)?;
     let map = &built.map;
-    let spent = budget.spend(POINT * map.work() * points.len() as f64);
+    let spent = budget.spend(POINT * map.cost().work * points.len() as f64);
     spent.map_err(|e| Failure::of_recipe(GeometryError::Limit(e).into()))?;
     let mut creases = Creases::default();
     map.creases(&mut creases);

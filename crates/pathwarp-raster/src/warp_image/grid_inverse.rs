@@ -9,7 +9,8 @@
 
 use super::image_warp::in_pixels;
 use kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::map::{Creases, Jet, Map};
+use pathwarp::budget::Cost;
+use pathwarp::map::{Batches, Creases, Jet, Map};
 use std::fmt;
 
 /// Pixels of the result per side of a cell.
@@ -147,8 +148,8 @@ impl Map for GridInverse<'_> {
         Jet { p, dx: Vec2::new(there.dy.y, -there.dx.y) / det, dy: Vec2::new(-there.dy.x, there.dx.x) / det }
     }
 
-    fn prefers_batches(&self) -> bool {
-        self.map.prefers_batches()
+    fn cost(&self) -> Cost<'_> {
+        if self.map.prefers_batches() { Cost::NET.batched(self) } else { Cost::NET }
     }
 
     fn point(&self, q: Point) -> Point {
@@ -197,6 +198,8 @@ impl Map for GridInverse<'_> {
         }
     }
 }
+
+impl Batches for GridInverse<'_> {}
 
 /// A point that is being inverted.
 struct Search {

@@ -14,7 +14,7 @@ use crate::parallel::for_each_chunk;
 use crate::pixmap::new_pixmap;
 use kurbo::{Affine, Point, Vec2};
 use pathwarp::budget::Limits;
-use pathwarp::map::{Gathered, Jet, Map};
+use pathwarp::map::{Batches, Gathered, Jet, Map};
 use tiny_skia::Pixmap;
 
 /// Warps a bitmap.

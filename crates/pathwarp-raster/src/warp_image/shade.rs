@@ -9,7 +9,7 @@ use crate::parallel::for_each_chunk_pair;
 use crate::pixmap::new_pixmap;
 use kurbo::{Affine, BezPath, Point};
 use pathwarp::budget::Limits;
-use pathwarp::map::{Gathered, Map};
+use pathwarp::map::{Batches, Gathered, Map};
 use std::fmt;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
@@ -75,7 +75,7 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
         let mut band = ShadeBand { top, columns, pixels, known, inverse };
         blocks.into_iter().for_each(|block| painter.block(&mut band, block));
     };
-    let batches = shade.inverse.prefers_batches();
+    let batches = shade.inverse.cost().batches.is_some();
     if known.len() >= WORTH_THREADS {
         for_each_chunk_pair(out.pixels_mut(), &mut known, columns * BLOCK, |i, pixels, known| {
             let memory = batches.then(|| painter.memory(blocks(i * BLOCK, pixels.len() / columns)));

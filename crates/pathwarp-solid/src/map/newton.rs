@@ -15,7 +15,7 @@ use super::traits::Map3;
 use crate::box3::Box3;
 use glam::{DMat3, DVec3};
 use pathwarp::budget::Budget;
-use pathwarp::search::{Search, is_over};
+use pathwarp::budget::{Search, is_over};
 use std::fmt;
 use std::sync::Arc;
 

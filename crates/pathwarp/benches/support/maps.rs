@@ -1,8 +1,7 @@
 //! Maps of a box: a mild and a strong bicubic, a rational one, a fold and a wave.
 
 use kurbo::{Point, Vec2};
-use pathwarp::map::batch::Lane;
-use pathwarp::map::{Formula, Jet, Map, RationalDegree, Real};
+use pathwarp::map::{Class, Formula, Jet, Map, RationalDegree, Real};
 
 /// Side length of the box of the icons and the maps.
 pub const BOX: f64 = 1000.0;
@@ -88,8 +87,8 @@ fn slope(r: &[f64; 4], v: f64) -> f64 {
 }
 
 impl Map for Bicubic {
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        Some(RationalDegree::polynomial(6))
+    fn class(&self) -> Class {
+        Class::Rational(RationalDegree::polynomial(6))
     }
 
     #[inline]
@@ -109,13 +108,6 @@ impl Map for Bicubic {
         let row = |c: &[[f64; 4]; 4], j: usize| ((c[3][j] * u + c[2][j]) * u + c[1][j]) * u + c[0][j];
         let at = |c: &[[f64; 4]; 4]| ((row(c, 3) * v + row(c, 2)) * v + row(c, 1)) * v + row(c, 0);
         Point::new(at(&self.x), at(&self.y))
-    }
-
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-        for (x, y) in x.iter_mut().zip(y) {
-            let p = self.point(Point::new(*x, *y));
-            (*x, *y) = (p.x, p.y);
-        }
     }
 }
 
@@ -155,8 +147,8 @@ impl Default for Rational {
 }
 
 impl Map for Rational {
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        Some(RationalDegree::rational(4))
+    fn class(&self) -> Class {
+        Class::Rational(RationalDegree::rational(4))
     }
 
     fn denominator(&self, p: Point) -> f64 {
@@ -188,13 +180,6 @@ impl Map for Rational {
         let f = |k: usize| horner(&self.c[k][0], v) + u * horner(&self.c[k][1], v);
         let w = f(2);
         Point::new(f(0) / w, f(1) / w)
-    }
-
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-        for (x, y) in x.iter_mut().zip(y) {
-            let p = self.point(Point::new(*x, *y));
-            (*x, *y) = (p.x, p.y);
-        }
     }
 }
 

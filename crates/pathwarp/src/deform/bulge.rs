@@ -11,6 +11,7 @@
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
+use crate::budget::Cost;
 use crate::error::{Error, within};
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
@@ -254,8 +255,8 @@ impl Map for SoftInverse {
     }
 
     /// A few Newton steps with a logarithm each.
-    fn work(&self) -> f64 {
-        INVERSE_WORK
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(INVERSE_WORK)
     }
 
     fn class(&self) -> Class {

@@ -6,6 +6,7 @@
 
 use super::built::Built;
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use crate::budget::Cost;
 use crate::error::Error;
 use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
 use crate::map::{Class, Crease, Creases, Dual, Jet, Level, Map};
@@ -255,8 +256,8 @@ impl ExprMap {
 const OPERATIONS: f64 = 8.0;
 
 impl Map for ExprMap {
-    fn work(&self) -> f64 {
-        1.0 + self.program.len() as f64 / OPERATIONS
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(1.0 + self.program.len() as f64 / OPERATIONS)
     }
 
     fn jet(&self, p: Point) -> Jet {

@@ -15,6 +15,7 @@
 use super::built::{Built, Role};
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors;
+use crate::budget::Cost;
 use crate::error::{Error, GeometryError, within};
 use crate::map::{AffineMap, Formula, Real};
 use crate::param::{Axis, Kind, Param, Settings};
@@ -359,8 +360,8 @@ impl MlsMap {
 const HANDLES: f64 = 4.0;
 
 impl Formula for MlsMap {
-    fn work(&self) -> f64 {
-        1.0 + self.handles.len() as f64 / HANDLES
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(1.0 + self.handles.len() as f64 / HANDLES)
     }
 
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {

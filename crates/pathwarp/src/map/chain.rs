@@ -1,8 +1,9 @@
 //! Composition of maps.
 
-use super::batch::{Lane, WIDTH};
-use super::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree, inverse_over};
-use crate::budget::Budget;
+use super::{
+    AffineMap, Batches, Class, Crease, Creases, Images, Jet, Level, Map, RationalBezier, RationalDegree, inverse_over,
+};
+use crate::budget::{Budget, Cost, Searches};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -39,7 +40,7 @@ impl Chain {
         if class == Class::Affine(Affine::IDENTITY) {
             return;
         }
-        let folded: Option<Arc<dyn Map>> = match (self.steps.last().map(Map::class), class) {
+        let folded: Option<Arc<dyn Map>> = match (self.steps.last().map(|s| s.class()), class) {
             (Some(Class::Affine(a)), Class::Affine(b)) => Some(Arc::new(AffineMap(b * a))),
             (Some(Class::Affine(a)), Class::Projective(b)) => Some(Arc::new(b.after_affine(a))),
             (Some(Class::Projective(a)), Class::Affine(b)) => Some(Arc::new(a.then_affine(b))),
@@ -100,13 +101,9 @@ impl Chain {
         &self.steps
     }
 
-    /// The same chain, whose searches spend from a budget. `None`: nothing is searched.
-    pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Option<Self> {
-        let within: Vec<Option<Arc<dyn Map>>> = self.steps.iter().map(|s| s.within(budget)).collect();
-        within.iter().any(Option::is_some).then(|| {
-            let steps = within.into_iter().zip(&self.steps).map(|(within, s)| within.unwrap_or_else(|| Arc::clone(s)));
-            Self { steps: steps.collect() }
-        })
+    /// The same chain, whose searches spend from a budget.
+    pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
+        Self { steps: self.steps.iter().map(|s| s.within(budget).unwrap_or_else(|| Arc::clone(s))).collect() }
     }
 }
 
@@ -142,14 +139,6 @@ fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
 }
 
 impl Map for Chain {
-    fn work(&self) -> f64 {
-        self.steps.iter().map(Map::work).sum::<f64>().max(1.0)
-    }
-
-    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-        self.spending(budget).map(|chain| Arc::new(chain) as Arc<dyn Map>)
-    }
-
     fn jet(&self, p: Point) -> Jet {
         let mut it = self.steps.iter();
         let Some(first) = it.next() else { return AffineMap::IDENTITY.jet(p) };
@@ -209,19 +198,11 @@ impl Map for Chain {
         }
     }
 
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        let mut all = RationalDegree::polynomial(1);
-        for m in &self.steps {
-            let d = m.rational_degree()?;
-            all = RationalDegree { degree: all.degree.checked_mul(d.degree)?, rational: all.rational || d.rational };
-        }
-        Some(all)
-    }
-
     /// With F₁ = (X₁, Y₁)/W₁ and a second map of degree d₂, the denominator of the chain is W₁^d₂ · (W₂ ∘ F₁).
     fn denominator(&self, p: Point) -> f64 {
         let step = |(p, w): (Point, f64), m: &Arc<dyn Map>| {
-            let power = m.rational_degree().map_or(1, |d| d.degree) as i32;
+            // Only a denominator needs the degree.
+            let power = if w == 1.0 { 1 } else { m.rational_degree().map_or(1, |d| d.degree) as i32 };
             (m.point(p), w.powi(power) * m.denominator(p))
         };
         self.steps.iter().fold((p, 1.0), step).1
@@ -231,7 +212,14 @@ impl Map for Chain {
         match self.steps.as_slice() {
             [] => Class::Affine(Affine::IDENTITY),
             [one] => one.class(),
-            _ => Class::Smooth,
+            several => {
+                let step = |all: RationalDegree, m: &Arc<dyn Map>| {
+                    let d = m.rational_degree()?;
+                    let degree = all.degree.checked_mul(d.degree)?;
+                    Some(RationalDegree { degree, rational: all.rational || d.rational })
+                };
+                several.iter().try_fold(RationalDegree::polynomial(1), step).map_or(Class::Smooth, Class::Rational)
+            }
         }
     }
 
@@ -265,43 +253,40 @@ impl Map for Chain {
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let back: Option<Vec<_>> = self.steps.iter().rev().map(Map::inverse).collect();
+        let back: Option<Vec<_>> = self.steps.iter().rev().map(|s| s.inverse()).collect();
         back.map(|steps| Arc::new(Self::new(steps)) as Arc<dyn Map>)
     }
 
-    fn prefers_batches(&self) -> bool {
-        self.steps.iter().any(Map::prefers_batches)
+    fn cost(&self) -> Cost<'_> {
+        let (mut work, mut all) = (0.0, Cost::NET);
+        for cost in self.steps.iter().map(|s| s.cost()) {
+            work += cost.work;
+            all = if cost.batches.is_some() { all.batched(self) } else { all };
+            all = if cost.searches.is_some() { all.searching(self) } else { all };
+        }
+        Cost { batches: all.batches, searches: all.searches, ..Cost::new(f64::max(work, 1.0)) }
     }
+}
 
-    fn differentiates(&self) -> bool {
-        self.steps.iter().any(Map::differentiates)
-    }
-
-    fn points_and_jets(&self, (ps, images): (&[Point], &mut [Point]), (qs, jets): (&[Point], &mut [Jet])) {
-        if let [only] = self.steps.as_slice() {
-            return only.points_and_jets((ps, images), (qs, jets));
+impl Batches for Chain {
+    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
+        if let [only] = self.steps.as_slice()
+            && let Some(batches) = only.cost().batches
+        {
+            return batches.points_and_jets((ps, images), (qs, jets));
         }
         self.points(ps, images);
         self.jets(qs, jets);
     }
 
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-        for m in &self.steps {
-            m.lanes(x, y);
-        }
+    fn differentiates(&self) -> bool {
+        self.steps.iter().filter_map(|s| s.cost().batches).any(Batches::differentiates)
     }
+}
 
-    fn denominators(&self, x: &Lane, y: &Lane) -> Lane {
-        let (mut x, mut y, mut all) = (*x, *y, [1.0; WIDTH]);
-        for m in &self.steps {
-            let power = m.rational_degree().map_or(1, |d| d.degree) as i32;
-            let own = m.denominators(&x, &y);
-            for (w, o) in all.iter_mut().zip(own) {
-                *w = f64::powi(*w, power) * o;
-            }
-            m.lanes(&mut x, &mut y);
-        }
-        all
+impl Searches for Chain {
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
+        Arc::new(self.spending(budget))
     }
 }
 
@@ -369,18 +354,15 @@ mod tests {
             }),
             Affine::IDENTITY,
         );
-        let degree = net.rational_degree().unwrap().degree as i32;
+        let degree = net.class().degree().unwrap().degree as i32;
         let chain = Chain::new([Arc::new(tilt()) as Arc<dyn Map>, Arc::new(net.clone()), Arc::new(tilt())]);
-        assert_eq!(chain.rational_degree(), Some(RationalDegree::rational(degree as usize)));
-        let (x, y): (Lane, Lane) =
-            (std::array::from_fn(|i| 0.1 * i as f64), std::array::from_fn(|i| 0.7 - 0.09 * i as f64));
-        for (i, w) in chain.denominators(&x, &y).into_iter().enumerate() {
-            let p = Point::new(x[i], y[i]);
+        assert_eq!(chain.class().degree(), Some(RationalDegree::rational(degree as usize)));
+        for p in (0..8).map(|i| Point::new(0.1 * f64::from(i), 0.7 - 0.09 * f64::from(i))) {
+            let w = chain.denominator(p);
             let expected = tilt().w(p).powi(degree) * tilt().w(net.point(tilt().point(p)));
             assert!(
                 (w - expected).abs() < 1e-14 * expected.abs() && (w - 1.0).abs() > 1e-6 * f64::from(p != Point::ORIGIN)
             );
-            assert_eq!(w, chain.denominator(p));
         }
     }
 

@@ -11,8 +11,24 @@ pub enum Class {
     Affine(Affine),
     /// Lines stay lines.
     Projective(Homography),
+    /// The coordinates are quotients of polynomials: enough to prove error bounds without writing out an image. If they have a
+    /// denominator, the map implements [`Map::denominator`](super::Map::denominator) too.
+    Rational(RationalDegree),
     /// Anything else.
     Smooth,
+}
+
+impl Class {
+    /// The degree of the map if its coordinates are quotients of polynomials.
+    #[must_use]
+    pub const fn degree(&self) -> Option<RationalDegree> {
+        match self {
+            Self::Affine(_) => Some(RationalDegree::polynomial(1)),
+            Self::Projective(_) => Some(RationalDegree::rational(1)),
+            Self::Rational(degree) => Some(*degree),
+            Self::Smooth => None,
+        }
+    }
 }
 
 /// The degree of a map (x, y) ↦ (X/W, Y/W) with polynomials X, Y, W.

@@ -2,8 +2,7 @@
 
 use super::newton::NewtonInverse;
 use super::{Crease, CreaseKind, Creases, Jet, Level, Map};
-use crate::budget::Budget;
-use crate::search::Search;
+use crate::budget::{Budget, Cost, Search, Searches};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
@@ -40,8 +39,8 @@ impl CreasedInverse {
 }
 
 impl Map for CreasedInverse {
-    fn work(&self) -> f64 {
-        self.whole.work()
+    fn cost(&self) -> Cost<'_> {
+        self.whole.cost().searching(self)
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -65,10 +64,12 @@ impl Map for CreasedInverse {
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::clone(&self.map))
     }
+}
 
-    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+impl Searches for CreasedInverse {
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
         let map = self.map.within(budget).unwrap_or_else(|| Arc::clone(&self.map));
-        Some(Arc::new(Self { whole: Arc::new(self.whole.spending(budget)), map, kinks: self.kinks.clone() }))
+        Arc::new(Self { whole: Arc::new(self.whole.spending(budget)), map, kinks: self.kinks.clone() })
     }
 }
 
@@ -90,8 +91,8 @@ impl OnBranch {
 }
 
 impl Map for OnBranch {
-    fn work(&self) -> f64 {
-        self.whole.work()
+    fn cost(&self) -> Cost<'_> {
+        Cost { searches: None, ..self.whole.cost() }
     }
 
     fn jet(&self, q: Point) -> Jet {

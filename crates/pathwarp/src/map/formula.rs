@@ -1,7 +1,7 @@
 //! The short way to write a map: one formula, generic over the number type.
 
-use super::batch::Lane;
-use super::{Class, Creases, Dual, Jet, Map, RationalBezier, RationalDegree, Real};
+use super::{Class, Creases, Dual, Jet, Map, RationalBezier, Real};
+use crate::budget::Cost;
 use kurbo::Point;
 use std::sync::Arc;
 
@@ -45,11 +45,6 @@ pub trait Formula: Send + Sync {
         None
     }
 
-    /// See [`Map::rational_degree`].
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        None
-    }
-
     /// See [`Map::denominator`].
     fn denominator(&self, _p: Point) -> f64 {
         1.0
@@ -60,9 +55,9 @@ pub trait Formula: Send + Sync {
         None
     }
 
-    /// See [`Map::work`].
-    fn work(&self) -> f64 {
-        1.0
+    /// See [`Map::cost`].
+    fn cost(&self) -> Cost<'_> {
+        Cost::NET
     }
 }
 
@@ -76,12 +71,6 @@ impl<F: Formula> Map for F {
     #[inline]
     fn point(&self, p: Point) -> Point {
         self.f(p.x, p.y).into()
-    }
-
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-        for (x, y) in x.iter_mut().zip(y) {
-            (*x, *y) = self.f(*x, *y);
-        }
     }
 
     fn class(&self) -> Class {
@@ -100,10 +89,6 @@ impl<F: Formula> Map for F {
         Formula::image(self, curve)
     }
 
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        Formula::rational_degree(self)
-    }
-
     fn denominator(&self, p: Point) -> f64 {
         Formula::denominator(self, p)
     }
@@ -112,7 +97,7 @@ impl<F: Formula> Map for F {
         Formula::inverse(self)
     }
 
-    fn work(&self) -> f64 {
-        Formula::work(self)
+    fn cost(&self) -> Cost<'_> {
+        Formula::cost(self)
     }
 }

@@ -98,10 +98,6 @@ impl<F: Fn(Point) -> Point + Send + Sync> Map for FromFn<F> {
     fn point(&self, p: Point) -> Point {
         (self.0)(p)
     }
-
-    fn differentiates(&self) -> bool {
-        true
-    }
 }
 
 impl<F, J> Map for FromFnWith<F, J>

@@ -16,8 +16,7 @@
 //! - [`Map::class`] reports affine and projective maps, which are applied to control points or keep lines straight.
 //! - [`Map::creases`] lists the lines along which the derivative jumps and the boundary of the domain. Paths are split there, and
 //!   [`Map::branch`] gives the smooth map on one side.
-//! - [`Map::image`] or [`Map::rational_degree`] describe the image exactly, so that the error of a fit can be proved instead of
-//!   measured.
+//! - [`Map::class`] and [`Map::image`] describe the image exactly, so that the error of a fit can be proved instead of measured.
 //! - [`Map::inverse`] gives the inverse in closed form. [`NewtonInverse`] inverts any smooth map over a box.
 //!
 //! # Composing maps
@@ -35,8 +34,7 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-#[doc(hidden)]
-pub mod batch;
+mod batches;
 mod birational;
 mod chain;
 mod class;
@@ -48,7 +46,6 @@ pub(crate) mod curves;
 mod dual;
 mod formula;
 mod from_fn;
-mod gathered;
 mod homography;
 mod jet;
 mod lattice;
@@ -58,10 +55,9 @@ pub(crate) mod piecewise;
 pub(crate) mod polynomial;
 mod projective;
 mod rational_bezier;
-mod rounds;
-mod secant;
 mod traits;
 
+pub use batches::{Batches, Gathered, Images};
 pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
 pub use class::{Class, RationalDegree};
@@ -71,7 +67,6 @@ pub use curves::{Pace, Side};
 pub use dual::{Dual, Real};
 pub use formula::Formula;
 pub use from_fn::{FromFn, FromFnWith, from_fn, from_fn_with};
-pub use gathered::Gathered;
 pub use homography::Homography;
 pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};

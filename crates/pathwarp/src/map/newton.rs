@@ -14,11 +14,9 @@
 //! (the part of the box that the map is designed for) take precedence; outside the core, only sheets with the orientation of the
 //! core's center count, and of those the preimage nearest to the core is chosen.
 
-use super::rounds::by_rounds;
-use super::secant::{Target, approach};
-use super::{Jet, Map};
-use crate::budget::Budget;
-use crate::search::{Search, is_over};
+use super::batches::{Target, approach, by_rounds};
+use super::{Batches, Jet, Map};
+use crate::budget::{Budget, Cost, Search, Searches, is_over};
 use kurbo::{Point, Rect, Vec2};
 use std::fmt;
 use std::sync::Arc;
@@ -137,9 +135,10 @@ impl NewtonInverse {
         let bounds = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
         let side = nx.max(ny);
         let orientation = map.jet(core.center()).det().signum();
+        let Cost { work, jet: jet_work, .. } = map.cost();
         let mut out = Self {
-            map_work: map.work().min(map.jet_work()),
-            jet_work: map.jet_work(),
+            map_work: work.min(jet_work),
+            jet_work,
             budget: None,
             map,
             core,
@@ -377,12 +376,9 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
 pub(crate) const INVERSE_WORK: f64 = 5.0;
 
 impl Map for NewtonInverse {
-    fn work(&self) -> f64 {
-        INVERSE_WORK * self.map_work
-    }
-
-    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(self.spending(budget)))
+    fn cost(&self) -> Cost<'_> {
+        let cost = Cost::new(INVERSE_WORK * self.map_work).searching(self);
+        if self.map.prefers_batches() { cost.batched(self) } else { cost }
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -390,12 +386,10 @@ impl Map for NewtonInverse {
     }
 
     fn jets(&self, qs: &[Point], out: &mut [Jet]) {
-        if self.map.prefers_batches() && self.map.differentiates() {
-            out.copy_from_slice(&self.jets_by_values(qs));
-        } else if self.map.prefers_batches() {
-            out.copy_from_slice(&self.jets_by_rounds(qs));
-        } else {
-            qs.iter().zip(out).for_each(|(q, o)| *o = self.jet(*q));
+        match self.map.cost().batches {
+            Some(map) if map.differentiates() => out.copy_from_slice(&self.jets_by_values(qs)),
+            Some(_) => out.copy_from_slice(&self.jets_by_rounds(qs)),
+            None => qs.iter().zip(out).for_each(|(q, o)| *o = self.jet(*q)),
         }
     }
 
@@ -405,12 +399,16 @@ impl Map for NewtonInverse {
         out.iter_mut().zip(&jets).for_each(|(o, j)| *o = j.p);
     }
 
-    fn prefers_batches(&self) -> bool {
-        self.map.prefers_batches()
-    }
-
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(self.map.clone())
+    }
+}
+
+impl Batches for NewtonInverse {}
+
+impl Searches for NewtonInverse {
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
+        Arc::new(self.spending(budget))
     }
 }
 

@@ -1,7 +1,6 @@
 //! Affine and projective maps as [`Map`]s: the two classes that keep straight lines.
 
-use super::batch::Lane;
-use super::{Class, Crease, Creases, Formula, Homography, Jet, Level, Map, RationalBezier, RationalDegree, Real};
+use super::{Class, Crease, Creases, Formula, Homography, Jet, Level, Map, RationalBezier, Real};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -50,10 +49,6 @@ impl Map for AffineMap {
         Some(curve.mapped(|[x, y, w]| [a * x + c * y + e * w, b * x + d * y + f * w, w]))
     }
 
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        Some(RationalDegree::polynomial(1))
-    }
-
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let det = self.0.determinant();
         (det != 0.0 && det.is_finite()).then(|| Arc::new(Self(self.0.inverse())) as Arc<dyn Map>)
@@ -73,13 +68,6 @@ impl Map for Homography {
         self.point_of(self.near(p))
     }
 
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-        for (x, y) in x.iter_mut().zip(y) {
-            let p = self.point(Point::new(*x, *y));
-            (*x, *y) = (p.x, p.y);
-        }
-    }
-
     fn class(&self) -> Class {
         self.as_affine().map_or(Class::Projective(*self), Class::Affine)
     }
@@ -93,10 +81,6 @@ impl Map for Homography {
 
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         Some(curve.mapped(|v| self.times(v)))
-    }
-
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        Some(RationalDegree::rational(1))
     }
 
     fn denominator(&self, p: Point) -> f64 {

@@ -1,8 +1,7 @@
 //! The trait that every map implements.
 
-use super::batch::{Lane, WIDTH};
 use super::{Class, Creases, Jet, RationalBezier, RationalDegree};
-use crate::budget::Budget;
+use crate::budget::{Budget, Cost};
 use kurbo::Point;
 use std::fmt;
 use std::sync::Arc;
@@ -54,13 +53,8 @@ pub trait Map: Send + Sync {
         None
     }
 
-    /// The degree of the map if its coordinates are quotients of polynomials: enough to prove error bounds without writing out
-    /// an image. A map that is [`rational`](RationalDegree::rational) implements [`denominator`](Map::denominator) too.
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        None
-    }
-
-    /// The common denominator W of the coordinates at `p`: positive where the map is defined, 1 for polynomials.
+    /// The common denominator W of the coordinates at `p`, for maps of a [rational class](Class::Rational): positive where the map is
+    /// defined, 1 for polynomials.
     fn denominator(&self, _p: Point) -> f64 {
         1.0
     }
@@ -70,75 +64,43 @@ pub trait Map: Send + Sync {
         None
     }
 
-    /// The cost of one evaluation, relative to that of a bicubic net, for [`budget`](crate::budget): a map that takes longer the
-    /// more parts it has says so here. 1 or more.
-    fn work(&self) -> f64 {
-        1.0
+    /// What an evaluation costs, for [`budget`](crate::budget). A map that takes longer the more parts it has says so here.
+    fn cost(&self) -> Cost<'_> {
+        Cost::NET
+    }
+}
+
+/// What the cost and the class of a map tell, in short.
+impl dyn Map + '_ {
+    /// See [`Cost::work`].
+    #[must_use]
+    pub fn work(&self) -> f64 {
+        self.cost().work
     }
 
-    /// The cost of a jet alone, as Newton's method asks for it, relative to that of a bicubic net. A map of many parts takes longer alone
-    /// than in a batch.
-    #[doc(hidden)]
-    fn jet_work(&self) -> f64 {
-        const SINGLY: f64 = 3.0;
-        1.0 + SINGLY * (self.work() - 1.0).max(0.0)
+    /// The same map, whose searches spend from a budget. `None`: it searches nothing.
+    #[must_use]
+    pub fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        self.cost().searches.map(|s| s.within(budget))
     }
 
-    /// The same map, whose searches spend from a budget what they take beyond [`work`](Map::work), and find nothing once it is used up.
-    /// `None`: nothing is searched.
-    #[doc(hidden)]
-    fn within(&self, _budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-        None
+    /// Returns `true` if a call costs much and a point little; see [`Batches`](super::Batches).
+    #[must_use]
+    pub fn prefers_batches(&self) -> bool {
+        self.cost().batches.is_some()
     }
 
-    /// Returns `true` if a call costs much and a point little, as where another program is asked. Callers then collect the points
-    /// they need.
-    fn prefers_batches(&self) -> bool {
-        false
-    }
-
-    /// Returns `true` if derivatives are computed from several values each, by differences. Callers then use values where they can.
-    #[doc(hidden)]
-    fn differentiates(&self) -> bool {
-        false
-    }
-
-    /// Returns `true` for a memory in front of a map that [prefers batches](Map::prefers_batches).
-    #[doc(hidden)]
-    fn remembers(&self) -> bool {
-        false
-    }
-
-    /// Announces points whose values and points whose jets are asked for next, to a memory in front of a map that
-    /// [prefers batches](Map::prefers_batches).
-    #[doc(hidden)]
-    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
-
-    /// Maps a batch of points, and gives the jets at others: one call where each costs much.
-    #[doc(hidden)]
-    fn points_and_jets(&self, (ps, images): (&[Point], &mut [Point]), (qs, jets): (&[Point], &mut [Jet])) {
-        self.points(ps, images);
-        self.jets(qs, jets);
-    }
-
-    /// Maps a batch of points in place. See [`batch`](super::batch).
-    #[doc(hidden)]
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-        let mut source = [Point::ORIGIN; WIDTH];
-        for (p, (x, y)) in source.iter_mut().zip(x.iter().zip(y.iter())) {
-            *p = Point::new(*x, *y);
-        }
-        let mut image = [Point::ORIGIN; WIDTH];
-        self.points(&source, &mut image);
-        for (p, (x, y)) in image.iter().zip(x.iter_mut().zip(y)) {
-            (*x, *y) = (p.x, p.y);
+    /// Announces points whose values and points whose jets are asked for next. Only a memory of a map takes notice.
+    pub fn prepare(&self, points: &[Point], jets: &[Point]) {
+        if let Some(batches) = self.cost().batches {
+            batches.prepare(points, jets);
         }
     }
 
-    /// The denominators of a batch of points. See [`batch`](super::batch).
-    #[doc(hidden)]
-    fn denominators(&self, x: &Lane, y: &Lane) -> Lane {
-        std::array::from_fn(|i| self.denominator(Point::new(x[i], y[i])))
+    /// See [`Class::degree`].
+    #[must_use]
+    pub fn rational_degree(&self) -> Option<RationalDegree> {
+        self.class().degree()
     }
 }
 
@@ -169,44 +131,14 @@ macro_rules! forward {
         fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
             (**self).image(curve)
         }
-        fn rational_degree(&self) -> Option<RationalDegree> {
-            (**self).rational_degree()
-        }
         fn denominator(&self, p: Point) -> f64 {
             (**self).denominator(p)
         }
         fn inverse(&self) -> Option<Arc<dyn Map>> {
             (**self).inverse()
         }
-        fn work(&self) -> f64 {
-            (**self).work()
-        }
-        fn jet_work(&self) -> f64 {
-            (**self).jet_work()
-        }
-        fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-            (**self).within(budget)
-        }
-        fn prefers_batches(&self) -> bool {
-            (**self).prefers_batches()
-        }
-        fn differentiates(&self) -> bool {
-            (**self).differentiates()
-        }
-        fn remembers(&self) -> bool {
-            (**self).remembers()
-        }
-        fn prepare(&self, points: &[Point], jets: &[Point]) {
-            (**self).prepare(points, jets);
-        }
-        fn points_and_jets(&self, points: (&[Point], &mut [Point]), jets: (&[Point], &mut [Jet])) {
-            (**self).points_and_jets(points, jets);
-        }
-        fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-            (**self).lanes(x, y);
-        }
-        fn denominators(&self, x: &Lane, y: &Lane) -> Lane {
-            (**self).denominators(x, y)
+        fn cost(&self) -> Cost<'_> {
+            (**self).cost()
         }
     };
 }
@@ -234,137 +166,8 @@ impl fmt::Debug for dyn Map + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Mutex;
 
-    /// A map that overrides everything and records which methods are called.
-    #[derive(Default)]
-    struct Recorder(Mutex<Vec<&'static str>>);
-
-    impl Recorder {
-        fn record<T>(&self, name: &'static str, value: T) -> T {
-            self.0.lock().unwrap().push(name);
-            value
-        }
-    }
-
-    impl Map for Recorder {
-        fn jet(&self, p: Point) -> Jet {
-            self.record("jet", Jet { p, ..Jet::default() })
-        }
-        fn point(&self, p: Point) -> Point {
-            self.record("point", p)
-        }
-        fn jets(&self, _ps: &[Point], _out: &mut [Jet]) {
-            self.record("jets", ());
-        }
-        fn points(&self, _ps: &[Point], _out: &mut [Point]) {
-            self.record("points", ());
-        }
-        fn class(&self) -> Class {
-            self.record("class", Class::Smooth)
-        }
-        fn creases(&self, _out: &mut Creases) {
-            self.record("creases", ());
-        }
-        fn branch(&self, _inside: Point) -> Option<Arc<dyn Map>> {
-            self.record("branch", None)
-        }
-        fn image(&self, _curve: &RationalBezier) -> Option<RationalBezier> {
-            self.record("image", None)
-        }
-        fn rational_degree(&self) -> Option<RationalDegree> {
-            self.record("rational_degree", None)
-        }
-        fn denominator(&self, _p: Point) -> f64 {
-            self.record("denominator", 2.0)
-        }
-        fn inverse(&self) -> Option<Arc<dyn Map>> {
-            self.record("inverse", None)
-        }
-        fn work(&self) -> f64 {
-            self.record("work", 3.0)
-        }
-        fn jet_work(&self) -> f64 {
-            self.record("jet_work", 5.0)
-        }
-        fn within(&self, _budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-            self.record("within", None)
-        }
-        fn prefers_batches(&self) -> bool {
-            self.record("prefers_batches", true)
-        }
-        fn differentiates(&self) -> bool {
-            self.record("differentiates", true)
-        }
-        fn remembers(&self) -> bool {
-            self.record("remembers", true)
-        }
-        fn prepare(&self, _points: &[Point], _jets: &[Point]) {
-            self.record("prepare", ());
-        }
-        fn points_and_jets(&self, _points: (&[Point], &mut [Point]), _jets: (&[Point], &mut [Jet])) {
-            self.record("points_and_jets", ());
-        }
-        fn lanes(&self, _x: &mut Lane, _y: &mut Lane) {
-            self.record("lanes", ());
-        }
-        fn denominators(&self, _x: &Lane, _y: &Lane) -> Lane {
-            self.record("denominators", [2.0; WIDTH])
-        }
-    }
-
-    /// Calls every method once, in the order of the trait.
-    fn call_all(map: &impl Map) {
-        let (p, curve) = (Point::new(1.0, 2.0), RationalBezier::polynomial(&[Point::ORIGIN, Point::new(1.0, 1.0)]));
-        let _ = map.jet(p);
-        let _ = map.point(p);
-        map.jets(&[p], &mut [Jet::default()]);
-        map.points(&[p], &mut [p]);
-        let _ = map.class();
-        map.creases(&mut Creases::default());
-        let _ = map.branch(p);
-        let _ = map.image(&curve);
-        let _ = map.rational_degree();
-        let _ = map.denominator(p);
-        let _ = map.inverse();
-        let _ = map.work();
-        let _ = map.jet_work();
-        let _ = map.within(&Arc::default());
-        let _ = map.prefers_batches();
-        let _ = map.differentiates();
-        let _ = map.remembers();
-        map.prepare(&[p], &[p]);
-        map.points_and_jets((&[p], &mut [p]), (&[p], &mut [Jet::default()]));
-        map.lanes(&mut [1.0; WIDTH], &mut [2.0; WIDTH]);
-        let _ = map.denominators(&[1.0; WIDTH], &[2.0; WIDTH]);
-    }
-
-    #[test]
-    fn pointers_forward_every_method() {
-        let direct = Recorder::default();
-        call_all(&direct);
-        let expected = direct.0.into_inner().unwrap();
-        // The trait's own text says how many methods there are, so that a new one cannot be forgotten here.
-        let text = include_str!("traits.rs");
-        let declared = text.split("\n}\n").next().unwrap().matches("\n    fn ").count();
-        assert_eq!(expected.len(), declared);
-
-        let shared = Arc::new(Recorder::default());
-        call_all(&shared);
-        assert_eq!(*shared.0.lock().unwrap(), expected);
-        let shared = Arc::new(Recorder::default());
-        let erased: Arc<dyn Map> = shared.clone();
-        call_all(&erased);
-        assert_eq!(*shared.0.lock().unwrap(), expected);
-        let lent = Recorder::default();
-        call_all(&(&lent as &dyn Map));
-        assert_eq!(*lent.0.lock().unwrap(), expected);
-        let boxed: Box<dyn Map> = Box::new(Arc::clone(&shared));
-        call_all(&boxed);
-        assert_eq!(shared.0.lock().unwrap()[expected.len()..], expected);
-    }
-
-    /// A map written with `jet` alone has batches that agree with it to the last bit.
+    /// A map written with `jet` alone has batches that agree with it to the last bit, also behind a pointer.
     #[test]
     fn default_batches_follow_from_the_jet() {
         struct OnlyJet;
@@ -373,11 +176,13 @@ mod tests {
                 Jet { p: Point::new(p.x * p.y, p.x - 3.0 * p.y), ..Jet::default() }
             }
         }
-        let mut x: Lane = std::array::from_fn(|i| 0.1 * i as f64 - 0.3);
-        let mut y: Lane = std::array::from_fn(|i| 1.7 / (i + 1) as f64);
-        let expected: Vec<Point> = x.iter().zip(&y).map(|(x, y)| OnlyJet.point(Point::new(*x, *y))).collect();
-        OnlyJet.lanes(&mut x, &mut y);
-        assert!(expected.iter().enumerate().all(|(i, p)| p.x == x[i] && p.y == y[i]));
-        assert_eq!(OnlyJet.denominators(&x, &y), [1.0; WIDTH]);
+        let ps: Vec<Point> = (0..9).map(|i| Point::new(0.1 * f64::from(i) - 0.3, 1.7 / f64::from(i + 1))).collect();
+        let expected: Vec<Point> = ps.iter().map(|p| OnlyJet.jet(*p).p).collect();
+        let shared: Arc<dyn Map> = Arc::new(OnlyJet);
+        let mut out = vec![Point::ORIGIN; ps.len()];
+        for map in [&OnlyJet as &dyn Map, &shared] {
+            map.points(&ps, &mut out);
+            assert_eq!(out, expected);
+        }
     }
 }

@@ -6,7 +6,7 @@
 
 use super::limits::{CARRIED_TURN, CARRY_DOWN, CARRY_MARGIN, CARRY_UP};
 use super::segment::{Part, SegmentFitter};
-use super::source::SourceCurve;
+use super::source::{SourceCurve, images};
 use crate::map::Jet;
 use bezierfit::parts::{ChordFrame, FOOT_ROUNDING, FitOwn, Leg, MERGE_GRID, MarkedCubic, SMOOTH_JOINT};
 use bezierfit::{Lanes, Piece, Report, Source};
@@ -79,7 +79,7 @@ impl<'a> Site<'a> {
             let p = self.parts.get(*segment).map_or(Point::ORIGIN, |s| s.seg.eval(*t));
             (g.x[i], g.y[i]) = (p.x, p.y);
         }
-        self.fitter.map.lanes(&mut g.x, &mut g.y);
+        images(self.fitter.map, &mut g);
         g
     }
 }

@@ -80,7 +80,7 @@ fn refit(
     let mut out = PathWriter::default();
     let counted = map.within(&options.budget);
     let map = counted.as_deref().unwrap_or(map);
-    let gathered = (map.prefers_batches() && !map.remembers()).then(|| Gathered::new(map));
+    let gathered = map.cost().batches.is_some_and(|b| !b.remembers()).then(|| Gathered::new(map));
     if let Class::Affine(m) = map.class() {
         path::affine(outline, m, options, &mut out)?;
     } else {

@@ -221,6 +221,16 @@ impl<'a> SourceCurve<'a> {
     }
 }
 
+/// Maps eight points in place.
+#[inline(always)]
+pub(super) fn images(map: &dyn Map, g: &mut Lanes) {
+    let mut images = [Point::ORIGIN; 8];
+    map.points(&std::array::from_fn::<_, 8, _>(|i| Point::new(g.x[i], g.y[i])), &mut images);
+    for (i, p) in images.iter().enumerate() {
+        (g.x[i], g.y[i]) = (p.x, p.y);
+    }
+}
+
 impl Source for SourceCurve<'_> {
     fn eval(&self, t: f64) -> (Point, Vec2) {
         let j = self.map.jet(self.at(t));
@@ -230,7 +240,7 @@ impl Source for SourceCurve<'_> {
     #[inline(always)]
     fn points(&self, t: &Lane, g: &mut Lanes) {
         *g = self.seg_points(t);
-        self.map.lanes(&mut g.x, &mut g.y);
+        images(self.map, g);
     }
 
     #[inline(always)]
@@ -259,7 +269,7 @@ impl Source for SourceCurve<'_> {
     /// The map's denominators, times the segment's to the power of the map's degree.
     fn denominators(&self, t: &Lane) -> Lane {
         let points = self.seg_points(t);
-        let mut out = self.map.denominators(&points.x, &points.y);
+        let mut out: Lane = std::array::from_fn(|i| self.map.denominator(Point::new(points.x[i], points.y[i])));
         if let Some([w0, w1, w2]) = self.w {
             let power = self.degree.map_or(1, |d| d.degree as i32);
             for (w, t) in out.iter_mut().zip(t) {
@@ -285,7 +295,7 @@ impl Source for SourceCurve<'_> {
     {
         let (mut points, mut ends) = (points.peekable(), ends.peekable());
         let first = points.peek().map(|(s, _)| *s).or_else(|| ends.peek().map(|(s, _)| *s));
-        let Some(map) = first.map(|s| s.map).filter(Map::prefers_batches) else { return };
+        let Some(map) = first.map(|s| s.map).filter(|m| m.prefers_batches()) else { return };
         let values: Vec<Point> = points.flat_map(|(s, t)| s.sampled(&t)).collect();
         let jets: Vec<Point> = ends.map(|(s, t)| s.at(t)).collect();
         map.prepare(&values, &jets);

@@ -5,8 +5,7 @@
 
 use crate::support::{self, Bicubic, Rational};
 use kurbo::{CubicBez, Point};
-use pathwarp::map::batch::Lane;
-use pathwarp::map::{Formula, Jet, Map, RationalDegree, Real};
+use pathwarp::map::{Class, Formula, Jet, Map, Real};
 use pathwarp::outline::EllipticArc;
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
@@ -34,15 +33,15 @@ impl Map for Counted<'_> {
         self.count();
         self.map.jet(p)
     }
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
         self.count();
-        self.map.lanes(x, y);
+        self.map.points(ps, out);
     }
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        self.map.rational_degree()
+    fn class(&self) -> Class {
+        self.map.class()
     }
-    fn denominators(&self, x: &Lane, y: &Lane) -> Lane {
-        self.map.denominators(x, y)
+    fn denominator(&self, p: Point) -> f64 {
+        self.map.denominator(p)
     }
 }
 

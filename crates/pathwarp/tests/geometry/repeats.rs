@@ -2,8 +2,7 @@
 
 use crate::support::{self, Bicubic, Rational, Ripple};
 use kurbo::{Affine, Point, Vec2};
-use pathwarp::map::batch::Lane;
-use pathwarp::map::{Jet, Map, RationalDegree};
+use pathwarp::map::{Class, Jet, Map};
 use pathwarp::refit::{KnownShapes, Options, RefittedPath, warp_path};
 use pathwarp::{Outline, Seg};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -71,12 +70,12 @@ impl Map for Counted<'_> {
         self.1.fetch_add(1, Ordering::Relaxed);
         self.0.jet(p)
     }
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
         self.1.fetch_add(1, Ordering::Relaxed);
-        self.0.lanes(x, y);
+        self.0.points(ps, out);
     }
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        self.0.rational_degree()
+    fn class(&self) -> Class {
+        self.0.class()
     }
 }
 

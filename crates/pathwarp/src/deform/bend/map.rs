@@ -2,6 +2,7 @@
 
 use super::listed::listed;
 use super::piece::{SkeletonPiece, Strip};
+use crate::budget::Cost;
 use crate::error::show;
 use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier};
 use crate::param::Letter;
@@ -119,17 +120,14 @@ pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
 }
 
 impl Map for BendMap {
-    fn work(&self) -> f64 {
+    /// A jet on a curve takes less than half as long as one of a net: 7 ns on the hairpin of `tests/cli/report.rs`.
+    fn cost(&self) -> Cost<'_> {
         /// The first pieces stand for all.
         const FIRST: usize = 16;
-        self.pieces.iter().take(FIRST).map(|p| p.work()).fold(1.0, f64::max)
-    }
-
-    /// A jet on a curve takes less than half as long as one of a net: 7 ns on the hairpin of `tests/cli/report.rs`.
-    fn jet_work(&self) -> f64 {
         const CURVE: f64 = 0.4;
         const SINGLY: f64 = 3.0;
-        if self.work() > 1.0 { SINGLY * self.work() } else { CURVE }
+        let work = self.pieces.iter().take(FIRST).map(|p| p.work()).fold(1.0, f64::max);
+        Cost { jet: if work > 1.0 { SINGLY * work } else { CURVE }, ..Cost::new(work) }
     }
 
     fn jet(&self, p: Point) -> Jet {
@@ -188,8 +186,8 @@ impl OnPiece {
 }
 
 impl Map for OnPiece {
-    fn work(&self) -> f64 {
-        self.piece.work()
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(self.piece.work())
     }
 
     fn jet(&self, p: Point) -> Jet {

@@ -106,7 +106,7 @@ impl Mesh {
         let map = quilt.map().ok_or(GeometryError::FlatFrame { width: r.width(), height: r.height() })?;
         let map: Arc<dyn Map> = match map.class() {
             Class::Affine(m) => Arc::new(AffineMap(crate::anchors::settled(m, &Frame::new(frame)))),
-            Class::Projective(_) | Class::Smooth => map,
+            _ => map,
         };
         let mut built = Built::new(map);
         let joints = if most < VISIBLE_KINK { "smooth" } else { "kinked" };

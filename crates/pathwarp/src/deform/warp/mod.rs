@@ -179,7 +179,7 @@ pub(super) fn over(rect: Rect, net: &Net) -> Result<Built, Error> {
     let map = BicubicNet::new(&net, pre);
     let map: Arc<dyn Map> = match map.class() {
         Class::Affine(m) => Arc::new(AffineMap(crate::anchors::settled(m, &Frame::new(rect)))),
-        Class::Projective(_) | Class::Smooth => Arc::new(map),
+        _ => Arc::new(map),
     };
     let mut built = Built::new(map);
     built.overlay(Role::Base, kurbo::Shape::to_path(&rect, 0.1));

@@ -141,7 +141,7 @@ impl WordArt {
         let map = map.ok_or_else(|| wrong("has a guide without length in this box: adjust it less far".into()))?;
         built.map = match map.class() {
             Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, &Frame::new(*rect)))),
-            Class::Projective(_) | Class::Smooth => map,
+            _ => map,
         };
         Ok(built)
     }

@@ -1,7 +1,7 @@
 //! The lattice as a map, and its inverse.
 
 use super::Lattice;
-use crate::budget::Budget;
+use crate::budget::{Budget, Cost, Searches};
 use crate::map::nets::Patch;
 use crate::map::{AffineMap, Class, Crease, CreaseKind, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Affine, Point, Rect};
@@ -105,8 +105,8 @@ impl LatticeMap {
 }
 
 impl Map for LatticeMap {
-    fn work(&self) -> f64 {
-        self.patches.first().map_or(1.0, Map::work)
+    fn cost(&self) -> Cost<'_> {
+        self.patches.first().map_or(Cost::NET, Map::cost)
     }
 
     fn jet(&self, p: Point) -> Jet {
@@ -129,10 +129,6 @@ impl Map for LatticeMap {
             Some(m) => m.points(&ps[run.clone()], &mut out[run]),
             None => out[run.clone()].copy_from_slice(&ps[run]),
         });
-    }
-
-    fn denominator(&self, p: Point) -> f64 {
-        self.cell(p).map_or(1.0, |c| self.patches[c].denominator(p))
     }
 
     fn class(&self) -> Class {
@@ -168,7 +164,9 @@ impl Map for LatticeMap {
         }
         if self.patches.iter().any(|p| p.has_edge()) {
             let own = self.clone();
-            out.push(Crease::edge(Level::Field(Arc::new(move |p| own.denominator(p)))));
+            out.push(Crease::edge(Level::Field(Arc::new(move |p| {
+                own.cell(p).map_or(1.0, |c| own.patches[c].denominator(p))
+            }))));
         }
     }
 
@@ -243,12 +241,8 @@ impl LatticeInverse {
 }
 
 impl Map for LatticeInverse {
-    fn work(&self) -> f64 {
-        2.0 * self.inner.work()
-    }
-
-    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(Self { map: self.map.clone(), inner: Arc::new(self.inner.spending(budget)) }))
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(2.0 * self.inner.cost().work).searching(self)
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -285,5 +279,11 @@ impl Map for LatticeInverse {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(self.map.clone()))
+    }
+}
+
+impl Searches for LatticeInverse {
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
+        Arc::new(Self { map: self.map.clone(), inner: Arc::new(self.inner.spending(budget)) })
     }
 }

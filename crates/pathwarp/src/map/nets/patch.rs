@@ -8,11 +8,15 @@
 //! rounded. Horner's scheme runs on a whole batch of points.
 
 use super::power_basis::powers;
-use crate::map::batch::WIDTH;
+use crate::budget::Cost;
+
 use crate::map::polynomial::bernstein::Scaled;
 use crate::map::{Class, Crease, Creases, Jet, Level, Map, RationalBezier};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
+
+/// Points in a batch: two AVX registers of four, or four SSE2 registers of two.
+const WIDTH: usize = 8;
 
 /// Jets evaluated together: with three results for each coordinate, half as many as points fit the registers.
 const JET_WIDTH: usize = WIDTH / 2;
@@ -299,8 +303,8 @@ fn regular_point(rect: Rect, degree: [usize; 2], i: usize, j: usize) -> Point {
 
 impl Map for Patch {
     /// By the number of terms; a bicubic net has sixteen.
-    fn work(&self) -> f64 {
-        (self.width * self.height) as f64 / 16.0
+    fn cost(&self) -> Cost<'_> {
+        Cost::new((self.width * self.height) as f64 / 16.0)
     }
 
     fn jet(&self, p: Point) -> Jet {

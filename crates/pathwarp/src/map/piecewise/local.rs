@@ -2,7 +2,7 @@
 //!
 //! The sides of the polygon are creases, crossed exactly. The map inside determines whether it meets the identity there.
 
-use crate::budget::Budget;
+use crate::budget::{Budget, Cost, Searches};
 use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
@@ -53,8 +53,8 @@ impl Local {
 }
 
 impl Map for Local {
-    fn work(&self) -> f64 {
-        self.inside.work()
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(self.inside.work())
     }
 
     fn jet(&self, p: Point) -> Jet {
@@ -101,7 +101,7 @@ impl Map for Local {
     /// The inverse of the map inside where its answers lie inside, and the identity outside.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let back = match self.inside.class() {
-            Class::Smooth => InnerInverse::Newton(Arc::new(NewtonInverse::new(
+            Class::Rational(_) | Class::Smooth => InnerInverse::Newton(Arc::new(NewtonInverse::new(
                 self.inside.clone(),
                 self.bounds(),
                 1e-3 * (self.bounds().width() + self.bounds().height()),
@@ -129,7 +129,7 @@ struct LocalInverse {
 
 impl LocalInverse {
     /// The preimage inside the polygon, or outside by at most `beyond`.
-    fn within(&self, q: Point, beyond: f64) -> Option<Jet> {
+    fn preimage(&self, q: Point, beyond: f64) -> Option<Jet> {
         let accept = |p: Point| self.of.depth(p) >= -beyond;
         match &self.back {
             InnerInverse::Closed(m) => Some(m.jet(q)).filter(|j| j.is_finite() && accept(j.p)),
@@ -153,19 +153,16 @@ impl LocalInverse {
 }
 
 impl Map for LocalInverse {
-    fn work(&self) -> f64 {
-        match &self.back {
+    fn cost(&self) -> Cost<'_> {
+        let work = match &self.back {
             InnerInverse::Closed(m) => m.work(),
-            InnerInverse::Newton(m) => m.work(),
-        }
-    }
-
-    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(self.spending(budget)))
+            InnerInverse::Newton(m) => m.cost().work,
+        };
+        Cost::new(work).searching(self)
     }
 
     fn jet(&self, q: Point) -> Jet {
-        match self.within(q, self.of.reach) {
+        match self.preimage(q, self.of.reach) {
             Some(found) => found,
             None if !self.of.contains(q) => AffineMap::IDENTITY.jet(q),
             None => Jet::UNDEFINED,
@@ -176,12 +173,12 @@ impl Map for LocalInverse {
         let own = self.clone();
         out.push(Crease::kink(Level::Field(Arc::new(move |q| {
             let margin = own.margin();
-            own.within(q, margin).map_or(-margin, |found| own.of.depth(found.p))
+            own.preimage(q, margin).map_or(-margin, |found| own.of.depth(found.p))
         }))));
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        if self.within(inside, self.of.reach).is_none() {
+        if self.preimage(inside, self.of.reach).is_none() {
             return Some(Arc::new(AffineMap::IDENTITY));
         }
         Some(match &self.back {
@@ -195,20 +192,28 @@ impl Map for LocalInverse {
     }
 }
 
+impl Searches for LocalInverse {
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
+        Arc::new(self.spending(budget))
+    }
+}
+
 /// The branch of a [`LocalInverse`] that leads inside.
 struct Inside(LocalInverse);
 
 impl Map for Inside {
-    fn work(&self) -> f64 {
-        self.0.work()
-    }
-
-    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(Self(self.0.spending(budget))))
+    fn cost(&self) -> Cost<'_> {
+        self.0.cost().searching(self)
     }
 
     fn jet(&self, q: Point) -> Jet {
-        self.0.within(q, self.0.margin()).unwrap_or(Jet::UNDEFINED)
+        self.0.preimage(q, self.0.margin()).unwrap_or(Jet::UNDEFINED)
+    }
+}
+
+impl Searches for Inside {
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
+        Arc::new(Self(self.0.spending(budget)))
     }
 }
 

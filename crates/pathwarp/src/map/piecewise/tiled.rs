@@ -3,9 +3,8 @@
 //! The outermost tiles continue beyond the region. The lines between tiles are creases: horizontal lines between rows, and
 //! vertical stretches within a row. Neighbours need not agree there; a path across a gap is connected by a straight line.
 
-use crate::budget::Budget;
+use crate::budget::{Budget, Cost, Search, Searches, is_over};
 use crate::map::{Crease, CreaseKind, Creases, INVERSE_WORK, Jet, Level, Map, NewtonInverse, RationalBezier};
-use crate::search::{Search, is_over};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
@@ -92,8 +91,8 @@ impl Tiled {
 }
 
 impl Map for Tiled {
-    fn work(&self) -> f64 {
-        self.rows.iter().flat_map(|r| &r.maps).map(Map::work).fold(1.0, f64::max)
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(self.rows.iter().flat_map(|r| &r.maps).map(|m| m.work()).fold(1.0, f64::max))
     }
 
     fn jet(&self, p: Point) -> Jet {
@@ -211,12 +210,8 @@ impl TiledInverse {
 }
 
 impl Map for TiledInverse {
-    fn work(&self) -> f64 {
-        FORESEEN as f64 * INVERSE_WORK * self.of.work()
-    }
-
-    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(Self { budget: Some(Arc::clone(budget)), ..self.clone() }))
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(FORESEEN as f64 * INVERSE_WORK * self.of.cost().work).searching(self)
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -245,5 +240,11 @@ impl Map for TiledInverse {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(self.of.clone()))
+    }
+}
+
+impl Searches for TiledInverse {
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
+        Arc::new(Self { budget: Some(Arc::clone(budget)), ..self.clone() })
     }
 }

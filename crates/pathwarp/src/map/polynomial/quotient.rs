@@ -8,6 +8,7 @@
 
 use super::bernstein::Scaled;
 use super::plane::Plane;
+use crate::budget::Cost;
 use crate::map::{
     AffineMap, Class, Crease, Creases, Formula, Homography, Level, Map, NewtonInverse, RationalBezier, RationalDegree,
     Real,
@@ -105,7 +106,7 @@ impl Quotient {
         match Formula::class(&self) {
             Class::Affine(m) => Arc::new(AffineMap(m)),
             Class::Projective(h) => Arc::new(h),
-            Class::Smooth => Arc::new(self),
+            _ => Arc::new(self),
         }
     }
 }
@@ -118,10 +119,10 @@ pub(crate) fn source_coordinates(pre: Affine) -> [[f64; 3]; 2] {
 
 impl Formula for Quotient {
     /// By the number of terms of a polynomial.
-    fn work(&self) -> f64 {
+    fn cost(&self) -> Cost<'_> {
         const TERMS: f64 = 32.0;
         let terms = (self.degree + 1) * (self.degree + 2) / 2;
-        (terms as f64 / TERMS).max(1.0)
+        Cost::new((terms as f64 / TERMS).max(1.0))
     }
 
     #[inline]
@@ -140,7 +141,7 @@ impl Formula for Quotient {
         match self.matrix() {
             _ if self.is_polynomial() && self.x.is_zero() && self.y.is_zero() => Class::Affine(Affine::IDENTITY),
             Some(h) => h.as_affine().map_or(Class::Projective(h), Class::Affine),
-            None => Class::Smooth,
+            None => Class::Rational(RationalDegree { degree: self.degree, rational: !self.is_polynomial() }),
         }
     }
 
@@ -188,10 +189,6 @@ impl Formula for Quotient {
         Some(RationalBezier { points: points.map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]).collect() })
     }
 
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        Some(RationalDegree { degree: self.degree, rational: !self.is_polynomial() })
-    }
-
     fn denominator(&self, p: Point) -> f64 {
         if self.is_polynomial() {
             return 1.0;
@@ -205,7 +202,7 @@ impl Formula for Quotient {
         match Formula::class(self) {
             Class::Affine(m) => AffineMap(m).inverse(),
             Class::Projective(h) => h.inverse(),
-            Class::Smooth => {
+            _ => {
                 let reach = 1e-9 * (self.domain.width() + self.domain.height());
                 Some(Arc::new(NewtonInverse::new(Arc::new(self.clone()), self.domain, reach, [1, 1])))
             }

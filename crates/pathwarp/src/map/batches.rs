@@ -1,0 +1,495 @@
+//! Maps of which each call costs much, such as those of another program: a memory in front of them, and ways to invert them in few calls.
+
+use super::{Class, Creases, Jet, Map, RationalBezier};
+use crate::budget::Cost;
+use kurbo::{Point, Vec2};
+use std::collections::HashMap;
+use std::fmt;
+use std::hash::{BuildHasherDefault, Hasher};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Points, and room for what belongs to each.
+pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
+
+/// A map of which a call costs much and a point little. It says so in its [`cost`](Map::cost); callers then collect the points they need.
+pub trait Batches: Map {
+    /// Maps a batch of points, and gives the jets at others: in one call where possible.
+    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
+        self.points(ps, images);
+        self.jets(qs, jets);
+    }
+
+    /// Returns `true` if derivatives are computed from several values each, by differences. Callers then use values where they can.
+    fn differentiates(&self) -> bool {
+        false
+    }
+
+    /// Returns `true` for a memory, which takes notice of announcements.
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// Announces points whose values and points whose jets are asked for next.
+    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
+}
+
+/// Values remembered before they are forgotten again: some 40 MB.
+const MOST_REMEMBERED: usize = 1 << 19;
+
+/// A map with a memory of its values and jets, for maps that [prefer batches](Batches).
+///
+/// What is announced to it ([`Batches::prepare`]), it asks for in one call. Its values are those of the map behind it.
+pub struct Gathered<'a> {
+    map: &'a dyn Map,
+    points: Mutex<Memory<Point>>,
+    jets: Mutex<Memory<Jet>>,
+}
+
+impl fmt::Debug for Gathered<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Gathered").field("map", &self.map).finish_non_exhaustive()
+    }
+}
+
+/// Answers by the bits of their point.
+type Memory<T> = HashMap<Key, T, BuildHasherDefault<Mixer>>;
+
+/// The key of a point: the bits of its coordinates.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Key(u64, u64);
+
+fn key(p: Point) -> Key {
+    Key(p.x.to_bits(), p.y.to_bits())
+}
+
+/// A hash of coordinates. The points are computed here, so nobody can choose them to collide.
+#[derive(Default)]
+struct Mixer(u64);
+
+impl Hasher for Mixer {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write_u64(&mut self, word: u64) {
+        /// The golden ratio, as a fraction of 2⁶⁴.
+        const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+        self.0 = (self.0.rotate_left(23) ^ word).wrapping_mul(GOLDEN);
+        self.0 ^= self.0 >> 32;
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u64((*byte).into());
+        }
+    }
+}
+
+impl<'a> Gathered<'a> {
+    /// Puts an empty memory in front of `map`.
+    #[must_use]
+    pub fn new(map: &'a dyn Map) -> Self {
+        Self { map, points: Mutex::default(), jets: Mutex::default() }
+    }
+}
+
+/// The points of `ps` that are not remembered.
+fn unknown<T>(memory: &Mutex<Memory<T>>, ps: &[Point]) -> Vec<Point> {
+    let known = memory.lock().unwrap_or_else(PoisonError::into_inner);
+    ps.iter().filter(|p| !known.contains_key(&key(**p))).copied().collect()
+}
+
+/// Remembers the answers for `ps`.
+fn remember<T: Copy>(memory: &Mutex<Memory<T>>, ps: &[Point], answers: &[T]) {
+    let mut known = memory.lock().unwrap_or_else(PoisonError::into_inner);
+    if known.len() > MOST_REMEMBERED {
+        known.clear();
+    }
+    known.extend(ps.iter().map(|p| key(*p)).zip(answers.iter().copied()));
+}
+
+/// Copies the answers for `ps` to `out`; those that are not known are asked for in one call and remembered.
+fn recall<T: Copy + Default>(memory: &Mutex<Memory<T>>, ps: &[Point], out: &mut [T], ask: impl Fn(&[Point], &mut [T])) {
+    let (mut missing, mut places) = (Vec::new(), Vec::new());
+    let known = memory.lock().unwrap_or_else(PoisonError::into_inner);
+    for (p, o) in ps.iter().zip(out.iter_mut()) {
+        match known.get(&key(*p)) {
+            Some(answer) => *o = *answer,
+            None => {
+                missing.push(*p);
+                places.push(o);
+            }
+        }
+    }
+    // Other threads need not wait for the answer.
+    drop(known);
+    if missing.is_empty() {
+        return;
+    }
+    let mut answers = vec![T::default(); missing.len()];
+    ask(&missing, &mut answers);
+    remember(memory, &missing, &answers);
+    for (o, answer) in places.into_iter().zip(answers) {
+        *o = answer;
+    }
+}
+
+impl Map for Gathered<'_> {
+    fn jet(&self, p: Point) -> Jet {
+        let mut out = [Jet::default()];
+        self.jets(&[p], &mut out);
+        out[0]
+    }
+
+    fn point(&self, p: Point) -> Point {
+        let mut out = [Point::ORIGIN];
+        self.points(&[p], &mut out);
+        out[0]
+    }
+
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        recall(&self.jets, ps, out, |ps, out| self.map.jets(ps, out));
+    }
+
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        recall(&self.points, ps, out, |ps, out| self.map.points(ps, out));
+    }
+
+    fn class(&self) -> Class {
+        self.map.class()
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        self.map.creases(out);
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        self.map.branch(inside)
+    }
+
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        self.map.image(curve)
+    }
+
+    fn denominator(&self, p: Point) -> f64 {
+        self.map.denominator(p)
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        self.map.inverse()
+    }
+
+    fn cost(&self) -> Cost<'_> {
+        Cost { searches: None, ..self.map.cost() }.batched(self)
+    }
+}
+
+impl Batches for Gathered<'_> {
+    fn differentiates(&self) -> bool {
+        self.map.cost().batches.is_some_and(Batches::differentiates)
+    }
+
+    fn remembers(&self) -> bool {
+        true
+    }
+
+    fn prepare(&self, points: &[Point], jets: &[Point]) {
+        let (ps, qs) = (unknown(&self.points, points), unknown(&self.jets, jets));
+        let (mut images, mut jets) = (vec![Point::ORIGIN; ps.len()], vec![Jet::default(); qs.len()]);
+        if !(ps.is_empty() && qs.is_empty()) {
+            let (points, jets): (Images<'_, Point>, Images<'_, Jet>) = ((&ps, &mut images), (&qs, &mut jets));
+            match self.map.cost().batches {
+                Some(batches) => batches.points_and_jets(points, jets),
+                None => {
+                    self.map.points(points.0, points.1);
+                    self.map.jets(jets.0, jets.1);
+                }
+            }
+        }
+        remember(&self.points, &ps, &images);
+        remember(&self.jets, &qs, &jets);
+    }
+}
+
+// Many computations at once, each of which asks a map for one jet after the other. They proceed in rounds: each runs every computation
+// anew, with the jets known so far, until it asks for one that is not known. One call asks for all that are lacking. Repeating costs
+// little beside a call, and gives the same results as asking singly.
+
+/// Rounds before the computations that are left ask singly: they are few, or endless.
+const MOST_ROUNDS: usize = 100;
+
+/// The jets known so far, and those that were asked for in this round.
+#[derive(Default)]
+struct Replay {
+    known: Memory<Jet>,
+    lacking: Mutex<Vec<Point>>,
+    /// The present computation has asked for a jet that is not known. Its result, and what else it asks, mean nothing.
+    stopped: AtomicBool,
+}
+
+impl Map for Replay {
+    fn jet(&self, p: Point) -> Jet {
+        if let Some(jet) = self.known.get(&key(p)) {
+            return *jet;
+        }
+        if !self.stopped.swap(true, Ordering::Relaxed) {
+            self.lacking.lock().unwrap_or_else(PoisonError::into_inner).push(p);
+        }
+        Jet::UNDEFINED
+    }
+}
+
+/// The results of `f` for all items under `map`. `f` ends soon when it gets an undefined jet, and asks for jets only.
+pub(super) fn by_rounds<T, R>(map: &dyn Map, items: &[T], f: impl Fn(&dyn Map, &T) -> R) -> Vec<R> {
+    let mut replay = Replay::default();
+    let mut results: Vec<Option<R>> = items.iter().map(|_| None).collect();
+    for _ in 0..MOST_ROUNDS {
+        for (item, result) in items.iter().zip(&mut results).filter(|(_, r)| r.is_none()) {
+            replay.stopped.store(false, Ordering::Relaxed);
+            let found = f(&replay, item);
+            if !replay.stopped.load(Ordering::Relaxed) {
+                *result = Some(found);
+            }
+        }
+        let lacking = std::mem::take(replay.lacking.get_mut().unwrap_or_else(PoisonError::into_inner));
+        if lacking.is_empty() {
+            break;
+        }
+        let mut jets = vec![Jet::default(); lacking.len()];
+        map.jets(&lacking, &mut jets);
+        replay.known.extend(lacking.iter().map(|p| key(*p)).zip(jets));
+    }
+    items.iter().zip(results).map(|(item, result)| result.unwrap_or_else(|| f(map, item))).collect()
+}
+
+// First answers for the inverse of a map whose derivatives cost several values: Broyden's method for many points at a time. From the
+// derivatives at a starting point, each step x ← x + H·r, with the residual r = q − F(x), needs one value. H begins as J⁻¹ and is
+// corrected so that it explains the step before: H ← H + (s − H·y)·(sᵀH)/(sᵀ·H·y) for the step s and the change y of F (C. G. Broyden
+// 1965). One call asks for the values of all points.
+
+/// Steps before a point is left to Newton's method.
+const MOST_STEPS: usize = 12;
+
+/// A step must shrink the residual to less than this share.
+const SHRINKS: f64 = 0.7;
+
+/// A point to be inverted, with a place near its preimage and the map's jet there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Target {
+    pub(super) q: Point,
+    pub(super) start: Point,
+    pub(super) jet: Jet,
+}
+
+struct Approach {
+    index: usize,
+    q: Point,
+    at: Point,
+    residual: Vec2,
+    /// The columns of H.
+    inverse: [Vec2; 2],
+}
+
+impl Approach {
+    /// H·v.
+    fn times(&self, v: Vec2) -> Vec2 {
+        self.inverse[0] * v.x + self.inverse[1] * v.y
+    }
+
+    /// Takes a step whose value is known. Returns `false` if it leads away.
+    fn step(&mut self, to: Point, image: Point) -> bool {
+        let residual = self.q - image;
+        // Not a number where the map is undefined.
+        let shrinks = residual.hypot() < SHRINKS * self.residual.hypot();
+        if !shrinks {
+            return false;
+        }
+        let (s, y) = (to - self.at, self.residual - residual);
+        let explained = self.times(y);
+        let scale = 1.0 / s.dot(explained);
+        if scale.is_finite() {
+            let along = [s.dot(self.inverse[0]), s.dot(self.inverse[1])].map(|v| v * scale);
+            for (column, v) in self.inverse.iter_mut().zip(along) {
+                *column += (s - explained) * v;
+            }
+        }
+        (self.at, self.residual) = (to, residual);
+        true
+    }
+}
+
+/// Places whose images are within `enough` of the targets' points, as far as they are found.
+pub(super) fn approach(map: &dyn Map, targets: &[Option<Target>], enough: f64) -> Vec<Option<Point>> {
+    let mut found = vec![None; targets.len()];
+    let search = |(index, target): (usize, &Option<Target>)| {
+        let Target { q, start, jet } = (*target)?;
+        let det = jet.det();
+        let inverse = [Vec2::new(jet.dy.y, -jet.dx.y) / det, Vec2::new(-jet.dy.x, jet.dx.x) / det];
+        Some(Approach { index, q, at: start, residual: q - jet.p, inverse })
+    };
+    let mut active: Vec<Approach> = targets.iter().enumerate().filter_map(search).collect();
+    for _ in 0..MOST_STEPS {
+        active.retain(|s| {
+            let near = s.residual.hypot() <= enough;
+            if near {
+                found[s.index] = Some(s.at);
+            }
+            !near
+        });
+        if active.is_empty() {
+            break;
+        }
+        let places: Vec<Point> = active.iter().map(|s| s.at + s.times(s.residual)).collect();
+        let mut images = vec![Point::ORIGIN; places.len()];
+        map.points(&places, &mut images);
+        let mut steps = places.into_iter().zip(images);
+        active.retain_mut(|s| steps.next().is_some_and(|(to, image)| s.step(to, image)));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Formula, NewtonInverse, Real};
+    use kurbo::Rect;
+    use std::sync::atomic::AtomicUsize;
+
+    /// Counts calls and points.
+    #[derive(Default)]
+    struct Counting([AtomicUsize; 2]);
+
+    impl Map for Counting {
+        fn jet(&self, p: Point) -> Jet {
+            Jet { p: Point::new(p.y, -p.x), ..Jet::default() }
+        }
+        fn points(&self, ps: &[Point], out: &mut [Point]) {
+            self.0[0].fetch_add(1, Ordering::Relaxed);
+            self.0[1].fetch_add(ps.len(), Ordering::Relaxed);
+            for (p, o) in ps.iter().zip(out) {
+                *o = self.jet(*p).p;
+            }
+        }
+    }
+
+    #[test]
+    fn announced_points_are_asked_for_once() {
+        let map = Counting::default();
+        let gathered = Gathered::new(&map);
+        let ps: Vec<Point> = (0..40).map(|i| Point::new(f64::from(i % 30), 2.0)).collect();
+        gathered.prepare(&ps[..10], &[]);
+        let mut out = vec![Point::ORIGIN; ps.len()];
+        for _ in 0..3 {
+            gathered.points(&ps, &mut out);
+            assert!(ps.iter().zip(&out).all(|(p, q)| *q == Point::new(p.y, -p.x)));
+        }
+        let [calls, points] = map.0.map(AtomicUsize::into_inner);
+        assert_eq!((calls, points), (2, 10 + 20));
+    }
+
+    /// A bend that counts its calls.
+    #[derive(Default)]
+    struct CountedBend {
+        batches: bool,
+        calls: AtomicUsize,
+    }
+
+    impl Map for CountedBend {
+        fn jet(&self, p: Point) -> Jet {
+            self.calls.fetch_add(1, Ordering::Relaxed);
+            let (s, c) = (0.3 * p.y).sin_cos();
+            Jet {
+                p: Point::new(p.x + s, p.y + 0.1 * p.x * p.x),
+                dx: Vec2::new(1.0, 0.2 * p.x),
+                dy: Vec2::new(0.3 * c, 1.0),
+            }
+        }
+        fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+            ps.iter().zip(out).for_each(|(p, o)| *o = self.jet(*p));
+            self.calls.fetch_sub(ps.len() - 1, Ordering::Relaxed);
+        }
+        fn cost(&self) -> Cost<'_> {
+            if self.batches { Cost::NET.batched(self) } else { Cost::NET }
+        }
+    }
+
+    impl Batches for CountedBend {}
+
+    #[test]
+    fn an_inverse_by_rounds_is_the_same_in_fewer_calls() {
+        let qs: Vec<Point> =
+            (0..300).map(|i| Point::new(0.02 * f64::from(i) - 3.5, 1.5 - 0.011 * f64::from(i))).collect();
+        let run = |batches: bool| {
+            let map = Arc::new(CountedBend { batches, ..CountedBend::default() });
+            let inverse = NewtonInverse::over(Arc::clone(&map) as Arc<dyn Map>, Rect::new(-2.0, -2.0, 2.0, 2.0), 0.1);
+            let mut out = vec![Jet::default(); qs.len()];
+            inverse.jets(&qs, &mut out);
+            (out, map.calls.load(Ordering::Relaxed))
+        };
+        let ((singly, calls), (gathered, batches)) = (run(false), run(true));
+        let same = |a: &Jet, b: &Jet| a == b || a.p.is_nan() && b.p.is_nan();
+        assert!(singly.iter().zip(&gathered).all(|(a, b)| same(a, b)));
+        assert!(singly.iter().any(|j| j.p.is_nan()) && singly.iter().filter(|j| j.is_finite()).count() > 200);
+        assert!(calls > 1000 && batches < 100, "{calls} {batches}");
+    }
+
+    struct Bend;
+    impl Formula for Bend {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x + (y * 0.3).sin(), y + x * x * 0.1)
+        }
+    }
+
+    /// The bend as a program without derivatives gives it; counts the values.
+    struct Slow {
+        differences: bool,
+        values: AtomicUsize,
+    }
+
+    impl Map for Slow {
+        fn jet(&self, p: Point) -> Jet {
+            self.values.fetch_add(9, Ordering::Relaxed);
+            Bend.jet(p)
+        }
+        fn point(&self, p: Point) -> Point {
+            self.values.fetch_add(1, Ordering::Relaxed);
+            Bend.point(p)
+        }
+        fn cost(&self) -> Cost<'_> {
+            Cost::NET.batched(self)
+        }
+    }
+
+    impl Batches for Slow {
+        fn differentiates(&self) -> bool {
+            self.differences
+        }
+    }
+
+    #[test]
+    fn values_alone_lead_to_the_same_inverse() {
+        let inside = |i: i32| Bend.point(Point::new(0.0024 * f64::from(i) - 1.9, 1.9 - 0.07 * f64::from(i % 50)));
+        let beyond = |i: i32| Point::new(3.0 + 0.02 * f64::from(i), 1.0);
+        let run = |differences: bool, qs: &[Point]| {
+            let map = Arc::new(Slow { differences, values: AtomicUsize::new(0) });
+            let inverse = NewtonInverse::over(Arc::clone(&map) as Arc<dyn Map>, Rect::new(-2.0, -2.0, 2.0, 2.0), 0.1);
+            let mut out = vec![Jet::default(); qs.len()];
+            map.values.store(0, Ordering::Relaxed);
+            inverse.jets(qs, &mut out);
+            (out, map.values.load(Ordering::Relaxed))
+        };
+        for (qs, most) in
+            [((0..1500).map(inside).collect::<Vec<_>>(), 0.6), ((0..100).map(beyond).collect(), f64::INFINITY)]
+        {
+            let ((by_jets, all), (by_values, few)) = (run(false, &qs), run(true, &qs));
+            for (a, b) in by_jets.iter().zip(&by_values) {
+                assert_eq!(a.p.is_nan(), b.p.is_nan(), "{a:?} {b:?}");
+                let off = a.p.distance(b.p).max((a.dx - b.dx).hypot()).max((a.dy - b.dy).hypot());
+                assert!(a.p.is_nan() || off < 1e-13, "{a:?} {b:?}");
+            }
+            println!("{all} and {few} values");
+            assert!((few as f64) < most * all as f64, "{all} {few}");
+        }
+    }
+}
