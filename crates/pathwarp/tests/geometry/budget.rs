@@ -93,7 +93,7 @@ fn searching_in_vain_is_counted() {
     });
     let asked = asked.count() as f64;
     // Fewer than if all of them had a source.
-    assert!(asked < 1e6 / built.map.work(), "{asked}");
+    assert!(asked < 1e6 / built.map.cost().work, "{asked}");
     assert!(matches!(built.failure(), Some(Error::Geometry(e)) if limited(&e)));
     assert!(built.map.point(place(0)).is_nan());
 }
