@@ -5,7 +5,7 @@ use crate::format::Format;
 use crate::{advice, watch};
 use pathwarp::budget::{Budget, Cost, Exceeded, Limit, Limits, cost};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::map::{Jet, Map, NewtonInverse};
+use pathwarp::map::{Batches, Jet, Map, NewtonInverse};
 use pathwarp_raster::{
     ImageWarp, IntRect, Picture, PictureFormat, Pixmap, SeenColor, ShadeTolerance, SmoothShade, encode_png,
     encode_smooth_png, enlarged, extent, header_size, shown, warp_image,
