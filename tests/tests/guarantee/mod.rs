@@ -22,6 +22,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex};
+use std::time::{Duration, Instant};
 
 static REGISTRY: LazyLock<Registry> = LazyLock::new(Registry::builtin);
 
@@ -169,6 +170,9 @@ const KEPT: f64 = 1.005;
 /// The largest turn at a joint that is smooth in the exact image, in degrees.
 const SMOOTH: f64 = 0.5;
 
+/// A pair that takes longer is printed.
+const SLOW: Duration = Duration::from_secs(20);
+
 #[derive(Default)]
 struct Tally {
     pairs: usize,
@@ -196,7 +200,11 @@ fn the_distance_is_kept_for_many_pairs() {
                     let mut random = Random::new(i as u64);
                     let (kind, d) = if i % 5 == 4 { drawn(&mut random) } else { path(&mut random) };
                     let map = if i % 10 == 9 { &simplified } else { &maps[random.below(maps.len())] };
+                    let began = Instant::now();
                     let found = measured(&d, map);
+                    if began.elapsed() > SLOW {
+                        println!("{i}: took {:?}: {}\n   {d}", began.elapsed(), map.name);
+                    }
                     let mut tallies = tallies.lock().unwrap();
                     let t = tallies.entry(kind).or_default();
                     t.pairs += 1;
