@@ -1,9 +1,10 @@
-//! The parts of a file around its entities: header, tables, blocks, objects.
+//! A DXF's text: group codes, colours, layers, and the parts of a file around its entities.
 
-use crate::codes::Codes;
-use crate::layers::Layers;
-use crate::model::Options;
+use crate::{Options, Shape};
+use pathwarp::decimal::push_trimmed;
 use pathwarp::kurbo::Point;
+use std::collections::HashMap;
+use std::fmt::Write as _;
 
 /// Handles of the objects that every file has. Each is unique.
 mod handle {
@@ -150,4 +151,243 @@ fn blocks(out: &mut Codes) {
         out.text(100, "AcDbBlockEnd");
     }
     end_section(out);
+}
+
+/// The layer that every file has.
+pub(crate) const ZERO: &str = "0";
+
+/// Longest name in characters.
+const LONGEST: usize = 255;
+
+/// The layers, in the order of their first shapes.
+pub(crate) struct Layers {
+    /// Name as written, and index of the colour of the first shape.
+    pub(crate) all: Vec<(String, u8)>,
+    /// The place of a name as given.
+    places: HashMap<String, usize>,
+}
+
+impl Layers {
+    pub(crate) fn of(shapes: &[Shape<'_>]) -> Self {
+        let mut out = Self { all: vec![(ZERO.to_owned(), FOREGROUND)], places: HashMap::new() };
+        let mut known: HashMap<String, usize> = HashMap::from([(ZERO.to_owned(), 0)]);
+        for shape in shapes {
+            if out.places.contains_key(shape.layer) {
+                continue;
+            }
+            let name = written(shape.layer);
+            let place = *known.entry(name.to_lowercase()).or_insert_with(|| {
+                out.all.push((name, shape.color.map_or(FOREGROUND, |c| nearest(c).0)));
+                out.all.len() - 1
+            });
+            out.places.insert(shape.layer.to_owned(), place);
+        }
+        out
+    }
+
+    /// The name of a shape's layer as written.
+    pub(crate) fn name(&self, layer: &str) -> &str {
+        self.places.get(layer).and_then(|i| self.all.get(*i)).map_or(ZERO, |(name, _)| name)
+    }
+}
+
+/// A name as DXF allows it.
+fn written(name: &str) -> String {
+    let mut out = String::new();
+    for c in name.trim().chars().take(LONGEST) {
+        match c {
+            '<' | '>' | '/' | '\\' | '"' | ':' | ';' | '?' | '*' | '|' | ',' | '=' | '`' => out.push('_'),
+            c if c.is_control() => out.push('_'),
+            c if c.is_ascii() => out.push(c),
+            c => {
+                for unit in c.encode_utf16(&mut [0; 2]) {
+                    let _ = write!(out, "\\U+{unit:04X}");
+                }
+            }
+        }
+    }
+    if out.is_empty() { ZERO.to_owned() } else { out }
+}
+
+/// The index of black on a light and white on a dark background.
+pub(crate) const FOREGROUND: u8 = 7;
+
+/// The named colours 1 to 6.
+const PURE: [[u8; 3]; 6] = [[255, 0, 0], [255, 255, 0], [0, 255, 0], [0, 255, 255], [0, 0, 255], [255, 0, 255]];
+
+/// The greys 8 and 9, and 250 to 254.
+const GREYS: [(u8, u8); 7] = [(8, 128), (9, 192), (250, 51), (251, 91), (252, 132), (253, 173), (254, 214)];
+
+/// Brightest channel of the shades of a hue, from the first pair of ten to the last.
+const LEVELS: [f64; 5] = [255.0, 165.0, 127.0, 76.0, 38.0];
+
+/// The nearest colour of the index, and whether it is the very colour.
+pub(crate) fn nearest(color: [u8; 3]) -> (u8, bool) {
+    if color == [0; 3] || color == [255; 3] {
+        return (FOREGROUND, true);
+    }
+    if let Some(i) = (1..).zip(PURE).find(|(_, c)| *c == color) {
+        return (i.0, true);
+    }
+    let distance =
+        |c: [u8; 3]| -> i32 { c.iter().zip(color).map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum() };
+    let greys = GREYS.iter().map(|(i, v)| (*i, [*v; 3]));
+    let shades = (10..250).map(|i| (i, shade(i)));
+    let foreground = [(FOREGROUND, [0; 3]), (FOREGROUND, [255; 3])];
+    let all = (1..).zip(PURE).chain(foreground).chain(greys).chain(shades);
+    (all.min_by_key(|(_, c)| distance(*c)).map_or(FOREGROUND, |(i, _)| i), false)
+}
+
+/// The colours 10 to 249: 24 hues of ten shades, of which every second is half saturated.
+fn shade(index: u8) -> [u8; 3] {
+    /// Hues between two pure colours.
+    const PER_SIXTH: f64 = 4.0;
+    let (hue, place) = ((index - 10) / 10, (index - 10) % 10);
+    let level = LEVELS[usize::from(place / 2)];
+    let floor = if place % 2 == 0 { 0.0 } else { 0.5 };
+    let sixth = f64::from(hue) / PER_SIXTH;
+    [0.0, 4.0, 2.0].map(|turn| {
+        // The distance from the hue at which the channel is brightest, in sixths of a turn.
+        let away = (sixth + turn).rem_euclid(6.0);
+        let away = away.min(6.0 - away);
+        let strength = (2.0 - away).clamp(0.0, 1.0);
+        (level * (floor + (1.0 - floor) * strength)) as u8
+    })
+}
+
+/// Decimals of coordinates: a millionth of a micrometre.
+const DECIMALS: usize = 9;
+
+/// Decimals of angles, parameters and ratios, so that a point at a hundred metres is off by less than that.
+const FINE: usize = 14;
+
+/// The first handle that tables do not use.
+const FIRST_HANDLE: u64 = 0x100;
+
+/// The text of a file under construction.
+pub(crate) struct Codes {
+    text: String,
+    next: u64,
+}
+
+impl Codes {
+    pub(crate) fn new() -> Self {
+        Self { text: String::new(), next: FIRST_HANDLE }
+    }
+
+    /// A text.
+    pub(crate) fn text(&mut self, code: u16, value: &str) -> &mut Self {
+        let _ = write!(self.text, "{code:>3}\n{value}\n");
+        self
+    }
+
+    /// A whole number.
+    pub(crate) fn whole(&mut self, code: u16, value: i64) -> &mut Self {
+        let _ = write!(self.text, "{code:>3}\n{value}\n");
+        self
+    }
+
+    /// A length.
+    pub(crate) fn length(&mut self, code: u16, value: f64) -> &mut Self {
+        self.number(code, value, DECIMALS)
+    }
+
+    /// An angle, parameter or ratio.
+    pub(crate) fn fine(&mut self, code: u16, value: f64) -> &mut Self {
+        self.number(code, value, FINE)
+    }
+
+    /// A point with x, y and z.
+    pub(crate) fn point(&mut self, code: u16, p: Point) -> &mut Self {
+        self.length(code, p.x).length(code + 10, p.y).length(code + 20, 0.0)
+    }
+
+    /// A handle.
+    pub(crate) fn handle(&mut self, code: u16, handle: u64) -> &mut Self {
+        let _ = write!(self.text, "{code:>3}\n{handle:X}\n");
+        self
+    }
+
+    /// The handle of a new object.
+    pub(crate) fn new_handle(&mut self) -> u64 {
+        self.next += 1;
+        self.next - 1
+    }
+
+    fn number(&mut self, code: u16, value: f64, decimals: usize) -> &mut Self {
+        let _ = writeln!(self.text, "{code:>3}");
+        let from = self.text.len();
+        push_trimmed(&mut self.text, value, decimals);
+        // A real number has a point, by which some readers tell it from a whole one.
+        if !self.text[from..].contains('.') {
+            self.text.push_str(".0");
+        }
+        self.text.push('\n');
+        self
+    }
+
+    /// The text, in which `$HANDSEED` gets the first free handle.
+    pub(crate) fn finish(mut self) -> String {
+        let (seed, next) = (Self::SEED, self.next);
+        if let Some(at) = self.text.find(seed) {
+            self.text.replace_range(at..at + seed.len(), &format!("{next:X}"));
+        }
+        self.text
+    }
+
+    /// Stands for the first free handle until all are known.
+    pub(crate) const SEED: &str = "{first free handle}";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::Outline;
+
+    #[test]
+    fn names_are_made_fit() {
+        let outline = Outline::default();
+        let names = ["Cut", "cut", "a/b:c", " ", "Schön", ""];
+        let shapes: Vec<Shape<'_>> =
+            names.iter().map(|layer| Shape { layer, color: Some([0, 255, 0]), outline: &outline }).collect();
+        let layers = Layers::of(&shapes);
+        let written: Vec<&str> = names.iter().map(|n| layers.name(n)).collect();
+        assert_eq!(written, ["Cut", "Cut", "a_b_c", "0", "Sch\\U+00F6n", "0"]);
+        assert_eq!(layers.all.len(), 4);
+        assert_eq!(layers.all[1], ("Cut".to_owned(), 3));
+    }
+
+    /// Colours as AutoCAD shows them.
+    #[test]
+    fn known_colours() {
+        for (index, color) in [
+            (10, 0xff_0000),
+            (11, 0xff_7f7f),
+            (12, 0xa5_0000),
+            (15, 0x7f_3f3f),
+            (20, 0xff_3f00),
+            (30, 0xff_7f00),
+            (50, 0xff_ff00),
+            (90, 0x00_ff00),
+            (130, 0x00_ffff),
+            (140, 0x00_bfff),
+            (170, 0x00_00ff),
+            (200, 0xbf_00ff),
+            (210, 0xff_00ff),
+            (249, 0x26_1316),
+        ] {
+            let [_, r, g, b] = u32::to_be_bytes(color);
+            let off = shade(index).iter().zip([r, g, b]).map(|(a, b)| a.abs_diff(b)).max();
+            assert!(off <= Some(1), "{index}: {:?}", shade(index));
+        }
+    }
+
+    #[test]
+    fn the_nearest_is_found() {
+        assert_eq!(nearest([0, 0, 0]), (7, true));
+        assert_eq!(nearest([0, 0, 255]), (5, true));
+        assert_eq!(nearest([254, 1, 0]).0, 1);
+        assert_eq!(nearest([255, 127, 1]), (30, false));
+        assert_eq!(nearest([130, 130, 130]).0, 8);
+    }
 }

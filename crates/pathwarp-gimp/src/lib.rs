@@ -18,21 +18,17 @@
 //! ```
 
 mod error;
-mod file;
-mod number;
 mod old_strokes;
 mod open;
-mod outline;
 mod path;
 mod point_list;
-mod source;
 mod svg;
 mod text;
 mod xcf;
 
 pub use error::{Error, ErrorKind};
-pub use file::{FileKind, PathFile, Salvaged};
 pub use open::{HEAD, may_begin, open, salvage, salvage_within, sniff};
+pub use path::{FileKind, PathFile, Salvaged};
 pub use path::{GimpPath, Stroke};
 pub use point_list::to_json;
 pub use svg::to_svg;

@@ -8,8 +8,7 @@
 //! `num_points` counts numbers, six per anchor. Instead of `controlpoints`, a stroke may have `points`, a list of pairs.
 
 use crate::error::Error;
-use crate::file::{FileKind, PathFile};
-use crate::path::{GimpPath, Stroke};
+use crate::path::{FileKind, GimpPath, PathFile, Stroke};
 use serde::{Deserialize, Serialize};
 
 /// The whole document.

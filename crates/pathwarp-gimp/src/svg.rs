@@ -5,9 +5,7 @@
 //! viewBox avoid any scaling.
 
 use crate::error::Error;
-use crate::file::{FileKind, PathFile};
-use crate::number::{rounded, shortest};
-use crate::path::{GimpPath, Stroke};
+use crate::path::{FileKind, GimpPath, PathFile, Stroke, rounded, shortest};
 use pathwarp::Outline;
 use pathwarp::kurbo::Point;
 use pathwarp::outline::{Seg, Subpath};

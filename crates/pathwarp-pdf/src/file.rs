@@ -1,8 +1,7 @@
 //! The file under construction: its objects, and the function that draws groups.
 
-use crate::options::Options;
-use crate::space::pdf_rect;
-use crate::stream::Stream;
+use crate::Options;
+use crate::stream::{Stream, pdf_rect};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use kurbo::{Rect, Vec2};

@@ -4,8 +4,7 @@
 //! painted, and the colours are listed once for each period.
 
 use crate::file::File;
-use crate::space::{affine, matrix};
-use crate::stream::FAR;
+use crate::stream::{FAR, affine, matrix};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pdf_writer::types::FunctionShadingType;
 use pdf_writer::{Finish as _, Name, Ref};

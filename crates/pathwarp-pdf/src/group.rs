@@ -1,12 +1,13 @@
-//! Draws groups: clip paths, masks, opacity, blend modes, and what is in them.
+//! Draws groups: clip paths, masks, opacity, blend modes, and what is in them. A group with a filter becomes a picture.
 
 use crate::file::{File, MaskKind, State};
-use crate::space::{affine, rect, roomy};
-use crate::stream::Stream;
-use crate::{clip, image, path, picture};
-use kurbo::{Affine, Rect, Vec2};
+use crate::stream::{Stream, affine, from_usvg, rect, roomy};
+use crate::{PRINT, image, paint};
+use kurbo::{Affine, BezPath, Rect, Shape as _, Vec2};
+use pathwarp_raster::{Error, Pixmap, render_group};
 use pdf_writer::Ref;
-use usvg::{BlendMode, Group, Mask, MaskType, Node};
+use resvg::tiny_skia::Transform;
+use usvg::{BlendMode, ClipPath, Fill, FillRule, Group, Mask, MaskType, Node};
 
 /// Draws a group.
 pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
@@ -32,7 +33,7 @@ fn children(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
     for child in g.children() {
         match child {
             Node::Group(g) => draw(file, stream, g),
-            Node::Path(p) => path::draw(file, stream, p),
+            Node::Path(p) => paint::draw(file, stream, p),
             Node::Image(i) => image::draw(file, stream, i),
             Node::Text(t) => draw(file, stream, t.flattened()),
         }
@@ -44,7 +45,7 @@ fn isolated(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
     let bounds = roomy(rect(g.layer_bounding_box().to_rect()));
     let mut masks = Vec::new();
     if let Some(clip) = g.clip_path() {
-        masks.extend(clip::apply(file, stream, clip, bounds).map(|m| (MaskKind::Luminosity, m)));
+        masks.extend(apply(file, stream, clip, bounds).map(|m| (MaskKind::Luminosity, m)));
     }
     masks.extend(g.mask().map(|m| mask(file, m, stream.shift)));
     let state = State::default().opacity(g.opacity().get()).blend(g.blend_mode());
@@ -96,7 +97,7 @@ fn filtered(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
     if file.failed.is_some() {
         return;
     }
-    let drawn = picture::of_group(file, g).and_then(|drawn| {
+    let drawn = of_group(file, g).and_then(|drawn| {
         let Some(picture) = drawn else { return Ok(None) };
         let object = image::add(file, &picture.pixmap, true)?;
         Ok(Some((object, picture.area)))
@@ -115,4 +116,152 @@ fn filtered(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
         stream.state(state);
     }
     image::place(stream, object, area);
+}
+
+/// Restricts what is drawn to a clip path. Returns the group of a mask if outlines cannot do it.
+pub(crate) fn apply(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, bounds: Rect) -> Option<Ref> {
+    if let Some(outlines) = outlines(file, clip) {
+        for (path, rule) in &outlines {
+            stream.clip(path, *rule);
+        }
+        return None;
+    }
+    Some(file.group(bounds, stream.shift, |file, stream| {
+        if let Some(next) = clip.clip_path()
+            && let Some(mask) = apply(file, stream, next, bounds)
+        {
+            let state = file.state(State::default().mask(MaskKind::Luminosity, mask));
+            stream.state(state);
+        }
+        stream.content.set_fill_gray(1.0);
+        stream.transform(affine(clip.transform()));
+        silhouette(file, stream, clip.root(), bounds);
+    }))
+}
+
+/// The outlines whose common part is the clip path; `None` if there are no such outlines.
+fn outlines(file: &File<'_>, clip: &ClipPath) -> Option<Vec<(BezPath, FillRule)>> {
+    let mut own = Vec::new();
+    collect(file, clip.root(), affine(clip.transform()), &mut own)?;
+    let rule = own.first().map_or(FillRule::NonZero, |(_, rule)| *rule);
+    let boxes: Vec<Rect> = own.iter().map(|(path, _)| path.bounding_box()).collect();
+    // Outlines that overlap would add up their winding numbers.
+    if own.iter().any(|(_, r)| *r != rule) || !are_apart(&boxes) {
+        return None;
+    }
+    let mut path = BezPath::new();
+    own.iter().for_each(|(p, _)| path.extend(p.iter()));
+    if path.elements().is_empty() {
+        // An empty clip path hides everything, an empty outline is no clip path.
+        path = Rect::ZERO.to_path(1.0);
+    }
+    let mut out = clip.clip_path().map_or(Some(Vec::new()), |next| outlines(file, next))?;
+    out.push((path, rule));
+    Some(out)
+}
+
+/// Returns `true` if no two of the boxes overlap. Of many boxes it says `false`: looking at all pairs would take long.
+fn are_apart(boxes: &[Rect]) -> bool {
+    const MOST: usize = 256;
+    let overlap = |a: &Rect, b: &Rect| a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+    boxes.len() <= MOST && boxes.iter().enumerate().all(|(i, a)| !boxes[i + 1..].iter().any(|b| overlap(a, b)))
+}
+
+/// Collects the outlines of a clip path's content; `None` if a part of it is clipped in turn.
+fn collect(file: &File<'_>, g: &Group, to_user: Affine, out: &mut Vec<(BezPath, FillRule)>) -> Option<()> {
+    for child in g.children() {
+        match child {
+            Node::Group(g) if g.clip_path().is_some() => return None,
+            Node::Group(g) => collect(file, g, to_user * affine(g.transform()), out)?,
+            Node::Text(t) => collect(file, t.flattened(), to_user * affine(t.flattened().transform()), out)?,
+            Node::Path(p) => {
+                if let Some(fill) = p.fill().filter(|_| p.is_visible()) {
+                    out.push((to_user * outline(file, p), Fill::rule(fill)));
+                }
+            }
+            Node::Image(_) => {}
+        }
+    }
+    Some(())
+}
+
+fn outline(file: &File<'_>, p: &usvg::Path) -> BezPath {
+    (file.options.exact)(p).unwrap_or_else(|| from_usvg(p.data()))
+}
+
+/// Fills the content of a clip path with the current colour.
+fn silhouette(file: &mut File<'_>, stream: &mut Stream, g: &Group, bounds: Rect) {
+    for child in g.children() {
+        let group = match child {
+            Node::Group(g) => &**g,
+            Node::Text(t) => t.flattened(),
+            Node::Path(p) => {
+                if let Some(fill) = p.fill().filter(|_| p.is_visible()) {
+                    stream.outline(&outline(file, p));
+                    match fill.rule() {
+                        FillRule::NonZero => stream.content.fill_nonzero(),
+                        FillRule::EvenOdd => stream.content.fill_even_odd(),
+                    };
+                }
+                continue;
+            }
+            Node::Image(_) => continue,
+        };
+        stream.save();
+        stream.transform(affine(group.transform()));
+        let inner = affine(group.transform()).inverse();
+        let inner = if inner.is_finite() { inner.transform_rect_bbox(bounds) } else { bounds };
+        if let Some(clip) = group.clip_path()
+            && let Some(mask) = apply(file, stream, clip, inner)
+        {
+            let state = file.state(State::default().mask(MaskKind::Luminosity, mask));
+            stream.state(state);
+        }
+        silhouette(file, stream, group, inner);
+        stream.restore();
+    }
+}
+
+/// Px per inch.
+const PX_PER_INCH: f64 = 96.0;
+
+/// Times that the sides of a picture are halved to stay within the limits: from print to a thumbnail.
+const MOST_HALVINGS: i32 = 4;
+
+/// A picture in the coordinates of a group.
+pub(crate) struct Picture {
+    pub(crate) pixmap: Pixmap,
+    pub(crate) area: Rect,
+}
+
+/// Renders a group with its filters, clip path, mask and opacity, with fewer pixels if the limits do not allow the resolution.
+/// `None` if it shows nothing.
+pub(crate) fn of_group(file: &mut File<'_>, g: &Group) -> Result<Option<Picture>, Error> {
+    let area = rect(g.layer_bounding_box().to_rect());
+    let dpi = file.options.picture_dpi.unwrap_or(PRINT);
+    let wanted = affine(g.abs_transform()).determinant().abs().sqrt() * dpi / PX_PER_INCH;
+    // The renderer moves the picture's corner to the origin, and applies the group's transform; both are undone.
+    let back = affine(g.transform()).inverse();
+    if !back.is_finite() || !wanted.is_finite() {
+        return Ok(None);
+    }
+    let moved = g.abs_layer_bounding_box();
+    let to_area = Affine::translate(-area.origin().to_vec2())
+        * back
+        * Affine::translate((f64::from(moved.x()), f64::from(moved.y())));
+    let mut halvings = 0;
+    loop {
+        let scale = wanted * 0.5_f64.powi(halvings);
+        let size = [area.width(), area.height()].map(|v| (v * scale).ceil().max(1.0));
+        let to_pixels = Affine::scale_non_uniform(size[0] / area.width(), size[1] / area.height()) * to_area;
+        let [a, b, c, d, e, f] = to_pixels.as_coeffs().map(|v| v as f32);
+        match render_group(g, Transform::from_row(a, b, c, d, e, f), size, &file.budget) {
+            Err(Error::TooLarge { .. } | Error::TooMuch(_)) if halvings < MOST_HALVINGS => halvings += 1,
+            Err(e) => return Err(e),
+            Ok(drawn) => {
+                file.coarser += usize::from(halvings > 0);
+                return Ok(drawn.map(|pixmap| Picture { pixmap, area }));
+            }
+        }
+    }
 }

@@ -1,11 +1,12 @@
-//! Paints: colours, gradients, patterns, and their opacity.
+//! Draws paths: fill and stroke with colours, gradients, tiling patterns, and their opacity.
 
-use crate::file::{File, MaskKind, State};
+use crate::file::{File, MaskKind, State, deflated};
 use crate::gradient::Gradient;
-use crate::pattern;
-use crate::space::{rect, roomy};
-use crate::stream::Stream;
-use usvg::{Paint, Path};
+use crate::stream::{Stream, affine, from_usvg, has_area, matrix, pdf_rect, rect, roomy};
+use kurbo::{Affine, BezPath, PathEl, Rect};
+use pdf_writer::types::{LineCapStyle, LineJoinStyle, PaintType, TilingType};
+use pdf_writer::{Filter, Ref};
+use usvg::{Fill, FillRule, LineCap, LineJoin, Paint, PaintOrder, Path, Stroke};
 
 /// A use of a paint.
 pub(crate) struct Use<'a> {
@@ -51,7 +52,7 @@ pub(crate) fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use
             }
         }
         (Paint::Pattern(p), _) => {
-            let pattern = pattern::add(file, p, stream.to_start);
+            let pattern = add_pattern(file, p, stream.to_start);
             stream.pattern(pattern, painted.strokes);
         }
         (_, Some(gradient)) => {
@@ -64,4 +65,111 @@ pub(crate) fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use
     if limited {
         stream.restore();
     }
+}
+
+/// Draws a path.
+pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, path: &Path) {
+    if !path.is_visible() {
+        return;
+    }
+    let outline = (file.options.exact)(path).unwrap_or_else(|| from_usvg(path.data()));
+    match path.paint_order() {
+        PaintOrder::FillAndStroke => {
+            fill(file, stream, path, &outline);
+            stroke(file, stream, path, &outline);
+        }
+        PaintOrder::StrokeAndFill => {
+            stroke(file, stream, path, &outline);
+            fill(file, stream, path, &outline);
+        }
+    }
+}
+
+fn fill(file: &mut File<'_>, stream: &mut Stream, path: &Path, outline: &BezPath) {
+    let Some(fill) = path.fill().filter(|_| has_area(outline)) else { return };
+    let painted = Use { paint: Fill::paint(fill), opacity: fill.opacity().get(), strokes: false, path };
+    with_paint(file, stream, &painted, |stream| {
+        stream.outline(outline);
+        match fill.rule() {
+            FillRule::NonZero => stream.content.fill_nonzero(),
+            FillRule::EvenOdd => stream.content.fill_even_odd(),
+        };
+    });
+}
+
+fn stroke(file: &mut File<'_>, stream: &mut Stream, path: &Path, outline: &BezPath) {
+    let Some(stroke) = path.stroke() else { return };
+    let paint: &Paint = Stroke::paint(stroke);
+    let painted = Use { paint, opacity: stroke.opacity().get(), strokes: true, path };
+    with_paint(file, stream, &painted, |stream| {
+        pen(stream, stroke);
+        match stroke.linecap() {
+            LineCap::Square => stream.outline(&with_dots(outline, stroke.width().get())),
+            _ => stream.outline(outline),
+        }
+        stream.content.stroke();
+    });
+}
+
+/// Sets width, joins, caps and dashes.
+fn pen(stream: &mut Stream, stroke: &Stroke) {
+    let content = &mut stream.content;
+    content.set_line_width(stroke.width().get());
+    content.set_line_cap(match stroke.linecap() {
+        LineCap::Butt => LineCapStyle::ButtCap,
+        LineCap::Round => LineCapStyle::RoundCap,
+        LineCap::Square => LineCapStyle::ProjectingSquareCap,
+    });
+    content.set_line_join(match stroke.linejoin() {
+        LineJoin::Miter | LineJoin::MiterClip => LineJoinStyle::MiterJoin,
+        LineJoin::Round => LineJoinStyle::RoundJoin,
+        LineJoin::Bevel => LineJoinStyle::BevelJoin,
+    });
+    content.set_miter_limit(stroke.miterlimit().get());
+    let dashes = stroke.dasharray().unwrap_or_default();
+    content.set_dash_pattern(dashes.iter().copied(), offset(dashes, stroke.dashoffset()));
+}
+
+/// The outline with lines of no length made minute ones: SVG draws their square caps, PDF does not.
+fn with_dots(outline: &BezPath, width: f32) -> BezPath {
+    /// Length as a share of the width.
+    const MINUTE: f64 = 1e-4;
+    let elements = outline.elements();
+    let starts = |i: usize| elements.get(i).is_none_or(|e| matches!(e, PathEl::MoveTo(_)));
+    let mut out = BezPath::new();
+    for (i, element) in elements.iter().enumerate() {
+        match (*element, elements.get(i.wrapping_sub(1))) {
+            (PathEl::LineTo(p), Some(PathEl::MoveTo(q))) if p == *q && starts(i + 1) => {
+                out.line_to((p.x + MINUTE * f64::from(width), p.y));
+            }
+            (other, _) => out.push(other),
+        }
+    }
+    out
+}
+
+/// The offset into the dashes, which PDF wants positive.
+fn offset(dashes: &[f32], offset: f32) -> f32 {
+    let period: f32 = dashes.iter().sum();
+    if period > 0.0 { offset.rem_euclid(period) } else { 0.0 }
+}
+
+/// Adds a pattern. `to_start` leads from the user space of the painted path to the start of the content stream.
+fn add_pattern(file: &mut File<'_>, pattern: &usvg::Pattern, to_start: Affine) -> Ref {
+    let mut stream = Stream::new();
+    (file.draw)(file, &mut stream, pattern.root());
+    let (bytes, used) = stream.finish();
+    let bytes = deflated(&bytes);
+    let tile = pattern.rect();
+    let (width, height) = (tile.width(), tile.height());
+    // The content's origin is the tile's corner.
+    let corner = Affine::translate((f64::from(tile.x()), f64::from(tile.y())));
+    let at = file.new_ref();
+    let mut out = file.pdf.tiling_pattern(at, &bytes);
+    out.filter(Filter::FlateDecode);
+    out.paint_type(PaintType::Colored).tiling_type(TilingType::ConstantSpacing);
+    out.bbox(pdf_rect(Rect::new(0.0, 0.0, f64::from(width), f64::from(height)))).x_step(width).y_step(height);
+    out.matrix(matrix(to_start * affine(pattern.transform()) * corner));
+    used.write(&mut out.resources());
+    at
 }

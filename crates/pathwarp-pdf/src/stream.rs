@@ -1,12 +1,11 @@
-//! A content stream under construction, with the resources it uses.
+//! A content stream under construction, with the resources it uses; outlines as path operators.
 
-use crate::outline;
-use crate::space::matrix;
-use kurbo::{Affine, BezPath, Vec2};
+use kurbo::{Affine, BezPath, PathEl, Point, Rect, Shape as _, Vec2};
 use pdf_writer::types::ColorSpaceOperand;
 use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Finish as _, Name, Ref};
 use std::collections::BTreeSet;
+use usvg::tiny_skia_path::{Path, PathSegment};
 
 /// Coordinates beyond this are far from the page's corner: in single precision their last digit is a hundredth.
 pub(crate) const FAR: f64 = 1e5;
@@ -83,9 +82,9 @@ impl Stream {
     /// Starts a path with these outlines.
     pub(crate) fn outline(&mut self, path: &BezPath) {
         if self.shift == Vec2::ZERO {
-            outline::write(&mut self.content, path);
+            write(&mut self.content, path);
         } else {
-            outline::write(&mut self.content, &(Affine::translate(-self.shift) * path));
+            write(&mut self.content, &(Affine::translate(-self.shift) * path));
         }
     }
 
@@ -162,4 +161,76 @@ fn name(kind: Kind, r: i32) -> String {
         Kind::Object => 'X',
     };
     format!("{letter}{r}")
+}
+
+/// An outline of usvg in f64.
+pub(crate) fn from_usvg(path: &Path) -> BezPath {
+    let point = |p: usvg::tiny_skia_path::Point| Point::new(f64::from(p.x), f64::from(p.y));
+    let mut out = BezPath::new();
+    for segment in path.segments() {
+        match segment {
+            PathSegment::MoveTo(p) => out.move_to(point(p)),
+            PathSegment::LineTo(p) => out.line_to(point(p)),
+            PathSegment::QuadTo(p, q) => out.quad_to(point(p), point(q)),
+            PathSegment::CubicTo(p, q, r) => out.curve_to(point(p), point(q), point(r)),
+            PathSegment::Close => out.close_path(),
+        }
+    }
+    out
+}
+
+/// Writes the operators that construct an outline.
+pub(crate) fn write(out: &mut Content, path: &BezPath) {
+    let mut at = Point::ORIGIN;
+    for element in path.elements() {
+        let f = |p: Point| (p.x as f32, p.y as f32);
+        let cubic = |out: &mut Content, p: Point, q: Point, r: Point| {
+            let ((x1, y1), (x2, y2), (x3, y3)) = (f(p), f(q), f(r));
+            out.cubic_to(x1, y1, x2, y2, x3, y3);
+        };
+        match *element {
+            PathEl::MoveTo(p) => drop(out.move_to(f(p).0, f(p).1)),
+            PathEl::LineTo(p) => drop(out.line_to(f(p).0, f(p).1)),
+            // PDF has no quadratics; this cubic is the same curve.
+            PathEl::QuadTo(p, q) => cubic(out, at + (p - at) * (2.0 / 3.0), q + (p - q) * (2.0 / 3.0), q),
+            PathEl::CurveTo(p, q, r) => cubic(out, p, q, r),
+            PathEl::ClosePath => drop(out.close_path()),
+        }
+        at = element.end_point().unwrap_or(at);
+    }
+}
+
+/// Returns `true` if the outline has an area to fill.
+pub(crate) fn has_area(path: &BezPath) -> bool {
+    let r = path.bounding_box();
+    r.width() > 0.0 && r.height() > 0.0
+}
+
+/// A transform in f64.
+pub(crate) fn affine(t: usvg::Transform) -> Affine {
+    Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
+}
+
+/// A transform as PDF writes it.
+pub(crate) fn matrix(m: Affine) -> [f32; 6] {
+    m.as_coeffs().map(|v| v as f32)
+}
+
+/// A rectangle in f64.
+pub(crate) fn rect(r: usvg::Rect) -> Rect {
+    let [x0, y0, x1, y1] = [r.left(), r.top(), r.right(), r.bottom()].map(f64::from);
+    Rect::new(x0, y0, x1, y1)
+}
+
+/// A rectangle as PDF writes it.
+pub(crate) fn pdf_rect(r: Rect) -> pdf_writer::Rect {
+    let [x0, y0, x1, y1] = [r.x0, r.y0, r.x1, r.y1].map(|v| v as f32);
+    pdf_writer::Rect::new(x0, y0, x1, y1)
+}
+
+/// A rectangle that surely holds what is drawn in `r`, whose numbers are rounded and ignore anti-aliasing.
+pub(crate) fn roomy(r: Rect) -> Rect {
+    /// A share of the size, and a pixel.
+    const MARGIN: (f64, f64) = (0.01, 1.0);
+    r.inflate(MARGIN.0 * r.width() + MARGIN.1, MARGIN.0 * r.height() + MARGIN.1)
 }

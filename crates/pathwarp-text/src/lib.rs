@@ -23,29 +23,23 @@
 //! # Ok::<(), pathwarp_text::Error>(())
 //! ```
 
-mod align;
 mod charstrings;
 mod error;
 mod font;
 mod glyph;
-mod itemize;
 mod layout;
 mod lettering;
 mod limits;
-mod metrics;
-mod painter;
-mod setting;
 mod shape;
 mod style;
-mod synthesis;
 mod work;
 
 pub use error::{Error, Quantity};
 pub use font::Font;
+pub use font::{FontAxis, FontMetrics};
 pub use layout::{layout, layout_within};
 pub use lettering::{Cluster, LetteringLine, OutlinedText, PlacedGlyph};
 pub use limits::TextLimits;
-pub use metrics::{FontAxis, FontMetrics};
-pub use setting::{Feature, Variation, features, variations};
 pub use style::{Align, Direction, Ligatures, TextStyle};
+pub use style::{Feature, Variation, features, variations};
 pub use work::{GlyphWork, MOST_WORK};

@@ -2,10 +2,10 @@
 
 use crate::error::Error;
 use crate::font::Font;
-use crate::itemize::{Run, for_shaper};
+use crate::layout::{Run, for_shaper};
 use crate::lettering::PlacedGlyph;
 use crate::limits::TextLimits;
-use crate::setting::Feature;
+use crate::style::Feature;
 use harfrust::{BufferFlags, Direction, Language, ShapeOptions, UnicodeBuffer};
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;

@@ -1,11 +1,10 @@
 //! `PROP_PATHS`, the paths of GIMP 1.
 
-use super::model::{PathLayout, PathRecord, Xcf};
-use super::primitives::{coordinate, count, string};
+use super::read::{PathLayout, PathRecord, Xcf, coordinate, count, string};
 use crate::error::Error;
 use crate::old_strokes::{ANCHOR, NEW_STROKE, TypedPoint, listed, strokes};
+use crate::open::ByteSource;
 use crate::path::{GimpPath, Stroke};
-use crate::source::ByteSource;
 
 /// Size of a path of format 1 without a name and points.
 const LEAST_PATH: u64 = 21;

@@ -1,13 +1,15 @@
-//! Replaces the strokes of paths in an XCF, adjusts its pointers, and keeps every other byte.
+//! Writes paths: replaces their strokes in an XCF, adjusts its pointers and keeps every other byte, or makes a new file.
 
-use super::model::{MAGIC, PATH_ITEMS, PROP_PATHS, PathBlock, PathLayout, PathRecord, Xcf};
-use super::read::read;
-use super::{old_paths, pointers, vectors};
 use crate::error::{Error, ErrorKind};
 use crate::old_strokes;
-use crate::path::Stroke;
-use crate::source::{ByteSource, ReadSeek};
+use crate::open::{ByteSource, ReadSeek};
+use crate::path::{GimpPath, Stroke};
+use crate::xcf::read::{
+    MAGIC, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, PathLayout, PathRecord, Xcf, read,
+};
+use crate::xcf::{old_paths, vectors};
 use pathwarp::budget::Limits;
+use std::collections::{BTreeMap, HashSet};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 
@@ -138,7 +140,7 @@ fn with_pointers(input: &mut ByteSource<'_>, xcf: &Xcf, mut edits: Vec<ByteEdit>
     // Everything that pointers point to is after the property list and moves by the same amount.
     let by = shift(&edits, xcf.properties_end);
     let mut adjusted = Vec::new();
-    for (at, target) in pointers::all(input, xcf)? {
+    for (at, target) in all(input, xcf)? {
         let new = target.saturating_add_signed(by);
         let bytes = if xcf.wide() {
             new.to_be_bytes().to_vec()
@@ -171,4 +173,173 @@ fn copy(from: &mut (impl Read + Seek), to: &mut dyn Write, edits: &[ByteEdit], e
     }
     std::io::copy(&mut from.by_ref().take(end - at), to).map_err(failed(at))?;
     Ok(())
+}
+
+/// The targets of pointers by their places.
+pub(super) type Pointers = BTreeMap<u64, u64>;
+
+/// A property whose whole content is a pointer.
+const PROP_FLOATING_SELECTION: u32 = 5;
+/// Size of a property without content.
+const LEAST_PROPERTY: u64 = 8;
+
+/// The type of structure that a pointer points to.
+#[derive(Clone, Copy)]
+enum PointerTarget {
+    Layer,
+    Channel,
+    Hierarchy,
+    Level,
+}
+
+/// A traversal of the pointers.
+struct PointerWalk<'i, 'a> {
+    input: &'i mut ByteSource<'a>,
+    wide: bool,
+    found: Pointers,
+    /// Maximum number of further pointers, and of properties: structures that do not overlap fit into the file.
+    left: u64,
+    properties_left: u64,
+    /// Lowest valid target.
+    first: u64,
+    /// Structures still to be visited.
+    pending: Vec<(u64, PointerTarget)>,
+    visited: HashSet<u64>,
+}
+
+/// Collects all pointers of the file that `xcf` was read from.
+pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
+    input.seek(xcf.properties_end, "the property list")?;
+    let input_end = input.end;
+    let mut walk = PointerWalk {
+        wide: xcf.wide(),
+        input,
+        found: Pointers::new(),
+        left: input_end / if xcf.wide() { 8 } else { 4 },
+        properties_left: input_end / LEAST_PROPERTY,
+        first: xcf.properties_end,
+        pending: Vec::new(),
+        visited: HashSet::new(),
+    };
+    walk.table(Some(PointerTarget::Layer))?;
+    walk.table(Some(PointerTarget::Channel))?;
+    while let Some((at, target)) = walk.pending.pop() {
+        if !walk.visited.insert(at) {
+            continue;
+        }
+        walk.input.seek(at, "a pointer")?;
+        match target {
+            PointerTarget::Layer => {
+                walk.input.skip(12, "a layer")?;
+                walk.name_and_properties()?;
+                walk.pointer(Some(PointerTarget::Hierarchy))?;
+                walk.pointer(Some(PointerTarget::Channel))?;
+            }
+            PointerTarget::Channel => {
+                walk.input.skip(8, "a channel")?;
+                walk.name_and_properties()?;
+                walk.pointer(Some(PointerTarget::Hierarchy))?;
+            }
+            PointerTarget::Hierarchy => {
+                walk.input.skip(12, "a hierarchy")?;
+                // GIMP reads only the first level. With 64-bit pointers the others are empty, and GIMP ends their table with a
+                // word of 32 bits.
+                if walk.pointer(Some(PointerTarget::Level))? {
+                    walk.table((!walk.wide).then_some(PointerTarget::Level))?;
+                }
+            }
+            PointerTarget::Level => {
+                walk.input.skip(8, "a level")?;
+                walk.table(None)?;
+            }
+        }
+    }
+    Ok(walk.found)
+}
+
+impl PointerWalk<'_, '_> {
+    fn table(&mut self, to: Option<PointerTarget>) -> Result<(), Error> {
+        while self.pointer(to)? {}
+        Ok(())
+    }
+
+    /// Records a pointer; returns `false` if it is the zero that ends a table.
+    fn pointer(&mut self, to: Option<PointerTarget>) -> Result<bool, Error> {
+        let at = self.input.at();
+        let what = "a table of pointers";
+        let target = if self.wide { self.input.u64(what)? } else { u64::from(self.input.u32(what)?) };
+        if target == 0 {
+            return Ok(false);
+        }
+        if target >= self.input.end {
+            let end = self.input.end;
+            return Err(Error::damaged(
+                at,
+                format!("a pointer points to byte {target}, outside the file of {end} bytes"),
+            ));
+        }
+        if target < self.first {
+            return Err(Error::damaged(at, format!("a pointer points to byte {target}, inside the file's head")));
+        }
+        self.left = self
+            .left
+            .checked_sub(1)
+            .ok_or_else(|| Error::damaged(at, "the tables of pointers overlap or have no end"))?;
+        self.found.insert(at, target);
+        self.pending.extend(to.map(|to| (target, to)));
+        Ok(true)
+    }
+
+    fn name_and_properties(&mut self) -> Result<(), Error> {
+        let name = u64::from(self.input.u32("a name")?);
+        self.input.skip(name, "a name")?;
+        loop {
+            let at = self.input.at();
+            self.properties_left = self
+                .properties_left
+                .checked_sub(1)
+                .ok_or_else(|| Error::damaged(at, "the lists of properties overlap or have no end"))?;
+            let kind = self.input.u32("a layer's properties")?;
+            let length = u64::from(self.input.u32("a layer's properties")?);
+            if kind == PROP_END {
+                return Ok(());
+            }
+            let end = self.input.at() + length;
+            if kind == PROP_FLOATING_SELECTION && length == if self.wide { 8 } else { 4 } {
+                self.pointer(None)?;
+            }
+            self.input.skip(end - self.input.at(), "a layer's property")?;
+        }
+    }
+}
+
+/// Creates an RGB image of this size in pixels, without layers, with these paths. It has version 1 of the format, which every
+/// GIMP since 2.0 opens.
+#[must_use]
+pub fn new_xcf(size: [u32; 2], paths: &[GimpPath]) -> Vec<u8> {
+    /// The code for RGB.
+    const BASE_TYPE: u32 = 0;
+    const PROP_RESOLUTION: u32 = 19;
+    const PIXELS_PER_INCH: f32 = 72.0;
+    let mut out = MAGIC.to_vec();
+    let push = |out: &mut Vec<u8>, words: &[u32]| words.iter().for_each(|w| out.extend(w.to_be_bytes()));
+    out.extend(b"v001\0");
+    push(&mut out, &[size[0], size[1], BASE_TYPE, PROP_RESOLUTION, 8]);
+    push(&mut out, &[PIXELS_PER_INCH.to_bits(); 2]);
+    let mut block = Vec::new();
+    let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    push(&mut block, &[1, 0, count(paths.len())]);
+    for (i, p) in paths.iter().enumerate() {
+        push(&mut block, &[count(p.name.len() + 1)]);
+        block.extend(p.name.bytes());
+        block.push(0);
+        // Tattoo, visible, linked, parasites, strokes.
+        push(&mut block, &[count(i + 1), u32::from(p.visible), 0, 0, count(p.strokes.len())]);
+        block.extend(vectors::encode(&p.strokes));
+    }
+    push(&mut out, &[PROP_VECTORS, count(block.len())]);
+    out.extend(block);
+    // The end of the properties, no layers, no channels.
+    push(&mut out, &[PROP_END, 0, 0, 0]);
+    out
 }
