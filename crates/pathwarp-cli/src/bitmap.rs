@@ -3,8 +3,9 @@
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::{advice, watch};
-use pathwarp::budget::{Budget, Cost, Exceeded, Limit, Limits, cost};
+use pathwarp::budget::{Budget, Exceeded, Limit, Limits, cost};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
+use pathwarp::map::Cost;
 use pathwarp::map::{Batches, Jet, Map, NewtonInverse};
 use pathwarp_raster::{
     ImageWarp, IntRect, Picture, PictureFormat, Pixmap, SeenColor, ShadeTolerance, SmoothShade, encode_png,

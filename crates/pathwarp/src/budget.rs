@@ -4,7 +4,6 @@
 //! that oscillate. What is known beforehand is compared with a limit on a size. Everything else is work: stages count what they have done or
 //! are about to do, long loops ask in between, and an error names the limit.
 
-use crate::map::{Batches, Map};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -340,55 +339,6 @@ impl Budget {
 impl PartialEq for Budget {
     fn eq(&self, other: &Self) -> bool {
         self.limits == other.limits
-    }
-}
-
-/// What evaluating a map takes.
-#[derive(Clone, Copy)]
-pub struct Cost<'a> {
-    /// The cost of one evaluation, relative to that of a bicubic net: 1 or more.
-    pub work: f64,
-    /// The cost of a jet alone, as Newton's method asks for it. A map of many parts takes longer alone than in a batch.
-    pub jet: f64,
-    /// Set if a call costs much and a point little, as where another program is asked.
-    pub batches: Option<&'a dyn Batches>,
-    /// Set if the map searches, as inverses do, and may take more than `work`.
-    pub searches: Option<&'a dyn Searches>,
-}
-
-/// A map that searches for its values.
-pub trait Searches {
-    /// The same map, which spends from a budget what its searches take beyond [`Cost::work`], and finds nothing once the budget is used up.
-    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map>;
-}
-
-impl<'a> Cost<'a> {
-    /// The cost of a bicubic net.
-    pub const NET: Self = Self::new(1.0);
-
-    /// The cost of a map of which an evaluation takes `work`.
-    #[must_use]
-    pub const fn new(work: f64) -> Self {
-        const SINGLY: f64 = 3.0;
-        Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
-    }
-
-    /// The same for a map that is asked in batches.
-    #[must_use]
-    pub fn batched(self, by: &'a dyn Batches) -> Self {
-        Self { batches: Some(by), ..self }
-    }
-
-    /// The same for a map that searches.
-    #[must_use]
-    pub fn searching(self, by: &'a dyn Searches) -> Self {
-        Self { searches: Some(by), ..self }
-    }
-}
-
-impl fmt::Debug for Cost<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Cost").field("work", &self.work).field("jet", &self.jet).finish_non_exhaustive()
     }
 }
 

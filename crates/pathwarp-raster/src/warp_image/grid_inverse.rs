@@ -9,7 +9,7 @@
 
 use super::image_warp::in_pixels;
 use kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::budget::Cost;
+use pathwarp::map::Cost;
 use pathwarp::map::{Batches, Creases, Jet, Map};
 use std::fmt;
 

@@ -11,8 +11,8 @@
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::budget::Cost;
 use crate::error::{Error, within};
+use crate::map::Cost;
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, Point, Vec2};

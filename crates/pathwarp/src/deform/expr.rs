@@ -6,9 +6,9 @@
 
 use super::built::Built;
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
-use crate::budget::Cost;
 use crate::error::Error;
 use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
+use crate::map::Cost;
 use crate::map::{Class, Crease, Creases, Dual, Jet, Level, Map};
 use crate::param::{Kind, Param, Settings};
 use kurbo::{Affine, Point, Rect};

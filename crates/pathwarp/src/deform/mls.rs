@@ -15,8 +15,8 @@
 use super::built::{Built, Role};
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors;
-use crate::budget::Cost;
 use crate::error::{Error, GeometryError, within};
+use crate::map::Cost;
 use crate::map::{AffineMap, Formula, Real};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};

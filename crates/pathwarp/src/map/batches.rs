@@ -1,38 +1,12 @@
 //! Maps of which each call costs much, such as those of another program: a memory in front of them, and ways to invert them in few calls.
 
-use super::{Class, Creases, Jet, Map, RationalBezier};
-use crate::budget::Cost;
+use super::{Batches, Class, Cost, Creases, Images, Jet, Map, RationalBezier};
 use kurbo::{Point, Vec2};
 use std::collections::HashMap;
 use std::fmt;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Points, and room for what belongs to each.
-pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
-
-/// A map of which a call costs much and a point little. It says so in its [`cost`](Map::cost); callers then collect the points they need.
-pub trait Batches: Map {
-    /// Maps a batch of points, and gives the jets at others: in one call where possible.
-    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
-        self.points(ps, images);
-        self.jets(qs, jets);
-    }
-
-    /// Returns `true` if derivatives are computed from several values each, by differences. Callers then use values where they can.
-    fn differentiates(&self) -> bool {
-        false
-    }
-
-    /// Returns `true` for a memory, which takes notice of announcements.
-    fn remembers(&self) -> bool {
-        false
-    }
-
-    /// Announces points whose values and points whose jets are asked for next.
-    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
-}
 
 /// Values remembered before they are forgotten again: some 40 MB.
 const MOST_REMEMBERED: usize = 1 << 19;

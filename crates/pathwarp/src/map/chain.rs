@@ -3,7 +3,8 @@
 use super::{
     AffineMap, Batches, Class, Crease, Creases, Images, Jet, Level, Map, RationalBezier, RationalDegree, inverse_over,
 };
-use crate::budget::{Budget, Cost, Searches};
+use crate::budget::Budget;
+use crate::map::{Cost, Searches};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 

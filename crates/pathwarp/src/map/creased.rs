@@ -2,7 +2,8 @@
 
 use super::newton::NewtonInverse;
 use super::{Crease, CreaseKind, Creases, Jet, Level, Map};
-use crate::budget::{Budget, Cost, Search, Searches};
+use crate::budget::{Budget, Search};
+use crate::map::{Cost, Searches};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! The short way to write a map: one formula, generic over the number type.
 
 use super::{Class, Creases, Dual, Jet, Map, RationalBezier, Real};
-use crate::budget::Cost;
+use crate::map::Cost;
 use kurbo::Point;
 use std::sync::Arc;
 

@@ -57,7 +57,7 @@ mod projective;
 mod rational_bezier;
 mod traits;
 
-pub use batches::{Batches, Gathered, Images};
+pub use batches::Gathered;
 pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
 pub use class::{Class, RationalDegree};
@@ -76,7 +76,7 @@ pub use newton::NewtonInverse;
 pub use piecewise::{Coons, Sides};
 pub use projective::{AffineMap, Undeclared};
 pub use rational_bezier::RationalBezier;
-pub use traits::Map;
+pub use traits::{Batches, Cost, Images, Map, Searches};
 
 pub(crate) use curves::{Along, Guide, increasing_root};
 pub(crate) use piecewise::{Local, TileRow, Tiled, ruled};

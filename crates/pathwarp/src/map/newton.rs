@@ -16,7 +16,8 @@
 
 use super::batches::{Target, approach, by_rounds};
 use super::{Batches, Jet, Map};
-use crate::budget::{Budget, Cost, Search, Searches, is_over};
+use crate::budget::{Budget, Search, is_over};
+use crate::map::{Cost, Searches};
 use kurbo::{Point, Rect, Vec2};
 use std::fmt;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! The trait that every map implements.
 
 use super::{Class, Creases, Jet, RationalBezier, RationalDegree};
-use crate::budget::{Budget, Cost};
+use crate::budget::Budget;
 use kurbo::Point;
 use std::fmt;
 use std::sync::Arc;
@@ -70,6 +70,80 @@ pub trait Map: Send + Sync {
     }
 }
 
+/// What evaluating a map takes.
+#[derive(Clone, Copy)]
+pub struct Cost<'a> {
+    /// The cost of one evaluation, relative to that of a bicubic net: 1 or more.
+    pub work: f64,
+    /// The cost of a jet alone, as Newton's method asks for it. A map of many parts takes longer alone than in a batch.
+    pub jet: f64,
+    /// Set if a call costs much and a point little, as where another program is asked.
+    pub batches: Option<&'a dyn Batches>,
+    /// Set if the map searches, as inverses do, and may take more than `work`.
+    pub searches: Option<&'a dyn Searches>,
+}
+
+/// A map that searches for its values.
+pub trait Searches {
+    /// The same map, which spends from a budget what its searches take beyond [`Cost::work`], and finds nothing once the budget is used up.
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map>;
+}
+
+impl<'a> Cost<'a> {
+    /// The cost of a bicubic net.
+    pub const NET: Self = Self::new(1.0);
+
+    /// The cost of a map of which an evaluation takes `work`.
+    #[must_use]
+    pub const fn new(work: f64) -> Self {
+        const SINGLY: f64 = 3.0;
+        Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
+    }
+
+    /// The same for a map that is asked in batches.
+    #[must_use]
+    pub fn batched(self, by: &'a dyn Batches) -> Self {
+        Self { batches: Some(by), ..self }
+    }
+
+    /// The same for a map that searches.
+    #[must_use]
+    pub fn searching(self, by: &'a dyn Searches) -> Self {
+        Self { searches: Some(by), ..self }
+    }
+}
+
+impl fmt::Debug for Cost<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Cost").field("work", &self.work).field("jet", &self.jet).finish_non_exhaustive()
+    }
+}
+
+/// Points, and room for what belongs to each.
+pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
+
+/// A map of which a call costs much and a point little. It says so in its [`cost`](Map::cost); callers then collect the points they need.
+pub trait Batches: Map {
+    /// Maps a batch of points, and gives the jets at others: in one call where possible.
+    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
+        self.points(ps, images);
+        self.jets(qs, jets);
+    }
+
+    /// Returns `true` if derivatives are computed from several values each, by differences. Callers then use values where they can.
+    fn differentiates(&self) -> bool {
+        false
+    }
+
+    /// Returns `true` for a memory, which takes notice of announcements.
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// Announces points whose values and points whose jets are asked for next.
+    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
+}
+
 /// What the cost and the class of a map tell, in short.
 impl dyn Map + '_ {
     /// See [`Cost::work`].
@@ -84,7 +158,7 @@ impl dyn Map + '_ {
         self.cost().searches.map(|s| s.within(budget))
     }
 
-    /// Returns `true` if a call costs much and a point little; see [`Batches`](super::Batches).
+    /// Returns `true` if a call costs much and a point little; see [`Batches`].
     #[must_use]
     pub fn prefers_batches(&self) -> bool {
         self.cost().batches.is_some()

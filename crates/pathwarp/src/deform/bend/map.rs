@@ -2,8 +2,8 @@
 
 use super::listed::listed;
 use super::piece::{SkeletonPiece, Strip};
-use crate::budget::Cost;
 use crate::error::show;
+use crate::map::Cost;
 use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier};
 use crate::param::Letter;
 use kurbo::{Affine, Point, Rect, Vec2};

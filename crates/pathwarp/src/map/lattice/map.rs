@@ -1,9 +1,10 @@
 //! The lattice as a map, and its inverse.
 
 use super::Lattice;
-use crate::budget::{Budget, Cost, Searches};
+use crate::budget::Budget;
 use crate::map::nets::Patch;
 use crate::map::{AffineMap, Class, Crease, CreaseKind, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
+use crate::map::{Cost, Searches};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 

@@ -8,7 +8,7 @@
 //! rounded. Horner's scheme runs on a whole batch of points.
 
 use super::power_basis::powers;
-use crate::budget::Cost;
+use crate::map::Cost;
 
 use crate::map::polynomial::bernstein::Scaled;
 use crate::map::{Class, Crease, Creases, Jet, Level, Map, RationalBezier};

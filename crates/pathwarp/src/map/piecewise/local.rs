@@ -2,8 +2,9 @@
 //!
 //! The sides of the polygon are creases, crossed exactly. The map inside determines whether it meets the identity there.
 
-use crate::budget::{Budget, Cost, Searches};
+use crate::budget::Budget;
 use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
+use crate::map::{Cost, Searches};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 

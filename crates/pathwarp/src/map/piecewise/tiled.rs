@@ -3,7 +3,8 @@
 //! The outermost tiles continue beyond the region. The lines between tiles are creases: horizontal lines between rows, and
 //! vertical stretches within a row. Neighbours need not agree there; a path across a gap is connected by a straight line.
 
-use crate::budget::{Budget, Cost, Search, Searches, is_over};
+use crate::budget::{Budget, Search, is_over};
+use crate::map::{Cost, Searches};
 use crate::map::{Crease, CreaseKind, Creases, INVERSE_WORK, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Point, Rect};
 use std::sync::Arc;

@@ -8,7 +8,7 @@
 
 use super::bernstein::Scaled;
 use super::plane::Plane;
-use crate::budget::Cost;
+use crate::map::Cost;
 use crate::map::{
     AffineMap, Class, Crease, Creases, Formula, Homography, Level, Map, NewtonInverse, RationalBezier, RationalDegree,
     Real,
