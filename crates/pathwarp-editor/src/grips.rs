@@ -2,6 +2,7 @@
 //!
 //! Which handles a parameter has follows from its kind and, for text, from its notation; so parameters of plug-ins have theirs.
 
+use crate::nets;
 use pathwarp::Outline;
 use pathwarp::deform::{Info, TextShape};
 use pathwarp::kurbo::{Point, Rect};
@@ -79,7 +80,11 @@ fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
             let of = |(name, range, default): (&str, RangeInclusive<f64>, f64)| json!({ "name": name, "least": range.start(), "most": range.end(), "default": default });
             Some(json!({ "adjust": shape.adjust_values().map(of).collect::<Vec<_>>() }))
         }
-        Kind::Text(GRID | TRIANGLE) => Some(json!({ "net": net(info, p, s)? })),
+        Kind::Text(GRID | TRIANGLE) => {
+            let Net { names, points, lines, .. } = net(info, p, s)?;
+            let points: Vec<Value> = points.into_iter().map(xy).collect();
+            Some(json!({ "net": { "names": names, "points": points, "lines": lines } }))
+        }
         _ => None,
     }
 }
@@ -144,36 +149,70 @@ pub(crate) fn path_data(outline: &Outline) -> String {
 
 /// The control points of a net whose parameter `p` places single ones: their indices as typed, and the rows they form. The net is
 /// that of the parameters `degree`, `cells`, `spline`, `region`, `reference` and `move`, as the deformation's notation has them.
-fn net(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
+fn net(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Net> {
     let has = |name: &str| info.params.iter().any(|p| p.name == name);
     // These say where control points are in ways of their own.
     if ["lattice", "pin"].iter().any(|name| has(name) && s.given(name)) || !has("degree") {
         return None;
     }
-    let Net { names, mut points, lines } = if p.kind == Kind::Text(TRIANGLE) { triangle(s)? } else { grid(s, &has)? };
+    let mut net = if p.kind == Kind::Text(TRIANGLE) { triangle(s)? } else { grid(s, &has)? };
+    let each = |name: &str| if has(name) { s.texts(name) } else { Vec::new() }.into_iter().flat_map(str::split_whitespace);
+    let names = net.names.clone();
     let index = |word: &str| {
         let (name, rest) = word.split_once(':')?;
         Some((names.iter().position(|n| n == name.trim())?, rest.to_owned()))
     };
     for word in words(s, p) {
         let (i, rest) = index(word)?;
-        *points.get_mut(i)? = s.point_in(p.name, &rest).ok()?;
+        *net.points.get_mut(i)? = s.point_in(p.name, &rest).ok()?;
     }
-    for word in if has("move") { s.texts("move") } else { Vec::new() }.into_iter().flat_map(str::split_whitespace) {
+    for word in each("move") {
         let (i, rest) = index(word)?;
         let (x, y) = rest.split_once(',')?;
-        let point = points.get_mut(i)?;
+        let point = net.points.get_mut(i)?;
         point.x += s.length_in("move", x, Axis::X).ok()?;
         point.y += s.length_in("move", y, Axis::Y).ok()?;
     }
-    Some(json!({ "names": names, "points": points.into_iter().map(xy).collect::<Vec<_>>(), "lines": lines }))
+    for word in each("weight") {
+        let (i, rest) = index(word)?;
+        *net.weights.get_mut(i)? = rest.trim().parse().ok()?;
+    }
+    Some(net)
 }
 
 /// Control points with their indices as typed, and the lines that join them.
-struct Net {
-    names: Vec<String>,
-    points: Vec<Point>,
+pub(crate) struct Net {
+    pub(crate) space: Space,
+    pub(crate) names: Vec<String>,
+    pub(crate) points: Vec<Point>,
+    pub(crate) weights: Vec<f64>,
     lines: Vec<Vec<usize>>,
+}
+
+/// The functions that the control points of a net stand before.
+pub(crate) enum Space {
+    Grid { degree: [usize; 2], cells: [usize; 2] },
+    Triangle(usize),
+}
+
+/// The parameter that places single control points, and the net of a deformation that has one.
+pub(crate) fn net_of<'a>(info: &'a Info, args: &Args, frame: &Frame) -> Option<(&'a Param, Net)> {
+    let p = info.params.iter().find(|p| matches!(p.kind, Kind::Text(GRID | TRIANGLE)))?;
+    Some((p, net(info, p, &Settings::new(info.params, args, frame).ok()?)?))
+}
+
+/// The values with which the net of `new` bends as that of `old` does: of the parameter that places control points, and of `weight`.
+pub(crate) fn with_net_of(info: &Info, old: &Args, new: &Args, frame: &Frame) -> Option<Vec<(String, Vec<String>)>> {
+    let (_, old) = net_of(info, old, frame)?;
+    let (p, mut net) = net_of(info, new, frame)?;
+    let rest = net.points.clone();
+    nets::carry_over(&old, &mut net);
+    let r = frame.rect;
+    let at = |p: Point| format!("{:.6}%,{:.6}%", 100.0 * (p.x - r.x0) / r.width(), 100.0 * (p.y - r.y0) / r.height());
+    let named = || net.names.iter().zip(net.points.iter().zip(&rest));
+    let placed = named().filter(|(_, (p, rest))| p != rest).map(|(name, (p, _))| format!("{name}:{}", at(*p)));
+    let weighted = net.names.iter().zip(&net.weights).filter(|(_, w)| **w != 1.0).map(|(name, w)| format!("{name}:{w}"));
+    Some(vec![(p.name.to_owned(), placed.collect()), ("weight".to_owned(), weighted.collect())])
 }
 
 /// An undistorted grid over the region.
@@ -204,8 +243,10 @@ fn grid(s: &Settings<'_>, has: &dyn Fn(&str) -> bool) -> Option<Net> {
     let across = (0..rows).map(|j| (0..columns).map(|i| j * columns + i).collect());
     let down = (0..columns).map(|i| (0..rows).map(|j| j * columns + i).collect());
     Some(Net {
+        space: Space::Grid { degree, cells },
         names: all.clone().map(|(i, j)| format!("{i},{j}")).collect(),
         points: all.map(place).collect(),
+        weights: vec![1.0; columns * rows],
         lines: across.chain(down).collect(),
     })
 }
@@ -229,7 +270,7 @@ fn triangle(s: &Settings<'_>) -> Option<Net> {
     if n == 0 || n > MOST_NODES {
         return None;
     }
-    let all: Vec<[usize; 3]> = (0..=n).flat_map(|i| (0..=n - i).map(move |j| [i, j, n - i - j])).collect();
+    let all: Vec<[usize; 3]> = nets::indices(n).collect();
     let place = |[i, j, k]: &[usize; 3]| {
         let sum = a.to_vec2() * *i as f64 + b.to_vec2() * *j as f64 + c.to_vec2() * *k as f64;
         (sum / n as f64).to_point()
@@ -238,6 +279,8 @@ fn triangle(s: &Settings<'_>) -> Option<Net> {
     let line = |axis: usize, m: usize| (0..all.len()).filter(|p| all[*p][axis] == m).collect::<Vec<_>>();
     let lines = (0..3).flat_map(|axis| (0..n).map(move |m| (axis, m))).map(|(axis, m)| line(axis, m));
     Some(Net {
+        space: Space::Triangle(n),
+        weights: vec![1.0; all.len()],
         names: all.iter().map(|[i, j, k]| format!("{i},{j},{k}")).collect(),
         points: all.iter().map(place).collect(),
         lines: lines.collect(),

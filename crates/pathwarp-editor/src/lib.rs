@@ -8,7 +8,8 @@
 //! * `socket`: one connection of a page, with messages in JSON (`protocol`);
 //! * `session`: the document, its steps, undo, and the `draft` on disk, in one of the user's `folders`;
 //! * `picture`, `quick`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
-//! * `catalogue`, `openings`, `grips`: the deformations, their first values, and the geometry that handles show.
+//! * `catalogue`, `openings`, `grips`: the deformations, their first values, and the geometry that handles show;
+//! * `nets`: control points of nets that become more or fewer.
 
 mod assets;
 mod catalogue;
@@ -19,6 +20,7 @@ mod grips;
 mod guard;
 mod host;
 mod http;
+mod nets;
 mod openings;
 mod picture;
 mod presets;

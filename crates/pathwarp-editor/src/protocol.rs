@@ -104,8 +104,20 @@ pub(crate) enum Request {
     Preset {
         name: String,
     },
-    /// The command line with the same effect.
-    CommandLine,
+    /// The place that the last of these steps takes to this one.
+    Preimage {
+        steps: Vec<PageStep>,
+        at: (f64, f64),
+    },
+    /// The last of these steps with other values of what says how many control points its net has; it bends as before.
+    Renet {
+        steps: Vec<PageStep>,
+        values: BTreeMap<String, Vec<String>>,
+    },
+    /// The command line with the same effect, for a file of this name.
+    CommandLine {
+        name: Option<String>,
+    },
 }
 
 /// The recipe of steps.

@@ -17,6 +17,20 @@ pub(crate) fn usual(source: &Path) -> PathBuf {
     (1..MOST_NAMES).map(name).find(|p| !p.exists()).unwrap_or_else(|| name(MOST_NAMES))
 }
 
+/// The file that a result was made from, as its name says, and whether it is there: its content is `source`. Otherwise a free name
+/// for that content.
+pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)> {
+    let stem = result.file_stem()?.to_string_lossy().into_owned();
+    let stem = stem.rfind(SUFFIX).map_or(stem.as_str(), |at| &stem[..at]);
+    let names = ["svg", "svgz"].map(|extension| result.with_file_name(format!("{stem}.{extension}")));
+    let found = names.iter().find(|name| std::fs::read(name).is_ok_and(|content| content == source));
+    if let Some(found) = found {
+        return Some((found.clone(), true));
+    }
+    let name = |n: usize| result.with_file_name(format!("{stem}-source{}.svg", if n > 1 { format!("-{n}") } else { String::new() }));
+    (1..MOST_NAMES).map(name).find(|p| !p.exists()).map(|p| (p, false))
+}
+
 /// The file called `name` in the folder of `beside`. Pages name files, not folders.
 pub(crate) fn named(name: &str, beside: &Path) -> Result<PathBuf, String> {
     let name = name.trim();

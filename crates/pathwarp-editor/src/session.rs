@@ -2,7 +2,7 @@
 
 use crate::command_line::{command_line, quoted};
 use crate::draft::{Draft, Kept, NO_FOLDER};
-use crate::grips::grips;
+use crate::grips::{grips, with_net_of};
 use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened};
 use crate::openings::{example, of_variant, opening};
@@ -16,9 +16,10 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::deform::{Info, Variant};
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::Map as _;
+use pathwarp::map::{Chain, Map as _};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -30,6 +31,9 @@ const DECIMALS: u8 = 4;
 const DRAFT_DECIMALS: u8 = 2;
 /// Tolerance of small pictures, as a share of the artwork's diagonal: far below a pixel of any of them.
 const THUMBNAIL_TOLERANCE: f64 = 1e-3;
+
+/// The distance from a place within which its preimage has to arrive, as a share of the frame's size.
+const PREIMAGE: f64 = 1e-6;
 
 /// The drawing and its steps.
 pub(crate) struct Session {
@@ -255,6 +259,40 @@ impl Session {
         Ok(stretch(&built.map, self.opened.artwork.frame()))
     }
 
+    /// The place that the last of these steps takes to `at`, if there is one.
+    pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Option<Point>, String> {
+        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else { return Ok(Some(at)) };
+        let back = Chain::new([Arc::clone(&step.map)]).inverse_over(frame.rect);
+        let from = back.point(at);
+        let near = PREIMAGE * (frame.rect.width() + frame.rect.height());
+        Ok((step.map.point(from).distance(at) <= near).then_some(from))
+    }
+
+    /// The last of these steps with other values of what says how many control points its net has; it bends as before.
+    pub(crate) fn renet(
+        &mut self,
+        given: &[PageStep],
+        values: BTreeMap<String, Vec<String>>,
+    ) -> Result<PageStep, String> {
+        let (resolved, built) = self.opened.artwork.settle(&recipe(given))?;
+        let mut after = given.last().cloned().ok_or("there is no step")?;
+        after.args.extend(values);
+        let entry = self.host.registry().get(&after.deformation);
+        if let (Some(entry), Some(old), Some(frame)) = (entry, resolved.steps.last(), built.frames.last()) {
+            let mut rest = after.clone();
+            rest.args.retain(|name, _| !["at", "move", "weight"].contains(&name.as_str()));
+            let new = recipe(std::slice::from_ref(&rest));
+            let net = new.steps.first().and_then(|new| with_net_of(entry.info(), &old.args, &new.args, frame));
+            if let Some(net) = net {
+                after = rest;
+                after.args.extend(net);
+            }
+        }
+        after.args.retain(|_, values| !values.is_empty());
+        Ok(after)
+    }
+
     /// The first values of a deformation after these steps.
     pub(crate) fn opening(
         &mut self,
@@ -407,9 +445,26 @@ impl Session {
         self.host.export(svg, to)
     }
 
-    pub(crate) fn command_line(&self) -> String {
+    /// The command line that writes the result as *Save* does, under a name or the usual one.
+    pub(crate) fn command_line(&self, name: Option<&str>) -> Result<String, String> {
+        let to = name.map_or_else(|| Ok(self.target()), |name| saving::named(name, &self.file))?;
         let given = recipe(&self.kept.steps);
-        command_line(self.host.registry(), &given, &self.opened.artwork.options(), &self.file, &self.target())
+        let document = self.opened.artwork.document();
+        let (source, before) = match saving::source_of(&self.file, document.source()).filter(|_| self.opened.is_result) {
+            Some((source, true)) => (source, String::new()),
+            Some((source, false)) => {
+                let [result, source_name] = [&self.file, &source].map(|p| quoted(&p.display().to_string()));
+                (source, format!("pathwarp unwarp {result} -o {source_name} && "))
+            }
+            None => (self.file.clone(), String::new()),
+        };
+        let mut options = self.opened.artwork.options();
+        let mut out = to;
+        if saving::has_extension(&out, &["toml"]) {
+            options.push(("write-recipe".to_owned(), out.display().to_string()));
+            out = saving::usual(&source);
+        }
+        Ok(before + &command_line(self.host.registry(), &given, &options, &source, &out))
     }
 }
 

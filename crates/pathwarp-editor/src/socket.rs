@@ -147,7 +147,9 @@ impl Page {
                 Ok(json!({ "presets": session.presets()? }))
             }
             Request::Preset { name } => Ok(json!({ "steps": session.preset(&name)? })),
-            Request::CommandLine => Ok(json!({ "text": session.command_line() })),
+            Request::Preimage { steps, at } => Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) })),
+            Request::Renet { steps, values } => Ok(json!({ "step": session.renet(&steps, values)? })),
+            Request::CommandLine { name } => Ok(json!({ "text": session.command_line(name.as_deref())? })),
         }
     }
 

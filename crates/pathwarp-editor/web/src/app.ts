@@ -2,6 +2,7 @@
 
 import { Connection, Gone } from "./connection";
 import { isTyping } from "./dom";
+import { inWords, isAnyWrong } from "./fields";
 import { Handles } from "./handles";
 import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
 
@@ -12,7 +13,10 @@ const DRAFTED = "pathwarp-drafted";
 /** The pause after which keys count as one change, in ms. */
 const KEYS = 500;
 
-export type Change = "state" | "steps" | "handles" | "report" | "link";
+/** Parameters that say how many control points a net has. */
+const NET = new Set(["degree", "cells", "spline"]);
+
+export type Change = "state" | "steps" | "handles" | "values" | "report" | "link";
 
 /** Where a picture goes. */
 export interface Screen {
@@ -47,6 +51,8 @@ export class App {
   isDone = false;
   /** A handle is being dragged, so the handles stay as they are. */
   isDragging = false;
+  /** Takes back what a pointer that is down has done. */
+  hold: (() => void) | null = null;
   screen: Screen = { show: () => {}, pixel: 1, reveal: () => {} };
 
   private listeners: ((change: Change) => void)[] = [];
@@ -214,26 +220,19 @@ export class App {
   /** Waits until the server has all that was done so far. Returns `false` if it refuses some of it. */
   async settle(): Promise<boolean> {
     const { refusals } = this;
-    const field = this.takeTyped();
+    this.takeTyped();
     await this.turns;
     await this.flush();
     await this.lastCommit;
-    const isTaken = this.refusals === refusals;
-    if (!isTaken && document.activeElement === field) {
-      // The value that holds is on show again.
-      field?.blur();
-      this.tell("steps");
-    }
-    return isTaken;
+    return this.refusals === refusals && !isAnyWrong();
   }
 
   /** Takes the value that is being typed, as if its field were left. */
-  private takeTyped(): HTMLElement | null {
+  private takeTyped(): void {
     const field = document.activeElement;
-    if (!isTyping(field)) return null;
+    if (!isTyping(field)) return;
     field.blur();
     field.focus({ preventScroll: true });
-    return field;
   }
 
   private endPause(): boolean {
@@ -246,27 +245,30 @@ export class App {
 
   /** Takes back what has been dragged since the last commit: the step is as it was. */
   cancel(step: Step): void {
+    this.hold = null;
     this.isDragging = false;
     this.isWanted = false;
     this.steps = this.steps.map((s, i) => (i === this.selected ? step : s));
     void this.refresh();
+    this.tell("values");
   }
 
   /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
-  private inTurn(work: () => Promise<void>): Promise<void> {
+  private inTurn<T>(work: () => Promise<T>): Promise<T> {
     const done = this.turns.then(() => this.flush()).then(work);
     this.turns = done.catch(() => undefined);
     return done;
   }
 
-  /** Undoes or redoes. */
-  turn(direction: "undo" | "redo"): Promise<void> {
+  /** Undoes or redoes; while something is dragged, that is taken back alone. */
+  async turn(direction: "undo" | "redo"): Promise<void> {
+    if (this.hold) return direction === "undo" ? this.hold() : undefined;
     this.takeTyped();
     return this.inTurn(() => this.turned(direction));
   }
 
   private async turned(direction: "undo" | "redo"): Promise<void> {
-    if (this.isProposal && direction === "undo") return;
+    if (!this.state?.[direction]) return;
     await this.attempt(async () => {
       const answer = await this.connection.ask({ do: direction, shown: null });
       // Later pictures are sent as changes to this one.
@@ -334,6 +336,7 @@ export class App {
   set(name: string, values: string[], isDone: boolean): void {
     const { step } = this;
     if (!step) return;
+    if (isDone && NET.has(name) && this.handles?.net) return void this.inTurn(() => this.renet({ [name]: values }));
     // The adjust values of a shape are not those of another.
     const { presets } = this.deformation(step.deformation)?.gallery ?? {};
     if (name === presets) for (const [other, { adjust }] of Object.entries(this.grips[this.selected]?.params ?? {})) if (adjust) delete step.args[other];
@@ -346,6 +349,35 @@ export class App {
     }
     if (isDone) void this.commit();
     else this.draft(performance.now());
+  }
+
+  /** Sets a parameter by a key; those that follow are one change with it. */
+  setSoon(name: string, values: string[]): void {
+    this.set(name, values, false);
+    this.commitSoon();
+    this.tell("values");
+  }
+
+  /** Sets a parameter to what was typed. Returns what is wrong with it. */
+  async setTyped(name: string, values: string[]): Promise<string | null> {
+    const { refusals } = this;
+    this.set(name, values, true);
+    await this.turns;
+    await this.lastCommit;
+    const { problem } = this;
+    if (this.refusals === refusals || problem === null) return null;
+    this.fail(null);
+    return inWords(problem);
+  }
+
+  /** Gives the net of the step more or fewer control points; it bends as before. */
+  private async renet(values: Record<string, string[]>): Promise<void> {
+    const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
+    if (!answer?.step) return this.tell("steps");
+    this.steps = this.steps.map((s, i) => (i === this.selected ? answer.step! : s));
+    this.tell("steps");
+    this.dropHandles();
+    await this.commit();
   }
 
   grip(name: string): Grip | undefined {
@@ -401,13 +433,34 @@ export class App {
     this.tell("report");
   }
 
-  /** Adds a point at a place, where the step takes any number. */
-  addPoint(at: XY, reach: number): string | null {
-    const key = this.handles?.add(at, reach) ?? null;
-    if (key) {
-      this.tell("handles");
-      void this.commit();
-    }
-    return key;
+  /** Adds a point at a place, where the step takes any number, and at others that mirror it. Returns the key of its handle. */
+  addPoint(at: XY, others: XY[], reach: number): Promise<string | null> {
+    return this.inTurn(async () => {
+      const { handles } = this;
+      if (!handles) return null;
+      const denser = handles.denser(at, reach);
+      if (denser) await this.renet(denser);
+      else if (!(await this.added(handles, at, others, reach))) return null;
+      return this.handles?.nearest(at)?.key ?? null;
+    });
+  }
+
+  private async added(handles: Handles, at: XY, others: XY[], reach: number): Promise<boolean> {
+    const places = handles.isFree(at, reach) ? [at, ...others] : [at];
+    // A pin takes hold of what is under the pointer.
+    const sources = handles.pairs ? await Promise.all(places.map((p) => this.preimage(p))) : places;
+    if (this.handles !== handles || !sources[0]) return false;
+    const isAdded = places.map((p, i) => sources[i] != null && handles.add(p, sources[i]!, reach));
+    if (!isAdded[0]) return false;
+    this.tell("handles");
+    await this.commit();
+    return true;
+  }
+
+  /** The place in the artwork that the step takes to this one. */
+  private async preimage(at: XY): Promise<XY | null> {
+    const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
+    if (answer?.at === null) this.fail("No place of the artwork comes to lie there");
+    return answer?.at ?? null;
   }
 }

@@ -84,7 +84,11 @@ export class Gallery {
       const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
       forget.addEventListener("click", async () => {
         const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
-        if (answer?.presets) this.showPresets(answer.presets);
+        if (!answer?.presets) return;
+        this.showPresets(answer.presets);
+        // The focus stays near.
+        const left = this.own.querySelectorAll<HTMLElement>(".small");
+        (left[Math.min(names.indexOf(name), left.length - 1)] ?? this.search).focus();
       });
       return h("li", {}, use, forget);
     };

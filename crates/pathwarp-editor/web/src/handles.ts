@@ -30,6 +30,9 @@ const PAIR = "X,Y:X,Y";
 /** Fewest points of a closed path that artwork can be put into. */
 const FEWEST_CLOSED = 3;
 
+/** Lines that the artwork follows; their ends keep the directions of their handles. */
+const SKELETONS = new Set(["along"]);
+
 /** The handles of a step while they are moved. */
 export class Handles {
   handles: Handle[] = [];
@@ -61,11 +64,60 @@ export class Handles {
       grip.net?.points.forEach((_, i) => this.addNode(name, grip.net!, i));
       if (name === this.deformation.gallery?.bend && grip.value !== undefined) this.addBend(name, grip);
       if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
-      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isFree(name) ? closed(sub) : sub, `${i}.${j}`)));
+      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
     }
     // A point that turns and scales are about changes nothing by itself.
     this.dials = this.handles.every(({ param }) => param === "about") ? dials({ deformation: this.deformation, grips: this.grips, frame: this.frame }) : [];
     this.handles.push(...this.dials.map(({ handle }) => handle));
+  }
+
+  /** The net whose control points are handles. */
+  get net(): Net | undefined {
+    return Object.values(this.grips).find((grip) => grip.net)?.net;
+  }
+
+  /** A pin is added with the place in the artwork that it takes hold of. */
+  get pairs(): boolean {
+    return this.grows && this.deformation.params.some(({ name, notation }) => notation === PAIR && this.grips[name]?.pairs);
+  }
+
+  /** The handle of a point nearest to a place. */
+  nearest(at: XY): Handle | null {
+    const far = (h: Handle) => Math.hypot(h.get()[0] - at[0], h.get()[1] - at[1]);
+    return this.handles.filter(({ shape }) => shape === "node").reduce<Handle | null>((best, h) => (best && far(best) <= far(h) ? best : h), null);
+  }
+
+  /** Points are added to and taken from all rows at once. */
+  isRows(param: string): boolean {
+    return this.points(param) === "rows";
+  }
+
+  /** A point that is added at a place adds none elsewhere. */
+  isFree(at: XY, reach: number): boolean {
+    const found = this.near(at, reach, (param) => param.points !== undefined);
+    return !found || this.points(found.name) === "any";
+  }
+
+  /** The values with which a net has one more row or column through a place on one of its lines. */
+  denser(at: XY, reach: number): Record<string, string[]> | null {
+    const { net } = this;
+    const sides = net?.lines.flatMap((line) => line.slice(1).map((b, i) => [line[i]!, b] as const)) ?? [];
+    const far = ([a, b]: readonly [number, number]) => distance(at, net!.points[a]!, net!.points[b]!);
+    const side = sides.filter((s) => far(s) <= reach).sort((s, t) => far(s) - far(t))[0];
+    if (!net || !side) return null;
+    const [a, b] = side.map((i) => net.names[i]!.split(",").map(Number)) as [number[], number[]];
+    if (a.length === 3) return { degree: [String(a.reduce((sum, n) => sum + n) + 1)] };
+    const axis = a[0] === b[0] ? 1 : 0;
+    const numbers = (name: string, usual: string) => {
+      const [x, y] = (this.step.args[name]?.[0] ?? usual).split(/[x×]/i);
+      return [Number(x), Number(y ?? x)];
+    };
+    const cells = numbers("cells", this.step.args.spline ? "4x4" : "1x1");
+    // Halves of uniform cells are uniform; one more would not be.
+    const name = cells[axis]! > 1 ? "cells" : "degree";
+    const counts = name === "cells" ? cells : numbers("degree", "3x3");
+    counts[axis] = name === "cells" ? 2 * counts[axis]! : counts[axis]! + 1;
+    return { [name]: [counts.join("x")] };
   }
 
   private points(name: string): "any" | "rows" | undefined {
@@ -73,7 +125,7 @@ export class Handles {
   }
 
   /** The path may have any number of points. */
-  private isFree(name: string): boolean {
+  private isAny(name: string): boolean {
     return this.points(name) === "any";
   }
 
@@ -140,7 +192,8 @@ export class Handles {
     });
   }
 
-  /** The nodes and control points of a path. Nodes carry their control points along; the ends of a closed path are one node. */
+  /** The nodes and control points of a path. Smooth nodes carry their control points along; at a corner, the pieces beside it keep their
+   * shape: straight ones stay straight. The ends of a closed path are one node. */
   private addSubpath(param: string, path: Subpath[], sub: Subpath, id: string): void {
     const { segments } = sub;
     const last = segments.length - 1;
@@ -149,6 +202,11 @@ export class Handles {
     const before = (n: number) => (n > 0 ? segments[n - 1] : joined ? segments[last] : undefined);
     const after = (n: number) => segments[n];
     const at = (n: number): XY => (n === 0 ? sub.start : end(segments[n - 1]!));
+    const isCorner = (n: number) => {
+      const [a, b] = [before(n), after(n)];
+      if (!a || !b) return !SKELETONS.has(param);
+      return a.length !== 6 || b.length !== 6 || !isSmooth(at(n), [a[2]!, a[3]!], [b[0]!, b[1]!]);
+    };
     const name = param === this.deformation.name ? called(this.deformation) : words(param);
     for (let n = 0; n < nodes; n++) {
       const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
@@ -158,11 +216,16 @@ export class Handles {
         get: () => at(n),
         set: (to) => {
           const from = at(n);
-          const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
           const arrive = before(n);
-          const leave = after(n);
-          if (arrive?.length === 6) { arrive[2]! += dx; arrive[3]! += dy; }
-          if (leave?.length === 6) { leave[0]! += dx; leave[1]! += dy; }
+          const ends: [number[] | undefined, 0 | 2, number][] = [[arrive, 2, n > 0 ? n - 1 : nodes - 1], [after(n), 0, (n + 1) % nodes]];
+          const turns = isCorner(n);
+          // The control points at the other ends go along where those are corners, too.
+          const isFollowed = ends.map(([, , other]) => turns && isCorner(other));
+          ends.forEach(([seg, own, other], i) => {
+            if (seg?.length !== 6) return;
+            const moved = similarity(turns ? at(other) : null, from, to);
+            for (const k of isFollowed[i] ? [own, 2 - own] : [own]) seg.splice(k, 2, ...moved([seg[k]!, seg[k + 1]!]));
+          });
           if (n === 0) sub.start = to;
           if (n > 0 || joined) arrive!.splice(arrive!.length - 2, 2, ...to);
         },
@@ -201,7 +264,7 @@ export class Handles {
         this.collect();
       };
     }
-    if (!this.isFree(param) || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return undefined;
+    if (!this.isAny(param) || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return undefined;
     return () => {
       drop(sub, n);
       this.collect();
@@ -250,16 +313,16 @@ export class Handles {
     return { param: "radius", handles: [radius], targets: (to) => [to] };
   }
 
-  /** Adds a point to the path that passes near a place. Returns the key of its handle. */
-  private divide(at: XY, reach: number): string | null {
+  /** Adds a point to the path that passes near a place. */
+  private divide(at: XY, reach: number): boolean {
     const found = this.near(at, reach, (param) => param.points !== undefined);
-    if (!found) return null;
-    const { name, id, sub, spot } = found;
+    if (!found) return false;
+    const { name, sub, spot } = found;
     if (this.points(name) === "any") {
-      const node = split(sub, spot);
+      split(sub, spot);
       this.collect();
       this.write(name);
-      return `${name}/${id}/${node % (sub.closed ? sub.segments.length : Infinity)}`;
+      return true;
     }
     for (const [row, points] of this.rows) {
       const [start, ...rest] = raised([points.start, ...points.segments.map(end)]) as [XY, ...XY[]];
@@ -267,7 +330,7 @@ export class Handles {
       this.write(row);
     }
     this.collect();
-    return `${name}/${id}/${spot.piece + 1}`;
+    return true;
   }
 
   /** The lines to draw under the handles. */
@@ -347,30 +410,29 @@ export class Handles {
     return middle(sub, Math.min(Number(n), sub.segments.length - 1));
   }
 
-  /** Adds a point where the step takes any number of them, to paths within `reach`. Returns the key of its handle. */
-  add(at: XY, reach: number): string | null {
-    const divided = this.divide(at, reach);
-    if (divided) return divided;
-    if (!this.grows) return null;
+  /** Adds a point where the step takes any number of them, to paths within `reach`; a pin takes `from` there. */
+  add(at: XY, from: XY, reach: number): boolean {
+    if (this.divide(at, reach)) return true;
+    if (!this.grows) return false;
     // A pair can be moved at once; a pin only stays.
     const params = [...this.deformation.params].sort((a, b) => Number(b.notation === PAIR) - Number(a.notation === PAIR));
     for (const { name, repeat, notation } of params) {
       const grip = this.grips[name];
       if (!repeat || !grip) continue;
       if (notation === PAIR && grip.pairs) {
-        grip.pairs.push([[...at], [...at]]);
+        grip.pairs.push([[...from], [...at]]);
         this.collect();
         this.write(name);
-        return `${name}/${grip.pairs.length - 1}/1`;
+        return true;
       }
       if (notation === "X,Y" && grip.points) {
         grip.points.push(at);
         this.collect();
         this.write(name);
-        return `${name}/${grip.points.length - 1}`;
+        return true;
       }
     }
-    return null;
+    return false;
   }
 
   /** Returns `true` if points can be added. */
@@ -404,6 +466,22 @@ function circle([x, y]: XY, r: number): Line {
     [x - r, y - k], [x - k, y - r], [x, y - r], [x + k, y - r], [x + r, y - k], [x + r, y],
   ];
   return { kind: "path", points, cubic: true, closed: true };
+}
+
+/** The distance from a point to a line between two others. */
+function distance(p: XY, a: XY, b: XY): number {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  const t = Math.min(Math.max(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy || 1), 0), 1);
+  return Math.hypot(a[0] + t * dx - p[0], a[1] + t * dy - p[1]);
+}
+
+/** The turn and scaling about a point that takes one place to another; without a point, the shift. */
+function similarity(about: XY | null, from: XY, to: XY): (p: XY) => XY {
+  if (!about || same(about, from)) return ([x, y]) => [x + to[0] - from[0], y + to[1] - from[1]];
+  const [ax, ay, bx, by] = [from[0] - about[0], from[1] - about[1], to[0] - about[0], to[1] - about[1]];
+  const square = ax * ax + ay * ay;
+  const [re, im] = [(ax * bx + ay * by) / square, (ax * by - ay * bx) / square];
+  return ([x, y]) => [about[0] + re * (x - about[0]) - im * (y - about[1]), about[1] + im * (x - about[0]) + re * (y - about[1])];
 }
 
 function same(a: XY, b: XY): boolean {

@@ -5,6 +5,9 @@ import type { Subpath, XY } from "./types";
 /** Samples of a piece when the place nearest to a point is looked for. */
 const SAMPLES = 32;
 
+/** The precision of a parameter. */
+const FINE = 1e-9;
+
 /** A place on a path: its piece and the parameter there. */
 export interface Spot {
   piece: number;
@@ -48,15 +51,23 @@ export function closed(sub: Subpath): Subpath {
 /** The place of a path that is nearest to a point. */
 export function nearest(sub: Subpath, to: XY): Spot | null {
   let best: Spot | null = null;
+  const look = (k: number, points: XY[], t: number) => {
+    const [at] = scheme(points, t).pop()! as [XY];
+    const distance = Math.hypot(at[0] - to[0], at[1] - to[1]);
+    if (!best || distance < best.distance) best = { piece: k, t, at, distance };
+  };
   sub.segments.forEach((_, k) => {
     const points = piece(sub, k);
-    for (let i = 1; i < SAMPLES; i++) {
-      const t = i / SAMPLES;
-      const [at] = scheme(points, t).pop()! as [XY];
-      const distance = Math.hypot(at[0] - to[0], at[1] - to[1]);
-      if (!best || distance < best.distance) best = { piece: k, t, at, distance };
-    }
+    for (let i = 1; i < SAMPLES; i++) look(k, points, i / SAMPLES);
   });
+  const found = best as Spot | null;
+  if (!found) return null;
+  // Between the samples beside it, by halves.
+  const points = piece(sub, found.piece);
+  for (let step = 0.5 / SAMPLES; step > FINE; step /= 2) {
+    const { t } = best as unknown as Spot;
+    for (const near of [t - step, t + step]) look(found.piece, points, Math.min(Math.max(near, FINE), 1 - FINE));
+  }
   return best;
 }
 

@@ -47,7 +47,10 @@ on("redo", () => void app.turn("redo"));
 on("zoom-in", () => stage.zoom(ZOOM));
 on("zoom-out", () => stage.zoom(1 / ZOOM));
 on("fit", () => stage.fit());
-on("start-over", () => void app.arrange([], 0));
+on("start-over", async () => {
+  await app.arrange([], 0);
+  byId("undo").focus();
+});
 
 /** A button that stays pressed. */
 function toggle(id: string, get: () => boolean, set: (value: boolean) => void): void {

@@ -12,6 +12,12 @@ export class Modes {
   /** Shows where the handle has snapped to; the points are in user units. */
   onSnap: (x: number | null, y: number | null) => void = () => {};
 
+  /** Where else a point is added that is added at a place: its reflection, if symmetry is on. */
+  reflections(handles: Handles, at: XY, reach: number): XY[] {
+    const other = reflection(handles)(at);
+    return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
+  }
+
   /** A function that pulls a line, and its reflection if symmetry is on. */
   puller(handles: Handles, { handles: own, targets }: Pull): (to: XY) => void {
     const partners = own.map((handle) => (this.mirrors ? handles.partner(handle) : null));

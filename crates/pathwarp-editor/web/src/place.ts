@@ -2,6 +2,7 @@
 
 import type { App } from "./app";
 import { byId } from "./dom";
+import { asked, evaluate, Field } from "./fields";
 import type { Stage } from "./stage";
 import type { Handle } from "./types";
 import { short } from "./values";
@@ -11,19 +12,41 @@ const DECIMALS = 3;
 
 export class Place {
   private box = byId("place");
-  private fields = [byId<HTMLInputElement>("place-x"), byId<HTMLInputElement>("place-y")] as const;
+  private inputs = [byId<HTMLInputElement>("place-x"), byId<HTMLInputElement>("place-y")] as const;
+  private fields: Field[];
   private remove = byId<HTMLButtonElement>("remove-point");
   private handle: Handle | null = null;
 
   constructor(app: App, stage: Stage) {
     stage.onFocus = (handle) => this.show(handle);
     stage.onKeys = (handle) => this.say(handle);
-    this.fields.forEach((field, i) => field.addEventListener("change", () => {
-      const value = Number(field.value.replace(",", "."));
-      if (!this.handle || field.value.trim() === "" || !Number.isFinite(value)) return this.show(this.handle);
-      const at = this.handle.get();
-      stage.moveTo(this.handle, i === 0 ? [value, at[1]] : [at[0], value]);
-    }));
+    this.fields = this.inputs.map((input, i) => {
+      // A share of the box is a place in it.
+      const place = (typed: string): number | null => {
+        const q = evaluate(typed, "");
+        const [x, y, w, h] = app.handles?.frame ?? [0, 0, 1, 1];
+        return q?.unit === "%" ? (i === 0 ? x + (w * q.value) / 100 : y + (h * q.value) / 100) : q?.unit === "" ? q.value : null;
+      };
+      const move = (value: number) => {
+        const at = this.handle!.get();
+        stage.moveTo(this.handle!, i === 0 ? [value, at[1]] : [at[0], value]);
+      };
+      const read = () => (this.handle ? shown(this.handle)[i]! : "");
+      const isWrong = (typed: string) => (place(typed) === null ? `${asked("")} or 50 %` : null);
+      const take = (typed: string) => {
+        if (this.handle && typed !== read()) move(place(typed)!);
+        return null;
+      };
+      const nudge = (typed: string, by: number) => {
+        const value = place(typed);
+        if (value === null || !this.handle) return null;
+        move(value + by);
+        return read();
+      };
+      const field = new Field(input, read, take, isWrong, nudge);
+      input.parentElement!.after(field.message);
+      return field;
+    });
     this.remove.addEventListener("click", () => {
       if (this.handle) stage.remove(this.handle);
     });
@@ -38,10 +61,7 @@ export class Place {
     if (!handle) return;
     byId("place-name").textContent = handle.label;
     this.remove.hidden = !handle.remove;
-    const places = shown(handle);
-    this.fields.forEach((field, i) => {
-      if (document.activeElement !== field) field.value = places[i]!;
-    });
+    for (const field of this.fields) field.refresh();
   }
 
   /** Tells screen readers where keys have moved a handle. */

@@ -19,7 +19,7 @@ const WHEEL_RATE = 0.002;
 interface Way {
   move: (to: XY, e: PointerEvent) => void;
   end: () => void;
-  /** Escape was pressed. */
+  /** Escape was pressed, or the work undone. */
   cancel?: () => void;
 }
 
@@ -74,8 +74,8 @@ export class Pointing {
     else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e);
   }
 
-  /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. */
-  private follow(e: PointerEvent, { move, end, cancel }: Way): void {
+  /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. Returns what gives it up. */
+  private follow(e: PointerEvent, { move, end, cancel = end }: Way): () => void {
     const stop = new AbortController();
     const { signal } = stop;
     const finish = (how: () => void) => {
@@ -89,11 +89,10 @@ export class Pointing {
     };
     window.addEventListener(MOVES, own((event) => move(this.stage.point(event), event)), { signal });
     for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, own(() => finish(end)), { signal });
-    if (cancel) {
-      window.addEventListener("keydown", (event) => {
-        if (event.key === "Escape") finish(cancel);
-      }, { signal });
-    }
+    window.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") finish(cancel);
+    }, { signal });
+    return () => finish(cancel);
   }
 
   /** Follows a pointer that changes the step: `move` does, and `done` tidies up. */
@@ -105,9 +104,10 @@ export class Pointing {
     app.isDragging = true;
     const stop = () => {
       app.isDragging = false;
+      app.hold = null;
       done();
     };
-    this.follow(e, {
+    const abandon = this.follow(e, {
       move: (to, event) => {
         hasMoved = true;
         move(to, event);
@@ -121,6 +121,7 @@ export class Pointing {
         if (hasMoved) app.cancel(before);
       },
     });
+    app.hold = abandon;
   }
 
   private drag(e: PointerEvent, knob: SVGGElement): void {
@@ -155,6 +156,7 @@ export class Pointing {
       puller(stage.camera.toUser(to));
       handles.write(pull.param);
       stage.placeHandles();
+      this.app.tell("values");
       this.app.draft(event.timeStamp);
     }, () => {});
     return true;

@@ -2,6 +2,7 @@
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
+import { asked, evaluate, Field, type Quantity } from "./fields";
 import { capital, paramName, words } from "./names";
 import { base64 } from "./opening";
 import { toast } from "./toast";
@@ -11,6 +12,8 @@ import { adjustName, adjustUnit, DRAGGED, readAdjust, short, writeAdjust } from 
 /** The sliders of lengths, in percentages of the artwork; shifts go both ways. */
 const OF_ARTWORK: [number, number] = [0, 100];
 const BOTH_WAYS: [number, number] = [-100, 100];
+/** Arrow keys change values of this range by 1. */
+const COARSE = 20;
 /** Choices of up to this many words are shown side by side. */
 const SIDE_BY_SIDE = 3;
 
@@ -26,6 +29,7 @@ export class Settings {
     app.listen((change) => {
       if (change === "steps" || change === "state") this.build();
       if (change === "handles") this.build();
+      if (change === "values") this.refresh();
     });
   }
 
@@ -65,13 +69,13 @@ export class Settings {
   private control(p: Param): HTMLElement {
     const id = `set-${p.name}`;
     const title = plain(p.help);
-    const label = h("label", { for: id, title }, p.kind === "angle" ? `${paramName(p)} (°)` : paramName(p));
+    const label = h("label", { for: id, title }, paramName(p));
     const adjust = this.app.grip(p.name)?.adjust;
     if (adjust) return h("div", {}, ...adjust.map((_, i) => this.adjust(p, adjust, i, title)));
     switch (p.kind) {
       case "flag": return this.flag(p, id, title);
       case "choice": return this.choice(p, id, label, title);
-      case "count": return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.count(p, id)));
+      case "count": return h("div", { class: "field", title }, ...this.number(p, id, label, "", 1));
       case "file": return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.text(p, id));
       case "name": return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.select(p, id));
       case "number": case "length": case "angle": return this.slider(p, id, label, title);
@@ -103,13 +107,51 @@ export class Settings {
     return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
   }
 
-  private count(p: Param, id: string): HTMLInputElement {
-    const input = h("input", { type: "number", id, class: "value", step: 1, min: p.least, max: p.most, placeholder: p.default });
-    input.addEventListener("change", () => this.app.set(p.name, input.value === "" ? [] : [input.value], true));
+  /** A row with a field for a number in the unit of its value, and the line for what is wrong. */
+  private number(p: Param, id: string, label: HTMLElement, usual: string, by: number): [HTMLElement, HTMLElement] {
+    const isWhole = p.kind === "count";
+    const measure = h("span", { class: "unit" });
+    // The program's values of angles and whole numbers have no unit.
+    const text = (q: Quantity) => `${short(q.value)}${q.unit === "°" ? "" : q.unit}`;
+    const present = (): Quantity | null => {
+      const typed = this.current(p);
+      const unit = usual === "°" && !/[a-z]/i.test(typed) ? "°" : "";
+      return typed === "" ? null : evaluate(typed, unit);
+    };
+    const unit = () => present()?.unit ?? usual;
+    const [least, most] = usual === "%" && p.kind === "number" ? [p.least && 100 * p.least, p.most && 100 * p.most] : [p.least, p.most];
+    const isWrong = (typed: string): string | null => {
+      if (typed.trim() === "" && !p.needed) return null;
+      const q = evaluate(typed, unit());
+      const units = p.kind === "length" ? /^(%|px|mm|cm|m|in|pt|pc|q|)$/ : usual === "%" ? /^%?$/ : usual === "°" ? /^°$/ : /^$/;
+      const fits = q && units.test(q.unit) && (!isWhole || Number.isInteger(q.value));
+      return fits && q.value >= (least ?? -Infinity) && q.value <= (most ?? Infinity) ? null : asked(unit(), least, most, isWhole);
+    };
+    const take = (typed: string) => (typed.trim() === "" ? this.app.setTyped(p.name, []) : this.app.setTyped(p.name, [text(evaluate(typed, unit())!)]));
+    const nudge = (typed: string, times: number): string | null => {
+      const q = isWrong(typed) === null ? evaluate(typed, unit()) ?? this.derived(p, usual) : null;
+      if (!q) return null;
+      const value = Math.min(Math.max(Number((q.value + times * by).toFixed(6)), least ?? -Infinity), most ?? Infinity);
+      this.app.setSoon(p.name, [text({ value, unit: q.unit })]);
+      return short(value);
+    };
+    const shown = () => {
+      const q = present();
+      return q ? short(q.value) : this.current(p);
+    };
+    const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off", placeholder: "auto" });
+    const field = new Field(input, shown, take, isWrong, nudge);
     this.refreshers.push(() => {
-      if (document.activeElement !== input) input.value = this.current(p);
+      measure.textContent = unit();
+      field.refresh();
     });
-    return input;
+    return [h("div", { class: "row" }, label, h("span", { class: "measure" }, input, measure)), field.message];
+  }
+
+  /** The value that a parameter has without being given. */
+  private derived(p: Param, unit: string): Quantity | null {
+    const value = this.inUnit(p, unit, this.current(p));
+    return value === null ? null : { value, unit };
   }
 
   /** Chooses a file. Pages do not learn where it is, so a copy goes beside the drawing. */
@@ -145,24 +187,17 @@ export class Settings {
   }
 
   private text(p: Param, id: string): HTMLElement {
-    const input = h("textarea", { id, rows: 1, spellcheck: false, placeholder: p.default ?? p.notation ?? "" });
-    input.addEventListener("change", () => {
-      const text = input.value.trim();
-      this.app.set(p.name, text === "" ? [] : p.repeat ? text.split("\n").map((t) => t.trim()).filter(Boolean) : [text], true);
-    });
-    input.addEventListener("keydown", (e) => {
-      if (e.key === "Enter" && !p.repeat) {
-        e.preventDefault();
-        input.blur();
-      }
-    });
+    const input = h("textarea", { id, rows: 1, spellcheck: false, placeholder: p.default ?? p.notation ?? "", "data-single": !p.repeat });
+    const take = (typed: string) => {
+      const text = typed.trim();
+      return this.app.setTyped(p.name, text === "" ? [] : p.repeat ? text.split("\n").map((t) => t.trim()).filter(Boolean) : [text]);
+    };
+    const field = new Field(input, () => this.values(p).join("\n"), take);
     this.refreshers.push(() => {
-      if (document.activeElement === input) return;
-      const values = this.values(p);
-      input.value = values.join("\n");
-      input.rows = Math.min(Math.max(values.length, 1), 4);
+      input.rows = Math.min(Math.max(this.values(p).length, 1), 4);
+      field.refresh();
     });
-    return input;
+    return h("div", {}, input, field.message);
   }
 
   /** The names of the adjust values on show. */
@@ -177,58 +212,83 @@ export class Settings {
     const id = `set-${p.name}-${name}`;
     const range: [number, number] = [Math.ceil(least / size), Math.floor(most / size)];
     const slider = h("input", { type: "range", id: `${id}-slider`, min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
-    const field = h("input", { type: "text", id, class: "value", spellcheck: false, autocomplete: "off" });
-    const take = (value: number, isDone: boolean) => {
+    const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off" });
+    const sign = unit === "deg" ? "°" : unit;
+    const values = (value: number) => {
       const present = structuredClone(all);
       readAdjust(present, this.values(p));
       present[i]!.value = Math.min(Math.max(value * size, least), most);
-      this.app.set(p.name, writeAdjust(present), isDone);
+      return writeAdjust(present);
     };
-    slider.addEventListener("input", () => take(Number(slider.value), false));
-    slider.addEventListener("change", () => take(Number(slider.value), true));
-    slider.addEventListener("dblclick", () => take(all[i]!.default / size, true));
-    field.addEventListener("change", () => {
-      const value = Number.parseFloat(field.value.replace(",", "."));
-      take(Number.isFinite(value) ? value : all[i]!.default / size, true);
-    });
-    this.refreshers.push(() => {
+    const current = () => {
       const present = structuredClone(all);
       readAdjust(present, this.values(p));
-      const value = Number((present[i]!.value! / size).toFixed(2));
-      if (document.activeElement !== field) field.value = `${value}${unit === "deg" ? "°" : unit}`;
-      if (document.activeElement !== slider || !slider.matches(":active")) slider.value = String(value);
+      return Number((present[i]!.value! / size).toFixed(2));
+    };
+    this.slide(slider, (value) => [p.name, values(value)], () => values(all[i]!.default / size));
+    const isWrong = (typed: string) => {
+      const q = evaluate(typed || short(all[i]!.default / size), sign);
+      return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : asked(sign, short2(least / size), short2(most / size));
+    };
+    const take = (typed: string) => this.app.setTyped(p.name, values(evaluate(typed, sign)?.value ?? all[i]!.default / size));
+    const nudge = (typed: string, times: number) => {
+      const q = isWrong(typed) === null ? evaluate(typed, sign) : null;
+      if (!q) return null;
+      this.app.setSoon(p.name, values(q.value + times));
+      return short(current());
+    };
+    const field = new Field(input, () => short(current()), take, isWrong, nudge);
+    this.refreshers.push(() => {
+      field.refresh();
+      if (!slider.matches(":active")) slider.value = String(current());
     });
     const label = h("label", { for: id, title }, adjustName(all, i));
-    return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
+    return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, h("span", { class: "measure" }, input, h("span", { class: "unit" }, sign))), field.message, slider);
+  }
+
+  /** What a slider does: what the pointer drags is one change, and so are keys that follow each other. */
+  private slide(slider: HTMLInputElement, values: (value: number) => [string, string[]], reset: () => string[]): void {
+    const { app } = this;
+    let [isDragged, isGivenUp] = [false, false];
+    slider.addEventListener("input", () => {
+      if (!slider.matches(":active") || isGivenUp) return;
+      if (!isDragged) {
+        const before = structuredClone(app.step!);
+        app.hold = () => {
+          isGivenUp = true;
+          app.cancel(before);
+        };
+      }
+      isDragged = true;
+      app.set(...values(Number(slider.value)), false);
+      app.tell("values");
+    });
+    slider.addEventListener("change", () => {
+      app.hold = null;
+      if (isGivenUp) this.refresh();
+      else if (isDragged) app.set(...values(Number(slider.value)), true);
+      else app.setSoon(...values(Number(slider.value)));
+      isDragged = isGivenUp = false;
+    });
+    slider.addEventListener("dblclick", () => app.set(values(0)[0], reset(), true));
   }
 
   private slider(p: Param, id: string, label: HTMLElement, title: string): HTMLElement {
     const [unit, range] = scale(p);
     const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
-    const field = h("input", { type: "text", id, class: "value", inputmode: "text", spellcheck: false, autocomplete: "off", placeholder: p.default ?? "auto" });
-    slider.addEventListener("input", () => {
-      field.value = `${short(Number(slider.value))}${unit}`;
-      this.app.set(p.name, [field.value], false);
-    });
-    slider.addEventListener("change", () => this.app.set(p.name, [`${short(Number(slider.value))}${unit}`], true));
-    field.addEventListener("change", () => this.app.set(p.name, field.value.trim() === "" ? [] : [field.value.trim()], true));
-    field.addEventListener("keydown", (e) => {
-      if (e.key === "Enter") field.blur();
-    });
+    this.slide(slider, (value) => [p.name, [`${short(value)}${unit}`]], () => []);
     this.refreshers.push(() => {
-      const typed = this.current(p);
-      if (document.activeElement !== field) field.value = typed;
-      if (document.activeElement === slider && slider.matches(":active")) return;
-      const value = this.inUnit(p, unit, typed);
+      if (slider.matches(":active")) return;
+      const value = this.inUnit(p, unit, this.current(p));
       // A typed value may lie beyond; the slider then reaches as far.
       slider.min = String(Math.min(range[0], value ?? range[0]));
       slider.max = String(Math.max(range[1], value ?? range[1]));
       slider.value = String(value ?? range[0]);
       slider.classList.toggle("unset", value === null);
     });
-    const reset = () => this.app.set(p.name, [], true);
-    slider.addEventListener("dblclick", reset);
-    return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
+    const usual = p.kind === "angle" ? "°" : unit;
+    const [row, wrong] = this.number(p, id, label, usual, range[1] - range[0] >= COARSE ? 1 : step(range));
+    return h("div", { class: "field slider", title }, row, wrong, slider);
   }
 
   /** The value of a parameter in the unit of its slider. */
@@ -267,6 +327,10 @@ function scale(p: Param): [string, [number, number]] {
 function step([from, to]: [number, number]): number {
   const raw = (to - from) / 400;
   return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
+}
+
+function short2(value: number): number {
+  return Number(value.toFixed(2));
 }
 
 /** A title as a sentence. */

@@ -342,13 +342,23 @@ export class Stage {
     this.app.handles!.write(handle.param);
     this.placeHandles();
     this.onFocus(handle);
+    this.app.tell("values");
     this.app.draft(since);
   }
 
   private doubleClick(e: MouseEvent): void {
-    if ((e.target as Element).closest(".knob")) return;
-    const key = this.app.addPoint(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
-    if (key) this.focused = key;
+    if (!(e.target as Element).closest(".knob")) void this.add(this.camera.toUser(this.point(e)));
+  }
+
+  /** Adds a point, with its reflection if symmetry is on, and selects it. */
+  private async add(at: XY): Promise<void> {
+    const { handles } = this.app;
+    if (!handles) return;
+    const reach = REACH * this.camera.pixel;
+    const key = await this.app.addPoint(at, this.modes.reflections(handles, at, reach), reach);
+    if (!key) return;
+    this.focus(key);
+    this.elements.get(key)?.focus({ preventScroll: true });
   }
 
   /** Arrow keys move a handle by a px of the screen, with Shift by ten. */
@@ -367,7 +377,7 @@ export class Stage {
       const [x, y] = handle.get();
       // Beside the point, where there is no line to divide.
       const at = this.app.handles.after(handle) ?? [x + 2 * REACH * this.camera.pixel, y] as XY;
-      this.focused = this.app.addPoint(at, REACH * this.camera.pixel) ?? this.focused;
+      void this.add(at);
     } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
       e.preventDefault();
       this.remove(handle);
@@ -376,10 +386,17 @@ export class Stage {
 
   /** Takes a point away. */
   remove(handle: Handle): void {
-    if (!handle.remove || !this.app.handles) return;
+    const { handles } = this.app;
+    if (!handle.remove || !handles) return;
+    const [at, param] = [handle.get(), handle.param];
+    const partner = this.modes.mirrors && !handles.isRows(param) ? handles.partner(handle) : null;
+    const mirrored = partner?.param === param ? partner.get() : null;
     handle.remove();
-    this.app.handles.write(handle.param);
-    this.focus(null);
+    // Taking one away has numbered the others anew.
+    if (mirrored) handles.handles.find((h) => h.param === param && h.shape === handle.shape && h.get()[0] === mirrored[0] && h.get()[1] === mirrored[1])?.remove?.();
+    handles.write(param);
+    this.focused = handles.nearest(at)?.key ?? null;
+    this.app.tell("handles");
     void this.app.commit();
   }
 

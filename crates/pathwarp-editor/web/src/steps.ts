@@ -7,6 +7,8 @@ import type { Step } from "./types";
 
 export class Steps {
   private list = byId("steps");
+  /** Where a row has been moved to. */
+  private moved: number | null = null;
   private note = byId("steps-note");
   private add = byId<HTMLButtonElement>("add-step");
 
@@ -29,7 +31,14 @@ export class Steps {
   private build(): void {
     const { app } = this;
     const { steps, selected, appends } = app;
+    const focused = this.list.contains(document.activeElement) ? (document.activeElement as HTMLElement) : null;
+    const kind = focused?.dataset.kind ?? "";
+    const row = Array.from(this.list.children).indexOf(focused?.closest("li") as Element);
     this.list.replaceChildren(...steps.map((step, i) => this.row(step, i)));
+    // The focus stays near.
+    const near = focused ? this.list.children[Math.min(this.moved ?? row, steps.length - 1)] : null;
+    (near?.querySelector<HTMLElement>(`[data-kind="${kind}"]:enabled`) ?? near?.querySelector<HTMLElement>(".step"))?.focus();
+    this.moved = null;
     if (appends) this.list.append(h("li", { class: "wanted" }, `${steps.length + 1}. Choose a shape`));
     this.add.setAttribute("aria-pressed", String(appends));
     this.note.hidden = selected >= steps.length - 1;
@@ -40,19 +49,20 @@ export class Steps {
     const { app } = this;
     const { steps, selected } = app;
     const title = stepName(step, app.deformation(step.deformation));
-    const choose = h("button", { type: "button", class: "step", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`);
+    const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`);
     choose.addEventListener("click", () => void app.select(i));
     const moved = (to: number) => {
       const others = steps.filter((_, k) => k !== i);
       others.splice(to, 0, step);
+      this.moved = to;
       void app.arrange(others, to);
     };
     const button = (name: "up" | "down" | "close", label: string, action: () => void, disabled = false) => {
-      const b = h("button", { type: "button", class: "small", "aria-label": label, title: label, disabled }, icon(name));
+      const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
       b.addEventListener("click", action);
       return b;
     };
-    const remove = () => void app.arrange(steps.filter((_, k) => k !== i), Math.max(0, i - 1));
+    const remove = () => void app.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
     return h(
       "li", { class: i === selected ? "chosen" : "" }, choose,
       steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i === 0),

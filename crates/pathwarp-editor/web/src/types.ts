@@ -134,6 +134,7 @@ export interface Answer {
   catalogue?: Deformation[];
   svg?: string;
   step?: Step;
+  at?: XY | null;
   text?: string;
   written?: string;
   exists?: string;

@@ -58,9 +58,9 @@ export const settings_of_text_shapes = async () => {
     await page.locator("#settings").click({ position: { x: 5, y: 5 } });
     await page.waitForFunction((d) => Array.from(document.querySelectorAll("#stage .art path"), (p) => p.getAttribute("d")).join("|") !== d, before);
     await quiet(page);
-    check((await page.inputValue("#set-adj-adj1")) === "180°", await page.inputValue("#set-adj-adj1"));
+    check((await page.inputValue("#set-adj-adj1")) === "180", await page.inputValue("#set-adj-adj1"));
     await page.selectOption("#set-preset", "wave1");
-    await page.waitForFunction(() => document.querySelector("#set-adj-adj1")?.value === "12.5%");
+    await page.waitForFunction(() => document.querySelector("#set-adj-adj1")?.value === "12.5");
     check(!(await page.isVisible("#problem")), await page.textContent("#problem"));
     await page.click("#start-over");
     await page.locator(".card", { hasText: /^Grid$/ }).click();

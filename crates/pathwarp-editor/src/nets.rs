@@ -1,0 +1,167 @@
+//! Nets with more or fewer control points that bend as before.
+//!
+//! A net is a sum of basis functions. Where those of the new net span the old ones, as after raising a degree or halving cells, the net
+//! stays the same map; otherwise it becomes the nearest one by least squares over a grid of samples. Weights go along in homogeneous
+//! coordinates (w·x, w·y, w).
+
+use crate::grips::{Net, Space};
+use pathwarp::kurbo::{Point, Rect, Vec2};
+use pathwarp::map::Lattice;
+
+/// Samples along an axis for each control point there.
+const SAMPLES: usize = 6;
+/// Shares of the net's size, and of a weight, that are rounding.
+const ROUNDING: f64 = 1e-9;
+
+type Matrix = Vec<Vec<f64>>;
+
+/// Gives `net`, at rest, the shape of `old`.
+pub(crate) fn carry_over(old: &Net, net: &mut Net) {
+    let Some(matrix) = matrix(&old.space, &net.space) else { return };
+    let rest = net.points.clone();
+    let all: Vec<[f64; 3]> = old.points.iter().zip(&old.weights).map(|(p, w)| [w * p.x, w * p.y, *w]).collect();
+    for (k, row) in matrix.iter().enumerate() {
+        let sum = |c: usize| row.iter().zip(&all).map(|(m, v)| m * v[c]).sum::<f64>();
+        let w = sum(2);
+        net.weights[k] = if (w - 1.0).abs() < ROUNDING { 1.0 } else { w };
+        net.points[k] = Point::new(sum(0) / w, sum(1) / w);
+    }
+    // Weights that the nearest net cannot have would tear the artwork.
+    if net.weights.iter().any(|w| *w <= ROUNDING) {
+        net.weights.fill(1.0);
+        for (k, row) in matrix.iter().enumerate() {
+            let sum = row.iter().zip(&old.points).fold(Vec2::ZERO, |sum, (m, p)| sum + p.to_vec2() * *m);
+            net.points[k] = sum.to_point();
+        }
+    }
+    let size = rest.iter().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max);
+    for (p, rest) in net.points.iter_mut().zip(rest) {
+        if p.distance(rest) < ROUNDING * size {
+            *p = rest;
+        }
+    }
+}
+
+/// Each new control point as a combination of the old ones.
+fn matrix(old: &Space, new: &Space) -> Option<Matrix> {
+    match (old, new) {
+        (Space::Grid { degree: n, cells: c }, Space::Grid { degree: m, cells: d }) => {
+            let [across, down] = [0, 1].map(|k| {
+                let count = SAMPLES * (n[k] + c[k]).max(m[k] + d[k]);
+                let rows = |degree, cells| (0..=count).map(|i| splines(degree, cells, i as f64 / count as f64)).collect();
+                nearest(rows(m[k], d[k]), rows(n[k], c[k]))
+            });
+            let product = |y: &[f64], x: &[f64]| y.iter().flat_map(|y| x.iter().map(move |x| y * x)).collect();
+            Some(down.iter().flat_map(|y| across.iter().map(|x| product(y, x)).collect::<Matrix>()).collect())
+        }
+        (Space::Triangle(n), Space::Triangle(m)) => {
+            let count = 2 * n.max(m);
+            let rows = |degree| indices(count).map(|ijk| bernstein(degree, ijk.map(|i| i as f64 / count as f64))).collect();
+            Some(nearest(rows(*m), rows(*n)))
+        }
+        _ => None,
+    }
+}
+
+/// The B-splines of a uniform, clamped net along one axis at `t`, 0 to 1.
+fn splines(degree: usize, cells: usize, t: f64) -> Vec<f64> {
+    let line = Lattice::regular(Rect::new(0.0, 0.0, 1.0, 1.0), [degree, 1], [cells, 1]);
+    let mut out = vec![0.0; degree + cells];
+    for ((i, _), share) in line.influence(Point::new(t, 0.0)) {
+        out[i] += share;
+    }
+    out
+}
+
+/// The indices of a triangular net, in the order of its control points.
+pub(crate) fn indices(n: usize) -> impl Iterator<Item = [usize; 3]> {
+    (0..=n).flat_map(move |i| (0..=n - i).map(move |j| [i, j, n - i - j]))
+}
+
+/// n!/(i!j!k!)·uⁱvʲwᵏ for every i + j + k = n.
+fn bernstein(n: usize, u: [f64; 3]) -> Vec<f64> {
+    let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
+    let term = |ijk: [usize; 3]| ijk.iter().zip(u).map(|(i, u)| u.powi(*i as i32) / factorial(*i)).product::<f64>();
+    indices(n).map(|ijk| factorial(n) * term(ijk)).collect()
+}
+
+/// The matrix X that brings A·X nearest to B, by Householder reflections.
+fn nearest(a: Matrix, b: Matrix) -> Matrix {
+    let n = a[0].len();
+    let mut rows: Matrix = a.into_iter().zip(b).map(|(a, b)| [a, b].concat()).collect();
+    let width = rows[0].len();
+    for k in 0..n {
+        let mut v: Vec<f64> = rows[k..].iter().map(|r| r[k]).collect();
+        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        v[0] += length.copysign(v[0]);
+        let square: f64 = v.iter().map(|x| x * x).sum();
+        for c in k..width {
+            let dot: f64 = rows[k..].iter().zip(&v).map(|(r, v)| r[c] * v).sum();
+            for (r, v) in rows[k..].iter_mut().zip(&v) {
+                r[c] -= 2.0 * dot / square * v;
+            }
+        }
+    }
+    let mut out = vec![vec![0.0; width - n]; n];
+    for k in (0..n).rev() {
+        for c in 0..width - n {
+            let known: f64 = (k + 1..n).map(|j| rows[k][j] * out[j][c]).sum();
+            out[k][c] = (rows[k][n + c] - known) / rows[k][k];
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grips::net_of;
+    use pathwarp::deform::Registry;
+    use pathwarp::map::Map as _;
+    use pathwarp::param::{Args, Frame};
+    use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
+
+    const FRAME: Rect = Rect::new(20.0, 30.0, 684.0, 230.0);
+
+    fn built(name: &str, args: &Args) -> BuiltRecipe {
+        let art = pathwarp::Outline::from_svg("M20,30 H684 V230 H20 Z").unwrap();
+        let recipe = Recipe { steps: vec![Step::new(name, args.clone())] };
+        recipe.build(&Registry::builtin(), Frame::new(FRAME), &std::iter::once(&art)).unwrap()
+    }
+
+    /// The largest distance between a deformation and the same with the net carried over.
+    fn apart(name: &str, before: &[(&str, &str)], after: &[(&str, &str)]) -> f64 {
+        let registry = Registry::builtin();
+        let info = registry.get(name).unwrap().info();
+        let (old, mut new) = (Args::from_pairs(before), Args::from_pairs(after));
+        let values = crate::grips::with_net_of(info, &old, &new, &Frame::new(FRAME)).unwrap();
+        for (name, values) in values {
+            new.set(&name, values);
+        }
+        assert!(net_of(info, &new, &Frame::new(FRAME)).is_some());
+        let (a, b) = (built(name, &old), built(name, &new));
+        let at = |k: u32| Point::new(20.0 + 83.0 * f64::from(k % 9), 30.0 + 25.0 * f64::from(k / 9));
+        (0..81).map(|k| a.map.point(at(k)).distance(b.map.point(at(k)))).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn more_control_points_change_nothing() {
+        let moved = ("at", "1,0:30%,-50% 0,1:-20%,40% 1,1:80%,10%");
+        let grid = |before: &[(&str, &str)], after: &[(&str, &str)]| apart("ffd", &[before, &[moved]].concat(), after);
+        assert!(grid(&[("degree", "2x1")], &[("degree", "5x3")]) < 1e-4);
+        assert!(grid(&[("degree", "2x2"), ("weight", "1,1:4")], &[("degree", "3x4")]) < 1e-4);
+        assert!(grid(&[("degree", "2x2"), ("cells", "2x3")], &[("degree", "2x2"), ("cells", "4x3")]) < 1e-4);
+        assert!(grid(&[("degree", "3x3")], &[("degree", "3x3"), ("spline", "true")]) < 1e-4);
+        let triangle = [("at", "1,1,0:20%,10%"), ("move", "0,1,1:0,60%"), ("weight", "1,0,1:3")];
+        assert!(apart("triangle", &triangle, &[("degree", "4")]) < 1e-4);
+    }
+
+    /// The line nearest to a symmetric arch is level.
+    #[test]
+    fn fewer_control_points_stay_near() {
+        let arch = [("degree", "2x1"), ("move", "1,0:0,-60 1,1:0,-60")];
+        // The arch is 60·2t(1 − t) high, 20 in the mean: a level line is 20 off at its ends and 10 in the middle.
+        let off = apart("ffd", &arch, &[("degree", "1x1")]);
+        assert!((off - 20.0).abs() < 1.5, "{off}");
+    }
+}

@@ -1,0 +1,162 @@
+// What is typed into fields of numbers: arithmetic with units, arrow keys, and words for what is wrong.
+
+import { h } from "./dom";
+
+/** A number with the unit it was typed in. */
+export interface Quantity {
+  value: number;
+  unit: string;
+}
+
+/** Lengths, in px. */
+const LENGTHS: Record<string, number> = { px: 1, in: 96, mm: 96 / 25.4, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
+const TOKEN = /\s*(?:(\d+[.,]?\d*|[.,]\d+)\s*(%|°|[a-z]+)?|([-+*/()]))\s*/iy;
+
+/** The value of a sum, difference, product or quotient; numbers without a unit have the field's. `null` if the text is none. */
+export function evaluate(text: string, unit: string): Quantity | null {
+  const tokens: (Quantity | string)[] = [];
+  const normal = text.replaceAll("−", "-").replaceAll("×", "*");
+  for (TOKEN.lastIndex = 0; TOKEN.lastIndex < normal.length; ) {
+    const found = TOKEN.exec(normal);
+    if (!found) return null;
+    tokens.push(found[3] ?? { value: Number(found[1]!.replace(",", ".")), unit: (found[2] ?? "").toLowerCase().replace(/^deg$/, "°") });
+  }
+  try {
+    const result = sum(tokens);
+    return tokens.length === 0 && Number.isFinite(result.value) ? { value: result.value, unit: result.unit || unit } : null;
+  } catch {
+    return null;
+  }
+
+  function sum(rest: (Quantity | string)[]): Quantity {
+    let left = product(rest);
+    while (rest[0] === "+" || rest[0] === "-") {
+      const sign = rest.shift() === "+" ? 1 : -1;
+      const right = product(rest);
+      // A plain number beside one with a unit has the field's.
+      const [a, b] = [left.unit || unit, right.unit || unit];
+      left = { value: left.value + sign * right.value * factor(b, a), unit: a };
+    }
+    return left;
+  }
+
+  function product(rest: (Quantity | string)[]): Quantity {
+    let left = single(rest);
+    while (rest[0] === "*" || rest[0] === "/") {
+      const isTimes = rest.shift() === "*";
+      const right = single(rest);
+      if (right.unit && (left.unit || !isTimes)) throw new Error("a product of units");
+      left = { value: isTimes ? left.value * right.value : left.value / right.value, unit: left.unit || right.unit };
+    }
+    return left;
+  }
+
+  function single(rest: (Quantity | string)[]): Quantity {
+    const next = rest.shift();
+    if (next === "-" || next === "+") {
+      const { value, unit } = single(rest);
+      return { value: next === "-" ? -value : value, unit };
+    }
+    if (next === "(") {
+      const inner = sum(rest);
+      if (rest.shift() !== ")") throw new Error("no closing bracket");
+      return inner;
+    }
+    if (typeof next !== "object") throw new Error("no number");
+    return next;
+  }
+}
+
+/** The number of units `to` in a unit. */
+function factor(from: string, to: string): number {
+  if (from === to) return 1;
+  const [a, b] = [LENGTHS[from], LENGTHS[to]];
+  if (a === undefined || b === undefined) throw new Error("units of different kinds");
+  return a / b;
+}
+
+/** What may be typed. */
+export function asked(unit: string, least = -Infinity, most = Infinity, isWhole = false): string {
+  const [what, end] = [isWhole ? "A whole number" : "A number", unit && ` ${unit}`];
+  if (least > -Infinity && most < Infinity) return `${what} from ${least} to ${most}${end}`;
+  if (least > -Infinity) return `${what} from ${least}${end} up`;
+  return `${what}, such as ${isWhole ? 3 : 30}${end}`;
+}
+
+/** What the program says about a value, in the words of the page. */
+export function inWords(problem: string): string {
+  const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/--([a-z-]+)/g, (_, name: string) => `“${name.replaceAll("-", " ")}”`);
+  return text.replace(/`([^`]*)`/g, "“$1”").replace(/^./, (c) => c.toUpperCase());
+}
+
+type Editable = HTMLInputElement | HTMLTextAreaElement;
+
+/** A field that keeps what is wrong in it, with a word about it, until it is right or given up. */
+export class Field {
+  readonly message = h("p", { class: "wrong", role: "alert", hidden: true });
+  /** The value for which the text is wrong. */
+  private wrongFor: string | null = null;
+  private shown = "";
+
+  /** `take` returns what is wrong with a text; `isWrong` knows it while it is typed. */
+  constructor(
+    readonly input: Editable, private read: () => string, private take: (text: string) => string | null | Promise<string | null>,
+    private isWrong: (text: string) => string | null = () => null, nudge?: (text: string, by: number) => string | null,
+  ) {
+    this.message.id = `${input.id}-wrong`;
+    input.addEventListener("change", () => void this.done());
+    input.addEventListener("input", () => {
+      if (!this.message.hidden) this.say(this.isWrong(input.value));
+    });
+    input.addEventListener("keydown", ((e: KeyboardEvent) => {
+      if (e.key === "Escape") this.reset();
+      else if (e.key === "Enter" && (input.tagName === "INPUT" || input.dataset.single)) {
+        e.preventDefault();
+        input.blur();
+        input.focus();
+      } else if (nudge && (e.key === "ArrowUp" || e.key === "ArrowDown")) {
+        const next = nudge(input.value, (e.key === "ArrowUp" ? 1 : -1) * (e.shiftKey ? 10 : 1));
+        e.preventDefault();
+        if (next !== null) input.value = this.shown = next;
+        this.say(null);
+      }
+    }) as EventListener);
+  }
+
+  private async done(): Promise<void> {
+    const text = this.input.value;
+    this.say(this.isWrong(text) ?? (await this.take(text)));
+    if (this.message.hidden) this.refresh();
+  }
+
+  private say(problem: string | null): void {
+    this.wrongFor = problem === null ? null : this.read();
+    this.message.textContent = problem;
+    this.message.hidden = problem === null;
+    if (problem === null) this.input.removeAttribute("aria-invalid");
+    else this.input.setAttribute("aria-invalid", "true");
+    if (problem === null) this.input.removeAttribute("aria-describedby");
+    else this.input.setAttribute("aria-describedby", this.message.id);
+  }
+
+  /** The value that holds is on show again. */
+  private reset(): void {
+    this.say(null);
+    this.input.value = this.shown = this.read();
+    this.input.select();
+  }
+
+  refresh(): void {
+    const value = this.read();
+    if (this.wrongFor === value) return;
+    if (this.wrongFor !== null) this.say(null);
+    // What is being typed stays; a value that is dragged meanwhile is shown.
+    if (document.activeElement === this.input && this.input.value !== this.shown && value === this.shown) return;
+    this.input.value = this.shown = value;
+  }
+}
+
+/** A value is wrong that has been typed. */
+export function isAnyWrong(): boolean {
+  return document.querySelector("#settings [aria-invalid=true], #place [aria-invalid=true]") !== null;
+}

@@ -1,0 +1,219 @@
+// An hour of real work: corners of cages, undo, fields. Real mouse moves and real keys.
+import { becomes, check, choose, drag, edit, folder, keys, middle, open, paths, quiet, sample } from "./harness.mjs";
+
+async function within(shape, test, options = {}) {
+  const dir = folder({ "logo.svg": sample("logo.svg") });
+  const editor = await edit(`${dir}/logo.svg`);
+  const page = await open(editor.address, options);
+  try {
+    if (shape) await choose(page, shape);
+    await test(page, dir, editor);
+    check(page.problems.length === 0, page.problems.join("; "));
+  } finally {
+    editor.stop();
+    await page.context().close();
+  }
+}
+
+const places = async (page, all) => Object.fromEntries(await Promise.all(all.map(async (k) => [k, await middle(page, k)])));
+const steps = (page) => page.$$eval("#steps .step", (all) => all.map((b) => b.textContent.replace(/^\d+\. /, "")));
+const value = (page, id) => page.inputValue(`#${id}`);
+const focused = (page) => page.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent);
+
+/** A bottle's neck: both upper corners are pulled in. Straight sides stay straight with their handles at the thirds, and nothing folds. */
+export const corners_take_their_handles_along = () => within(null, async (page) => {
+  await page.click("#mirror");
+  const all = await keys(page);
+  const corners = all.filter((k) => !/(in|out)$/.test(k));
+  const before = await places(page, corners);
+  const top = corners.filter((k) => before[k][1] < before[corners[0]][1] - 20).sort((a, b) => before[a][0] - before[b][0]);
+  check(corners.length === 4 && top.length === 2, `${all}`);
+  const wide = before[top[1]][0] - before[top[0]][0];
+  await drag(page, top[0], 0.35 * wide, 0);
+  check(!(await page.isVisible("#folds")), await page.textContent("#folds"));
+  const after = await places(page, all);
+  corners.forEach((k, n) => {
+    const next = corners[(n + 1) % 4];
+    const [a, b] = [after[k], after[next]];
+    for (const [handle, t] of [[`${k}/out`, 1 / 3], [`${next}/in`, 2 / 3]]) {
+      const [x, y] = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+      const off = Math.hypot(after[handle][0] - x, after[handle][1] - y);
+      check(off < 1, `${handle} is ${off} px from its third`);
+    }
+  });
+  check(Math.abs(after[top[1]][0] - after[top[0]][0] - 0.3 * wide) < 12, "the other corner did not follow");
+  // A node that is smooth carries its handles as they are.
+  await page.click("#mirror");
+});
+
+/** A point that is added with symmetry on has its reflection, which moves and goes with it. */
+export const symmetry_holds_for_added_points = () => within("Envelope", async (page) => {
+  await page.click("#mirror");
+  const all = await keys(page);
+  const [[ax, ay], [bx]] = [await middle(page, "top/0.0/0"), await middle(page, "top/0.0/1")];
+  await page.mouse.dblclick(ax + 0.25 * (bx - ax), ay);
+  await quiet(page);
+  const nodes = (list) => list.filter((k) => /^top\/0\.0\/\d+$/.test(k));
+  check(nodes(await keys(page)).length === 4, `${await keys(page)}`);
+  await drag(page, "top/0.0/1", 20, -40);
+  const { "top/0.0/1": [lx, ly], "top/0.0/2": [rx, ry] } = await places(page, ["top/0.0/1", "top/0.0/2"]);
+  check(Math.abs(ly - ry) < 1 && Math.abs(lx + rx - ax - bx) < 2, `${[lx, ly, rx, ry]}`);
+  await page.locator('.knob[data-key="top/0.0/1"]').focus();
+  await page.keyboard.press("Delete");
+  await quiet(page);
+  check((await keys(page)).length === all.length, `${await keys(page)}`);
+  check((await page.evaluate(() => document.activeElement.dataset.key ?? "")).startsWith("top/"), "the focus has not stayed near");
+});
+
+/** Everything can be undone, and redone, over and over. */
+export const undo_is_whole = () => within("Arc", async (page) => {
+  const pictures = [await paths(page)];
+  await drag(page, "bend", 0, -40);
+  pictures.push(await paths(page));
+  await page.click("#start-over");
+  await quiet(page);
+  check((await focused(page)) === "Undo", `the focus is on ${await focused(page)}`);
+  await page.keyboard.press("Control+z");
+  await becomes(page, pictures[1], "Start over is not undone");
+  check((await steps(page)).join() === "Arc", `${await steps(page)}`);
+  await page.click('#steps [aria-label="Remove Arc"]');
+  await quiet(page);
+  for (let i = 0; i < 3; i++) {
+    await page.click("#undo");
+    await becomes(page, pictures[1], "removing the only step is not undone");
+    await page.click("#undo");
+    await becomes(page, pictures[0], "the chain sticks");
+    await page.click("#undo");
+    await quiet(page);
+    check(await page.isDisabled("#undo"), "there is more to undo than was done");
+    for (let k = 0; k < 3; k++) {
+      await page.click("#redo");
+      await quiet(page);
+    }
+  }
+});
+
+/** Ctrl Z during a drag takes that drag back and nothing else, of a handle and of a slider. */
+export const undo_during_a_drag = () => within("Arc", async (page) => {
+  await drag(page, "bend", 0, -30);
+  const before = await paths(page);
+  const [x, y] = await middle(page, "bend");
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y + 70, { steps: 6 });
+  await page.keyboard.press("Control+z");
+  await page.mouse.move(x, y + 90, { steps: 4 });
+  await page.mouse.up();
+  await quiet(page);
+  await becomes(page, before, "the drag alone was to be taken back");
+  const box = await page.locator("#set-bend-slider").boundingBox();
+  const shown = await value(page, "set-bend");
+  const at = await page.$eval("#set-bend-slider", (s) => (s.value - s.min) / (s.max - s.min));
+  await page.mouse.move(box.x + 8 + at * (box.width - 16), box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.2, box.y + box.height / 2, { steps: 6 });
+  check((await value(page, "set-bend")) !== shown, "the field does not follow the slider");
+  await page.keyboard.press("Control+z");
+  await page.mouse.move(box.x + box.width * 0.3, box.y + box.height / 2, { steps: 3 });
+  await page.mouse.up();
+  await quiet(page);
+  await becomes(page, before, "the slider was to be taken back");
+  check((await value(page, "set-bend")) === shown, `${await value(page, "set-bend")} instead of ${shown}`);
+});
+
+/** Keys on a slider and in a field are one change. */
+export const slider_keys_are_one_change = () => within("Arc", async (page) => {
+  const before = await paths(page);
+  for (const id of ["set-bend-slider", "set-bend"]) {
+    await page.focus(`#${id}`);
+    for (let i = 0; i < 6; i++) await page.keyboard.press(id === "set-bend" ? "Shift+ArrowUp" : "ArrowRight");
+    await page.waitForTimeout(700);
+    await quiet(page);
+    check((await paths(page)) !== before, `keys in ${id} do nothing`);
+    await page.click("#undo");
+    await becomes(page, before, `keys in ${id} are more than one change`);
+  }
+});
+
+/** After a step is removed, the last is selected, and the focus is in the list. */
+export const removing_a_step = () => within("Arc", async (page) => {
+  for (const name of ["Flag", "Rise"]) {
+    await page.click("#add-step");
+    await choose(page, name);
+  }
+  await page.click('#steps [aria-label="Remove Arc"]');
+  await quiet(page);
+  check((await steps(page)).join() === "Flag,Rise", `${await steps(page)}`);
+  check((await page.textContent("#steps [aria-current]")).includes("Rise"), "the last step is not selected");
+  check((await focused(page)) === "Remove Flag", `the focus is on ${await focused(page)}`);
+  await page.keyboard.press("Enter");
+  await quiet(page);
+  check((await steps(page)).join() === "Rise" && (await focused(page)) === "Remove Rise", `the focus is on ${await focused(page)}`);
+});
+
+/** Plain numbers in the unit shown, sums, keys, and a word beside what is wrong. */
+export const fields_of_numbers = () => within("Arc", async (page) => {
+  const unit = () => page.$eval("#set-bend", (f) => f.nextElementSibling.textContent);
+  const type = async (text, key = "Enter") => {
+    await page.click("#set-bend", { clickCount: 3 });
+    await page.keyboard.type(text);
+    await page.keyboard.press(key);
+    await quiet(page);
+  };
+  check((await value(page, "set-bend")) === "50" && (await unit()) === "%", `${await value(page, "set-bend")} ${await unit()}`);
+  await type("30");
+  const thirty = await paths(page);
+  await type("20");
+  check((await paths(page)) !== thirty, "a plain number does nothing");
+  await type("20+2*5");
+  check((await value(page, "set-bend")) === "30", await value(page, "set-bend"));
+  await becomes(page, thirty, "the sum is another value");
+  await page.keyboard.press("Shift+ArrowDown");
+  await page.keyboard.press("ArrowUp");
+  check((await value(page, "set-bend")) === "21", await value(page, "set-bend"));
+  await type("77", "Escape");
+  check((await value(page, "set-bend")) === "21", "Escape does not cancel");
+  const wrong = () => page.textContent("#set-bend-wrong");
+  for (const text of ["abc", "3 mm", "1/0", "30%%"]) {
+    await type(text);
+    check((await value(page, "set-bend")) === text && /^A number.* %/.test(await wrong()), `${text}: ${await wrong()}`);
+    check(!(await page.isVisible("#problem")), await page.textContent("#problem"));
+  }
+  await page.click("#set-bend", { clickCount: 3 });
+  await page.keyboard.type("3");
+  check(!(await page.isVisible("#set-bend-wrong")), "the word stays when the value is right");
+  // The field follows the handle.
+  await page.keyboard.press("Escape");
+  const [x, y] = await middle(page, "bend");
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y - 30, { steps: 5 });
+  const during = [await value(page, "set-bend"), await page.inputValue("#set-bend-slider")].map(Number);
+  await page.mouse.up();
+  check(during[0] !== 21 && Math.abs(during[0] - during[1]) < 1, `${during} during the drag`);
+});
+
+/** Lengths have the unit that is typed; places may be shares of the box; what the program refuses is said in the words of the page. */
+export const fields_of_lengths_and_places = () => within(null, async (page) => {
+  await choose(page, "Wave", "Effects");
+  const type = async (id, text) => {
+    await page.click(`#${id}`, { clickCount: 3 });
+    await page.keyboard.type(text);
+    await page.keyboard.press("Enter");
+    await quiet(page);
+  };
+  await type("set-height", "2 mm + 1cm");
+  const unit = await page.$eval("#set-height", (f) => f.nextElementSibling.textContent);
+  check((await value(page, "set-height")) === "12" && unit === "mm", `${await value(page, "set-height")} ${unit}`);
+  await choose(page, "Grid");
+  await page.locator('.knob[data-key="at/5"]').focus();
+  await type("place-x", "50%");
+  check((await value(page, "place-x")) !== "50%" && !(await page.isVisible("#place-x-wrong")), await value(page, "place-x"));
+  await type("place-x", "high");
+  check(/^A number/.test(await page.textContent("#place-x-wrong")), "no word about a wrong place");
+  await page.keyboard.press("Escape");
+  await page.click("#settings summary").catch(() => {});
+  await type("set-degree", "3xx");
+  const said = await page.textContent("#set-degree-wrong");
+  check(/such as 3x2/.test(said) && !/--|`/.test(said) && (await value(page, "set-degree")) === "3xx", said);
+});
