@@ -13,7 +13,7 @@ use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe, Recipe, Step};
-use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, Summary};
+use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PICTURE_WIDTH, Summary};
 use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::{Document, Origin, ReadOptions, usvg_tree};
 use std::path::{Path, PathBuf};
@@ -190,9 +190,6 @@ impl Artwork for EditedArtwork {
         self.said(recipe_file::write(&*self.registry, recipe, &self.given, &self.folder))
     }
 }
-
-/// The width of pictures, in px: enough for a screen in full.
-const PICTURE_WIDTH: u32 = 2000;
 
 /// The command line around the editor.
 pub(crate) struct EditorHost {

@@ -5,7 +5,8 @@ use pathwarp::recipe::{Recipe, Step};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Writes the command line that bends `source` by the recipe into `out`, with these common options, for a POSIX shell.
+/// Writes the command line that bends `source` by the recipe into `out`, with these common options, for a POSIX shell. Flags have no
+/// value.
 pub(crate) fn command_line(
     registry: &Registry,
     recipe: &Recipe,
@@ -35,7 +36,10 @@ pub(crate) fn command_line(
         }
         if first {
             for (name, value) in options {
-                let _ = write!(line, " --{name} {}", quoted(value));
+                let _ = write!(line, " --{name}");
+                if !value.is_empty() {
+                    let _ = write!(line, " {}", quoted(value));
+                }
             }
             let _ = write!(line, " -o {}", quoted(&out.display().to_string()));
         }

@@ -8,6 +8,9 @@ use pathwarp_svg::Document;
 use std::fmt;
 use std::path::Path;
 
+/// The width of pictures, in px: enough for a screen in full.
+pub const PICTURE_WIDTH: u32 = 2000;
+
 /// The program around the editor. Errors are sentences for the user.
 pub trait Host: Send + Sync {
     /// The deformations on offer.

@@ -35,6 +35,6 @@ mod socket;
 mod stretch;
 
 pub use command_line::selectors;
-pub use host::{Artwork, Bent, Fineness, Host, Opened, Summary};
+pub use host::{Artwork, Bent, Fineness, Host, Opened, PICTURE_WIDTH, Summary};
 pub use purpose::Purpose;
 pub use server::{News, Options, serve};

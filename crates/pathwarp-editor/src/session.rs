@@ -4,7 +4,7 @@ use crate::command_line::{command_line, quoted};
 use crate::draft::{Draft, Kept, NO_FOLDER};
 use crate::grips::{grips, with_net_of};
 use crate::guard::Guard;
-use crate::host::{Bent, Fineness, Host, Opened};
+use crate::host::{Bent, Fineness, Host, Opened, PICTURE_WIDTH};
 use crate::openings::{example, of_variant, opening};
 use crate::picture::Picture;
 use crate::presets;
@@ -459,12 +459,22 @@ impl Session {
             None => (self.file.clone(), String::new()),
         };
         let mut options = self.opened.artwork.options();
-        let mut out = to;
-        if saving::has_extension(&out, &["toml"]) {
-            options.push(("write-recipe".to_owned(), out.display().to_string()));
-            out = saving::usual(&source);
-        }
-        Ok(before + &command_line(self.host.registry(), &given, &options, &source, &out))
+        let name = to.display().to_string();
+        let line = |options: &[(String, String)], out: &Path| {
+            before + &command_line(self.host.registry(), &given, options, &source, out)
+        };
+        let streamed = Path::new("-");
+        Ok(if saving::has_extension(&to, &["toml"]) {
+            options.push(("write-recipe".to_owned(), name));
+            line(&options, streamed) + " > /dev/null"
+        } else if is_svg(&to) {
+            options.push(("embed-recipe".to_owned(), String::new()));
+            line(&options, &to)
+        } else if saving::has_extension(&to, &["pdf", "dxf"]) {
+            line(&options, &to)
+        } else {
+            format!("{} | pathwarp render - --width {PICTURE_WIDTH} -o {}", line(&options, streamed), quoted(&name))
+        })
     }
 }
 

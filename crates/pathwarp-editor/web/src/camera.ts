@@ -4,8 +4,9 @@ import type { XY } from "./types";
 
 type Affine = [number, number, number, number, number, number];
 
-/** The smallest and largest magnification. */
-const RANGE: XY = [1e-4, 1e5];
+/** The smallest and largest magnification that may be chosen; a drawing that fits the view may need others. */
+const RANGE: XY = [0.01, 64];
+const FITTED: XY = [1e-4, 1e5];
 
 export class Camera {
   /** Screen = scale · px + shift. */
@@ -45,17 +46,16 @@ export class Camera {
 
   /** Magnifies by a factor about a point of the screen. */
   zoom(factor: number, [x, y]: XY): void {
-    const scale = Math.min(Math.max(this.scale * factor, RANGE[0]), RANGE[1]);
+    const scale = Math.min(Math.max(this.scale * factor, Math.min(RANGE[0], this.scale)), Math.max(RANGE[1], this.scale));
     const by = scale / this.scale;
     this.shift = [x - by * (x - this.shift[0]), y - by * (y - this.shift[1])];
     this.scale = scale;
   }
 
   /** Shows a box of the drawing, two corners in px of it, in the middle of a view of this size. */
-  fit([x0, y0, x1, y1]: [number, number, number, number], [width, height]: XY, margin: number): void {
-    const room = (size: number) => Math.max(size - 2 * margin, size / 3);
-    const scale = Math.min(room(width) / Math.max(x1 - x0, 1e-9), room(height) / Math.max(y1 - y0, 1e-9));
-    this.scale = Math.min(Math.max(scale, RANGE[0]), RANGE[1]);
+  fit([x0, y0, x1, y1]: [number, number, number, number], [width, height]: XY): void {
+    const scale = Math.min(width / Math.max(x1 - x0, 1e-9), height / Math.max(y1 - y0, 1e-9));
+    this.scale = Math.min(Math.max(scale, FITTED[0]), FITTED[1]);
     this.shift = [(width - this.scale * (x0 + x1)) / 2, (height - this.scale * (y0 + y1)) / 2];
   }
 }

@@ -110,7 +110,7 @@ export class Field {
     });
     input.addEventListener("keydown", ((e: KeyboardEvent) => {
       if (e.key === "Escape") this.reset();
-      else if (e.key === "Enter" && (input.tagName === "INPUT" || input.dataset.single)) {
+      else if (e.key === "Enter" && (input.tagName === "INPUT" || "single" in input.dataset)) {
         e.preventDefault();
         input.blur();
         input.focus();
@@ -125,8 +125,10 @@ export class Field {
 
   private async done(): Promise<void> {
     const text = this.input.value;
-    this.say(this.isWrong(text) ?? (await this.take(text)));
-    if (this.message.hidden) this.refresh();
+    const problem = this.isWrong(text) ?? (await this.take(text));
+    if (problem !== null) this.input.value = text;
+    this.say(problem);
+    if (problem === null) this.refresh();
   }
 
   private say(problem: string | null): void {

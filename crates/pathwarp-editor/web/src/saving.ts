@@ -2,6 +2,7 @@
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
+import { inWords } from "./fields";
 import { toast } from "./toast";
 
 const FORMATS: [string, string, string][] = [
@@ -168,13 +169,17 @@ export class Saving {
 
   private async copyCommand(): Promise<void> {
     await this.app.settle();
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
-    if (!answer?.text) return;
+    let line = "";
     try {
-      await navigator.clipboard.writeText(answer.text);
+      line = (await this.app.connection.ask({ do: "command-line", name: this.name.value })).text ?? "";
+    } catch (e) {
+      return this.say(e instanceof Error ? inWords(e.message) : String(e));
+    }
+    try {
+      await navigator.clipboard.writeText(line);
       toast("The command line is on the clipboard");
     } catch {
-      toast(answer.text);
+      toast(line);
     }
     this.dialog.close();
   }

@@ -11,7 +11,9 @@ import type { Answer, Handle, XY } from "./types";
 
 /** Space around the drawing when it fits the view, in px. */
 const MARGIN = 56;
-const SHEET_MARGIN = 14;
+const SHEET_MARGIN = 20;
+/** Space around hints and tools, for handles beside them. */
+const BESIDE = 28;
 /** The radius in which a finger finds a handle, in px. */
 export const REACH = 18;
 
@@ -44,6 +46,8 @@ export class Stage {
   private isFitted = false;
   /** The first picture of a drawing has not arrived yet. */
   private isFresh = true;
+  /** The handles of the first picture are on their way. */
+  private isToFit = false;
   /** The page of the last picture, as saving would have it; null for the drawing's own. */
   private grown: Answer["page"] = null;
   /** Set while the page shows the drawing as it was. */
@@ -75,7 +79,8 @@ export class Stage {
     });
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
-    new ResizeObserver(() => this.resized()).observe(this.svg);
+    const sizes = new ResizeObserver(() => this.resized());
+    for (const part of [this.svg, byId("note"), byId("tools")]) sizes.observe(part);
   }
 
   private get size(): XY {
@@ -87,26 +92,40 @@ export class Stage {
     else this.layout();
   }
 
-  /** The part of the canvas that no panel of a narrow window covers, and the space around a drawing there. */
-  private get view(): { left: number; width: number; height: number; margin: number } {
+  /** The part of the canvas that neither panels of a narrow window nor hints and tools cover, as two corners. */
+  private get view(): Box {
     const [width, height] = this.size;
     const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
-    if (!panel || getComputedStyle(panel).position === "static") return { left: 0, width, height, margin: Math.min(MARGIN, width / 10) };
+    if (!panel || getComputedStyle(panel).position === "static") {
+      const [side, up, down] = [Math.min(MARGIN, width / 10), byId("note").offsetHeight, byId("tools").offsetHeight];
+      return [side, Math.max(MARGIN, up + BESIDE), width - side, Math.max(height - Math.max(MARGIN, down + BESIDE), height / 2)];
+    }
     // Hints and tools are hidden meanwhile.
-    const margin = SHEET_MARGIN;
     const { left, width: over } = panel.getBoundingClientRect();
-    if (over >= width) return { left: 0, width, height: Math.max(height - panel.clientHeight, height / 4), margin };
-    return { left: left > 0 ? 0 : over, width: width - over, height, margin };
+    if (over >= width) return [SHEET_MARGIN, SHEET_MARGIN, width - SHEET_MARGIN, Math.max(height - panel.clientHeight, height / 4) - SHEET_MARGIN];
+    return [(left > 0 ? 0 : over) + SHEET_MARGIN, SHEET_MARGIN, (left > 0 ? width - over : width) - SHEET_MARGIN, height - SHEET_MARGIN];
   }
 
-  /** Shows the whole page. */
+  /** Shows the whole page and all handles. */
   fit(): void {
-    const { left, width, height, margin } = this.view;
-    if (!this.app.state || width === 0 || height === 0) return;
-    this.camera.fit(this.page, [width, height], margin);
-    this.camera.shift[0] += left;
+    const [x0, y0, x1, y1] = this.view;
+    if (!this.app.state || x1 <= x0 || y1 <= y0) return;
+    const handles = (this.app.handles?.handles ?? []).map((h) => this.camera.inPx(h.get())).filter((p) => p.every(Number.isFinite));
+    const [a, b, c, d] = this.page;
+    const [xs, ys] = [[a, c, ...handles.map((p) => p[0])], [b, d, ...handles.map((p) => p[1])]];
+    this.camera.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)], [x1 - x0, y1 - y0]);
+    const [x, y] = this.camera.shift;
+    this.camera.shift = [x + x0, y + y0];
     this.isFitted = true;
     this.layout();
+  }
+
+  /** Moves the view as little as shows a handle. */
+  private panTo(handle: Handle): void {
+    const [x0, y0, x1, y1] = this.view;
+    const [x, y] = this.camera.toScreen(handle.get());
+    const by: XY = [Math.max(x0 - x, 0) + Math.min(x1 - x, 0), Math.max(y0 - y, 0) + Math.min(y1 - y, 0)];
+    if (by[0] !== 0 || by[1] !== 0) this.shift(by);
   }
 
   /** Moves the view by px of the screen. */
@@ -117,24 +136,15 @@ export class Stage {
     this.layout();
   }
 
-  /** The whole page is in view. */
-  private get showsAll(): boolean {
-    const { left, width, height } = this.view;
-    const { scale, shift } = this.camera;
-    const [x0, y0, x1, y1] = this.page;
-    const [l, t, r, b] = [scale * x0 + shift[0], scale * y0 + shift[1], scale * x1 + shift[0], scale * y1 + shift[1]];
-    return l >= left && t >= 0 && r <= left + width && b <= height;
-  }
-
-  /** Shows the whole page, unless the user looks at a detail. */
+  /** Shows the whole page and all handles, unless the user looks at a detail. */
   private reveal(): void {
-    if (this.isFitted && !this.showsAll) this.fit();
+    if (this.isFitted) this.fit();
   }
 
   /** Magnifies about a point of the screen, or about the middle of the view. */
   zoom(factor: number, at?: XY): void {
-    const { left, width, height } = this.view;
-    this.camera.zoom(factor, at ?? [left + width / 2, height / 2]);
+    const [x0, y0, x1, y1] = this.view;
+    this.camera.zoom(factor, at ?? [(x0 + x1) / 2, (y0 + y1) / 2]);
     this.isFitted = false;
     this.layout();
   }
@@ -161,7 +171,7 @@ export class Stage {
     }
     if (answer.summary && this.isFresh) {
       this.isFresh = false;
-      this.reveal();
+      this.isToFit = this.isFitted;
     }
     if (this.showsNodes) this.drawNodes();
     this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
@@ -285,14 +295,20 @@ export class Stage {
         { class: `knob ${handle.shape}`, tabindex: 0, role: "button", "aria-label": handle.label, "data-key": handle.key },
         s("circle", { r: handle.shape === "node" ? REACH : REACH - 5, class: "reach" }), body,
       );
-      knob.addEventListener("focus", () => this.focus(handle.key));
+      knob.addEventListener("focus", () => {
+        this.focus(handle.key);
+        // Keys lead to what is out of sight.
+        if (knob.matches(":focus-visible") && !this.app.isDragging) this.panTo(handle);
+      });
       this.elements.set(handle.key, knob);
       return knob;
     });
     this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
     const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
     this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
-    this.placeHandles();
+    if (this.isToFit && handles) this.fit();
+    else this.placeHandles();
+    if (handles) this.isToFit = false;
     if (this.focused) {
       const again = this.elements.get(this.focused);
       if (!again) this.focus(null);

@@ -1,5 +1,7 @@
 // An hour of real work: corners of cages, undo, fields. Real mouse moves and real keys.
-import { becomes, check, choose, drag, edit, folder, keys, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { execFileSync } from "node:child_process";
+import { readFileSync, rmSync } from "node:fs";
+import { becomes, check, choose, drag, edit, folder, keys, middle, open, paths, program, quiet, sample } from "./harness.mjs";
 
 async function within(shape, test, options = {}) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
@@ -216,4 +218,172 @@ export const fields_of_lengths_and_places = () => within(null, async (page) => {
   await type("set-degree", "3xx");
   const said = await page.textContent("#set-degree-wrong");
   check(/such as 3x2/.test(said) && !/--|`/.test(said) && (await value(page, "set-degree")) === "3xx", said);
+});
+
+/** Places along the paths of the picture, in px of the screen. */
+const outline = (page) => page.$$eval("#stage .art:not([visibility=hidden]) path", (all) => all.flatMap((p) => {
+  const [length, m] = [p.getTotalLength(), p.getScreenCTM()];
+  return Array.from({ length: 200 }, (_, i) => p.getPointAtLength((i / 200) * length).matrixTransform(m)).map(({ x, y }) => [x, y]);
+}));
+
+/** A pin that is added to bent artwork takes hold of what lies under the pointer: that stays, and then follows the pin. */
+export const pins_take_hold = () => within("Pins", async (page) => {
+  await drag(page, "pair/4/1", 60, 70);
+  const before = await outline(page);
+  const away = ([x, y], ps) => Math.min(...ps.map((p) => Math.hypot(p[0] - x, p[1] - y)));
+  const knobs = await Promise.all((await keys(page)).map((k) => middle(page, k)));
+  const pinned = await middle(page, "pair/4/1");
+  // A place of the outline that the first pin has moved, clear of all handles.
+  const at = before.filter((p) => away(p, knobs) > 40).sort((p, q) => away(p, [pinned]) - away(q, [pinned]))[0].map(Math.round);
+  await page.mouse.dblclick(...at);
+  await quiet(page);
+  const { "pair/5/0": source, "pair/5/1": target } = await places(page, ["pair/5/0", "pair/5/1"]);
+  check(away(target, [at]) < 1, `the pin is at ${target}, not ${at}`);
+  check(away(source, [at]) > 15, "the pin's source is the place of the click");
+  const after = await outline(page);
+  check(away(at, after) < 2, `what the pin holds has moved by ${away(at, after)} px`);
+  check(!(await page.isVisible("#folds")), "the picture folds");
+  const off = Math.max(...after.map((p) => away(p, before)));
+  check(off < 20, `the picture moves by ${off} px`);
+  await drag(page, "pair/5/1", 40, -25);
+  const place = await middle(page, "pair/5/1");
+  check(away(place, await outline(page)) < 2, "the artwork does not follow the pin");
+  await page.click("#undo");
+  await page.click("#undo");
+  await quiet(page);
+  check(!(await keys(page)).includes("pair/5/0"), "undo does not take the pin away");
+});
+
+/** A grid keeps its shape when its degree grows, and when a row or a column is added by a double click on a line of it. */
+export const grids_keep_their_shape = () => within("Grid", async (page) => {
+  await drag(page, "at/5", 30, 60);
+  await drag(page, "at/10", -50, 20);
+  const [before, count] = [await outline(page), (await keys(page)).length];
+  const same = async (what) => {
+    const now = await outline(page);
+    const off = Math.max(...now.map((p) => Math.min(...before.map((q) => Math.hypot(p[0] - q[0], p[1] - q[1])))));
+    check(off < 3, `${what} moves the picture by ${off} px`);
+  };
+  const [[ax, ay], [bx, by]] = [await middle(page, "at/0"), await middle(page, "at/1")];
+  await page.mouse.dblclick((ax + bx) / 2, (ay + by) / 2);
+  await quiet(page);
+  check((await keys(page)).length === count + 4, `${(await keys(page)).length} points after a column was added`);
+  await same("a column");
+  const [[cx, cy], [dx, dy]] = [await middle(page, "at/0"), await middle(page, "at/5")];
+  await page.mouse.dblclick((cx + dx) / 2, (cy + dy) / 2);
+  await quiet(page);
+  check((await keys(page)).length === 25, `${(await keys(page)).length} points after a row was added`);
+  await same("a row");
+  await page.locator("#settings summary").click();
+  await page.click("#set-degree", { clickCount: 3 });
+  await page.keyboard.type("5x6");
+  await page.keyboard.press("Enter");
+  await quiet(page);
+  check((await keys(page)).length === 42, `${(await keys(page)).length} points`);
+  await same("a degree");
+  await page.click("#set-degree", { clickCount: 3 });
+  await page.keyboard.type("3x3");
+  await page.keyboard.press("Enter");
+  await quiet(page);
+  check((await keys(page)).length === 16, "the grid does not shrink");
+  await same("the nearest smaller net, which is the first one,");
+  for (let i = 0; i < 4; i++) await page.keyboard.press("Control+z");
+});
+
+/** The same for a triangular net. */
+export const triangles_keep_their_shape = () => within("Triangle net", async (page) => {
+  await drag(page, "at/3", 40, 20);
+  const [before, count] = [await outline(page), (await keys(page)).length];
+  await page.click("#set-degree", { clickCount: 3 });
+  await page.keyboard.type("4");
+  await page.keyboard.press("Enter");
+  await quiet(page);
+  const off = Math.max(...(await outline(page)).map((p) => Math.min(...before.map((q) => Math.hypot(p[0] - q[0], p[1] - q[1])))));
+  check((await keys(page)).length > count && off < 3, `${off} px off, ${count} points before`);
+});
+
+/** After Fit, every handle is in view and under nothing; Tab brings one that is out of sight there. */
+const allInView = (page) => page.evaluate(() => Array.from(document.querySelectorAll(".knob")).filter((knob) => {
+  const { x, y, width, height } = knob.querySelector(".body").getBoundingClientRect();
+  const corners = [[x, y], [x + width, y], [x, y + height], [x + width, y + height]];
+  return !corners.every(([cx, cy]) => document.elementFromPoint(cx, cy)?.closest("#stage"));
+}).map((k) => k.dataset.key));
+const fits = (width, height) => within(null, async (page) => {
+  for (const [shape, section] of [["Möbius", ""], ["Triangle net", ""], ["Swirl", ""], ["Grid", ""], ["Ring", "Effects"], ["Bulge", "Effects"]]) {
+    if (width <= 900) await page.click("#open-shapes");
+    await choose(page, shape, section);
+    await page.click("#fit");
+    await quiet(page);
+    const out = await allInView(page);
+    check(out.length === 0, `${shape}: ${out} cannot be seen`);
+  }
+  for (let i = 0; i < 8; i++) await page.click("#zoom-in");
+  await page.locator(".knob").first().focus();
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Shift+Tab");
+  const key = await page.evaluate(() => document.activeElement.dataset.key);
+  check(key && !(await allInView(page)).includes(key), `${key} is out of sight`);
+  const parts = await page.$$eval("#saved, #tools, #tools button, header button", (all) => all.filter((e) => e.offsetParent).map((e) => [e.id || e.title, e.scrollWidth - e.clientWidth, e.getBoundingClientRect().right]));
+  check(parts.every(([, over, right]) => over <= 0 && right <= width), JSON.stringify(parts));
+  if (width > 900) return;
+  for (const button of ["#open-settings", "#save-as"]) {
+    await page.click(button);
+    const small = await page.$$eval("button, textarea, select, input:not([type=radio], [type=checkbox], [type=file])", (all) => all.filter((e) => e.offsetParent).map((e) => [e.id || e.textContent, e.getBoundingClientRect()]).filter(([, b]) => b.width > 0 && (b.width < 43.5 || b.height < 43.5)).map(([name]) => name));
+    check(small.length === 0, `too small for a finger: ${small}`);
+    const cut = await page.$$eval("dialog[open] button", (all) => all.filter((b) => b.offsetParent && (b.scrollWidth > b.clientWidth || b.getBoundingClientRect().right > innerWidth)).map((b) => b.id));
+    check(cut.length === 0, `cut off: ${cut}`);
+  }
+}, { viewport: { width, height } });
+export const everything_fits_a_desk = () => fits(1440, 900);
+export const everything_fits_a_laptop = () => fits(1024, 700);
+export const everything_fits_a_phone = () => fits(390, 844);
+
+/** Copies the command line that the dialog gives for a format and a name. */
+async function copied(page, format, name) {
+  await page.evaluate(() => { window.copied = null; navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }; });
+  await page.click("#save-as");
+  await page.locator(`#save-formats input[value=${format}]`).check();
+  if (name) await page.fill("#save-name", name);
+  await page.click("#copy-command");
+  return (await page.waitForFunction(() => window.copied)).jsonValue();
+}
+const run = (dir, line) => execFileSync("sh", ["-c", line.replaceAll(/(^|&& )pathwarp /g, `$1'${program}' `)], { cwd: dir, stdio: "ignore" });
+
+/** The copied command line writes the chosen format under the typed name, with the bytes that Save writes. */
+export const commands_have_format_and_name = () => within("Flag", async (page, dir) => {
+  for (const [format, name] of [["png", "poster.png"], ["pdf", "poster.pdf"], ["toml", "waves.toml"]]) {
+    const line = await copied(page, format, name);
+    check(line.includes(name), line);
+    run(dir, line);
+    const own = readFileSync(`${dir}/${name}`);
+    rmSync(`${dir}/${name}`);
+    await page.click("#save-as");
+    await page.locator(`#save-formats input[value=${format}]`).check();
+    await page.fill("#save-name", name);
+    await page.click("#save-dialog button[type=submit]");
+    await page.waitForFunction(() => !document.querySelector("#save-dialog").open);
+    check(readFileSync(`${dir}/${name}`).equals(own), `${name} is another file by ${line}`);
+  }
+});
+
+/** From a reopened result, the command bends the source, also where that is in the result alone. */
+export const commands_of_results_bend_the_source = () => within("Flag", async (page, dir, editor) => {
+  await page.click("#save");
+  await page.waitForSelector("#toast.on");
+  await editor.stop();
+  for (const source of ["logo.svg", "logo-source.svg"]) {
+    if (source !== "logo.svg") rmSync(`${dir}/logo.svg`);
+    const again = await edit(`${dir}/logo-bent.svg`);
+    const page2 = await open(again.address);
+    await drag(page2, "bend", 0, -20);
+    await page2.click("#save");
+    await page2.waitForSelector("#toast.on");
+    const line = await copied(page2, "svg", "copy.svg");
+    check(line.includes(` ${source} `), line);
+    run(dir, line);
+    check(readFileSync(`${dir}/copy.svg`).equals(readFileSync(`${dir}/logo-bent.svg`)), `another drawing from ${line}`);
+    rmSync(`${dir}/copy.svg`);
+    await page2.context().close();
+    await again.stop();
+  }
 });
