@@ -130,6 +130,154 @@
     return s("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" }, s("path", { d: ICONS[name] }));
   }
 
+  // src/toast.ts
+  var SHORTEST = 5e3;
+  var CHARACTER = 60;
+  var fading = 0;
+  function toast(text) {
+    const box = byId("toast");
+    box.textContent = text;
+    box.classList.add("on");
+    clearTimeout(fading);
+    fading = window.setTimeout(() => box.classList.remove("on"), Math.max(SHORTEST, CHARACTER * text.length));
+  }
+
+  // src/fields.ts
+  var LENGTHS = { px: 1, in: 96, mm: 96 / 25.4, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
+  var TOKEN2 = /\s*(?:(\d+[.,]?\d*|[.,]\d+)\s*(%|°|[a-z]+)?|([-+*/()]))\s*/iy;
+  function evaluate(text, unit) {
+    const tokens = [];
+    const normal = text.replaceAll("−", "-").replaceAll("×", "*");
+    for (TOKEN2.lastIndex = 0; TOKEN2.lastIndex < normal.length; ) {
+      const found = TOKEN2.exec(normal);
+      if (!found) return null;
+      tokens.push(found[3] ?? { value: Number(found[1].replace(",", ".")), unit: (found[2] ?? "").toLowerCase().replace(/^deg$/, "°") });
+    }
+    try {
+      const result = sum(tokens);
+      return tokens.length === 0 && Number.isFinite(result.value) ? { value: result.value, unit: result.unit || unit } : null;
+    } catch {
+      return null;
+    }
+    function sum(rest) {
+      let left = product(rest);
+      while (rest[0] === "+" || rest[0] === "-") {
+        const sign = rest.shift() === "+" ? 1 : -1;
+        const right = product(rest);
+        const [a, b] = [left.unit || unit, right.unit || unit];
+        left = { value: left.value + sign * right.value * factor(b, a), unit: a };
+      }
+      return left;
+    }
+    function product(rest) {
+      let left = single(rest);
+      while (rest[0] === "*" || rest[0] === "/") {
+        const isTimes = rest.shift() === "*";
+        const right = single(rest);
+        if (right.unit && (left.unit || !isTimes)) throw new Error("a product of units");
+        left = { value: isTimes ? left.value * right.value : left.value / right.value, unit: left.unit || right.unit };
+      }
+      return left;
+    }
+    function single(rest) {
+      const next = rest.shift();
+      if (next === "-" || next === "+") {
+        const { value, unit: unit2 } = single(rest);
+        return { value: next === "-" ? -value : value, unit: unit2 };
+      }
+      if (next === "(") {
+        const inner = sum(rest);
+        if (rest.shift() !== ")") throw new Error("no closing bracket");
+        return inner;
+      }
+      if (typeof next !== "object") throw new Error("no number");
+      return next;
+    }
+  }
+  function factor(from, to) {
+    if (from === to) return 1;
+    const [a, b] = [LENGTHS[from], LENGTHS[to]];
+    if (a === void 0 || b === void 0) throw new Error("units of different kinds");
+    return a / b;
+  }
+  function asked(unit, least = -Infinity, most = Infinity, isWhole = false) {
+    const [what, end2] = [isWhole ? "A whole number" : "A number", unit && ` ${unit}`];
+    if (least > -Infinity && most < Infinity) return `${what} from ${least} to ${most}${end2}`;
+    if (least > -Infinity) return `${what} from ${least}${end2} up`;
+    return `${what}, such as ${isWhole ? 3 : 30}${end2}`;
+  }
+  function inWords(problem) {
+    const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/--([a-z-]+)/g, (_, name) => `“${name.replaceAll("-", " ")}”`);
+    return text.replace(/`([^`]*)`/g, "“$1”").replace(/^./, (c) => c.toUpperCase());
+  }
+  var Field = class {
+    /** `take` returns what is wrong with a text; `isWrong` knows it while it is typed. */
+    constructor(input, read, take, isWrong = () => null, nudge) {
+      this.input = input;
+      this.read = read;
+      this.take = take;
+      this.isWrong = isWrong;
+      this.message.id = `${input.id}-wrong`;
+      input.addEventListener("change", () => void this.done());
+      input.addEventListener("input", () => {
+        if (!this.message.hidden) this.say(this.isWrong(input.value));
+      });
+      input.addEventListener("keydown", ((e) => {
+        if (e.key === "Escape") this.reset();
+        else if (e.key === "Enter" && (input.tagName === "INPUT" || "single" in input.dataset)) {
+          e.preventDefault();
+          input.blur();
+          input.focus();
+        } else if (nudge && (e.key === "ArrowUp" || e.key === "ArrowDown")) {
+          const next = nudge(input.value, (e.key === "ArrowUp" ? 1 : -1) * (e.shiftKey ? 10 : 1));
+          e.preventDefault();
+          if (next !== null) input.value = this.shown = next;
+          this.say(null);
+        }
+      }));
+    }
+    input;
+    read;
+    take;
+    isWrong;
+    message = h("p", { class: "wrong", role: "alert", hidden: true });
+    /** The value for which the text is wrong. */
+    wrongFor = null;
+    shown = "";
+    async done() {
+      const text = this.input.value;
+      const problem = this.isWrong(text) ?? await this.take(text);
+      if (problem !== null) this.input.value = text;
+      this.say(problem);
+      if (problem === null) this.refresh();
+    }
+    say(problem) {
+      this.wrongFor = problem === null ? null : this.read();
+      this.message.textContent = problem;
+      this.message.hidden = problem === null;
+      if (problem === null) this.input.removeAttribute("aria-invalid");
+      else this.input.setAttribute("aria-invalid", "true");
+      if (problem === null) this.input.removeAttribute("aria-describedby");
+      else this.input.setAttribute("aria-describedby", this.message.id);
+    }
+    /** The value that holds is on show again. */
+    reset() {
+      this.say(null);
+      this.input.value = this.shown = this.read();
+      this.input.select();
+    }
+    refresh() {
+      const value = this.read();
+      if (this.wrongFor === value) return;
+      if (this.wrongFor !== null) this.say(null);
+      if (document.activeElement === this.input && this.input.value !== this.shown && value === this.shown) return;
+      this.input.value = this.shown = value;
+    }
+  };
+  function isAnyWrong() {
+    return document.querySelector("#settings [aria-invalid=true], #place [aria-invalid=true]") !== null;
+  }
+
   // src/values.ts
   var DRAGGED = /* @__PURE__ */ new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
   var FIGURES = 7;
@@ -288,6 +436,7 @@
 
   // src/knots.ts
   var SAMPLES = 32;
+  var FINE = 1e-9;
   function piece(sub, k) {
     const before2 = k === 0 ? sub.start : end(sub.segments[k - 1]);
     const seg = sub.segments[k];
@@ -314,15 +463,22 @@
   }
   function nearest(sub, to) {
     let best = null;
+    const look = (k, points2, t) => {
+      const [at] = scheme(points2, t).pop();
+      const distance2 = Math.hypot(at[0] - to[0], at[1] - to[1]);
+      if (!best || distance2 < best.distance) best = { piece: k, t, at, distance: distance2 };
+    };
     sub.segments.forEach((_, k) => {
-      const points = piece(sub, k);
-      for (let i = 1; i < SAMPLES; i++) {
-        const t = i / SAMPLES;
-        const [at] = scheme(points, t).pop();
-        const distance = Math.hypot(at[0] - to[0], at[1] - to[1]);
-        if (!best || distance < best.distance) best = { piece: k, t, at, distance };
-      }
+      const points2 = piece(sub, k);
+      for (let i = 1; i < SAMPLES; i++) look(k, points2, i / SAMPLES);
     });
+    const found = best;
+    if (!found) return null;
+    const points = piece(sub, found.piece);
+    for (let step2 = 0.5 / SAMPLES; step2 > FINE; step2 /= 2) {
+      const { t } = best;
+      for (const near of [t - step2, t + step2]) look(found.piece, points, Math.min(Math.max(near, FINE), 1 - FINE));
+    }
     return best;
   }
   function middle(sub, k) {
@@ -364,6 +520,7 @@
   var MARGIN = 0.15;
   var PAIR = "X,Y:X,Y";
   var FEWEST_CLOSED = 3;
+  var SKELETONS = /* @__PURE__ */ new Set(["along"]);
   var Handles = class {
     constructor(deformation, step2, grips) {
       this.deformation = deformation;
@@ -395,16 +552,58 @@
         grip.net?.points.forEach((_, i) => this.addNode(name, grip.net, i));
         if (name === this.deformation.gallery?.bend && grip.value !== void 0) this.addBend(name, grip);
         if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
-        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isFree(name) ? closed(sub) : sub, `${i}.${j}`)));
+        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
       }
       this.dials = this.handles.every(({ param }) => param === "about") ? dials({ deformation: this.deformation, grips: this.grips, frame: this.frame }) : [];
       this.handles.push(...this.dials.map(({ handle }) => handle));
+    }
+    /** The net whose control points are handles. */
+    get net() {
+      return Object.values(this.grips).find((grip) => grip.net)?.net;
+    }
+    /** A pin is added with the place in the artwork that it takes hold of. */
+    get pairs() {
+      return this.grows && this.deformation.params.some(({ name, notation }) => notation === PAIR && this.grips[name]?.pairs);
+    }
+    /** The handle of a point nearest to a place. */
+    nearest(at) {
+      const far = (h2) => Math.hypot(h2.get()[0] - at[0], h2.get()[1] - at[1]);
+      return this.handles.filter(({ shape }) => shape === "node").reduce((best, h2) => best && far(best) <= far(h2) ? best : h2, null);
+    }
+    /** Points are added to and taken from all rows at once. */
+    isRows(param) {
+      return this.points(param) === "rows";
+    }
+    /** A point that is added at a place adds none elsewhere. */
+    isFree(at, reach) {
+      const found = this.near(at, reach, (param) => param.points !== void 0);
+      return !found || this.points(found.name) === "any";
+    }
+    /** The values with which a net has one more row or column through a place on one of its lines. */
+    denser(at, reach) {
+      const { net } = this;
+      const sides = net?.lines.flatMap((line) => line.slice(1).map((b2, i) => [line[i], b2])) ?? [];
+      const far = ([a2, b2]) => distance(at, net.points[a2], net.points[b2]);
+      const side = sides.filter((s2) => far(s2) <= reach).sort((s2, t) => far(s2) - far(t))[0];
+      if (!net || !side) return null;
+      const [a, b] = side.map((i) => net.names[i].split(",").map(Number));
+      if (a.length === 3) return { degree: [String(a.reduce((sum, n) => sum + n) + 1)] };
+      const axis = a[0] === b[0] ? 1 : 0;
+      const numbers = (name2, usual) => {
+        const [x, y] = (this.step.args[name2]?.[0] ?? usual).split(/[x×]/i);
+        return [Number(x), Number(y ?? x)];
+      };
+      const cells2 = numbers("cells", this.step.args.spline ? "4x4" : "1x1");
+      const name = cells2[axis] > 1 ? "cells" : "degree";
+      const counts = name === "cells" ? cells2 : numbers("degree", "3x3");
+      counts[axis] = name === "cells" ? 2 * counts[axis] : counts[axis] + 1;
+      return { [name]: [counts.join("x")] };
     }
     points(name) {
       return this.deformation.params.find((p) => p.name === name)?.points;
     }
     /** The path may have any number of points. */
-    isFree(name) {
+    isAny(name) {
       return this.points(name) === "any";
     }
     /** The rows of points, which have equally many. */
@@ -497,7 +696,8 @@
         }
       });
     }
-    /** The nodes and control points of a path. Nodes carry their control points along; the ends of a closed path are one node. */
+    /** The nodes and control points of a path. Smooth nodes carry their control points along; at a corner, the pieces beside it keep their
+     * shape: straight ones stay straight. The ends of a closed path are one node. */
     addSubpath(param, path, sub, id) {
       const { segments } = sub;
       const last = segments.length - 1;
@@ -506,6 +706,11 @@
       const before2 = (n) => n > 0 ? segments[n - 1] : joined ? segments[last] : void 0;
       const after = (n) => segments[n];
       const at = (n) => n === 0 ? sub.start : end(segments[n - 1]);
+      const isCorner = (n) => {
+        const [a, b] = [before2(n), after(n)];
+        if (!a || !b) return !SKELETONS.has(param);
+        return a.length !== 6 || b.length !== 6 || !isSmooth(at(n), [a[2], a[3]], [b[0], b[1]]);
+      };
       const name = param === this.deformation.name ? called(this.deformation) : words(param);
       for (let n = 0; n < nodes; n++) {
         const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
@@ -520,17 +725,15 @@
           get: () => at(n),
           set: (to) => {
             const from = at(n);
-            const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
             const arrive = before2(n);
-            const leave = after(n);
-            if (arrive?.length === 6) {
-              arrive[2] += dx;
-              arrive[3] += dy;
-            }
-            if (leave?.length === 6) {
-              leave[0] += dx;
-              leave[1] += dy;
-            }
+            const ends = [[arrive, 2, n > 0 ? n - 1 : nodes - 1], [after(n), 0, (n + 1) % nodes]];
+            const turns = isCorner(n);
+            const isFollowed = ends.map(([, , other]) => turns && isCorner(other));
+            ends.forEach(([seg, own, other], i) => {
+              if (seg?.length !== 6) return;
+              const moved = similarity(turns ? at(other) : null, from, to);
+              for (const k of isFollowed[i] ? [own, 2 - own] : [own]) seg.splice(k, 2, ...moved([seg[k], seg[k + 1]]));
+            });
             if (n === 0) sub.start = to;
             if (n > 0 || joined) arrive.splice(arrive.length - 2, 2, ...to);
           }
@@ -571,7 +774,7 @@
           this.collect();
         };
       }
-      if (!this.isFree(param) || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return void 0;
+      if (!this.isAny(param) || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return void 0;
       return () => {
         drop(sub, n);
         this.collect();
@@ -615,16 +818,16 @@
       if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
       return { param: "radius", handles: [radius], targets: (to) => [to] };
     }
-    /** Adds a point to the path that passes near a place. Returns the key of its handle. */
+    /** Adds a point to the path that passes near a place. */
     divide(at, reach) {
       const found = this.near(at, reach, (param) => param.points !== void 0);
-      if (!found) return null;
-      const { name, id, sub, spot } = found;
+      if (!found) return false;
+      const { name, sub, spot } = found;
       if (this.points(name) === "any") {
-        const node2 = split(sub, spot);
+        split(sub, spot);
         this.collect();
         this.write(name);
-        return `${name}/${id}/${node2 % (sub.closed ? sub.segments.length : Infinity)}`;
+        return true;
       }
       for (const [row, points] of this.rows) {
         const [start, ...rest] = raised([points.start, ...points.segments.map(end)]);
@@ -632,7 +835,7 @@
         this.write(row);
       }
       this.collect();
-      return `${name}/${id}/${spot.piece + 1}`;
+      return true;
     }
     /** The lines to draw under the handles. */
     lines() {
@@ -704,29 +907,28 @@
       if (!sub || this.points(handle.param) === void 0) return null;
       return middle(sub, Math.min(Number(n), sub.segments.length - 1));
     }
-    /** Adds a point where the step takes any number of them, to paths within `reach`. Returns the key of its handle. */
-    add(at, reach) {
-      const divided = this.divide(at, reach);
-      if (divided) return divided;
-      if (!this.grows) return null;
+    /** Adds a point where the step takes any number of them, to paths within `reach`; a pin takes `from` there. */
+    add(at, from, reach) {
+      if (this.divide(at, reach)) return true;
+      if (!this.grows) return false;
       const params = [...this.deformation.params].sort((a, b) => Number(b.notation === PAIR) - Number(a.notation === PAIR));
       for (const { name, repeat, notation } of params) {
         const grip = this.grips[name];
         if (!repeat || !grip) continue;
         if (notation === PAIR && grip.pairs) {
-          grip.pairs.push([[...at], [...at]]);
+          grip.pairs.push([[...from], [...at]]);
           this.collect();
           this.write(name);
-          return `${name}/${grip.pairs.length - 1}/1`;
+          return true;
         }
         if (notation === "X,Y" && grip.points) {
           grip.points.push(at);
           this.collect();
           this.write(name);
-          return `${name}/${grip.points.length - 1}`;
+          return true;
         }
       }
-      return null;
+      return false;
     }
     /** Returns `true` if points can be added. */
     get grows() {
@@ -766,6 +968,18 @@
     ];
     return { kind: "path", points, cubic: true, closed: true };
   }
+  function distance(p, a, b) {
+    const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+    const t = Math.min(Math.max(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy || 1), 0), 1);
+    return Math.hypot(a[0] + t * dx - p[0], a[1] + t * dy - p[1]);
+  }
+  function similarity(about, from, to) {
+    if (!about || same(about, from)) return ([x, y]) => [x + to[0] - from[0], y + to[1] - from[1]];
+    const [ax, ay, bx, by] = [from[0] - about[0], from[1] - about[1], to[0] - about[0], to[1] - about[1]];
+    const square = ax * ax + ay * ay;
+    const [re, im] = [(ax * bx + ay * by) / square, (ax * by - ay * bx) / square];
+    return ([x, y]) => [about[0] + re * (x - about[0]) - im * (y - about[1]), about[1] + im * (x - about[0]) + re * (y - about[1])];
+  }
   function same(a, b) {
     return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9 * (1 + Math.hypot(...a));
   }
@@ -787,6 +1001,7 @@
   var DRAFT = 0.35;
   var DRAFTED = "pathwarp-drafted";
   var KEYS = 500;
+  var NET = /* @__PURE__ */ new Set(["degree", "cells", "spline"]);
   var App = class {
     catalogue = [];
     state = null;
@@ -811,6 +1026,8 @@
     isDone = false;
     /** A handle is being dragged, so the handles stay as they are. */
     isDragging = false;
+    /** Takes back what a pointer that is down has done. */
+    hold = null;
     screen = { show: () => {
     }, pixel: 1, reveal: () => {
     } };
@@ -915,11 +1132,11 @@
         this.isWanted = false;
         const start = this.since;
         await this.attempt(async () => {
-          const asked = performance.now();
+          const asked2 = performance.now();
           const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
           const answered = performance.now();
           this.take(answer);
-          const detail = { start, asked, answered, shown: performance.now(), size: this.connection.size };
+          const detail = { start, asked: asked2, answered, shown: performance.now(), size: this.connection.size };
           window.dispatchEvent(new CustomEvent(DRAFTED, { detail }));
         });
       } while (this.isWanted);
@@ -959,24 +1176,18 @@
     /** Waits until the server has all that was done so far. Returns `false` if it refuses some of it. */
     async settle() {
       const { refusals } = this;
-      const field = this.takeTyped();
+      this.takeTyped();
       await this.turns;
       await this.flush();
       await this.lastCommit;
-      const isTaken = this.refusals === refusals;
-      if (!isTaken && document.activeElement === field) {
-        field?.blur();
-        this.tell("steps");
-      }
-      return isTaken;
+      return this.refusals === refusals && !isAnyWrong();
     }
     /** Takes the value that is being typed, as if its field were left. */
     takeTyped() {
       const field = document.activeElement;
-      if (!isTyping(field)) return null;
+      if (!isTyping(field)) return;
       field.blur();
       field.focus({ preventScroll: true });
-      return field;
     }
     endPause() {
       if (this.pause === 0) return false;
@@ -987,10 +1198,12 @@
     }
     /** Takes back what has been dragged since the last commit: the step is as it was. */
     cancel(step2) {
+      this.hold = null;
       this.isDragging = false;
       this.isWanted = false;
       this.steps = this.steps.map((s2, i) => i === this.selected ? step2 : s2);
       void this.refresh();
+      this.tell("values");
     }
     /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
     inTurn(work) {
@@ -998,13 +1211,14 @@
       this.turns = done.catch(() => void 0);
       return done;
     }
-    /** Undoes or redoes. */
-    turn(direction) {
+    /** Undoes or redoes; while something is dragged, that is taken back alone. */
+    async turn(direction) {
+      if (this.hold) return direction === "undo" ? this.hold() : void 0;
       this.takeTyped();
       return this.inTurn(() => this.turned(direction));
     }
     async turned(direction) {
-      if (this.isProposal && direction === "undo") return;
+      if (!this.state?.[direction]) return;
       await this.attempt(async () => {
         const answer = await this.connection.ask({ do: direction, shown: null });
         this.screen.show(answer);
@@ -1063,6 +1277,7 @@
     set(name, values, isDone) {
       const { step: step2 } = this;
       if (!step2) return;
+      if (isDone && NET.has(name) && this.handles?.net) return void this.inTurn(() => this.renet({ [name]: values }));
       const { presets } = this.deformation(step2.deformation)?.gallery ?? {};
       if (name === presets) {
         for (const [other, { adjust }] of Object.entries(this.grips[this.selected]?.params ?? {})) if (adjust) delete step2.args[other];
@@ -1076,6 +1291,32 @@
       }
       if (isDone) void this.commit();
       else this.draft(performance.now());
+    }
+    /** Sets a parameter by a key; those that follow are one change with it. */
+    setSoon(name, values) {
+      this.set(name, values, false);
+      this.commitSoon();
+      this.tell("values");
+    }
+    /** Sets a parameter to what was typed. Returns what is wrong with it. */
+    async setTyped(name, values) {
+      const { refusals } = this;
+      this.set(name, values, true);
+      await this.turns;
+      await this.lastCommit;
+      const { problem } = this;
+      if (this.refusals === refusals || problem === null) return null;
+      this.fail(null);
+      return inWords(problem);
+    }
+    /** Gives the net of the step more or fewer control points; it bends as before. */
+    async renet(values) {
+      const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
+      if (!answer?.step) return this.tell("steps");
+      this.steps = this.steps.map((s2, i) => i === this.selected ? answer.step : s2);
+      this.tell("steps");
+      this.dropHandles();
+      await this.commit();
     }
     grip(name) {
       return this.grips[this.selected]?.params[name];
@@ -1108,7 +1349,11 @@
     }
     /** Another page has changed the steps. */
     async hear(news) {
-      if (news.event === "changed" && news.state && !this.isDragging) await this.load(news.state);
+      if (news.event !== "changed" || !news.state || this.isDragging) return;
+      const { file, folder } = this.state ?? news.state;
+      if (news.state.file !== file || news.state.folder !== folder) this.tell("drawing");
+      await this.load(news.state);
+      if (news.state.file !== file) toast(`${news.state.file} has been opened in another tab. The steps of ${file} are kept with it`);
     }
     /** Does something that the server may refuse; then the message is shown. */
     async attempt(work) {
@@ -1123,30 +1368,41 @@
       this.problem = problem;
       this.tell("report");
     }
-    /** Adds a point at a place, where the step takes any number. */
-    addPoint(at, reach) {
-      const key = this.handles?.add(at, reach) ?? null;
-      if (key) {
-        this.tell("handles");
-        void this.commit();
-      }
-      return key;
+    /** Adds a point at a place, where the step takes any number, and at others that mirror it. Returns the key of its handle. */
+    addPoint(at, others, reach) {
+      return this.inTurn(async () => {
+        const { handles } = this;
+        if (!handles) return null;
+        const denser = handles.denser(at, reach);
+        if (denser) await this.renet(denser);
+        else if (!await this.added(handles, at, others, reach)) return null;
+        return this.handles?.nearest(at)?.key ?? null;
+      });
+    }
+    async added(handles, at, others, reach) {
+      const places = handles.isFree(at, reach) ? [at, ...others] : [at];
+      const sources = handles.pairs ? await Promise.all(places.map((p) => this.preimage(p))) : places;
+      if (this.handles !== handles || !sources[0]) return false;
+      const isAdded = places.map((p, i) => sources[i] != null && handles.add(p, sources[i], reach));
+      if (!isAdded[0]) return false;
+      this.tell("handles");
+      await this.commit();
+      return true;
+    }
+    /** The place in the artwork that the step takes to this one. */
+    async preimage(at) {
+      const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
+      if (answer?.at === null) this.fail("No place of the artwork comes to lie there");
+      return answer?.at ?? null;
     }
   };
 
-  // src/toast.ts
-  var SHORTEST = 5e3;
-  var CHARACTER = 60;
-  var fading = 0;
-  function toast(text) {
-    const box = byId("toast");
-    box.textContent = text;
-    box.classList.add("on");
-    clearTimeout(fading);
-    fading = window.setTimeout(() => box.classList.remove("on"), Math.max(SHORTEST, CHARACTER * text.length));
-  }
-
   // src/gallery.ts
+  var ALSO = {
+    shaper: "bottle label neck",
+    bend: "text on path words on a line badge seal",
+    arc: "text on a circle badge"
+  };
   var Gallery = class {
     constructor(app2) {
       this.app = app2;
@@ -1155,6 +1411,9 @@
         if (change === "steps") this.mark();
       });
       this.search.addEventListener("input", () => this.filter());
+      this.search.addEventListener("keydown", (e) => {
+        if (e.key === "Enter" && this.search.value.trim() !== "") this.box.querySelector("section:not([hidden]) :is(.card, .preset):not([hidden])")?.click();
+      });
     }
     app;
     box = byId("gallery");
@@ -1163,6 +1422,10 @@
     queue = [];
     isDrawing = false;
     own = h("section", { hidden: true });
+    /** Says that nothing was found. */
+    none = h("p", { class: "none", role: "status", hidden: true });
+    /** The names of the user's presets. */
+    names = [];
     shownFile = "";
     seen = new IntersectionObserver((entries) => {
       for (const entry of entries) {
@@ -1186,6 +1449,7 @@
       const effects = all.filter((d) => !isDragged(d) && !d.gallery);
       const styles = all.filter((d) => d.gallery);
       this.box.replaceChildren(
+        this.none,
         this.own,
         this.section("Bend by hand", byHand.flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))])),
         ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery.title), this.presets(d))),
@@ -1200,6 +1464,7 @@
     }
     /** Lists the user's presets. */
     showPresets(names) {
+      this.names = names;
       const entry = (name) => {
         const use = h("button", { type: "button", class: "preset" }, name);
         use.addEventListener("click", async () => {
@@ -1210,12 +1475,15 @@
         const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
         forget.addEventListener("click", async () => {
           const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
-          if (answer?.presets) this.showPresets(answer.presets);
+          if (!answer?.presets) return;
+          this.showPresets(answer.presets);
+          const left = this.own.querySelectorAll(".small");
+          (left[Math.min(names.indexOf(name), left.length - 1)] ?? this.search).focus();
         });
         return h("li", {}, use, forget);
       };
-      this.own.hidden = names.length === 0;
       this.own.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
+      this.filter();
     }
     section(title, cards) {
       const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
@@ -1226,7 +1494,7 @@
     card(deformation, args, steps, text, variant = null) {
       const image = h("img", { alt: "", draggable: "false" });
       const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
-      const known = this.app.deformation(deformation)?.knownAs ?? [];
+      const known = [...this.app.deformation(deformation)?.knownAs ?? [], variant ? "" : ALSO[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
       const card = { button, image, steps, deformation, args, variant, words: [button.textContent, ...known].join(" ") };
       button.addEventListener("click", () => void this.choose(card));
       this.cards.push(card);
@@ -1286,9 +1554,16 @@
     filter() {
       const wanted = this.search.value.trim().toLowerCase();
       const plain2 = (text) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, " ").trim();
-      for (const { button, words: words2 } of this.cards) button.hidden = !plain2(words2).includes(plain2(wanted));
+      const all = plain2(wanted).split(" ");
+      const fits = (words2) => all.every((word) => plain2(words2).includes(word));
+      for (const { button, words: words2 } of this.cards) button.hidden = !fits(words2);
+      const presets = Array.from(this.own.querySelectorAll("li"));
+      for (const preset of presets) preset.hidden = !fits(preset.textContent ?? "");
+      this.own.hidden = presets.every((preset) => preset.hidden);
+      this.none.textContent = `No shape is called “${this.search.value.trim()}”`;
+      this.none.hidden = !this.own.hidden || this.cards.some(({ button }) => !button.hidden);
       for (const section of Array.from(this.box.children)) {
-        if (section === this.own) continue;
+        if (section === this.own || section === this.none) continue;
         const shown2 = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
         if (shown2.length > 0 && !shown2.some((card) => card.tabIndex === 0)) shown2[0].tabIndex = 0;
         section.hidden = !Array.from(section.querySelectorAll(".card")).some((c) => !c.hidden);
@@ -1320,6 +1595,11 @@
     /** Shows where the handle has snapped to; the points are in user units. */
     onSnap = () => {
     };
+    /** Where else a point is added that is added at a place: its reflection, if symmetry is on. */
+    reflections(handles, at, reach) {
+      const other = reflection(handles)(at);
+      return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
+    }
     /** A function that pulls a line, and its reflection if symmetry is on. */
     puller(handles, { handles: own, targets }) {
       const partners = own.map((handle) => this.mirrors ? handles.partner(handle) : null);
@@ -1458,18 +1738,39 @@
   var DECIMALS = 3;
   var Place = class {
     box = byId("place");
-    fields = [byId("place-x"), byId("place-y")];
+    inputs = [byId("place-x"), byId("place-y")];
+    fields;
     remove = byId("remove-point");
     handle = null;
     constructor(app2, stage2) {
       stage2.onFocus = (handle) => this.show(handle);
       stage2.onKeys = (handle) => this.say(handle);
-      this.fields.forEach((field, i) => field.addEventListener("change", () => {
-        const value = Number(field.value.replace(",", "."));
-        if (!this.handle || field.value.trim() === "" || !Number.isFinite(value)) return this.show(this.handle);
-        const at = this.handle.get();
-        stage2.moveTo(this.handle, i === 0 ? [value, at[1]] : [at[0], value]);
-      }));
+      this.fields = this.inputs.map((input, i) => {
+        const place2 = (typed) => {
+          const q = evaluate(typed, "");
+          const [x, y, w, h2] = app2.handles?.frame ?? [0, 0, 1, 1];
+          return q?.unit === "%" ? i === 0 ? x + w * q.value / 100 : y + h2 * q.value / 100 : q?.unit === "" ? q.value : null;
+        };
+        const move = (value) => {
+          const at = this.handle.get();
+          stage2.moveTo(this.handle, i === 0 ? [value, at[1]] : [at[0], value]);
+        };
+        const read = () => this.handle ? shown(this.handle)[i] : "";
+        const isWrong = (typed) => place2(typed) === null ? `${asked("")} or 50 %` : null;
+        const take = (typed) => {
+          if (this.handle && typed !== read()) move(place2(typed));
+          return null;
+        };
+        const nudge = (typed, by) => {
+          const value = place2(typed);
+          if (value === null || !this.handle) return null;
+          move(value + by);
+          return read();
+        };
+        const field = new Field(input, read, take, isWrong, nudge);
+        input.parentElement.after(field.message);
+        return field;
+      });
       this.remove.addEventListener("click", () => {
         if (this.handle) stage2.remove(this.handle);
       });
@@ -1483,10 +1784,7 @@
       if (!handle) return;
       byId("place-name").textContent = handle.label;
       this.remove.hidden = !handle.remove;
-      const places = shown(handle);
-      this.fields.forEach((field, i) => {
-        if (document.activeElement !== field) field.value = places[i];
-      });
+      for (const field of this.fields) field.refresh();
     }
     /** Tells screen readers where keys have moved a handle. */
     say(handle) {
@@ -1498,7 +1796,8 @@
   }
 
   // src/camera.ts
-  var RANGE = [1e-4, 1e5];
+  var RANGE = [0.01, 64];
+  var FITTED = [1e-4, 1e5];
   var Camera = class {
     /** Screen = scale · px + shift. */
     scale = 1;
@@ -1530,17 +1829,16 @@
       return `matrix(${this.scale} 0 0 ${this.scale} ${this.shift[0]} ${this.shift[1]})`;
     }
     /** Magnifies by a factor about a point of the screen. */
-    zoom(factor, [x, y]) {
-      const scale2 = Math.min(Math.max(this.scale * factor, RANGE[0]), RANGE[1]);
+    zoom(factor2, [x, y]) {
+      const scale2 = Math.min(Math.max(this.scale * factor2, Math.min(RANGE[0], this.scale)), Math.max(RANGE[1], this.scale));
       const by = scale2 / this.scale;
       this.shift = [x - by * (x - this.shift[0]), y - by * (y - this.shift[1])];
       this.scale = scale2;
     }
     /** Shows a box of the drawing, two corners in px of it, in the middle of a view of this size. */
-    fit([x0, y0, x1, y1], [width, height], margin) {
-      const room = (size) => Math.max(size - 2 * margin, size / 3);
-      const scale2 = Math.min(room(width) / Math.max(x1 - x0, 1e-9), room(height) / Math.max(y1 - y0, 1e-9));
-      this.scale = Math.min(Math.max(scale2, RANGE[0]), RANGE[1]);
+    fit([x0, y0, x1, y1], [width, height]) {
+      const scale2 = Math.min(width / Math.max(x1 - x0, 1e-9), height / Math.max(y1 - y0, 1e-9));
+      this.scale = Math.min(Math.max(scale2, FITTED[0]), FITTED[1]);
       this.shift = [(width - this.scale * (x0 + x1)) / 2, (height - this.scale * (y0 + y1)) / 2];
     }
   };
@@ -1622,13 +1920,13 @@
   var FULL = Math.log2(2);
   function cells({ columns, points, factors }, place2) {
     const byColour = /* @__PURE__ */ new Map();
-    factors.forEach((factor, k) => {
+    factors.forEach((factor2, k) => {
       const [i, j] = [k % columns, Math.floor(k / columns)];
       const at = (di, dj) => points[(j + dj) * (columns + 1) + i + di];
       const corners2 = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
-      if (factor === null || corners2.some((c) => !c)) return;
+      if (factor2 === null || corners2.some((c) => !c)) return;
       const d = corners2.map((c) => place2(c).map((v) => v.toFixed(2)).join(",")).join("L");
-      const colour = shade(factor);
+      const colour = shade(factor2);
       byColour.set(colour, [...byColour.get(colour) ?? [], `M${d}Z`]);
     });
     return Array.from(byColour, ([colour, d]) => {
@@ -1638,9 +1936,9 @@
   }
   var STRONGEST = 0.8;
   var STEPS = 16;
-  function shade(factor) {
-    if (factor < 0) return "#e11d2e/0.85";
-    const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor, 1e-6)) / FULL));
+  function shade(factor2) {
+    if (factor2 < 0) return "#e11d2e/0.85";
+    const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor2, 1e-6)) / FULL));
     const step2 = Math.round(amount * STEPS) / STEPS;
     return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step2)).toFixed(3)}`;
   }
@@ -1716,13 +2014,15 @@
 
   // src/stage.ts
   var MARGIN2 = 56;
-  var SHEET_MARGIN = 14;
+  var SHEET_MARGIN = 20;
+  var BESIDE = 28;
   var REACH = 18;
+  var PICKED = 8;
   var Stage = class {
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.guides, this.marks, this.knobs);
+      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.guides, this.marks, this.knobs);
       const stage2 = this;
       app2.screen = {
         show: (answer) => this.show(answer),
@@ -1734,11 +2034,16 @@
       app2.listen((change) => {
         if (change === "state") this.place();
         if (change === "handles") this.rebuild();
+        if (change === "drawing") this.forget();
         if (change === "report" && this.showsStretch) void this.drawStretch();
       });
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
       this.svg.addEventListener("keydown", (e) => this.key(e));
-      new ResizeObserver(() => this.resized()).observe(this.svg);
+      this.svg.addEventListener("pointermove", (e) => {
+        if (this.picks) this.light(this.named(e));
+      });
+      const sizes = new ResizeObserver(() => this.resized());
+      for (const part of [this.svg, byId("note"), byId("tools")]) sizes.observe(part);
     }
     app;
     modes;
@@ -1754,6 +2059,7 @@
     arms = s("path", { class: "arms" });
     /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
     shield = s("rect", { class: "shield", width: "100%", height: "100%" });
+    lit = s("path", { class: "lit" });
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });
@@ -1767,6 +2073,8 @@
     isFitted = false;
     /** The first picture of a drawing has not arrived yet. */
     isFresh = true;
+    /** The handles of the first picture are on their way. */
+    isToFit = false;
     /** The page of the last picture, as saving would have it; null for the drawing's own. */
     grown = null;
     /** Set while the page shows the drawing as it was. */
@@ -1792,24 +2100,37 @@
       if (this.isFitted || this.isFresh) this.fit();
       else this.layout();
     }
-    /** The part of the canvas that no panel of a narrow window covers, and the space around a drawing there. */
+    /** The part of the canvas that neither panels of a narrow window nor hints and tools cover, as two corners. */
     get view() {
       const [width, height] = this.size;
       const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
-      if (!panel || getComputedStyle(panel).position === "static") return { left: 0, width, height, margin: Math.min(MARGIN2, width / 10) };
-      const margin = SHEET_MARGIN;
+      if (!panel || getComputedStyle(panel).position === "static") {
+        const [side, up, down] = [Math.min(MARGIN2, width / 10), byId("note").offsetHeight, byId("tools").offsetHeight];
+        return [side, Math.max(MARGIN2, up + BESIDE), width - side, Math.max(height - Math.max(MARGIN2, down + BESIDE), height / 2)];
+      }
       const { left, width: over } = panel.getBoundingClientRect();
-      if (over >= width) return { left: 0, width, height: Math.max(height - panel.clientHeight, height / 4), margin };
-      return { left: left > 0 ? 0 : over, width: width - over, height, margin };
+      if (over >= width) return [SHEET_MARGIN, SHEET_MARGIN, width - SHEET_MARGIN, Math.max(height - panel.clientHeight, height / 4) - SHEET_MARGIN];
+      return [(left > 0 ? 0 : over) + SHEET_MARGIN, SHEET_MARGIN, (left > 0 ? width - over : width) - SHEET_MARGIN, height - SHEET_MARGIN];
     }
-    /** Shows the whole page. */
+    /** Shows the whole page and all handles. */
     fit() {
-      const { left, width, height, margin } = this.view;
-      if (!this.app.state || width === 0 || height === 0) return;
-      this.camera.fit(this.page, [width, height], margin);
-      this.camera.shift[0] += left;
+      const [x0, y0, x1, y1] = this.view;
+      if (!this.app.state || x1 <= x0 || y1 <= y0) return;
+      const handles = (this.app.handles?.handles ?? []).map((h2) => this.camera.inPx(h2.get())).filter((p) => p.every(Number.isFinite));
+      const [a, b, c, d] = this.page;
+      const [xs, ys] = [[a, c, ...handles.map((p) => p[0])], [b, d, ...handles.map((p) => p[1])]];
+      this.camera.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)], [x1 - x0, y1 - y0]);
+      const [x, y] = this.camera.shift;
+      this.camera.shift = [x + x0, y + y0];
       this.isFitted = true;
       this.layout();
+    }
+    /** Moves the view as little as shows a handle. */
+    panTo(handle) {
+      const [x0, y0, x1, y1] = this.view;
+      const [x, y] = this.camera.toScreen(handle.get());
+      const by = [Math.max(x0 - x, 0) + Math.min(x1 - x, 0), Math.max(y0 - y, 0) + Math.min(y1 - y, 0)];
+      if (by[0] !== 0 || by[1] !== 0) this.shift(by);
     }
     /** Moves the view by px of the screen. */
     shift([dx, dy]) {
@@ -1818,22 +2139,14 @@
       this.isFitted = false;
       this.layout();
     }
-    /** The whole page is in view. */
-    get showsAll() {
-      const { left, width, height } = this.view;
-      const { scale: scale2, shift } = this.camera;
-      const [x0, y0, x1, y1] = this.page;
-      const [l, t, r, b] = [scale2 * x0 + shift[0], scale2 * y0 + shift[1], scale2 * x1 + shift[0], scale2 * y1 + shift[1]];
-      return l >= left && t >= 0 && r <= left + width && b <= height;
-    }
-    /** Shows the whole page, unless the user looks at a detail. */
+    /** Shows the whole page and all handles, unless the user looks at a detail. */
     reveal() {
-      if (this.isFitted && !this.showsAll) this.fit();
+      if (this.isFitted) this.fit();
     }
     /** Magnifies about a point of the screen, or about the middle of the view. */
-    zoom(factor, at) {
-      const { left, width, height } = this.view;
-      this.camera.zoom(factor, at ?? [left + width / 2, height / 2]);
+    zoom(factor2, at) {
+      const [x0, y0, x1, y1] = this.view;
+      this.camera.zoom(factor2, at ?? [(x0 + x1) / 2, (y0 + y1) / 2]);
       this.isFitted = false;
       this.layout();
     }
@@ -1856,7 +2169,7 @@
       }
       if (answer.summary && this.isFresh) {
         this.isFresh = false;
-        this.reveal();
+        this.isToFit = this.isFitted;
       }
       if (this.showsNodes) this.drawNodes();
       this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
@@ -1969,14 +2282,19 @@
           s("circle", { r: handle.shape === "node" ? REACH : REACH - 5, class: "reach" }),
           body
         );
-        knob.addEventListener("focus", () => this.focus(handle.key));
+        knob.addEventListener("focus", () => {
+          this.focus(handle.key);
+          if (knob.matches(":focus-visible") && !this.app.isDragging) this.panTo(handle);
+        });
         this.elements.set(handle.key, knob);
         return knob;
       });
       this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
       const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
       this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
-      this.placeHandles();
+      if (this.isToFit && handles) this.fit();
+      else this.placeHandles();
+      if (handles) this.isToFit = false;
       if (this.focused) {
         const again = this.elements.get(this.focused);
         if (!again) this.focus(null);
@@ -2005,25 +2323,53 @@
     pick(take) {
       this.picks = take;
       this.svg.classList.toggle("picking", take !== null);
+      this.light(null);
     }
-    /** Names the path that was clicked. */
-    picked(target) {
-      const named = target.closest(".art [id]");
+    /** Names the path that was clicked; elsewhere, the question stays. */
+    picked(e) {
+      const named = this.named(e);
+      if (!named) return toast("No path with a name is there. Click one, or press Escape");
       const take = this.picks;
       this.pick(null);
-      if (named) take?.(named.id.replace(/^art-/, ""));
+      take?.(named.closest("[id]").id.replace(/^art-/, ""));
+    }
+    /** The path with a name that is nearest to the pointer. */
+    named(e) {
+      for (let r = 0; r <= PICKED; r += 2) {
+        for (let k = 0; k < (r === 0 ? 1 : 4 * r); k++) {
+          const a = 2 * Math.PI * k / (4 * r || 1);
+          const there = document.elementFromPoint(e.clientX + r * Math.cos(a), e.clientY + r * Math.sin(a));
+          if (there instanceof SVGGraphicsElement && there.closest(".art [id]")) return there;
+        }
+      }
+      return null;
+    }
+    /** Lights up a path. */
+    light(path) {
+      const [from, m] = [this.svg.getBoundingClientRect(), path?.getScreenCTM()];
+      this.lit.setAttribute("d", path?.getAttribute("d") ?? "");
+      if (m) this.lit.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
     }
     /** Writes the values of a handle that has been moved, and asks for the picture. */
     changed(handle, since) {
       this.app.handles.write(handle.param);
       this.placeHandles();
       this.onFocus(handle);
+      this.app.tell("values");
       this.app.draft(since);
     }
     doubleClick(e) {
-      if (e.target.closest(".knob")) return;
-      const key = this.app.addPoint(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
-      if (key) this.focused = key;
+      if (!e.target.closest(".knob")) void this.add(this.camera.toUser(this.point(e)));
+    }
+    /** Adds a point, with its reflection if symmetry is on, and selects it. */
+    async add(at) {
+      const { handles } = this.app;
+      if (!handles) return;
+      const reach = REACH * this.camera.pixel;
+      const key = await this.app.addPoint(at, this.modes.reflections(handles, at, reach), reach);
+      if (!key) return;
+      this.focus(key);
+      this.elements.get(key)?.focus({ preventScroll: true });
     }
     /** Arrow keys move a handle by a px of the screen, with Shift by ten. */
     key(e) {
@@ -2040,7 +2386,7 @@
         e.preventDefault();
         const [x, y] = handle.get();
         const at = this.app.handles.after(handle) ?? [x + 2 * REACH * this.camera.pixel, y];
-        this.focused = this.app.addPoint(at, REACH * this.camera.pixel) ?? this.focused;
+        void this.add(at);
       } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
         e.preventDefault();
         this.remove(handle);
@@ -2048,10 +2394,16 @@
     }
     /** Takes a point away. */
     remove(handle) {
-      if (!handle.remove || !this.app.handles) return;
+      const { handles } = this.app;
+      if (!handle.remove || !handles) return;
+      const [at, param] = [handle.get(), handle.param];
+      const partner = this.modes.mirrors && !handles.isRows(param) ? handles.partner(handle) : null;
+      const mirrored = partner?.param === param ? partner.get() : null;
       handle.remove();
-      this.app.handles.write(handle.param);
-      this.focus(null);
+      if (mirrored) handles.handles.find((h2) => h2.param === param && h2.shape === handle.shape && h2.get()[0] === mirrored[0] && h2.get()[1] === mirrored[1])?.remove?.();
+      handles.write(param);
+      this.focused = handles.nearest(at)?.key ?? null;
+      this.app.tell("handles");
       void this.app.commit();
     }
     /** Moves a handle by keys or by typed numbers. */
@@ -2120,7 +2472,7 @@
     press(e) {
       const { stage: stage2 } = this;
       const target = e.target;
-      if (stage2.picks) return stage2.picked(target);
+      if (stage2.picks) return stage2.picked(e);
       this.down.set(e.pointerId, stage2.point(e));
       if (this.down.size > 2) return;
       if (this.down.size === 2) {
@@ -2132,8 +2484,8 @@
       if (knob && bends) this.drag(e, knob);
       else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e);
     }
-    /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. */
-    follow(e, { move, end: end2, cancel }) {
+    /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. Returns what gives it up. */
+    follow(e, { move, end: end2, cancel = end2 }) {
       const stop = new AbortController();
       const { signal } = stop;
       const finish = (how) => {
@@ -2147,11 +2499,10 @@
       };
       window.addEventListener(MOVES, own((event) => move(this.stage.point(event), event)), { signal });
       for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, own(() => finish(end2)), { signal });
-      if (cancel) {
-        window.addEventListener("keydown", (event) => {
-          if (event.key === "Escape") finish(cancel);
-        }, { signal });
-      }
+      window.addEventListener("keydown", (event) => {
+        if (event.key === "Escape") finish(cancel);
+      }, { signal });
+      return () => finish(cancel);
     }
     /** Follows a pointer that changes the step: `move` does, and `done` tidies up. */
     bend(e, move, done) {
@@ -2162,9 +2513,10 @@
       app2.isDragging = true;
       const stop = () => {
         app2.isDragging = false;
+        app2.hold = null;
         done();
       };
-      this.follow(e, {
+      const abandon = this.follow(e, {
         move: (to, event) => {
           hasMoved = true;
           move(to, event);
@@ -2178,6 +2530,7 @@
           if (hasMoved) app2.cancel(before2);
         }
       });
+      app2.hold = abandon;
     }
     drag(e, knob) {
       const { stage: stage2, modes: modes2 } = this;
@@ -2210,6 +2563,7 @@
         puller(stage2.camera.toUser(to));
         handles.write(pull.param);
         stage2.placeHandles();
+        this.app.tell("values");
         this.app.draft(event.timeStamp);
       }, () => {
       });
@@ -2261,10 +2615,11 @@
       this.gallery = gallery;
       byId("keep-preset").addEventListener("click", () => this.open());
       byId("preset-cancel").addEventListener("click", () => this.dialog.close());
-      this.name.addEventListener("input", () => this.message.textContent = "");
+      this.name.addEventListener("input", () => this.say(""));
+      this.replace.addEventListener("click", () => void this.keep(this.name.value.trim(), true));
       this.dialog.querySelector("form").addEventListener("submit", (e) => {
         e.preventDefault();
-        void this.keep(this.name.value.trim());
+        void this.keep(this.name.value.trim(), false);
       });
     }
     app;
@@ -2272,12 +2627,18 @@
     dialog = byId("preset-dialog");
     name = byId("preset-name");
     message = byId("preset-message");
+    replace = byId("preset-replace");
     open() {
       this.name.value = "";
-      this.message.textContent = "";
+      this.say("");
       this.dialog.showModal();
     }
-    async keep(name) {
+    say(text, canReplace = false) {
+      this.message.textContent = text;
+      this.replace.hidden = !canReplace;
+    }
+    async keep(name, replaces) {
+      if (!replaces && this.gallery.names.includes(name)) return this.say(`${name} exists already.`, true);
       try {
         if (!await this.app.settle()) throw new Error(this.app.problem ?? "");
         const { presets } = await this.app.connection.ask({ do: "keep-preset", name });
@@ -2285,7 +2646,7 @@
         this.dialog.close();
         toast(`${name} is kept among the shapes`);
       } catch (e) {
-        this.message.textContent = e instanceof Error ? e.message : String(e);
+        this.say(e instanceof Error ? e.message : String(e));
       }
     }
   };
@@ -2352,8 +2713,8 @@
       if (app2.appends) return show("note", "Choose the shape of the next step, or press Escape");
       if (!handles) return;
       const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
-      const adds = handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
-      const note = !has ? "Change the settings" : handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
+      const adds = handles.net ? "Double-click a line of the net for one more" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
+      const note = !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
       show("note", app2.isProposal && has ? `${note}, or choose a shape` : note);
     }
     /** Somebody has moved the view, and may have meant to bend the artwork. */
@@ -2390,6 +2751,7 @@
     ["png", "PNG", "A picture"],
     ["toml", "Recipe", "For other drawings"]
   ];
+  var NOTHING = "There is nothing to save yet: pull a blue point or choose a shape first";
   var FETCHED = 6e4;
   var Saving = class {
     constructor(app2) {
@@ -2461,7 +2823,8 @@
       if (!await this.app.settle()) return;
       const { state } = this.app;
       if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
-      if (!state || state.steps.length === 0) return;
+      if (!state) return;
+      if (state.steps.length === 0) return toast(NOTHING);
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
       if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
       if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
@@ -2470,7 +2833,8 @@
     async open(unwritable = "") {
       if (!await this.app.settle()) return;
       const { state } = this.app;
-      if (!state || state.steps.length === 0 || state.program || this.dialog.open) return;
+      if (!state || state.program || this.dialog.open) return;
+      if (state.steps.length === 0) return toast(NOTHING);
       this.name.value = state.target;
       this.choose("svg");
       byId("save-folder").textContent = state.folder;
@@ -2530,13 +2894,17 @@
     }
     async copyCommand() {
       await this.app.settle();
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
-      if (!answer?.text) return;
+      let line = "";
       try {
-        await navigator.clipboard.writeText(answer.text);
+        line = (await this.app.connection.ask({ do: "command-line", name: this.name.value })).text ?? "";
+      } catch (e) {
+        return this.say(e instanceof Error ? inWords(e.message) : String(e));
+      }
+      try {
+        await navigator.clipboard.writeText(line);
         toast("The command line is on the clipboard");
       } catch {
-        toast(answer.text);
+        toast(line);
       }
       this.dialog.close();
     }
@@ -2545,6 +2913,7 @@
   // src/settings.ts
   var OF_ARTWORK = [0, 100];
   var BOTH_WAYS = [-100, 100];
+  var COARSE = 20;
   var SIDE_BY_SIDE = 3;
   var Settings = class {
     constructor(app2) {
@@ -2552,6 +2921,7 @@
       app2.listen((change) => {
         if (change === "steps" || change === "state") this.build();
         if (change === "handles") this.build();
+        if (change === "values") this.refresh();
       });
     }
     app;
@@ -2593,7 +2963,7 @@
     control(p) {
       const id = `set-${p.name}`;
       const title = plain(p.help);
-      const label = h("label", { for: id, title }, p.kind === "angle" ? `${paramName(p)} (°)` : paramName(p));
+      const label = h("label", { for: id, title }, paramName(p));
       const adjust = this.app.grip(p.name)?.adjust;
       if (adjust) return h("div", {}, ...adjust.map((_, i) => this.adjust(p, adjust, i, title)));
       switch (p.kind) {
@@ -2602,7 +2972,7 @@
         case "choice":
           return this.choice(p, id, label, title);
         case "count":
-          return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.count(p, id)));
+          return h("div", { class: "field", title }, ...this.number(p, id, label, "", 1));
         case "file":
           return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.text(p, id));
         case "name":
@@ -2637,13 +3007,49 @@
       });
       return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
     }
-    count(p, id) {
-      const input = h("input", { type: "number", id, class: "value", step: 1, min: p.least, max: p.most, placeholder: p.default });
-      input.addEventListener("change", () => this.app.set(p.name, input.value === "" ? [] : [input.value], true));
+    /** A row with a field for a number in the unit of its value, and the line for what is wrong. */
+    number(p, id, label, usual, by) {
+      const isWhole = p.kind === "count";
+      const measure = h("span", { class: "unit" });
+      const text = (q) => `${short(q.value)}${q.unit === "°" ? "" : q.unit}`;
+      const present = () => {
+        const typed = this.current(p);
+        const unit2 = usual === "°" && !/[a-z]/i.test(typed) ? "°" : "";
+        return typed === "" ? null : evaluate(typed, unit2);
+      };
+      const unit = () => present()?.unit ?? usual;
+      const [least, most] = usual === "%" && p.kind === "number" ? [p.least && 100 * p.least, p.most && 100 * p.most] : [p.least, p.most];
+      const isWrong = (typed) => {
+        if (typed.trim() === "" && !p.needed) return null;
+        const q = evaluate(typed, unit());
+        const units = p.kind === "length" ? /^(%|px|mm|cm|m|in|pt|pc|q|)$/ : usual === "%" ? /^%?$/ : usual === "°" ? /^°$/ : /^$/;
+        const fits = q && units.test(q.unit) && (!isWhole || Number.isInteger(q.value));
+        return fits && q.value >= (least ?? -Infinity) && q.value <= (most ?? Infinity) ? null : asked(unit(), least, most, isWhole);
+      };
+      const take = (typed) => typed.trim() === "" ? this.app.setTyped(p.name, []) : this.app.setTyped(p.name, [text(evaluate(typed, unit()))]);
+      const nudge = (typed, times) => {
+        const q = isWrong(typed) === null ? evaluate(typed, unit()) ?? this.derived(p, usual) : null;
+        if (!q) return null;
+        const value = Math.min(Math.max(Number((q.value + times * by).toFixed(6)), least ?? -Infinity), most ?? Infinity);
+        this.app.setSoon(p.name, [text({ value, unit: q.unit })]);
+        return short(value);
+      };
+      const shown2 = () => {
+        const q = present();
+        return q ? short(q.value) : this.current(p);
+      };
+      const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off", placeholder: "auto" });
+      const field = new Field(input, shown2, take, isWrong, nudge);
       this.refreshers.push(() => {
-        if (document.activeElement !== input) input.value = this.current(p);
+        measure.textContent = unit();
+        field.refresh();
       });
-      return input;
+      return [h("div", { class: "row" }, label, h("span", { class: "measure" }, input, measure)), field.message];
+    }
+    /** The value that a parameter has without being given. */
+    derived(p, unit) {
+      const value = this.inUnit(p, unit, this.current(p));
+      return value === null ? null : { value, unit };
     }
     /** Chooses a file. Pages do not learn where it is, so a copy goes beside the drawing. */
     chooseFile(p) {
@@ -2675,24 +3081,17 @@
       return select;
     }
     text(p, id) {
-      const input = h("textarea", { id, rows: 1, spellcheck: false, placeholder: p.default ?? p.notation ?? "" });
-      input.addEventListener("change", () => {
-        const text = input.value.trim();
-        this.app.set(p.name, text === "" ? [] : p.repeat ? text.split("\n").map((t) => t.trim()).filter(Boolean) : [text], true);
-      });
-      input.addEventListener("keydown", (e) => {
-        if (e.key === "Enter" && !p.repeat) {
-          e.preventDefault();
-          input.blur();
-        }
-      });
+      const input = h("textarea", { id, rows: 1, spellcheck: false, placeholder: p.default ?? p.notation ?? "", "data-single": !p.repeat });
+      const take = (typed) => {
+        const text = typed.trim();
+        return this.app.setTyped(p.name, text === "" ? [] : p.repeat ? text.split("\n").map((t) => t.trim()).filter(Boolean) : [text]);
+      };
+      const field = new Field(input, () => this.values(p).join("\n"), take);
       this.refreshers.push(() => {
-        if (document.activeElement === input) return;
-        const values = this.values(p);
-        input.value = values.join("\n");
-        input.rows = Math.min(Math.max(values.length, 1), 4);
+        input.rows = Math.min(Math.max(this.values(p).length, 1), 4);
+        field.refresh();
       });
-      return input;
+      return h("div", {}, input, field.message);
     }
     /** The names of the adjust values on show. */
     adjusts(params) {
@@ -2705,56 +3104,80 @@
       const id = `set-${p.name}-${name}`;
       const range = [Math.ceil(least / size), Math.floor(most / size)];
       const slider = h("input", { type: "range", id: `${id}-slider`, min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
-      const field = h("input", { type: "text", id, class: "value", spellcheck: false, autocomplete: "off" });
-      const take = (value, isDone) => {
+      const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off" });
+      const sign = unit === "deg" ? "°" : unit;
+      const values = (value) => {
         const present = structuredClone(all);
         readAdjust(present, this.values(p));
         present[i].value = Math.min(Math.max(value * size, least), most);
-        this.app.set(p.name, writeAdjust(present), isDone);
+        return writeAdjust(present);
       };
-      slider.addEventListener("input", () => take(Number(slider.value), false));
-      slider.addEventListener("change", () => take(Number(slider.value), true));
-      slider.addEventListener("dblclick", () => take(all[i].default / size, true));
-      field.addEventListener("change", () => {
-        const value = Number.parseFloat(field.value.replace(",", "."));
-        take(Number.isFinite(value) ? value : all[i].default / size, true);
-      });
-      this.refreshers.push(() => {
+      const current = () => {
         const present = structuredClone(all);
         readAdjust(present, this.values(p));
-        const value = Number((present[i].value / size).toFixed(2));
-        if (document.activeElement !== field) field.value = `${value}${unit === "deg" ? "°" : unit}`;
-        if (document.activeElement !== slider || !slider.matches(":active")) slider.value = String(value);
+        return Number((present[i].value / size).toFixed(2));
+      };
+      this.slide(slider, (value) => [p.name, values(value)], () => values(all[i].default / size));
+      const isWrong = (typed) => {
+        const q = evaluate(typed || short(all[i].default / size), sign);
+        return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : asked(sign, short2(least / size), short2(most / size));
+      };
+      const take = (typed) => this.app.setTyped(p.name, values(evaluate(typed, sign)?.value ?? all[i].default / size));
+      const nudge = (typed, times) => {
+        const q = isWrong(typed) === null ? evaluate(typed, sign) : null;
+        if (!q) return null;
+        this.app.setSoon(p.name, values(q.value + times));
+        return short(current());
+      };
+      const field = new Field(input, () => short(current()), take, isWrong, nudge);
+      this.refreshers.push(() => {
+        field.refresh();
+        if (!slider.matches(":active")) slider.value = String(current());
       });
       const label = h("label", { for: id, title }, adjustName(all, i));
-      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
+      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, h("span", { class: "measure" }, input, h("span", { class: "unit" }, sign))), field.message, slider);
+    }
+    /** What a slider does: what the pointer drags is one change, and so are keys that follow each other. */
+    slide(slider, values, reset) {
+      const { app: app2 } = this;
+      let [isDragged2, isGivenUp] = [false, false];
+      slider.addEventListener("input", () => {
+        if (!slider.matches(":active") || isGivenUp) return;
+        if (!isDragged2) {
+          const before2 = structuredClone(app2.step);
+          app2.hold = () => {
+            isGivenUp = true;
+            app2.cancel(before2);
+          };
+        }
+        isDragged2 = true;
+        app2.set(...values(Number(slider.value)), false);
+        app2.tell("values");
+      });
+      slider.addEventListener("change", () => {
+        app2.hold = null;
+        if (isGivenUp) this.refresh();
+        else if (isDragged2) app2.set(...values(Number(slider.value)), true);
+        else app2.setSoon(...values(Number(slider.value)));
+        isDragged2 = isGivenUp = false;
+      });
+      slider.addEventListener("dblclick", () => app2.set(values(0)[0], reset(), true));
     }
     slider(p, id, label, title) {
       const [unit, range] = scale(p);
       const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
-      const field = h("input", { type: "text", id, class: "value", inputmode: "text", spellcheck: false, autocomplete: "off", placeholder: p.default ?? "auto" });
-      slider.addEventListener("input", () => {
-        field.value = `${short(Number(slider.value))}${unit}`;
-        this.app.set(p.name, [field.value], false);
-      });
-      slider.addEventListener("change", () => this.app.set(p.name, [`${short(Number(slider.value))}${unit}`], true));
-      field.addEventListener("change", () => this.app.set(p.name, field.value.trim() === "" ? [] : [field.value.trim()], true));
-      field.addEventListener("keydown", (e) => {
-        if (e.key === "Enter") field.blur();
-      });
+      this.slide(slider, (value) => [p.name, [`${short(value)}${unit}`]], () => []);
       this.refreshers.push(() => {
-        const typed = this.current(p);
-        if (document.activeElement !== field) field.value = typed;
-        if (document.activeElement === slider && slider.matches(":active")) return;
-        const value = this.inUnit(p, unit, typed);
+        if (slider.matches(":active")) return;
+        const value = this.inUnit(p, unit, this.current(p));
         slider.min = String(Math.min(range[0], value ?? range[0]));
         slider.max = String(Math.max(range[1], value ?? range[1]));
         slider.value = String(value ?? range[0]);
         slider.classList.toggle("unset", value === null);
       });
-      const reset = () => this.app.set(p.name, [], true);
-      slider.addEventListener("dblclick", reset);
-      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
+      const usual = p.kind === "angle" ? "°" : unit;
+      const [row, wrong] = this.number(p, id, label, usual, range[1] - range[0] >= COARSE ? 1 : step(range));
+      return h("div", { class: "field slider", title }, row, wrong, slider);
     }
     /** The value of a parameter in the unit of its slider. */
     inUnit(p, unit, typed) {
@@ -2797,6 +3220,9 @@
     const raw = (to - from) / 400;
     return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
   }
+  function short2(value) {
+    return Number(value.toFixed(2));
+  }
   function sentence(title) {
     return `${capital(plain(title))}${/[.…]$/.test(title) ? "" : "."}`;
   }
@@ -2815,6 +3241,8 @@
     }
     app;
     list = byId("steps");
+    /** Where a row has been moved to. */
+    moved = null;
     note = byId("steps-note");
     add = byId("add-step");
     /** Asks for the shape of a further step, or no longer does. */
@@ -2828,7 +3256,13 @@
     build() {
       const { app: app2 } = this;
       const { steps, selected, appends } = app2;
+      const focused = this.list.contains(document.activeElement) ? document.activeElement : null;
+      const kind = focused?.dataset.kind ?? "";
+      const row = Array.from(this.list.children).indexOf(focused?.closest("li"));
       this.list.replaceChildren(...steps.map((step2, i) => this.row(step2, i)));
+      const near = focused ? this.list.children[Math.min(this.moved ?? row, steps.length - 1)] : null;
+      (near?.querySelector(`[data-kind="${kind}"]:enabled`) ?? near?.querySelector(".step"))?.focus();
+      this.moved = null;
       if (appends) this.list.append(h("li", { class: "wanted" }, `${steps.length + 1}. Choose a shape`));
       this.add.setAttribute("aria-pressed", String(appends));
       this.note.hidden = selected >= steps.length - 1;
@@ -2838,19 +3272,20 @@
       const { app: app2 } = this;
       const { steps, selected } = app2;
       const title = stepName(step2, app2.deformation(step2.deformation));
-      const choose = h("button", { type: "button", class: "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`);
+      const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`);
       choose.addEventListener("click", () => void app2.select(i));
       const moved = (to) => {
         const others = steps.filter((_, k) => k !== i);
         others.splice(to, 0, step2);
+        this.moved = to;
         void app2.arrange(others, to);
       };
       const button = (name, label, action, disabled = false) => {
-        const b = h("button", { type: "button", class: "small", "aria-label": label, title: label, disabled }, icon(name));
+        const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
         b.addEventListener("click", action);
         return b;
       };
-      const remove = () => void app2.arrange(steps.filter((_, k) => k !== i), Math.max(0, i - 1));
+      const remove = () => void app2.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
       return h(
         "li",
         { class: i === selected ? "chosen" : "" },
@@ -2891,7 +3326,10 @@
   on("zoom-in", () => stage.zoom(ZOOM));
   on("zoom-out", () => stage.zoom(1 / ZOOM));
   on("fit", () => stage.fit());
-  on("start-over", () => void app.arrange([], 0));
+  on("start-over", async () => {
+    await app.arrange([], 0);
+    byId("undo").focus();
+  });
   function toggle(id, get, set2) {
     const button = byId(id);
     const show2 = () => button.setAttribute("aria-pressed", String(get()));

@@ -2,6 +2,7 @@
 
 import { Connection, Gone } from "./connection";
 import { isTyping } from "./dom";
+import { toast } from "./toast";
 import { inWords, isAnyWrong } from "./fields";
 import { Handles } from "./handles";
 import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
@@ -16,7 +17,7 @@ const KEYS = 500;
 /** Parameters that say how many control points a net has. */
 const NET = new Set(["degree", "cells", "spline"]);
 
-export type Change = "state" | "steps" | "handles" | "values" | "report" | "link";
+export type Change = "state" | "steps" | "handles" | "values" | "drawing" | "report" | "link";
 
 /** Where a picture goes. */
 export interface Screen {
@@ -415,7 +416,11 @@ export class App {
 
   /** Another page has changed the steps. */
   private async hear(news: Answer): Promise<void> {
-    if (news.event === "changed" && news.state && !this.isDragging) await this.load(news.state);
+    if (news.event !== "changed" || !news.state || this.isDragging) return;
+    const { file, folder } = this.state ?? news.state;
+    if (news.state.file !== file || news.state.folder !== folder) this.tell("drawing");
+    await this.load(news.state);
+    if (news.state.file !== file) toast(`${news.state.file} has been opened in another tab. The steps of ${file} are kept with it`);
   }
 
   /** Does something that the server may refuse; then the message is shown. */

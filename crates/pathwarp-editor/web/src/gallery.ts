@@ -7,6 +7,13 @@ import { toast } from "./toast";
 import { DRAGGED } from "./values";
 import type { Deformation, Step } from "./types";
 
+/** Words for what is done here by a shape, and elsewhere in the program otherwise. */
+const ALSO: Record<string, string> = {
+  shaper: "bottle label neck",
+  bend: "text on path words on a line badge seal",
+  arc: "text on a circle badge",
+};
+
 interface Card {
   button: HTMLButtonElement;
   image: HTMLImageElement;
@@ -26,6 +33,10 @@ export class Gallery {
   private queue: Card[] = [];
   private isDrawing = false;
   private own = h("section", { hidden: true });
+  /** Says that nothing was found. */
+  private none = h("p", { class: "none", role: "status", hidden: true });
+  /** The names of the user's presets. */
+  names: string[] = [];
   private shownFile = "";
   private seen = new IntersectionObserver((entries) => {
     for (const entry of entries) {
@@ -43,6 +54,9 @@ export class Gallery {
       if (change === "steps") this.mark();
     });
     this.search.addEventListener("input", () => this.filter());
+    this.search.addEventListener("keydown", (e) => {
+      if (e.key === "Enter" && this.search.value.trim() !== "") this.box.querySelector<HTMLElement>("section:not([hidden]) :is(.card, .preset):not([hidden])")?.click();
+    });
   }
 
   private build(): void {
@@ -58,7 +72,7 @@ export class Gallery {
     const effects = all.filter((d) => !isDragged(d) && !d.gallery);
     const styles = all.filter((d) => d.gallery);
     this.box.replaceChildren(
-      this.own,
+      this.none, this.own,
       this.section("Bend by hand", byHand.flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))])),
       ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery!.title), this.presets(d))),
       this.section("Effects", effects.map((d) => this.whole(d))),
@@ -74,6 +88,7 @@ export class Gallery {
 
   /** Lists the user's presets. */
   showPresets(names: string[]): void {
+    this.names = names;
     const entry = (name: string) => {
       const use = h("button", { type: "button", class: "preset" }, name);
       use.addEventListener("click", async () => {
@@ -92,8 +107,8 @@ export class Gallery {
       });
       return h("li", {}, use, forget);
     };
-    this.own.hidden = names.length === 0;
     this.own.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
+    this.filter();
   }
 
   private section(title: string, cards: Card[]): HTMLElement {
@@ -106,7 +121,7 @@ export class Gallery {
   private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, text: Node, variant: Card["variant"] = null): Card {
     const image = h("img", { alt: "", draggable: "false" });
     const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
-    const known = this.app.deformation(deformation)?.knownAs ?? [];
+    const known = [...(this.app.deformation(deformation)?.knownAs ?? []), variant ? "" : ALSO[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
     const card: Card = { button, image, steps, deformation, args, variant, words: [button.textContent, ...known].join(" ") };
     button.addEventListener("click", () => void this.choose(card));
     this.cards.push(card);
@@ -176,9 +191,16 @@ export class Gallery {
     const wanted = this.search.value.trim().toLowerCase();
     // Names may be typed without the menus before them, with other signs between the words.
     const plain = (text: string) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, " ").trim();
-    for (const { button, words } of this.cards) button.hidden = !plain(words).includes(plain(wanted));
+    const all = plain(wanted).split(" ");
+    const fits = (words: string) => all.every((word) => plain(words).includes(word));
+    for (const { button, words } of this.cards) button.hidden = !fits(words);
+    const presets = Array.from(this.own.querySelectorAll("li"));
+    for (const preset of presets) preset.hidden = !fits(preset.textContent ?? "");
+    this.own.hidden = presets.every((preset) => preset.hidden);
+    this.none.textContent = `No shape is called “${this.search.value.trim()}”`;
+    this.none.hidden = !this.own.hidden || this.cards.some(({ button }) => !button.hidden);
     for (const section of Array.from(this.box.children) as HTMLElement[]) {
-      if (section === this.own) continue;
+      if (section === this.own || section === this.none) continue;
       // One card of those in view can be reached with Tab.
       const shown = Array.from(section.querySelectorAll<HTMLElement>(".card")).filter((card) => !card.hidden);
       if (shown.length > 0 && !shown.some((card) => card.tabIndex === 0)) shown[0]!.tabIndex = 0;

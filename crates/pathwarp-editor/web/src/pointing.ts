@@ -61,7 +61,7 @@ export class Pointing {
   private press(e: PointerEvent): void {
     const { stage } = this;
     const target = e.target as Element;
-    if (stage.picks) return stage.picked(target);
+    if (stage.picks) return stage.picked(e);
     this.down.set(e.pointerId, stage.point(e));
     if (this.down.size > 2) return;
     if (this.down.size === 2) {

@@ -9,24 +9,32 @@ export class Presets {
   private dialog = byId<HTMLDialogElement>("preset-dialog");
   private name = byId<HTMLInputElement>("preset-name");
   private message = byId("preset-message");
+  private replace = byId<HTMLButtonElement>("preset-replace");
 
   constructor(private app: App, private gallery: Gallery) {
     byId("keep-preset").addEventListener("click", () => this.open());
     byId("preset-cancel").addEventListener("click", () => this.dialog.close());
-    this.name.addEventListener("input", () => (this.message.textContent = ""));
+    this.name.addEventListener("input", () => this.say(""));
+    this.replace.addEventListener("click", () => void this.keep(this.name.value.trim(), true));
     this.dialog.querySelector("form")!.addEventListener("submit", (e) => {
       e.preventDefault();
-      void this.keep(this.name.value.trim());
+      void this.keep(this.name.value.trim(), false);
     });
   }
 
   private open(): void {
     this.name.value = "";
-    this.message.textContent = "";
+    this.say("");
     this.dialog.showModal();
   }
 
-  private async keep(name: string): Promise<void> {
+  private say(text: string, canReplace = false): void {
+    this.message.textContent = text;
+    this.replace.hidden = !canReplace;
+  }
+
+  private async keep(name: string, replaces: boolean): Promise<void> {
+    if (!replaces && this.gallery.names.includes(name)) return this.say(`${name} exists already.`, true);
     try {
       if (!(await this.app.settle())) throw new Error(this.app.problem ?? "");
       const { presets } = await this.app.connection.ask({ do: "keep-preset", name });
@@ -35,7 +43,7 @@ export class Presets {
       toast(`${name} is kept among the shapes`);
     } catch (e) {
       // The dialog covers the line of problems.
-      this.message.textContent = e instanceof Error ? e.message : String(e);
+      this.say(e instanceof Error ? e.message : String(e));
     }
   }
 }

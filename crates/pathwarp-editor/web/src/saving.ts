@@ -13,6 +13,8 @@ const FORMATS: [string, string, string][] = [
   ["toml", "Recipe", "For other drawings"],
 ];
 
+const NOTHING = "There is nothing to save yet: pull a blue point or choose a shape first";
+
 /** The browser has taken a download by then, in ms. */
 const FETCHED = 60_000;
 
@@ -92,7 +94,8 @@ export class Saving {
     if (!(await this.app.settle())) return;
     const { state } = this.app;
     if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
-    if (!state || state.steps.length === 0) return;
+    if (!state) return;
+    if (state.steps.length === 0) return toast(NOTHING);
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
     if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
     if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
@@ -102,7 +105,8 @@ export class Saving {
   async open(unwritable = ""): Promise<void> {
     if (!(await this.app.settle())) return;
     const { state } = this.app;
-    if (!state || state.steps.length === 0 || state.program || this.dialog.open) return;
+    if (!state || state.program || this.dialog.open) return;
+    if (state.steps.length === 0) return toast(NOTHING);
     this.name.value = state.target;
     this.choose("svg");
     byId("save-folder").textContent = state.folder;

@@ -7,6 +7,7 @@ import { Drawing, parse } from "./drawing";
 import { cells } from "./heat";
 import { Modes } from "./modes";
 import { nodesOf } from "./nodes";
+import { toast } from "./toast";
 import type { Answer, Handle, XY } from "./types";
 
 /** Space around the drawing when it fits the view, in px. */
@@ -16,6 +17,9 @@ const SHEET_MARGIN = 20;
 const BESIDE = 28;
 /** The radius in which a finger finds a handle, in px. */
 export const REACH = 18;
+
+/** The distance from which a path is picked, in px. */
+const PICKED = 8;
 
 /** Two corners. */
 type Box = [number, number, number, number];
@@ -33,6 +37,7 @@ export class Stage {
   private arms = s("path", { class: "arms" });
   /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
   private shield = s("rect", { class: "shield", width: "100%", height: "100%" });
+  private lit = s("path", { class: "lit" });
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
@@ -65,7 +70,7 @@ export class Stage {
   onZoom: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.guides, this.marks, this.knobs);
+    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.guides, this.marks, this.knobs);
     const stage = this;
     app.screen = {
       show: (answer) => this.show(answer),
@@ -75,10 +80,14 @@ export class Stage {
     app.listen((change) => {
       if (change === "state") this.place();
       if (change === "handles") this.rebuild();
+      if (change === "drawing") this.forget();
       if (change === "report" && this.showsStretch) void this.drawStretch();
     });
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
+    this.svg.addEventListener("pointermove", (e) => {
+      if (this.picks) this.light(this.named(e));
+    });
     const sizes = new ResizeObserver(() => this.resized());
     for (const part of [this.svg, byId("note"), byId("tools")]) sizes.observe(part);
   }
@@ -342,15 +351,36 @@ export class Stage {
   pick(take: ((id: string) => void) | null): void {
     this.picks = take;
     this.svg.classList.toggle("picking", take !== null);
+    this.light(null);
   }
 
-  /** Names the path that was clicked. */
-  picked(target: Element): void {
-    const named = target.closest(".art [id]");
+  /** Names the path that was clicked; elsewhere, the question stays. */
+  picked(e: PointerEvent): void {
+    const named = this.named(e);
+    if (!named) return toast("No path with a name is there. Click one, or press Escape");
     const take = this.picks;
     this.pick(null);
     // The ids of the drawing stand behind a prefix.
-    if (named) take?.(named.id.replace(/^art-/, ""));
+    take?.(named.closest("[id]")!.id.replace(/^art-/, ""));
+  }
+
+  /** The path with a name that is nearest to the pointer. */
+  private named(e: PointerEvent): SVGGraphicsElement | null {
+    for (let r = 0; r <= PICKED; r += 2) {
+      for (let k = 0; k < (r === 0 ? 1 : 4 * r); k++) {
+        const a = (2 * Math.PI * k) / (4 * r || 1);
+        const there = document.elementFromPoint(e.clientX + r * Math.cos(a), e.clientY + r * Math.sin(a));
+        if (there instanceof SVGGraphicsElement && there.closest(".art [id]")) return there;
+      }
+    }
+    return null;
+  }
+
+  /** Lights up a path. */
+  private light(path: SVGGraphicsElement | null): void {
+    const [from, m] = [this.svg.getBoundingClientRect(), path?.getScreenCTM()];
+    this.lit.setAttribute("d", path?.getAttribute("d") ?? "");
+    if (m) this.lit.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
   }
 
   /** Writes the values of a handle that has been moved, and asks for the picture. */

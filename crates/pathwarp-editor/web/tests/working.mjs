@@ -387,3 +387,109 @@ export const commands_of_results_bend_the_source = () => within("Flag", async (p
     await again.stop();
   }
 });
+
+/** Save as… says why there is nothing to save. */
+export const nothing_to_save_is_said = () => within(null, async (page) => {
+  await page.click("#save-as");
+  await page.waitForSelector("#toast.on:has-text('nothing to save')");
+  check(!(await page.isVisible("#save-dialog")), "there is a dialog for nothing");
+});
+
+/** A drawing that is opened in one tab is announced in the other, with its own original. */
+export const another_tab_opens_a_drawing = () => within("Arc", async (page, dir, editor) => {
+  await page.keyboard.down("b");
+  await page.waitForTimeout(200);
+  await page.keyboard.up("b");
+  const other = await open(editor.address);
+  await other.setInputFiles("#open-file", sample("badge.svg"));
+  await page.waitForSelector("#toast.on:has-text('badge.svg has been opened in another tab')");
+  await page.waitForFunction(() => document.querySelector("#file").textContent === "badge.svg");
+  await quiet(page);
+  const shown = (p) => p.$$eval("#stage .art:not([visibility=hidden]) path", (all) => all.length);
+  await page.keyboard.down("b");
+  await page.waitForTimeout(400);
+  const [mine, theirs] = [await shown(page), await shown(other)];
+  await page.keyboard.up("b");
+  check(mine === theirs, `the original has ${mine} paths instead of ${theirs}`);
+  await other.context().close();
+});
+
+/** A path is picked within 8 px; what would be picked lights up, and a miss leaves the question open. */
+export const paths_are_picked_nearby = async () => {
+  const dir = folder({ "way.svg": '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 200"><path id="way" d="M40,60 H360" fill="none" stroke="#000" stroke-width=".5"/><path d="M60,120 h200 v40 h-200 z"/></svg>' });
+  const editor = await edit(`${dir}/way.svg`);
+  const page = await open(editor.address);
+  try {
+    await choose(page, "Bend");
+    await page.click("#settings summary");
+    await page.locator("#settings .field", { has: page.locator("#set-along") }).locator("button").click();
+    const at = await page.$eval("#stage .art [id$=way]", (p) => { const q = p.getPointAtLength(100).matrixTransform(p.getScreenCTM()); return [q.x, q.y]; });
+    await page.mouse.click(at[0], at[1] - 30);
+    check(await page.$eval("#stage", (s) => s.classList.contains("picking")), "a miss ends the choice");
+    await page.mouse.move(at[0], at[1] - 6);
+    check((await page.getAttribute(".lit", "d")) !== "", "the path under the pointer does not light up");
+    const gap = await page.$eval(".lit", (p, [x, y]) => { const b = p.getBoundingClientRect(); return Math.abs(b.y + b.height / 2 - y) + Math.max(b.x - x, 0); }, at);
+    check(gap < 2, `the light is ${gap} px off`);
+    await page.mouse.click(at[0], at[1] - 6);
+    await page.waitForFunction(() => document.querySelector("#set-along").value === "#way");
+    check((await page.getAttribute(".lit", "d")) === "", "the light stays");
+  } finally {
+    editor.stop();
+    await page.context().close();
+  }
+};
+
+/** People's words find shapes, Enter takes the first, and nothing found is said. */
+export const words_find_shapes = () => within(null, async (page) => {
+  const found = async (text) => {
+    await page.fill("#search", "");
+    await page.click("#search");
+    await page.keyboard.type(text);
+    return page.$$eval("#gallery .card", (all) => all.filter((c) => c.offsetParent).map((c) => c.textContent));
+  };
+  for (const [text, name] of [["circle", "Bend"], ["text on path", "Bend"], ["bottle", "Cage"], ["puppet warp", "Pins"], ["keystone", "Perspective"], ["twist", "Swirl"], ["lattice", "Grid"]]) {
+    const names = await found(text);
+    check(names.includes(name), `${text} finds ${names}`);
+  }
+  check((await found("zzz")).length === 0 && (await page.isVisible("#gallery .none")) && (await page.textContent("#gallery .none")).includes("zzz"), "nothing found is not said");
+  const [first] = await found("bottle");
+  await page.keyboard.press("Enter");
+  await quiet(page);
+  check((await steps(page)).join() === first, `Enter took ${await steps(page)}, not ${first}`);
+});
+
+/** A preset of the same name is replaced only when that is wanted. */
+export const presets_ask_before_they_replace = () => within("Flag", async (page) => {
+  const keep = async (name) => {
+    await page.click("#keep-preset");
+    await page.fill("#preset-name", name);
+    await page.keyboard.press("Enter");
+    await page.waitForTimeout(300);
+  };
+  await keep("Twice");
+  check(!(await page.isVisible("#preset-dialog")), "it was not kept");
+  await keep("Twice");
+  check((await page.textContent("#preset-message")).includes("exists") && (await page.isVisible("#preset-replace")), "it was replaced without a word");
+  await page.click("#preset-replace");
+  await page.waitForFunction(() => !document.querySelector("#preset-dialog").open);
+  await page.click('[aria-label="Forget Twice"]');
+  await quiet(page);
+  check((await focused(page)) !== "" && !(await page.isVisible('[aria-label="Forget Twice"]')), "it is not forgotten");
+});
+
+/** What is selected is seen where colours are the user's. */
+export const forced_colours_show_the_selection = () => within("Flag", async (page) => {
+  const framed = (selector) => page.$eval(selector, (e) => getComputedStyle(e).outlineStyle);
+  for (const selector of ['.card[aria-pressed="true"]', "#steps li.chosen", "#snap", ".segments :checked + span"]) {
+    check((await framed(selector)) === "solid", `${selector} looks like the others`);
+  }
+  check((await framed('.card[aria-pressed="false"]')) !== "solid", "every card has a frame");
+}, { forcedColors: "active" });
+
+/** The view is magnified from 1 to 6,400 %. */
+export const zoom_has_its_range = () => within(null, async (page) => {
+  for (const [key, end] of [["-", "1%"], ["+", "6400%"]]) {
+    for (let i = 0; i < 50; i++) await page.keyboard.press(key);
+    check((await page.textContent("#zoom")) === end, `${key} ends at ${await page.textContent("#zoom")}`);
+  }
+});
