@@ -85,11 +85,13 @@ export class Stage {
     });
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
+    this.svg.addEventListener("keyup", (e) => {
+      if (e.key === "Tab" && this.focusedHandle) this.panTo(this.focusedHandle);
+    });
     this.svg.addEventListener("pointermove", (e) => {
       if (this.picks) this.light(this.named(e));
     });
-    const sizes = new ResizeObserver(() => this.resized());
-    for (const part of [this.svg, byId("note"), byId("tools")]) sizes.observe(part);
+    new ResizeObserver(() => this.resized()).observe(this.svg);
   }
 
   private get size(): XY {
@@ -304,20 +306,19 @@ export class Stage {
         { class: `knob ${handle.shape}`, tabindex: 0, role: "button", "aria-label": handle.label, "data-key": handle.key },
         s("circle", { r: handle.shape === "node" ? REACH : REACH - 5, class: "reach" }), body,
       );
-      knob.addEventListener("focus", () => {
-        this.focus(handle.key);
-        // Keys lead to what is out of sight.
-        if (knob.matches(":focus-visible") && !this.app.isDragging) this.panTo(handle);
-      });
+      knob.addEventListener("focus", () => this.focus(handle.key));
       this.elements.set(handle.key, knob);
       return knob;
     });
     this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
     const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
     this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
-    if (this.isToFit && handles) this.fit();
-    else this.placeHandles();
-    if (handles) this.isToFit = false;
+    this.placeHandles();
+    if (this.isToFit && handles) {
+      this.isToFit = false;
+      // The hint changes with the handles.
+      queueMicrotask(() => this.reveal());
+    }
     if (this.focused) {
       const again = this.elements.get(this.focused);
       if (!again) this.focus(null);
