@@ -794,7 +794,7 @@
     /** Takes hold of the line near a place: a curve bends with the pointer, a straight line moves. */
     pull(at, reach) {
       const found = this.near(at, reach, () => true);
-      if (!found) return this.pullCircle(at, reach);
+      if (!found) return this.pullRow(at, reach) ?? this.pullCircle(at, reach);
       const { name, id, sub, spot } = found;
       const handle = (n, side = "") => this.handles.find((h2) => h2.key === `${name}/${id}/${n}${side}`);
       const next = handle(spot.piece + 1) ? spot.piece + 1 : 0;
@@ -809,6 +809,7 @@
       return {
         param: name,
         handles: [first, second],
+        ends: [handle(spot.piece), handle(next)].flatMap((h2) => h2 ? [h2.key] : []),
         targets: (to) => from.map(([x, y], i) => [x + shares[i] * (to[0] - at[0]), y + shares[i] * (to[1] - at[1])])
       };
     }
@@ -816,7 +817,19 @@
       const radius = this.handles.find((h2) => h2.key === "radius");
       const [grip, centre] = [this.grips.radius, this.grips.center?.point];
       if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
-      return { param: "radius", handles: [radius], targets: (to) => [to] };
+      return { param: "radius", handles: [radius], ends: [], targets: (to) => [to] };
+    }
+    /** A line of a net moves as a whole. */
+    pullRow(at, reach) {
+      const [param, grip] = Object.entries(this.grips).find(([, g]) => g.net) ?? [];
+      const net = grip?.net;
+      if (!net || !param) return null;
+      const far = (line) => Math.min(...line.slice(1).map((b, i) => distance(at, net.points[line[i]], net.points[b])));
+      const row = net.lines.filter((line) => line.length > 1).sort((a, b) => far(a) - far(b))[0];
+      if (!row || far(row) > reach) return null;
+      const handles = row.map((i) => this.handles.find(({ key }) => key === `${param}/${i}`));
+      const from = handles.map((h2) => [...h2.get()]);
+      return { param, handles, ends: handles.map(({ key }) => key), targets: (to) => from.map(([x, y]) => [x + to[0] - at[0], y + to[1] - at[1]]) };
     }
     /** Adds a point to the path that passes near a place. */
     divide(at, reach) {
@@ -1589,12 +1602,18 @@
   // src/modes.ts
   var Modes = class {
     snaps = true;
+    /** Dragging the ground selects the points in a frame. */
+    selects = false;
     mirrors = false;
     smooths = true;
     marks = [];
     /** Shows where the handle has snapped to; the points are in user units. */
     onSnap = () => {
     };
+    /** The reflection that symmetry is about. */
+    reflection(handles) {
+      return reflection(handles);
+    }
     /** Where else a point is added that is added at a place: its reflection, if symmetry is on. */
     reflections(handles, at, reach) {
       const other = reflection(handles)(at);
@@ -1943,6 +1962,87 @@
     return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step2)).toFixed(3)}`;
   }
 
+  // src/selection.ts
+  var AROUND = 16;
+  var ABOVE = 26;
+  var Selection = class {
+    keys = /* @__PURE__ */ new Set();
+    layer = s("g", { class: "selection", visibility: "hidden" });
+    frame = s("path", { class: "line arm" });
+    parts = /* @__PURE__ */ new Map();
+    /** Two corners, in px of the screen. */
+    box = [[0, 0], [0, 0]];
+    constructor() {
+      this.layer.append(this.frame);
+      for (const part of ["nw", "ne", "se", "sw", "turn"]) {
+        const body = part === "turn" ? s("circle", { r: 6, class: "body" }) : s("rect", { x: -5, y: -5, width: 10, height: 10, class: "body" });
+        const label = part === "turn" ? "Turn the selected points" : "Scale the selected points";
+        const knob = s("g", { class: `part ${part}`, "data-part": part }, s("title", {}, label), s("circle", { r: 16, class: "reach" }), body);
+        this.parts.set(part, knob);
+        this.layer.append(knob);
+      }
+    }
+    /** More than one point is selected. */
+    get isMany() {
+      return this.keys.size > 1;
+    }
+    /** Selects these alone. */
+    take(keys) {
+      this.keys = new Set(keys);
+      byId("spoken").textContent = keys.length > 1 ? `${keys.length} points are selected` : "";
+    }
+    /** Adds a point, or takes it out. */
+    toggle(key) {
+      if (!this.keys.delete(key)) this.keys.add(key);
+      this.take(Array.from(this.keys));
+    }
+    /** The selected handles. */
+    of(handles) {
+      return handles.handles.filter(({ key }) => this.keys.has(key));
+    }
+    /** Puts the box around the selected points. */
+    place(handles, toScreen) {
+      const points = handles ? this.of(handles).map((h2) => toScreen(h2.get())) : [];
+      this.layer.setAttribute("visibility", points.length > 1 ? "visible" : "hidden");
+      if (points.length < 2) return;
+      const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
+      const [x0, y0, x1, y1] = [Math.min(...xs) - AROUND, Math.min(...ys) - AROUND, Math.max(...xs) + AROUND, Math.max(...ys) + AROUND];
+      this.box = [[x0, y0], [x1, y1]];
+      const middle2 = (x0 + x1) / 2;
+      this.frame.setAttribute("d", `M${x0},${y0}H${x1}V${y1}H${x0}ZM${middle2},${y0}V${y0 - ABOVE}`);
+      const places = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle2, y0 - ABOVE] };
+      for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${places[part].join(" ")})`);
+    }
+    /** What a pointer does that has taken the box by a part: a turn about its middle, or a scaling about the corner opposite. */
+    transform(part, from) {
+      const [[x0, y0], [x1, y1]] = this.box;
+      const about = part === "turn" ? [(x0 + x1) / 2, (y0 + y1) / 2] : [part.endsWith("w") ? x1 : x0, part.startsWith("n") ? y1 : y0];
+      const [ax, ay] = [from[0] - about[0], from[1] - about[1]];
+      const square = ax * ax + ay * ay || 1;
+      return (to) => {
+        const [bx, by] = [to[0] - about[0], to[1] - about[1]];
+        const [dot, cross] = [(ax * bx + ay * by) / square, (ax * by - ay * bx) / square];
+        const size = Math.hypot(dot, cross) || 1;
+        const [re, im] = part === "turn" ? [dot / size, cross / size] : [dot, 0];
+        return ([x, y]) => [about[0] + re * (x - about[0]) - im * (y - about[1]), about[1] + im * (x - about[0]) + re * (y - about[1])];
+      };
+    }
+  };
+  function together(handles, chosen, modes2) {
+    const keys = new Set(chosen.map(({ key }) => key));
+    const arms = handles.handles.filter(({ key }) => !keys.has(key) && /\/(in|out)$/.test(key) && keys.has(key.replace(/\/(in|out)$/, "")));
+    const all = [...chosen.filter((h2) => h2.shape !== "control"), ...chosen.filter((h2) => h2.shape === "control"), ...arms];
+    const starts = all.map((h2) => [...h2.get()]);
+    const partners = all.map((h2) => modes2.mirrors ? handles.partner(h2) : null).map((p) => p && !all.includes(p) ? p : null);
+    const mirrored = modes2.reflection(handles);
+    return (image) => {
+      const ends = starts.map(image);
+      all.forEach((h2, i) => h2.set(ends[i], false));
+      partners.forEach((p, i) => p?.set(mirrored(ends[i]), false));
+      return new Set(all.map(({ param }) => param));
+    };
+  }
+
   // src/nodes.ts
   var MOST = 4e6;
   function nodesOf(paths) {
@@ -2022,7 +2122,7 @@
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.guides, this.marks, this.knobs);
+      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
       const stage2 = this;
       app2.screen = {
         show: (answer) => this.show(answer),
@@ -2039,11 +2139,13 @@
       });
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
       this.svg.addEventListener("keydown", (e) => this.key(e));
+      this.svg.addEventListener("keyup", (e) => {
+        if (e.key === "Tab" && this.focusedHandle) this.panTo(this.focusedHandle);
+      });
       this.svg.addEventListener("pointermove", (e) => {
         if (this.picks) this.light(this.named(e));
       });
-      const sizes = new ResizeObserver(() => this.resized());
-      for (const part of [this.svg, byId("note"), byId("tools")]) sizes.observe(part);
+      new ResizeObserver(() => this.resized()).observe(this.svg);
     }
     app;
     modes;
@@ -2059,6 +2161,9 @@
     arms = s("path", { class: "arms" });
     /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
     shield = s("rect", { class: "shield", width: "100%", height: "100%" });
+    selection = new Selection();
+    /** The frame that points are selected with. */
+    marquee = s("rect", { class: "marquee", visibility: "hidden" });
     lit = s("path", { class: "lit" });
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
@@ -2267,13 +2372,14 @@
         const [x, y] = this.camera.toScreen(handle.get());
         this.elements.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
       }
+      this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
     }
     rebuild() {
       const { handles } = this.app;
       this.elements.clear();
       const lines = handles?.lines() ?? [];
       this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
-      this.reaches = lines.map((line) => line.kind === "path" ? s("path", { class: "pull" }) : null);
+      this.reaches = lines.map((line) => line.kind === "arm" ? null : s("path", { class: "pull" }));
       const knobs = (handles?.handles ?? []).map((handle) => {
         const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" }) : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
         const knob = s(
@@ -2283,8 +2389,8 @@
           body
         );
         knob.addEventListener("focus", () => {
+          if (!this.selection.keys.has(handle.key)) this.selection.take([handle.key]);
           this.focus(handle.key);
-          if (knob.matches(":focus-visible") && !this.app.isDragging) this.panTo(handle);
         });
         this.elements.set(handle.key, knob);
         return knob;
@@ -2292,9 +2398,11 @@
       this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
       const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
       this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
-      if (this.isToFit && handles) this.fit();
-      else this.placeHandles();
-      if (handles) this.isToFit = false;
+      this.placeHandles();
+      if (this.isToFit && handles) {
+        this.isToFit = false;
+        queueMicrotask(() => this.reveal());
+      }
       if (this.focused) {
         const again = this.elements.get(this.focused);
         if (!again) this.focus(null);
@@ -2305,8 +2413,31 @@
     /** Selects a handle. */
     focus(key) {
       this.focused = key;
-      for (const [k, element] of this.elements) element.classList.toggle("selected", k === key);
+      if (key === null) this.selection.take([]);
+      for (const [k, element] of this.elements) element.classList.toggle("selected", k === key || this.selection.keys.has(k));
+      this.selection.place(this.app.handles, (p) => this.camera.toScreen(p));
       this.onFocus(this.handle(key));
+    }
+    /** Selects several points. */
+    select(keys) {
+      this.selection.take(keys);
+      const last = keys[keys.length - 1] ?? null;
+      this.focus(last);
+      if (last) this.elements.get(last)?.focus({ preventScroll: true });
+    }
+    /** The selected points, if a handle is one of several. */
+    several(handle) {
+      const { handles } = this.app;
+      return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
+    }
+    /** The points in a frame between two places of the screen: those that curves pass through, if there are any. */
+    within([ax, ay], [bx, by]) {
+      const inside = (this.app.handles?.handles ?? []).filter((h2) => {
+        const [x, y] = this.camera.toScreen(h2.get());
+        return (x - ax) * (x - bx) <= 0 && (y - ay) * (y - by) <= 0;
+      });
+      const nodes = inside.filter(({ shape }) => shape === "node");
+      return (nodes.length > 0 ? nodes : inside).map(({ key }) => key);
     }
     get focusedHandle() {
       return this.handle(this.focused);
@@ -2380,7 +2511,14 @@
         e.preventDefault();
         const far = e.shiftKey ? 10 : 1;
         const [x, y] = this.camera.toScreen(handle.get());
-        this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+        const several = this.several(handle);
+        if (several) {
+          this.app.commitSoon();
+          const shift = ([px, py]) => [px + far * by[0], py + far * by[1]];
+          this.changedAll(together(this.app.handles, several, this.modes)((p) => this.camera.toUser(shift(this.camera.toScreen(p)))), performance.now());
+        } else {
+          this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+        }
         this.onKeys(handle);
       } else if (e.key === "Insert") {
         e.preventDefault();
@@ -2389,8 +2527,32 @@
         void this.add(at);
       } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
         e.preventDefault();
-        this.remove(handle);
+        const several = this.several(handle);
+        if (several) this.removeAll(several);
+        else this.remove(handle);
       }
+    }
+    /** Takes several points away, as far as enough are left. */
+    removeAll(several) {
+      const { handles } = this.app;
+      if (!handles) return;
+      const places = several.map(({ param, shape, get }) => ({ param, shape, at: [...get()] }));
+      for (const { param, shape, at } of places) {
+        handles.handles.find((h2) => h2.param === param && h2.shape === shape && h2.get()[0] === at[0] && h2.get()[1] === at[1])?.remove?.();
+        handles.write(param);
+      }
+      this.focused = handles.nearest(places[0].at)?.key ?? null;
+      this.selection.take(this.focused ? [this.focused] : []);
+      this.app.tell("handles");
+      void this.app.commit();
+    }
+    /** Writes the values of parameters whose handles have been moved together. */
+    changedAll(params, since) {
+      for (const param of params) this.app.handles.write(param);
+      this.placeHandles();
+      this.onFocus(this.focusedHandle);
+      this.app.tell("values");
+      this.app.draft(since);
     }
     /** Takes a point away. */
     remove(handle) {
@@ -2429,6 +2591,7 @@
   // src/pointing.ts
   var MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
   var SNAP = 7;
+  var SHAKES = 3;
   var NOTCH = 50;
   var PINCH_RATE = 0.01;
   var WHEEL_RATE = 2e-3;
@@ -2481,7 +2644,10 @@
       }
       const bends = e.button === 0 && !stage2.isBefore;
       const knob = target.closest(".knob");
+      const part = target.closest(".part")?.dataset.part;
       if (knob && bends) this.drag(e, knob);
+      else if (part && bends) this.transform(e, stage2.selection.transform(part, stage2.point(e)));
+      else if (bends && (e.shiftKey || this.modes.selects)) this.frame(e);
       else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e);
     }
     /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. Returns what gives it up. */
@@ -2505,8 +2671,10 @@
       return () => finish(cancel);
     }
     /** Follows a pointer that changes the step: `move` does, and `done` tidies up. */
-    bend(e, move, done) {
+    bend(e, move, done, clicked = () => {
+    }) {
       const { app: app2 } = this;
+      const start = this.stage.point(e);
       void app2.flush();
       const before2 = structuredClone(app2.step);
       let hasMoved = false;
@@ -2518,12 +2686,13 @@
       };
       const abandon = this.follow(e, {
         move: (to, event) => {
-          hasMoved = true;
-          move(to, event);
+          hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= SHAKES;
+          if (hasMoved) move(to, event);
         },
         end: () => {
           stop();
           if (hasMoved) void app2.commit();
+          else clicked();
         },
         cancel: () => {
           stop();
@@ -2538,9 +2707,18 @@
       const handle = stage2.handle(knob.dataset.key ?? null);
       if (!handle || !handles) return;
       e.preventDefault();
+      const before2 = new Set(stage2.selection.keys);
       knob.focus({ preventScroll: true });
-      const grabbed = stage2.camera.toScreen(handle.get());
+      if (e.shiftKey) stage2.selection.keys = before2;
       const [x, y] = stage2.point(e);
+      const several = stage2.several(handle);
+      const adds = e.shiftKey;
+      const clicked = () => {
+        if (adds) stage2.selection.toggle(handle.key);
+        stage2.select(adds ? Array.from(stage2.selection.keys) : [handle.key]);
+      };
+      if (several && !adds) return this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y], clicked);
+      const grabbed = stage2.camera.toScreen(handle.get());
       const mover = modes2.mover(handles, handle);
       knob.classList.add("held");
       this.bend(e, (to, event) => {
@@ -2550,6 +2728,42 @@
       }, () => {
         knob.classList.remove("held");
         modes2.clear();
+        stage2.placeHandles();
+      }, clicked);
+    }
+    /** Moves, turns or scales the selected points with the pointer. */
+    transform(e, image, clicked = () => {
+    }) {
+      const { stage: stage2, modes: modes2 } = this;
+      const { handles } = this.app;
+      if (!handles) return;
+      const { camera } = stage2;
+      const mover = together(handles, stage2.selection.of(handles), modes2);
+      e.preventDefault();
+      this.bend(e, (to, event) => {
+        const there = image(to);
+        stage2.changedAll(mover((p) => camera.toUser(there(camera.toScreen(p)))), event.timeStamp);
+      }, () => stage2.placeHandles(), clicked);
+    }
+    /** Draws a frame, and selects the points in it. */
+    frame(e) {
+      const { stage: stage2 } = this;
+      const start = stage2.point(e);
+      const before2 = e.shiftKey ? Array.from(stage2.selection.keys) : [];
+      let last = start;
+      const hide2 = () => stage2.marquee.setAttribute("visibility", "hidden");
+      e.preventDefault();
+      this.follow(e, {
+        move: (to) => {
+          last = to;
+          const sides = { x: Math.min(start[0], to[0]), y: Math.min(start[1], to[1]), width: Math.abs(to[0] - start[0]), height: Math.abs(to[1] - start[1]), visibility: "visible" };
+          for (const [name, value] of Object.entries(sides)) stage2.marquee.setAttribute(name, String(value));
+        },
+        end: () => {
+          hide2();
+          stage2.select(Array.from(/* @__PURE__ */ new Set([...before2, ...stage2.within(start, last)])));
+        },
+        cancel: hide2
       });
     }
     /** Follows a line that is pulled. Returns `false` if there is none. */
@@ -2558,6 +2772,11 @@
       const { handles } = this.app;
       const pull = handles?.pull(stage2.camera.toUser(stage2.point(e)), REACH * stage2.camera.pixel);
       if (!handles || !pull) return false;
+      const [x, y] = stage2.point(e);
+      if (pull.ends.length > 1 && pull.ends.every((key) => stage2.selection.keys.has(key))) {
+        this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y]);
+        return true;
+      }
       const puller = modes2.puller(handles, pull);
       this.bend(e, (to, event) => {
         puller(stage2.camera.toUser(to));
@@ -2566,7 +2785,7 @@
         this.app.tell("values");
         this.app.draft(event.timeStamp);
       }, () => {
-      });
+      }, () => stage2.select(pull.ends));
       return true;
     }
     pan(e) {
@@ -2583,6 +2802,7 @@
         end: () => {
           stage2.svg.classList.remove("panning");
           const [x, y, w, h2] = this.app.handles?.frame ?? [0, 0, 0, 0];
+          if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES) stage2.select([]);
           const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h2;
           if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
         }
@@ -2708,12 +2928,13 @@
       byId("smooth").hidden = !handles?.handles.some(({ key }) => /\/(in|out)$/.test(key));
       byId("mirror").hidden = !has;
       byId("snap").hidden = !has;
+      byId("select").hidden = (handles?.handles.length ?? 0) < 2;
       if (app2.released) toast(`The line has left ${app2.released}, which is artwork again. Undo brings it back`);
       app2.released = null;
       if (app2.appends) return show("note", "Choose the shape of the next step, or press Escape");
       if (!handles) return;
       const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
-      const adds = handles.net ? "Double-click a line of the net for one more" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
+      const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
       const note = !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
       show("note", app2.isProposal && has ? `${note}, or choose a shape` : note);
     }
@@ -3339,6 +3560,10 @@
     });
     show2();
   }
+  toggle("select", () => modes.selects, (v) => {
+    modes.selects = v;
+    stage.svg.classList.toggle("selecting", v);
+  });
   toggle("snap", () => modes.snaps, (v) => modes.snaps = v);
   toggle("mirror", () => modes.mirrors, (v) => modes.mirrors = v);
   toggle("smooth", () => modes.smooths, (v) => modes.smooths = v);

@@ -18,6 +18,8 @@ interface Near {
 export interface Pull {
   param: string;
   handles: Handle[];
+  /** The keys of the points that it joins. */
+  ends: string[];
   /** The places of the handles when the line is pulled to a place. */
   targets: (to: XY) => XY[];
 }
@@ -286,7 +288,7 @@ export class Handles {
   /** Takes hold of the line near a place: a curve bends with the pointer, a straight line moves. */
   pull(at: XY, reach: number): Pull | null {
     const found = this.near(at, reach, () => true);
-    if (!found) return this.pullCircle(at, reach);
+    if (!found) return this.pullRow(at, reach) ?? this.pullCircle(at, reach);
     const { name, id, sub, spot } = found;
     const handle = (n: number, side = "") => this.handles.find((h) => h.key === `${name}/${id}/${n}${side}`);
     const next = handle(spot.piece + 1) ? spot.piece + 1 : 0;
@@ -302,6 +304,7 @@ export class Handles {
     return {
       param: name,
       handles: [first, second],
+      ends: [handle(spot.piece), handle(next)].flatMap((h) => (h ? [h.key] : [])),
       targets: (to) => from.map(([x, y], i) => [x + shares[i]! * (to[0] - at[0]), y + shares[i]! * (to[1] - at[1])]),
     };
   }
@@ -310,7 +313,20 @@ export class Handles {
     const radius = this.handles.find((h) => h.key === "radius");
     const [grip, centre] = [this.grips.radius, this.grips.center?.point];
     if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
-    return { param: "radius", handles: [radius], targets: (to) => [to] };
+    return { param: "radius", handles: [radius], ends: [], targets: (to) => [to] };
+  }
+
+  /** A line of a net moves as a whole. */
+  private pullRow(at: XY, reach: number): Pull | null {
+    const [param, grip] = Object.entries(this.grips).find(([, g]) => g.net) ?? [];
+    const net = grip?.net;
+    if (!net || !param) return null;
+    const far = (line: number[]) => Math.min(...line.slice(1).map((b, i) => distance(at, net.points[line[i]!]!, net.points[b]!)));
+    const row = net.lines.filter((line) => line.length > 1).sort((a, b) => far(a) - far(b))[0];
+    if (!row || far(row) > reach) return null;
+    const handles = row.map((i) => this.handles.find(({ key }) => key === `${param}/${i}`)!);
+    const from = handles.map((h): XY => [...h.get()]);
+    return { param, handles, ends: handles.map(({ key }) => key), targets: (to) => from.map(([x, y]) => [x + to[0] - at[0], y + to[1] - at[1]]) };
   }
 
   /** Adds a point to the path that passes near a place. */

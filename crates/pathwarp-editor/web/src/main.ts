@@ -63,6 +63,10 @@ function toggle(id: string, get: () => boolean, set: (value: boolean) => void): 
   show();
 }
 
+toggle("select", () => modes.selects, (v) => {
+  modes.selects = v;
+  stage.svg.classList.toggle("selecting", v);
+});
 toggle("snap", () => modes.snaps, (v) => (modes.snaps = v));
 toggle("mirror", () => modes.mirrors, (v) => (modes.mirrors = v));
 toggle("smooth", () => modes.smooths, (v) => (modes.smooths = v));

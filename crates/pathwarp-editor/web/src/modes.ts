@@ -6,11 +6,18 @@ import type { Handle, XY } from "./types";
 
 export class Modes {
   snaps = true;
+  /** Dragging the ground selects the points in a frame. */
+  selects = false;
   mirrors = false;
   smooths = true;
   private marks: XY[] = [];
   /** Shows where the handle has snapped to; the points are in user units. */
   onSnap: (x: number | null, y: number | null) => void = () => {};
+
+  /** The reflection that symmetry is about. */
+  reflection(handles: Handles): (p: XY) => XY {
+    return reflection(handles);
+  }
 
   /** Where else a point is added that is added at a place: its reflection, if symmetry is on. */
   reflections(handles: Handles, at: XY, reach: number): XY[] {

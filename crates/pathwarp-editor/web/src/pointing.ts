@@ -3,12 +3,15 @@
 import type { App } from "./app";
 import type { Modes } from "./modes";
 import { REACH, type Stage } from "./stage";
+import { together, type Part } from "./selection";
 import type { XY } from "./types";
 
 /** Moves of a pointer, at once where the browser can. `pointermove` waits for the next picture, so the answer would miss it. */
 const MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
 /** The distance from which a handle jumps to a line, in px. */
 const SNAP = 7;
+/** The distance up to which a press is a click, in px. */
+const SHAKES = 3;
 /** A wheel turns in notches of at least this many px; a trackpad reports less at a time. */
 const NOTCH = 50;
 /** Magnification for each px of a trackpad's pinch and of a wheel, as exponents. */
@@ -70,7 +73,10 @@ export class Pointing {
     }
     const bends = e.button === 0 && !stage.isBefore;
     const knob = target.closest<SVGGElement>(".knob");
+    const part = target.closest<SVGGElement>(".part")?.dataset.part as Part | undefined;
     if (knob && bends) this.drag(e, knob);
+    else if (part && bends) this.transform(e, stage.selection.transform(part, stage.point(e)));
+    else if (bends && (e.shiftKey || this.modes.selects)) this.frame(e);
     else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e);
   }
 
@@ -96,8 +102,9 @@ export class Pointing {
   }
 
   /** Follows a pointer that changes the step: `move` does, and `done` tidies up. */
-  private bend(e: PointerEvent, move: (to: XY, e: PointerEvent) => void, done: () => void): void {
+  private bend(e: PointerEvent, move: (to: XY, e: PointerEvent) => void, done: () => void, clicked: () => void = () => {}): void {
     const { app } = this;
+    const start = this.stage.point(e);
     void app.flush();
     const before = structuredClone(app.step!);
     let hasMoved = false;
@@ -109,12 +116,14 @@ export class Pointing {
     };
     const abandon = this.follow(e, {
       move: (to, event) => {
-        hasMoved = true;
-        move(to, event);
+        // A click may shake.
+        hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= SHAKES;
+        if (hasMoved) move(to, event);
       },
       end: () => {
         stop();
         if (hasMoved) void app.commit();
+        else clicked();
       },
       cancel: () => {
         stop();
@@ -130,9 +139,18 @@ export class Pointing {
     const handle = stage.handle(knob.dataset.key ?? null);
     if (!handle || !handles) return;
     e.preventDefault();
+    const before = new Set(stage.selection.keys);
     knob.focus({ preventScroll: true });
-    const grabbed = stage.camera.toScreen(handle.get());
+    if (e.shiftKey) stage.selection.keys = before;
     const [x, y] = stage.point(e);
+    const several = stage.several(handle);
+    const adds = e.shiftKey;
+    const clicked = () => {
+      if (adds) stage.selection.toggle(handle.key);
+      stage.select(adds ? Array.from(stage.selection.keys) : [handle.key]);
+    };
+    if (several && !adds) return this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y], clicked);
+    const grabbed = stage.camera.toScreen(handle.get());
     const mover = modes.mover(handles, handle);
     knob.classList.add("held");
     this.bend(e, (to, event) => {
@@ -142,6 +160,43 @@ export class Pointing {
     }, () => {
       knob.classList.remove("held");
       modes.clear();
+      stage.placeHandles();
+    }, clicked);
+  }
+
+  /** Moves, turns or scales the selected points with the pointer. */
+  private transform(e: PointerEvent, image: (to: XY) => (p: XY) => XY, clicked: () => void = () => {}): void {
+    const { stage, modes } = this;
+    const { handles } = this.app;
+    if (!handles) return;
+    const { camera } = stage;
+    const mover = together(handles, stage.selection.of(handles), modes);
+    e.preventDefault();
+    this.bend(e, (to, event) => {
+      const there = image(to);
+      stage.changedAll(mover((p) => camera.toUser(there(camera.toScreen(p)))), event.timeStamp);
+    }, () => stage.placeHandles(), clicked);
+  }
+
+  /** Draws a frame, and selects the points in it. */
+  private frame(e: PointerEvent): void {
+    const { stage } = this;
+    const start = stage.point(e);
+    const before = e.shiftKey ? Array.from(stage.selection.keys) : [];
+    let last = start;
+    const hide = () => stage.marquee.setAttribute("visibility", "hidden");
+    e.preventDefault();
+    this.follow(e, {
+      move: (to) => {
+        last = to;
+        const sides = { x: Math.min(start[0], to[0]), y: Math.min(start[1], to[1]), width: Math.abs(to[0] - start[0]), height: Math.abs(to[1] - start[1]), visibility: "visible" };
+        for (const [name, value] of Object.entries(sides)) stage.marquee.setAttribute(name, String(value));
+      },
+      end: () => {
+        hide();
+        stage.select(Array.from(new Set([...before, ...stage.within(start, last)])));
+      },
+      cancel: hide,
     });
   }
 
@@ -151,6 +206,12 @@ export class Pointing {
     const { handles } = this.app;
     const pull = handles?.pull(stage.camera.toUser(stage.point(e)), REACH * stage.camera.pixel);
     if (!handles || !pull) return false;
+    const [x, y] = stage.point(e);
+    // A line that is selected moves as a whole.
+    if (pull.ends.length > 1 && pull.ends.every((key) => stage.selection.keys.has(key))) {
+      this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y]);
+      return true;
+    }
     const puller = modes.puller(handles, pull);
     this.bend(e, (to, event) => {
       puller(stage.camera.toUser(to));
@@ -158,7 +219,7 @@ export class Pointing {
       stage.placeHandles();
       this.app.tell("values");
       this.app.draft(event.timeStamp);
-    }, () => {});
+    }, () => {}, () => stage.select(pull.ends));
     return true;
   }
 
@@ -176,6 +237,8 @@ export class Pointing {
       end: () => {
         stage.svg.classList.remove("panning");
         const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
+        // A click beside everything selects nothing.
+        if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES) stage.select([]);
         const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
         if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
       },

@@ -67,6 +67,7 @@ export class Report {
     byId("smooth").hidden = !handles?.handles.some(({ key }) => /\/(in|out)$/.test(key));
     byId("mirror").hidden = !has;
     byId("snap").hidden = !has;
+    byId("select").hidden = (handles?.handles.length ?? 0) < 2;
     if (app.released) toast(`The line has left ${app.released}, which is artwork again. Undo brings it back`);
     app.released = null;
     if (app.appends) return show("note", "Choose the shape of the next step, or press Escape");

@@ -6,6 +6,7 @@ import { byId, s } from "./dom";
 import { Drawing, parse } from "./drawing";
 import { cells } from "./heat";
 import { Modes } from "./modes";
+import { Selection, together } from "./selection";
 import { nodesOf } from "./nodes";
 import { toast } from "./toast";
 import type { Answer, Handle, XY } from "./types";
@@ -37,6 +38,9 @@ export class Stage {
   private arms = s("path", { class: "arms" });
   /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
   private shield = s("rect", { class: "shield", width: "100%", height: "100%" });
+  readonly selection = new Selection();
+  /** The frame that points are selected with. */
+  readonly marquee = s("rect", { class: "marquee", visibility: "hidden" });
   private lit = s("path", { class: "lit" });
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
@@ -70,7 +74,7 @@ export class Stage {
   onZoom: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.guides, this.marks, this.knobs);
+    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
     const stage = this;
     app.screen = {
       show: (answer) => this.show(answer),
@@ -290,6 +294,7 @@ export class Stage {
       const [x, y] = this.camera.toScreen(handle.get());
       this.elements.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
     }
+    this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
   }
 
   private rebuild(): void {
@@ -297,7 +302,7 @@ export class Stage {
     this.elements.clear();
     const lines = handles?.lines() ?? [];
     this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
-    this.reaches = lines.map((line) => (line.kind === "path" ? s("path", { class: "pull" }) : null));
+    this.reaches = lines.map((line) => (line.kind === "arm" ? null : s("path", { class: "pull" })));
     const knobs = (handles?.handles ?? []).map((handle) => {
       const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" })
         : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
@@ -306,7 +311,10 @@ export class Stage {
         { class: `knob ${handle.shape}`, tabindex: 0, role: "button", "aria-label": handle.label, "data-key": handle.key },
         s("circle", { r: handle.shape === "node" ? REACH : REACH - 5, class: "reach" }), body,
       );
-      knob.addEventListener("focus", () => this.focus(handle.key));
+      knob.addEventListener("focus", () => {
+        if (!this.selection.keys.has(handle.key)) this.selection.take([handle.key]);
+        this.focus(handle.key);
+      });
       this.elements.set(handle.key, knob);
       return knob;
     });
@@ -330,8 +338,34 @@ export class Stage {
   /** Selects a handle. */
   focus(key: string | null): void {
     this.focused = key;
-    for (const [k, element] of this.elements) element.classList.toggle("selected", k === key);
+    if (key === null) this.selection.take([]);
+    for (const [k, element] of this.elements) element.classList.toggle("selected", k === key || this.selection.keys.has(k));
+    this.selection.place(this.app.handles, (p) => this.camera.toScreen(p));
     this.onFocus(this.handle(key));
+  }
+
+  /** Selects several points. */
+  select(keys: string[]): void {
+    this.selection.take(keys);
+    const last = keys[keys.length - 1] ?? null;
+    this.focus(last);
+    if (last) this.elements.get(last)?.focus({ preventScroll: true });
+  }
+
+  /** The selected points, if a handle is one of several. */
+  several(handle: Handle): Handle[] | null {
+    const { handles } = this.app;
+    return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
+  }
+
+  /** The points in a frame between two places of the screen: those that curves pass through, if there are any. */
+  within([ax, ay]: XY, [bx, by]: XY): string[] {
+    const inside = (this.app.handles?.handles ?? []).filter((h) => {
+      const [x, y] = this.camera.toScreen(h.get());
+      return (x - ax) * (x - bx) <= 0 && (y - ay) * (y - by) <= 0;
+    });
+    const nodes = inside.filter(({ shape }) => shape === "node");
+    return (nodes.length > 0 ? nodes : inside).map(({ key }) => key);
   }
 
   get focusedHandle(): Handle | null {
@@ -417,7 +451,14 @@ export class Stage {
       e.preventDefault();
       const far = e.shiftKey ? 10 : 1;
       const [x, y] = this.camera.toScreen(handle.get());
-      this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+      const several = this.several(handle);
+      if (several) {
+        this.app.commitSoon();
+        const shift = ([px, py]: XY): XY => [px + far * by[0], py + far * by[1]];
+        this.changedAll(together(this.app.handles, several, this.modes)((p) => this.camera.toUser(shift(this.camera.toScreen(p)))), performance.now());
+      } else {
+        this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+      }
       this.onKeys(handle);
     } else if (e.key === "Insert") {
       e.preventDefault();
@@ -427,8 +468,35 @@ export class Stage {
       void this.add(at);
     } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
       e.preventDefault();
-      this.remove(handle);
+      const several = this.several(handle);
+      if (several) this.removeAll(several);
+      else this.remove(handle);
     }
+  }
+
+  /** Takes several points away, as far as enough are left. */
+  private removeAll(several: Handle[]): void {
+    const { handles } = this.app;
+    if (!handles) return;
+    const places = several.map(({ param, shape, get }) => ({ param, shape, at: [...get()] }));
+    // Taking one away has numbered the others anew.
+    for (const { param, shape, at } of places) {
+      handles.handles.find((h) => h.param === param && h.shape === shape && h.get()[0] === at[0] && h.get()[1] === at[1])?.remove?.();
+      handles.write(param);
+    }
+    this.focused = handles.nearest(places[0]!.at as XY)?.key ?? null;
+    this.selection.take(this.focused ? [this.focused] : []);
+    this.app.tell("handles");
+    void this.app.commit();
+  }
+
+  /** Writes the values of parameters whose handles have been moved together. */
+  changedAll(params: Set<string>, since: number): void {
+    for (const param of params) this.app.handles!.write(param);
+    this.placeHandles();
+    this.onFocus(this.focusedHandle);
+    this.app.tell("values");
+    this.app.draft(since);
   }
 
   /** Takes a point away. */
