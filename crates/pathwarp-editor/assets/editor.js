@@ -1307,6 +1307,7 @@
     }
     /** Sets a parameter by a key; those that follow are one change with it. */
     setSoon(name, values) {
+      if (NET.has(name) && this.handles?.net) return this.set(name, values, true);
       this.set(name, values, false);
       this.commitSoon();
       this.tell("values");

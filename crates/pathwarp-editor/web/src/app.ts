@@ -354,6 +354,8 @@ export class App {
 
   /** Sets a parameter by a key; those that follow are one change with it. */
   setSoon(name: string, values: string[]): void {
+    // The points of a net are counted anew at once.
+    if (NET.has(name) && this.handles?.net) return this.set(name, values, true);
     this.set(name, values, false);
     this.commitSoon();
     this.tell("values");

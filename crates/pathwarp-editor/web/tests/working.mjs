@@ -298,6 +298,9 @@ export const triangles_keep_their_shape = () => within("Triangle net", async (pa
   await page.keyboard.type("4");
   await page.keyboard.press("Enter");
   await quiet(page);
+  await page.keyboard.press("ArrowUp");
+  await quiet(page);
+  check((await keys(page)).length === 21, `degree 5 has ${(await keys(page)).length} points`);
   const off = Math.max(...(await outline(page)).map((p) => Math.min(...before.map((q) => Math.hypot(p[0] - q[0], p[1] - q[1])))));
   check((await keys(page)).length > count && off < 3, `${off} px off, ${count} points before`);
 });
