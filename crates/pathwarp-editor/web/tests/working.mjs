@@ -350,7 +350,7 @@ async function copied(page, format, name) {
   await page.click("#copy-command");
   return (await page.waitForFunction(() => window.copied)).jsonValue();
 }
-const run = (dir, line) => execFileSync("sh", ["-c", line.replaceAll(/(^|&& )pathwarp /g, `$1'${program}' `)], { cwd: dir, stdio: "ignore" });
+const run = (dir, line) => execFileSync("sh", ["-c", line.replaceAll(/(^|&& |\| )pathwarp /g, `$1'${program}' `)], { cwd: dir, stdio: "ignore" });
 
 /** The copied command line writes the chosen format under the typed name, with the bytes that Save writes. */
 export const commands_have_format_and_name = () => within("Flag", async (page, dir) => {
