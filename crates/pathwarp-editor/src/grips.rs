@@ -2,7 +2,7 @@
 //!
 //! Which handles a parameter has follows from its kind and, for text, from its notation; so parameters of plug-ins have theirs.
 
-use crate::nets;
+use crate::nets::{self, Net, Space};
 use pathwarp::Outline;
 use pathwarp::deform::{Info, TextShape};
 use pathwarp::kurbo::{Point, Rect};
@@ -156,7 +156,8 @@ fn net(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Net> {
         return None;
     }
     let mut net = if p.kind == Kind::Text(TRIANGLE) { triangle(s)? } else { grid(s, &has)? };
-    let each = |name: &str| if has(name) { s.texts(name) } else { Vec::new() }.into_iter().flat_map(str::split_whitespace);
+    let each =
+        |name: &str| if has(name) { s.texts(name) } else { Vec::new() }.into_iter().flat_map(str::split_whitespace);
     let names = net.names.clone();
     let index = |word: &str| {
         let (name, rest) = word.split_once(':')?;
@@ -180,21 +181,6 @@ fn net(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Net> {
     Some(net)
 }
 
-/// Control points with their indices as typed, and the lines that join them.
-pub(crate) struct Net {
-    pub(crate) space: Space,
-    pub(crate) names: Vec<String>,
-    pub(crate) points: Vec<Point>,
-    pub(crate) weights: Vec<f64>,
-    lines: Vec<Vec<usize>>,
-}
-
-/// The functions that the control points of a net stand before.
-pub(crate) enum Space {
-    Grid { degree: [usize; 2], cells: [usize; 2] },
-    Triangle(usize),
-}
-
 /// The parameter that places single control points, and the net of a deformation that has one.
 pub(crate) fn net_of<'a>(info: &'a Info, args: &Args, frame: &Frame) -> Option<(&'a Param, Net)> {
     let p = info.params.iter().find(|p| matches!(p.kind, Kind::Text(GRID | TRIANGLE)))?;
@@ -211,7 +197,8 @@ pub(crate) fn with_net_of(info: &Info, old: &Args, new: &Args, frame: &Frame) ->
     let at = |p: Point| format!("{:.6}%,{:.6}%", 100.0 * (p.x - r.x0) / r.width(), 100.0 * (p.y - r.y0) / r.height());
     let named = || net.names.iter().zip(net.points.iter().zip(&rest));
     let placed = named().filter(|(_, (p, rest))| p != rest).map(|(name, (p, _))| format!("{name}:{}", at(*p)));
-    let weighted = net.names.iter().zip(&net.weights).filter(|(_, w)| **w != 1.0).map(|(name, w)| format!("{name}:{w}"));
+    let weighted =
+        net.names.iter().zip(&net.weights).filter(|(_, w)| **w != 1.0).map(|(name, w)| format!("{name}:{w}"));
     Some(vec![(p.name.to_owned(), placed.collect()), ("weight".to_owned(), weighted.collect())])
 }
 
@@ -296,6 +283,8 @@ fn at_rest(i: usize, degree: usize, cells: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pathwarp::map::Map as _;
+    use pathwarp::recipe::Step;
 
     fn of(name: &str, pairs: &[(&str, &str)]) -> Map<String, Value> {
         let frame = Frame::new(Rect::new(0.0, 0.0, 90.0, 60.0));
@@ -335,5 +324,49 @@ mod tests {
         // A clamped quadratic B-spline of two cells: knots 0 0 0 ½ 1 1 1.
         let places: Vec<f64> = (0..4).map(|i| at_rest(i, 2, 2)).collect();
         assert_eq!(places, [0.0, 0.25, 0.75, 1.0]);
+    }
+
+    const FRAME: Rect = Rect::new(20.0, 30.0, 684.0, 230.0);
+
+    fn built(name: &str, args: &Args) -> BuiltRecipe {
+        let art = pathwarp::Outline::from_svg("M20,30 H684 V230 H20 Z").unwrap();
+        let recipe = Recipe { steps: vec![Step::new(name, args.clone())] };
+        recipe.build(&Registry::builtin(), Frame::new(FRAME), &std::iter::once(&art)).unwrap()
+    }
+
+    /// The largest distance between a deformation and the same with the net carried over.
+    fn apart(name: &str, before: &[(&str, &str)], after: &[(&str, &str)]) -> f64 {
+        let registry = Registry::builtin();
+        let info = registry.get(name).unwrap().info();
+        let (old, mut new) = (Args::from_pairs(before), Args::from_pairs(after));
+        let values = with_net_of(info, &old, &new, &Frame::new(FRAME)).unwrap();
+        for (name, values) in values {
+            new.set(&name, values);
+        }
+        assert!(net_of(info, &new, &Frame::new(FRAME)).is_some());
+        let (a, b) = (built(name, &old), built(name, &new));
+        let at = |k: u32| Point::new(20.0 + 83.0 * f64::from(k % 9), 30.0 + 25.0 * f64::from(k / 9));
+        (0..81).map(|k| a.map.point(at(k)).distance(b.map.point(at(k)))).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn more_control_points_change_nothing() {
+        let moved = ("at", "1,0:30%,-50% 0,1:-20%,40% 1,1:80%,10%");
+        let grid = |before: &[(&str, &str)], after: &[(&str, &str)]| apart("ffd", &[before, &[moved]].concat(), after);
+        assert!(grid(&[("degree", "2x1")], &[("degree", "5x3")]) < 1e-4);
+        assert!(grid(&[("degree", "2x2"), ("weight", "1,1:4")], &[("degree", "3x4")]) < 1e-4);
+        assert!(grid(&[("degree", "2x2"), ("cells", "2x3")], &[("degree", "2x2"), ("cells", "4x3")]) < 1e-4);
+        assert!(grid(&[("degree", "3x3")], &[("degree", "3x3"), ("spline", "true")]) < 1e-4);
+        let triangle = [("at", "1,1,0:20%,10%"), ("move", "0,1,1:0,60%"), ("weight", "1,0,1:3")];
+        assert!(apart("triangle", &triangle, &[("degree", "4")]) < 1e-4);
+    }
+
+    /// The line nearest to a symmetric arch is level.
+    #[test]
+    fn fewer_control_points_stay_near() {
+        let arch = [("degree", "2x1"), ("move", "1,0:0,-60 1,1:0,-60")];
+        // The arch is 60·2t(1 − t) high, 20 in the mean: a level line is 20 off at its ends and 10 in the middle.
+        let off = apart("ffd", &arch, &[("degree", "1x1")]);
+        assert!((off - 20.0).abs() < 1.5, "{off}");
     }
 }

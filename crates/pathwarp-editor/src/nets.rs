@@ -4,7 +4,6 @@
 //! stays the same map; otherwise it becomes the nearest one by least squares over a grid of samples. Weights go along in homogeneous
 //! coordinates (w·x, w·y, w).
 
-use crate::grips::{Net, Space};
 use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp::map::Lattice;
 
@@ -14,6 +13,21 @@ const SAMPLES: usize = 6;
 const ROUNDING: f64 = 1e-9;
 
 type Matrix = Vec<Vec<f64>>;
+
+/// Control points with their indices as typed, and the lines that join them.
+pub(crate) struct Net {
+    pub(crate) space: Space,
+    pub(crate) names: Vec<String>,
+    pub(crate) points: Vec<Point>,
+    pub(crate) weights: Vec<f64>,
+    pub(crate) lines: Vec<Vec<usize>>,
+}
+
+/// The functions that the control points of a net stand before.
+pub(crate) enum Space {
+    Grid { degree: [usize; 2], cells: [usize; 2] },
+    Triangle(usize),
+}
 
 /// Gives `net`, at rest, the shape of `old`.
 pub(crate) fn carry_over(old: &Net, net: &mut Net) {
@@ -48,7 +62,8 @@ fn matrix(old: &Space, new: &Space) -> Option<Matrix> {
         (Space::Grid { degree: n, cells: c }, Space::Grid { degree: m, cells: d }) => {
             let [across, down] = [0, 1].map(|k| {
                 let count = SAMPLES * (n[k] + c[k]).max(m[k] + d[k]);
-                let rows = |degree, cells| (0..=count).map(|i| splines(degree, cells, i as f64 / count as f64)).collect();
+                let rows =
+                    |degree, cells| (0..=count).map(|i| splines(degree, cells, i as f64 / count as f64)).collect();
                 nearest(rows(m[k], d[k]), rows(n[k], c[k]))
             });
             let product = |y: &[f64], x: &[f64]| y.iter().flat_map(|y| x.iter().map(move |x| y * x)).collect();
@@ -56,7 +71,8 @@ fn matrix(old: &Space, new: &Space) -> Option<Matrix> {
         }
         (Space::Triangle(n), Space::Triangle(m)) => {
             let count = 2 * n.max(m);
-            let rows = |degree| indices(count).map(|ijk| bernstein(degree, ijk.map(|i| i as f64 / count as f64))).collect();
+            let rows =
+                |degree| indices(count).map(|ijk| bernstein(degree, ijk.map(|i| i as f64 / count as f64))).collect();
             Some(nearest(rows(*m), rows(*n)))
         }
         _ => None,
@@ -110,58 +126,4 @@ fn nearest(a: Matrix, b: Matrix) -> Matrix {
         }
     }
     out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::grips::net_of;
-    use pathwarp::deform::Registry;
-    use pathwarp::map::Map as _;
-    use pathwarp::param::{Args, Frame};
-    use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
-
-    const FRAME: Rect = Rect::new(20.0, 30.0, 684.0, 230.0);
-
-    fn built(name: &str, args: &Args) -> BuiltRecipe {
-        let art = pathwarp::Outline::from_svg("M20,30 H684 V230 H20 Z").unwrap();
-        let recipe = Recipe { steps: vec![Step::new(name, args.clone())] };
-        recipe.build(&Registry::builtin(), Frame::new(FRAME), &std::iter::once(&art)).unwrap()
-    }
-
-    /// The largest distance between a deformation and the same with the net carried over.
-    fn apart(name: &str, before: &[(&str, &str)], after: &[(&str, &str)]) -> f64 {
-        let registry = Registry::builtin();
-        let info = registry.get(name).unwrap().info();
-        let (old, mut new) = (Args::from_pairs(before), Args::from_pairs(after));
-        let values = crate::grips::with_net_of(info, &old, &new, &Frame::new(FRAME)).unwrap();
-        for (name, values) in values {
-            new.set(&name, values);
-        }
-        assert!(net_of(info, &new, &Frame::new(FRAME)).is_some());
-        let (a, b) = (built(name, &old), built(name, &new));
-        let at = |k: u32| Point::new(20.0 + 83.0 * f64::from(k % 9), 30.0 + 25.0 * f64::from(k / 9));
-        (0..81).map(|k| a.map.point(at(k)).distance(b.map.point(at(k)))).fold(0.0, f64::max)
-    }
-
-    #[test]
-    fn more_control_points_change_nothing() {
-        let moved = ("at", "1,0:30%,-50% 0,1:-20%,40% 1,1:80%,10%");
-        let grid = |before: &[(&str, &str)], after: &[(&str, &str)]| apart("ffd", &[before, &[moved]].concat(), after);
-        assert!(grid(&[("degree", "2x1")], &[("degree", "5x3")]) < 1e-4);
-        assert!(grid(&[("degree", "2x2"), ("weight", "1,1:4")], &[("degree", "3x4")]) < 1e-4);
-        assert!(grid(&[("degree", "2x2"), ("cells", "2x3")], &[("degree", "2x2"), ("cells", "4x3")]) < 1e-4);
-        assert!(grid(&[("degree", "3x3")], &[("degree", "3x3"), ("spline", "true")]) < 1e-4);
-        let triangle = [("at", "1,1,0:20%,10%"), ("move", "0,1,1:0,60%"), ("weight", "1,0,1:3")];
-        assert!(apart("triangle", &triangle, &[("degree", "4")]) < 1e-4);
-    }
-
-    /// The line nearest to a symmetric arch is level.
-    #[test]
-    fn fewer_control_points_stay_near() {
-        let arch = [("degree", "2x1"), ("move", "1,0:0,-60 1,1:0,-60")];
-        // The arch is 60·2t(1 − t) high, 20 in the mean: a level line is 20 off at its ends and 10 in the middle.
-        let off = apart("ffd", &arch, &[("degree", "1x1")]);
-        assert!((off - 20.0).abs() < 1.5, "{off}");
-    }
 }

@@ -27,7 +27,9 @@ pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)>
     if let Some(found) = found {
         return Some((found.clone(), true));
     }
-    let name = |n: usize| result.with_file_name(format!("{stem}-source{}.svg", if n > 1 { format!("-{n}") } else { String::new() }));
+    let name = |n: usize| {
+        result.with_file_name(format!("{stem}-source{}.svg", if n > 1 { format!("-{n}") } else { String::new() }))
+    };
     (1..MOST_NAMES).map(name).find(|p| !p.exists()).map(|p| (p, false))
 }
 

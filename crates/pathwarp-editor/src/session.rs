@@ -450,7 +450,8 @@ impl Session {
         let to = name.map_or_else(|| Ok(self.target()), |name| saving::named(name, &self.file))?;
         let given = recipe(&self.kept.steps);
         let document = self.opened.artwork.document();
-        let (source, before) = match saving::source_of(&self.file, document.source()).filter(|_| self.opened.is_result) {
+        let (source, before) = match saving::source_of(&self.file, document.source()).filter(|_| self.opened.is_result)
+        {
             Some((source, true)) => (source, String::new()),
             Some((source, false)) => {
                 let [result, source_name] = [&self.file, &source].map(|p| quoted(&p.display().to_string()));
