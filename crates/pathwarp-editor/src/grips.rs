@@ -329,7 +329,7 @@ mod tests {
     const FRAME: Rect = Rect::new(20.0, 30.0, 684.0, 230.0);
 
     fn built(name: &str, args: &Args) -> BuiltRecipe {
-        let art = pathwarp::Outline::from_svg("M20,30 H684 V230 H20 Z").unwrap();
+        let art = Outline::from_svg("M20,30 H684 V230 H20 Z").unwrap();
         let recipe = Recipe { steps: vec![Step::new(name, args.clone())] };
         recipe.build(&Registry::builtin(), Frame::new(FRAME), &std::iter::once(&art)).unwrap()
     }
