@@ -4,15 +4,16 @@ use crate::advice::Flags;
 use crate::bitmap::encode;
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format, PICTURES};
-use crate::input::{Artwork as _, Baseline, SvgArtwork, WarpRequest, WarpedResult, Which, read_options};
+use crate::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which, read_options};
 use crate::options::{CommonOptions, Given};
 use crate::output::PendingFile;
-use crate::{coming_from, export, pipeline, plugins, recipe_file, references};
+use crate::pipeline::{Framed, Ready, Session};
+use crate::report::ReportedShape;
+use crate::{coming_from, export, plugins, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::param::Frame;
-use pathwarp::recipe::{BuiltParts, BuiltRecipe, Recipe, Step};
+use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PICTURE_WIDTH, Summary};
 use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::{Document, Origin, ReadOptions, usvg_tree};
@@ -32,20 +33,6 @@ struct EditedArtwork {
     folder: PathBuf,
     /// The frame for the guides and the baseline of the last picture.
     framed: Option<Framed>,
-}
-
-#[derive(Clone)]
-struct Framed {
-    guides: Vec<String>,
-    baseline: Baseline,
-    frame: Frame,
-}
-
-/// A recipe that is ready to be used.
-struct Ready {
-    resolved: Recipe,
-    built: BuiltParts,
-    tolerance: f64,
 }
 
 impl EditedArtwork {
@@ -76,74 +63,25 @@ impl EditedArtwork {
         Self { folder: folder.to_owned(), ..self }
     }
 
-    /// Looks up references, chooses the frame and builds the steps.
-    fn ready(&mut self, recipe: &Recipe) -> Result<Ready, Failure> {
-        self.svg.renew_budget();
+    /// Looks up files, and applies `work` to the drawing and the session with these steps.
+    fn with_steps<T>(
+        &mut self,
+        recipe: &Recipe,
+        work: impl FnOnce(&Session<'_>, &mut SvgArtwork, Ready) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let guides = references::resolve_names(&self.registry, &mut resolved, |name| self.svg.path_named(name))?;
-        let baseline = resolved.steps.first().map_or(Baseline::None, |s| pipeline::baseline(&self.registry, s));
-        self.svg.restore(&self.options);
-        self.svg.remove_guides(guides.clone());
-        let frame = self.framed(guides, baseline)?;
-        let tolerance = self.options.tolerance_for(self.svg.painted_box(), &frame)?;
-        let parts = pipeline::divided(&mut self.svg, &resolved)?;
-        let known = (!resolved.steps.iter().any(Step::is_selective)).then_some(&frame);
-        let starts = pipeline::starts(&self.registry, &resolved, &self.svg, &parts, self.options.frame, known)?;
-        let built = pipeline::build(&self.registry, &resolved, &self.svg, &parts, &starts)?;
-        sound(&built)?;
-        Ok(Ready { resolved, built, tolerance })
-    }
-
-    /// The frame of all artwork.
-    fn framed(&mut self, guides: Vec<String>, baseline: Baseline) -> Result<Frame, Failure> {
-        if let Some(framed) = self.framed.as_ref().filter(|f| f.guides == guides && f.baseline == baseline) {
-            return Ok(framed.frame.clone());
-        }
-        let frame = self.svg.frame(Which::All, self.options.frame, self.svg.bounding_box(Which::All), baseline)?;
-        let frame = frame.with_units_per_px(self.svg.units_per_px());
-        self.framed = Some(Framed { guides, baseline, frame: frame.clone() });
-        Ok(frame)
+        let Self { svg, registry, given, options, framed, .. } = self;
+        svg.renew_budget();
+        svg.restore(options);
+        let session = Session { registry, recipe: &resolved, options, given };
+        let ready = session.ready(svg, Some(framed))?;
+        work(&session, svg, ready)
     }
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
-        let Ready { resolved, built, tolerance } = self.ready(recipe)?;
-        let text = || recipe_file::write(&*self.registry, recipe, &self.given, &self.folder);
-        let embedded_recipe = (fineness == Fineness::Finished { embedded: true }).then(text).transpose()?;
-        let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
-        let same_view = !matches!(fineness, Fineness::Finished { .. });
-        let options = &self.options;
-        let suited = options.tolerance.is_none() && !matches!(fineness, Fineness::Draft(_));
-        let request =
-            WarpRequest { recipe, built: &built, options, tolerance, suited, embedded_recipe, same_view, edit: None };
-        if let Fineness::Draft(_) = fineness {
-            let svg = self.svg.draft(&request);
-            sound(&built)?;
-            let (svg, page) = svg?;
-            return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
-        }
-        let warped = self.svg.warp(&request);
-        sound(&built)?;
-        let warped = warped.map_err(|f| pipeline::explained(f, &built))?;
-        let WarpedResult::Bytes(bytes) = warped.result else {
-            return Err(Failure::Input("the result is not a drawing".into()));
-        };
-        let svg = String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?;
-        let shapes = &warped.shapes;
-        let fold = |s: &crate::report::ReportedShape| s.folded_at.map(|[x, y]| (s.id.clone(), Point::new(x, y)));
-        let summary = Summary {
-            segments_in: shapes.iter().map(|s| s.segments_in).sum(),
-            segments_out: shapes.iter().map(|s| s.segments_out).sum(),
-            max_error: shapes.iter().map(|s| s.max_error).fold(0.0, f64::max),
-            tolerance,
-            folds: shapes.iter().filter_map(fold).collect(),
-        };
-        let own = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
-        let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
-        warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
-        warnings.extend(warped.skipped.iter().map(|s| format!("{} is not bent: {}", s.id, s.why)));
-        let page = warped.page.change.map(|[_, after]| after);
-        Ok(Bent { svg, page, resolved, built: built.whole, summary: Some(summary), warnings })
+        let folder = self.folder.clone();
+        self.with_steps(recipe, |session, svg, ready| bent(session, svg, ready, recipe, fineness, &folder))
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
@@ -151,9 +89,55 @@ impl EditedArtwork {
     }
 }
 
-/// The map of a plug-in may fail at any time. Nothing that was computed with it is used then.
-fn sound(built: &BuiltParts) -> Result<(), Failure> {
-    built.whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
+/// Bends the drawing by these steps; `given` are the same as the user wrote them.
+fn bent(
+    session: &Session<'_>,
+    svg: &SvgArtwork,
+    ready: Ready,
+    given: &Recipe,
+    fineness: Fineness,
+    folder: &Path,
+) -> Result<Bent, Failure> {
+    let exact = session.tolerance(svg, &ready.frame)?;
+    let is_draft = matches!(fineness, Fineness::Draft(_));
+    let text = || recipe_file::write(session.registry, given, session.given, folder);
+    let request = WarpRequest {
+        recipe: given,
+        built: &ready.built,
+        options: session.options,
+        tolerance: if let Fineness::Draft(draft) = fineness { draft.max(exact) } else { exact },
+        suited: session.options.tolerance.is_none() && !is_draft,
+        embedded_recipe: (fineness == Fineness::Finished { embedded: true }).then(text).transpose()?,
+        same_view: !matches!(fineness, Fineness::Finished { .. }),
+        edit: None,
+    };
+    if is_draft {
+        let (svg, page) = ready.checked(svg.draft(&request))?;
+        let Ready { recipe: resolved, built, .. } = ready;
+        return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
+    }
+    let tolerance = request.tolerance;
+    let warped = ready.checked(svg.warp(&request))?;
+    let WarpedResult::Bytes(bytes) = warped.result else {
+        return Err(Failure::Input("the result is not a drawing".into()));
+    };
+    let svg = String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?;
+    let Ready { recipe: resolved, built, .. } = ready;
+    let shapes = &warped.shapes;
+    let fold = |s: &ReportedShape| s.folded_at.map(|[x, y]| (s.id.clone(), Point::new(x, y)));
+    let summary = Summary {
+        segments_in: shapes.iter().map(|s| s.segments_in).sum(),
+        segments_out: shapes.iter().map(|s| s.segments_out).sum(),
+        max_error: shapes.iter().map(|s| s.max_error).fold(0.0, f64::max),
+        tolerance,
+        folds: shapes.iter().filter_map(fold).collect(),
+    };
+    let own = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
+    let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
+    warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
+    warnings.extend(warped.skipped.iter().map(|s| format!("{} is not bent: {}", s.id, s.why)));
+    let page = warped.page.change.map(|[_, after]| after);
+    Ok(Bent { svg, page, resolved, built: built.whole, summary: Some(summary), warnings })
 }
 
 impl Artwork for EditedArtwork {
@@ -176,8 +160,8 @@ impl Artwork for EditedArtwork {
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
-        let ready = self.ready(recipe);
-        self.said(ready).map(|r| (r.resolved, r.built.whole))
+        let settled = self.with_steps(recipe, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
+        self.said(settled)
     }
 
     fn options(&self) -> Vec<(String, String)> {

@@ -84,7 +84,7 @@ pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> Exi
     let args: Vec<OsString> = args.into_iter().collect();
     let dispatch = || {
         if inkscape::is_call(&args) {
-            inkscape::run(registry, &args, commands::dispatch)
+            inkscape::run(registry, &args, commands::convert_file)
         } else {
             commands::dispatch(registry, &args)
         }

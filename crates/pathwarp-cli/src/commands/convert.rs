@@ -56,12 +56,23 @@ pub(super) fn convert(m: &ArgMatches) -> Result<Status, Failure> {
     let split = m.get_flag("split");
     // The files that --split writes are checked below.
     let target = target(m, (!split).then_some(file))?;
-    let options = Given::options(m).read()?;
+    convert_file(file, target, &Given::options(m).read()?, split, m.get_flag("salvage"))
+}
+
+/// Copies the paths of a file into another format, or each to its own file, or a drawing into a PDF or DXF; without a target to standard
+/// output.
+pub(crate) fn convert_file(
+    file: &Path,
+    target: Option<&Path>,
+    options: &CommonOptions,
+    split: bool,
+    salvage: bool,
+) -> Result<Status, Failure> {
     let choice = Choice { what: "paths are", among: FORMATS };
     let format = choice.format(target, options.format)?;
-    let gimp = GimpFile::open(file, m.get_flag("salvage"), &options.reading.limits)?;
+    let gimp = GimpFile::open(file, salvage, &options.reading.limits)?;
     if gimp.is_none() && !split && matches!(format, Format::Pdf | Format::Dxf) {
-        return whole(file, target, format, &options);
+        return whole(file, target, format, options);
     }
     let damage = gimp.as_ref().and_then(|g| g.damage.clone());
     let (size, paths) = match &gimp {
@@ -78,12 +89,12 @@ pub(super) fn convert(m: &ArgMatches) -> Result<Status, Failure> {
             files.read(file);
             names.iter().try_for_each(|to| files.write(to, ""))?;
             let single = |(to, p): (&PathBuf, &GimpPath)| {
-                PendingFile::new(to, &bytes(format, size, std::slice::from_ref(p), &options)?)
+                PendingFile::new(to, &bytes(format, size, std::slice::from_ref(p), options)?)
             };
             let files: Result<Vec<PendingFile>, Failure> = names.iter().zip(&paths).map(single).collect();
             PendingFile::commit_all(files?)?;
         }
-        _ => output::write(target, &bytes(format, size, &paths, &options)?)?,
+        _ => output::write(target, &bytes(format, size, &paths, options)?)?,
     }
     Ok(Status::partial_if(damage.is_some()))
 }

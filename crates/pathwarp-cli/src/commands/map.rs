@@ -1,8 +1,10 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
 use crate::failure::{Failure, Status};
-use crate::options::{Given, reading_args, rect};
-use crate::{input, output, references, steps};
+use crate::input::{self, PlainArtwork};
+use crate::options::{CommonOptions, Given, reading_args, rect};
+use crate::pipeline::Session;
+use crate::{output, references, steps};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::GeometryError;
 use pathwarp::budget::Budget;
@@ -70,7 +72,6 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
     recipe.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
     references::resolve_files(registry, &mut recipe, &reading)?;
-    references::resolve_names(registry, &mut recipe, |name| Err(input::no_document(name)))?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;
     let points = parse_points(&String::from_utf8_lossy(&bytes), "two numbers x y")
@@ -82,8 +83,11 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
         None => cloud.bounding_box().unwrap_or(Rect::ZERO),
     };
     let budget = Arc::new(Budget::new(reading.limits.for_input(bytes.len())));
-    let built = recipe.build_within(registry, Frame::new(frame), &std::iter::once(&cloud), &budget);
-    let built = built.map_err(Failure::of_recipe)?;
+    let options = CommonOptions { reading, ..CommonOptions::default() };
+    let session = Session { registry, recipe: &recipe, options: &options, given: &Given::default() };
+    let (outlines, frame) = (vec![&cloud], Frame::new(frame));
+    let artwork = &mut PlainArtwork { outlines, frame, budget: Arc::clone(&budget) };
+    let built = session.ready(artwork, None)?.built.whole;
     let map = &built.map;
     let spent = budget.spend(POINT * map.cost().work * points.len() as f64);
     spent.map_err(|e| Failure::of_recipe(GeometryError::Limit(e).into()))?;

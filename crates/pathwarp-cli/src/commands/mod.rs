@@ -14,6 +14,8 @@ mod solid;
 mod text;
 mod warp;
 
+pub(crate) use convert::convert_file;
+
 use crate::edits::{OFFSET, OUTLINE, SIMPLIFY};
 use crate::failure::{Failure, Status};
 use crate::options::Given;

@@ -4,10 +4,11 @@ use super::error::{Error, guarded};
 use super::{PointMap, check_option, meaning, option_names};
 use crate::edits::{EDITS, EditChoice, still};
 use crate::failure::Failure;
-use crate::input::{Fold, no_document};
+use crate::input::{Fold, PlainArtwork};
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
+use crate::pipeline::{Session, warp_bytes};
 use crate::steps::{self, in_lower_case};
-use crate::{advice, pipeline, recipe_file, references};
+use crate::{advice, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
 use pathwarp::deform::Registry;
@@ -209,7 +210,8 @@ impl Warper {
             let frame = plain_frame(&options, || Some(bounds))?;
             let alone = self.typed.steps.len() == 1 && !self.typed.steps.iter().any(|s| s.inverse);
             let outline = if alone { Outline::default() } else { cloud() };
-            let built_in = |frame: &Frame| self.build(frame, &outline, &Arc::new(Budget::new(options.reading.limits)));
+            let built_in =
+                |frame: &Frame| self.build(&options, frame, &outline, &Arc::new(Budget::new(options.reading.limits)));
             let built = built_in(&frame).map_err(|failure| {
                 // If a box with a size mends it, that is what lacks.
                 let roomy = Frame::new(bounds.inflate(1.0, 1.0));
@@ -275,7 +277,7 @@ impl Warper {
             let frame = plain_frame(&options, || bounds)?;
             let tolerance = share * options.tolerance_for(bounds, &frame)?;
             let budget = Arc::new(Budget::new(options.reading.limits));
-            let built = self.build(&frame, outline, &budget)?;
+            let built = self.build(&options, &frame, outline, &budget)?;
             let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
             let refit = refit.with_suited(options.tolerance.is_none());
             let copies = &built.placement.copies;
@@ -306,9 +308,9 @@ impl Warper {
             self.options()?;
             self.given.check_conflicts().map_err(Failure::Usage)?;
             let name = name.unwrap_or(FilePath::new(""));
-            let done = pipeline::warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, name, bytes)?;
+            let (bytes, done) = warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, name, bytes)?;
             let report = serde_json::to_string(&done.report).map_err(|e| Failure::Output(e.to_string()))?;
-            Ok(Drawing { bytes: done.bytes, report, warnings: done.report.warnings, notes: done.notes })
+            Ok(Drawing { bytes, report, warnings: done.report.warnings, notes: done.notes })
         })
     }
 
@@ -322,17 +324,18 @@ impl Warper {
         Ok(options)
     }
 
-    /// Builds the recipe without a drawing.
-    fn build(&self, frame: &Frame, outline: &Outline, budget: &Arc<Budget>) -> Result<BuiltRecipe, Failure> {
-        if self.resolved.steps.iter().any(Step::is_selective) {
-            return Err(Failure::usage("select and exclude are for drawings"));
-        }
-        let mut recipe = self.resolved.clone();
-        references::resolve_names(&self.registry, &mut recipe, |name| Err(no_document(name)))?;
-        let outlines = std::iter::once(outline);
-        let built = recipe.build_within(&self.registry, frame.clone(), &outlines, budget);
-        let built = built.map_err(Failure::of_recipe)?;
-        built.failure().map_or(Ok(built.clone()), |e| Err(Failure::of_recipe(e)))
+    /// Builds the recipe for an outline without a drawing.
+    fn build(
+        &self,
+        options: &CommonOptions,
+        frame: &Frame,
+        outline: &Outline,
+        budget: &Arc<Budget>,
+    ) -> Result<BuiltRecipe, Failure> {
+        let session = Session { registry: &self.registry, recipe: &self.resolved, options, given: &self.given };
+        let (frame, budget) = (frame.clone(), Arc::clone(budget));
+        let ready = session.ready(&mut PlainArtwork { outlines: vec![outline], frame, budget }, None)?;
+        Ok(ready.built.whole)
     }
 }
 

@@ -7,7 +7,6 @@ use crate::failure::Failure;
 use crate::input::split_reference;
 use crate::options::{CommonOption, OPTIONS};
 use crate::steps::INVERSE;
-use crate::temporaries::Temporary;
 use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param, is_inline};
 use pathwarp::recipe::Recipe;
@@ -119,16 +118,6 @@ pub(super) fn existing(mut line: Vec<String>, all: &[Object]) -> Vec<String> {
         id.is_none_or(|id| all.iter().any(|o| o.id == id))
     });
     line
-}
-
-/// A recipe with references to paths in a file, for those whose ids satisfy a condition.
-pub(super) fn elsewhere(line: Vec<String>, file: &Temporary, condition: impl Fn(&String) -> bool) -> Vec<String> {
-    let file = file.path().display().to_string();
-    let one = |w: String| match w.split_once("=#") {
-        Some((name, id)) if condition(&id.to_owned()) => format!("{name}={file}#{id}"),
-        _ => w,
-    };
-    line.into_iter().map(one).collect()
 }
 
 /// The words for the deformation's own parameters: `--bend=40%`.

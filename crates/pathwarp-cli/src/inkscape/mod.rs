@@ -2,7 +2,7 @@
 //! --inkscape-deformation=warp --bend_percent=40 … /tmp/ink_ext_XXXXXX.svg`. The result goes to standard output; anything on
 //! standard error opens a window.
 //!
-//! A call is turned into the words of an ordinary command line (`line.rs`), which the ordinary pipeline runs (`stage.rs`).
+//! A call is turned into the words of an ordinary command line (`line.rs`), which are applied to the drawing in memory (`stage.rs`).
 
 mod guides;
 pub(crate) mod inx;
@@ -18,8 +18,8 @@ use crate::options::Given;
 use crate::{output, plugins, readable, watch};
 use guides::sorted;
 use line::{
-    allowed, by_id, changed, elsewhere, exclusions, existing, options_of, referred, settled, words_of,
-    words_of_deformation, words_of_options,
+    allowed, by_id, changed, exclusions, existing, options_of, referred, settled, words_of, words_of_deformation,
+    words_of_options,
 };
 use names::{ADD, AGAIN, CHAIN, CHANGES, DISCARD, REPLACE, SHOW, is_job, joined, split};
 use pathwarp::deform::Registry;
@@ -27,7 +27,7 @@ use pathwarp::recipe::Recipe;
 use pathwarp_editor::{Options, Purpose};
 use pathwarp_svg::objects::{self, Guides, Object, objects};
 use restoring::{Restoration, Returned, as_by_hand, remembering, restored};
-use stage::{Call, Dispatch, Job, Scope, Stage, folder, temporary};
+use stage::{Call, Convert, GuidePaths, Job, Scope, Stage, folder, temporary};
 use std::collections::{BTreeMap, HashSet};
 use std::ffi::OsString;
 use std::path::Path;
@@ -39,7 +39,7 @@ pub(crate) fn is_call(args: &[OsString]) -> bool {
 }
 
 /// Does what Inkscape asks for.
-pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) -> Result<Status, Failure> {
+pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> Result<Status, Failure> {
     let call = Call::read(args)?;
     let word = match &call.job {
         Job::Deformation(name) => name,
@@ -48,7 +48,7 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) ->
         Job::Release | Job::Convert(_) => "convert",
     };
     let (_, plugins) = plugins::load(registry, &["pathwarp".into(), word.into()], &[])?;
-    let stage = Stage { registry: &plugins.added_to(registry), dispatch, call: &call };
+    let stage = Stage { registry: &plugins.added_to(registry), convert, call: &call };
     let done = match &call.job {
         Job::Deformation(name) => warp(&stage, name),
         Job::Edit => edit_again(&stage),
@@ -63,7 +63,7 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) ->
 
 /// A message for the window that Inkscape opens: parameters as the dialog labels them, and without the temporary file.
 fn in_a_window(stage: &Stage<'_>, failure: &Failure) -> Failure {
-    let plain = stage.without_file(failure, &stage.call.file);
+    let plain = stage.without_file(failure);
     Failure::Input(inx::labelled(&plain.message(&Flags::of(stage.registry))))
 }
 
@@ -97,7 +97,7 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     if whole {
         line.extend(exclusions(&all));
     }
-    let outcome = stage.warp(&svg, &line, &Scope { ids: if whole { &[] } else { &sorted.artwork } })?;
+    let outcome = stage.warp(&svg, &line, &Scope { ids: if whole { &[] } else { &sorted.artwork } }, None)?;
     stage.check(&svg, &outcome)?;
 
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
@@ -143,9 +143,8 @@ fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
             Some(m) if gone => m.object.guides.clone(),
             _ => Guides::of(&svg, &referred, &stage.limits())?,
         };
-        let copies = temporary(guides.file().as_bytes())?;
-        let run = elsewhere(line.clone(), &copies, |id| !is_there(id));
-        let outcome = stage.warp(&svg, &run, &Scope { ids: &ids })?;
+        let copies = GuidePaths { guides: &guides, has: &|id| !all.iter().any(|o| o.id == id) };
+        let outcome = stage.warp(&svg, &line, &Scope { ids: &ids }, Some(&copies))?;
         stage.check(&svg, &outcome)?;
         let recipe = joined(&settled(stage, line, &outcome));
         svg = remembering(stage, &svg, &outcome.svg, &ids, &recipe, &guides)?;
@@ -229,7 +228,7 @@ fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     let scope = Scope { ids: if whole { &[] } else { &artwork } };
     let opened = match &again {
         // A result with its source and recipe in it opens with its steps.
-        Some(line) => stage.warp(&svg, &[&line[..], &["--embed-recipe".to_owned()]].concat(), &scope)?.svg,
+        Some(line) => stage.warp(&svg, &[&line[..], &["--embed-recipe".to_owned()]].concat(), &scope, None)?.svg,
         None => svg.clone(),
     };
     let Some(recipe) = edited(stage, &opened, &options, &scope)? else { return Ok(String::new()) };
@@ -237,7 +236,7 @@ fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
         return Ok(svg);
     }
     let line = [words_of(stage, &recipe), options].concat();
-    let outcome = stage.warp(&svg, &line, &scope)?;
+    let outcome = stage.warp(&svg, &line, &scope, None)?;
     stage.check(&svg, &outcome)?;
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
     let recipe = joined(&settled(stage, line, &outcome));

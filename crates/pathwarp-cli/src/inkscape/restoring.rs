@@ -1,8 +1,8 @@
 //! Sources in place of warped objects, with what was done to the objects by hand.
 
-use super::line::{allowed, elsewhere, existing, referred};
+use super::line::{allowed, existing, referred};
 use super::names::split;
-use super::stage::{Scope, Stage, temporary};
+use super::stage::{GuidePaths, Scope, Stage};
 use crate::failure::Failure;
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp_svg::objects::{self, Guides, Memory, RestoredObject};
@@ -48,17 +48,16 @@ pub(super) fn restored(
     for o in &back.objects {
         runs.entry(&o.recipe).or_default().push(o);
     }
-    let now = if runs.is_empty() { None } else { Some(read(stage, drawing)?) };
+    let now = if runs.is_empty() { None } else { Some(stage.read(drawing)?) };
     let all = objects::objects(&back.svg, &stage.limits())?;
     for (recipe, members) in runs {
         // The warp as it was: by the guides of that time.
-        let guides = members.first().map(|m| m.guides.file()).unwrap_or_default();
-        let file = temporary(guides.as_bytes())?;
+        let guides = members.first().map(|m| GuidePaths { guides: &m.guides, has: &|_| true });
         let line = split(recipe);
         allowed(stage, &line)?;
-        let line = elsewhere(existing(line, &all), &file, |_| true);
+        let line = existing(line, &all);
         let ids: Vec<String> = members.iter().map(|m| m.id.clone()).collect();
-        let text: Rc<str> = stage.warp(&back.svg, &line, &Scope { ids: &ids })?.svg.into();
+        let text: Rc<str> = stage.warp(&back.svg, &line, &Scope { ids: &ids }, guides.as_ref())?.svg.into();
         for m in members {
             let was = Nodes::read(&m.nodes).unwrap_or_default();
             let is = now.as_ref().map(|now| nodes(now, &m.id)).unwrap_or_default();
@@ -103,12 +102,6 @@ pub(super) fn as_by_hand(
     Ok(svg)
 }
 
-/// Reads a drawing.
-pub(super) fn read(stage: &Stage<'_>, svg: &str) -> Result<Document, Failure> {
-    let options = pathwarp_svg::ReadOptions::default().with_limits(stage.limits());
-    Ok(Document::read(svg.as_bytes(), "the drawing", &options)?)
-}
-
 /// The nodes of an object in root user space.
 pub(super) fn nodes(doc: &Document, id: &str) -> Nodes {
     let selection = Selection { select: vec![format!("[id={id}]")], ..Selection::default() };
@@ -137,7 +130,7 @@ pub(super) fn remembering(
     recipe: &str,
     guides: &Guides,
 ) -> Result<String, Failure> {
-    let doc = read(stage, result)?;
+    let doc = stage.read(result)?;
     let memory = |id: &String| {
         let nodes = nodes(&doc, id).text();
         Memory { id: id.clone(), recipe: recipe.to_owned(), guides: guides.clone(), nodes }

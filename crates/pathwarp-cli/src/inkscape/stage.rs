@@ -1,26 +1,31 @@
-//! Runs the words of a command line on a drawing in memory, by way of temporary files.
+//! A call of Inkscape, and the words of a command line applied to its drawing.
 
 use super::inx::labelled;
 use super::names::{ACTION, CHAIN, DEFORMATION, WARNINGS};
 use crate::advice::Flags;
 use crate::failure::{Failure, Status};
-use crate::options::{Given, options_without_inputs};
+use crate::options::{CommonOptions, Given, options_without_inputs};
+use crate::report::FileReport;
 use crate::temporaries::Temporary;
-use crate::{input, pipeline, steps, terminal, watch};
+use crate::{input, pipeline, references, steps, terminal, watch};
+use pathwarp::Error;
 use pathwarp::budget::Limits;
 use pathwarp::deform::Registry;
-use serde::Deserialize;
+use pathwarp::recipe::Recipe;
+use pathwarp_svg::objects::Guides;
+use pathwarp_svg::{Document, ReadOptions};
+use std::cell::LazyCell;
 use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Runs a command line.
-pub(super) type Dispatch = fn(&Registry, &[OsString]) -> Result<Status, Failure>;
+/// Converts a file with these options; without a target to standard output.
+pub(super) type Convert = fn(&Path, Option<&Path>, &CommonOptions, bool, bool) -> Result<Status, Failure>;
 
-/// What a call needs to run command lines.
+/// What a call needs.
 pub(super) struct Stage<'a> {
     pub(super) registry: &'a Registry,
-    pub(super) dispatch: Dispatch,
+    pub(super) convert: Convert,
     pub(super) call: &'a Call,
 }
 
@@ -43,28 +48,6 @@ pub(super) struct Outcome {
     pub(super) partial: bool,
 }
 
-/// The part of a report that is of use here.
-#[derive(Deserialize)]
-struct Report {
-    inputs: Vec<Input>,
-}
-
-#[derive(Deserialize)]
-struct Input {
-    #[serde(default)]
-    frame: Option<[f64; 4]>,
-    #[serde(default)]
-    baseline: Option<f64>,
-    warnings: Vec<String>,
-    skipped: Vec<Skipped>,
-}
-
-#[derive(Deserialize)]
-struct Skipped {
-    id: String,
-    why: String,
-}
-
 impl Stage<'_> {
     /// The drawing as Inkscape passes it.
     pub(super) fn drawing(&self) -> Result<String, Failure> {
@@ -77,10 +60,14 @@ impl Stage<'_> {
         Limits::default()
     }
 
-    /// Warps a part of a drawing by a recipe, given as words.
-    pub(super) fn warp(&self, svg: &str, words: &[String], scope: &Scope<'_>) -> Result<Outcome, Failure> {
-        let source = temporary(svg.as_bytes())?;
-        let (result, report) = (temporary(b"")?, temporary(b"")?);
+    /// Warps a part of a drawing by a recipe, given as words. References to paths that `guides` holds are looked up there.
+    pub(super) fn warp(
+        &self,
+        svg: &str,
+        words: &[String],
+        scope: &Scope<'_>,
+        guides: Option<&GuidePaths<'_>>,
+    ) -> Result<Outcome, Failure> {
         let words: Vec<OsString> = words.iter().map(OsString::from).collect();
         let parts: Vec<&[OsString]> = words.split(|w| w == CHAIN).collect();
         let parts = steps::parts(self.registry, &parts, &options_without_inputs().collect::<Vec<_>>())?;
@@ -88,33 +75,33 @@ impl Stage<'_> {
         // What the recipe selects, it selects in this scope.
         let selected = own.take("select");
         recipe.steps.iter_mut().for_each(|step| step.select.extend(selected.iter().cloned()));
-        // The drawing is open on the page that it has.
-        let mut given = Given::default().keeping_pages().of_file(source.path());
-        let mut set = |name: &str, value: &str| given.set(name, value).map_err(Failure::Usage);
-        set("quiet", "true")?;
-        set("format", "svg")?;
-        set("out", &result.path().display().to_string())?;
-        set("report", &report.path().display().to_string())?;
+        let mut given = Given::default();
         if let Some(folder) = folder() {
-            set("base-dir", &folder.display().to_string())?;
+            given.set("base-dir", &folder.display().to_string()).map_err(Failure::Usage)?;
         }
-        scope.ids.iter().try_for_each(|id| set("select", &format!("[id={id}]")))?;
+        scope.ids.iter().try_for_each(|id| given.set("select", &format!("[id={id}]"))).map_err(Failure::Usage)?;
         let given = given.overridden_by(&own);
-        watch::begin(given.read()?.reading.limits);
-        let status = pipeline::run(self.registry, &recipe, &given, None);
-        let status = status.map_err(|f| self.without_file(&f, source.path()))?;
-        let svg = text(result.path())?;
-        let report: Report =
-            serde_json::from_str(&text(report.path())?).map_err(|e| Failure::Input(format!("the report: {e}")))?;
-        let mut outcome =
-            Outcome { svg, frame: None, baseline: None, remarks: Vec::new(), partial: status == Status::Partial };
-        for input in report.inputs {
-            outcome.frame = input.frame;
-            outcome.baseline = input.baseline;
-            outcome.remarks.extend(input.warnings);
-            outcome.remarks.extend(input.skipped.into_iter().map(|s| format!("{} is not warped: {}", s.id, s.why)));
+        let reading = given.read()?.reading;
+        watch::begin(reading.limits);
+        let _watched = watch::InBatch::begin();
+        watch::count_input(svg.len());
+        reading.check()?;
+        if let Some(guides) = guides {
+            guides.look_up(self, &mut recipe)?;
         }
-        Ok(outcome)
+        references::resolve_files(self.registry, &mut recipe, &reading)?;
+        // The drawing is open on the page that it has.
+        let name = &self.call.file;
+        let (bytes, warped) = pipeline::warp_bytes(self.registry, &recipe, &given, None, name, svg.as_bytes())?;
+        let FileReport { frame, baseline, warnings, skipped, .. } = warped.report;
+        let skipped = skipped.into_iter().map(|s| format!("{} is not warped: {}", s.id, s.why));
+        Ok(Outcome {
+            svg: String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?,
+            frame,
+            baseline,
+            remarks: warnings.into_iter().chain(skipped).collect(),
+            partial: warped.partial || warped.page.is_blank,
+        })
     }
 
     /// Reports what was left out: as an error if nothing else happened, else if the user wants to see it.
@@ -128,24 +115,55 @@ impl Stage<'_> {
         Ok(())
     }
 
-    /// The failure without the name of a temporary file.
-    pub(super) fn without_file(&self, failure: &Failure, file: &Path) -> Failure {
-        let file = file.display().to_string();
+    /// The failure without the name of the temporary file that Inkscape passes.
+    pub(super) fn without_file(&self, failure: &Failure) -> Failure {
+        let file = self.call.file.display().to_string();
         let message = failure.message(&Flags::of(self.registry));
         Failure::Input(message.replace(&format!("{file}: "), "").replace(&file, "the drawing"))
     }
 
     /// Converts the file to another format on standard output.
     pub(super) fn convert(&self, format: &str) -> Result<Status, Failure> {
-        let mut all: Vec<OsString> = ["pathwarp", "convert"].map(OsString::from).into();
-        all.push(self.call.file.clone().into());
-        all.push(format!("--format={format}").into());
+        let mut given = Given::default();
+        given.set("format", format).map_err(Failure::Usage)?;
         if !self.call.is_on(WARNINGS) {
-            all.push("--quiet".into());
+            given.set("quiet", "true").map_err(Failure::Usage)?;
         }
         let own = self.call.values.iter().filter(|(n, v)| n != WARNINGS && !v.is_empty());
-        all.extend(own.map(|(n, v)| format!("--{n}={v}").into()));
-        (self.dispatch)(self.registry, &all)
+        own.into_iter().try_for_each(|(name, value)| given.set(name, value)).map_err(Failure::Usage)?;
+        let options = given.read()?;
+        watch::begin(options.reading.limits);
+        (self.convert)(&self.call.file, None, &options, false, false)
+    }
+
+    /// Reads a drawing.
+    pub(super) fn read(&self, svg: &str) -> Result<Document, Failure> {
+        let options = ReadOptions::default().with_limits(self.limits());
+        Ok(Document::read(svg.as_bytes(), "the drawing", &options)?)
+    }
+}
+
+/// Copies of guides that an object carries, and which of them take the place of the drawing's own.
+pub(super) struct GuidePaths<'a> {
+    pub(super) guides: &'a Guides,
+    pub(super) has: &'a dyn Fn(&str) -> bool,
+}
+
+impl GuidePaths<'_> {
+    fn look_up(&self, stage: &Stage<'_>, recipe: &mut Recipe) -> Result<(), Failure> {
+        let copies = LazyCell::new(|| stage.read(&self.guides.file()));
+        let look_up = |reference: &str| match reference.strip_prefix('#').filter(|id| (self.has)(id)) {
+            None => Ok(None),
+            Some(id) => match &*copies {
+                Ok(copies) => Ok(Some(copies.path(id)?.outline)),
+                Err(_) => Err(Error::input(reference, "is kept as a copy that cannot be read")),
+            },
+        };
+        for step in &mut recipe.steps {
+            let params = stage.registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+            step.args.resolve_paths(params, look_up).map_err(Failure::of_recipe)?;
+        }
+        Ok(())
     }
 }
 
@@ -156,10 +174,6 @@ pub(super) fn temporary(content: &[u8]) -> Result<Temporary, Failure> {
     let (temporary, mut file) = Temporary::create_in(&folder).map_err(failed)?;
     file.write_all(content).map_err(failed)?;
     Ok(temporary)
-}
-
-fn text(file: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(file).map_err(|e| Failure::file(file, format!("cannot be read: {e}")))
 }
 
 /// The folder of the drawing on the screen, which linked pictures are relative to.

@@ -1,5 +1,6 @@
 //! [`Artwork`]: what the pipeline asks of every kind of input.
 
+use super::files::no_document;
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
@@ -29,9 +30,6 @@ pub(crate) enum Which {
 
 /// Artwork of one kind, read and ready to be warped.
 pub(crate) trait Artwork {
-    /// The name of the file in reports.
-    fn file_name(&self) -> String;
-
     /// The path that the reference `#NAME` means.
     fn path_named(&self, name: &str) -> Result<Outline, Error>;
 
@@ -77,9 +75,54 @@ pub(crate) trait Artwork {
 
     /// The limits on the work that the artwork causes, and what is used of them.
     fn budget(&self) -> &Arc<Budget>;
+}
+
+/// Artwork from a file, which gives another one.
+pub(crate) trait FileArtwork: Artwork {
+    /// The name of the file in reports.
+    fn file_name(&self) -> String;
 
     /// Warps the artwork.
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure>;
+}
+
+/// Outlines that come from no file.
+pub(crate) struct PlainArtwork<'a> {
+    pub(crate) outlines: Vec<&'a Outline>,
+    pub(crate) frame: Frame,
+    pub(crate) budget: Arc<Budget>,
+}
+
+impl Artwork for PlainArtwork<'_> {
+    fn path_named(&self, name: &str) -> Result<Outline, Error> {
+        Err(no_document(name))
+    }
+
+    fn remove_guides(&mut self, _guides: Vec<String>) {}
+
+    fn divide(&mut self, _steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure> {
+        Err(Failure::usage("select and exclude are for drawings"))
+    }
+
+    fn bounding_box(&self, _which: Which) -> Option<Rect> {
+        self.outlines.iter().filter_map(|o| o.bounding_box()).reduce(|a, b| a.union(b))
+    }
+
+    fn frame(&self, _: Which, _: FrameChoice, _: Option<Rect>, _: Baseline) -> Result<Frame, Failure> {
+        Ok(self.frame.clone())
+    }
+
+    fn units_per_px(&self) -> [f64; 2] {
+        self.frame.units_per_px
+    }
+
+    fn outlines(&self, _which: Which) -> Vec<&Outline> {
+        self.outlines.clone()
+    }
+
+    fn budget(&self) -> &Arc<Budget> {
+        &self.budget
+    }
 }
 
 /// The baseline of a step.

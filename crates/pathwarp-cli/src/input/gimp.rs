@@ -1,6 +1,6 @@
 //! GIMP paths as artwork: warped, and written in a format that GIMP reads.
 
-use super::artwork::{self, Artwork, Baseline, Fold, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::artwork::{self, Artwork, Baseline, FileArtwork, Fold, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::beside;
 use super::files::{display, split_reference};
 use super::gimp_file::GimpFile;
@@ -135,10 +135,6 @@ impl GimpArtwork {
 }
 
 impl Artwork for GimpArtwork {
-    fn file_name(&self) -> String {
-        display(&self.file.path)
-    }
-
     fn path_named(&self, name: &str) -> Result<Outline, Error> {
         Ok(self.file.path_named(name)?.outline())
     }
@@ -186,6 +182,12 @@ impl Artwork for GimpArtwork {
 
     fn outlines(&self, which: Which) -> Vec<&Outline> {
         self.places(which).map(|i| &self.outlines[i]).collect()
+    }
+}
+
+impl FileArtwork for GimpArtwork {
+    fn file_name(&self) -> String {
+        display(&self.file.path)
     }
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {

@@ -8,7 +8,7 @@ mod gimp_file;
 mod picture;
 mod svg;
 
-pub(crate) use artwork::{Artwork, Baseline, Fold, WarpRequest, WarpedResult, Which};
+pub(crate) use artwork::{Artwork, Baseline, FileArtwork, Fold, PlainArtwork, WarpRequest, WarpedResult, Which};
 pub(crate) use beside::PREVIEW;
 pub(crate) use files::{
     bytes, described, display, document, document_of, no_document, not_a_drawing, read_data_file, read_options,
@@ -61,7 +61,7 @@ impl Input {
         Ok(Self::Svg(Box::new(SvgArtwork::read(bytes, input, options, target)?)))
     }
 
-    pub(crate) fn artwork(&mut self) -> &mut dyn Artwork {
+    pub(crate) fn artwork(&mut self) -> &mut dyn FileArtwork {
         match self {
             Self::Svg(a) => &mut **a,
             Self::Gimp(a) => a,

@@ -1,6 +1,6 @@
 //! Photographs (PNG, JPEG, WebP) as artwork: warped pixel by pixel, by the same maps as a drawing.
 
-use super::artwork::{self, Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::files::{display, no_document};
 use crate::advice;
 use crate::bitmap::{self, Pixel, ROUNDING, inverse};
@@ -66,10 +66,6 @@ impl PictureArtwork {
 }
 
 impl Artwork for PictureArtwork {
-    fn file_name(&self) -> String {
-        self.name.clone()
-    }
-
     fn path_named(&self, name: &str) -> Result<Outline, Error> {
         Err(no_document(name))
     }
@@ -100,6 +96,12 @@ impl Artwork for PictureArtwork {
 
     fn outlines(&self, _which: Which) -> Vec<&Outline> {
         vec![&self.outline]
+    }
+}
+
+impl FileArtwork for PictureArtwork {
+    fn file_name(&self) -> String {
+        self.name.clone()
     }
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {

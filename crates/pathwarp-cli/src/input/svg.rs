@@ -1,6 +1,6 @@
 //! SVG drawings as artwork.
 
-use super::artwork::{self, Artwork, Baseline, Fold, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::artwork::{self, Artwork, Baseline, FileArtwork, Fold, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use crate::bitmap::Bender;
@@ -315,10 +315,6 @@ fn shape_report(s: &pathwarp_svg::ShapeReport, fold: Option<&Fold>, steps: Optio
 }
 
 impl Artwork for SvgArtwork {
-    fn file_name(&self) -> String {
-        self.name.clone()
-    }
-
     fn path_named(&self, name: &str) -> Result<Outline, Error> {
         Ok(self.doc.path(name)?.outline)
     }
@@ -404,6 +400,12 @@ impl Artwork for SvgArtwork {
 
     fn outlines(&self, which: Which) -> Vec<&Outline> {
         self.doc.selected(self.selection(which)).map(|s| &*s.outline).collect()
+    }
+}
+
+impl FileArtwork for SvgArtwork {
+    fn file_name(&self) -> String {
+        self.name.clone()
     }
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Common options with their values as given.
 #[derive(Clone, Default)]
@@ -91,11 +91,6 @@ impl Given {
         // The option and its value are in the table.
         let _ = kept.set("fit", "none");
         kept.overridden_by(self)
-    }
-
-    /// These options for a file.
-    pub(crate) fn of_file(self, file: &Path) -> Self {
-        Self { inputs: vec![file.to_owned()], ..self }
     }
 
     pub(crate) fn inputs(&self) -> &[PathBuf] {

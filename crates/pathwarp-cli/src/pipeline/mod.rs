@@ -1,27 +1,27 @@
 //! The one run of every deformation: the outputs are planned, each input is opened, built, warped and reported
-//! (`file_run.rs`), and its files are put in place, all or none. Of several inputs, each is finished on its own.
+//! (`session.rs`), and its files are put in place, all or none. Of several inputs, each is finished on its own.
 
-mod file_run;
 mod links;
 mod plan;
+mod session;
 
-pub(crate) use file_run::{baseline, build, divided, explained, starts, warp_bytes};
 pub(crate) use plan::{Folders, InputFile, Inputs, Job};
+pub(crate) use session::{Framed, Ready, Session, warp_bytes};
 
 use crate::advice::Flags;
 use crate::failure::{Failure, Status};
-use crate::input::{PREVIEW, display};
+use crate::input::{Input, PREVIEW, WarpedResult, display};
 use crate::options::{CommonOptions, Given, OnFailure};
 use crate::output::{self, Draft, PendingFile};
-use crate::page::PageCounts;
+use crate::page::{PageCounts, PageNews};
 use crate::report::{FileReport, ReportFile};
 use crate::{recipe_file, references, temporaries, terminal, watch};
-use file_run::{Batch, FileRun};
 use indicatif::{ProgressBar, ProgressStyle};
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
 use pathwarp_svg::PageFit;
 use rayon::prelude::*;
+use session::Warped;
 use std::convert;
 use std::io::IsTerminal;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -59,52 +59,53 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     }
     let mut resolved = recipe.clone();
     references::resolve_files(registry, &mut resolved, &options.reading)?;
-    let batch = Batch { registry, recipe: &resolved, options: &options, given, flags: Flags::of(registry) };
+    let flags = Flags::of(registry);
+    let session = Session { registry, recipe: &resolved, options: &options, given };
 
     let _empty_ones_removed_at_the_end = Folders::create(&options, &jobs)?;
     let draft = options.report.as_deref().map(Draft::new).transpose()?;
     let report = draft.map(|d| ReportFile::new(d, recipe, &options, started)).transpose()?;
-    let mut session = Collected::new(&options, &batch.flags, report, jobs.len());
-    run_jobs(&batch, &jobs, &mut session)?;
+    let mut collected = Collected::new(&options, &flags, report, jobs.len());
+    run_jobs(&session, &jobs, &mut collected)?;
     if let Some(file) = &options.write_recipe {
         let text = recipe_file::write(registry, recipe, given, file.parent().unwrap_or(Path::new("")))?;
-        session.pending.push(PendingFile::new(file, text.as_bytes())?);
+        collected.pending.push(PendingFile::new(file, text.as_bytes())?);
     }
-    session.finish()
+    collected.finish()
 }
 
 /// Runs every job, in parallel; the session gets the results in order.
 ///
 /// # Errors
 /// The only input fails, any fails and the options say to stop, or the recipe is at fault.
-fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Collected<'_>) -> Result<(), Failure> {
+fn run_jobs(session: &Session<'_>, jobs: &[Job], collected: &mut Collected<'_>) -> Result<(), Failure> {
     // A single input starts threads only when it has work for them.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = (jobs.len() > 1 || batch.options.jobs.is_some())
-        .then(|| batch.options.jobs.map_or(0, |n| n.min(cores * MOST_THREADS_PER_CORE)));
+    let threads = (jobs.len() > 1 || session.options.jobs.is_some())
+        .then(|| session.options.jobs.map_or(0, |n| n.min(cores * MOST_THREADS_PER_CORE)));
     let pool = threads
         .map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build())
         .transpose()
         .map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
     let at_once = pool.as_ref().map_or(1, |p| p.current_num_threads() * CHUNK_PER_THREAD);
-    let bar = progress_bar(jobs.len(), batch.options.quiet);
-    let stops = jobs.len() == 1 || batch.options.on_failure == OnFailure::Stop;
-    let mut rest = jobs;
+    let bar = progress_bar(jobs.len(), session.options.quiet);
+    let stops = jobs.len() == 1 || session.options.on_failure == OnFailure::Stop;
+    let (mut rest, flags) = (jobs, collected.flags);
     while !rest.is_empty() {
         // An error in the recipe must show before any file is written, so the first inputs go alone until one succeeds.
-        let size = if session.is_untried() { 1 } else { at_once };
+        let size = if collected.is_untried() { 1 } else { at_once };
         let (chunk, later) = rest.split_at(size.min(rest.len()));
         rest = later;
-        let one = |job: &Job| one(batch, job, stops, &bar);
-        let results: Vec<Result<FileRun, Failure>> = match &pool {
+        let one = |job: &Job| one(session, flags, job, stops, &bar);
+        let results: Vec<Result<Finished, Failure>> = match &pool {
             Some(pool) => pool.install(|| chunk.par_iter().map(one).collect()),
             None => chunk.iter().map(one).collect(),
         };
         for (job, result) in chunk.iter().zip(results) {
             bar.suspend(|| match result {
-                Ok(run) => session.done(run),
-                Err(failure) if stops || failure.is_of_recipe() && session.is_untried() => Err(failure),
-                Err(failure) => session.failed(&job.input, &failure),
+                Ok(run) => collected.done(run),
+                Err(failure) if stops || failure.is_of_recipe() && collected.is_untried() => Err(failure),
+                Err(failure) => collected.failed(&job.input, &failure),
             })?;
         }
     }
@@ -112,15 +113,52 @@ fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Collected<'_>) -> Res
     Ok(())
 }
 
+/// One input, warped. No file is in place yet.
+struct Finished {
+    report: FileReport,
+    files: Vec<PendingFile>,
+    page: PageNews,
+    notes: Vec<String>,
+    partial: bool,
+}
+
+/// Warps one input; without a target the result goes to standard output.
+fn run_job(session: &Session<'_>, flags: &Flags, job: &Job) -> Result<Finished, Failure> {
+    let target = job.target.as_deref();
+    let mut input = Input::open(&job.input, session.options, target)?;
+    let Warped { result, mut report, page, notes, partial, saves, preview, files: others } =
+        session.warp(input.artwork(), flags)?;
+    report.output = target.or(session.options.into.as_deref()).map(|t| t.display().to_string());
+    let mut files = vec![match (result, target) {
+        (WarpedResult::File(file), _) => file,
+        (WarpedResult::Bytes(bytes), Some(t)) => PendingFile::new(t, &links::moved(&bytes, &job.input, t))?,
+        (WarpedResult::Bytes(bytes), None) => PendingFile::stdout(bytes),
+    }];
+    files.extend(others);
+    for file in saves {
+        files.push(PendingFile::new(Path::new(&file.name), file.text.as_bytes())?);
+    }
+    if let (Some(file), Some(png)) = (&job.preview, preview) {
+        files.push(PendingFile::new(file, &png)?);
+    }
+    Ok(Finished { report, files, page, notes, partial })
+}
+
 /// Runs one job, and puts its files in place unless they have to wait for the others.
-fn one(batch: &Batch<'_>, job: &Job, files_wait: bool, bar: &ProgressBar) -> Result<FileRun, Failure> {
+fn one(
+    session: &Session<'_>,
+    flags: &Flags,
+    job: &Job,
+    files_wait: bool,
+    bar: &ProgressBar,
+) -> Result<Finished, Failure> {
     let name = display(&job.input);
     let _watched = watch::InBatch::begin();
     if let Some(why) = job.refused {
         bar.inc(1);
         return Err(Failure::file(&job.input, why));
     }
-    let run = catch_unwind(AssertUnwindSafe(|| batch.run(job))).unwrap_or_else(|_| {
+    let run = catch_unwind(AssertUnwindSafe(|| run_job(session, flags, job))).unwrap_or_else(|_| {
         Err(Failure::Input("the program failed on this input (see the message above); please report it".into()))
     });
     bar.inc(1);
@@ -174,7 +212,7 @@ impl<'a> Collected<'a> {
     }
 
     /// Adds an input that was warped: prints its notes and warnings.
-    fn done(&mut self, run: FileRun) -> Result<(), Failure> {
+    fn done(&mut self, run: Finished) -> Result<(), Failure> {
         let several = self.inputs > 1;
         for note in &run.notes {
             terminal::note(&if several { format!("{}: {note}", run.report.file) } else { note.clone() });

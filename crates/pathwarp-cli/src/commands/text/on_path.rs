@@ -7,8 +7,10 @@
 use super::style::Em;
 use crate::advice::Flags;
 use crate::failure::Failure;
-use crate::options::CommonOptions;
-use crate::{input, references, steps};
+use crate::input::{self, PlainArtwork};
+use crate::options::{CommonOptions, Given};
+use crate::pipeline::Session;
+use crate::{references, steps};
 use clap::{Arg, ArgAction, ArgMatches};
 use pathwarp::budget::Budget;
 use pathwarp::deform::Registry;
@@ -338,8 +340,10 @@ fn line(
     args.push("along", ON);
     args.resolve_paths(params, |_| Ok(Some(path.clone()))).map_err(Failure::of_recipe)?;
     let recipe = Recipe { steps: vec![Step::new(BEND, args)] };
-    let outlines = letters.iter().map(|l| &l.outline);
-    let built = recipe.build_within(registry, frame, &outlines, &budget).map_err(Failure::of_recipe)?;
+    let session = Session { registry, recipe: &recipe, options, given: &Given::default() };
+    let outlines = letters.iter().map(|l| &l.outline).collect();
+    let artwork = &mut PlainArtwork { outlines, frame, budget: Arc::clone(&budget) };
+    let built = session.ready(artwork, None)?.built.whole;
 
     let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
     let refit = refit.with_budget(budget);

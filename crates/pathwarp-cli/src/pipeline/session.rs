@@ -1,11 +1,10 @@
-//! The run of one input: open, look up references, choose the frame, build, warp, report.
+//! The one road: artwork and steps in, result and report out. References are looked up, frames chosen, steps built, artwork warped. The
+//! command line, the editor, Inkscape and other languages all take it.
 
-use super::links;
-use super::plan::Job;
 use crate::advice::{self, Flags};
 use crate::edits::SIMPLIFY;
 use crate::failure::Failure;
-use crate::input::{Artwork, Baseline, Input, WarpRequest, WarpedResult, Which, display};
+use crate::input::{Artwork, Baseline, FileArtwork, Input, WarpRequest, WarpedResult, Which, display};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
 use crate::page::PageNews;
@@ -20,136 +19,173 @@ use pathwarp::recipe::{BuiltParts, BuiltRecipe, Portion, Recipe, Step};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// The work that all inputs share.
-pub(super) struct Batch<'a> {
-    pub(super) registry: &'a Registry,
-    pub(super) recipe: &'a Recipe,
-    pub(super) options: &'a CommonOptions,
-    pub(super) given: &'a Given,
-    pub(super) flags: Flags,
+/// Steps and options, to be applied to artwork.
+pub(crate) struct Session<'a> {
+    pub(crate) registry: &'a Registry,
+    /// The steps, with the contents of files.
+    pub(crate) recipe: &'a Recipe,
+    pub(crate) options: &'a CommonOptions,
+    pub(crate) given: &'a Given,
 }
 
-/// One input, warped. Nothing is written yet, not even to temporary files, except for `files`.
-pub(super) struct WarpedInput {
-    pub(super) result: WarpedResult,
-    pub(super) report: FileReport,
-    page: PageNews,
-    pub(super) notes: Vec<String>,
-    partial: bool,
-    /// Files that deformations save.
-    saves: Vec<SavedFile>,
-    /// Files besides the result.
-    files: Vec<PendingFile>,
-    preview: Option<Vec<u8>>,
+/// Steps that are built for some artwork.
+pub(crate) struct Ready {
+    /// The steps, with all references looked up.
+    pub(crate) recipe: Recipe,
+    pub(crate) built: BuiltParts,
+    /// The frame of the first step.
+    pub(crate) frame: Frame,
+    /// The frames of the steps whose artwork no other step has moved before.
+    starts: Vec<Option<Frame>>,
 }
 
-/// One input, warped. No file is in place yet.
-pub(super) struct FileRun {
-    pub(super) report: FileReport,
-    pub(super) files: Vec<PendingFile>,
+/// The frame of all artwork without these guides, for a step with this baseline.
+pub(crate) struct Framed {
+    guides: Vec<String>,
+    baseline: Baseline,
+    pub(crate) frame: Frame,
+}
+
+/// Artwork that was warped. Nothing is written yet, not even to temporary files, except for `files`.
+pub(crate) struct Warped {
+    pub(crate) result: WarpedResult,
+    /// Names no output.
+    pub(crate) report: FileReport,
     /// What became of the page; the last warnings say so.
-    pub(super) page: PageNews,
+    pub(crate) page: PageNews,
     /// The lines of `--explain`.
-    pub(super) notes: Vec<String>,
-    pub(super) partial: bool,
+    pub(crate) notes: Vec<String>,
+    /// Something was left out or missed the tolerance.
+    pub(crate) partial: bool,
+    /// Files that deformations save.
+    pub(crate) saves: Vec<SavedFile>,
+    /// Files besides the result.
+    pub(crate) files: Vec<PendingFile>,
+    pub(crate) preview: Option<Vec<u8>>,
 }
 
-impl Batch<'_> {
-    /// Warps one input; without a target the result goes to standard output.
-    pub(super) fn run(&self, job: &Job) -> Result<FileRun, Failure> {
-        let target = job.target.as_deref();
-        let mut input = Input::open(&job.input, self.options, target)?;
-        let WarpedInput { result, mut report, page, notes, partial, saves, preview, files: others } =
-            self.warp(&mut input)?;
-        report.output = target.or(self.options.into.as_deref()).map(|t| t.display().to_string());
-        let mut files = Vec::new();
-        match (result, target) {
-            (WarpedResult::File(file), _) => files.push(file),
-            (WarpedResult::Bytes(bytes), Some(t)) => {
-                files.push(PendingFile::new(t, &links::moved(&bytes, &job.input, t))?);
-            }
-            (WarpedResult::Bytes(bytes), None) => files.push(PendingFile::stdout(bytes)),
-        }
-        files.extend(others);
-        for file in saves {
-            files.push(PendingFile::new(Path::new(&file.name), file.text.as_bytes())?);
-        }
-        if let (Some(file), Some(png)) = (&job.preview, preview) {
-            files.push(PendingFile::new(file, &png)?);
-        }
-        Ok(FileRun { report, files, page, notes, partial })
+/// Warps the content of a file called `name` by a recipe whose file references have been looked up. Linked pictures are looked up
+/// beside `name`, which is empty if there is no such place. The switch `stop` ends the work.
+pub(crate) fn warp_bytes(
+    registry: &Registry,
+    recipe: &Recipe,
+    given: &Given,
+    stop: Option<&'static AtomicBool>,
+    name: &Path,
+    bytes: &[u8],
+) -> Result<(Vec<u8>, Warped), Failure> {
+    let mut options = given.keeping_pages().read()?;
+    options.reading.stop(stop);
+    let (session, flags) = (Session { registry, recipe, options: &options, given }, Flags::of(registry));
+    let warped =
+        Input::of_bytes(bytes, name, &options, None).and_then(|mut input| session.warp(input.artwork(), &flags));
+    let mut warped = warped.map_err(|f| f.about(&display(name)))?;
+    match &mut warped.result {
+        WarpedResult::Bytes(bytes) => Ok((std::mem::take(bytes), warped)),
+        // Only an XCF is written to a file, and it is not read from memory.
+        WarpedResult::File(_) => Err(Failure::usage("the result is a file")),
+    }
+}
+
+impl Session<'_> {
+    /// Looks up references in the artwork, chooses the frames and builds the steps. An editor, which bends artwork again and again, keeps
+    /// its frame in `framed`.
+    pub(crate) fn ready(
+        &self,
+        artwork: &mut dyn Artwork,
+        framed: Option<&mut Option<Framed>>,
+    ) -> Result<Ready, Failure> {
+        let mut recipe = self.recipe.clone();
+        let guides = references::resolve_names(self.registry, &mut recipe, |name| artwork.path_named(name))?;
+        artwork.remove_guides(guides.clone());
+        let known = framed.map(|cache| self.framed(artwork, guides, cache)).transpose()?;
+        let is_selective = recipe.steps.iter().any(Step::is_selective);
+        let parts = if is_selective { artwork.divide(&recipe.steps)? } else { vec![(0..recipe.steps.len()).collect()] };
+        let portion = |(k, steps): (usize, Vec<usize>)| Portion { steps, outlines: artwork.outlines(Which::Part(k)) };
+        let portions: Vec<Portion<'_>> = parts.into_iter().enumerate().map(portion).collect();
+        let start = |i: usize| match &known {
+            _ if !recipe.starts(i, &portions) => Ok(None),
+            Some(frame) if !is_selective => Ok(Some(frame.clone())),
+            _ => self.frame(artwork, Which::Step(i), baseline(self.registry, &recipe.steps[i])).map(Some),
+        };
+        let starts: Vec<Option<Frame>> = (0..recipe.steps.len()).map(start).collect::<Result<_, Failure>>()?;
+        let built = recipe.build_parts(self.registry, &starts, &portions, artwork.budget());
+        let built = built.map_err(Failure::of_recipe)?;
+        sound(&built)?;
+        let first = known.or_else(|| starts.iter().flatten().next().cloned());
+        Ok(Ready { recipe, built, frame: first.unwrap_or_else(|| Frame::new(Rect::ZERO)), starts })
     }
 
-    /// Warps one input and writes nothing. The report names no output.
-    pub(super) fn warp(&self, input: &mut Input) -> Result<WarpedInput, Failure> {
-        let Batch { registry, options, .. } = self;
-        let artwork = input.artwork();
-        let mut recipe = self.recipe.clone();
-        let guides = references::resolve_names(registry, &mut recipe, |name| artwork.path_named(name))?;
-        artwork.remove_guides(guides);
+    /// The frame of some of the artwork.
+    fn frame(&self, artwork: &dyn Artwork, which: Which, baseline: Baseline) -> Result<Frame, Failure> {
+        let frame = artwork.frame(which, self.options.frame, artwork.bounding_box(which), baseline)?;
+        Ok(frame.with_units_per_px(artwork.units_per_px()))
+    }
 
-        let parts = divided(artwork, &recipe)?;
-        let bounds = artwork.bounding_box(Which::All);
-        let starts = starts(registry, &recipe, artwork, &parts, options.frame, None)?;
-        let first = starts.iter().flatten().next().cloned().unwrap_or_else(|| Frame::new(Rect::ZERO));
-        let tolerance = options.tolerance_for(artwork.painted_box(), &first)?;
-        let built = build(registry, &recipe, artwork, &parts, &starts)?;
+    /// The frame of all artwork, as the last time if guides and baseline are the same.
+    fn framed(&self, artwork: &dyn Artwork, guides: Vec<String>, cache: &mut Option<Framed>) -> Result<Frame, Failure> {
+        let baseline = self.recipe.steps.first().map_or(Baseline::None, |s| baseline(self.registry, s));
+        if let Some(framed) = cache.as_ref().filter(|f| f.guides == guides && f.baseline == baseline) {
+            return Ok(framed.frame.clone());
+        }
+        let frame = self.frame(artwork, Which::All, baseline)?;
+        *cache = Some(Framed { guides, baseline, frame: frame.clone() });
+        Ok(frame)
+    }
+
+    /// The tolerance for artwork of this frame, in user units.
+    pub(crate) fn tolerance(&self, artwork: &dyn Artwork, frame: &Frame) -> Result<f64, Failure> {
+        self.options.tolerance_for(artwork.painted_box(), frame)
+    }
+
+    /// Warps artwork, and writes nothing. Messages of the steps get parameters as flags.
+    pub(crate) fn warp(&self, artwork: &mut dyn FileArtwork, flags: &Flags) -> Result<Warped, Failure> {
+        let options = self.options;
+        let ready = self.ready(artwork, None)?;
+        let Ready { built, frame: first, starts, .. } = &ready;
         let whole = &built.whole;
-        // The map of a plug-in may fail at any time. Nothing that was computed with it is used, not even another error.
-        let sound = || whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)));
-        sound()?;
-
-        let stretch = |(k, part): (usize, &BuiltRecipe)| {
-            let (which, frame) = (Which::Part(k), part.frames.first()?.rect);
-            let uncut =
-                artwork.bounding_box(which).filter(|b| *b == frame).and_then(|b| artwork.uncut_box(which, b))?;
-            Some((uncut, stretch_beyond(&part.map, frame, uncut)?))
-        };
-        let stretched: Vec<_> = built.parts.iter().enumerate().filter_map(stretch).collect();
-
-        let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
-        let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
+        let seen = artwork.bounding_box(Which::All).is_some();
+        let tolerance = self.tolerance(artwork, first)?;
+        let stretched = stretched(artwork, built);
+        let embed = || recipe_file::write(self.registry, &ready.recipe, self.given, Path::new(""));
         let request = WarpRequest {
             recipe: self.recipe,
-            built: &built,
+            built,
             options,
             tolerance,
             suited: options.tolerance.is_none(),
-            edit: options.edit.as_ref().map(|e| e.read(&first)).transpose()?,
-            embedded_recipe,
+            edit: options.edit.as_ref().map(|e| e.read(first)).transpose()?,
+            embedded_recipe: options.embed_recipe.then(embed).transpose()?,
             same_view: false,
         };
-        let warped = artwork.warp(&request);
-        sound()?;
-        let warped = warped.map_err(|f| explained(f, &built))?;
+        let warped = ready.checked(artwork.warp(&request))?;
 
-        let mut warnings: Vec<String> = self.in_flags(whole, |e| &e.warnings).chain(warped.warnings).collect();
-        warnings.extend(stretched.into_iter().map(|(uncut, stretch)| advice::stretched(uncut, stretch)));
+        let mut warnings: Vec<String> = in_flags(flags, whole, |e| &e.warnings).chain(warped.warnings).collect();
+        warnings.extend(stretched);
         warnings.extend(warped.page.warnings());
+        warnings.extend(self.vanished(&warped.shapes));
         let coarse = too_coarse(options.precision, &warped.shapes);
         let is_coarse = coarse.is_some();
-        warnings.extend(self.vanished(&warped.shapes));
         warnings.extend(coarse);
-        let frame = first.rect;
         let report = FileReport {
             file: artwork.file_name(),
             output: None,
             error: None,
             tolerance: Some(tolerance),
-            frame: Some([frame.x0, frame.y0, frame.width(), frame.height()]),
-            selections: selections(&recipe, whole),
+            frame: Some(shown(first.rect)),
+            selections: selections(&ready.recipe, whole),
             baseline: first.baseline,
-            page: warped.page.change.map(|[_, r]| [r.x0, r.y0, r.width(), r.height()]),
+            page: warped.page.change.map(|[_, after]| shown(after)),
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings,
         };
         let partial = warped.partial || is_coarse || report.is_partial();
-        let notes = self.notes(whole, &frames(options.frame, &recipe, &starts, bounds.is_some()), &report.shapes);
-        Ok(WarpedInput {
+        let notes = self.notes(flags, whole, &frames(options.frame, &ready.recipe, starts, seen), &report.shapes);
+        Ok(Warped {
             result: warped.result,
             page: warped.page,
-            saves: built.whole.steps.into_iter().flat_map(|s| s.saves).collect(),
+            saves: ready.built.whole.steps.into_iter().flat_map(|s| s.saves).collect(),
             files: warped.files,
             preview: warped.preview,
             report,
@@ -159,13 +195,13 @@ impl Batch<'_> {
     }
 
     /// The decisions made on the user's behalf.
-    fn notes(&self, built: &BuiltRecipe, framed: &[String], shapes: &[ReportedShape]) -> Vec<String> {
+    fn notes(&self, flags: &Flags, built: &BuiltRecipe, framed: &[String], shapes: &[ReportedShape]) -> Vec<String> {
         let mut notes: Vec<String> = self.simplified(shapes).into_iter().collect();
         if !self.options.explain {
             return notes;
         }
         notes.extend_from_slice(framed);
-        notes.extend(self.in_flags(built, |e| &e.notes));
+        notes.extend(in_flags(flags, built, |e| &e.notes));
         notes.extend(strokes(shapes));
         notes
     }
@@ -191,63 +227,15 @@ impl Batch<'_> {
         let named = gone[..gone.len().min(NAMED)].join(", ");
         (!gone.is_empty()).then(|| format!("nothing is left of {named}{more}: narrower than the distance"))
     }
-
-    /// Messages of all steps, with parameters as flags.
-    fn in_flags(
-        &self,
-        built: &BuiltRecipe,
-        messages: impl Fn(&Explanation) -> &Vec<String>,
-    ) -> impl Iterator<Item = String> {
-        built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| self.flags.in_text(m))
-    }
 }
 
-/// The steps of every part of the artwork.
-pub(crate) fn divided(artwork: &mut dyn Artwork, recipe: &Recipe) -> Result<Vec<Vec<usize>>, Failure> {
-    if recipe.steps.iter().any(Step::is_selective) {
-        return artwork.divide(&recipe.steps);
-    }
-    Ok(vec![(0..recipe.steps.len()).collect()])
-}
-
-/// The frames of the steps whose artwork no other step has moved before. `known` is that of all artwork.
-pub(crate) fn starts(
-    registry: &Registry,
-    recipe: &Recipe,
-    artwork: &dyn Artwork,
-    parts: &[Vec<usize>],
-    choice: FrameChoice,
-    known: Option<&Frame>,
-) -> Result<Vec<Option<Frame>>, Failure> {
-    let portions: Vec<Portion<'_>> =
-        parts.iter().map(|steps| Portion { steps: steps.clone(), outlines: Vec::new() }).collect();
-    let frame = |i: usize| -> Result<Option<Frame>, Failure> {
-        let which = Which::Step(i);
-        match known {
-            _ if !recipe.starts(i, &portions) => Ok(None),
-            Some(known) => Ok(Some(known.clone())),
-            None => {
-                let baseline = baseline(registry, &recipe.steps[i]);
-                let frame = artwork.frame(which, choice, artwork.bounding_box(which), baseline)?;
-                Ok(Some(frame.with_units_per_px(artwork.units_per_px())))
-            }
-        }
-    };
-    (0..recipe.steps.len()).map(frame).collect()
-}
-
-/// Builds the steps of every part of the artwork.
-pub(crate) fn build(
-    registry: &Registry,
-    recipe: &Recipe,
-    artwork: &dyn Artwork,
-    parts: &[Vec<usize>],
-    starts: &[Option<Frame>],
-) -> Result<BuiltParts, Failure> {
-    let portion =
-        |(k, steps): (usize, &Vec<usize>)| Portion { steps: steps.clone(), outlines: artwork.outlines(Which::Part(k)) };
-    let portions: Vec<Portion<'_>> = parts.iter().enumerate().map(portion).collect();
-    recipe.build_parts(registry, starts, &portions, artwork.budget()).map_err(Failure::of_recipe)
+/// Messages of all steps, with parameters as flags.
+fn in_flags(
+    flags: &Flags,
+    built: &BuiltRecipe,
+    messages: impl Fn(&Explanation) -> &Vec<String>,
+) -> impl Iterator<Item = String> {
+    built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| flags.in_text(m))
 }
 
 /// What the steps hold for, for the report.
@@ -259,7 +247,7 @@ fn selections(recipe: &Recipe, built: &BuiltRecipe) -> Vec<StepSelection> {
         deformation: step.deformation.clone(),
         select: step.select.clone(),
         exclude: step.exclude.clone(),
-        frame: [frame.rect.x0, frame.rect.y0, frame.rect.width(), frame.rect.height()],
+        frame: shown(frame.rect),
     };
     recipe.steps.iter().zip(&built.frames).map(of_step).collect()
 }
@@ -311,28 +299,55 @@ fn strokes(shapes: &[ReportedShape]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("strokes: {}", parts.join("; ")))
 }
 
-/// Adds to an error where the map is undefined which operation is, if a step can say so.
-pub(crate) fn explained(failure: Failure, built: &BuiltParts) -> Failure {
-    let Some((shape, at)) = failure.infinity() else { return failure };
-    let reason = |part: &BuiltRecipe| {
-        let mut p = at;
-        part.steps.iter().find_map(|step| {
-            let why = step.undefined.as_ref().and_then(|why| why(p));
-            p = step.map.point(p);
-            why
-        })
-    };
-    match built.parts.iter().find_map(reason) {
-        Some(why) => {
-            let place = format!("{shape} cannot be warped: at {:.4},{:.4} {why}", at.x, at.y);
-            Failure::Geometry(format!("{place}; change the formula, or leave this shape out (--on-error skip)"))
+impl Ready {
+    /// The outcome of a warp. The map of a plug-in may fail at any time; nothing that was computed with it is used then, not even another
+    /// error. To an error where the map is undefined it adds which operation is, if a step can say so.
+    pub(crate) fn checked<T>(&self, outcome: Result<T, Failure>) -> Result<T, Failure> {
+        sound(&self.built)?;
+        outcome.map_err(|failure| self.explained(failure))
+    }
+
+    fn explained(&self, failure: Failure) -> Failure {
+        let Some((shape, at)) = failure.infinity() else { return failure };
+        let reason = |part: &BuiltRecipe| {
+            let mut p = at;
+            part.steps.iter().find_map(|step| {
+                let why = step.undefined.as_ref().and_then(|why| why(p));
+                p = step.map.point(p);
+                why
+            })
+        };
+        match self.built.parts.iter().find_map(reason) {
+            Some(why) => {
+                let place = format!("{shape} cannot be warped: at {:.4},{:.4} {why}", at.x, at.y);
+                Failure::Geometry(format!("{place}; change the formula, or leave this shape out (--on-error skip)"))
+            }
+            None => failure,
         }
-        None => failure,
     }
 }
 
+fn sound(built: &BuiltParts) -> Result<(), Failure> {
+    built.whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
+}
+
+/// A box as reports have it: x, y, width and height.
+fn shown(r: Rect) -> [f64; 4] {
+    [r.x0, r.y0, r.width(), r.height()]
+}
+
+/// Warns of artwork that the page cuts off and the map stretches.
+fn stretched(artwork: &dyn Artwork, built: &BuiltParts) -> Vec<String> {
+    let of_part = |(k, part): (usize, &BuiltRecipe)| {
+        let (which, frame) = (Which::Part(k), part.frames.first()?.rect);
+        let uncut = artwork.bounding_box(which).filter(|b| *b == frame).and_then(|b| artwork.uncut_box(which, b))?;
+        Some(advice::stretched(uncut, stretch_beyond(&part.map, frame, uncut)?))
+    };
+    built.parts.iter().enumerate().filter_map(of_part).collect()
+}
+
 /// The baseline of a step.
-pub(crate) fn baseline(registry: &Registry, step: &Step) -> Baseline {
+fn baseline(registry: &Registry, step: &Step) -> Baseline {
     let Some(info) = registry.get(&step.deformation).map(|e| e.info()) else { return Baseline::None };
     match info.baseline {
         None if info.letters => Baseline::Given,
@@ -352,36 +367,6 @@ fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape]) -> Option<String>
              give more decimals, or a larger --tolerance"
         )
     })
-}
-
-/// The outcome of a warp in memory.
-pub(crate) struct InMemory {
-    pub(crate) bytes: Vec<u8>,
-    pub(crate) report: FileReport,
-    /// The lines of `--explain`.
-    pub(crate) notes: Vec<String>,
-}
-
-/// Warps the content of a file called `name` by a recipe whose file references have been looked up. Linked pictures are looked up
-/// beside `name`, which is empty if there is no such place. The switch `stop` ends the work.
-pub(crate) fn warp_bytes(
-    registry: &Registry,
-    recipe: &Recipe,
-    given: &Given,
-    stop: Option<&'static AtomicBool>,
-    name: &Path,
-    bytes: &[u8],
-) -> Result<InMemory, Failure> {
-    let mut options = given.keeping_pages().read()?;
-    options.reading.stop(stop);
-    let batch = Batch { registry, recipe, options: &options, given, flags: Flags::of(registry) };
-    let warped = Input::of_bytes(bytes, name, &options, None).and_then(|mut input| batch.warp(&mut input));
-    let warped = warped.map_err(|f| f.about(&display(name)))?;
-    match warped.result {
-        WarpedResult::Bytes(bytes) => Ok(InMemory { bytes, report: warped.report, notes: warped.notes }),
-        // Only an XCF is written to a file, and it is not read from memory.
-        WarpedResult::File(_) => Err(Failure::usage("the result is a file")),
-    }
 }
 
 /// Samples of a side of a box.
