@@ -13,13 +13,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) fn error(e: &Error, flags: &Flags) -> String {
     match e {
         // The value is quoted as the user typed it, so only the problem is searched for parameters.
-        Error::Usage { param, value, problem } => {
+        Error::Usage { param, value, problem, advice } => {
             // A likely name says more than the list of all.
-            let problem = match (flags.likely(param, value), problem.split_once("; ")) {
-                (Some(name), Some((fault, _))) => format!("{fault}; did you mean {name}?"),
-                _ => flags.in_text(problem),
-            };
-            Error::usage(&format!("--{param}"), value, problem).to_string()
+            let likely = flags.likely(param, value).filter(|_| !advice.is_empty());
+            let advice = likely.map_or_else(|| flags.in_text(advice), |name| format!("; did you mean {name}?"));
+            Error::usage(&format!("--{param}"), value, flags.in_text(problem) + &advice).to_string()
         }
         Error::Missing { param, hint } => Error::missing(&format!("--{param}"), flags.in_text(hint)).to_string(),
         Error::Input { limit: Some(exceeded), .. } => format!("{e}; {}", raise(exceeded)),

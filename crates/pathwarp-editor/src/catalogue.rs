@@ -1,8 +1,11 @@
 //! The deformations with their parameters as a page needs them: everything follows from the registry's tables.
 
-use pathwarp::deform::{Info, Registry};
-use pathwarp::param::{Axis, Kind, Param};
+use pathwarp::Outline;
+use pathwarp::deform::{Info, Registry, Variant};
+use pathwarp::kurbo::{Affine, Rect};
+use pathwarp::param::{Axis, Kind, Param, is_inline};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Describes all deformations, in menu order. `foreign` are names in other programs, with the deformation that each means.
 pub(crate) fn catalogue(registry: &Registry, foreign: &[(&str, &str)]) -> Value {
@@ -90,9 +93,91 @@ fn kind(kind: Kind) -> &'static str {
     }
 }
 
+/// The values of a variant for artwork in `frame`: those that change nothing, or those that show something.
+pub(crate) fn of_variant(variant: &Variant, frame: Rect, shows: bool) -> BTreeMap<String, Vec<String>> {
+    let data = if shows { variant.showing } else { variant.neutral };
+    BTreeMap::from([(variant.param.to_owned(), vec![laid_out(data, frame)])])
+}
+
+/// The first values of a deformation for artwork in `frame`.
+pub(crate) fn opening(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
+    let mut out: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (param, value) in info.by_hand.neutral {
+        let is_data = info.params.iter().any(|p| p.name == *param && is_path_data(p, value));
+        let laid = if is_data { laid_out(value, frame) } else { (*value).to_owned() };
+        out.entry((*param).to_owned()).or_default().push(laid);
+    }
+    // A preset stands for itself; the first one is as good as any.
+    if let Some((gallery, p)) = info.gallery.and_then(|g| Some((g, info.params.iter().find(|p| p.name == g.presets)?)))
+        && p.default.is_none()
+        && let Kind::NameOrFile([first, ..]) = p.kind
+    {
+        out.insert(gallery.presets.to_owned(), vec![(*first).to_owned()]);
+        return out;
+    }
+    if out.is_empty() && !shows_something(info) { example(info, frame) } else { out }
+}
+
+/// The values that show the effect of a deformation on artwork in `frame`.
+pub(crate) fn example(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
+    if !info.by_hand.showing.is_empty() {
+        return info.by_hand.showing.iter().map(|(param, v)| ((*param).to_owned(), vec![(*v).to_owned()])).collect();
+    }
+    let mut out: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (name, value) in info.demo {
+        if let Some(p) = info.params.iter().find(|p| p.name == *name) {
+            out.entry((*name).to_owned()).or_default().push(from_demo(p, value, frame));
+        }
+    }
+    out
+}
+
+/// Returns `true` if the defaults alone build a map worth looking at: no parameter is needed, and at least one has a default.
+fn shows_something(info: &Info) -> bool {
+    let has_default = |p: &Param| p.default.is_some() && matches!(p.kind, Kind::Number | Kind::Length(_) | Kind::Angle);
+    info.params.iter().all(|p| !p.needed) && info.params.iter().filter(|p| has_default(p)).count() > 1
+}
+
+fn is_path_data(p: &Param, value: &str) -> bool {
+    p.kind == Kind::Path && is_inline(value) && value.trim_start().starts_with(['M', 'm'])
+}
+
+/// Path data laid from the box 0,0,100,100 onto the frame.
+fn laid_out(data: &str, frame: Rect) -> String {
+    let Ok(outline) = Outline::from_svg(data) else { return data.to_owned() };
+    let place = Affine::translate(frame.origin().to_vec2())
+        * Affine::scale_non_uniform(0.01 * frame.width(), 0.01 * frame.height());
+    crate::grips::path_data(&outline.transformed(place))
+}
+
+/// An example value for the frame 0,0,100,100, for this frame: its coordinates become percentages.
+fn from_demo(p: &Param, value: &str, frame: Rect) -> String {
+    if is_path_data(p, value) {
+        return laid_out(value, frame);
+    }
+    let is_number = |t: &str| t.parse::<f64>().is_ok();
+    let percent = |t: &str| if is_number(t) { format!("{t}%") } else { t.to_owned() };
+    let points = |v: &str| {
+        let words = v.split(' ').map(|word| {
+            let pairs = word.split(':').map(|pair| pair.split(',').map(percent).collect::<Vec<_>>().join(","));
+            pairs.collect::<Vec<_>>().join(":")
+        });
+        words.collect::<Vec<_>>().join(" ")
+    };
+    match p.kind {
+        Kind::Point | Kind::Path | Kind::Text("X,Y" | "X,Y:X,Y") | Kind::Length(_) => points(value),
+        _ => value.to_owned(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pathwarp::deform::Registry;
+    use pathwarp::kurbo::Point;
+    use pathwarp::map::Map as _;
+    use pathwarp::param::{Args, Frame};
+    use pathwarp::recipe::{Recipe, Step};
 
     #[test]
     fn every_deformation_and_parameter_is_there() {
@@ -119,5 +204,49 @@ mod tests {
             all.for_each(|name| assert!(has(name), "{} {name}", info.name));
         }
         assert_eq!(all.as_array().unwrap().len(), registry.entries().len());
+    }
+
+    const FRAME: Rect = Rect::new(20.0, 30.0, 684.0, 230.0);
+
+    fn build(info: &Info) -> pathwarp::recipe::BuiltRecipe {
+        build_with(info, opening(info, FRAME))
+    }
+
+    fn build_with(info: &Info, values: BTreeMap<String, Vec<String>>) -> pathwarp::recipe::BuiltRecipe {
+        let mut args = Args::new();
+        for (name, values) in values {
+            args.set(&name, values);
+        }
+        let art = Outline::from_svg("M20,30 H684 V230 H20 Z").unwrap();
+        let recipe = Recipe { steps: vec![Step::new(info.name, args)] };
+        let built = recipe.build(&Registry::builtin(), Frame::new(FRAME), &std::iter::once(&art));
+        built.unwrap_or_else(|e| panic!("{}: {e}", info.name))
+    }
+
+    #[test]
+    fn every_deformation_opens() {
+        for entry in Registry::builtin().entries() {
+            build(entry.info());
+        }
+    }
+
+    #[test]
+    fn neutral_values_move_nothing() {
+        let registry = Registry::builtin();
+        let infos = || registry.entries().iter().map(|e| e.info());
+        let variants = || infos().flat_map(|i| i.by_hand.variants.iter().map(move |v| (i, v)));
+        let usual = infos().filter(|i| !i.by_hand.neutral.is_empty()).map(|i| (i.name, build(i)));
+        let others = variants().map(|(i, v)| (v.label, build_with(i, of_variant(v, FRAME, false))));
+        for (name, built) in usual.chain(others) {
+            for p in [Point::new(20.0, 30.0), Point::new(333.0, 111.0), Point::new(600.0, 200.0)] {
+                let off = built.map.point(p).distance(p);
+                assert!(off < 1e-2, "{name} moves {p} by {off}");
+            }
+        }
+        for (info, v) in variants() {
+            let p = FRAME.center() + pathwarp::kurbo::Vec2::new(60.0, 30.0);
+            let built = build_with(info, of_variant(v, FRAME, true));
+            assert!(built.map.point(p).distance(p) > 5.0, "{} shows nothing", v.label);
+        }
     }
 }

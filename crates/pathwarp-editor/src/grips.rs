@@ -3,12 +3,11 @@
 //! Which handles a parameter has follows from its kind and, for text, from its notation; so parameters of plug-ins have theirs.
 
 use crate::nets::{self, Net, Space};
-use pathwarp::Outline;
-use pathwarp::deform::{Info, TextShape};
+use pathwarp::deform::{Info, Registry, TextShape};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
-use pathwarp::{Seg, deform::Registry};
+use pathwarp::{Outline, Seg};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;

@@ -3,7 +3,7 @@
 //! The token in the address keeps out other users of the computer. The `Host` header keeps out pages that reach the server by a
 //! name of their own (DNS rebinding), and `Origin` keeps out the scripts of other pages, which browsers let open WebSockets anywhere.
 
-use crate::folders;
+use crate::draft;
 use crate::host::Host;
 use base64::Engine as _;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
@@ -42,7 +42,7 @@ impl Guard {
 
     /// The file that remembers the guard of the last run on a drawing.
     fn file(state: &Path, drawing: &Path) -> PathBuf {
-        state.join("addresses").join(folders::key(drawing, &[]) + ".json")
+        state.join("addresses").join(draft::key(drawing, &[]) + ".json")
     }
 
     /// The guard of the last run on a drawing.
@@ -56,12 +56,12 @@ impl Guard {
     /// Remembers the guard for the next run on a drawing.
     pub(crate) fn keep(&self, host: &dyn Host, state: &Path, drawing: &Path) -> Result<(), String> {
         let text = serde_json::to_string(self).map_err(|e| e.to_string())?;
-        folders::write(host, &Self::file(state, drawing), text.as_bytes())
+        draft::write(host, &Self::file(state, drawing), text.as_bytes())
     }
 
     /// Shows that the token is known here, without telling it: what the page has sent decides the answer.
     pub(crate) fn proof(&self, question: &str) -> String {
-        folders::hex(&[self.token.as_bytes(), question.as_bytes()])
+        draft::hex(&[self.token.as_bytes(), question.as_bytes()])
     }
 
     /// The address of the page.

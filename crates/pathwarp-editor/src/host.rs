@@ -6,7 +6,7 @@ use pathwarp::kurbo::{Point, Rect};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_svg::Document;
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The width of pictures, in px: enough for a screen in full.
 pub const PICTURE_WIDTH: u32 = 2000;
@@ -140,4 +140,28 @@ pub struct Summary {
     pub tolerance: f64,
     /// The shapes that fold over, with the places in the source where they begin to.
     pub folds: Vec<(String, Point)>,
+}
+
+/// The use of the steps once they are chosen.
+#[derive(Debug, Clone)]
+pub enum Purpose {
+    /// Results are saved to files; `out` is the one that *Save* writes, `None` a name beside the drawing.
+    Files {
+        /// The file that *Save* writes.
+        out: Option<PathBuf>,
+    },
+    /// A program waits for the steps, and nothing is written. Without a page, it would wait in vain, so that is an error.
+    Program {
+        /// Its name.
+        name: String,
+        /// The drawing's name there.
+        drawing: String,
+    },
+}
+
+impl Purpose {
+    /// The program that waits.
+    pub(crate) fn program(&self) -> Option<&str> {
+        if let Self::Program { name, .. } = self { Some(name) } else { None }
+    }
 }

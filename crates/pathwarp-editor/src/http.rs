@@ -1,6 +1,5 @@
 //! The requests of a page: its few files, and the upgrade to a WebSocket. Each connection carries one request.
 
-use crate::assets::ASSETS;
 use crate::guard::{Guard, Refusal};
 use std::io::{self, Read as _, Write};
 use std::net::TcpStream;
@@ -129,6 +128,20 @@ fn respond(stream: &mut TcpStream, status: &str, kind: &str, text: &str) -> io::
     stream.write_all(text.as_bytes())?;
     stream.flush()
 }
+
+/// A file of the page.
+pub(crate) struct Asset {
+    pub(crate) path: &'static str,
+    pub(crate) kind: &'static str,
+    pub(crate) text: &'static str,
+}
+
+/// All files of the page.
+pub(crate) static ASSETS: [Asset; 3] = [
+    Asset { path: "/", kind: "text/html; charset=utf-8", text: include_str!("../assets/index.html") },
+    Asset { path: "/editor.js", kind: "text/javascript; charset=utf-8", text: include_str!("../assets/editor.js") },
+    Asset { path: "/editor.css", kind: "text/css; charset=utf-8", text: include_str!("../assets/editor.css") },
+];
 
 #[cfg(test)]
 mod tests {

@@ -6,35 +6,28 @@
 //!
 //! * `http`, `guard`: the few requests of a page, and who may make them;
 //! * `socket`: one connection of a page, with messages in JSON (`protocol`);
-//! * `session`: the document, its steps, undo, and the `draft` on disk, in one of the user's `folders`;
-//! * `picture`, `quick`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
-//! * `catalogue`, `openings`, `grips`: the deformations, their first values, and the geometry that handles show;
+//! * `session`: the document, its steps, undo, and the `draft` on disk, in one of the user's folders;
+//! * `picture`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
+//! * `catalogue`, `grips`: the deformations, their first values, and the geometry that handles show;
 //! * `nets`: control points of nets that become more or fewer.
 
-mod assets;
 mod catalogue;
 mod command_line;
 mod draft;
-mod folders;
 mod grips;
 mod guard;
 mod host;
 mod http;
 mod nets;
-mod openings;
 mod picture;
 mod presets;
 mod protocol;
-mod purpose;
-mod quick;
 mod saving;
 mod server;
 mod session;
-mod shared;
 mod socket;
 mod stretch;
 
 pub use command_line::selectors;
-pub use host::{Artwork, Bent, Fineness, Host, Opened, PICTURE_WIDTH, Summary};
-pub use purpose::Purpose;
+pub use host::{Artwork, Bent, Fineness, Host, Opened, PICTURE_WIDTH, Purpose, Summary};
 pub use server::{News, Options, serve};

@@ -3,7 +3,7 @@
 //! Percentages fit every drawing by themselves. Path data is in the units of one drawing, so the frames are kept as well, and paths
 //! are laid from the old frame onto the new one.
 
-use crate::folders;
+use crate::draft;
 use crate::grips::path_data;
 use crate::host::Host;
 use crate::protocol::PageStep;
@@ -36,7 +36,7 @@ struct PresetFile {
 
 /// The file, if the user has a folder for settings.
 fn file() -> Option<PathBuf> {
-    Some(folders::settings()?.join("presets.json"))
+    Some(draft::settings()?.join("presets.json"))
 }
 
 /// All presets, by name.

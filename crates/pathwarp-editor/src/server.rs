@@ -1,12 +1,10 @@
 //! The server: listens on the loopback interface, and ends when its page is closed.
 
-use crate::folders;
 use crate::guard::Guard;
-use crate::host::Host;
-use crate::purpose::Purpose;
+use crate::host::{Host, Purpose};
 use crate::session::Session;
-use crate::shared::{OpenPage, Shared};
-use crate::{http, socket};
+use crate::socket::{self, OpenPage, Shared};
+use crate::{draft, http};
 use pathwarp::recipe::Recipe;
 use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -57,7 +55,7 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>
     let bytes = std::fs::read(&options.file).map_err(|e| format!("{}: cannot be read: {e}", options.file.display()))?;
     let waits = options.purpose.program().is_some();
     // Without a result, the program that waits has its drawing as it was.
-    let state = if waits { None } else { folders::state() };
+    let state = if waits { None } else { draft::state() };
     let (listener, guard) = listen(options, state.as_deref())?;
     let session = Session::open(host, &options.file, &bytes, options.purpose.clone(), state)?;
     session.keep_address(&guard);

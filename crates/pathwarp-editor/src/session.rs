@@ -1,17 +1,15 @@
 //! The session: one drawing with its steps, shared by all pages that are open.
 
+use crate::catalogue::{example, of_variant, opening};
 use crate::command_line::{command_line, quoted};
 use crate::draft::{Draft, Kept, NO_FOLDER};
 use crate::grips::{grips, with_net_of};
 use crate::guard::Guard;
-use crate::host::{Bent, Fineness, Host, Opened, PICTURE_WIDTH};
-use crate::openings::{example, of_variant, opening};
+use crate::host::{Bent, Fineness, Host, Opened, PICTURE_WIDTH, Purpose};
 use crate::picture::Picture;
-use crate::presets;
 use crate::protocol::{PageStep, recipe, steps};
-use crate::purpose::Purpose;
-use crate::saving;
 use crate::stretch::stretch;
+use crate::{presets, saving};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::deform::{Info, Variant};

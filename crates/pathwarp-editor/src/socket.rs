@@ -1,15 +1,13 @@
 //! One connection of a page: requests are answered in order, and changes that other pages make are announced.
 
-use crate::picture::Picture;
+use crate::picture::{Picture, Quick};
 use crate::protocol::{Message, Request};
-use crate::quick::Quick;
 use crate::session::{Session, Shown};
-use crate::shared::Shared;
 use serde_json::{Value, json};
 use std::io;
 use std::net::TcpStream;
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, WebSocket};
@@ -147,7 +145,9 @@ impl Page {
                 Ok(json!({ "presets": session.presets()? }))
             }
             Request::Preset { name } => Ok(json!({ "steps": session.preset(&name)? })),
-            Request::Preimage { steps, at } => Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) })),
+            Request::Preimage { steps, at } => {
+                Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) }))
+            }
             Request::Renet { steps, values } => Ok(json!({ "step": session.renet(&steps, values)? })),
             Request::CommandLine { name } => Ok(json!({ "text": session.command_line(name.as_deref())? })),
         }
@@ -190,4 +190,67 @@ impl Page {
 fn changed_paths(changes: Vec<(usize, String)>) -> Value {
     let change = |(line, data)| Value::Array(vec![json!(line), json!("d"), Value::String(data)]);
     json!({ "changes": changes.into_iter().map(change).collect::<Vec<_>>() })
+}
+
+/// What the connections share.
+pub(crate) struct Shared {
+    session: Mutex<Session>,
+    pub(crate) pages: Pages,
+}
+
+/// The pages that are open.
+#[derive(Default)]
+pub(crate) struct Pages {
+    open: AtomicUsize,
+    ever: AtomicUsize,
+    /// Counts the changes of the session, so that every page notices those of the others.
+    pub(crate) changes: AtomicUsize,
+    /// The steps are kept for the program that waits for them.
+    pub(crate) done: AtomicBool,
+}
+
+impl Pages {
+    /// Returns `true` while a page is open, and before the first one is.
+    pub(crate) fn is_awaited(&self) -> bool {
+        self.open.load(Ordering::SeqCst) > 0 || !self.was_open()
+    }
+
+    /// Returns `true` once a page has been open.
+    pub(crate) fn was_open(&self) -> bool {
+        self.ever.load(Ordering::SeqCst) > 0
+    }
+
+    /// Returns `true` if nothing is left to do.
+    pub(crate) fn is_done(&self) -> bool {
+        self.done.load(Ordering::SeqCst)
+    }
+}
+
+/// A page while it is connected.
+pub(crate) struct OpenPage(Arc<Shared>);
+
+impl OpenPage {
+    pub(crate) fn new(shared: &Arc<Shared>) -> Self {
+        shared.pages.open.fetch_add(1, Ordering::SeqCst);
+        shared.pages.ever.fetch_add(1, Ordering::SeqCst);
+        Self(Arc::clone(shared))
+    }
+}
+
+impl Drop for OpenPage {
+    fn drop(&mut self) {
+        self.0.pages.open.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+impl Shared {
+    pub(crate) fn new(session: Session) -> Self {
+        Self { session: Mutex::new(session), pages: Pages::default() }
+    }
+
+    /// Works on the session. A panic in another connection does not end the editor: steps are taken over only after the drawing has been bent by
+    /// them.
+    pub(crate) fn with_session<T>(&self, f: impl FnOnce(&mut Session) -> T) -> T {
+        f(&mut self.session.lock().unwrap_or_else(PoisonError::into_inner))
+    }
 }

@@ -3,8 +3,7 @@
 //! A message is its length in bytes without this prefix (u32), one byte for its kind, and a body.
 
 use crate::answer::Ask;
-use crate::fault::{Fault, beginning};
-use crate::limits::MESSAGE_BYTES;
+use crate::fault::{Fault, MESSAGE_BYTES, beginning};
 use pathwarp::kurbo::Point;
 
 /// Kinds of requests.

@@ -1,13 +1,10 @@
 //! A program as an entry of the registry.
 
-use crate::answer;
-use crate::entry::{Entry, Reserved, read};
+use crate::entry::{Entry, Reserved, lines, read};
 use crate::fault::Fault;
-use crate::instance::Instance;
 use crate::map::{Abilities, ProgramMap};
-use crate::pool::Program;
-use crate::session::{Protocol, Session};
-use crate::{binary, text, values};
+use crate::session::{Instance, Program, Protocol, Session};
+use crate::{answer, binary, text};
 use pathwarp::Error;
 use pathwarp::deform::{Built, Deformation, Info};
 use pathwarp::map::{CreaseKind, Map as _};
@@ -89,7 +86,7 @@ impl Deformation for Plugin {
 
     fn build(&self, settings: &Settings<'_>) -> Result<Built, Error> {
         let frame = settings.frame();
-        let lines = values::lines(self.info.params, settings, self.version)?;
+        let lines = lines(self.info.params, settings, self.version)?;
         let request = match self.program.protocol {
             Protocol::Text => text::build(&lines),
             Protocol::Binary => binary::build(&lines),

@@ -14,22 +14,16 @@ mod answer;
 mod binary;
 mod child;
 mod deformation;
-mod differences;
 mod entry;
 mod fault;
 mod folder;
-mod instance;
-mod limits;
 mod map;
 #[cfg(unix)]
 mod pipes_by_poll;
 #[cfg(any(test, not(unix)))]
 mod pipes_by_threads;
-mod pool;
-mod remembered;
 mod session;
 mod text;
-mod values;
 
 pub use child::end_all;
 pub use deformation::Plugin;

@@ -1,8 +1,7 @@
 //! The three pipes of a program, on Unix: one loop writes, reads, and looks at the clock, so that no side can block the other.
 
 use crate::child::Running;
-use crate::fault::{Fault, readable};
-use crate::limits::{ERROR_BYTES, time};
+use crate::fault::{ERROR_BYTES, Fault, readable, time};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{OFlags, fcntl_setfl};
 use std::io::{ErrorKind, Read, Write};

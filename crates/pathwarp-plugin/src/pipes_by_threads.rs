@@ -1,8 +1,7 @@
 //! The three pipes of a program where they cannot be polled: a thread for each sends on what arrives.
 
 use crate::child::Running;
-use crate::fault::{Fault, readable};
-use crate::limits::{ERROR_BYTES, time};
+use crate::fault::{ERROR_BYTES, Fault, readable, time};
 use std::io::{Read, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::thread::Builder;

@@ -13,7 +13,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum Error {
     /// A parameter has a value it cannot have.
-    #[error("{param}{} {problem}", quoted(.value))]
+    #[error("{param}{} {problem}{advice}", quoted(.value))]
     Usage {
         /// The parameter's name, such as `bottom`.
         param: String,
@@ -21,6 +21,8 @@ pub enum Error {
         value: String,
         /// The problem, and legal values: the end of a sentence that begins with the value.
         problem: String,
+        /// What to do instead, with the sign that joins it to the problem; empty if the problem says so.
+        advice: String,
     },
     /// A required parameter was not given.
     #[error("{param} is needed: {hint}")]
@@ -231,7 +233,18 @@ impl GeometryError {
 impl Error {
     /// Creates an [`Error::Usage`].
     pub fn usage(param: &str, value: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self::Usage { param: param.to_owned(), value: value.into(), problem: problem.into() }
+        Self::advised(param, value, problem, "")
+    }
+
+    /// Creates an [`Error::Usage`] whose advice a caller may replace.
+    pub(crate) fn advised(
+        param: &str,
+        value: impl Into<String>,
+        problem: impl Into<String>,
+        advice: impl Into<String>,
+    ) -> Self {
+        let (value, problem, advice) = (value.into(), problem.into(), advice.into());
+        Self::Usage { param: param.to_owned(), value, problem, advice }
     }
 
     /// Creates an [`Error::Missing`].

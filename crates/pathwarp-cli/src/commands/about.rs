@@ -1,6 +1,7 @@
 //! What the program says of itself: `list`, `schema`, `man`, `completions`, and help that fits a screen.
 
 use crate::catalogue::Catalogue as _;
+use crate::commands::args::switch;
 use crate::failure::{Failure, Status};
 use crate::options::OPTIONS;
 use crate::output::{self, PendingFile};
@@ -18,9 +19,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 pub(super) fn list_command() -> Command {
-    Command::new("list")
-        .about("List the deformations")
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON, with every parameter"))
+    Command::new("list").about("List the deformations").arg(switch("json", "Print JSON, with every parameter"))
 }
 
 /// The deformations with their parameters, and the plug-ins that are broken.

@@ -1,10 +1,10 @@
 //! `pathwarp compare A.svg B.svg`: measures the distance between two drawings, path by path and pixel by pixel.
 
-use crate::commands::file_args::{file_arg, given_file};
+use crate::commands::args::{file_arg, given_file, switch};
 use crate::failure::{Failure, Status};
 use crate::options::{Given, reading_args};
 use crate::{input, output, readable};
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::budget::Exceeded;
 use pathwarp::distance;
 use pathwarp::kurbo::Rect;
@@ -37,7 +37,7 @@ pub(super) fn compare_command() -> Command {
         )
         .arg(limit("max-distance", "D", "Exit with 1 if a path differs by more than this, in user units"))
         .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this fraction of the pixels differs visibly (0 to 1)"))
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))
+        .arg(switch("json", "Print JSON"))
         .args(reading_args())
         .after_help(
             "Paths with the same id are compared; paths without an id are matched by their order within the closest ancestor that \

@@ -1,7 +1,7 @@
 //! What is in a file, taken out of it: `convert` copies paths into another format, or a drawing into a PDF or DXF; `paths` lists them;
 //! `unwarp` restores the source of a drawing that was written with `--embed-recipe`.
 
-use crate::commands::file_args::{file_arg, given_file, out_arg, target};
+use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
 use crate::export::{self, Exported};
 use crate::failure::{Failure, Status};
 use crate::format::{Choice, Format};
@@ -37,10 +37,7 @@ pub(super) fn convert_command() -> Command {
                 .help("Write every path to its own file, named after OUT and the path: out-NAME.svg"),
         )
         .arg(
-            Arg::new("salvage")
-                .long("salvage")
-                .action(ArgAction::SetTrue)
-                .help("Copy the paths before the damage in a damaged file"),
+            switch("salvage", "Copy the paths before the damage in a damaged file"),
         )
         .args(reading_args())
         .after_help(
@@ -170,12 +167,9 @@ pub(super) fn paths_command() -> Command {
             "FILE",
             "An SVG file or a GIMP file (XCF, exported SVG, point list, GIMP 1 text); - is standard input",
         ))
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON with every point"))
+        .arg(switch("json", "Print JSON with every point"))
         .arg(
-            Arg::new("salvage")
-                .long("salvage")
-                .action(ArgAction::SetTrue)
-                .help("List the paths before the damage in a damaged GIMP file"),
+            switch("salvage", "List the paths before the damage in a damaged GIMP file"),
         )
         .args(reading_args())
         .after_help(
@@ -305,7 +299,7 @@ pub(super) fn unwarp_command() -> Command {
         .about("Restore the source of a drawing written with --embed-recipe, byte for byte")
         .arg(file_arg("FILE", "The warped drawing; - is standard input"))
         .arg(out_arg("OUT", "Write the source to this file; - or none writes to standard output"))
-        .arg(Arg::new("recipe").long("recipe").action(ArgAction::SetTrue).help("Write the recipe instead of the source"))
+        .arg(switch("recipe", "Write the recipe instead of the source"))
         .args(reading_args())
         .after_help("Example:\n  pathwarp unwarp warped.svg -o source.svg\n  pathwarp unwarp --recipe warped.svg -o recipe.toml")
 }

@@ -1,12 +1,12 @@
 //! `pathwarp edit FILE`: bends a drawing by hand in the browser.
 
-use crate::commands::file_args::{file_arg, given_file, out_arg, target};
+use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
 use crate::editing::EditorHost;
 use crate::failure::{Failure, Status};
 use crate::options::{self, Given};
 use crate::plugins::Plugins;
 use crate::{input, output, temporaries, terminal};
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
 use pathwarp_editor::{News, Options, Purpose};
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub(super) fn edit_command() -> Command {
                 .value_parser(value_parser!(u16).range(1..))
                 .help("Listen on this port of 127.0.0.1 [default: that of the last run on the drawing, or a free one]"),
         )
-        .arg(Arg::new("no-open").long("no-open").action(ArgAction::SetTrue).help("Only print the page's address"))
+        .arg(switch("no-open", "Only print the page's address"))
         .args(options::reading_args())
         .after_help(
             "The first line on standard output is the address of the page. Only this computer can open it, and only with the token \

@@ -1,10 +1,11 @@
 //! `pathwarp install gimp|inkscape`: installs the plug-in, with a copy of this program, in another program's folder.
 
+use crate::commands::args::switch;
 use crate::failure::{Failure, Status};
 use crate::inkscape::inx::{self, Program};
 use crate::output::{self, PendingFile};
 use crate::terminal;
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,7 +13,6 @@ use std::process::{self, Stdio};
 use std::{env, fs};
 
 pub(super) fn install_command() -> Command {
-    let flag = |name: &'static str, help: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).help(help);
     let path = |name: &'static str, value: &'static str, help: &'static str| {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf)).help(help)
     };
@@ -38,8 +38,8 @@ pub(super) fn install_command() -> Command {
             "PATH",
             "For Inkscape: call this program, by its name on the search path or an absolute path, instead of a copy of this one",
         ))
-        .arg(flag("uninstall", "Remove the plug-in").visible_alias("remove"))
-        .arg(flag("dry-run", "Print the changes without making them"))
+        .arg(switch("uninstall", "Remove the plug-in").visible_alias("remove"))
+        .arg(switch("dry-run", "Print the changes without making them"))
         .after_help(
             "Examples:\n  pathwarp install gimp\n  pathwarp install inkscape\n  pathwarp install inkscape --dry-run\n  pathwarp install \
              inkscape --uninstall\n  pathwarp install inkscape --folder pkg/usr/share/inkscape/extensions --program pathwarp   # for a package",

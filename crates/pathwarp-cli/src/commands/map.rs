@@ -1,11 +1,13 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
+use crate::catalogue::Catalogue as _;
+use crate::commands::args::switch;
 use crate::failure::{Failure, Status};
 use crate::input::{self, PlainArtwork};
 use crate::options::{CommonOptions, Given, reading_args, rect};
 use crate::pipeline::Session;
 use crate::{output, references, steps};
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::GeometryError;
 use pathwarp::budget::Budget;
 use pathwarp::deform::Registry;
@@ -34,35 +36,58 @@ pub(super) fn map_command(registry: &Registry) -> Command {
              lines that start with # are skipped.\n\nExample:\n  echo 50 50 | pathwarp map shaper --shaper cage.svg --frame \
              0,0,100,100 --points -",
         );
-    for e in registry.entries() {
-        c =
-            c.subcommand(
-                Command::new(e.info().name)
-                    .aliases(steps::aliases(e.info().name))
-                    .about(e.info().title)
-                    .args(steps::args(e.info()))
-                    .arg(
-                        Arg::new("points")
-                            .long("points")
-                            .value_name("FILE")
-                            .value_parser(value_parser!(PathBuf))
-                            .default_value("-")
-                            .help("File of points; - is standard input"),
-                    )
-                    .arg(
-                        Arg::new("jacobian")
-                            .long("jacobian")
-                            .action(ArgAction::SetTrue)
-                            .help("Print the partial derivatives too"),
-                    )
-                    .arg(
-                        Arg::new("frame").long("frame").value_name("X,Y,W,H").allow_hyphen_values(true).help(
-                            "Box that percentages and defaults refer to [default: the bounding box of the points]",
-                        ),
-                    ),
-            );
+    let frame = Arg::new("frame")
+        .long("frame")
+        .value_name("X,Y,W,H")
+        .allow_hyphen_values(true)
+        .help("Box that percentages and defaults refer to [default: the bounding box of the points]");
+    for info in registry.infos() {
+        let command = Command::new(info.name).aliases(steps::aliases(info.name)).about(info.title);
+        c = c.subcommand(command.args(steps::args(info)).args(points_args()).arg(frame.clone()));
     }
     c
+}
+
+/// The file of points, and what is printed of their images.
+pub(super) fn points_args() -> [Arg; 2] {
+    let points = Arg::new("points")
+        .long("points")
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .default_value("-")
+        .help("File of points; - is standard input");
+    [points, switch("jacobian", "Print the partial derivatives too")]
+}
+
+/// Reads the file of points that a command line names. Returns the number of its bytes, too.
+pub(super) fn read_points<const N: usize>(m: &ArgMatches, wanted: &str) -> Result<(Vec<[f64; N]>, usize), Failure> {
+    let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
+    let bytes = input::bytes(&file)?;
+    let points = parse_points(&String::from_utf8_lossy(&bytes), wanted);
+    Ok((points.map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?, bytes.len()))
+}
+
+/// Prints images, each with its derivatives if they are wanted; `None` where the map is undefined.
+pub(super) fn print_images<const N: usize, const M: usize>(
+    m: &ArgMatches,
+    images: impl Iterator<Item = (Option<[f64; N]>, [f64; M])>,
+) -> Result<Status, Failure> {
+    let mut out = String::new();
+    let mut status = Status::Complete;
+    for (image, derivatives) in images {
+        if image.is_none() {
+            status = Status::Partial;
+        }
+        let image = image.unwrap_or([f64::NAN; N]);
+        let derivatives = derivatives.iter().filter(|_| m.get_flag("jacobian"));
+        for (i, v) in image.iter().chain(derivatives).enumerate() {
+            let space = if i > 0 { " " } else { "" };
+            let _ = if i < N && v.is_nan() { write!(out, "{space}nan") } else { write!(out, "{space}{v}") };
+        }
+        out.push('\n');
+    }
+    output::to_stdout(out.as_bytes())?;
+    Ok(status)
 }
 
 /// Runs `map`; `later` holds the parts of the chain after each `+`.
@@ -72,17 +97,14 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
     recipe.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
     references::resolve_files(registry, &mut recipe, &reading)?;
-    let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
-    let bytes = input::bytes(&file)?;
-    let points = parse_points(&String::from_utf8_lossy(&bytes), "two numbers x y")
-        .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
+    let (points, bytes) = read_points(m, "two numbers x y")?;
     let points: Vec<Point> = points.into_iter().map(|[x, y]| Point::new(x, y)).collect();
     let cloud = Outline::from_points(&points, false);
     let frame = match m.get_one::<String>("frame") {
         Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?.rect([1.0; 2]),
         None => cloud.bounding_box().unwrap_or(Rect::ZERO),
     };
-    let budget = Arc::new(Budget::new(reading.limits.for_input(bytes.len())));
+    let budget = Arc::new(Budget::new(reading.limits.for_input(bytes)));
     let options = CommonOptions { reading, ..CommonOptions::default() };
     let session = Session { registry, recipe: &recipe, options: &options, given: &Given::default() };
     let (outlines, frame) = (vec![&cloud], Frame::new(frame));
@@ -98,22 +120,11 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     if let Some(e) = built.failure() {
         return Err(Failure::of_recipe(e));
     }
-    let mut out = String::new();
-    let mut status = Status::Complete;
-    for (p, j) in points.iter().zip(&jets) {
-        if creases.defined_at(*p) && j.p.is_finite() {
-            let _ = write!(out, "{} {}", j.p.x, j.p.y);
-        } else {
-            status = Status::Partial;
-            out.push_str("nan nan");
-        }
-        if m.get_flag("jacobian") {
-            let _ = write!(out, " {} {} {} {}", j.dx.x, j.dx.y, j.dy.x, j.dy.y);
-        }
-        out.push('\n');
-    }
-    output::to_stdout(out.as_bytes())?;
-    Ok(status)
+    let image = |(p, j): (&Point, &Jet)| {
+        let defined = creases.defined_at(*p) && j.p.is_finite();
+        (defined.then_some([j.p.x, j.p.y]), [j.dx.x, j.dx.y, j.dy.x, j.dy.y])
+    };
+    print_images(m, points.iter().zip(&jets).map(image))
 }
 
 /// Characters of a wrong line that a message shows.
@@ -121,7 +132,7 @@ const SHOWN: usize = 60;
 
 /// Parses points of N coordinates, separated by spaces, commas or tabs. Empty lines and those that begin with `#` are skipped. The
 /// error starts with the line's number and says that the line is not `wanted`.
-pub(super) fn parse_points<const N: usize>(text: &str, wanted: &str) -> Result<Vec<[f64; N]>, String> {
+fn parse_points<const N: usize>(text: &str, wanted: &str) -> Result<Vec<[f64; N]>, String> {
     let mut out = Vec::new();
     for (i, line) in text.lines().enumerate() {
         let line = line.trim();

@@ -2,10 +2,10 @@
 //! arguments and its run.
 
 mod about;
+mod args;
 mod compare;
 mod convert;
 mod edit;
-mod file_args;
 mod install;
 mod map;
 mod plugin;

@@ -1,7 +1,7 @@
 //! Pictures: `render` draws an SVG file, `gallery` artwork under every preset of a set on one sheet.
 
 use crate::bitmap::encode;
-use crate::commands::file_args::{file_arg, given_file, out_arg, target};
+use crate::commands::args::{choice, file_arg, given_file, out_arg, target};
 use crate::failure::{Failure, Status};
 use crate::format::{Choice, Format, PICTURES};
 use crate::options::{Given, reading_args, some_options};
@@ -129,8 +129,7 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
         ))
         .args(some_options(&["format", "quality"]))
         .arg(
-            choice("set", sets[0], &sets)
-                .help("The set of presets to draw, or all of them"),
+            choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]),
         )
         .arg(Arg::new(ALL).long(ALL).action(ArgAction::SetTrue).conflicts_with("set").help("The same as --set all"))
         .arg(
@@ -142,8 +141,8 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
                 .help("Amount of bend of the presets that bend"),
         )
         .arg(
-            choice("axis", "horizontal", &["horizontal", "vertical"])
-                .help("Direction in which artwork runs through the presets"),
+            choice("axis", &["horizontal", "vertical"], "Direction in which artwork runs through the presets")
+                .default_value("horizontal"),
         )
         .arg(
             Arg::new("columns")
@@ -177,16 +176,6 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
              pathwarp gallery samples/lettering.svg --set wordart --columns 5 -o sheet.png\n  \
              pathwarp gallery samples/badge.svg --bend -30% --axis vertical -o sheet.svg",
         )
-}
-
-/// An option with one of these words as its value.
-fn choice(name: &'static str, default: &'static str, words: &[&'static str]) -> Arg {
-    Arg::new(name)
-        .long(name)
-        .value_name(words.join("|"))
-        .value_parser(words.to_vec())
-        .hide_possible_values(true)
-        .default_value(default)
 }
 
 /// Parses `WxH`, each from 40 to 4000.

@@ -1,7 +1,7 @@
 //! Commands that warp files: `pathwarp DEFORMATION …` by one deformation or a chain, `run` by a saved recipe, and the edits `simplify`,
 //! `offset` and `outline`.
 
-use crate::commands::file_args::{file_arg, given_file};
+use crate::commands::args::{file_arg, given_file, switch};
 use crate::edits::{EditChoice, EditInfo, OFFSET, OUTLINE, SIMPLIFY, still};
 use crate::failure::{Failure, Status};
 use crate::options::{self, Given, OPTIONS, inputs_arg, reading_args, some_options};
@@ -62,10 +62,7 @@ pub(super) fn run_command(registry: &Registry) -> Command {
         .about("Run a recipe file that --write-recipe saved")
         .arg(file_arg("RECIPE", "A recipe (TOML)"))
         .arg(
-            Arg::new(INVERSE)
-                .long(INVERSE)
-                .action(ArgAction::SetTrue)
-                .help("Apply the inverse of every step, the last first (give --frame: the source's box)"),
+            switch(INVERSE, "Apply the inverse of every step, the last first (give --frame: the source's box)"),
         )
         .args(options::args())
         .args(parameters(registry))

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::page::PageNews;
+use crate::readable::listed;
 use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::budget::Budget;
 use pathwarp::fold::Orientation;
@@ -208,22 +209,18 @@ impl Fold {
 
 /// The warning that the shape `id` folds at `at`, with its letters that fold.
 pub(super) fn fold_warning(id: &str, letters: &[String], at: Point) -> String {
+    const NAMED: usize = 8;
     let place = format!("near {:.4},{:.4}: the map reverses orientation there", at.x, at.y);
     match letters {
         // An outlined letter has its name in its id.
         [] => format!("{id} folds over {place}"),
         [one] if id.contains(one.as_str()) => format!("{id} folds over {place}"),
         [one] => format!("{id}: the letter “{one}” folds over {place}"),
-        _ => format!("{id}: the letters {} fold over, first {place}", listed(letters)),
+        _ => {
+            let quoted: Vec<String> = letters.iter().map(|l| format!("“{l}”")).collect();
+            format!("{id}: the letters {} fold over, first {place}", listed(&quoted, NAMED))
+        }
     }
-}
-
-/// Lists letters; of many, the first.
-fn listed(letters: &[String]) -> String {
-    const SHOWN: usize = 8;
-    let shown: Vec<String> = letters.iter().take(SHOWN).map(|l| format!("“{l}”")).collect();
-    let more = letters.len().saturating_sub(SHOWN);
-    shown.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
 }
 
 /// The letters of every shape, by its id.

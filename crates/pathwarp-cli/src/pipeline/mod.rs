@@ -15,7 +15,7 @@ use crate::options::{CommonOptions, Given, OnFailure};
 use crate::output::{self, Draft, PendingFile};
 use crate::page::{PageCounts, PageNews};
 use crate::report::{FileReport, ReportFile};
-use crate::{recipe_file, references, temporaries, terminal, watch};
+use crate::{readable, recipe_file, references, temporaries, terminal, watch};
 use indicatif::{ProgressBar, ProgressStyle};
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
@@ -261,13 +261,9 @@ impl<'a> Collected<'a> {
         if self.partial.is_empty() || self.inputs < 2 || self.options.quiet {
             return;
         }
-        let names: Vec<&str> = self.partial.iter().take(NAMED).map(String::as_str).collect();
-        let more = self.partial.len().saturating_sub(NAMED);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let (n, all) = (self.partial.len(), self.inputs);
+        let (n, all, names) = (self.partial.len(), self.inputs, readable::listed(&self.partial, NAMED));
         terminal::warning(&format!(
-            "{n} of {all} inputs were not warped in full, so the exit code is 1: {}{more}; the warnings and --report FILE say what was left",
-            names.join(", ")
+            "{n} of {all} inputs were not warped in full, so the exit code is 1: {names}; the warnings and --report FILE say what was left"
         ));
     }
 

@@ -8,6 +8,7 @@ use crate::input::{Artwork, Baseline, FileArtwork, Input, WarpRequest, WarpedRes
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
 use crate::page::PageNews;
+use crate::readable::listed;
 use crate::report::{FileReport, ReportedShape, StepSelection};
 use crate::units::MM_PER_PX;
 use crate::{recipe_file, references};
@@ -223,9 +224,7 @@ impl Session<'_> {
         self.options.edit.as_ref()?;
         let gone: Vec<&str> =
             shapes.iter().filter(|s| s.segments_in > 0 && s.segments_out == 0).map(|s| s.id.as_str()).collect();
-        let more = if gone.len() > NAMED { format!(" and {} more", gone.len() - NAMED) } else { String::new() };
-        let named = gone[..gone.len().min(NAMED)].join(", ");
-        (!gone.is_empty()).then(|| format!("nothing is left of {named}{more}: narrower than the distance"))
+        (!gone.is_empty()).then(|| format!("nothing is left of {}: narrower than the distance", listed(&gone, NAMED)))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::args::Own;
 use super::model::{ModelFormat, NAMES, mesh_file, pending, unread};
-use super::report::{Run, SurfaceRun};
+use super::report::Run;
 use crate::advice::{self, Flags};
 use crate::bitmap::{self, Pixel, encode};
 use crate::failure::Failure;
@@ -64,6 +64,11 @@ impl Work<'_> {
             other => Failure::of_recipe(other),
         })?;
         Ok((frame, built))
+    }
+
+    /// What reports say of the run for a model.
+    fn run<'a>(&'a self, file: &'a str, job: &'a Job, warnings: &'a [String], started: Instant) -> Run<'a> {
+        Run { recipe: self.recipe, file, target: job.target.as_deref(), warnings, started }
     }
 
     /// Notes on the frame and the steps.
@@ -158,25 +163,11 @@ pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: 
     }
     let mut files = vec![pending(job.target.as_deref(), mesh_file(&mesh, format, options.precision)?)?];
     files.extend(Work::saves(&built)?);
-    let mut report = None;
-    if let (Some(_), Some(before)) = (&options.report, &before) {
-        let run = Run {
-            recipe: work.recipe,
-            file: &name,
-            output: job.target.as_ref().map(|t| t.display().to_string()),
-            before,
-            after: &mesh,
-            deformed,
-            warnings: &warnings,
-            seconds: started.elapsed().as_secs_f64(),
-        };
-        report = Some(run.json()?);
-    }
+    let run = work.run(&name, job, &warnings, started);
+    let reported = before.as_ref().filter(|_| options.report.is_some());
+    let report = reported.map(|before| run.of_mesh([before, &mesh], &deformed)).transpose()?;
     if let (Some(file), Some(before)) = (&job.preview, &before) {
-        let guides: Vec<Vec<DVec3>> = built.steps.last().map(|s| s.guides.clone()).unwrap_or_default();
-        let eye = built.steps.iter().find_map(|s| s.eye);
-        let preview = Preview { before, after: &mesh, guides: &guides, eye };
-        files.push(PendingFile::new(file, &preview.file(file, options.quality, budget)?)?);
+        files.push(Preview::of([before, &mesh], &built).file(file, options.quality, budget)?);
     }
     Ok(Done { files, warnings, notes: work.notes(&frame, &built), report, partial })
 }
@@ -276,28 +267,13 @@ pub(super) fn bend_surfaces(
     };
     let mut files = vec![pending(job.target.as_deref(), bytes)?];
     files.extend(Work::saves(&built)?);
-    let mut report = None;
-    if options.report.is_some() {
-        let run = SurfaceRun {
-            recipe: work.recipe,
-            file: &name,
-            output: job.target.as_ref().map(|t| t.display().to_string()),
-            before: &before,
-            after: &surfaces,
-            done,
-            warnings: &warnings,
-            seconds: started.elapsed().as_secs_f64(),
-        };
-        report = Some(run.json()?);
-    }
+    let run = work.run(&name, job, &warnings, started);
+    let report = options.report.as_ref().map(|_| run.of_surfaces([&before, &surfaces], &done)).transpose()?;
     if let Some(file) = &job.preview {
-        let guides: Vec<Vec<DVec3>> = built.steps.last().map(|s| s.guides.clone()).unwrap_or_default();
-        let eye = built.steps.iter().find_map(|s| s.eye);
         let fine = bounds.map(|b| SEEN * b.diagonal());
         let before = tessellate(&before, fine, budget).map_err(|e| surfaces_too_much(&name, &e))?;
         let after = image(fine)?;
-        let preview = Preview { before: &before, after: &after, guides: &guides, eye };
-        files.push(PendingFile::new(file, &preview.file(file, options.quality, budget)?)?);
+        files.push(Preview::of([&before, &after], &built).file(file, options.quality, budget)?);
     }
     let mut notes = work.notes(&frame, &built);
     notes.extend(surface_notes(&done, format, surfaces.len()));
@@ -358,17 +334,22 @@ const SIDE: usize = 480;
 const GAP: usize = 8;
 
 /// What a preview shows.
-pub(super) struct Preview<'a> {
-    pub(super) before: &'a Mesh,
-    pub(super) after: &'a Mesh,
-    pub(super) guides: &'a [Vec<DVec3>],
+struct Preview<'a> {
+    before: &'a Mesh,
+    after: &'a Mesh,
+    guides: &'a [Vec<DVec3>],
     /// The place from which nothing seems to change: the first camera.
-    pub(super) eye: Option<DVec3>,
+    eye: Option<DVec3>,
 }
 
-impl Preview<'_> {
+impl<'a> Preview<'a> {
+    fn of([before, after]: [&'a Mesh; 2], built: &'a BuiltRecipe3) -> Self {
+        let guides = built.steps.last().map_or(&[][..], |s| &s.guides);
+        Self { before, after, guides, eye: built.steps.iter().find_map(|s| s.eye) }
+    }
+
     /// The picture, in the format of the file's extension.
-    pub(super) fn file(&self, file: &Path, quality: Option<u8>, budget: &Budget) -> Result<Vec<u8>, Failure> {
+    fn file(&self, file: &Path, quality: Option<u8>, budget: &Budget) -> Result<PendingFile, Failure> {
         let format = PREVIEW.format(Some(file), None)?;
         let whole = 2 * SIDE + GAP;
         let size = u32::try_from(whole).unwrap_or(u32::MAX);
@@ -392,7 +373,7 @@ impl Preview<'_> {
                 }
             }
         }
-        encode(picture, format, quality)
+        PendingFile::new(file, &encode(picture, format, quality)?)
     }
 }
 

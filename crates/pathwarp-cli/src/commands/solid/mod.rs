@@ -6,14 +6,14 @@ mod model;
 mod report;
 mod warp;
 
-use crate::commands::file_args::{file_arg, given_file};
-use crate::commands::map::parse_points;
+use crate::commands::args::{file_arg, given_file, switch};
+use crate::commands::map::{points_args, print_images, read_points};
 use crate::failure::{Failure, Status};
 use crate::options::{Given, reading_args};
 use crate::steps::{self, INVERSE};
-use crate::{input, output, recipe_file, references};
+use crate::{output, recipe_file, references};
 use args::{Own, frame_arg, given_frame, model_args, options};
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{ArgMatches, Command};
 use pathwarp::GeometryError;
 use pathwarp::budget::Budget;
 use pathwarp::recipe::Recipe;
@@ -23,7 +23,6 @@ use pathwarp_solid::map::{Creases3, Jet3, Map3};
 use pathwarp_solid::{Box3, Frame3, recipe};
 use std::ffi::OsString;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 const ABOUT: &str = "Deform solids: meshes, curved surfaces and points in space";
@@ -89,20 +88,9 @@ fn list(registry: &Registry3) -> Result<Status, Failure> {
 }
 
 fn map_command(registry: &Registry3) -> Command {
-    let points = Arg::new("points")
-        .long("points")
-        .value_name("FILE")
-        .value_parser(value_parser!(PathBuf))
-        .default_value("-")
-        .help("File of points; - is standard input");
-    let jacobian =
-        Arg::new("jacobian").long("jacobian").action(ArgAction::SetTrue).help("Print the partial derivatives too");
     let deformation = |info: &pathwarp::deform::Info| {
-        Command::new(info.name).about(info.title).args(steps::args(info)).args([
-            points.clone(),
-            jacobian.clone(),
-            frame_arg(),
-        ])
+        let command = Command::new(info.name).about(info.title).args(steps::args(info));
+        command.args(points_args()).arg(frame_arg())
     };
     Command::new("map")
         .about("Map plain points, one x y z per line, by a deformation of space")
@@ -125,14 +113,11 @@ fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<St
     let mut steps = Recipe { steps: vec![steps::step(registry, name, m)] };
     steps.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
     references::resolve_files(registry, &mut steps, &reading)?;
-    let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
-    let bytes = input::bytes(&file)?;
-    let points = parse_points(&String::from_utf8_lossy(&bytes), "three numbers x y z")
-        .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
+    let (points, bytes) = read_points(m, "three numbers x y z")?;
     let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
     let around = Box3::around(points.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
     let frame = Frame3::new(given_frame(m)?.unwrap_or(around));
-    let budget = Arc::new(Budget::new(reading.limits.for_input(bytes.len())));
+    let budget = Arc::new(Budget::new(reading.limits.for_input(bytes)));
     let built = recipe::build_within(&steps, registry, frame, &points, &budget).map_err(Failure::of_recipe)?;
     let map = &built.map;
     let mut creases = Creases3::default();
@@ -142,36 +127,18 @@ fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<St
     if let Some(e) = built.exceeded() {
         return Err(Failure::of_recipe(GeometryError::Limit(e).into()));
     }
-    let mut out = String::new();
-    let mut status = Status::Complete;
-    for (p, j) in points.iter().zip(&jets) {
-        if creases.defined_at(*p) && j.p.is_finite() {
-            let _ = write!(out, "{} {} {}", j.p.x, j.p.y, j.p.z);
-        } else {
-            status = Status::Partial;
-            out.push_str("nan nan nan");
-        }
-        if m.get_flag("jacobian") {
-            j.d.to_cols_array().iter().for_each(|v| {
-                let _ = write!(out, " {v}");
-            });
-        }
-        out.push('\n');
-    }
-    output::to_stdout(out.as_bytes())?;
-    Ok(status)
+    let image = |(p, j): (&DVec3, &Jet3)| {
+        let defined = creases.defined_at(*p) && j.p.is_finite();
+        (defined.then_some(j.p.to_array()), j.d.to_cols_array())
+    };
+    print_images(m, points.iter().zip(&jets).map(image))
 }
 
 fn run_command() -> Command {
     Command::new("run")
         .about("Run a recipe for solids that --write-recipe saved")
         .arg(file_arg("RECIPE", "A recipe (TOML) with solid = true"))
-        .arg(
-            Arg::new(INVERSE)
-                .long(INVERSE)
-                .action(ArgAction::SetTrue)
-                .help("Apply the inverse of every step, the last first (give --box: the source's box)"),
-        )
+        .arg(switch(INVERSE, "Apply the inverse of every step, the last first (give --box: the source's box)"))
         .args(model_args())
 }
 

@@ -7,25 +7,82 @@ use pathwarp_solid::Box3;
 use pathwarp_solid::mesh::{Deformed, Mesh, Topology, topology};
 use pathwarp_solid::patch::{DeformedPatches, Surface};
 use serde::Serialize;
+use std::path::Path;
+use std::time::Instant;
 
-/// The whole report.
+/// The report on a model: measures before and after, and what was counted.
 #[derive(Serialize)]
-pub(super) struct SolidReport {
+struct SolidReport<'a, M, C> {
     tool: &'static str,
     version: &'static str,
-    steps: Vec<String>,
-    file: String,
+    steps: Vec<&'a str>,
+    file: &'a str,
     output: Option<String>,
-    before: Measures,
-    after: Measures,
-    /// Vertices that moved.
-    moved: usize,
-    /// Vertices at which the map turns space inside out.
-    folded: usize,
-    /// Edges across which the map jumps.
-    torn: usize,
-    warnings: Vec<String>,
+    before: M,
+    after: M,
+    #[serde(flatten)]
+    counts: C,
+    warnings: &'a [String],
     seconds: f64,
+}
+
+/// A finished run.
+pub(super) struct Run<'a> {
+    pub(super) recipe: &'a Recipe,
+    pub(super) file: &'a str,
+    /// `None`: standard output.
+    pub(super) target: Option<&'a Path>,
+    pub(super) warnings: &'a [String],
+    pub(super) started: Instant,
+}
+
+impl Run<'_> {
+    fn json<M: Serialize>(&self, [before, after]: [M; 2], counts: impl Serialize) -> Result<String, Failure> {
+        text(&SolidReport {
+            tool: "pathwarp",
+            version: env!("CARGO_PKG_VERSION"),
+            steps: self.recipe.steps.iter().map(|s| s.deformation.as_str()).collect(),
+            file: self.file,
+            output: self.target.map(|t| t.display().to_string()),
+            before,
+            after,
+            counts,
+            warnings: self.warnings,
+            seconds: self.started.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// The report on a mesh.
+    pub(super) fn of_mesh(&self, meshes: [&Mesh; 2], deformed: &Deformed) -> Result<String, Failure> {
+        /// Vertices that moved, vertices at which the map turns space inside out, and edges across which it jumps.
+        #[derive(Serialize)]
+        struct Counts {
+            moved: usize,
+            folded: usize,
+            torn: usize,
+        }
+        let Deformed { moved, folded, torn, .. } = *deformed;
+        self.json(meshes.map(Measures::of), Counts { moved, folded, torn })
+    }
+
+    /// The report on curved surfaces.
+    pub(super) fn of_surfaces(&self, all: [&[Surface]; 2], done: &DeformedPatches) -> Result<String, Failure> {
+        #[derive(Serialize)]
+        struct Counts {
+            /// Surfaces whose images are exact.
+            exact: usize,
+            /// Surfaces that were refitted.
+            refitted: usize,
+            /// Those of them that are replaced by parts, cut along creases.
+            cut: usize,
+            /// The largest distance of those from their images that was measured.
+            distance: f64,
+            /// Places of a grid on the surfaces at which the map turns space inside out.
+            folded: usize,
+        }
+        let DeformedPatches { exact, refitted, cut, distance, folded, .. } = *done;
+        self.json(all.map(SurfaceMeasures::of), Counts { exact, refitted, cut, distance, folded })
+    }
 }
 
 /// A mesh in numbers.
@@ -65,39 +122,6 @@ impl Measures {
     }
 }
 
-/// A finished run, to be reported.
-pub(super) struct Run<'a> {
-    pub(super) recipe: &'a Recipe,
-    pub(super) file: &'a str,
-    pub(super) output: Option<String>,
-    pub(super) before: &'a Mesh,
-    pub(super) after: &'a Mesh,
-    pub(super) deformed: Deformed,
-    pub(super) warnings: &'a [String],
-    pub(super) seconds: f64,
-}
-
-impl Run<'_> {
-    /// The report as JSON.
-    pub(super) fn json(self) -> Result<String, Failure> {
-        let report = SolidReport {
-            tool: "pathwarp",
-            version: env!("CARGO_PKG_VERSION"),
-            steps: self.recipe.steps.iter().map(|s| s.deformation.clone()).collect(),
-            file: self.file.to_owned(),
-            output: self.output,
-            before: Measures::of(self.before),
-            after: Measures::of(self.after),
-            moved: self.deformed.moved,
-            folded: self.deformed.folded,
-            torn: self.deformed.torn,
-            warnings: self.warnings.to_vec(),
-            seconds: self.seconds,
-        };
-        text(&report)
-    }
-}
-
 fn text(report: &impl Serialize) -> Result<String, Failure> {
     readable::json(report).map_err(|e| Failure::Output(format!("the report: {e}")))
 }
@@ -110,30 +134,6 @@ pub(super) fn failed(file: &str, error: &str) -> Result<String, Failure> {
         error: &'a str,
     }
     text(&Failed { file, error })
-}
-
-/// The report on curved surfaces.
-#[derive(Serialize)]
-struct SurfacesReport {
-    tool: &'static str,
-    version: &'static str,
-    steps: Vec<String>,
-    file: String,
-    output: Option<String>,
-    before: SurfaceMeasures,
-    after: SurfaceMeasures,
-    /// Surfaces whose images are exact.
-    exact: usize,
-    /// Surfaces that were refitted.
-    refitted: usize,
-    /// Those of them that are replaced by parts, cut along creases.
-    cut: usize,
-    /// The largest distance of those from their images that was measured.
-    distance: f64,
-    /// Places of a grid on the surfaces at which the map turns space inside out.
-    folded: usize,
-    warnings: Vec<String>,
-    seconds: f64,
 }
 
 /// Surfaces in numbers.
@@ -161,39 +161,5 @@ impl SurfaceMeasures {
             degree: [0, 1].map(|a| all.iter().map(|s| s.degree[a]).max().unwrap_or(0)),
             bounds: bounds.map(|b| [b.min.to_array(), b.max.to_array()]),
         }
-    }
-}
-
-/// A finished run on surfaces, to be reported.
-pub(super) struct SurfaceRun<'a> {
-    pub(super) recipe: &'a Recipe,
-    pub(super) file: &'a str,
-    pub(super) output: Option<String>,
-    pub(super) before: &'a [Surface],
-    pub(super) after: &'a [Surface],
-    pub(super) done: DeformedPatches,
-    pub(super) warnings: &'a [String],
-    pub(super) seconds: f64,
-}
-
-impl SurfaceRun<'_> {
-    /// The report as JSON.
-    pub(super) fn json(self) -> Result<String, Failure> {
-        text(&SurfacesReport {
-            tool: "pathwarp",
-            version: env!("CARGO_PKG_VERSION"),
-            steps: self.recipe.steps.iter().map(|s| s.deformation.clone()).collect(),
-            file: self.file.to_owned(),
-            output: self.output,
-            before: SurfaceMeasures::of(self.before),
-            after: SurfaceMeasures::of(self.after),
-            exact: self.done.exact,
-            refitted: self.done.refitted,
-            cut: self.done.cut,
-            distance: self.done.distance,
-            folded: self.done.folded,
-            warnings: self.warnings.to_vec(),
-            seconds: self.seconds,
-        })
     }
 }

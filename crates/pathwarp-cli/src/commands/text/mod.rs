@@ -3,10 +3,11 @@
 mod on_path;
 mod style;
 
-use crate::commands::file_args::{out_arg, target};
+use crate::commands::args::{choice, out_arg, switch, target};
 use crate::failure::{Failure, Status};
 use crate::format::{Choice, DRAWINGS};
 use crate::options::{Given, reading_args, some_options};
+use crate::readable::listed;
 use crate::{advice, export, input, mistakes, output, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::budget::{Exceeded, Limit, Limits, cost};
@@ -104,12 +105,10 @@ fn failure(e: &pathwarp_text::Error, limits: &Limits) -> Failure {
 fn missing(chars: &[char], names: &[&str]) -> String {
     /// Number of characters that fit a line or two.
     const SHOWN: usize = 12;
-    let shown: Vec<String> = chars.iter().take(SHOWN).map(|c| format!("{c} (U+{:04X})", u32::from(*c))).collect();
-    let more = chars.len().saturating_sub(SHOWN);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let shown: Vec<String> = chars.iter().map(|c| format!("{c} (U+{:04X})", u32::from(*c))).collect();
     let fonts = if names.is_empty() { "the bundled font" } else { "the fonts" };
     let lack = if names.is_empty() { "lacks" } else { "lack" };
-    format!("{fonts} {lack} {}{more}; name a font that has them with --font", shown.join(", "))
+    format!("{fonts} {lack} {}; name a font that has them with --font", listed(&shown, SHOWN))
 }
 
 const SPACING: &str = "Spacing and lines";
@@ -133,16 +132,6 @@ Examples:
 /// An option with a value that is parsed later, and may start with a minus.
 fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help(help)
-}
-
-/// An option with one of these words as its value.
-fn choice(name: &'static str, words: &'static [&'static str], help: &'static str) -> Arg {
-    Arg::new(name)
-        .long(name)
-        .value_name(words.join("|"))
-        .value_parser(words.to_vec())
-        .hide_possible_values(true)
-        .help(help)
 }
 
 /// All options, in the order of help.
@@ -185,8 +174,9 @@ fn text_and_font() -> Vec<Arg> {
             "100-900|NAME",
             "Weight within the family (thin, light, regular, medium, bold, black, …); sets the axis wght of a variable font",
         ),
-        Arg::new("italic").long("italic").action(ArgAction::SetTrue).help("Use the family's italic"),
-        Arg::new("synthesize").long("synthesize").action(ArgAction::SetTrue).help(
+        switch("italic", "Use the family's italic"),
+        switch(
+            "synthesize",
             "Make what a font lacks: a bolder weight by thickening its outlines, an italic by slanting them by 14°; without it, that is \
              an error",
         ),

@@ -201,12 +201,9 @@ fn demand_straight(c: &[Seg], name: &str, what: &str) -> Result<(), Error> {
     if off <= STRAIGHT * side.length() {
         return Ok(());
     }
-    let problem = format!(
-        "{what}; the {name} side is curved: near {} it is {off:.6} off the line between its ends. No map keeps such lines then: \
-omit `keep`",
-        show(at)
-    );
-    Err(Error::usage("keep", "the envelope", problem))
+    let problem =
+        format!("{what}; the {name} side is curved: near {} it is {off:.6} off the line between its ends", show(at));
+    Err(Error::advised("keep", "the envelope", problem, ". No map keeps such lines then: omit `keep`"))
 }
 
 fn no_length(name: &str) -> Error {

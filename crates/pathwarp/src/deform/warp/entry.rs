@@ -144,6 +144,11 @@ fn style(s: &Settings<'_>) -> Result<Style, Error> {
     }
     let name = s.texts("style").last().copied().unwrap_or_default();
     Style::named(name).ok_or_else(|| {
-        Error::usage("style", name, format!("is not a style; there are {}, and files (TOML or JSON)", NAMES.join(", ")))
+        Error::advised(
+            "style",
+            name,
+            "is not a style",
+            format!("; there are {}, and files (TOML or JSON)", NAMES.join(", ")),
+        )
     })
 }

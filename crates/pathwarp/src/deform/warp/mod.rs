@@ -137,8 +137,7 @@ impl Warp {
             };
             let Error::Usage { problem, .. } = e else { return e };
             // The envelope's advice is for drawn curves.
-            let what = problem.split(". No map").next().unwrap_or_default();
-            Error::usage("keep", self.keep.name(), format!("is impossible with this style ({what}); {others}"))
+            Error::usage("keep", self.keep.name(), format!("is impossible with this style ({problem}); {others}"))
         })
     }
 }

@@ -157,7 +157,12 @@ impl Deformation for Entry {
         let shape = match s.file_if("preset")? {
             Some(file) => TextShape::from_file(&file.name, &file.text)?,
             None => TextShape::named(name).ok_or_else(|| {
-                Error::usage("preset", name, format!("is not a text shape; there are {}, and files", NAMES.join(", ")))
+                Error::advised(
+                    "preset",
+                    name,
+                    "is not a text shape",
+                    format!("; there are {}, and files", NAMES.join(", ")),
+                )
             })?,
         };
         let wordart = WordArt {

@@ -1,13 +1,24 @@
-//! Arguments for files that several subcommands share.
+//! Arguments of subcommands: switches, words, and the files that many of them read and write.
 
 use crate::failure::Failure;
 use crate::output::is_stdout;
 use crate::sources::Files;
-use clap::{Arg, ArgMatches, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use std::path::{Path, PathBuf};
 
 /// The id of the option for the output file.
 const OUT: &str = "out";
+
+/// A switch `--NAME`.
+pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
+}
+
+/// An option `--NAME` with one of these words as its value.
+pub(super) fn choice(name: &'static str, words: &[&'static str], help: &'static str) -> Arg {
+    let arg = Arg::new(name).long(name).value_name(words.join("|")).value_parser(words.to_vec());
+    arg.hide_possible_values(true).help(help)
+}
 
 /// A required file.
 pub(super) fn file_arg(name: &'static str, help: &'static str) -> Arg {
