@@ -2,23 +2,19 @@
 
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
-use crate::bend::edit::Edit;
-use crate::bend::letters::placed_outlines;
-use crate::bend::options::{OnError, PageFit, Strokes, Structure, WarpOptions};
+use crate::bend::fits;
+use crate::bend::options::{Edit, OnError, PageFit, Strokes, Structure, WarpOptions};
 use crate::bend::outcome::{Notes, WarpedDocument};
-use crate::bend::tiles;
-use crate::scene::drawing::Drawing;
-use crate::scene::lettering::selected::{Lettering, lettering};
+use crate::bend::task::placed_outlines;
+use crate::scene::areas::{self, stroked};
+use crate::scene::drawing::{Drawing, NamedPath, Shape, UnreadImages, named_path};
 use crate::scene::model::Bitmap;
 use crate::scene::plot::{self, Plot};
-use crate::scene::seen;
-use crate::scene::shape::{NamedPath, Shape, named_path};
-use crate::scene::stroked::stroked;
-use crate::scene::unread::UnreadImages;
+use crate::scene::selected_lettering::{Lettering, lettering};
+use crate::source::elements::{ElementId, is_shape};
 use crate::source::read::ReadOptions;
 use crate::source::select::{self, Division, Selection, candidates, is_named, matches_any};
-use crate::source::tags::{ElementId, is_shape};
-use crate::source::undrawn::undrawn;
+use crate::source::tree::undrawn;
 use crate::write;
 use crate::write::input::WriteInput;
 use pathwarp::budget::{Budget, Exceeded, cost};
@@ -163,7 +159,7 @@ impl Document {
     pub fn artwork_box(&self, selection: &Selection) -> Option<Rect> {
         let shapes = self.selected(selection).filter_map(|s| s.outline.bounding_box());
         let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection));
-        let pictures = bitmaps.filter(|b| b.1).filter_map(|b| seen::picture_box(b.0));
+        let pictures = bitmaps.filter(|b| b.1).filter_map(|b| areas::picture_box(b.0));
         shapes.chain(pictures).filter(Rect::is_finite).reduce(|a, b| a.union(b))
     }
 
@@ -172,7 +168,7 @@ impl Document {
     pub fn picture_edges(&self, selection: &Selection) -> Vec<(String, Outline)> {
         let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection)).filter(|b| b.1);
         let named = |b: &Bitmap| b.owner.map_or_else(|| "an image".into(), |e| self.drawing.source.display_name(e));
-        let edge = |b: &Bitmap| Some((named(b), Outline::from_points(&seen::picture_corners(b)?, true)));
+        let edge = |b: &Bitmap| Some((named(b), Outline::from_points(&areas::picture_corners(b)?, true)));
         bitmaps.filter_map(|b| edge(b.0)).collect()
     }
 
@@ -183,9 +179,9 @@ impl Document {
         bitmaps.map(|b| b.bends && b.owner.map_or(selection.is_everything(), |e| elements[e])).collect()
     }
 
-    fn counted(&self, selection: &Selection) -> seen::Counted {
+    fn counted(&self, selection: &Selection) -> areas::Counted {
         let parts = self.drawing.selected_parts(selection).to_vec();
-        seen::Counted { parts, bitmaps: self.selected_bitmaps(selection), strokes: false }
+        areas::Counted { parts, bitmaps: self.selected_bitmaps(selection), strokes: false }
     }
 
     /// Bounding box of what is seen of the selected shapes, without stroke widths, and pictures: not what clip paths, masks and zero opacity
@@ -193,15 +189,15 @@ impl Document {
     #[must_use]
     pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
         let counted = self.counted(selection);
-        let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
+        let seen = areas::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
         seen.or_else(|| self.artwork_box(selection))
     }
 
     /// The box of what is seen, [`Document::seen_box`], with strokes by half their width.
     #[must_use]
     pub fn painted_box(&self, selection: &Selection) -> Option<Rect> {
-        let counted = seen::Counted { strokes: true, ..self.counted(selection) };
-        let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
+        let counted = areas::Counted { strokes: true, ..self.counted(selection) };
+        let seen = areas::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
         seen.or_else(|| self.artwork_box(selection))
     }
 
@@ -212,7 +208,7 @@ impl Document {
         if seen.x0 > page.x0 && seen.y0 > page.y0 && seen.x1 < page.x1 && seen.y1 < page.y1 {
             return None;
         }
-        seen::uncut_box(self.drawing.scene(), page, &self.counted(selection)).filter(|b| *b != seen)
+        areas::uncut_box(self.drawing.scene(), page, &self.counted(selection)).filter(|b| *b != seen)
     }
 
     /// The selected painted shapes, in painting order.
@@ -381,7 +377,7 @@ impl Document {
         let simplifies = matches!(document.edit, Some(Edit::Simplify { .. }));
         let own = if simplifies { self.drawing.at_originals()? } else { bends.divided(&self.drawing)? };
         let drawing = own.as_ref().unwrap_or(&self.drawing);
-        match tiles::laid_out(drawing, bends)? {
+        match fits::laid_out(drawing, bends)? {
             Some(tiled) => warp(&tiled, bends),
             None => warp(drawing, bends),
         }

@@ -1,8 +1,7 @@
 //! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
+use crate::source::elements::{PATHWARP as NAMESPACE, tag_end};
 use crate::source::read::{text, unpacked};
-use crate::source::table::tag_end;
-use crate::source::tags::PATHWARP as NAMESPACE;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;

@@ -58,23 +58,22 @@ mod source;
 pub mod usvg_tree;
 mod write;
 
-pub use bend::edit::Edit;
-pub use bend::gradient::{GradientColors, GradientPainter, GradientRequest, SeenColor};
-pub use bend::image::{ImageRequest, ImageWarper, Images};
-pub use bend::letter_places::LetterPlaces;
-pub use bend::options::{Clones, Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
-pub use bend::outcome::{Overhang, ShapeReport, Skipped, WarpedDocument};
-pub use bend::picture::{BentImage, PictureError};
-pub use bend::plain::{WarpedPath, edit_path, warp_path};
-pub use bend::warning::Warning;
+pub use bend::options::{
+    Clones, Edit, Gradients, LetterPlaces, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions,
+};
+pub use bend::outcome::{Overhang, ShapeReport, Skipped, Warning, WarpedDocument};
+pub use bend::path::{WarpedPath, edit_path, warp_path};
+pub use bend::pictures::{
+    BentImage, GradientColors, GradientPainter, GradientRequest, ImageRequest, ImageWarper, Images, PictureError,
+    SeenColor,
+};
 pub use document::Document;
 pub use embed::Origin;
-pub use scene::lettering::selected::{Lettering, LetteringFrame, LetteringFrameError};
+pub use scene::drawing::{NamedPath, Shape, UnreadImages};
 pub use scene::plot::{Plot, PlotLoss, PlotShape};
-pub use scene::shape::{NamedPath, Shape};
-pub use scene::unread::UnreadImages;
+pub use scene::selected_lettering::{Lettering, LetteringFrame, LetteringFrameError};
 pub use source::faces::{GenericFamilies, bundled_font};
-pub use source::families::{FontFile, check_fonts, family_styles, find_font};
+pub use source::fonts::{FontFile, check_fonts, family_styles, find_font};
 pub use source::read::{ReadOptions, compressed};
 pub use source::select::{Division, Elements, Selection};
 pub use write::lettering::{LetteringOptions, SetLine, write_lettering, write_set_lines};

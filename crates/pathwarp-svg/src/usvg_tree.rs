@@ -5,7 +5,7 @@
 
 use crate::bend::outcome::Notes;
 use crate::document::Document;
-use crate::scene::unread::UnreadImages;
+use crate::scene::drawing::UnreadImages;
 use crate::source::read::ReadOptions;
 use crate::source::tree;
 use pathwarp::kurbo::BezPath;

@@ -1,11 +1,10 @@
 //! The maps of a drawing, each with the part of the drawing that it bends.
 
-use super::edit::Edit;
-use super::options::WarpOptions;
+use super::options::{Edit, WarpOptions};
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{PartRole, Referrer, Scene};
+use crate::source::elements::ElementId;
 use crate::source::select::Selection;
-use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use pathwarp::Error;
 use pathwarp::kurbo::Affine;

@@ -1,23 +1,18 @@
 //! The image of a drawing: all parts, in parallel, with slots and bitmaps.
 
 use super::bends::{Bend, Bends};
-use super::bitmap::{self, EmbeddedImage};
-use super::contours;
-use super::digits::ROUNDING;
-use super::edit::Edit;
-use super::letters::{self, LetterPiece};
-use super::options::OnError;
-use super::outcome::{PartOutcome, Skipped, WarpedDocument, WarpedPart};
+use super::fits::{self, EmbeddedImage, PlacedSlot, written};
+use super::gradients::Shading;
+use super::options::{Edit, OnError};
+use super::outcome::{PartOutcome, Skipped, Warning, WarpedDocument, WarpedPart};
 use super::part;
-use super::shading::Shading;
-use super::slots::{self, PlacedSlot, written};
-use super::task::{PartContext, PartTask};
-use super::warning::Warning;
-use crate::scene::affine::is_invertible;
+use super::path::ROUNDING;
+use super::task::{self, LetterPiece, PartContext, PartTask};
 use crate::scene::drawing::Drawing;
+use crate::scene::geometry::is_invertible;
 use crate::scene::model::{Bitmap, Part};
-use crate::source::parallel::map_parallel;
-use crate::source::tags::ElementId;
+use crate::source::elements::ElementId;
+use crate::source::threads::map_parallel;
 use pathwarp::kurbo::Affine;
 use pathwarp::map::{Gathered, Map};
 use pathwarp::refit::{self, KnownShapes};
@@ -45,7 +40,7 @@ pub(crate) struct BentDrawing {
 pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocument) -> Result<BentDrawing, Error> {
     let (scene, options) = (drawing.scene(), &bends.options);
     let of = bends.of_parts(drawing);
-    let slots = slots::place(drawing, bends, &of);
+    let slots = fits::place(drawing, bends, &of);
     let results = warp_parts(drawing, bends, &of, &slots);
     let mut outcomes = Vec::with_capacity(scene.parts.len());
     // Index of each element's report: tiles and markers may come between the parts of an element.
@@ -86,7 +81,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     }
     out.skipped.extend(drawing.far().reasons.iter().map(|(id, why)| Skipped { id: id.clone(), why: why.clone() }));
     warn(drawing, bends, &outcomes, &slots, out);
-    let bend = |b: &Bitmap| bitmap::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
+    let bend = |b: &Bitmap| fits::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
     let images = scene.bitmaps.iter().map(bend).collect();
     Ok(BentDrawing { outcomes, images, slots, of })
 }
@@ -102,7 +97,7 @@ fn warp_parts(
     const WORTH_IT: usize = 1000;
     let scene = drawing.scene();
     let (parts, shapes) = (&scene.parts, drawing.shapes());
-    let pieces: Vec<_> = bends.each.iter().map(|b| letters::pieces(drawing, &b.options)).collect();
+    let pieces: Vec<_> = bends.each.iter().map(|b| task::pieces(drawing, &b.options)).collect();
     let each = bends.each.iter().zip(&pieces).enumerate();
     let each: Vec<_> = each.map(|(k, (b, pieces))| shared(drawing, b, (of, k), pieces)).collect();
     let (each, contours): (Vec<Bend<'_>>, Vec<_>) = each.into_iter().unzip();
@@ -147,12 +142,12 @@ fn shared<'a>(
     pieces: &[Vec<LetterPiece>],
 ) -> (Bend<'a>, Vec<Vec<f64>>) {
     let mut bend = bend.clone();
-    let contours = contours::of_parts(drawing, &bend, of, k);
+    let contours = task::of_parts(drawing, &bend, of, k);
     let refit = &bend.options.refit;
     if (refit.merge || refit.suited) && !bend.is_identity() {
         let outline = |i: usize| {
             let (whole, own) = (&drawing.shapes()[i].outline, &contours[i]);
-            contours::placed_outline(whole, own, &bend.options, &pieces[i])
+            task::placed_outline(whole, own, &bend.options, &pieces[i])
         };
         let placed: Vec<_> = (0..of.len()).filter(|&i| of[i] == Some(k)).map(outline).collect();
         let all = placed.iter().map(|(o, contours)| (&**o, &contours[..]));

@@ -1,12 +1,15 @@
 //! Options for warping a document.
 
-use super::edit::Edit;
-use super::gradient::GradientPainter;
-use super::image::Images;
-use super::letter_places::LetterPlaces;
+use super::pictures::{GradientPainter, Images};
+use crate::scene::model::{Part, PartRole};
+use crate::source::elements::ElementId;
 use crate::source::select::Selection;
+use crate::source::text::SourceText;
+use pathwarp::edit::{Offset, moved, through_vertices};
 use pathwarp::kurbo::Affine;
-use pathwarp::refit;
+use pathwarp::map::Chain;
+use pathwarp::refit::{self, RefittedPath};
+use pathwarp::{GeometryError, Outline};
 use std::fmt;
 use std::sync::Arc;
 
@@ -297,4 +300,89 @@ setters! {
     clones: Clones, with_clones;
     same_view: bool, with_same_view;
     overhang: bool, with_overhang;
+}
+
+/// What is done to the selected shapes instead of bending them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Edit {
+    /// Paths get the fewest nodes within the tolerance. A path that would not get fewer stays as it is written.
+    Simplify {
+        /// Joints that turn by more than this, in radians, stay corners.
+        corner: f64,
+        /// Contours of straight lines become curves through their vertices.
+        polylines: bool,
+    },
+    /// Strokes and text become filled outlines.
+    Outline,
+    /// Areas grow or shrink, and open paths run beside themselves. Areas follow the rule of the fill.
+    Offset(Offset),
+}
+
+impl Edit {
+    /// The same edit of a part.
+    pub(super) fn of(self, part: &Part) -> Self {
+        match self {
+            Self::Offset(offset) => {
+                let even_odd = part.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd);
+                Self::Offset(Offset { even_odd, ..offset })
+            }
+            other => other,
+        }
+    }
+
+    /// The outline in a way that is no map; `None` if the outline is refitted.
+    pub(super) fn edited(
+        self,
+        outline: &Outline,
+        options: &refit::Options,
+        contours: &[f64],
+    ) -> Result<Option<RefittedPath>, GeometryError> {
+        match self {
+            Self::Simplify { polylines: true, .. } => through_vertices(outline, options, contours),
+            Self::Offset(offset) => moved(outline, &offset, options).map(Some),
+            Self::Simplify { .. } | Self::Outline => Ok(None),
+        }
+    }
+
+    /// Returns `true` if a part may change.
+    pub(super) fn concerns(self, part: &Part, source: &SourceText) -> bool {
+        let tag = |e: Option<ElementId>| e.map_or("", |e| &*source.elements[e].tag);
+        match self {
+            // Of other elements, none has fewer nodes as a path.
+            Self::Simplify { .. } => {
+                part.owner.is_none() && matches!(tag(part.source), "path" | "polygon" | "polyline")
+            }
+            Self::Outline => part.stroke.is_some() || tag(part.owner) == "text",
+            Self::Offset(_) => part.role == PartRole::Paint && part.painted(),
+        }
+    }
+}
+
+/// Placement of letters one by one.
+#[derive(Clone, Default)]
+pub struct LetterPlaces {
+    /// Affine maps to the copies of each letter of [`Lettering::letters`](crate::Lettering::letters). Empty: the letters are
+    /// bent like everything else.
+    pub places: Vec<Vec<Affine>>,
+    /// The selection whose letters those are. `None`: what is bent.
+    pub of: Option<Selection>,
+    /// Map applied to the placed letters: the remaining steps.
+    pub after: Chain,
+}
+
+impl fmt::Debug for LetterPlaces {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "LetterPlaces({} letters)", self.places.len())
+    }
+}
+
+impl PartialEq for LetterPlaces {
+    fn eq(&self, other: &Self) -> bool {
+        let (a, b) = (self.after.steps(), other.after.steps());
+        self.places == other.places
+            && self.of == other.of
+            && a.len() == b.len()
+            && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
+    }
 }

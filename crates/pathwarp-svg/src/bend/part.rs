@@ -1,14 +1,12 @@
 //! The image of a part: path, fill, stroke, and paints.
 
-use super::bent_gradient::BentGradient;
-use super::letters::LetterPiece;
+use super::fits::{self, PaintFit};
+use super::gradients::BentGradient;
 use super::options::{Strokes, WarpOptions};
 use super::outcome::{StrokeOutcome, WarpedPart};
-use super::paint::{self, PaintFit};
-use super::stroke;
-use super::stubs;
-use super::task::{BentPath, PartTask};
-use crate::scene::affine::stretch;
+use super::task::{BentPath, LetterPiece, PartTask};
+use super::{path, stroke};
+use crate::scene::geometry::stretch;
 use crate::scene::model::{Part, PartRole};
 use pathwarp::kurbo::{BezPath, Line, ParamCurveNearest as _, Point, Shape as _};
 use pathwarp::map::Class;
@@ -89,9 +87,9 @@ fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
     match t.pieces {
         // The paint of a single placed letter moves with it.
         [LetterPiece { places, .. }] if places.len() == 1 => {
-            paint::fit(area, places[0] * p.frame, t.write, &options.letters.after)
+            fits::fit(area, places[0] * p.frame, t.write, &options.letters.after)
         }
-        _ => paint::fit_copies(area, p.frame, t.write, t.context.map, &options.copies, result),
+        _ => fits::fit_copies(area, p.frame, t.write, t.context.map, &options.copies, result),
     }
 }
 
@@ -180,7 +178,7 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
         if open(&s) {
             s.segs.push(Seg::Line(Line::new(s.end(), s.start)));
             s.closed = true;
-            stubs::drop_closing_stub(&mut s, t.rounding);
+            path::drop_closing_stub(&mut s, t.rounding);
         }
         s
     };

@@ -1,18 +1,19 @@
 //! A part to be warped, with everything that determines its image.
 
-use super::arcs::with_arcs;
-use super::contours::placed_outline;
-use super::digits::{Digits, ROUNDING, allowed};
-use super::letters::LetterPiece;
+use super::bends::Bend;
 use super::options::WarpOptions;
-use super::stubs;
-use crate::scene::affine::stretch;
+use super::path::{self, Digits, ROUNDING, allowed, with_arcs};
+use crate::scene::areas::reach;
+use crate::scene::drawing::Drawing;
+use crate::scene::geometry::stretch;
 use crate::scene::model::Part;
+use crate::scene::selected_lettering::{LetterSubpaths, letters_by_part};
 use crate::source::number::arcs_data;
-use pathwarp::kurbo::{Affine, BezPath};
+use pathwarp::kurbo::{Affine, BezPath, Rect};
 use pathwarp::map::Map;
-use pathwarp::refit::{self, KnownShapes, PathReport, RefittedPath};
+use pathwarp::refit::{self, KnownShapes, PathReport, RESOLUTION, RefittedPath, suited};
 use pathwarp::{GeometryError, Outline};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The surroundings of a part.
@@ -82,9 +83,9 @@ impl<'a> PartTask<'a> {
         let digits = Digits { size: stretch(write), given: options.precision, whole: options.refit.tolerance };
         let finest = contours.iter().copied().fold(options.refit.tolerance, f64::min);
         let (decimals, rounding) = (digits.decimals(finest), digits.rounding(finest));
-        if outline.subpaths.iter().any(|s| stubs::has_closing_stub(s, rounding)) {
+        if outline.subpaths.iter().any(|s| path::has_closing_stub(s, rounding)) {
             let subpaths = &mut Arc::make_mut(&mut outline).subpaths;
-            subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, rounding));
+            subpaths.iter_mut().for_each(|s| path::drop_closing_stub(s, rounding));
         }
         let back = write.inverse();
         Self {
@@ -171,4 +172,109 @@ impl<'a> PartTask<'a> {
         }
         path
     }
+}
+
+/// The tolerances of the contours of every part, one for each subpath; none for parts that are held to that of the drawing.
+pub(super) fn of_parts(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usize) -> Vec<Vec<f64>> {
+    let (parts, shapes) = (&drawing.scene().parts, drawing.shapes());
+    let tolerance = bend.options.refit.tolerance;
+    let to_px = drawing.scene().to_px;
+    let own = |i: usize| {
+        if of[i] != Some(k) || !bend.options.refit.suited {
+            return Vec::new();
+        }
+        let is_text = shapes[i].element == "text";
+        of_part(&shapes[i].outline, reach(&parts[i], to_px), is_text, tolerance)
+    };
+    let all: Vec<Vec<f64>> = (0..parts.len()).map(own).collect();
+    let is_small = |t: &f64| *t < tolerance;
+    if all.iter().flatten().any(is_small) { all } else { vec![Vec::new(); parts.len()] }
+}
+
+fn of_part(outline: &Outline, reach: f64, is_text: bool, tolerance: f64) -> Vec<f64> {
+    // Finer than its numbers, nothing can be followed.
+    let finest = (4.0 * RESOLUTION * outline.extent()).min(tolerance);
+    let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
+    let size = |b: Rect| b.size().to_vec2().hypot();
+    let own = |i: usize| {
+        let around = if is_text { letter(&boxes, i) } else { boxes[i] };
+        suited(tolerance, size(around)).max(finest)
+    };
+    (0..boxes.len()).map(own).collect()
+}
+
+/// The box of the letter that a subpath of a text belongs to: its own, or that of a neighbour whose hole it is.
+fn letter(boxes: &[Rect], i: usize) -> Rect {
+    /// Letters have at most a few holes.
+    const NEIGHBOURS: usize = 4;
+    let near = &boxes[i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(boxes.len())];
+    let holds = |b: &&Rect| b.union(boxes[i]) == **b;
+    near.iter().filter(holds).copied().fold(boxes[i], |a, b| if b.area() > a.area() { b } else { a })
+}
+
+/// The outline that is bent of a part: all copies, or the placed letters; with the tolerances of its contours.
+pub(super) fn placed_outline(
+    whole: &Arc<Outline>,
+    contours: &[f64],
+    options: &WarpOptions,
+    pieces: &[LetterPiece],
+) -> (Arc<Outline>, Vec<f64>) {
+    match (pieces, options.copies.as_slice()) {
+        ([], []) => (Arc::clone(whole), contours.to_vec()),
+        ([], copies) => (Arc::new(whole.repeated(copies)), contours.repeat(copies.len())),
+        _ => (Arc::new(placed(whole, pieces)), pieces.iter().flat_map(|p| p.repeated(contours)).collect()),
+    }
+}
+
+/// The subpaths of a part that belong to one letter, with the letter's places.
+#[derive(Debug, Clone)]
+pub(crate) struct LetterPiece {
+    range: Range<usize>,
+    pub(crate) places: Vec<Affine>,
+}
+
+impl LetterPiece {
+    /// The letter's subpaths of `whole`.
+    pub(crate) fn of(&self, whole: &Outline) -> Outline {
+        Outline { subpaths: whole.subpaths.get(self.range.clone()).unwrap_or_default().to_vec() }
+    }
+
+    /// The index in `whole` of the letter's first subpath.
+    pub(crate) fn first(&self) -> usize {
+        self.range.start
+    }
+
+    /// What holds for the letter's subpaths of `whole`, for each of its places.
+    pub(crate) fn repeated(&self, whole: &[f64]) -> Vec<f64> {
+        whole.get(self.range.clone()).unwrap_or_default().repeat(self.places.len())
+    }
+}
+
+/// Places all letters of an outline.
+pub(crate) fn placed(whole: &Outline, pieces: &[LetterPiece]) -> Outline {
+    Outline { subpaths: pieces.iter().flat_map(|p| p.of(whole).repeated(&p.places).subpaths).collect() }
+}
+
+/// Lists the placed letters of every part; empty for parts that the map bends.
+pub(crate) fn pieces(drawing: &Drawing, options: &WarpOptions) -> Vec<Vec<LetterPiece>> {
+    let places = &options.letters.places;
+    if places.is_empty() {
+        return vec![Vec::new(); drawing.scene().parts.len()];
+    }
+    let piece = |l: LetterSubpaths| {
+        let places = places.get(l.letter).filter(|p| !p.is_empty())?.clone();
+        Some(LetterPiece { range: l.range, places })
+    };
+    letters_by_part(drawing, options.letters.of.as_ref().unwrap_or(&options.selection))
+        .into_iter()
+        .map(|of_part| of_part.into_iter().filter_map(piece).collect())
+        .collect()
+}
+
+/// For the selected painted shapes in order, the outline with its letters placed, if there are any.
+pub(crate) fn placed_outlines(drawing: &Drawing, options: &WarpOptions) -> Vec<Option<Outline>> {
+    let selected = drawing.selected_parts(&options.selection);
+    let shapes = drawing.shapes().iter().zip(selected).zip(pieces(drawing, options));
+    let chosen = shapes.filter(|((s, selected), _)| *selected && s.painted);
+    chosen.map(|((s, _), pieces)| (!pieces.is_empty()).then(|| placed(&s.outline, &pieces))).collect()
 }

@@ -10,10 +10,9 @@
 //! relative to the path and in units of h. The distance is the largest |exact − s·drawn|·h. It is that of the painted areas:
 //! a narrow gap between two edges may close faster than the edges move.
 
-use super::spot::{Pair, Spot, columns, ellipse, linear, tip, turn};
 use super::task::PartTask;
-use crate::scene::affine::stretch;
-use crate::scene::stroked::is_point;
+use crate::scene::areas::is_point;
+use crate::scene::geometry::stretch;
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{AffineMap, Chain, Jet, Map};
 use pathwarp::outline::Subpath;
@@ -23,7 +22,7 @@ use usvg::{LineCap, LineJoin, Stroke};
 
 /// Largest relative error of a width that hardly varies: edges off by a hundredth of the width. Widths of lines side by side must
 /// differ by about a twentieth to be told apart.
-pub(super) const WIDTH_ERROR: f64 = 0.02;
+const WIDTH_ERROR: f64 = 0.02;
 
 /// Factor for errors between samples. At [`TURN`] between samples, a sinusoid over half a turn is missed by at most 1 − cos(π/8).
 const BETWEEN: f64 = 1.08;
@@ -366,5 +365,97 @@ impl<'a> StrokeWidth<'a> {
             let corner = |s: &Spot| Pair { exact: s.in_image(s.push(s.normal)), drawn: Vec2::new(0.0, 1.0) };
             self.pairs.extend([corner(a), corner(b)]);
         }
+    }
+}
+
+/// A point of a stroke's edge relative to the path, in units of half the width.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    exact: Vec2,
+    /// For the factor 1.
+    drawn: Vec2,
+}
+
+/// A point of a path and its image, in the stroke's user space before and after.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    /// Image of the user unit vectors.
+    columns: [Vec2; 2],
+    /// Unit tangent and normal.
+    tangent: Vec2,
+    normal: Vec2,
+    /// Those of the image, with the normal on the image's side.
+    image: [Vec2; 2],
+    /// Speeds along the path and along its image.
+    here: f64,
+    there: f64,
+}
+
+fn linear(m: Affine, v: Vec2) -> Vec2 {
+    let [a, b, c, d, ..] = m.as_coeffs();
+    Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y)
+}
+
+fn perpendicular(v: Vec2) -> Vec2 {
+    Vec2::new(-v.y, v.x)
+}
+
+impl Spot {
+    /// `None` where the path or its image stands still.
+    fn new(jet: &Jet, v: Vec2, read: Affine, after: Affine) -> Option<Self> {
+        let (before, columns) = (linear(read.inverse(), v), columns(jet, read, after));
+        let push = |v: Vec2| columns[0] * v.x + columns[1] * v.y;
+        let ahead = push(before);
+        let (here, there) = (before.hypot(), ahead.hypot());
+        if !(here > 0.0 && there > 0.0) {
+            return None;
+        }
+        let (tangent, to) = (before / here, ahead / there);
+        let side = if columns[0].cross(columns[1]) < 0.0 { -1.0 } else { 1.0 };
+        let image = [to, perpendicular(to) * side];
+        Some(Self { columns, tangent, normal: perpendicular(tangent), image, here, there })
+    }
+
+    fn push(&self, v: Vec2) -> Vec2 {
+        self.columns[0] * v.x + self.columns[1] * v.y
+    }
+
+    fn in_image(&self, v: Vec2) -> Vec2 {
+        Vec2::new(v.dot(self.image[0]), v.dot(self.image[1]))
+    }
+
+    fn area_scale(&self) -> f64 {
+        self.columns[0].cross(self.columns[1]).abs().sqrt()
+    }
+}
+
+fn columns(jet: &Jet, read: Affine, after: Affine) -> [Vec2; 2] {
+    [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)].map(|e| linear(after, jet.push(linear(read, e))))
+}
+
+/// The singular values of a matrix with these columns, against a circle.
+fn ellipse([x, y]: [Vec2; 2]) -> [Pair; 2] {
+    let long = stretch(Affine::new([x.x, x.y, y.x, y.y, 0.0, 0.0]));
+    let short = if long > 0.0 { x.cross(y).abs() / long } else { 0.0 };
+    let drawn = Vec2::new(1.0, 0.0);
+    [long, short].map(|r| Pair { exact: drawn * r, drawn })
+}
+
+/// The outermost point of a join between edges with these normals; `true` if it is a miter.
+fn tip(a: Vec2, b: Vec2, limit: f64) -> (Vec2, bool) {
+    let bisector = a + b;
+    // The miter's length is 1 / cos(turn / 2), and |a + b| = 2 cos(turn / 2).
+    let mitered = limit * bisector.hypot() >= 2.0;
+    (if mitered { bisector * (2.0 / bisector.hypot2()) } else { bisector * 0.5 }, mitered)
+}
+
+/// Turn of a segment's control polygon, in radians, an upper bound of the segment's own.
+fn turn(seg: &Seg) -> f64 {
+    let angle = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b)).abs();
+    match seg {
+        Seg::Line(_) => 0.0,
+        Seg::Quad(q) => angle(q.p1 - q.p0, q.p2 - q.p1),
+        Seg::Cubic(c) => angle(c.p1 - c.p0, c.p2 - c.p1) + angle(c.p2 - c.p1, c.p3 - c.p2),
+        Seg::Arc(a) => a.sweep.abs(),
     }
 }

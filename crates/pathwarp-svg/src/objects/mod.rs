@@ -4,22 +4,15 @@
 //! [`remember`] adds the attributes to the result of a warp, [`restore`] puts sources back in place, and [`objects`] lists the
 //! elements of a file with what they remember. None of them resolves what a drawing shows.
 
-mod guides;
-mod moving;
-mod names;
 mod nodes;
-mod package;
-mod patches;
 mod remembering;
 mod restoring;
 mod restyling;
 
-pub use guides::Guides;
-pub use moving::moved;
-pub use nodes::{Object, objects};
+pub use nodes::{Guides, Object, objects};
 pub use remembering::{Memory, remember};
 pub use restoring::{Restored, RestoredObject, restore};
-pub use restyling::restyled;
+pub use restyling::{moved, restyled};
 
 #[cfg(test)]
 mod tests;

@@ -1,11 +1,12 @@
 //! The elements of a file: ids, labels, and what they remember.
 
-use super::names::{NAMESPACE, RECIPE};
-use crate::source::tags::{INKSCAPE, SVG, is_shape, is_sodipodi};
+use crate::source::elements::{INKSCAPE, SVG, is_shape, is_sodipodi};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
-use pathwarp_reader::xml;
+use pathwarp_reader::xml::{self, escape};
 use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::ops::Range;
 use usvg::roxmltree::{Document, Node};
 
 /// An element with an id.
@@ -102,4 +103,113 @@ fn is_locked(n: Node<'_, '_>) -> bool {
     n.attributes().any(|a| insensitive(&a))
         || n.attribute("display") == Some("none")
         || n.attribute("style").is_some_and(off)
+}
+
+pub(super) use crate::source::elements::PATHWARP as NAMESPACE;
+
+/// The recipe, as words of a command line.
+pub(super) const RECIPE: &str = "recipe";
+/// The package with the source.
+pub(super) const SOURCE: &str = "source";
+/// A summary of the result's nodes.
+pub(super) const NODES: &str = "nodes";
+/// Ids of the definitions that the warp added.
+pub(super) const MADE: &str = "made";
+
+/// The references in an attribute value, `#NAME`, as ranges of the names.
+pub(super) fn references(value: &str) -> impl Iterator<Item = Range<usize>> + '_ {
+    value.match_indices('#').map(|(i, _)| {
+        let rest = &value[i + 1..];
+        let len = rest.find(|c: char| c.is_whitespace() || "\"')#;,".contains(c)).unwrap_or(rest.len());
+        i + 1..i + 1 + len
+    })
+}
+
+/// All names that an element and its descendants refer to.
+pub(super) fn referred(n: Node<'_, '_>) -> Vec<String> {
+    let values = n.descendants().flat_map(|n| n.attributes().map(|a| a.value()).collect::<Vec<_>>());
+    values.flat_map(|v| references(v).map(|r| v[r].to_owned()).collect::<Vec<_>>()).collect()
+}
+
+/// Replacements in `text` that rename ids, and the references to them, of an element and its descendants.
+pub(super) fn renaming(text: &str, n: Node<'_, '_>, names: &HashMap<String, String>) -> Vec<(Range<usize>, String)> {
+    let mut out = Vec::new();
+    for a in n.descendants().flat_map(|n| n.attributes().collect::<Vec<_>>()) {
+        let range = a.range_value();
+        let raw = &text[range.clone()];
+        if a.name() == "id" && a.namespace().is_none() {
+            if let Some(new) = names.get(raw) {
+                out.push((range, new.clone()));
+            }
+            continue;
+        }
+        for r in references(raw) {
+            if let Some(new) = names.get(&raw[r.clone()]) {
+                out.push((range.start + r.start..range.start + r.end, new.clone()));
+            }
+        }
+    }
+    out
+}
+
+/// Applies replacements. Those inside a range replaced as a whole are dropped.
+pub(super) fn apply(text: &str, mut patches: Vec<(Range<usize>, String)>) -> String {
+    // Insertions at one place keep their order and precede a replacement that starts there.
+    patches.sort_by_key(|(r, _)| (r.start, !r.is_empty(), std::cmp::Reverse(r.end)));
+    let mut out = String::with_capacity(text.len());
+    let mut done = 0;
+    for (range, new) in patches {
+        if range.start < done {
+            continue;
+        }
+        out.push_str(&text[done..range.start]);
+        out.push_str(&new);
+        done = range.end;
+    }
+    out.push_str(&text[done..]);
+    out
+}
+
+/// Copies of paths, as they lie in root user space.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Guides {
+    /// Elements, in groups with the transforms around them.
+    pub(super) markup: String,
+}
+
+impl Guides {
+    /// Copies the paths with these ids.
+    ///
+    /// # Errors
+    /// Returns [`Error::Input`] if `svg` is not XML, or takes more work than the limits allow.
+    pub fn of(svg: &str, ids: &[String], limits: &Limits) -> Result<Self, Error> {
+        let mut out = Self::default();
+        if ids.is_empty() {
+            return Ok(out);
+        }
+        let doc = parse(svg, limits)?;
+        let found = by_id(&doc);
+        for n in ids.iter().filter_map(|id| found.get(id.as_str())) {
+            out.markup += &copy(svg, *n);
+        }
+        Ok(out)
+    }
+
+    /// The copies as an SVG file.
+    #[must_use]
+    pub fn file(&self) -> String {
+        format!("<svg xmlns=\"{}\">{}</svg>", SVG, self.markup)
+    }
+}
+
+/// An element inside groups with the transforms around it.
+fn copy(text: &str, n: Node<'_, '_>) -> String {
+    let mut out = String::new();
+    let transforms: Vec<&str> = n.ancestors().skip(1).filter_map(|a| a.attribute("transform")).collect();
+    for t in transforms.iter().rev() {
+        let _ = write!(out, "<g transform=\"{}\">", escape(t));
+    }
+    out.push_str(&text[n.range()]);
+    transforms.iter().for_each(|_| out.push_str("</g>"));
+    out
 }

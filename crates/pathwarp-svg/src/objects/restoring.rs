@@ -1,11 +1,8 @@
 //! Puts the sources of warped objects back in place.
 
-use super::guides::Guides;
-use super::names::{MADE, NAMESPACE, NODES, RECIPE, SOURCE, referred, renaming};
-use super::nodes::{by_id, parse};
-use super::package::{Package, unpack};
-use super::patches::apply;
-use crate::source::tags::SVG;
+use super::nodes::{Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, parse, referred, renaming};
+use super::remembering::{Package, unpack};
+use crate::source::elements::SVG;
 use pathwarp::Error;
 use pathwarp::budget::Limits;
 use std::collections::{HashMap, HashSet};
@@ -101,7 +98,7 @@ impl<'a, 'i> Around<'a, 'i> {
         };
         let own = |o: Node<'a, 'i>| {
             let values = o.attributes().map(|a| a.value());
-            values.into_iter().any(|v| super::names::references(v).any(|r| &v[r] == name))
+            values.into_iter().any(|v| super::nodes::references(v).any(|r| &v[r] == name))
         };
         self.doc.descendants().filter(Node::is_element).filter(counts).any(own)
     }

@@ -1,23 +1,21 @@
 //! A drawing: its source text, usvg's tree, and the scene resolved from both.
 
-use super::affine::stretch;
-use super::far::Far;
-use super::geometry::{GeometryReader, MM_PER_INCH};
-use super::lettering::{self, line::TextLine};
-use super::letters;
-use super::model::{Group, Node, Part, Scene};
+use super::geometry::{GeometryReader, MM_PER_INCH, stretch};
+use super::lettering::{self, TextLine};
+use super::model::{Group, Node, Part, PartRole, Scene};
 use super::resolve::{self, Tiling};
-use super::shape::{self, Shape};
+use crate::source::elements::ElementId;
+use crate::source::images::shown;
 use crate::source::read::{self, ReadOptions};
 use crate::source::select::Selection;
-use crate::source::stack::{is_shallow, with_stack};
-use crate::source::tags::ElementId;
-use crate::source::text::SourceText;
+use crate::source::text::{SourceText, WORTH_THREADS};
+use crate::source::threads::{is_shallow, map_parallel, with_stack};
 use crate::source::tree::{self, Missed};
-use pathwarp::Error;
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Rect, Size};
-use std::collections::HashMap;
+use pathwarp::{Error, Outline};
+use pathwarp_reader::LARGEST;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
 use svgtypes::{Length, LengthUnit};
@@ -37,7 +35,7 @@ pub(crate) struct Drawing {
     /// `true` if walking the drawing takes little stack.
     shallow: bool,
     pub(crate) tree: Arc<usvg::Tree>,
-    letters: Arc<letters::Owners>,
+    letters: Arc<lettering::Owners>,
     /// For every element, the index of what bends it, if clip paths and masks are there once for each.
     division: Vec<Option<usize>>,
     dpi: f64,
@@ -55,7 +53,7 @@ impl Drawing {
             let shallow = is_shallow(source);
             let resolve = || {
                 let (tree, missed) = tree::tree(xml, name, options)?;
-                let letters = letters::owners(source, name, options)?;
+                let letters = lettering::owners(source, name, options)?;
                 let scene = OnceLock::new();
                 if !shallow {
                     scene.get_or_init(|| resolve::build(&tree, source, &letters, dpi, None, &[]));
@@ -166,8 +164,8 @@ impl Drawing {
             return shapes;
         }
         // Not inside of `get_or_init`: while a thread of a pool waits for others, it may run a task that needs the shapes, too.
-        shape::read_outlines(self.scene(), &self.source);
-        self.shapes.get_or_init(|| shape::shapes(self.scene(), &self.source))
+        read_outlines(self.scene(), &self.source);
+        self.shapes.get_or_init(|| shapes(self.scene(), &self.source))
     }
 
     /// The lines of lettering, each with its letters: those of texts, then those of outlines. Computed on first use, because it
@@ -234,5 +232,170 @@ impl Drawing {
         // As for the shapes.
         let far = Far::of(&self.source, self.scene(), self.shapes());
         self.far.get_or_init(|| far)
+    }
+}
+
+/// The parts that are out of range, and the reasons.
+#[derive(Debug, Default)]
+pub(crate) struct Far {
+    /// One for each part; empty if there are none.
+    parts: Vec<bool>,
+    /// Names of elements, each with the reason.
+    pub(crate) reasons: Vec<(String, String)>,
+}
+
+impl Far {
+    /// Finds the parts.
+    pub(super) fn of(source: &SourceText, scene: &Scene, shapes: &[Shape]) -> Self {
+        let reach: Vec<bool> = shapes.iter().map(|s| !is_near(&s.outline)).collect();
+        if source.far.is_empty() && !reach.contains(&true) {
+            return Self::default();
+        }
+        let numbers = &source.far;
+        let named: HashSet<ElementId> = numbers.iter().map(|n| n.0).collect();
+        let inside = |e: Option<ElementId>| e.is_some_and(|e| source.ancestors(e).any(|a| named.contains(&a)));
+        let mut reasons: Vec<(String, String)> = numbers
+            .iter()
+            .map(|(e, n)| {
+                (source.display_name(*e), format!("its number {n} is out of range, which ends at {LARGEST:e}"))
+            })
+            .collect();
+        let (mut parts, mut told) = (Vec::with_capacity(reach.len()), BTreeSet::new());
+        for ((p, shape), far) in scene.parts.iter().zip(shapes).zip(reach) {
+            let by_number = inside(p.source) || inside(p.owner) || inside(p.drawn);
+            if far && !by_number && told.insert(&shape.id) {
+                let why = format!("it extends beyond the range of coordinates, which ends at {LARGEST:e}");
+                reasons.push((shape.id.clone(), why));
+            }
+            parts.push(far || by_number);
+        }
+        Self { parts, reasons }
+    }
+
+    /// Returns `true` if part `i` is out of range.
+    pub(crate) fn holds(&self, i: usize) -> bool {
+        self.parts.get(i).is_some_and(|far| *far)
+    }
+}
+
+/// Returns `true` if all points of an outline are in range.
+fn is_near(o: &Outline) -> bool {
+    o.segs().all(|s| {
+        let [a, b] = [s.start(), s.end()];
+        // The middle stands for control points. What is not a number is not in range, either.
+        let m = s.eval(0.5);
+        [a.x, a.y, b.x, b.y, m.x, m.y].iter().all(|v| v.abs() < LARGEST)
+    })
+}
+
+/// A shape that is painted, clips or masks.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Shape {
+    /// Id in the source, or else name and position such as `path at 12:5`. The parts of a text or `use` share it.
+    pub id: String,
+    /// Source element, e.g. `circle`.
+    pub element: String,
+    /// Outline in root user space.
+    pub outline: Arc<Outline>,
+    /// Line and column of the element in the source, counted from 1.
+    pub at: (usize, usize),
+    /// `true` if the shape is visible, has a fill or a stroke, and is not part of a clip path or mask.
+    pub painted: bool,
+    /// `true` if the shape's interior is painted, clips or masks.
+    pub filled: bool,
+    /// `true` if the even-odd rule determines the interior, `false` for the nonzero rule.
+    pub even_odd: bool,
+}
+
+/// A path with a name, or one that could have one.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct NamedPath {
+    /// Id in the source, or else name and position such as `path at 12:5`.
+    pub id: String,
+    /// Inkscape's label.
+    pub label: Option<String>,
+    /// Text of the `<title>`.
+    pub title: Option<String>,
+    /// Source element, e.g. `circle`.
+    pub element: String,
+    /// Outline in root user space.
+    pub outline: Outline,
+    /// Line and column of the element in the source, counted from 1.
+    pub at: (usize, usize),
+    /// For a path without an id, as listed by [`Document::paths`](crate::Document::paths): the id of the nearest ancestor that
+    /// has one, or an empty string.
+    pub group: Option<Arc<str>>,
+}
+
+/// Reads the outlines of a large drawing on several threads.
+fn read_outlines(scene: &Scene, source: &SourceText) {
+    if source.text.len() >= WORTH_THREADS {
+        map_parallel(scene.parts.len(), |i| scene.parts[i].local.segs().next().is_some());
+    }
+}
+
+/// Lists the shapes of a scene.
+pub(super) fn shapes(scene: &Scene, source: &SourceText) -> Vec<Shape> {
+    let shape = |p: &Part| {
+        let e = p.element();
+        Shape {
+            id: e.map_or_else(|| "path".to_owned(), |e| source.display_name(e)),
+            element: e.map_or_else(|| "path".to_owned(), |e| source.elements[e].tag.to_string()),
+            outline: p.outline(),
+            at: e.map_or((1, 1), |e| source.line_column(source.elements[e].range.start)),
+            painted: p.painted() && p.role == PartRole::Paint,
+            filled: p.fill.is_some() || p.role != PartRole::Paint,
+            even_odd: p.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd),
+        }
+    };
+    scene.parts.iter().map(shape).collect()
+}
+
+/// Describes a shape element, painted or not. Returns `None` if it has no outline.
+pub(crate) fn named_path(scene: &Scene, reader: &GeometryReader<'_>, e: ElementId) -> Option<NamedPath> {
+    // Prefer the painted outline; an element that is not painted is read from the source.
+    let parts = scene.by_source.get(&e).map_or(&[][..], Vec::as_slice);
+    let painted = parts.iter().map(|&i| &scene.parts[i]).find(|p| p.role == PartRole::Paint);
+    let outline = match painted {
+        Some(p) => Arc::unwrap_or_clone(p.outline()),
+        None => {
+            let t = reader.transform_to_root(e).unwrap_or_default();
+            reader.outline(e)?.transformed(t)
+        }
+    };
+    let source = reader.source;
+    Some(NamedPath {
+        id: source.display_name(e),
+        label: source.label(e).map(std::borrow::Cow::into_owned),
+        title: source.elements[e].title.clone(),
+        element: source.elements[e].tag.to_string(),
+        outline,
+        at: source.line_column(source.elements[e].range.start),
+        group: None,
+    })
+}
+
+/// Links to images that were not read, as they are shown in messages.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct UnreadImages {
+    /// Links that lead to nothing readable: missing, damaged, too large.
+    pub unreadable: Vec<String>,
+    /// Links that lead out of the folder of the drawing, and were not followed.
+    pub outside: Vec<String>,
+}
+
+impl UnreadImages {
+    pub(crate) fn of(missed: &Missed) -> Self {
+        let unreadable = missed.images.iter().filter(|l| !missed.outside.contains(l)).map(|l| shown(l).to_owned());
+        Self { unreadable: unreadable.collect(), outside: missed.outside.clone() }
+    }
+
+    /// Returns `true` if every image was read.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.unreadable.is_empty() && self.outside.is_empty()
     }
 }

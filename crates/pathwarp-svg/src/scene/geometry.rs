@@ -3,14 +3,16 @@
 //! usvg works in f32 and approximates arcs by cubics within 0.1 units. Its result is authoritative (it knows CSS, fonts and
 //! units); geometry from the source is used if it agrees with usvg's up to f32 rounding.
 
-use super::basic_shapes::{ellipse, rounded_rect};
-use crate::source::tags::ElementId;
+use crate::source::elements::ElementId;
 use crate::source::text::SourceText;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point, Rect, Size, Vec2};
-use pathwarp::outline::Builder;
+use pathwarp::outline::{Builder, EllipticArc, Seg, Subpath};
+use std::collections::VecDeque;
+use std::f64::consts::FRAC_PI_2;
 use std::str::FromStr;
 use svgtypes::{Align, AspectRatio, Length, LengthUnit};
+use usvg::tiny_skia_path as ts;
 
 pub(super) const MM_PER_INCH: f64 = 25.4;
 
@@ -221,6 +223,171 @@ pub(crate) fn transform(text: &str) -> Option<Affine> {
     Some(Affine::new([t.a, t.b, t.c, t.d, t.e, t.f]))
 }
 
+/// Adds an ellipse: four quarters from three o'clock, clockwise on screen, as in the SVG specification.
+pub(super) fn ellipse(b: &mut Builder, c: Point, r: Vec2) -> Option<()> {
+    if !(r.x > 0.0 && r.y > 0.0) {
+        return None;
+    }
+    b.move_to(Point::new(c.x + r.x, c.y));
+    // Exact end points, without the rounding of a computed cosine.
+    let ends = [(c.x, c.y + r.y), (c.x - r.x, c.y), (c.x, c.y - r.y), (c.x + r.x, c.y)];
+    for (i, end) in ends.into_iter().enumerate() {
+        quarter(b, c, r, i, end.into());
+    }
+    b.close();
+    Some(())
+}
+
+/// Adds quarter `i` of an ellipse.
+fn quarter(b: &mut Builder, c: Point, r: Vec2, i: usize, end: Point) {
+    let arc = EllipticArc::new(c, Vec2::new(r.x, 0.0), Vec2::new(0.0, r.y), i as f64 * FRAC_PI_2, FRAC_PI_2);
+    b.arc(EllipticArc { p0: b.at(), p1: end, ..arc });
+}
+
+/// Adds a rectangle with rounded corners, in the order of the SVG specification.
+fn rounded_rect(b: &mut Builder, r: Rect, radii: Vec2) {
+    let Vec2 { x: rx, y: ry } = radii;
+    if rx <= 0.0 || ry <= 0.0 {
+        b.move_to(Point::new(r.x0, r.y0));
+        for p in [(r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)] {
+            b.line_to(p.into());
+        }
+        b.close();
+        return;
+    }
+    // Each corner: end of the straight run, centre of the arc, number of the quarter, end of the arc.
+    let corners = [
+        ((r.x1 - rx, r.y0), (r.x1 - rx, r.y0 + ry), 3, (r.x1, r.y0 + ry)),
+        ((r.x1, r.y1 - ry), (r.x1 - rx, r.y1 - ry), 0, (r.x1 - rx, r.y1)),
+        ((r.x0 + rx, r.y1), (r.x0 + rx, r.y1 - ry), 1, (r.x0, r.y1 - ry)),
+        ((r.x0, r.y0 + ry), (r.x0 + rx, r.y0 + ry), 2, (r.x0 + rx, r.y0)),
+    ];
+    b.move_to(Point::new(r.x0 + rx, r.y0));
+    for (run, centre, i, end) in corners {
+        if b.at() != Point::from(run) {
+            b.line_to(run.into());
+        }
+        quarter(b, centre.into(), radii, i, end.into());
+    }
+    b.close();
+}
+
+/// Converts usvg's transform to f64.
+pub(crate) fn affine(t: usvg::Transform) -> Affine {
+    Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
+}
+
+/// Returns `true` if `m` is finite and can be inverted.
+pub(crate) fn is_invertible(m: Affine) -> bool {
+    m.is_finite() && m.determinant() != 0.0 && m.inverse().is_finite()
+}
+
+/// Returns the largest factor by which `m` stretches a length: the larger singular value.
+pub(crate) fn stretch(m: Affine) -> f64 {
+    let [a, b, c, d, ..] = m.as_coeffs();
+    let (s, t) = ((a + d).hypot(b - c), (a - d).hypot(b + c));
+    (s + t) / 2.0
+}
+
+/// Returns `true` if the transforms agree up to f32 rounding of a short product.
+pub(crate) fn is_near(a: Affine, b: Affine) -> bool {
+    let (a, b) = (a.as_coeffs(), b.as_coeffs());
+    let linear = a[..4].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let shift = a[4].abs().max(a[5].abs()).max(linear);
+    (0..4).all(|i| (a[i] - b[i]).abs() <= 1e-6 * linear) && (4..6).all(|i| (a[i] - b[i]).abs() <= 1e-6 * shift)
+}
+
+/// Removes the translation.
+pub(crate) fn linear_part(m: Affine) -> Affine {
+    let [a, b, c, d, ..] = m.as_coeffs();
+    Affine::new([a, b, c, d, 0.0, 0.0])
+}
+
+/// Bit pattern, for use as a key.
+pub(crate) fn bits(m: Affine) -> [u64; 6] {
+    m.as_coeffs().map(f64::to_bits)
+}
+
+/// Bit pattern in f32, for use as a key.
+pub(crate) fn f32_bits(m: Affine) -> [u32; 6] {
+    // Adding zero maps -0 to 0.
+    m.as_coeffs().map(|v| (v as f32 + 0.0).to_bits())
+}
+
+/// Converts usvg's path to f64.
+pub(crate) fn from_usvg(path: &ts::Path) -> Outline {
+    let p = |p: ts::Point| Point::new(f64::from(p.x), f64::from(p.y));
+    let mut b = Builder::default();
+    for s in path.segments() {
+        match s {
+            ts::PathSegment::MoveTo(a) => b.move_to(p(a)),
+            ts::PathSegment::LineTo(a) => b.line_to(p(a)),
+            ts::PathSegment::QuadTo(a, c) => b.quad_to(p(a), p(c)),
+            ts::PathSegment::CubicTo(a, c, d) => b.curve_to(p(a), p(c), p(d)),
+            ts::PathSegment::Close => b.close(),
+        }
+    }
+    b.finish()
+}
+
+/// Returns `true` if usvg's path is `outline` in f32: the same subpaths with the same anchors, and cubics in place of arcs.
+pub(crate) fn same_path(outline: &Outline, path: &ts::Path) -> bool {
+    let b = path.bounds();
+    let size = [b.left(), b.right(), b.top(), b.bottom()].iter().fold(0.0_f32, |m, v| m.max(v.abs()));
+    // usvg adds and halves in f32, with an error of a few units in the last place of the largest number.
+    let tolerance = f64::from(size) * 2e-6 + 1e-12;
+    let theirs = from_usvg(path);
+    // usvg drops subpaths of one point.
+    let ours: Vec<_> = outline.subpaths.iter().filter(|s| !s.segs.is_empty() || s.closed).collect();
+    let theirs: Vec<_> = theirs.subpaths.iter().filter(|s| !s.segs.is_empty() || s.closed).collect();
+    ours.len() == theirs.len() && ours.iter().zip(&theirs).all(|(a, b)| same_subpath(a, b, tolerance))
+}
+
+/// Compares a subpath of the source with usvg's.
+fn same_subpath(ours: &Subpath, theirs: &Subpath, tolerance: f64) -> bool {
+    let close = |p: Point, q: Point| (p.x - q.x).abs() <= tolerance && (p.y - q.y).abs() <= tolerance;
+    let handles = |s: &Seg| {
+        let c = s.to_cubic();
+        [c.p1, c.p2, c.p3]
+    };
+    // Rounding makes and drops segments without extent.
+    let is_point = |s: &Seg| !matches!(s, Seg::Arc(_)) && handles(s).iter().all(|p| close(*p, s.start()));
+    let mut rest: VecDeque<&Seg> = theirs.segs.iter().filter(|s| !is_point(s)).collect();
+    // usvg draws an arc to the point where it is as a whole ellipse if the points differ in f32.
+    let skip_turn = |rest: &mut VecDeque<&Seg>, at: Point| {
+        if rest.front().is_some_and(|s| close(s.start(), at) && matches!(s, Seg::Cubic(_)))
+            && let Some(last) = rest.iter().position(|s| close(s.end(), at))
+        {
+            rest.drain(..=last);
+        }
+    };
+    let mut at = ours.start;
+    let mut matched = close(at, theirs.start);
+    for s in ours.segs.iter().filter(|s| !is_point(s)) {
+        matched &= match s {
+            // usvg's cubics share the arc's ends and stay within 0.1 of it.
+            Seg::Arc(arc) => match rest.iter().position(|t| close(t.end(), arc.p1)) {
+                Some(last) => rest.drain(..=last).count() > 0,
+                None => false,
+            },
+            s => {
+                let same = |t: &Seg| handles(s).iter().zip(handles(t)).all(|(p, q)| close(*p, q));
+                if !rest.front().is_some_and(|t| same(t)) {
+                    skip_turn(&mut rest, at);
+                }
+                rest.pop_front().is_some_and(same)
+            }
+        };
+        if !matched {
+            return false;
+        }
+        at = s.end();
+    }
+    skip_turn(&mut rest, at);
+    // f32 rounding may add a closing line.
+    matched && rest.iter().all(|t| close(t.start(), t.end()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -259,5 +426,57 @@ mod tests {
         assert_eq!(o.segs().filter(|s| matches!(s, Seg::Arc(_))).count(), 4);
         assert!(outline("<rect width='40' height='-1'/>").is_none());
         assert!(outline("<rect width='4em' height='1'/>").is_none());
+    }
+
+    /// The path of a document's only element, as usvg reads it.
+    fn theirs(d: &str) -> Option<usvg::Tree> {
+        let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='{d}'/></svg>");
+        usvg::Tree::from_str(&text, &usvg::Options::default()).ok().filter(|t| !t.root().children().is_empty())
+    }
+
+    fn agree(d: &str) {
+        let Some(tree) = theirs(d) else { return };
+        let [usvg::Node::Path(p)] = tree.root().children() else { panic!("{d}") };
+        assert!(same_path(&Outline::from_svg_lossy(d), p.data()), "{d}");
+    }
+
+    #[test]
+    fn loops_petals_and_arcs_to_the_current_point_are_recognised() {
+        for d in [
+            "M180 100A80 80 0 1 1 20 100A80 80 0 1 1 180 100ZM100 90C80 60 120 60 100 90Z",
+            "M5 5C5 5 5 5 5 5L9 9",
+            "M100 90Q80 60 100 90Z",
+            "M88 15A60 50 0 0 0 100 180A45 20 30 1 0 100 180Z",
+            "M88.123 15.456a60 50 0 0 0 12.3 164.7A45 20 30 1 0 100.423 180.156L3 3C9 9 4 4 3 3Z",
+            "M1 1M2 2L3 3M4 4ZM5 5L5 5ZL7 7",
+        ] {
+            agree(d);
+        }
+    }
+
+    /// The two readings agree on random paths, on a coarse grid so that points often coincide.
+    #[test]
+    fn random_paths_are_recognised() {
+        let mut state = 7_u64;
+        let mut next = move |n: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % n
+        };
+        for _ in 0..3000 {
+            let mut d = String::from("M10.1 20.7");
+            for _ in 0..1 + next(8) {
+                let n = |next: &mut dyn FnMut(u64) -> u64| format!(" {}", next(5) as f64 * 33.3);
+                let list = |k: usize, next: &mut dyn FnMut(u64) -> u64| (0..k).map(|_| n(next)).collect::<String>();
+                let (name, count) =
+                    [("L", 2), ("C", 6), ("Q", 4), ("S", 4), ("T", 2), ("A", 2), ("Z", 0)][next(7) as usize];
+                if name == "A" {
+                    d += &format!("A{} {} {} {} {}", 1 + next(90), 1 + next(90), next(180), next(2), next(2));
+                } else {
+                    d += name;
+                }
+                d += &list(count, &mut next);
+            }
+            agree(&d);
+        }
     }
 }

@@ -1,9 +1,8 @@
 //! The drawing as it is painted: usvg's tree in f64. Each shape has its source element, its exact outline and its transform to
 //! root user space, the coordinate system inside the root `<svg>` (viewBox units).
 
+use crate::source::elements::{ElementId, Unpatchable};
 use crate::source::images::is_unread;
-use crate::source::tags::ElementId;
-use crate::source::unpatchable::Unpatchable;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Rect};
 use std::collections::{HashMap, HashSet};

@@ -3,10 +3,10 @@
 //! A plotter knows neither areas nor transparency, so an outline is drawn whether it is filled, stroked or both. Strokes are
 //! drawn along their centre lines.
 
-use super::affine::stretch;
+use super::areas::{clip_box, is_seen, overlap};
+use super::geometry::stretch;
 use super::model::{Group, Node, Part, Scene};
-use super::seen::{clip_box, is_seen, overlap};
-use crate::source::tags::{ElementId, Namespace};
+use crate::source::elements::{ElementId, Namespace};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::Rect;
 use pathwarp::{Outline, Seg};
@@ -223,5 +223,5 @@ fn is_group(tag: &str) -> bool {
 
 /// Returns `true` for elements that are drawn where they stand.
 fn is_drawn(tag: &str) -> bool {
-    is_group(tag) || crate::source::tags::is_shape(tag) || matches!(tag, "use" | "text" | "image")
+    is_group(tag) || crate::source::elements::is_shape(tag) || matches!(tag, "use" | "text" | "image")
 }

@@ -1,10 +1,13 @@
 //! The check of a drawing before it is resolved: everything that references, style sheets and text make of it is counted.
 
-use super::unfold;
-use super::usvgguard::{spans, text_paths, wide_arcs, wide_strokes};
-use pathwarp::Error;
-use pathwarp::budget::Budget;
-use usvg::roxmltree;
+use super::elements::is_shape;
+use memchr::{memchr2, memmem};
+use pathwarp::budget::{Budget, Exceeded, Limit, cost};
+use pathwarp::{Error, Outline, Seg};
+use pathwarp_reader::LARGEST;
+use simplecss::DeclarationTokenizer;
+use std::collections::HashMap;
+use usvg::roxmltree::{self, Node, NodeId};
 
 /// Features of a drawing that decide about fonts, images and limits.
 #[derive(Default)]
@@ -45,11 +48,494 @@ pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget
         spans(xml, budget).and_then(|()| text_paths(xml, budget)).map_err(too_much)?;
     }
     wide_strokes(xml, budget).map_err(|e| Error::limit(name, "with such wide strokes, its shapes take", e))?;
-    let segments = if unfold::may_be_large(xml, features.markers, features.references) {
-        unfold::check(xml, name, budget)?
+    let segments = if may_be_large(xml, features.markers, features.references) {
+        check(xml, name, budget)?
     } else {
-        unfold::count_plain(xml, name, budget)?
+        count_plain(xml, name, budget)?
     };
     wide_arcs(xml, segments, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
     Ok(features)
+}
+
+/// Deepest nesting of references and elements after expansion. The stack of 128 MiB allows several times as much, but
+/// usvg needs quadratic time for markers on markers.
+const DEEPEST: usize = 2_000;
+/// Drawings with at most this many references cannot expand to much.
+const FEW: usize = 16;
+/// Below this many bytes, vertices times one marker stays small.
+const SMALL: usize = 4096;
+/// Below this many bytes times references, a drawing cannot expand to much.
+const LARGE: usize = 1 << 22;
+
+/// Returns `true` if a drawing could expand to a large number of elements: it has more than a few references, and either
+/// markers, which are drawn at every vertex, or other elements that show what they refer to (`referring`).
+fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) -> bool {
+    let text = doc.input_text();
+    // Entities may contain references.
+    let references = || text.bytes().filter(|b| matches!(b, b'#' | b'&')).count();
+    let large = |references: usize| references > FEW || references.saturating_mul(text.len()) > LARGE;
+    markers > 1 || markers == 1 && text.len() > SMALL || (referring || markers > 0) && large(references())
+}
+
+/// Counts a drawing that cannot expand to much, and returns its segments.
+///
+/// # Errors
+/// Returns [`Error::Input`] if it exceeds the budget as it is.
+fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
+    let sizes = doc.descendants().filter(Node::is_element).map(Size::of);
+    let sum = sizes.fold(Size::default(), Size::plus);
+    sum.exceeded(budget).map_err(|e| Error::limit(name, "it takes", e))?;
+    sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))?;
+    Ok(sum.segments)
+}
+
+/// Rejects a drawing that expands to too much, or returns its segments. `name` identifies the drawing in the error.
+///
+/// # Errors
+/// Returns [`Error::Input`] that names the element.
+pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
+    let (size, _) = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
+        let line = doc.text_pos_at(node.range().start).row;
+        let tag = node.tag_name().name();
+        let which = node.attribute("id").map_or(format!("<{tag}>"), |id| format!("<{tag} id=\"{id}\">"));
+        let place = format!("{name}:{line}");
+        match why {
+            TooMuch::Work(e) => {
+                let what =
+                    format!("{which} expands to more than is allowed: with all that its references show, it takes");
+                Error::limit(place, what, e)
+            }
+            TooMuch::Depth => {
+                let problem =
+                    format!("the content of {which} nests deeper than {DEEPEST} levels, through references to");
+                Error::input(place, format!("{problem} references; replace some of them by plain shapes"))
+            }
+        }
+    })?;
+    size.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))?;
+    Ok(size.segments)
+}
+
+enum TooMuch {
+    Work(Exceeded),
+    Depth,
+}
+
+/// The size of a part of a drawing.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Size {
+    elements: u64,
+    segments: u64,
+    letters: u64,
+}
+
+impl Size {
+    /// The size of an element without its children.
+    fn of(node: Node<'_, '_>) -> Self {
+        let tag = node.tag_name().name();
+        let is_text = is_painted(tag) && !is_shape(tag);
+        Self {
+            elements: 1,
+            segments: if is_shape(tag) { vertices(node) } else { 0 },
+            letters: if is_text { node.children().map(letters).sum() } else { 0 },
+        }
+    }
+
+    fn plus(self, o: Self) -> Self {
+        Self {
+            elements: self.elements.saturating_add(o.elements),
+            segments: self.segments.saturating_add(o.segments),
+            letters: self.letters.saturating_add(o.letters),
+        }
+    }
+
+    fn times(self, n: u64) -> Self {
+        Self {
+            elements: self.elements.saturating_mul(n),
+            segments: self.segments.saturating_mul(n),
+            letters: self.letters.saturating_mul(n),
+        }
+    }
+
+    fn work(self) -> f64 {
+        let Self { elements, segments, letters } = self;
+        cost::ELEMENT * elements as f64 + cost::SEGMENT * segments as f64 + cost::LETTER * letters as f64
+    }
+
+    /// Compares with the limits, whatever is used of them.
+    fn exceeded(self, budget: &Budget) -> Result<(), Exceeded> {
+        budget.check(Limit::Elements, self.elements as f64)?;
+        budget.check(Limit::Work, self.work()).map_err(Exceeded::cut_short)
+    }
+
+    fn spend(self, budget: &Budget) -> Result<(), Exceeded> {
+        budget.take(Limit::Elements, self.elements as f64)?;
+        budget.spend(self.work())
+    }
+}
+
+/// Properties that may refer to an element to be shown.
+const PROPERTIES: [&str; 7] = ["fill", "stroke", "marker-start", "marker-mid", "marker-end", "clip-path", "mask"];
+/// The first two are paints; paints and markers are inherited.
+const PAINTS: usize = 2;
+const INHERITED: usize = 5;
+
+/// A property's value, as far as it concerns references.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Reference {
+    /// Not set, or `inherit`.
+    #[default]
+    Unset,
+    /// Set to a value without a reference.
+    Plain,
+    Shows(NodeId),
+    /// The fill (0) or stroke (1) of the context element: the `use`, or the shape with the marker.
+    Context(usize),
+}
+
+/// Targets of the inherited properties.
+type Inherited = [Option<NodeId>; INHERITED];
+
+/// A subtree to be shown, with everything that affects its content.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Body {
+    node: NodeId,
+    /// Inherited values; `None` means those at the element's own position in the file.
+    inherited: Option<Inherited>,
+    /// Paints of the context element.
+    context: [Option<NodeId>; PAINTS],
+}
+
+/// Content of a body.
+struct Inside {
+    size: Size,
+    depth: usize,
+    /// Bodies shown inside: how many times, at which depth.
+    shown: Vec<(Body, u64, usize)>,
+}
+
+struct Unfolding<'a, 'i> {
+    doc: &'a roxmltree::Document<'i>,
+    by_id: HashMap<&'a str, Node<'a, 'i>>,
+    /// Number of elements and depth by body; `None` while the body is being counted.
+    known: HashMap<Body, Option<(Size, usize)>>,
+}
+
+impl<'a, 'i> Unfolding<'a, 'i> {
+    fn of(doc: &'a roxmltree::Document<'i>) -> Self {
+        let mut by_id = HashMap::new();
+        for node in doc.descendants().filter(Node::is_element) {
+            if let Some(id) = node.attribute("id") {
+                by_id.entry(id).or_insert(node);
+            }
+        }
+        Self { doc, by_id, known: HashMap::new() }
+    }
+
+    /// Sums up everything with repetitions, and finds the deepest nesting.
+    fn count(&mut self, budget: &Budget) -> Result<(Size, usize), (Node<'a, 'i>, TooMuch)> {
+        let root = Body { node: self.doc.root_element().id(), inherited: None, context: [None; PAINTS] };
+        let first = self.inside(root);
+        // Visiting elements takes time, too, so it is bounded as well.
+        let mut visited = first.size;
+        let mut open = vec![(root, first)];
+        self.known.insert(root, None);
+        let (mut last, mut first_over) = ((Size::default(), 0), None);
+        while let Some((body, inside)) = open.last_mut() {
+            if let Some(next) = inside.shown.pop() {
+                let (other, times, at) = next;
+                match self.known.get(&other) {
+                    Some(Some((size, depth))) => {
+                        inside.size = inside.size.plus(size.times(times));
+                        inside.depth = inside.depth.max(at + depth);
+                    }
+                    // A cycle: usvg cuts it here.
+                    Some(None) => {}
+                    None => {
+                        inside.shown.push(next);
+                        let new = self.inside(other);
+                        visited.elements += new.size.elements + new.shown.len() as u64;
+                        self.known.insert(other, None);
+                        open.push((other, new));
+                    }
+                }
+                continue;
+            }
+            let node = self.doc.get_node(body.node).unwrap_or(self.doc.root_element());
+            last = (inside.size, inside.depth);
+            self.known.insert(*body, Some(last));
+            open.pop();
+            if last.0.exceeded(budget).is_err() {
+                first_over.get_or_insert(node);
+            }
+            visited.exceeded(budget).map_err(|e| (node, TooMuch::Work(e.cut_short())))?;
+            if last.1.max(open.len()) > DEEPEST {
+                return Err((node, TooMuch::Depth));
+            }
+        }
+        // The message tells what the whole drawing takes.
+        let counted = last.0.exceeded(budget);
+        counted.map(|()| last).map_err(|e| (first_over.unwrap_or(self.doc.root_element()), TooMuch::Work(e)))
+    }
+
+    /// Examines a body without the bodies shown inside.
+    fn inside(&self, body: Body) -> Inside {
+        let mut out = Inside { size: Size::default(), depth: 0, shown: Vec::new() };
+        let Some(top) = self.doc.get_node(body.node) else { return out };
+        let placed = |node: NodeId| Body { node, inherited: None, context: [None; PAINTS] };
+        let mut todo = vec![(top, body.inherited.unwrap_or_else(|| self.place(top)), 1)];
+        while let Some((node, mut inherited, depth)) = todo.pop() {
+            out.size = out.size.plus(Size::of(node));
+            out.depth = out.depth.max(depth);
+            let tag = node.tag_name().name();
+            if node != top && is_defined(tag) {
+                continue;
+            }
+            let (references, filters) = self.references(node);
+            for (slot, reference) in inherited.iter_mut().zip(references) {
+                match reference {
+                    Reference::Shows(id) => *slot = Some(id),
+                    Reference::Plain => *slot = None,
+                    Reference::Context(paint) => *slot = body.context[paint],
+                    Reference::Unset => {}
+                }
+            }
+            let [fill, stroke, start, middle, end] = inherited;
+            let mut show = |target: Option<Body>, times| out.shown.extend(target.map(|t| (t, times, depth)));
+            if is_painted(tag) {
+                show(fill.map(placed), 1);
+                show(stroke.map(placed), 1);
+            }
+            if start.or(middle).or(end).is_some() && matches!(tag, "path" | "line" | "polyline" | "polygon") {
+                let on = |marker: NodeId| Body { context: [fill, stroke], ..placed(marker) };
+                show(start.map(on), 1);
+                show(middle.map(on), vertices(node));
+                show(end.map(on), 1);
+            }
+            for reference in &references[INHERITED..] {
+                if let Reference::Shows(target) = reference {
+                    show(Some(placed(*target)), 1);
+                }
+            }
+            for filter in filters {
+                show(Some(placed(filter)), 1);
+            }
+            let linked = || self.linked(node).map(|n| n.id());
+            match tag {
+                "use" => {
+                    let copy = |node| Body { node, inherited: Some(inherited), context: [fill, stroke] };
+                    show(linked().map(copy), 1);
+                }
+                "feImage" => show(linked().map(placed), 1),
+                "pattern" if node.first_element_child().is_none() => show(linked().map(placed), 1),
+                _ => {}
+            }
+            let children = node.children().filter(Node::is_element);
+            todo.extend(children.map(|child| (child, inherited, depth + 1)));
+        }
+        out
+    }
+
+    /// Finds the values an element inherits at its position in the file.
+    fn place(&self, node: Node<'a, 'i>) -> Inherited {
+        let mut out = Inherited::default();
+        let mut open: Vec<usize> = (0..INHERITED).collect();
+        for around in node.ancestors().skip(1).filter(Node::is_element) {
+            let (references, _) = self.references(around);
+            open.retain(|&i| match references[i] {
+                Reference::Unset | Reference::Context(_) => true,
+                Reference::Plain => false,
+                Reference::Shows(target) => {
+                    out[i] = Some(target);
+                    false
+                }
+            });
+        }
+        out
+    }
+
+    /// Resolves the properties of an element from attributes and the style attribute. Filters are listed from all
+    /// declarations, as each may hold several.
+    fn references(&self, node: Node<'a, 'i>) -> ([Reference; PROPERTIES.len()], Vec<NodeId>) {
+        let mut out = [(Reference::Unset, false); PROPERTIES.len()];
+        let mut filters = Vec::new();
+        let mut set = |name: &str, value: &str, important: bool| match name {
+            "filter" => filters.extend(urls(value).filter_map(|id| self.by_id.get(id)).map(Node::id)),
+            "fill" | "stroke" | "mask" | "clip-path" | "marker" | "marker-start" | "marker-mid" | "marker-end" => {
+                for (i, p) in PROPERTIES.iter().enumerate() {
+                    if (*p == name || name == "marker" && p.starts_with("marker-")) && !out[i].1 {
+                        out[i] = (self.value(value), important);
+                    }
+                }
+            }
+            _ => {}
+        };
+        for a in node.attributes() {
+            set(a.name(), a.value(), false);
+        }
+        for d in node.attribute("style").into_iter().flat_map(DeclarationTokenizer::from) {
+            set(d.name, d.value, d.important);
+        }
+        (out.map(|o| o.0), filters)
+    }
+
+    fn value(&self, value: &str) -> Reference {
+        match value.trim() {
+            "inherit" => Reference::Unset,
+            "context-fill" => Reference::Context(0),
+            "context-stroke" => Reference::Context(1),
+            v => urls(v).find_map(|id| self.by_id.get(id)).map_or(Reference::Plain, |n| Reference::Shows(n.id())),
+        }
+    }
+
+    fn linked(&self, node: Node<'a, 'i>) -> Option<Node<'a, 'i>> {
+        let links = || node.attributes().filter(|a| a.name() == "href");
+        let link = links().find(|a| a.namespace().is_none()).or_else(|| links().next())?;
+        self.by_id.get(link.value().trim().strip_prefix('#')?).copied()
+    }
+}
+
+/// The letters of a piece of text; none of an element.
+pub(super) fn letters(n: Node<'_, '_>) -> u64 {
+    n.text().filter(|_| n.is_text()).map_or(0, |t| t.chars().count()) as u64
+}
+
+/// Returns `true` for elements that are drawn only by reference.
+fn is_defined(tag: &str) -> bool {
+    matches!(tag, "pattern" | "marker" | "clipPath" | "mask" | "filter" | "symbol" | "defs" | "style" | "metadata")
+}
+
+/// Returns `true` for elements with a fill and a stroke.
+fn is_painted(tag: &str) -> bool {
+    is_shape(tag) || matches!(tag, "text" | "tspan" | "textPath")
+}
+
+/// Lists the ids in `url(#…)` references.
+fn urls(value: &str) -> impl Iterator<Item = &str> {
+    value.split("url(").skip(1).filter_map(|rest| {
+        let inside = rest.split(')').next()?;
+        inside.trim().trim_matches(['"', '\'']).trim().strip_prefix('#')
+    })
+}
+
+/// Bounds the number of vertices of a path, polyline or polygon from above by its numbers and commands.
+fn vertices(node: Node<'_, '_>) -> u64 {
+    let text = node.attribute("d").or_else(|| node.attribute("points")).unwrap_or("");
+    // Compared with its neighbour, a byte needs no state, and many are counted at a time.
+    let starts = |before: u8, b: u8| u64::from(b.is_ascii_digit() & !before.is_ascii_digit() | (b | 0x20 == b'z'));
+    let bytes = text.as_bytes();
+    let first = bytes.first().map_or(0, |b| starts(b' ', *b));
+    first + bytes.windows(2).map(|w| starts(w[0], w[1])).sum::<u64>() + 2
+}
+
+#[cfg(test)]
+mod tests;
+
+/// Counts the segments along which texts are laid out: each text measures its whole path.
+fn text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    /// Fewest bytes of path data for a curve, whose length takes the time. A line takes less in fewer bytes.
+    const CURVE: usize = 12;
+    let links = || xml.descendants().filter(|n| n.tag_name().name() == "textPath").filter_map(href);
+    if links().next().is_none() {
+        return Ok(());
+    }
+    let data = |n: Node<'_, '_>| Some((n.attribute("id")?.to_owned(), n.attribute("d")?.len()));
+    let lengths: HashMap<String, usize> = xml.descendants().filter_map(data).collect();
+    links().try_for_each(|id| {
+        let segments = lengths.get(id).map_or(0, |length| length / CURVE);
+        budget.spend(cost::SEGMENT * segments as f64)
+    })
+}
+
+/// The id that a link leads to.
+fn href<'a>(n: Node<'a, '_>) -> Option<&'a str> {
+    let link = n.attributes().find(|a| a.name() == "href")?.value();
+    link.trim().strip_prefix('#')
+}
+
+/// Counts what arcs become whose ellipses are much wider than any page, such as those with one small radius that have to be enlarged to
+/// reach their ends. usvg turns an arc into cubics whose number grows with the radius, and the time with its square.
+fn wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget) -> Result<(), Exceeded> {
+    /// Radii of fewer cubics take no time.
+    const WIDE: f64 = 1e8;
+    /// A cubic's error times the sixth power of their number in a turn, for the radius 1, and the error that usvg allows.
+    const ERROR: f64 = 1.1163;
+    const ALLOWED: f64 = 0.1;
+    /// Comparisons for an arc, by the square of its cubics.
+    const MOVED: f64 = 0.0125;
+    // Path data is parsed once more only where its numbers may amount to such an arc.
+    let arcs = |d: &str| {
+        let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && is_uneven(d);
+        suspected.then(|| Outline::from_svg_lossy(d))
+    };
+    let radius = |s: &Seg| if let Seg::Arc(a) = s { a.a.hypot().max(a.b.hypot()) } else { 0.0 };
+    let widest = |o: Outline| o.segs().map(radius).fold(0.0, f64::max);
+    let paths = xml.descendants().filter_map(|n| n.attribute("d")).filter_map(arcs);
+    let radius = paths.map(widest).fold(0.0, f64::max);
+    if radius < WIDE {
+        return Ok(());
+    }
+    let cubics = (ERROR * radius / ALLOWED).powf(1.0 / 6.0);
+    // Each of them may be as wide.
+    budget.spend(cost::COMPARISON * segments as f64 * MOVED * cubics * cubics)
+}
+
+/// Returns `false` if all numbers of path data are certainly below 10⁴ and, unless they are zero, at least 10⁻³: no exponent, no five
+/// digits before a point, no three zeros after it.
+fn is_uneven(data: &str) -> bool {
+    let (mut digits, mut zeros, mut fraction) = (0, 0, false);
+    for byte in data.bytes() {
+        match byte {
+            b'e' | b'E' => return true,
+            b'.' => (zeros, fraction) = (0, true),
+            b'0' if fraction => zeros += 1,
+            // The digits after the first one that is not zero do not count.
+            b'0'..=b'9' if fraction => zeros = i32::MIN,
+            b'0'..=b'9' => digits += 1,
+            _ => (digits, fraction) = (0, false),
+        }
+        if digits > 4 || fraction && zeros > 2 {
+            return true;
+        }
+    }
+    false
+}
+
+/// Counts the shapes of a drawing with strokes so wide that single precision fails the renderer when it outlines them for their
+/// boxes: the time grows with the width.
+fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    /// Narrower strokes take no time.
+    const WIDE: f64 = 2e6;
+    /// Comparisons for a shape and a unit of its width.
+    const UNIT: f64 = 350e-6;
+    let text = xml.input_text();
+    let widths = memmem::find_iter(text.as_bytes(), "stroke-width").filter_map(|at| {
+        let value = text.get(at + "stroke-width".len()..)?.trim_start_matches([' ', ':', '=', '"', '\'']);
+        let end = value.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-')));
+        value[..end.unwrap_or(value.len())].trim_end_matches(['e', 'E']).parse::<f64>().ok()
+    });
+    let width = widths.fold(0.0, f64::max).min(LARGEST);
+    if width < WIDE {
+        return Ok(());
+    }
+    let shapes = xml.descendants().filter(Node::is_element).count();
+    budget.spend(cost::COMPARISON * shapes as f64 * width * UNIT)
+}
+
+/// Counts the letters that are compared with every span of their text.
+pub(super) fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    const AT_A_TIME: f64 = 64.0;
+    let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
+    for text in texts {
+        let (mut spans, mut all_letters) = (0.0, 0.0);
+        for n in text.descendants() {
+            if n.is_element() {
+                spans += 1.0;
+            }
+            all_letters += letters(n) as f64;
+        }
+        // The text itself is no span. Its letters are also compared with each other, some at a time.
+        budget.spend(cost::COMPARISON * ((spans - 1.0) * all_letters + all_letters * all_letters / AT_A_TIME))?;
+    }
+    Ok(())
 }

@@ -1,9 +1,8 @@
 //! Edits to the source text: attributes, style properties, tags and whole elements. Everything else stays as it is, byte for
 //! byte.
 
-use super::element::Attr;
-use super::style::{declared, with_declaration};
-use super::tags::{ElementId, Namespace};
+use super::elements::{Attr, ElementId, Namespace};
+use super::elements::{declared, with_declaration};
 use super::text::SourceText;
 use pathwarp_reader::xml::escape;
 use std::collections::BTreeMap;

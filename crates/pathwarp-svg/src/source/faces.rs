@@ -229,7 +229,7 @@ const KINDS: [(FontFamily, &[&str]); 4] = [
 ];
 
 /// The kind of a missing family, by its name.
-pub(super) fn kind_of(missing: &str) -> Option<FontFamily> {
+fn kind_of(missing: &str) -> Option<FontFamily> {
     let name = plain(missing);
     // What the whole name says is more than its beginning.
     let said = [

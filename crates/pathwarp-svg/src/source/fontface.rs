@@ -1,10 +1,8 @@
 //! Fonts embedded in a drawing: `@font-face` rules in its style sheets (CSS Fonts 4, section 4) with a `data:` URL of a
 //! TrueType, OpenType or WOFF 1.0 font.
 
-use super::fontguard::listing;
-use super::fonts::load_unnamed;
-use super::metrics;
-use super::style::declarations;
+use super::elements::declarations;
+use super::fonts::{self, listing, load_unnamed};
 use base64::Engine as _;
 use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use pathwarp_text::GlyphWork;
@@ -39,7 +37,7 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
     taken.into_iter().for_each(|id| all.remove_face(id));
     for face in faces {
         let mut data = face.data;
-        metrics::adjust(&mut data, 0);
+        fonts::adjust(&mut data, 0);
         let data: Arc<dyn AsRef<[u8]> + Send + Sync> = Arc::new(data);
         let mut ids = all.load_font_source(Source::Binary(data.clone())).to_vec();
         if ids.is_empty() {

@@ -1,11 +1,13 @@
 //! Fonts for text: installed ones if wanted, given files, and a bundled fallback.
 
 use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of_interface};
-use super::fontguard::{FontGuard, listing};
-use super::images::Missing;
-use super::metrics;
-use skrifa::{FontRef, MetadataProvider as _};
-use std::collections::{BTreeMap, HashMap, HashSet};
+use super::images::{self, Missing, Rejected};
+use super::read::ReadOptions;
+use pathwarp::Error;
+use pathwarp_text::{GlyphWork, MOST_WORK};
+use skrifa::raw::{FileRef, TableProvider as _};
+use skrifa::{FontRef, MetadataProvider as _, Tag};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::io::Read as _;
 use std::ops::RangeInclusive;
@@ -197,7 +199,7 @@ impl Held {
         let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if !files.contains_key(&path) {
             let Ok(mut data) = fs::read(&path) else { return id };
-            metrics::adjust(&mut data, index);
+            adjust(&mut data, index);
             files.insert(path.clone(), (Arc::new(data), Vec::new()));
         }
         let Some((data, faces)) = files.get_mut(&path) else { return id };
@@ -265,4 +267,226 @@ fn stretch(s: usvg::FontStretch) -> fontdb::Stretch {
         S::ExtraExpanded => D::ExtraExpanded,
         S::UltraExpanded => D::UltraExpanded,
     }
+}
+
+/// A font file's content.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FontFile {
+    /// Bytes of the file.
+    pub bytes: Vec<u8>,
+    /// Index of the font in the file, from 0.
+    pub index: u32,
+}
+
+/// Finds the installed or bundled font of a family that is nearest to `weight` (100 to 900; 400 is regular). `family` may be
+/// a generic family of CSS. `read` says which fonts there are.
+///
+/// # Errors
+/// Returns [`Error::Usage`] if there is no such family, with suggestions of similar names.
+pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) -> Result<FontFile, Error> {
+    let db = database(read.system_fonts, &read.fonts);
+    let style = if italic { fontdb::Style::Italic } else { fontdb::Style::Normal };
+    let look = Look { weight: fontdb::Weight(weight), stretch: fontdb::Stretch::Normal, style };
+    let generic = match family.to_ascii_lowercase().as_str() {
+        "serif" => Some(FontFamily::Serif),
+        "sans-serif" => Some(FontFamily::SansSerif),
+        "cursive" => Some(FontFamily::Cursive),
+        "fantasy" => Some(FontFamily::Fantasy),
+        "monospace" => Some(FontFamily::Monospace),
+        _ => None,
+    };
+    let found = match generic {
+        Some(kind) => look.face_of_kind(&kind, &read.generic_families, &db),
+        None => look.face_of(family, &db).or_else(|| look.face_called(family, &db)),
+    };
+    let file = found.and_then(|id| db.with_face_data(id, |bytes, index| FontFile { bytes: bytes.to_vec(), index }));
+    file.ok_or_else(|| {
+        Error::usage("font", family, format!("is neither a file nor an installed family; {}", similar(family, &db)))
+    })
+}
+
+/// The fonts of a family: weight, and `true` for italic and oblique ones; sorted, without repetitions.
+#[must_use]
+pub fn family_styles(family: &str, read: &ReadOptions) -> Vec<(u16, bool)> {
+    let db = database(read.system_fonts, &read.fonts);
+    let of_family = |f: &&fontdb::FaceInfo| f.families.iter().any(|(n, _)| n.eq_ignore_ascii_case(family));
+    let styles = db.faces().filter(of_family).map(|f| (f.weight.0, f.style != fontdb::Style::Normal));
+    styles.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Checks that every file is a font, and that every folder holds one.
+///
+/// # Errors
+/// Returns [`Error::Input`] with the name of the first that does not.
+pub fn check_fonts(paths: &[PathBuf]) -> Result<(), Error> {
+    for path in paths {
+        let name = path.display().to_string();
+        let mut db = Database::new();
+        if path.is_dir() {
+            db.load_fonts_dir(path);
+        } else {
+            load_file(&mut db, path).map_err(|problem| Error::input(&name, problem))?;
+        }
+        if db.is_empty() {
+            return Err(Error::input(&name, if path.is_dir() { "holds no font" } else { "is not a font" }));
+        }
+    }
+    Ok(())
+}
+
+/// Lists families with names similar to `family`: each word of `family` resembles a word of the name.
+fn similar(family: &str, db: &Database) -> String {
+    /// Jaro–Winkler similarity (1 is equal) of words that differ by a letter or two; unrelated words rarely reach it.
+    const ALIKE: f64 = 0.85;
+    /// Longest list of suggestions.
+    const SHOWN: usize = 6;
+    let wanted: Vec<String> = family.split_whitespace().map(str::to_lowercase).collect();
+    let likeness = |name: &str| {
+        let name = name.to_lowercase();
+        let best = |w: &String| name.split_whitespace().map(|n| strsim::jaro_winkler(w, n)).fold(0.0, f64::max);
+        wanted.iter().map(best).sum::<f64>() / wanted.len().max(1) as f64
+    };
+    let mut names: Vec<&str> = db.faces().flat_map(|f| &f.families).map(|(n, _)| n.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut names: Vec<(f64, &str)> =
+        names.into_iter().map(|n| (likeness(n), n)).filter(|(l, _)| *l >= ALIKE).collect();
+    names.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.len().cmp(&b.1.len())).then(a.1.cmp(b.1)));
+    if names.is_empty() {
+        return "the bundled family is Noto Sans".into();
+    }
+    let names: Vec<&str> = names.iter().take(SHOWN).map(|(_, n)| *n).collect();
+    format!("similar families: {}", names.join(", "))
+}
+
+/// What the faces of a font file take to be listed, in bytes: they may be thousands that share one long list of names.
+pub(super) fn listing(data: &[u8], most: u64) -> u64 {
+    /// A face without names.
+    const FACE: u64 = 1000;
+    let names = |font: &FontRef<'_>| {
+        let Ok(names) = font.name() else { return 0 };
+        names.name_record().iter().map(|r| u64::from(r.length())).sum()
+    };
+    let announced = data.get(8..12).and_then(|n| n.try_into().ok()).map_or(0, u32::from_be_bytes);
+    if data.starts_with(b"ttcf") && announced as usize > data.len() / size_of::<u32>() {
+        return u64::MAX;
+    }
+    let Ok(FileRef::Collection(all)) = FileRef::new(data) else { return 0 };
+    let mut total = 0;
+    for index in 0..all.len() {
+        total += FACE + all.get(index).map_or(0, |font| names(&font));
+        if total > most {
+            break;
+        }
+    }
+    total
+}
+
+/// Checks faces before they are used.
+pub(super) struct FontGuard {
+    options: ReadOptions,
+    rejected: Rejected,
+    known: Mutex<HashMap<ID, bool>>,
+}
+
+impl FontGuard {
+    pub(super) fn new(options: &ReadOptions, rejected: &Rejected) -> Self {
+        Self { options: options.clone(), rejected: rejected.clone(), known: Mutex::default() }
+    }
+
+    /// The face has been found good under another number.
+    fn trust(&self, face: ID) {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).insert(face, true);
+    }
+
+    /// Returns `true` if a face may be used. Else it is the error of the drawing.
+    fn admits(&self, face: ID, db: &Database) -> bool {
+        if let Some(known) = self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&face) {
+            return *known;
+        }
+        let Some(info) = db.face(face) else { return true };
+        let is_given = match &info.source {
+            Source::File(path) => self.options.fonts.iter().any(|given| path.starts_with(given)),
+            _ => true,
+        };
+        let name = || info.families.first().map_or("", |(name, _)| name.as_str());
+        let found = if is_given {
+            db.with_face_data(face, |data, index| self.checked(data, index, name())).unwrap_or(Ok(()))
+        } else {
+            Ok(())
+        };
+        let is_good = found.is_ok();
+        if let (Err(e), Ok(mut r)) = (found, self.rejected.lock()) {
+            r.get_or_insert(e);
+        }
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).insert(face, is_good);
+        is_good
+    }
+
+    fn checked(&self, data: &[u8], index: u32, name: &str) -> Result<(), Error> {
+        if data == BUNDLED {
+            return Ok(());
+        }
+        let place = format!("the font {name}");
+        if let Some(glyph) = GlyphWork::new(data, index).and_then(|mut all| all.endless()) {
+            let problem = format!("glyph {glyph} takes {MOST_WORK} points or more, with all of its parts and layers");
+            return Err(Error::input(place, problem + "; use another font"));
+        }
+        // Glyphs may be drawings themselves.
+        let Some(svg) = FontRef::from_index(data, index).ok().and_then(|f| f.svg().ok()) else { return Ok(()) };
+        let Ok(list) = svg.svg_document_list() else { return Ok(()) };
+        let options = self.options.begin(data.len());
+        let records = list.document_records().iter();
+        let spans: BTreeSet<_> = records.map(|r| (r.svg_doc_offset(), r.svg_doc_length())).collect();
+        for (start, length) in spans {
+            let end = u64::from(start) + u64::from(length);
+            let drawing = list.offset_data().as_bytes().get(start as usize..end as usize);
+            if let Some(drawing) = drawing {
+                images::checked(images::SVG, Arc::new(drawing.to_vec()), &place, &options)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The thickness of lines, in parts of the font size, and how far their middle is below the baseline: half a thickness lies between.
+const THICKNESS: f64 = 0.1;
+const BELOW: f64 = 0.1;
+/// How far lines through letters are above the baseline, in parts of the ascent.
+const THROUGH: f64 = 1.0 / 3.0;
+/// How far subscripts and superscripts are shifted, in parts of the line.
+const SHIFT: f64 = 0.5;
+
+/// Changes these measures in a font file, for the face with an index.
+pub(super) fn adjust(data: &mut [u8], index: u32) {
+    for (at, value) in changes(data, index).unwrap_or_default() {
+        if let Some(place) = data.get_mut(at..at + 2) {
+            place.copy_from_slice(&value.to_be_bytes());
+        }
+    }
+}
+
+/// Places in the file, each with its number.
+fn changes(data: &[u8], index: u32) -> Option<Vec<(usize, i16)>> {
+    let font = FontRef::from_index(data, index).ok()?;
+    let em = f64::from(font.head().ok()?.units_per_em());
+    let hhea = font.hhea().ok()?;
+    let (ascent, descent) = (f64::from(hhea.ascender().to_i16()), f64::from(hhea.descender().to_i16()));
+    #[expect(clippy::cast_possible_truncation, reason = "casts saturate")]
+    let rounded = |v: f64| v.round() as i16;
+    let table = |tag: &[u8; 4]| {
+        let records = font.table_directory().table_records();
+        records.iter().find(|r| r.tag() == Tag::new(tag)).map(|r| r.offset() as usize)
+    };
+    let (thickness, below) = (rounded(THICKNESS * em), rounded(-BELOW * em));
+    let shift = rounded(SHIFT * (ascent - descent));
+    let mut out = Vec::new();
+    // Fields of OpenType's tables.
+    out.extend(table(b"post").into_iter().flat_map(|at| [(at + 8, below), (at + 10, thickness)]));
+    out.extend(
+        table(b"OS/2")
+            .into_iter()
+            .flat_map(|at| [(at + 16, shift), (at + 24, shift), (at + 28, rounded(THROUGH * ascent))]),
+    );
+    Some(out)
 }

@@ -1,32 +1,15 @@
 //! The source text: its elements and their positions, edits to it, style sheets, fonts, and usvg's tree of it.
 
-pub(crate) mod ahead;
-mod bitmap;
-mod check;
+pub(crate) mod check;
 pub(crate) mod edit;
-pub(crate) mod element;
-mod encoding;
+pub(crate) mod elements;
 pub(crate) mod faces;
-pub(crate) mod families;
-mod fontface;
-mod fontguard;
+pub(crate) mod fontface;
 pub(crate) mod fonts;
 pub(crate) mod images;
-pub(crate) mod live;
-mod marks;
-mod metrics;
 pub(crate) mod number;
-pub(crate) mod parallel;
-mod prefixes;
 pub(crate) mod read;
 pub(crate) mod select;
-pub(crate) mod stack;
-pub(crate) mod style;
-pub(crate) mod table;
-pub(crate) mod tags;
 pub(crate) mod text;
+pub(crate) mod threads;
 pub(crate) mod tree;
-pub(crate) mod undrawn;
-mod unfold;
-pub(crate) mod unpatchable;
-mod usvgguard;

@@ -134,7 +134,7 @@ pub(crate) fn short(v: f64) -> String {
 }
 
 /// Formats `v` with `digits` significant digits.
-pub(crate) fn significant(v: f64, digits: i32) -> String {
+fn significant(v: f64, digits: i32) -> String {
     let mut out = String::new();
     push_significant(&mut out, v, digits);
     out

@@ -1,6 +1,6 @@
 //! Selection of a part of a drawing: selectors, exclusions, guides, and names.
 
-use super::tags::ElementId;
+use super::elements::ElementId;
 use super::text::SourceText;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;

@@ -1,21 +1,17 @@
 //! The source text with its table of elements: names and attributes are looked up here, and patches refer to it.
 
-use super::ahead::{self, Ahead};
-use super::element::{Attr, Element};
-use super::marks::{self, Marks};
-use super::parallel::both;
-use super::prefixes;
-use super::style;
-use super::table::Table;
-use super::tags::{ElementId, Namespace, is_animation, is_tracked};
-use super::unpatchable::Unpatchable;
-use pathwarp::Error;
+use super::elements::declared;
+use super::elements::{
+    Attr, Element, ElementId, INKSCAPE, Namespace, SVG, Table, Unpatchable, XLINK, is_animation, is_tracked,
+};
+use super::threads::{both, map_parallel};
 use pathwarp::budget::Budget;
+use pathwarp::{Error, Outline};
 use pathwarp_reader::{Change, Plain, ReadError, resolve, xml};
 use std::borrow::Cow;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use usvg::roxmltree;
 
 /// Limit on prefixes to declare. Each costs one parse.
@@ -124,12 +120,12 @@ impl SourceText {
 
     /// Calls `f`, and on another thread reads the outlines of a large drawing.
     pub(crate) fn reading_ahead<T: Send>(&self, f: impl FnOnce() -> T + Send) -> T {
-        if self.text.len() < ahead::WORTH_THREADS {
+        if self.text.len() < WORTH_THREADS {
             return f();
         }
         let read = || {
             // Not inside of `get_or_init`: a thread that waits for others may run a task that needs the outlines, too.
-            let outlines = ahead::read(&self.text, &self.elements);
+            let outlines = read(&self.text, &self.elements);
             let _ = self.ahead.set(outlines);
         };
         both(f, read).0
@@ -233,7 +229,7 @@ impl SourceText {
     /// The value of a property that an element declares. Nothing is inherited.
     pub(crate) fn property(&self, e: ElementId, name: &str) -> Option<Cow<'_, str>> {
         let style = self.attr(e, "style");
-        let declared = style.as_deref().and_then(|s| style::declared(s, name)).map(|v| v.to_owned().into());
+        let declared = style.as_deref().and_then(|s| declared(s, name)).map(|v| v.to_owned().into());
         declared.or_else(|| self.attr(e, name))
     }
 
@@ -325,8 +321,8 @@ impl SourceText {
 
     /// Inserts temporary ids, and adds declarations to style attributes.
     pub(crate) fn instrumented_with(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (String, Marks) {
-        let mut marks = Marks { stem: marks::stem(&self.text), elements: Vec::new() };
-        let links = marks::links(&self.text);
+        let mut marks = Marks { stem: stem(&self.text), elements: Vec::new() };
+        let links = links(&self.text);
         let mut patches: Vec<(Range<usize>, String)> = Vec::new();
         for (i, e) in self.elements.iter().enumerate() {
             if !is_tracked(&e.tag) {
@@ -382,7 +378,7 @@ pub(super) fn plain(
         };
         let known = undeclared.as_mut().filter(|u| u.len() < MOST_PREFIXES);
         if let (roxmltree::Error::UnknownNamespace(prefix, _), Some(known)) = (&why, known)
-            && let Some(mended) = prefixes::declared(&text, prefix)
+            && let Some(mended) = with_prefix(&text, prefix)
         {
             known.push(prefix.clone());
             text = mended;
@@ -391,6 +387,97 @@ pub(super) fn plain(
         xml::parse_checked(&text, name)?;
         return Err(Error::input(name, why.to_string()));
     }
+}
+
+/// The elements with a temporary id, which is the stem followed by the element's number.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Marks {
+    stem: String,
+    /// In document order.
+    pub(crate) elements: Vec<ElementId>,
+}
+
+/// Finds a prefix that occurs nowhere in the text.
+fn stem(text: &str) -> String {
+    let mut stem = "warp-".to_owned();
+    while text.contains(&stem) {
+        stem.push('x');
+    }
+    stem
+}
+
+/// Collects everything that looks like a reference. False positives do no harm.
+pub(crate) fn links(text: &str) -> HashSet<&str> {
+    text.match_indices('#')
+        .map(|(i, _)| {
+            let rest = &text[i + 1..];
+            &rest[..rest.find(|c: char| !(c.is_alphanumeric() || "-_.:".contains(c))).unwrap_or(rest.len())]
+        })
+        .collect()
+}
+
+/// Prefixes as Inkscape reads them.
+const KNOWN: [(&str, &str); 8] = [
+    ("inkscape", INKSCAPE),
+    ("sodipodi", "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd"),
+    ("svg", SVG),
+    ("xlink", XLINK),
+    ("rdf", "http://www.w3.org/1999/02/22-rdf-syntax-ns#"),
+    ("cc", "http://creativecommons.org/ns#"),
+    ("dc", "http://purl.org/dc/elements/1.1/"),
+    ("xhtml", "http://www.w3.org/1999/xhtml"),
+];
+
+/// Declares a prefix in the root element. Returns `None` if the root element cannot be found.
+fn with_prefix(text: &str, prefix: &str) -> Option<String> {
+    let known = KNOWN.iter().find(|k| k.0 == prefix).map(|k| Cow::Borrowed(k.1));
+    let uri = known.unwrap_or_else(|| Cow::Owned(format!("urn:undeclared:{prefix}")));
+    let at = root_name_end(text)?;
+    let (before, after) = text.split_at_checked(at)?;
+    Some(format!("{before} xmlns:{prefix}=\"{uri}\"{after}"))
+}
+
+/// Position after the name in the first opening tag.
+fn root_name_end(text: &str) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        at += text.get(at..)?.find('<')?;
+        let rest = text.get(at..)?;
+        at += match rest.as_bytes().get(1)? {
+            b'?' => rest.find("?>")?,
+            b'!' if rest.starts_with("<!--") => rest.find("-->")?,
+            b'!' => doctype_end(rest)?,
+            _ => return Some(at + rest.find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>'))?),
+        };
+    }
+}
+
+/// Position of the `>` that ends a DOCTYPE with or without a subset.
+fn doctype_end(text: &str) -> Option<usize> {
+    let close = text.find('>')?;
+    match text.find('[').filter(|&open| open < close) {
+        Some(open) => {
+            let end = open + text.get(open..)?.find(']')?;
+            Some(end + text.get(end..)?.find('>')?)
+        }
+        None => Some(close),
+    }
+}
+
+/// The outlines, once they are read.
+type Ahead = Arc<OnceLock<HashMap<ElementId, Arc<Outline>>>>;
+
+/// Bytes of source text below which starting threads takes longer than reading the outlines.
+pub(crate) const WORTH_THREADS: usize = 200_000;
+
+/// Reads the outlines of all `path` elements.
+pub(super) fn read(text: &str, elements: &[Element]) -> HashMap<ElementId, Arc<Outline>> {
+    let paths: Vec<ElementId> = (0..elements.len()).filter(|e| elements[*e].tag == "path").collect();
+    let outline = |i: usize| {
+        let d = elements[paths[i]].attr(text, "d")?;
+        Some((paths[i], Arc::new(Outline::from_svg_lossy(&d))))
+    };
+    map_parallel(paths.len(), outline).into_iter().flatten().collect()
 }
 
 #[cfg(test)]
@@ -448,5 +535,22 @@ mod tests {
             "<svg id=\"warp-0\" xmlns='http://www.w3.org/2000/svg'><path id=\"warp-1\"/><g id='q'><path id='warp-3'/></g></svg>"
         );
         assert_eq!((&ids["q"], &ids["warp-3"]), (&vec![2], &vec![3]));
+    }
+
+    #[test]
+    fn the_root_declares_the_prefix() {
+        let cases = [
+            ("<svg/>", "<svg xmlns:cc=\"http://creativecommons.org/ns#\"/>"),
+            (
+                "<?xml version='1.0'?><!-- <a> --><!DOCTYPE svg [<!ENTITY a 'b'>]>\n<s:svg\n>",
+                "<s:svg xmlns:cc=\"http://",
+            ),
+        ];
+        for (text, wanted) in cases {
+            let found = with_prefix(text, "cc").unwrap();
+            assert!(found.contains(wanted), "{found}");
+        }
+        assert!(with_prefix("<svg>", "figma").unwrap().contains("xmlns:figma=\"urn:undeclared:figma\""));
+        assert_eq!(with_prefix("<!-- ", "cc"), None);
     }
 }

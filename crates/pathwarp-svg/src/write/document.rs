@@ -1,19 +1,26 @@
 //! Writes a warped document: patched in place, or flattened.
 
+use super::fragment::Writer;
 use super::input::WriteInput;
-use super::{arrivals, flat, keep, page, unsupported};
+use super::{keep, page};
 use crate::bend::options::{Structure, WarpOptions};
-use crate::bend::outcome::{Notes, Skipped, WarpedDocument};
-use crate::bend::warning::Warning;
+use crate::bend::outcome::{Notes, Skipped, Warning, WarpedDocument};
 use crate::scene::drawing::Drawing;
+use crate::source::elements::{ElementId, is_shape};
 use crate::source::images::{is_same_link, shown};
-use crate::source::tags::ElementId;
+use crate::source::text::SourceText;
+use crate::source::tree::{Unknown, is_definition, unknown};
 use pathwarp::Error;
+use pathwarp::kurbo::Rect;
+use pathwarp_reader::xml::escape;
+use std::borrow::Cow;
+use std::collections::HashSet;
+use std::fmt::Write as _;
 
 /// Writes the document to `out`, with warnings and everything skipped.
 pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<(), Error> {
     let structure = input.options.structure;
-    let unread = unread_images(input.drawing, input.options).chain(unsupported::elements(input));
+    let unread = unread_images(input.drawing, input.options).chain(elements(input));
     let mut notes = Notes::default();
     for note in &input.scene.notes {
         notes.add(note.text, &note.name);
@@ -41,16 +48,16 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
                 out.warnings.push(Warning::Flattened(why.to_string()));
             }
             out.skipped.extend(unread.map(|s| Skipped { why: s.why + "; it is left out", ..s }));
-            flat::write(input, written, &mut out.skipped, &mut notes)
+            flattened(input, written, &mut out.skipped, &mut notes)
         }
     };
-    out.skipped.extend(unsupported::styles(input));
-    unsupported::note_private(input, &mut notes);
-    unsupported::note_style_sheets(input, &mut notes);
+    out.skipped.extend(styles(input));
+    note_private(input, &mut notes);
+    note_style_sheets(input, &mut notes);
     out.warnings.extend(notes.warnings());
     if input.options.overhang {
         let shown = change.map_or_else(|| input.drawing.visible_area(), |(_, after)| after);
-        let arrived = arrivals::arrivals(input, shown);
+        let arrived = page::arrivals(input, shown);
         out.warnings.extend((!arrived.is_empty()).then_some(Warning::Arrivals(arrived)));
         out.overhang = page::overhang(input);
         out.blank = page::is_blank(input, shown);
@@ -78,4 +85,142 @@ fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item
         };
         Some(Skipped { id: source.display_name(e), why: format!("its image, {}, {reason}", shown(link)) })
     })
+}
+
+/// Writes the file; `change` is the visible area before and after, if that changes.
+fn flattened(
+    input: &WriteInput<'_>,
+    change: Option<(Rect, Rect)>,
+    skipped: &mut Vec<Skipped>,
+    notes: &mut Notes,
+) -> String {
+    let source = input.source;
+    let mut w = Writer::new(*input, false, skipped, notes);
+    if source.animated {
+        w.notes.add("animations are dropped, as the file is flattened", "");
+    }
+    let mut out =
+        String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"");
+    let page = change.map_or_else(Vec::new, |change| page::attributes(input.source, change));
+    for name in ["id", "class", "width", "height", "viewBox", "preserveAspectRatio"] {
+        let new = page.iter().find(|p| p.0 == name).map(|p| Cow::Borrowed(p.1.as_str()));
+        if let Some(v) = new.or_else(|| source.attr(0, name)) {
+            let _ = write!(out, " {name}=\"{}\"", escape(&v));
+            if name == "id" {
+                w.defs.taken.insert(v.into_owned());
+            }
+        }
+    }
+    out.push_str(">\n");
+    if let Some(t) = source.elements.first().and_then(|e| e.title.as_ref()) {
+        let _ = writeln!(out, "<title>{}</title>", escape(t));
+    }
+    let mut body = String::new();
+    for n in &input.scene.root.children {
+        body.push_str(&w.node(n));
+        body.push('\n');
+    }
+    if !w.defs.text.is_empty() {
+        let _ = write!(out, "<defs>\n{}</defs>\n", w.defs.text);
+    }
+    out.push_str(&body);
+    out.push_str("</svg>\n");
+    out
+}
+
+/// A paint server that the renderer does not know, in words.
+fn paint(tag: &str) -> Option<&'static str> {
+    match tag {
+        "meshgradient" | "meshGradient" | "mesh" => Some("a mesh gradient"),
+        "hatch" => Some("a hatch"),
+        _ => None,
+    }
+}
+
+/// Why content that the renderer does not know is not warped.
+fn content(source: &SourceText, e: ElementId) -> Option<&'static str> {
+    Some(match unknown(source, e)? {
+        Unknown::FlowedText => {
+            "text that flows in a frame (flowRoot) cannot be warped, as only Inkscape lays it out; convert it to ordinary text or to \
+             paths there"
+        }
+        Unknown::Foreign => "foreign content (HTML in a foreignObject) cannot be warped",
+        Unknown::Elsewhere => "what it refers to is in another file, which is not read",
+    })
+}
+
+/// Notes private data from which its editor would restore the artwork as it was.
+fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
+    let is_illustrator = |e: ElementId| {
+        input.source.elements[e].tag == "foreignObject"
+            && input.source.attr(e, "requiredExtensions").is_some_and(|x| x.contains("AdobeIllustrator"))
+    };
+    let all = 0..input.source.elements.len();
+    if all.into_iter().any(is_illustrator) && input.outcomes.iter().any(|o| o.warped().is_some()) {
+        notes.add(
+            "Illustrator opens the private data that the file holds (i:pgf) instead of the warped artwork; save the original \
+             without “Preserve Illustrator Editing Capabilities”",
+            "",
+        );
+    }
+}
+
+/// Notes what is not supported of the style sheets.
+fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
+    if !input.outcomes.iter().any(|o| o.warped().is_some()) {
+        return;
+    }
+    for (_, why) in input.source.unsupported_style.iter().filter(|(element, _)| element.is_none()) {
+        notes.add("the style sheets ask for more than is supported", why);
+    }
+    for (what, name) in &input.source.notes {
+        notes.add(what, name);
+    }
+}
+
+/// Lists the selected elements whose style asks for what is not supported.
+pub(super) fn styles(input: &WriteInput<'_>) -> Vec<Skipped> {
+    let source = input.source;
+    let unsupported = || source.unsupported_style.iter().filter_map(|(e, why)| Some(((*e)?, why)));
+    if unsupported().next().is_none() {
+        return Vec::new();
+    }
+    let selected = input.options.selection.resolve(source);
+    let shown = unsupported().filter(|(e, _)| selected[*e] && !is_definition(source, *e));
+    shown.map(|(e, why)| Skipped { id: source.display_name(e), why: why.clone() }).collect()
+}
+
+/// Lists the selected elements that are not warped because the renderer does not know them or their paint.
+pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
+    let source = input.source;
+    let known = |e: ElementId| content(source, e).is_none() && paint(&source.elements[e].tag).is_none();
+    let all = 0..source.elements.len();
+    if all.clone().all(known) {
+        return Vec::new();
+    }
+    let selected = input.options.selection.resolve(source);
+    let parts = input.scene.parts.iter().zip(input.outcomes);
+    let warped: HashSet<ElementId> =
+        parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element()).collect();
+    let unknown = |e: ElementId, property: &str| {
+        let value = source.ancestors(e).find_map(|a| source.property(a, property).filter(|v| v != "inherit"))?;
+        let id = value.strip_prefix("url(")?.split(')').next()?.trim_matches(['"', '\'', ' ']).strip_prefix('#')?;
+        paint(&source.elements[*source.by_id().get(id)?.first()?].tag)
+    };
+    let why = |e: ElementId| {
+        if let Some(why) = content(source, e) {
+            return Some(why.to_owned());
+        }
+        let tag = source.elements[e].tag.as_ref();
+        let painted = ["fill", "stroke"].into_iter().filter(|_| is_shape(tag) || tag == "text");
+        let (name, kind) = { painted }.find_map(|name| Some((name, unknown(e, name)?)))?;
+        Some(if warped.contains(&e) {
+            format!("only its outline is; its {name}, {kind}, is unchanged")
+        } else {
+            format!("its {name} is {kind}; such shapes cannot be warped")
+        })
+    };
+    all.filter(|&e| selected[e] && !is_definition(source, e))
+        .filter_map(|e| Some(Skipped { id: source.display_name(e), why: why(e)? }))
+        .collect()
 }

@@ -1,8 +1,7 @@
 //! Filters: all seventeen primitives, in their resolved form and in user space.
 
-use super::markup::Markup;
-use super::values;
-use crate::scene::filter_area;
+use super::markup::{self, Markup};
+use crate::scene::areas;
 use crate::source::number::short;
 use pathwarp::kurbo::Rect;
 use pathwarp_reader::xml::escape;
@@ -29,7 +28,7 @@ pub(super) fn element(markup: &Markup<'_>, f: &Filter, all: Rect, head: &str, pi
         let _ = write!(
             out,
             "<{tag}{}{}{attributes}{}",
-            region(filter_area::part(f, p, all)),
+            region(areas::part(f, p, all)),
             word("color-interpolation-filters", space),
             word("result", &escape(p.result()))
         );
@@ -272,7 +271,7 @@ fn word(name: &str, value: &str) -> String {
 }
 
 fn color(name: &str, c: usvg::Color) -> String {
-    format!(" {name}=\"{}\"", values::color(c))
+    format!(" {name}=\"{}\"", markup::color(c))
 }
 
 fn transfer(tag: &str, f: &TransferFunction) -> String {

@@ -3,14 +3,15 @@
 //! Group transforms are kept, and the geometry inside is written in its own user space, so that strokes, filters and paint
 //! servers keep their frames. Groups refer to definitions, which hold groups in turn; this is the one file of that recursion.
 
-use super::bitmaps;
-use super::defs::{Definitions, filter_key, server_key};
+use super::defs::{self, Definitions, filter_key, server_key};
 use super::input::WriteInput;
-use super::markup::{Markup, Properties, push_all};
-use super::style::{self, CssPaints};
-use super::values::{color, part_data, stroke_scale};
-use super::{filter, filter_region, gradients, masks, patterns};
+use super::markup::{
+    self, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, push_all, stroke_scale,
+};
+use super::{boxes, filter};
+use crate::bend::fits::EmbeddedImage;
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
+use crate::bend::pictures::BentImage;
 use crate::scene::model::{Group, Node, Part};
 use crate::source::number::{matrix, outline_data, short};
 use pathwarp::kurbo::{Affine, Rect};
@@ -18,7 +19,7 @@ use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
 use std::sync::Arc;
 use usvg::filter::Filter;
-use usvg::{BlendMode, FillRule, Paint, PaintOrder};
+use usvg::{BlendMode, FillRule, ImageKind, ImageRendering, Paint, PaintOrder};
 
 /// Note on filters.
 pub(super) const FILTERS: &str = "filters follow the warp as a whole: their regions and lengths are not bent";
@@ -69,7 +70,7 @@ impl<'a> Writer<'a> {
         match n {
             Node::Group(g) => self.group(g, ""),
             Node::Part(i) => self.part(*i),
-            Node::Image(i) => bitmaps::image(&self.input, &self.markup, self.skipped, *i),
+            Node::Image(i) => image(&self.input, &self.markup, self.skipped, *i),
             Node::Text { element, content, .. } => {
                 let id = element.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
                 let inner = self.group(content, "");
@@ -205,7 +206,7 @@ impl<'a> Writer<'a> {
             Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity })
         } else {
             let opacity = p.fill.as_ref().map_or(1.0, |f| f.opacity().get());
-            let picture = warped.fill_image.as_ref().map(|b| bitmaps::bent(&self.markup, b, Affine::IDENTITY));
+            let picture = warped.fill_image.as_ref().map(|b| bent(&self.markup, b, Affine::IDENTITY));
             picture.map(|content| Clipped { content, opacity })
         };
         // The fill may have an outline of its own, or be empty.
@@ -219,7 +220,7 @@ impl<'a> Writer<'a> {
             (Some(f), None) => {
                 let fill = Some(self.paint(f.paint(), p, Some(warped)));
                 let paints = CssPaints { fill, stroke: None };
-                let properties = style::part_style(&self.markup, p, paints, stroke_scale(Some(warped)));
+                let properties = markup::part_style(&self.markup, p, paints, stroke_scale(Some(warped)));
                 self.markup.path(&area, "", &properties)
             }
         }
@@ -231,7 +232,7 @@ impl<'a> Writer<'a> {
             Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity })
         } else {
             let opacity = p.stroke.as_ref().map_or(1.0, |s| s.opacity().get());
-            let picture = warped.stroke_image.as_ref().map(|b| bitmaps::bent(&self.markup, b, Affine::IDENTITY));
+            let picture = warped.stroke_image.as_ref().map(|b| bent(&self.markup, b, Affine::IDENTITY));
             picture.map(|content| Clipped { content, opacity })
         };
         let Some(s) = &p.stroke else { return String::new() };
@@ -243,7 +244,7 @@ impl<'a> Writer<'a> {
             }
             (StrokeOutcome::Scaled(scale), _) => {
                 let stroke = Some(self.paint(s.paint(), p, Some(warped)));
-                let properties = style::part_style(&self.markup, p, CssPaints { fill: None, stroke }, *scale);
+                let properties = markup::part_style(&self.markup, p, CssPaints { fill: None, stroke }, *scale);
                 self.markup.path(d, "", &properties)
             }
         }
@@ -273,13 +274,13 @@ impl<'a> Writer<'a> {
         let warped = self.input.warped(i);
         let fill = p.fill.as_ref().map(|f| self.paint(f.paint(), p, warped));
         let stroke = p.stroke.as_ref().map(|s| self.paint(s.paint(), p, warped));
-        style::part_style(&self.markup, p, CssPaints { fill, stroke }, stroke_scale(warped))
+        markup::part_style(&self.markup, p, CssPaints { fill, stroke }, stroke_scale(warped))
     }
 
     /// The presentation of an expanded stroke.
     fn outlined(&mut self, p: &Part, stroke: &usvg::Stroke, warped: &WarpedPart) -> Properties {
         let paint = self.paint(stroke.paint(), p, Some(warped));
-        style::outlined(&self.markup, p, stroke, paint)
+        markup::outlined(&self.markup, p, stroke, paint)
     }
 
     /// A paint as a CSS value.
@@ -287,8 +288,8 @@ impl<'a> Writer<'a> {
         let fit = self.input.paint_fit(paint, p, warped).map_or(Affine::IDENTITY, |f| f.affine);
         match paint {
             Paint::Color(c) => color(*c),
-            Paint::LinearGradient(g) => gradients::linear(&self.input, &self.markup, &mut self.defs, g, fit),
-            Paint::RadialGradient(g) => gradients::radial(&self.input, &self.markup, &mut self.defs, g, fit),
+            Paint::LinearGradient(g) => defs::linear(&self.input, &self.markup, &mut self.defs, g, fit),
+            Paint::RadialGradient(g) => defs::radial(&self.input, &self.markup, &mut self.defs, g, fit),
             Paint::Pattern(pattern) => self.pattern(pattern, fit),
         }
     }
@@ -306,7 +307,7 @@ impl<'a> Writer<'a> {
         self.notes.add(PATTERNS, pattern.id());
         let id = self.defs.new_id(pattern.id());
         self.defs.servers.insert(key, id.clone());
-        let head = patterns::head(pattern, &id, fit);
+        let head = defs::head(pattern, &id, fit);
         let inner = self.group(&tile.root, "");
         self.defs.push(&format!("<{0}{head}>{inner}</{0}>", self.markup.tag("pattern")));
         format!("url(#{id})")
@@ -403,7 +404,7 @@ impl<'a> Writer<'a> {
 
     pub(super) fn mask(&mut self, i: usize, head: &str) -> String {
         let m = &self.input.scene.masks[i];
-        let region = masks::region(&self.input, i);
+        let region = boxes::region(&self.input, i);
         let mut properties = Properties::new();
         if m.kind == usvg::MaskType::Alpha {
             properties.push(("mask-type", "alpha".into()));
@@ -413,7 +414,7 @@ impl<'a> Writer<'a> {
             properties.push(("mask", format!("url(#{id})")));
         }
         let mut inner = self.group(&m.root, "");
-        if let Some(edge) = masks::edge(&self.input, i) {
+        if let Some(edge) = boxes::edge(&self.input, i) {
             let id = self.defs.new_id(&format!("{}-edge", m.id));
             let path = self.markup.path(&edge, "", &Properties::new());
             self.defs.push(&format!("<{0} id=\"{1}\">{path}</{0}>", self.markup.tag("clipPath"), escape(&id)));
@@ -426,8 +427,8 @@ impl<'a> Writer<'a> {
 
     /// Refers to the filters of a group: the source's, or ones that are written if necessary.
     pub(super) fn filters(&mut self, g: &Group) -> String {
-        let growth = filter_region::growth(&self.input, g);
-        let list: Vec<String> = g.filters.iter().map(|f| self.filter(f, filter_region::grown(f, growth))).collect();
+        let growth = boxes::growth(&self.input, g);
+        let list: Vec<String> = g.filters.iter().map(|f| self.filter(f, boxes::grown(f, growth))).collect();
         list.join(" ")
     }
 
@@ -477,4 +478,56 @@ impl<'a> Writer<'a> {
         self.defs.push(&text);
         format!(" {}=\"#{id}\"", self.markup.link())
     }
+}
+
+/// Writes a bent bitmap.
+pub(super) fn bent(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String {
+    let mut all = bent_attributes(bent, to).to_vec();
+    all.push((markup.link(), bent_url(bent)));
+    let all: String = all.iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
+    format!("<{}{all}/>", markup.tag("image"))
+}
+
+/// Writes bitmap `i`, bent or not.
+pub(super) fn image(input: &WriteInput<'_>, markup: &Markup<'_>, skipped: &mut Vec<Skipped>, i: usize) -> String {
+    let bitmap = &input.scene.bitmaps[i];
+    let image = &bitmap.image;
+    if !image.is_visible() || bitmap.is_unread() {
+        return String::new();
+    }
+    match &input.images[i] {
+        EmbeddedImage::Placed => {}
+        EmbeddedImage::Approximate(why) => {
+            let id = bitmap.owner.map_or_else(|| "an image".into(), |e| input.source.display_name(e));
+            skipped.push(Skipped { id, why: why.clone() });
+        }
+        EmbeddedImage::Bent(image) => {
+            // Back to the group's coordinates, the bitmap's pixels. The placing has no rotation.
+            return bent(markup, image, bitmap.placing.inverse());
+        }
+    }
+    let url = match image.kind() {
+        ImageKind::JPEG(d) => data_url("image/jpeg", d),
+        ImageKind::PNG(d) => data_url("image/png", d),
+        ImageKind::GIF(d) => data_url("image/gif", d),
+        ImageKind::WEBP(d) => data_url("image/webp", d),
+        ImageKind::SVG(t) => data_url("image/svg+xml", t.to_string(&usvg::WriteOptions::default()).as_bytes()),
+    };
+    let mut properties = Properties::new();
+    match image.rendering_mode() {
+        ImageRendering::OptimizeQuality => {}
+        ImageRendering::OptimizeSpeed => properties.push(("image-rendering", "optimizeSpeed".into())),
+        ImageRendering::Smooth => properties.push(("image-rendering", "smooth".into())),
+        ImageRendering::HighQuality => properties.push(("image-rendering", "high-quality".into())),
+        ImageRendering::CrispEdges => properties.push(("image-rendering", "crisp-edges".into())),
+        ImageRendering::Pixelated => properties.push(("image-rendering", "pixelated".into())),
+    }
+    let style = properties.iter().map(|(n, v)| format!(" style=\"{n}:{v}\"")).collect::<String>();
+    let link = markup.link();
+    format!(
+        "<{} width=\"{}\" height=\"{}\"{style} {link}=\"{url}\"/>",
+        markup.tag("image"),
+        short(image.size().width().into()),
+        short(image.size().height().into()),
+    )
 }

@@ -1,12 +1,10 @@
 //! Everything that is to be written.
 
 use crate::bend::bends::{Bend, Bends};
-use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::drawing::BentDrawing;
+use crate::bend::fits::{EmbeddedImage, PaintFit, PlacedSlot, written};
 use crate::bend::options::WarpOptions;
 use crate::bend::outcome::{PartOutcome, WarpedPart};
-use crate::bend::paint::PaintFit;
-use crate::bend::slots::{PlacedSlot, written};
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{Group, Node, Part, Scene, Tiles};
 use crate::source::text::SourceText;

@@ -1,6 +1,6 @@
 //! Lettering as an SVG drawing with data attributes for baselines, heights and letters.
 
-use crate::bend::plain::WarpedPath;
+use crate::bend::path::WarpedPath;
 use crate::source::number::{path_data, push};
 use pathwarp::Error;
 use pathwarp::kurbo::{Rect, Shape};

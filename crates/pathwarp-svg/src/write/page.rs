@@ -1,19 +1,19 @@
 //! The page and the warped artwork: overhang, and the root's viewBox, width and height to fit it.
 
-use super::boxes::{bound, box_under, painted_box, paints_in, path};
-use super::filter_region;
+use super::boxes::{self, bound, box_under, painted_box, paints_in, path};
 use super::input::WriteInput;
 use crate::bend::bends::Bend;
-use crate::bend::bitmap::EmbeddedImage;
+use crate::bend::fits::EmbeddedImage;
 use crate::bend::options::PageFit;
 use crate::bend::outcome::{Overhang, PartOutcome, WarpedPart};
-use crate::scene::filter_area;
+use crate::scene::areas::{self, clip_box, is_seen, overlap};
 use crate::scene::model::{Group, Node, PartRole};
-use crate::scene::seen::{clip_box, is_seen, overlap};
+use crate::source::elements::ElementId;
 use crate::source::number::short;
 use crate::source::select::Selection;
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Affine, Point, Rect};
+use std::collections::BTreeSet;
 use std::str::FromStr;
 use svgtypes::{Length, LengthUnit};
 
@@ -228,7 +228,7 @@ fn image_box(bend: &Bend<'_>, area: Rect) -> Option<Rect> {
 }
 
 /// The boxes of a visible bitmap before and after the warp.
-pub(super) fn image_boxes(input: &WriteInput<'_>, i: usize) -> Option<(Rect, Rect)> {
+fn image_boxes(input: &WriteInput<'_>, i: usize) -> Option<(Rect, Rect)> {
     let b = &input.scene.bitmaps[i];
     let pixels = b.image.size();
     let own = Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into());
@@ -268,7 +268,7 @@ fn shows_within(input: &WriteInput<'_>, g: &Group, area: Rect, counts: &[bool]) 
 }
 
 /// Bounding box of a clip path in the result.
-pub(super) fn warped_clip(input: &WriteInput<'_>, clip: usize) -> Option<Rect> {
+fn warped_clip(input: &WriteInput<'_>, clip: usize) -> Option<Rect> {
     clip_box(input.scene, clip, &|i| {
         let p = input.part(i);
         Some(box_under(input.written(p.slot, p.frame), &path(p, input.warped(i))))
@@ -312,12 +312,12 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         }
     }
     let mut all = all?;
-    let growth = filter_region::growth(input, g);
+    let growth = boxes::growth(input, g);
     for f in &g.filters {
         if let Some(s) = g.slot {
             let frame = input.written(g.slot, scene.slots[s].frame);
-            let region = filter_region::grown(f, growth);
-            all = frame.transform_rect_bbox(filter_area::painted(f, region, frame.inverse().transform_rect_bbox(all))?);
+            let region = boxes::grown(f, growth);
+            all = frame.transform_rect_bbox(areas::painted(f, region, frame.inverse().transform_rect_bbox(all))?);
         }
     }
     if let Some(i) = g.clip {
@@ -352,5 +352,41 @@ fn unit(unit: LengthUnit) -> &'static str {
         LengthUnit::Mm => "mm",
         LengthUnit::Pt => "pt",
         LengthUnit::Pc => "pc",
+    }
+}
+
+/// The names of the elements that have come onto the page `shown` of the result.
+pub(super) fn arrivals(input: &WriteInput<'_>, shown: Rect) -> Vec<String> {
+    let Some(page) = input.drawing.specified_area() else { return Vec::new() };
+    let mut found = BTreeSet::new();
+    in_group(input, &input.scene.root, (page, shown), &mut found);
+    found.into_iter().map(|e| input.source.display_name(e)).collect()
+}
+
+/// Finds the elements of a group that lay off the page and now show in an area.
+fn in_group(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), found: &mut BTreeSet<ElementId>) {
+    if g.opacity <= 0.0 || g.mask.is_some() {
+        return;
+    }
+    let Some(room) = g.clip.map_or(Some(shown), |i| overlap(shown, warped_clip(input, i)?)) else { return };
+    let deep = VISIBLE * page.width().max(page.height());
+    let shows = |after| overlap(after, room).is_some_and(|o| o.width().max(o.height()) > deep);
+    for n in &g.children {
+        match n {
+            Node::Group(g) => in_group(input, g, (page, room), found),
+            Node::Text { content, .. } => in_group(input, content, (page, room), found),
+            Node::Image(i) => {
+                let came = image_boxes(input, *i).is_some_and(|(b, after)| overlap(b, page).is_none() && shows(after));
+                found.extend(input.scene.bitmaps[*i].owner.filter(|_| came));
+            }
+            Node::Part(i) => {
+                let p = input.part(*i);
+                let cheap = bound(p, None, p.frame);
+                let off = || overlap(cheap, page).is_none() || overlap(painted_box(p, None, p.frame), page).is_none();
+                let after = || painted_box(p, input.warped(*i), input.written(p.slot, p.frame));
+                let paints = is_seen(p) && p.role == PartRole::Paint && page.union(cheap) != page;
+                found.extend(p.owner.or(p.source).filter(|_| paints && off() && shows(after())));
+            }
+        }
     }
 }

@@ -1,19 +1,18 @@
 //! State of the walk over usvg's tree, with lookups of source elements and exact transforms.
 
-use crate::scene::affine::{affine, f32_bits, is_near};
-use crate::scene::geometry::GeometryReader;
-use crate::scene::letters::Owners;
-use crate::scene::model::{Clip, PartRole, Referrer, Scene};
-use crate::scene::resolve::tiling::Tiling;
-use crate::source::tags::ElementId;
+use crate::scene::geometry::{GeometryReader, affine, f32_bits, from_usvg, is_near, same_path};
+use crate::scene::lettering::Owners;
+use crate::scene::model::{Clip, LazyOutline, PartRole, Referrer, Scene, SceneNote, Slot};
+use crate::source::elements::{ElementId, Unpatchable, is_shape};
 use crate::source::text::SourceText;
-use crate::source::unpatchable::Unpatchable;
 use pathwarp::Outline;
-use pathwarp::kurbo::{Affine, Rect};
+use pathwarp::kurbo::{Affine, Point, Rect};
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+use usvg::tiny_skia_path as ts;
 
 /// Key of a definition in one frame: its address, the frame, the slot, and what bends those who refer to it.
-pub(super) type DefKey = (usize, [u64; 6], Option<usize>, Option<usize>);
+type DefKey = (usize, [u64; 6], Option<usize>, Option<usize>);
 
 /// A scene under construction.
 pub(super) struct SceneBuilder<'a> {
@@ -185,4 +184,196 @@ fn exact_transforms(reader: &GeometryReader<'_>) -> HashMap<[u32; 6], Option<Aff
         }
     }
     out
+}
+
+/// Total number of segments in the tiles of a drawing; more would make the result slow to open.
+const MOST_SEGMENTS: usize = 250_000;
+
+/// Decides which patterns are laid out as geometry, and how much of it there may be.
+pub(crate) struct Tiling<'a> {
+    /// Returns `true` if the pattern over an area must be laid out. The arguments are the element that is painted, the area in its
+    /// user space, and the transform from there to root user space.
+    pub(super) needed: &'a (dyn Fn(Painted, Rect, Affine) -> bool + Sync),
+    /// Lay out patterns on strokes, too.
+    pub(super) strokes: bool,
+    /// Remaining number of segments.
+    pub(super) budget: usize,
+    /// Patterns that could not be laid out.
+    pub(super) notes: Vec<SceneNote>,
+}
+
+/// What is painted with a pattern.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Painted {
+    Element(Option<ElementId>),
+    /// Content of a mask, with the index of what bends those who refer to it, if the drawing is divided.
+    Mask(Option<usize>),
+}
+
+impl<'a> Tiling<'a> {
+    pub(crate) fn new(needed: &'a (dyn Fn(Painted, Rect, Affine) -> bool + Sync), strokes: bool) -> Self {
+        Self { needed, strokes, budget: MOST_SEGMENTS, notes: Vec::new() }
+    }
+}
+
+/// Origin of a path.
+pub(super) struct Traced {
+    /// The shape element with the path's id.
+    pub(super) source: Option<ElementId>,
+    /// The original of a copy.
+    pub(super) copied: Option<ElementId>,
+    /// The element that `outline` was read from; `None` if it was converted from usvg's path.
+    pub(super) drawn: Option<ElementId>,
+    pub(super) outline: LazyOutline,
+}
+
+/// Finds the element and the outline of a path.
+pub(super) fn trace(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Traced {
+    let candidates = b.elements(p.id());
+    let only = b.element(p.id()).filter(|&e| b.tag(e) == "path");
+    if let Some((e, outline)) = only.and_then(|e| Some((e, path_outline(b, e)?))) {
+        return Traced { source: Some(e), copied: None, drawn: Some(e), outline };
+    }
+    let shared = candidates.len() > 1;
+    for &e in candidates {
+        if !is_shape(b.tag(e)) || (shared && b.taken.contains(&e)) {
+            continue;
+        }
+        let exact = b.reader.outline(e).filter(|o| !shared || same_path(o, p.data()));
+        if exact.is_some() || !shared {
+            if shared {
+                b.taken.insert(e);
+            }
+            let drawn = exact.is_some().then_some(e);
+            let outline = exact.unwrap_or_else(|| from_usvg(p.data())).into();
+            return Traced { source: Some(e), copied: None, drawn, outline };
+        }
+    }
+    let (copied, outline) = copy_of(b, p.data()).unzip();
+    let outline = outline.unwrap_or_else(|| from_usvg(p.data())).into();
+    Traced { source: None, copied, drawn: copied, outline }
+}
+
+/// The outline of a `path` element; computed on first use.
+fn path_outline(b: &SceneBuilder<'_>, e: ElementId) -> Option<LazyOutline> {
+    let d = b.reader.source.attr(e, "d")?.into_owned();
+    let ahead = Arc::clone(&b.reader.source.ahead);
+    Some(LazyOutline::shared(move || {
+        let known = ahead.get().and_then(|known| known.get(&e).cloned());
+        known.unwrap_or_else(|| Arc::new(Outline::from_svg_lossy(&d)))
+    }))
+}
+
+/// A path's outline, read from the source if possible.
+pub(super) fn known_outline(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Outline {
+    let own = b.element(p.id()).filter(|&e| is_shape(b.tag(e))).and_then(|e| b.reader.outline(e));
+    own.or_else(|| copy_of(b, p.data()).map(|c| c.1)).unwrap_or_else(|| from_usvg(p.data()))
+}
+
+/// Finds the original of a copied path (in a `use`, in a marker), with its outline.
+fn copy_of(b: &mut SceneBuilder<'_>, path: &ts::Path) -> Option<(ElementId, Outline)> {
+    /// Maps a point to a grid cell, coarse against f32 rounding; the eight neighbours are searched, too.
+    fn cell(p: Point) -> [i64; 2] {
+        [p.x, p.y].map(|v| (v * 16.0).floor() as i64)
+    }
+    /// Limit on comparisons, so that a million equal copies take no quadratic time.
+    const TRIES: usize = 64;
+    if b.starts.is_none() {
+        let mut starts: HashMap<_, Vec<_>> = HashMap::new();
+        for (e, el) in b.reader.source.elements.iter().enumerate() {
+            if is_shape(&el.tag)
+                && let Some(o) = b.reader.outline(e)
+                && let Some(first) = o.subpaths.iter().find(|s| !s.segs.is_empty() || s.closed)
+            {
+                starts.entry(cell(first.start)).or_default().push(e);
+                b.outlines.insert(e, o);
+            }
+        }
+        b.starts = Some(starts);
+    }
+    let start = path.points().first()?;
+    let [x, y] = cell(Point::new(f64::from(start.x), f64::from(start.y)));
+    let starts = b.starts.as_ref()?;
+    let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [x.saturating_add(i), y.saturating_add(j)]));
+    around
+        .filter_map(|c| starts.get(&c))
+        .flatten()
+        .take(TRIES)
+        .filter_map(|e| Some((*e, b.outlines.get(e)?)))
+        .find(|(_, o)| same_path(o, path))
+        .map(|(e, o)| (e, o.clone()))
+}
+
+/// A group about to be resolved.
+pub(super) struct GroupAt<'g> {
+    pub(super) group: &'g usvg::Group,
+    /// The element with the group's id.
+    pub(super) source: Option<ElementId>,
+    /// That element, or else the only shape or text that the group was made for.
+    pub(super) element: Option<ElementId>,
+    /// From outside of the group to root user space.
+    pub(super) parent: Affine,
+    /// From inside the group to root user space.
+    pub(super) frame: Affine,
+}
+
+/// Adds a slot if the group holds content that cannot be bent, and there is a transform to take the fit.
+pub(super) fn slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Context) -> Option<usize> {
+    let g = at.group;
+    let image = at.element.filter(|&e| b.tag(e) == "image");
+    let vector = holds_drawing(g);
+    let raster = !vector && g.children().iter().any(|c| matches!(c, usvg::Node::Image(_)));
+    // The root has no transform to take the fit; a single image in it has.
+    if g.filters().is_empty() && (b.is_top(g) || vector || image.is_none() && !raster)
+        || matches!(context.role, PartRole::Clip | PartRole::Pattern)
+        || context.slot.is_some_and(|s| image.is_some() && b.scene.slots[s].element == at.element)
+    {
+        return None;
+    }
+    // In a fragment, the group's own transform is written; elsewhere, an element's.
+    if context.owner.is_none() && b.scene.unpatchable.is_none() && !takes_fit(b, at, image.is_some()) {
+        return None;
+    }
+    // The group of an image holds its placing, which is not the element's transform.
+    let before = image.is_some() && at.source == image || image.is_none() && raster;
+    let r = g.bounding_box();
+    let corners = Rect::new(f64::from(r.left()), f64::from(r.top()), f64::from(r.right()), f64::from(r.bottom()));
+    let (frame, area) =
+        if before { (at.parent, affine(g.transform()).transform_rect_bbox(corners)) } else { (at.frame, corners) };
+    let parts = b.scene.parts.len()..b.scene.parts.len();
+    b.scene.slots.push(Slot {
+        outer: context.slot,
+        frame,
+        area,
+        before,
+        element: at.element,
+        owner: context.owner,
+        parts,
+    });
+    Some(b.scene.slots.len() - 1)
+}
+
+/// Returns `true` if the fit can be written to the `transform` of the group's element.
+fn takes_fit(b: &SceneBuilder<'_>, at: &GroupAt<'_>, is_image: bool) -> bool {
+    let source = b.reader.source;
+    let only_transform_attribute = |e: ElementId| {
+        b.tag(e) != "svg"
+            && source.attr(e, "transform-origin").is_none()
+            && !source.attr(e, "style").is_some_and(|s| s.contains("transform"))
+            && !source.css_declares("transform")
+    };
+    at.element.is_some_and(|e| {
+        only_transform_attribute(e)
+            && (at.source == Some(e) && is_image
+                || b.reader.own_transform(e).is_some_and(|t| is_near(t, affine(at.group.transform()))))
+    })
+}
+
+/// Returns `true` if the group's only content is a drawing shown as an image.
+pub(super) fn holds_drawing(g: &usvg::Group) -> bool {
+    match g.children() {
+        [usvg::Node::Image(i)] => matches!(i.kind(), usvg::ImageKind::SVG(_)),
+        [usvg::Node::Group(g)] => g.id().is_empty() && holds_drawing(g),
+        _ => false,
+    }
 }

@@ -1,8 +1,8 @@
 //! Shapes with markers in usvg's tree.
 
 use super::builder::SceneBuilder;
-use crate::scene::affine::affine;
-use crate::source::tags::{ElementId, is_shape};
+use crate::scene::geometry::affine;
+use crate::source::elements::{ElementId, is_shape};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::{Outline, Seg};
 use std::f64::consts::PI;

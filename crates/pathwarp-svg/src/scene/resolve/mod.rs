@@ -2,24 +2,24 @@
 //! everything in it.
 
 mod builder;
-mod cut;
 mod markers;
-mod slots;
 mod tiles;
-mod tiling;
-mod trace;
-mod walk;
 
-pub(crate) use tiling::{Painted, Tiling};
-
-use super::affine::{affine, f32_bits, is_near, linear_part};
-use super::geometry::GeometryReader;
-use super::letters::Owners;
-use super::model::{PartRole, Scene};
+use super::geometry::{GeometryReader, affine, bits, f32_bits, is_near, linear_part};
+use super::lettering::Owners;
+use super::model::{Bitmap, Clip, Group, Mask, Node, Part, PartRole, PatternTile, PlacedText, Referrer, Scene};
+use super::resolve::builder::{Context, GroupAt, SceneBuilder, holds_drawing, slot, trace};
+use super::resolve::markers::{marked_children, place_markers};
+use super::resolve::tiles::{PaintOf, blends, tile_context, tiles};
+use crate::source::elements::{ElementId, Unpatchable};
 use crate::source::text::SourceText;
-use builder::{Context, SceneBuilder};
-use pathwarp::kurbo::{Affine, Size};
+use pathwarp::Outline;
+use pathwarp::kurbo::{Affine, Point, Rect, Size};
 use std::collections::HashMap;
+use std::sync::Arc;
+use usvg::{Fill, Stroke};
+
+pub(crate) use builder::{Painted, Tiling};
 
 /// Resolves the drawing. Patterns become geometry as far as `tiling` asks for it. Clip paths and masks
 /// are there once for each of the bends in `division` that those who refer to them have.
@@ -36,7 +36,7 @@ pub(crate) fn build(
     let mut b = SceneBuilder::new(reader, letters, tiling, division);
     let (top, to_px) = root_group(&b, tree, page);
     b.top = Some(std::ptr::from_ref(top));
-    let root = walk::group(&mut b, top, Affine::IDENTITY, Context::top(PartRole::Paint));
+    let root = group(&mut b, top, Affine::IDENTITY, Context::top(PartRole::Paint));
     let SceneBuilder { mut scene, tiling, .. } = b;
     scene.root = root;
     scene.to_px = to_px;
@@ -78,4 +78,320 @@ fn root_group<'t>(b: &SceneBuilder<'_>, tree: &'t usvg::Tree, page: Size) -> (&'
         return (tree.root(), by_source);
     }
     (g, if agree { by_source } else { t })
+}
+
+/// Resolves a group. `parent` leads from outside of it to root user space.
+fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context: Context) -> Group {
+    let source = b.element(g.id());
+    let element = source.or_else(|| only_child(b, g));
+    let transform = match b.markers.get(&address(g)) {
+        Some(Some(placed)) => *placed,
+        _ if b.is_top(g) => Affine::IDENTITY,
+        _ => b.exact_transform(g.transform(), element),
+    };
+    let frame = parent * transform;
+    let vector = holds_drawing(g);
+    let owner = context.owner.or(source.filter(|&e| b.tag(e) == "use" || vector && b.tag(e) == "image"));
+    let at = GroupAt { group: g, source, element, parent, frame };
+    let slot = slot(b, &at, Context { owner, ..context });
+    context.slot = slot.or(context.slot);
+    let referrer = Referrer { element, owner: context.owner };
+    let bent = Context { bend: b.bend_of(referrer, context), ..context };
+    let clip = g.clip_path().map(|c| clip(b, c, frame, referrer, bent));
+    let mask = g.mask().map(|m| mask(b, m, frame, referrer, bent));
+    context.owner = owner;
+    context.image = source.filter(|&e| b.tag(e) == "image").or(context.image);
+    context.viewport = sliced_viewport(g).or(context.viewport);
+    for p in g.filters().iter().flat_map(|f| f.primitives()) {
+        if let usvg::filter::Kind::Image(image) = p.kind() {
+            picture(b, image.root());
+        }
+    }
+    let marked = if context.owner.is_none() { marked_children(b, g) } else { Vec::new() };
+    place_markers(b, g, &marked);
+    let mut children = Vec::with_capacity(g.children().len());
+    for (i, c) in g.children().iter().enumerate() {
+        if matches!(c, usvg::Node::Group(m) if matches!(b.markers.get(&address(m)), Some(None))) {
+            continue;
+        }
+        let shape = marked.iter().find(|m| m.0 == i).map(|m| m.1);
+        let context = Context { owner: context.owner.or(shape), ..context };
+        children.push(match c {
+            usvg::Node::Group(c) => Node::Group(Box::new(group(b, c, frame, context))),
+            usvg::Node::Path(p) => Node::Part(part(b, p, frame, context)),
+            usvg::Node::Image(i) => image(b, i, element, Placing { transform, frame }, context),
+            usvg::Node::Text(t) => text(b, t, frame, context),
+        });
+    }
+    if let Some(s) = slot {
+        b.scene.slots[s].parts.end = b.scene.parts.len();
+    }
+    // The element has one clip path for both: its own one and the edge of its viewport.
+    if let ([usvg::Node::Group(c)], [Node::Group(edge)]) = (g.children(), children.as_slice())
+        && let (Some(_), Some(edge)) = (sliced_viewport(c), edge.clip)
+        && b.scene.clips[edge].clip.is_none()
+    {
+        b.scene.clips[edge].clip = clip;
+    }
+    Group {
+        source,
+        owner,
+        transform,
+        opacity: g.opacity().get(),
+        blend: g.blend_mode(),
+        isolate: g.isolate(),
+        clip,
+        mask,
+        filters: g.filters().to_vec(),
+        slot,
+        children,
+    }
+}
+
+/// The viewport of an image that covers more than it: usvg puts the image into a group of its own, in a group with a clip path.
+fn sliced_viewport(g: &usvg::Group) -> Option<Rect> {
+    let [usvg::Node::Group(inner)] = g.children() else { return None };
+    let [usvg::Node::Image(_)] = inner.children() else { return None };
+    g.clip_path()?;
+    let v = g.bounding_box();
+    Some(Rect::new(v.left().into(), v.top().into(), v.right().into(), v.bottom().into()))
+}
+
+fn address(g: &usvg::Group) -> usize {
+    std::ptr::from_ref(g) as usize
+}
+
+/// The element of a group without id: the only shape, text or image in it.
+fn only_child(b: &SceneBuilder<'_>, g: &usvg::Group) -> Option<ElementId> {
+    let mut found = None;
+    for c in g.children() {
+        let leaf = match c {
+            usvg::Node::Path(_) | usvg::Node::Text(_) => b.element(c.id()),
+            usvg::Node::Group(_) => b.element(c.id()).filter(|&e| b.tag(e) == "image"),
+            usvg::Node::Image(_) => None,
+        };
+        if let Some(e) = leaf
+            && found.replace(e).is_some()
+        {
+            return None;
+        }
+    }
+    found
+}
+
+fn text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context: Context) -> Node {
+    let element = b.element(t.id());
+    if element.is_none() && context.owner.is_none() {
+        b.unpatchable(Unpatchable::AmbiguousText);
+    }
+    let context = Context { owner: context.owner.or(element), ..context };
+    let first = b.scene.parts.len();
+    let content = group(b, t.flattened(), frame, context);
+    if context.role == PartRole::Paint {
+        let text = std::ptr::from_ref(t) as usize;
+        b.scene.texts.push(PlacedText { text, owner: context.owner, frame, first });
+    }
+    let owners = element.and_then(|e| b.letters.get(&e)).cloned().unwrap_or_default();
+    Node::Text { element, content: Box::new(content), owners }
+}
+
+fn part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Context) -> usize {
+    let traced = trace(b, p);
+    if traced.source.is_none() {
+        // The first path may be the page's background, which is not artwork.
+        let background = b.scene.parts.is_empty() && b.may_have_background;
+        if context.owner.is_none() && p.is_visible() && !background {
+            b.unpatchable(Unpatchable::UntracedPath);
+        }
+    }
+    for paint in [p.fill().map(Fill::paint), p.stroke().map(Stroke::paint)] {
+        if let Some(usvg::Paint::Pattern(pattern)) = paint {
+            tile(b, pattern);
+        }
+    }
+    let fixed_width = traced.source.or(traced.copied).is_some_and(|e| b.fixed_widths.contains(&e));
+    let tile_context = tile_context(context, traced.source);
+    let fill_tiles = tiles(b, p, PaintOf::Fill, frame, tile_context);
+    let stroke_tiles = if fixed_width { None } else { tiles(b, p, PaintOf::Stroke, frame, tile_context) };
+    b.scene.parts.push(Part {
+        source: traced.source,
+        drawn: traced.drawn,
+        fill: p.fill().cloned(),
+        stroke: p.stroke().cloned(),
+        paint_order: p.paint_order(),
+        rendering: p.rendering_mode(),
+        visible: p.is_visible(),
+        fixed_width,
+        slot: context.slot,
+        path: std::ptr::from_ref(p) as usize,
+        fill_tiles,
+        stroke_tiles,
+        ..Part::plain(context.role, context.owner, traced.outline, frame)
+    });
+    b.scene.parts.len() - 1
+}
+
+/// Transforms of an image's group.
+#[derive(Clone, Copy)]
+struct Placing {
+    /// From pixels to outside of the group.
+    transform: Affine,
+    /// From pixels to root user space.
+    frame: Affine,
+}
+
+/// Resolves an image in a group that belongs to `element`.
+fn image(
+    b: &mut SceneBuilder<'_>,
+    image: &usvg::Image,
+    element: Option<ElementId>,
+    placing: Placing,
+    context: Context,
+) -> Node {
+    let own = element.filter(|&e| b.tag(e) == "image");
+    if let usvg::ImageKind::SVG(tree) = image.kind() {
+        let context = Context { owner: context.owner.or(own), viewport: None, ..context };
+        return Node::Group(Box::new(drawing(b, image, tree, placing.frame, context)));
+    }
+    let own = own.or(context.image);
+    b.scene.bitmaps.push(Bitmap {
+        image: Box::new(image.clone()),
+        frame: placing.frame,
+        placing: placing.transform,
+        slot: context.slot,
+        owner: context.owner.or(own),
+        bends: context.role != PartRole::Pattern,
+        crop: context.viewport.map(|v| placing.transform.inverse().transform_rect_bbox(v)),
+    });
+    Node::Image(b.scene.bitmaps.len() - 1)
+}
+
+/// Resolves a drawing shown as an image: its content is warped like everything else, and clipped to the image. `frame` leads
+/// from its px to root user space.
+fn drawing(b: &mut SceneBuilder<'_>, image: &usvg::Image, tree: &usvg::Tree, frame: Affine, context: Context) -> Group {
+    if context.owner.is_none() {
+        b.unpatchable(Unpatchable::AmbiguousImage);
+    }
+    // An image does not blend with its backdrop.
+    let isolate = blends(tree.root());
+    let mut out = Group { isolate, ..Group::plain(context.owner, Affine::IDENTITY, Vec::new()) };
+    if !image.is_visible() {
+        return out;
+    }
+    let gradients = tree.linear_gradients().iter().map(|g| Arc::as_ptr(g) as usize);
+    let gradients = gradients.chain(tree.radial_gradients().iter().map(|g| Arc::as_ptr(g) as usize));
+    let filters = tree.filters().iter().map(|f| Arc::as_ptr(f) as usize);
+    b.scene.foreign.extend(gradients.chain(filters));
+    b.foreign_depth += 1;
+    let size = tree.size();
+    let (w, h) = (f64::from(size.width()), f64::from(size.height()));
+    let r = tree.root().abs_layer_bounding_box();
+    // Ignore overflow from rounding.
+    let slack = 1e-4 * (w + h) as f32;
+    let overflows =
+        r.left() < -slack || r.top() < -slack || r.right() > w as f32 + slack || r.bottom() > h as f32 + slack;
+    if overflows && !matches!(context.role, PartRole::Pattern) {
+        out.clip = Some(image_edge(b, w, h, frame, context));
+    }
+    let inner = group(b, tree.root(), frame, context);
+    b.foreign_depth -= 1;
+    out.children.push(Node::Group(Box::new(inner)));
+    out
+}
+
+/// Adds the edge of an image as a clip path.
+fn image_edge(b: &mut SceneBuilder<'_>, w: f64, h: f64, frame: Affine, context: Context) -> usize {
+    let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(Point::from);
+    let outline = Outline::from_points(&corners, true).into();
+    let first = b.scene.parts.len();
+    let edge = Part { slot: context.slot, ..Part::plain(PartRole::Clip, context.owner, outline, frame) };
+    b.scene.parts.push(edge);
+    let root = Group::plain(None, Affine::IDENTITY, vec![Node::Part(first)]);
+    b.push_clip(Clip::foreign("image-edge", root, context.owner, first..first + 1))
+}
+
+fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: Referrer, outside: Context) -> usize {
+    let Context { slot, bend, .. } = outside;
+    let key = (std::ptr::from_ref(c) as usize, bits(frame), slot, bend);
+    if let Some(&i) = b.clip_index.get(&key) {
+        b.scene.clips[i].referrers.push(referrer);
+        return i;
+    }
+    let first = b.scene.parts.len();
+    let def = b.definition(c.id(), "clipPath");
+    let transform = b.exact_transform(c.transform(), def);
+    let chained = Referrer { element: def, owner: None };
+    let clip = c.clip_path().map(|c| clip(b, c, frame, chained, outside));
+    let root = definition(b, c.root(), frame * transform, Context { slot, bend, ..Context::top(PartRole::Clip) });
+    let i = b.push_clip(Clip {
+        id: c.id().to_owned(),
+        transform,
+        clip,
+        root,
+        referrers: vec![referrer],
+        bend,
+        parts: first..b.scene.parts.len(),
+        foreign: b.foreign_depth > 0,
+    });
+    b.clip_index.insert(key, i);
+    i
+}
+
+fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Referrer, outside: Context) -> usize {
+    let Context { slot, bend, .. } = outside;
+    let key = (std::ptr::from_ref(m) as usize, bits(frame), slot, bend);
+    if let Some(&i) = b.mask_index.get(&key) {
+        b.scene.masks[i].referrers.push(referrer);
+        return i;
+    }
+    let first = b.scene.parts.len();
+    let chained = Referrer { element: b.definition(m.id(), "mask"), owner: None };
+    let mask = m.mask().map(|m| mask(b, m, frame, chained, outside));
+    let root = definition(b, m.root(), frame, Context { slot, bend, ..Context::top(PartRole::Mask) });
+    let (r, c) = (m.rect(), m.root().stroke_bounding_box());
+    let rect = |l, t, r, b| Rect::new(f64::from(l), f64::from(t), f64::from(r), f64::from(b));
+    b.scene.masks.push(Mask {
+        id: m.id().to_owned(),
+        rect: rect(r.left(), r.top(), r.right(), r.bottom()),
+        kind: m.kind(),
+        mask,
+        root,
+        frame,
+        slot,
+        referrers: vec![referrer],
+        bend,
+        parts: first..b.scene.parts.len(),
+        foreign: b.foreign_depth > 0,
+        content: rect(c.left(), c.top(), c.right(), c.bottom()),
+    });
+    let i = b.scene.masks.len() - 1;
+    b.mask_index.insert(key, i);
+    i
+}
+
+/// Resolves a pattern's tile, once.
+fn tile(b: &mut SceneBuilder<'_>, pattern: &Arc<usvg::Pattern>) {
+    if b.scene.tiles.iter().any(|t| Arc::ptr_eq(&t.pattern, pattern)) {
+        return;
+    }
+    let root = definition(b, pattern.root(), Affine::IDENTITY, Context::top(PartRole::Pattern));
+    b.scene.tiles.push(PatternTile { pattern: pattern.clone(), root });
+}
+
+/// Resolves the content of an `feImage`, once.
+fn picture(b: &mut SceneBuilder<'_>, root: &usvg::Group) {
+    let key = std::ptr::from_ref(root) as usize;
+    if !b.scene.pictures.contains_key(&key) {
+        let group = definition(b, root, Affine::IDENTITY, Context::top(PartRole::Pattern));
+        b.scene.pictures.insert(key, group);
+    }
+}
+
+/// Resolves the content of a definition. It replaces nothing in the drawing's own tree, so parts in it that cannot be traced
+/// do not prevent patching.
+fn definition(b: &mut SceneBuilder<'_>, g: &usvg::Group, frame: Affine, context: Context) -> Group {
+    let before = b.scene.unpatchable.take();
+    let root = group(b, g, frame, context);
+    b.scene.unpatchable = before;
+    root
 }

@@ -1,10 +1,9 @@
 //! State for patching the source in place: edits, and the writer for replaced content.
 
-use crate::bend::bitmap::EmbeddedImage;
+use crate::bend::fits::EmbeddedImage;
 use crate::scene::model::Node;
 use crate::source::edit::Edits;
-use crate::source::live::is_live;
-use crate::source::tags::ElementId;
+use crate::source::elements::{Attr, ElementId, Namespace, is_animation, is_live, is_shape};
 use crate::source::text::SourceText;
 use crate::write::defs::Replaced;
 use crate::write::fragment::Writer;
@@ -13,7 +12,7 @@ use pathwarp::kurbo::Affine;
 use std::collections::BTreeSet;
 
 /// Geometry attributes, which a shape loses when it becomes a path.
-pub(super) const GEOMETRY: [&str; 15] =
+const GEOMETRY: [&str; 15] =
     ["d", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r", "x1", "y1", "x2", "y2", "points"];
 
 /// Data attributes of lettering.
@@ -103,5 +102,130 @@ impl<'a, 'w> Keeper<'a, 'w> {
         self.edits.rename(e, "g");
         self.remove_geometry(e);
         self.edits.wrap_content(e, String::new(), content);
+    }
+}
+
+/// Flags for every element of the source.
+pub(super) struct Warped {
+    /// `true` if the element is warped.
+    pub(super) own: Vec<bool>,
+    /// `true` if it is warped or contains anything warped.
+    pub(super) within: Vec<bool>,
+}
+
+impl Warped {
+    pub(super) fn new(input: &WriteInput<'_>) -> Self {
+        let (scene, source) = (input.scene, input.source);
+        let count = source.elements.len();
+        let mut out = Self { own: vec![false; count], within: vec![false; count] };
+        let parts = scene.parts.iter().zip(input.outcomes);
+        let parts = parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element());
+        let bitmaps = scene.bitmaps.iter().zip(input.images);
+        let bitmaps = bitmaps.filter(|b| matches!(b.1, EmbeddedImage::Bent(_))).filter_map(|b| b.0.owner);
+        for e in parts.chain(bitmaps) {
+            out.own[e] = true;
+            for a in source.ancestors(e) {
+                if std::mem::replace(&mut out.within[a], true) {
+                    break;
+                }
+            }
+        }
+        out
+    }
+}
+
+/// Removes live attributes from everything that is warped or contains anything warped. The rest of a live group that is
+/// warped in part loses those that mean nothing without the group.
+pub(super) fn let_go(k: &mut Keeper<'_, '_>, warped: &Warped) {
+    let source = k.source;
+    // No element is live without a declared namespace, and most drawings have none.
+    if !source.elements.iter().any(|e| e.attrs.iter().any(|a| is_live(a, &source.text))) {
+        return;
+    }
+    for e in (0..source.elements.len()).filter(|&e| warped.within[e]) {
+        if is_shape(k.tag(e)) && source.attr_in(e, Namespace::Sodipodi, "type").is_some() {
+            // A rectangle with a path effect is a `path` with the attributes of a `rect`; a linked offset has a link.
+            for name in GEOMETRY.into_iter().filter(|n| *n != "d").chain(["href"]) {
+                k.edits.remove_attr(e, name);
+            }
+        }
+        k.edits.remove_attrs(e, |a| is_live(a, &source.text));
+        orphans(k, e, warped);
+    }
+}
+
+/// Releases the shapes of a 3D box, and those under a group's path effect, that are not warped themselves.
+fn orphans(k: &mut Keeper<'_, '_>, group: ElementId, warped: &Warped) {
+    let source = k.source;
+    let is_box = source.attr_in(group, Namespace::Sodipodi, "type").is_some_and(|t| t == "inkscape:box3d");
+    let has_effect = |e: ElementId| source.attr_in(e, Namespace::Inkscape, "path-effect").is_some();
+    if is_shape(k.tag(group)) || !(is_box || has_effect(group)) {
+        return;
+    }
+    for e in source.descendants(group).filter(|&e| !warped.within[e]) {
+        let is_orphan = |a: &Attr| match (a.namespace, a.name(&source.text)) {
+            (Namespace::Sodipodi, "type") | (Namespace::Inkscape, "box3dsidetype") => is_box,
+            (Namespace::Inkscape, "original-d") => !has_effect(e),
+            _ => false,
+        };
+        k.edits.remove_attrs(e, is_orphan);
+    }
+}
+
+const OF_GEOMETRY: &str = "animations of a shape's geometry are dropped, as the shape is warped";
+const OF_POSITION: &str = "animations that move warped shapes along straight lines are dropped";
+const OF_PAINT: &str =
+    "animations of fill and stroke are dropped where a shape, text or copy has become a group of several";
+
+/// Property changed by an animation.
+enum Animated {
+    Geometry,
+    Position,
+    Paint,
+    Other,
+}
+
+/// Removes animations that no longer fit.
+pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>, warped: &Warped) {
+    let source = k.source;
+    if !source.animated {
+        return;
+    }
+    for a in (0..source.elements.len()).filter(|&a| is_animation(&source.elements[a].tag)) {
+        let target = match source.href(a) {
+            Some(id) => source.by_id().get(&id).and_then(|all| all.first().copied()),
+            None => source.elements[a].parent,
+        };
+        let Some(target) = target else { continue };
+        let why = match animated(source, a) {
+            Animated::Geometry if warped.own[target] => OF_GEOMETRY,
+            Animated::Position if warped.within[target] => OF_POSITION,
+            Animated::Paint if k.fragments.contains(&target) => OF_PAINT,
+            _ => continue,
+        };
+        k.edits.replace(a, String::new());
+        k.writer.notes.add(why, &source.display_name(target));
+    }
+}
+
+/// The animations among the children of an element whose content is replaced, except those that no longer fit.
+pub(super) fn kept(source: &SourceText, e: ElementId) -> String {
+    let children = source
+        .descendants(e)
+        .filter(|&c| source.elements[c].parent == Some(e) && is_animation(&source.elements[c].tag));
+    let kept = children.filter(|&c| matches!(animated(source, c), Animated::Other));
+    kept.map(|c| &source.text[source.elements[c].range.clone()]).collect()
+}
+
+fn animated(source: &SourceText, a: ElementId) -> Animated {
+    if matches!(source.elements[a].tag.as_ref(), "animateTransform" | "animateMotion") {
+        return Animated::Position;
+    }
+    match source.attr(a, "attributeName").as_deref().map(str::trim) {
+        Some("transform") => Animated::Position,
+        Some("dx" | "dy" | "rotate" | "textLength" | "font-size" | "href" | "xlink:href") => Animated::Geometry,
+        Some(n) if GEOMETRY.contains(&n) => Animated::Geometry,
+        Some(n) if n.starts_with("fill") || n.starts_with("stroke") => Animated::Paint,
+        _ => Animated::Other,
     }
 }

@@ -1,32 +1,21 @@
 //! Patches the source text in place: elements stay elements wherever possible, with everything else their author gave them.
 
-mod animations;
-mod clips;
-mod copies;
+mod elements;
 mod keeper;
-mod live;
 mod pages;
-mod percentages;
-mod shape;
 mod text;
-mod walk;
-mod warped;
 
-use super::filter;
 use super::fragment::Writer;
 use super::input::WriteInput;
-use super::page;
+use super::keep::keeper::{Keeper, Warped};
+use super::{filter, page};
 use crate::bend::outcome::{Notes, Skipped};
 use crate::source::edit::Edits;
-use crate::source::live::is_live;
+use crate::source::elements::{ElementId, Unpatchable, is_live};
 use crate::source::number::matrix;
-use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
-use crate::source::unpatchable::Unpatchable;
-use keeper::Keeper;
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::guarded;
-use warped::Warped;
 
 /// Patches the text; `change` is the visible area before and after, if that changes.
 pub(super) fn write(
@@ -38,16 +27,16 @@ pub(super) fn write(
     let mut writer = Writer::new(*input, true, skipped, notes);
     let mut k = Keeper::new(*input, &mut writer);
     if let Some((_, after)) = change {
-        percentages::hold(&mut k, after.size());
+        pages::hold(&mut k, after.size());
     }
-    clips::clips(&mut k)?;
-    clips::masks(&mut k)?;
-    walk::group(&mut k, &input.scene.root);
+    elements::clips(&mut k)?;
+    elements::masks(&mut k)?;
+    elements::group(&mut k, &input.scene.root);
     slots(&mut k);
     regions(&mut k);
     let warped = Warped::new(input);
-    live::let_go(&mut k, &warped);
-    animations::remove_unfit(&mut k, &warped);
+    keeper::let_go(&mut k, &warped);
+    keeper::remove_unfit(&mut k, &warped);
     if let Some(change) = change {
         for (name, value) in page::attributes(input.source, change) {
             k.edits.set_attr(0, name, value);

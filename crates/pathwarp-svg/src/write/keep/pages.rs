@@ -1,10 +1,158 @@
-//! Inkscape's pages and guide lines, which are measured from the corners of the viewBox: they stay where they are when the page
-//! changes. The page that was the whole viewBox is the whole viewBox again.
+//! Lengths in percent of the page, which keep their size when the page changes: they become numbers.
 
 use super::keeper::Keeper;
+use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
+use crate::source::elements::ElementId;
+use crate::source::elements::declared;
 use crate::source::number::short;
-use crate::source::tags::ElementId;
-use pathwarp::kurbo::{Rect, Vec2};
+use crate::source::text::SourceText;
+use pathwarp::kurbo::{Rect, Size, Vec2};
+
+/// Attributes that may be percentages of the viewport, alone or in lists.
+const LENGTHS: &[(&str, Dimension)] = &[
+    ("x", Width),
+    ("y", Height),
+    ("width", Width),
+    ("height", Height),
+    ("x1", Width),
+    ("y1", Height),
+    ("x2", Width),
+    ("y2", Height),
+    ("cx", Width),
+    ("cy", Height),
+    ("rx", Width),
+    ("ry", Height),
+    ("r", Diagonal),
+    ("fx", Width),
+    ("fy", Height),
+    ("fr", Diagonal),
+    ("dx", Width),
+    ("dy", Height),
+    ("markerWidth", Width),
+    ("markerHeight", Height),
+];
+
+/// Properties of the same kind.
+const PROPERTIES: [&str; 3] = ["stroke-width", "stroke-dasharray", "stroke-dashoffset"];
+
+/// Lengths that are percentages unless they are given: of gradients in user space.
+const OF_GRADIENTS: [(&str, &[(&str, &str)]); 2] =
+    [("linearGradient", &[("x2", "100%")]), ("radialGradient", &[("cx", "50%"), ("cy", "50%"), ("r", "50%")])];
+
+/// Replaces percentages of the root's viewport by numbers if its size changes. Must come before other edits, which go on from
+/// lengths that usvg has resolved.
+pub(super) fn hold(k: &mut Keeper<'_, '_>, after: Size) {
+    let before = k.input.drawing.reader().root_size();
+    if after == before {
+        return;
+    }
+    for e in 1..k.source.elements.len() {
+        if has_percentages(k.source, e) && refers_to_root(k.source, e) && is_in_user_space(k.source, e) {
+            lengths(k, e, before);
+            defaults(k, e, before);
+        }
+    }
+    if k.source.text.contains('%') {
+        for name in PROPERTIES {
+            property(k, name, Diagonal.of(before));
+        }
+    }
+}
+
+/// Returns `true` if an element of SVG may have percentages, written or not.
+fn has_percentages(source: &SourceText, e: ElementId) -> bool {
+    let el = &source.elements[e];
+    match el.tag.as_ref() {
+        "" => false,
+        "svg" | "use" | "linearGradient" | "radialGradient" => true,
+        _ => source.text[el.range.start..el.open_end].contains('%'),
+    }
+}
+
+/// Returns `true` if percentages of an element refer to the root.
+fn refers_to_root(source: &SourceText, e: ElementId) -> bool {
+    let establishes = |a: &ElementId| match source.elements[*a].tag.as_ref() {
+        "svg" | "symbol" | "marker" => true,
+        "pattern" => source.attr(*a, "viewBox").is_some(),
+        _ => false,
+    };
+    source.ancestors(e).skip(1).find(establishes) == Some(0)
+}
+
+/// Returns `true` unless the lengths of an element are fractions of a box.
+fn is_in_user_space(source: &SourceText, e: ElementId) -> bool {
+    let tag = |e: ElementId| source.elements[e].tag.as_ref();
+    let (owner, name, default) = match tag(e) {
+        "linearGradient" | "radialGradient" => (e, "gradientUnits", false),
+        "pattern" => (e, "patternUnits", false),
+        "mask" => (e, "maskUnits", false),
+        "filter" => (e, "filterUnits", false),
+        primitive if primitive.starts_with("fe") => match source.elements[e].parent {
+            Some(filter) => (filter, "primitiveUnits", true),
+            None => return true,
+        },
+        _ => return true,
+    };
+    source.in_user_space(owner, name).unwrap_or(default)
+}
+
+/// The numbers in the place of percentages. `None` if there are none.
+fn numbers(text: &str, full: f64) -> Option<String> {
+    let number = |part: &str| Some(short(part.strip_suffix('%')?.trim_end().parse::<f64>().ok()? / 100.0 * full));
+    let parts = || text.split([' ', ',', '\t', '\n', '\r']).filter(|p| !p.is_empty());
+    parts().any(|p| number(p).is_some()).then(|| {
+        let all = parts().map(|p| number(p).unwrap_or_else(|| p.to_owned()));
+        all.collect::<Vec<_>>().join(" ")
+    })
+}
+
+fn lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+    for &(name, of) in LENGTHS {
+        if let Some(new) = k.source.attr(e, name).and_then(|text| numbers(&text, of.of(view))) {
+            k.edits.set_attr(e, name, new);
+        }
+    }
+}
+
+/// A property wherever it is declared: in attributes and styles, and by style sheets, whose rule is overridden.
+fn property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
+    if !k.source.text.contains(name) {
+        return;
+    }
+    for e in 0..k.source.elements.len() {
+        let Some(new) = k.source.property(e, name).and_then(|v| numbers(&v, diagonal)) else { continue };
+        // What the root declares, it hands down.
+        if k.tag(e).is_empty() || e > 0 && !refers_to_root(k.source, e) {
+            continue;
+        }
+        let style = k.source.attr(e, "style");
+        if k.source.css_declares(name) || style.is_some_and(|s| declared(&s, name).is_some()) {
+            k.edits.set_style(e, name, new);
+        } else {
+            k.edits.set_attr(e, name, new);
+        }
+    }
+}
+
+/// Writes out the lengths that are percentages if they are not given.
+fn defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+    let target = || k.source.target(e);
+    let missing: &[(&str, &str)] = match k.tag(e) {
+        "svg" => &[("width", "100%"), ("height", "100%")],
+        "use" if target().is_some_and(|t| k.tag(t) == "symbol") => &[("width", "100%"), ("height", "100%")],
+        // A template may give them.
+        gradient if target().is_none() => OF_GRADIENTS.iter().find(|g| g.0 == gradient).map_or(&[], |g| g.1),
+        _ => &[],
+    };
+    for &(name, of) in LENGTHS {
+        if let Some((_, default)) = missing.iter().find(|m| m.0 == name)
+            && k.source.attr(e, name).is_none()
+            && let Some(new) = numbers(default, of.of(view))
+        {
+            k.edits.set_attr(e, name, new);
+        }
+    }
+}
 
 /// Sides that differ by less than this share are the same: Inkscape writes eight digits.
 const SAME: f64 = 1e-6;

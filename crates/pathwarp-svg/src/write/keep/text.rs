@@ -1,11 +1,9 @@
 //! Texts: they become groups of outlines, with a group inside for every named element.
 
-use super::animations;
-use super::keeper::Keeper;
-use crate::scene::letters::{inside, is_named, is_naming};
+use super::keeper::{self, Keeper};
+use crate::scene::lettering::{inside, is_named, is_naming};
 use crate::scene::model::Group;
-use crate::source::live::is_live;
-use crate::source::tags::{ElementId, Namespace};
+use crate::source::elements::{ElementId, Namespace, is_live};
 use crate::source::text::SourceText;
 use std::ops::Range;
 
@@ -79,7 +77,7 @@ pub(super) fn text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners
         k.edits.set_attr(e, "aria-label", words);
     }
     k.fragments.insert(e);
-    let animations = animations::kept(source, e);
+    let animations = keeper::kept(source, e);
     k.edits.set_content(e, format!("{title}{inner}{animations}"));
 }
 

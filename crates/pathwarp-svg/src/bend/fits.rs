@@ -1,0 +1,226 @@
+//! What follows a map by the best affine fit: paints, filtered groups, and the bitmaps and patterns that are not bent.
+
+use super::bends::{Bend, Bends};
+use super::options::{Patterns, Strokes};
+use super::pictures::{BentImage, ImageRequest, Images};
+use crate::scene::drawing::Drawing;
+use crate::scene::geometry::is_invertible;
+use crate::scene::model::{Bitmap, PartRole, Scene};
+use crate::scene::resolve::{Painted, Tiling};
+use pathwarp::Error;
+use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
+use pathwarp::map::Map;
+use usvg::ImageRendering;
+
+/// An affine approximation of a map over a box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PaintFit {
+    /// From the shape's user space as read to that as written.
+    pub(crate) affine: Affine,
+    /// Largest distance between fit and map over the samples, relative to the size of the box's image.
+    pub(crate) residual: f64,
+    /// The same distance in units of the target space.
+    pub(crate) miss: f64,
+}
+
+/// Finds the least-squares affine fit of `map` over a grid on `area`, from a user space with the transform `read` to root user
+/// space to one with the transform `write`. Returns `None` where the map is not finite.
+pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Option<PaintFit> {
+    let back = write.inverse();
+    let places: Vec<Point> = grid(area).map(|p| read * p).collect();
+    let mut images = places.clone();
+    map.points(&places, &mut images);
+    let pairs: Vec<(Point, Point)> =
+        grid(area).zip(images).map(|(p, q)| (p, back * q)).filter(|(_, q)| q.is_finite()).collect();
+    let n = pairs.len() as f64;
+    if pairs.len() < 3 {
+        return None;
+    }
+    let mean = |f: fn(&(Point, Point)) -> Point| {
+        (pairs.iter().map(|p| f(p).to_vec2()).fold(Vec2::ZERO, |a, b| a + b) / n).to_point()
+    };
+    let (p0, q0) = (mean(|p| p.0), mean(|p| p.1));
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    let (mut ux, mut uy) = (Vec2::ZERO, Vec2::ZERO);
+    for (p, q) in &pairs {
+        let (d, w) = (*p - p0, *q - q0);
+        xx += d.x * d.x;
+        xy += d.x * d.y;
+        yy += d.y * d.y;
+        ux += w * d.x;
+        uy += w * d.y;
+    }
+    let det = xx * yy - xy * xy;
+    // A box without area, such as a straight line's: use the map's derivative.
+    let (cx, cy) = if det > 1e-12 * (xx + yy).powi(2) {
+        ((ux * yy - uy * xy) / det, (uy * xx - ux * xy) / det)
+    } else {
+        let centre = read * area.center();
+        let jet = map.jet(centre);
+        if !jet.is_finite() {
+            return None;
+        }
+        let local = back * Affine::new([jet.dx.x, jet.dx.y, jet.dy.x, jet.dy.y, 0.0, 0.0]) * read;
+        let [a, b, c, d, ..] = local.as_coeffs();
+        (Vec2::new(a, b), Vec2::new(c, d))
+    };
+    let shift = q0.to_vec2() - cx * p0.x - cy * p0.y;
+    let affine = Affine::new([cx.x, cx.y, cy.x, cy.y, shift.x, shift.y]);
+    let miss = pairs.iter().map(|(p, q)| (affine * *p).distance(*q)).fold(0.0, f64::max);
+    let size = (cx * area.width()).hypot() + (cy * area.height()).hypot();
+    affine.is_finite().then_some(PaintFit { affine, residual: if size > 0.0 { miss / size } else { 0.0 }, miss })
+}
+
+/// Finds the fit of a shape with copies: the paint of one copy is stretched over the box of all. If no affine map comes near
+/// the image of that box, as around a ring, the paint is stretched over the image's own box, `result`.
+pub(crate) fn fit_copies(
+    area: Rect,
+    read: Affine,
+    write: Affine,
+    map: &dyn Map,
+    copies: &[Affine],
+    result: Rect,
+) -> Option<PaintFit> {
+    /// A fit with a larger relative residual is useless.
+    const LOST: f64 = 0.25;
+    let back = read.inverse();
+    let Some(whole) = copies.iter().map(|m| (back * *m * read).transform_rect_bbox(area)).reduce(|a, b| a.union(b))
+    else {
+        return fit(area, read, write, map);
+    };
+    // Without width or height, keep the size.
+    let scale = |own: f64, all: f64| if own > 0.0 && all > 0.0 { all / own } else { 1.0 };
+    let onto = |all: Rect| {
+        Affine::translate(all.origin().to_vec2())
+            * Affine::scale_non_uniform(scale(area.width(), all.width()), scale(area.height(), all.height()))
+            * Affine::translate(-area.origin().to_vec2())
+    };
+    let over = fit(whole, read, write, map).filter(|f| f.residual <= LOST);
+    Some(match over {
+        Some(over) => PaintFit { affine: over.affine * onto(whole), ..over },
+        None => PaintFit { affine: onto(result), residual: 1.0, miss: f64::INFINITY },
+    })
+}
+
+impl PaintFit {
+    /// Returns `true` if the fit moves no corner of `area` by more than 1e-9 of its diagonal.
+    pub(crate) fn is_identity(&self, area: Rect) -> bool {
+        let size = area.width().hypot(area.height());
+        let corners = [(area.x0, area.y0), (area.x1, area.y0), (area.x1, area.y1), (area.x0, area.y1)];
+        corners.into_iter().map(Point::from).all(|p| (self.affine * p).distance(p) <= 1e-9 * size)
+    }
+}
+
+fn grid(r: Rect) -> impl Iterator<Item = Point> {
+    const N: u32 = 8;
+    let at = |i: u32| f64::from(i) / f64::from(N);
+    (0..=N).flat_map(move |i| (0..=N).map(move |j| Point::new(r.x0 + r.width() * at(i), r.y0 + r.height() * at(j))))
+}
+
+/// A slot under a map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlacedSlot {
+    /// Factor of the slot's transform.
+    pub(crate) fit: Affine,
+    /// From the slot's coordinates to root user space, as written.
+    write: Affine,
+}
+
+/// Maps a frame to the result: inside a slot, it moves along.
+pub(crate) fn written(scene: &Scene, placed: &[PlacedSlot], slot: Option<usize>, frame: Affine) -> Affine {
+    match slot.and_then(|s| Some((placed.get(s)?, scene.slots.get(s)?))) {
+        Some((p, s)) if p.write != s.frame => p.write * s.frame.inverse() * frame,
+        _ => frame,
+    }
+}
+
+/// Places filtered groups and images by the affine fit over each of the map that bends all of it. `of` has the index of what bends
+/// each part.
+pub(super) fn place(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) -> Vec<PlacedSlot> {
+    let scene = drawing.scene();
+    let mut out: Vec<PlacedSlot> = Vec::with_capacity(scene.slots.len());
+    for s in &scene.slots {
+        let outer = written(scene, &out, s.outer, s.frame);
+        // Parts of tiles and of filters' pictures are never bent and do not count.
+        let mut own = s.parts.clone().filter(|&i| scene.parts[i].role != PartRole::Pattern);
+        let bend = match own.next() {
+            Some(first) => of[first].filter(|k| own.all(|i| of[i] == Some(*k))),
+            None => bends.of(s.owner.or(s.element)),
+        };
+        let fit = bend
+            .filter(|_| is_invertible(s.frame) && is_invertible(outer))
+            .and_then(|k| fit(s.area, s.frame, outer, bends.each[k].map))
+            .filter(|f| is_invertible(f.affine) && !f.is_identity(s.area));
+        let fit = fit.map_or(Affine::IDENTITY, |f| f.affine);
+        out.push(PlacedSlot { fit, write: outer * fit });
+    }
+    out
+}
+
+/// Result for a bitmap.
+#[derive(Debug)]
+pub(crate) enum EmbeddedImage {
+    /// Not selected, or placed exactly by its slot.
+    Placed,
+    /// Placed approximately, with the reason.
+    Approximate(String),
+    /// Bent, in the user space outside of its placing transform.
+    Bent(BentImage),
+}
+
+/// An affine fit with a relative residual below this is exact.
+const EXACT: f64 = 1e-6;
+
+/// Bends a bitmap, if anything bends it.
+pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option<&Bend<'_>>) -> EmbeddedImage {
+    let Some(Bend { map, options }) = bend else { return EmbeddedImage::Placed };
+    let pixels = b.image.size();
+    let area = Rect::new(0.0, 0.0, f64::from(pixels.width()), f64::from(pixels.height()));
+    let write = written(scene, slots, b.slot, b.frame);
+    if !b.bends || b.is_unread() || !b.image.is_visible() || !is_invertible(b.frame) || !is_invertible(write) {
+        return EmbeddedImage::Placed;
+    }
+    let fit = fit(area, b.frame, write, *map);
+    if fit.is_some_and(|f| f.residual <= EXACT && f.is_identity(area)) {
+        return EmbeddedImage::Placed;
+    }
+    let approximate = |why: &str| EmbeddedImage::Approximate(format!("{why}; it is placed by the best affine fit"));
+    let Images::Warp(warper) = &options.images else { return approximate("images are kept") };
+    let data = match b.image.kind() {
+        usvg::ImageKind::JPEG(d) | usvg::ImageKind::PNG(d) | usvg::ImageKind::GIF(d) | usvg::ImageKind::WEBP(d) => d,
+        // Not a bitmap.
+        usvg::ImageKind::SVG(_) => return EmbeddedImage::Placed,
+    };
+    let after = (write * b.placing.inverse()).inverse();
+    let pixelated = matches!(b.image.rendering_mode(), ImageRendering::Pixelated | ImageRendering::CrispEdges);
+    let request = ImageRequest { data, placed: b.frame, crop: b.crop, pixelated, map: *map, after, to_px: scene.to_px };
+    match warper.warp(&request) {
+        Ok(bent) => EmbeddedImage::Bent(bent),
+        Err(why) => approximate(&why.to_string()),
+    }
+}
+
+/// Lays out pattern tiles as geometry if they are to be warped one by one. Returns `None` if nothing changes.
+pub(crate) fn laid_out(drawing: &Drawing, bends: &Bends<'_>) -> Result<Option<Drawing>, Error> {
+    /// Visible error as a fraction of the page's diagonal: half a pixel if the page is drawn a thousand pixels across.
+    const VISIBLE: f64 = 5e-4;
+    let patterns = bends.options.patterns;
+    if matches!(patterns, Patterns::Fit | Patterns::Keep) || drawing.scene().tiles.is_empty() {
+        return Ok(None);
+    }
+    let view = drawing.view_box();
+    let visible = VISIBLE * view.width().hypot(view.height());
+    let shows = |bend: &Bend<'_>, area: Rect, frame: Affine| {
+        let follows = || fit(area, frame, Affine::IDENTITY, bend.map).is_some_and(|f| f.miss <= visible);
+        patterns == Patterns::Instantiate || bend.options.copies.len() > 1 || !follows()
+    };
+    let needed = |painted: Painted, area: Rect, frame: Affine| {
+        let bend = match painted {
+            Painted::Element(e) => bends.of(e),
+            Painted::Mask(bend) => bend.or(Some(0)),
+        };
+        bend.and_then(|k| bends.each.get(k)).is_some_and(|bend| shows(bend, area, frame))
+    };
+    let strokes = matches!(bends.options.strokes, Strokes::Auto | Strokes::Outline);
+    drawing.tiled(Tiling::new(&needed, strokes)).map(Some)
+}

@@ -1,0 +1,527 @@
+//! Gradients on a part that must become pictures: the decision, and the request to paint them.
+
+use super::fits::PaintFit;
+use super::options::Gradients;
+use super::pictures::{BentImage, GradientRequest, PictureError, SeenColor};
+use super::task::PartTask;
+use crate::scene::geometry::{affine, is_invertible, stretch};
+use pathwarp::Outline;
+use pathwarp::kurbo::{self, Affine, BezPath, ParamCurve as _, ParamCurveArclen as _, Point, Rect, Shape as _, Vec2};
+use pathwarp::outline::boundary;
+use usvg::{FillRule, Paint, SpreadMethod};
+
+/// Smallest visible difference: more than one of 255 levels.
+const SMALLEST: f64 = 1.5 / 255.0;
+/// Smallest difference that is noticed without a comparison.
+const NOTICED: f64 = 8.0 / 255.0;
+/// The fraction of the shape on which it must be exceeded. Less are edges between hard stops, which move a little.
+const NOTICED_SHARE: f64 = 0.01;
+/// The largest error of an affine fit over a shape, relative to that at the places where it was measured.
+const BETWEEN: f64 = 1.25;
+
+/// A gradient that must become a picture to look right.
+pub(super) struct BentGradient {
+    shading: Shading,
+    /// The box on which it is painted, in the part's user space.
+    area: Rect,
+    seen: Vec<SeenColor>,
+    strict: bool,
+    sharp: bool,
+}
+
+impl BentGradient {
+    /// Returns the gradient of a paint of the part if the affine fit would be seen to be wrong.
+    pub(super) fn of(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>) -> Option<Self> {
+        let (p, options) = (t.part, t.options());
+        // A gradient spans all copies, which the map does not describe. In tiles, errors are too small to see.
+        let repeated = options.copies.len() > 1 || !options.letters.places.is_empty();
+        if !options.paints_gradients() || repeated || p.in_tile || !p.painted() {
+            return None;
+        }
+        let shading = Shading::of(paint)?;
+        let strict = matches!(options.gradients, Gradients::Exact(_));
+        let (least, share) = if strict { (SMALLEST, 0.0) } else { (NOTICED, NOTICED_SHARE) };
+        let fill = p.fill.as_ref().filter(|f| std::ptr::eq(f.paint(), paint));
+        let width = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get()));
+        let opacity = fill.map(usvg::Fill::opacity).or(p.stroke.as_ref().map(usvg::Stroke::opacity));
+        let opacity = opacity.map_or(1.0, |o| f64::from(o.get()));
+        // Colours change at most this much over the largest error of the fit.
+        let off = |f: PaintFit| opacity * shading.steepest() * f.miss * stretch(f.affine.inverse()) * BETWEEN;
+        if fit.is_some_and(|f| off(f) <= least) {
+            return None;
+        }
+        let places = match fill {
+            Some(f) => inside(&p.local, f.rule(), strict),
+            None => along(&p.local, width),
+        };
+        let seen = seen(t, &shading, &places);
+        let back = fit.map(|f| f.affine.inverse());
+        let differs = |s: &&SeenColor| {
+            let found = back.map(|back| shading.premultiplied(back * s.at));
+            found.is_none_or(|found| s.color.iter().zip(found).any(|(w, f)| (w - f).abs() * opacity > least))
+        };
+        if seen.iter().filter(differs).count() as f64 <= share * seen.len() as f64 {
+            return None;
+        }
+        let reach = if fill.is_some() { 0.0 } else { 0.5 * width };
+        let area = p.local.bounding_box().unwrap_or_default().inflate(reach, reach);
+        let sharp = shading.jumps(places.into_iter(), NOTICED);
+        Some(Self { shading, area, seen, strict, sharp })
+    }
+
+    /// Paints the gradient over the box of `target`. Records the error if there is one.
+    pub(super) fn painted(
+        &self,
+        t: &PartTask<'_>,
+        target: &BezPath,
+        unpainted: &mut Option<PictureError>,
+    ) -> Option<BentImage> {
+        let (Gradients::Exact(painter) | Gradients::Auto(painter)) = &t.options().gradients else { return None };
+        let request = GradientRequest {
+            colors: &|places, colors| self.shading.colors(places, colors),
+            area: self.area,
+            placed: t.part.frame,
+            map: t.context.map,
+            after: t.back,
+            target: target.bounding_box(),
+            shape: target,
+            to_px: t.context.to_px,
+            among: t.context.gradients,
+            seen: &self.seen,
+            strict: self.strict,
+            sharp: self.sharp,
+        };
+        painter.paint(&request).map_err(|why| *unpainted = Some(why)).ok()
+    }
+}
+
+/// The exact colours of the bent gradient at the images of `places`.
+fn seen(t: &PartTask<'_>, shading: &Shading, places: &[Point]) -> Vec<SeenColor> {
+    let roots: Vec<Point> = places.iter().map(|p| t.part.frame * *p).collect();
+    let mut images = vec![Point::ORIGIN; roots.len()];
+    t.context.map.points(&roots, &mut images);
+    let pairs = places.iter().zip(images).map(|(p, q)| (p, t.back * q)).filter(|(_, q)| q.is_finite());
+    pairs.map(|(p, at)| SeenColor { at, color: shading.premultiplied(*p) }).collect()
+}
+
+/// Places whose colours are computed together.
+const TOGETHER: usize = 32;
+
+/// A gradient as a function of the plane.
+#[derive(Debug, Clone)]
+pub(super) struct Shading {
+    /// From user space to the gradient's space.
+    inside: Affine,
+    kind: GradientShape,
+    stops: Vec<Stop>,
+    spread: SpreadMethod,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Stop {
+    offset: f64,
+    /// Not premultiplied.
+    color: [f64; 4],
+}
+
+/// The colours between two neighbouring stops, or before the first or beyond the last: `color` at the parameter `from`, changing by
+/// `rate`. The default holds no parameter.
+#[derive(Debug, Clone, Copy, Default)]
+struct Band {
+    from: f64,
+    to: f64,
+    color: [f64; 4],
+    rate: [f64; 4],
+}
+
+#[derive(Debug, Clone, Copy)]
+enum GradientShape {
+    /// The parameter at `from` is 0, and grows by `slope`.
+    Linear {
+        from: Point,
+        slope: Vec2,
+    },
+    Radial {
+        centre: Point,
+        radius: f64,
+        focus: Point,
+        focal_radius: f64,
+    },
+}
+
+impl Shading {
+    /// Reads a gradient. Returns `None` for other paints.
+    pub(super) fn of(paint: &Paint) -> Option<Self> {
+        let p = |x: f32, y: f32| Point::new(f64::from(x), f64::from(y));
+        let (base, kind): (&usvg::BaseGradient, _) = match paint {
+            Paint::LinearGradient(g) => {
+                let (from, to) = (p(g.x1(), g.y1()), p(g.x2(), g.y2()));
+                (g, GradientShape::Linear { from, slope: (to - from) / (to - from).hypot2() })
+            }
+            Paint::RadialGradient(g) => {
+                let (radius, focal_radius) = (f64::from(g.r().get()), f64::from(g.fr().get()));
+                (g, GradientShape::Radial { centre: p(g.cx(), g.cy()), radius, focus: p(g.fx(), g.fy()), focal_radius })
+            }
+            Paint::Color(_) | Paint::Pattern(_) => return None,
+        };
+        let stop = |s: &usvg::Stop| {
+            let (c, a) = (s.color(), s.opacity().get());
+            let level = |v: u8| f64::from(v) / 255.0;
+            let color = [level(c.red), level(c.green), level(c.blue), f64::from(a)];
+            Stop { offset: f64::from(s.offset().get()), color }
+        };
+        let inside = affine(base.transform());
+        is_invertible(inside).then(|| Self {
+            inside: inside.inverse(),
+            kind,
+            stops: base.stops().iter().map(stop).collect(),
+            spread: base.spread_method(),
+        })
+    }
+
+    /// Parameters along the stops at points of user space; NaN outside of the cone of a focal gradient.
+    fn along(&self, places: &[Point], out: &mut [f64]) {
+        let pairs = out.iter_mut().zip(places);
+        match self.kind {
+            GradientShape::Linear { from, slope } => {
+                pairs.for_each(|(t, p)| *t = (self.inside * *p - from).dot(slope));
+            }
+            GradientShape::Radial { centre, radius, focus, focal_radius } if centre == focus => {
+                let per_unit = 1.0 / (radius - focal_radius);
+                pairs.for_each(|(t, p)| *t = ((self.inside * *p - focus).hypot2().sqrt() - focal_radius) * per_unit);
+            }
+            GradientShape::Radial { .. } => {
+                pairs.for_each(|(t, p)| *t = self.cone(self.inside * *p).unwrap_or(f64::NAN));
+            }
+        }
+    }
+
+    /// The parameter along the stops at one point.
+    fn along_one(&self, p: Point) -> f64 {
+        let mut t = [0.0];
+        self.along(&[p], &mut t);
+        t[0]
+    }
+
+    /// Parameter of a radial gradient at a point of its space. Returns `None` outside of the cone of a focal one.
+    fn cone(&self, p: Point) -> Option<f64> {
+        match self.kind {
+            GradientShape::Linear { .. } => None,
+            // The largest t for which the interpolated circle (0: focal, 1: outer) passes through the point.
+            GradientShape::Radial { centre, radius, focus, focal_radius } => {
+                let (d, grow, q) = (centre - focus, radius - focal_radius, p - focus);
+                let a = d.hypot2() - grow * grow;
+                let b = q.dot(d) + focal_radius * grow;
+                let c = q.hypot2() - focal_radius * focal_radius;
+                let reaches = |t: &f64| t.is_finite() && focal_radius + t * grow >= 0.0;
+                if a.abs() <= 1e-12 * grow * grow {
+                    return Some(c / (2.0 * b)).filter(reaches);
+                }
+                let root = (b * b - a * c).sqrt();
+                let (s, t) = ((b + root) / a, (b - root) / a);
+                [s.max(t), s.min(t)].into_iter().find(reaches)
+            }
+        }
+    }
+
+    /// Colours at points of user space: red, green, blue, alpha, not premultiplied.
+    pub(super) fn colors(&self, places: &[Point], out: &mut [[f64; 4]]) {
+        let (mut along, mut band) = ([0.0; TOGETHER], Band::default());
+        for (places, out) in places.chunks(TOGETHER).zip(out.chunks_mut(TOGETHER)) {
+            self.along(places, &mut along);
+            for (color, t) in out.iter_mut().zip(along) {
+                *color = self.color(t, &mut band);
+            }
+        }
+    }
+
+    /// The colour at a parameter. `band` is that of the parameter before: neighbours are mostly between the same stops.
+    #[inline]
+    fn color(&self, t: f64, band: &mut Band) -> [f64; 4] {
+        let t = match self.spread {
+            SpreadMethod::Pad => t.clamp(0.0, 1.0),
+            SpreadMethod::Repeat => t - t.floor(),
+            SpreadMethod::Reflect => 1.0 - (t.rem_euclid(2.0) - 1.0).abs(),
+        };
+        if t.is_nan() {
+            return [0.0; 4];
+        }
+        if !(band.from <= t && t < band.to) {
+            *band = self.band(t);
+        }
+        std::array::from_fn(|k| band.color[k] + (t - band.from) * band.rate[k])
+    }
+
+    /// The stops around a parameter.
+    fn band(&self, t: f64) -> Band {
+        let next = self.stops.partition_point(|s| s.offset <= t);
+        match (next.checked_sub(1).and_then(|i| self.stops.get(i)), self.stops.get(next)) {
+            (Some(a), Some(b)) => {
+                let per_unit = 1.0 / (b.offset - a.offset);
+                let rate = std::array::from_fn(|k| (b.color[k] - a.color[k]) * per_unit);
+                Band { from: a.offset, to: b.offset, color: a.color, rate }
+            }
+            (Some(s), None) => Band { from: s.offset, to: f64::INFINITY, color: s.color, rate: [0.0; 4] },
+            (None, Some(s)) => Band { from: 0.0, to: s.offset, color: s.color, rate: [0.0; 4] },
+            (None, None) => Band::default(),
+        }
+    }
+
+    /// The premultiplied colour at a point of user space.
+    pub(super) fn premultiplied(&self, p: Point) -> [f64; 4] {
+        premultiplied(self.color(self.along_one(p), &mut Band::default()))
+    }
+
+    /// Upper bound on the change of a premultiplied channel per unit of user space; infinite if colours jump or the bound is not
+    /// known.
+    fn steepest(&self) -> f64 {
+        let along = match self.kind {
+            GradientShape::Linear { slope, .. } => slope.hypot(),
+            // The circles are closest on the side to which the focus is shifted.
+            GradientShape::Radial { centre, radius, focus, focal_radius } => {
+                1.0 / (radius - focal_radius - (centre - focus).hypot()).max(0.0)
+            }
+        };
+        self.steps().map(|(_, rate, _)| rate).fold(0.0, f64::max) * along * stretch(self.inside)
+    }
+
+    /// Returns `true` if the colour jumps by more than `least` between stops that the places show.
+    fn jumps(&self, places: impl Iterator<Item = Point>, least: f64) -> bool {
+        /// Stops nearer than this are at one place; usvg moves them apart by a rounding error.
+        const SAME: f64 = 1e-4;
+        /// Places are spread over the shape with gaps between.
+        const BETWEEN: f64 = 0.05;
+        let range = places
+            .map(|p| self.along_one(p))
+            .filter(|t| !t.is_nan())
+            .fold(None, |r: Option<(f64, f64)>, t| Some(r.map_or((t, t), |(a, b)| (a.min(t), b.max(t)))));
+        let Some((from, to)) = range else { return false };
+        let margin = BETWEEN * (to - from);
+        let is_seen = |t: f64| self.spread != SpreadMethod::Pad || (from - margin..=to + margin).contains(&t);
+        self.steps().any(|(t, rate, change)| change > least && rate * SAME >= change && is_seen(t))
+    }
+
+    /// Offset, rate of change and change of the colour between neighbouring stops.
+    fn steps(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        let wrap = match (self.spread, self.stops.first(), self.stops.last()) {
+            (SpreadMethod::Repeat, Some(first), Some(last)) => Some((0.0, first, last, 0.0)),
+            _ => None,
+        };
+        let pairs = self.stops.iter().zip(self.stops.iter().skip(1));
+        pairs.map(|(a, b)| (a.offset, a, b, b.offset - a.offset)).chain(wrap).map(|(t, a, b, apart)| {
+            let (p, q) = (premultiplied(a.color), premultiplied(b.color));
+            let change = p.iter().zip(q).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
+            let alpha = (a.color[3] - b.color[3]).abs();
+            // The product rule for colour times alpha.
+            let most = |k: usize, of: [f64; 4]| (a.color[k] - b.color[k]).abs() * of[3] + of[k] * alpha;
+            let larger: [f64; 4] = std::array::from_fn(|k| a.color[k].max(b.color[k]));
+            let rate = (0..3).map(|k| most(k, larger)).fold(alpha, f64::max);
+            (t, if rate > 0.0 { rate / apart.max(0.0) } else { 0.0 }, change)
+        })
+    }
+}
+
+fn premultiplied([r, g, b, a]: [f64; 4]) -> [f64; 4] {
+    [r * a, g * a, b * a, a]
+}
+
+/// Number of places tried over the box of a fill; a Fibonacci number, for which the lattice is most even.
+const TRIED: usize = 610;
+/// The same where every place counts, and for thin shapes, which few of the first meet.
+const TRIED_DENSELY: usize = 6765;
+/// Fewer places than these are too few to judge by.
+const FEW: usize = 128;
+/// Number of places along a stroke.
+const ALONG: usize = 377;
+/// Flattening tolerance, relative to the box.
+const FLATNESS: f64 = 1e-3;
+
+/// Places inside an outline, spread evenly over its area: no two have a coordinate in common, so that bands of any direction are
+/// met.
+pub(super) fn inside(outline: &Outline, rule: FillRule, densely: bool) -> Vec<Point> {
+    let Some(bounds) = outline.bounding_box() else { return Vec::new() };
+    let lines = lines(outline, bounds);
+    let found = if densely { Vec::new() } else { lattice(&lines, bounds, rule, TRIED) };
+    if found.len() >= FEW { found } else { lattice(&lines, bounds, rule, TRIED_DENSELY) }
+}
+
+/// Places on a stroke of the given width around an outline, without caps and dashes.
+pub(super) fn along(outline: &Outline, width: f64) -> Vec<Point> {
+    let Some(bounds) = outline.bounding_box() else { return Vec::new() };
+    let path = flat(outline, bounds);
+    let lengths: Vec<(kurbo::PathSeg, f64)> = path.segments().map(|s| (s, s.arclen(bounds.width()))).collect();
+    let total: f64 = lengths.iter().map(|l| l.1).sum();
+    let mut out = Vec::with_capacity(ALONG);
+    let mut before = 0.0;
+    for (segment, length) in lengths.iter().filter(|l| l.1 > 0.0) {
+        let normal = (segment.end() - segment.start()).turn_90() / *length;
+        while (out.len() as f64 + 0.5) / ALONG as f64 * total < before + length && out.len() < ALONG {
+            let n = out.len() as f64;
+            let t = ((n + 0.5) / ALONG as f64 * total - before) / length;
+            out.push(segment.eval(t) + normal * width * (golden(n) - 0.5));
+        }
+        before += length;
+    }
+    out
+}
+
+/// The fractional part of n times the golden ratio.
+fn golden(n: f64) -> f64 {
+    const RATIO: f64 = 0.618_033_988_749_894_9;
+    (n * RATIO).fract()
+}
+
+fn flatness(bounds: Rect) -> f64 {
+    FLATNESS * bounds.width().hypot(bounds.height())
+}
+
+fn flat(outline: &Outline, bounds: Rect) -> BezPath {
+    let tolerance = flatness(bounds);
+    let mut out = BezPath::new();
+    kurbo::flatten(outline.to_bez_path(tolerance), tolerance, |e| out.push(e));
+    out
+}
+
+/// The lines of the flattened outline, with subpaths closed.
+fn lines(outline: &Outline, bounds: Rect) -> Vec<(Point, Point)> {
+    let tolerance = flatness(bounds);
+    let mut out = Vec::new();
+    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| out.push((a, b)));
+    out
+}
+
+/// The points of the Fibonacci lattice of `n` points over a box that lie inside. Every line adds to the winding numbers of the
+/// points to its right, which have ordered ordinates.
+fn lattice(lines: &[(Point, Point)], bounds: Rect, rule: FillRule, n: usize) -> Vec<Point> {
+    let size = Vec2::new(bounds.width(), bounds.height());
+    let row = |k: usize| bounds.y0 + size.y * (k as f64 + 0.5) / n as f64;
+    let point = |k: usize| Point::new(bounds.x0 + size.x * golden(k as f64 + 0.5), row(k));
+    let first_from = |y: f64| (((y - bounds.y0) / size.y * n as f64 - 0.5).ceil().max(0.0) as usize).min(n);
+    let mut windings = vec![0_i32; n];
+    for (a, b) in lines.iter().filter(|(a, b)| a.y != b.y) {
+        let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
+        let slope = (bottom.x - top.x) / (bottom.y - top.y);
+        let from = first_from(top.y);
+        for (k, winding) in windings[..first_from(bottom.y)].iter_mut().enumerate().skip(from) {
+            let p = point(k);
+            if top.x + slope * (p.y - top.y) <= p.x {
+                *winding += direction;
+            }
+        }
+    }
+    let filled = |w: i32| if rule == FillRule::EvenOdd { w % 2 != 0 } else { w != 0 };
+    windings.into_iter().enumerate().filter(|(_, w)| filled(*w)).map(|(k, _)| point(k)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shading(gradient: &str) -> Shading {
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>{gradient}<rect width='100' height='80' \
+         fill='url(#a)'/></svg>"
+        );
+        let tree = usvg::Tree::from_str(&svg, &usvg::Options::default()).unwrap();
+        let usvg::Node::Path(path) = &tree.root().children()[0] else { panic!("{svg}") };
+        Shading::of(path.fill().unwrap().paint()).unwrap()
+    }
+
+    const SMOOTH: &[&str] = &[
+        "<linearGradient id='a' x2='.3' y2='.4'><stop stop-color='red'/><stop offset='.7' stop-color='#0f8'/><stop offset='1' \
+     stop-color='blue' stop-opacity='.2'/></linearGradient>",
+        "<radialGradient id='a' cx='.4' fx='.5' r='.4' gradientTransform='rotate(20) scale(1 .6)'><stop stop-color='red'/>\
+     <stop offset='1' stop-color='#080' stop-opacity='0'/></radialGradient>",
+        "<linearGradient id='a' spreadMethod='reflect' x2='.3'><stop stop-color='red'/><stop offset='1'/></linearGradient>",
+    ];
+
+    #[test]
+    fn no_colour_changes_faster_than_the_bound() {
+        for gradient in SMOOTH {
+            let shading = shading(gradient);
+            let (bound, mut fastest) = (shading.steepest(), 0.0_f64);
+            for k in 0..20_000 {
+                let p = Point::new(0.5 * f64::from(k % 200), 0.8 * f64::from(k / 200));
+                for step in [Vec2::new(0.05, 0.0), Vec2::new(0.0, 0.05), Vec2::new(0.03, 0.04)] {
+                    let (a, b) = (shading.premultiplied(p), shading.premultiplied(p + step));
+                    fastest = a.iter().zip(b).map(|(a, b)| (a - b).abs() / 0.05).fold(fastest, f64::max);
+                }
+            }
+            assert!(fastest <= bound * 1.001 && fastest > 0.2 * bound, "{gradient}: {fastest} {bound}");
+        }
+    }
+
+    #[test]
+    fn jumps_count_if_they_are_shown() {
+        let hard = "<linearGradient id='a'><stop offset='.5' stop-color='red'/><stop offset='.5' stop-color='blue'/>\
+                </linearGradient>";
+        let repeated = "<linearGradient id='a' spreadMethod='repeat' x2='.2'><stop stop-color='red'/><stop offset='1' \
+                    stop-color='blue'/></linearGradient>";
+        let places = |from: f64, to: f64| [Point::new(from, 5.0), Point::new(to, 50.0)].into_iter();
+        assert!(shading(hard).steepest() > 1e3 && shading(repeated).steepest() == f64::INFINITY);
+        assert!(shading(hard).jumps(places(0.0, 100.0), 0.05));
+        assert!(!shading(hard).jumps(places(0.0, 40.0), 0.05));
+        assert!(!shading(&hard.replace("blue", "#fe0000")).jumps(places(0.0, 100.0), 0.05));
+        assert!(shading(repeated).jumps(places(0.0, 100.0), 0.05));
+        for gradient in SMOOTH {
+            assert!(!shading(gradient).jumps(places(0.0, 100.0), 0.05));
+        }
+    }
+
+    /// Agrees with kurbo's winding numbers, computed point by point.
+    #[test]
+    fn places_inside_are_inside_and_evenly_spread() {
+        for data in [
+            "M0,0 H100 V80 H0 Z M20,20 V60 H80 V20 Z",
+            "M50,0 C110,10 90,100 40,90 S-20,10 50,0 Z M30,30 h20 v20 h-20 Z",
+            "M0,50 A50,50 0 1 1 100,50 A50,50 0 1 1 0,50 Z",
+            "M0,0 L100,0 L0,70 L100,70",
+        ] {
+            let outline = Outline::from_svg(data).unwrap();
+            let path = Outline::from_svg(&format!("{data} Z")).unwrap().to_bez_path(1e-6);
+            for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+                let filled = |p: Point| {
+                    let w = path.winding(p);
+                    if rule == FillRule::EvenOdd { w % 2 != 0 } else { w != 0 }
+                };
+                let bounds = outline.bounding_box().unwrap();
+                let every = lattice(&[], bounds, rule, TRIED);
+                assert!(every.is_empty());
+                let found = inside(&outline, rule, false);
+                let wrong = found.iter().filter(|p| !filled(**p)).count();
+                assert!(wrong <= found.len() / 100, "{data}: {wrong} of {}", found.len());
+                // Their share is that of the area.
+                let fine = 200 * 200;
+                let at = |k: u32| {
+                    bounds.origin()
+                        + Vec2::new(
+                            bounds.width() * (f64::from(k % 200) + 0.5) / 200.0,
+                            bounds.height() * (f64::from(k / 200) + 0.5) / 200.0,
+                        )
+                };
+                let area = f64::from((0..fine).filter(|k| filled(at(*k))).count() as u32) / f64::from(fine);
+                let share = found.len() as f64 / TRIED as f64;
+                assert!((share - area).abs() < 0.02, "{data}: {share} for {area}");
+            }
+        }
+    }
+
+    #[test]
+    fn thin_shapes_are_sampled_more_densely() {
+        let sliver = Outline::from_svg("M0,0 L100,100 L100,101 L0,1 Z").unwrap();
+        let found = inside(&sliver, FillRule::NonZero, false);
+        assert!(found.len() > 40, "{}", found.len());
+        assert!(found.iter().all(|p| p.y - p.x > -0.01 && p.y - p.x < 1.01));
+    }
+
+    #[test]
+    fn strokes_are_sampled_along_their_path() {
+        let path = Outline::from_svg("M0,0 H100 V50").unwrap();
+        let found = along(&path, 4.0);
+        assert_eq!(found.len(), ALONG);
+        assert!(found.iter().all(|p| (p.y.abs() <= 2.0 && p.x <= 100.0) || (p.x - 100.0).abs() <= 2.0));
+        let down = found.iter().filter(|p| p.y > 2.0).count();
+        assert!((down as f64 / ALONG as f64 - 48.0 / 150.0).abs() < 0.03, "{down}");
+        assert!(along(&Outline::from_svg("M5,5").unwrap(), 1.0).is_empty());
+    }
+}

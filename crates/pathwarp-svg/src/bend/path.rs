@@ -1,0 +1,399 @@
+//! The image of an outline as path data: arcs that stay arcs, decimals, closing lines that come from rounding.
+
+use super::options::Edit;
+use crate::source::number::{MOST_DECIMALS, arcs_data, path_data, path_data_by};
+use pathwarp::kurbo::{BezPath, PathEl, Point, Vec2};
+use pathwarp::map::{AffineMap, Class, Map, Undeclared};
+use pathwarp::outline::{EllipticArc, Subpath};
+use pathwarp::refit::{self, Assurance, PathReport, RefittedPath, SharedEdges, Span, SpanReport, suited};
+use pathwarp::{GeometryError, Outline, Seg};
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// The image of a path.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+#[must_use]
+pub struct WarpedPath {
+    /// SVG path data, rounded. Arcs whose images are circles again stay arcs.
+    pub data: String,
+    /// Lines and cubics, not rounded.
+    pub path: BezPath,
+    /// Statistics.
+    pub report: PathReport,
+}
+
+/// Edits a path and writes it as path data, as [`Document::warp`](crate::Document::warp) with the option
+/// [`edit`](crate::WarpOptions::edit) writes that of a `<path>`. It has no stroke that could become an outline.
+///
+/// # Errors
+/// A coordinate is not finite, or the work exceeds the budget of the options.
+pub fn edit_path(
+    outline: &Outline,
+    edit: Edit,
+    options: &refit::Options,
+    precision: Option<u8>,
+) -> Result<WarpedPath, GeometryError> {
+    let (simplifies, options) = match edit {
+        Edit::Simplify { corner, .. } => (true, &options.clone().with_merge(true).with_corner(corner)),
+        _ => (false, options),
+    };
+    let edited = match edit.edited(outline, options, &[])? {
+        Some(RefittedPath { path, report, .. }) => {
+            let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
+            WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report }
+        }
+        None if simplifies => warp_path(outline, &Undeclared, options, precision)?,
+        None => return warp_path(outline, &AffineMap::IDENTITY, options, precision),
+    };
+    if simplifies && edited.report.segments_out >= edited.report.segments_in {
+        return warp_path(outline, &AffineMap::IDENTITY, options, precision);
+    }
+    Ok(edited)
+}
+
+/// Maps a path and writes its image as path data, as [`Document::warp`](crate::Document::warp) writes that of a `<path>` in root
+/// user space. `precision` is the number of decimals; `None` takes enough for a hundredth of the tolerance.
+///
+/// ```
+/// use pathwarp::map::AffineMap;
+/// use pathwarp::{Outline, kurbo::Affine, refit};
+///
+/// let circle = Outline::from_svg("M0,0 A5,5 0 0 1 10,0")?;
+/// let options = refit::Options::new(0.01);
+/// let warped = pathwarp_svg::warp_path(&circle, &AffineMap(Affine::scale(2.0)), &options, Some(0))?;
+/// assert_eq!(warped.data, "M0,0 A10 10 0 0 1 10 -10 A10 10 0 0 1 20 0");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// The map is undefined on the path, a coordinate is not finite, or the work exceeds the budget of the options.
+pub fn warp_path(
+    outline: &Outline,
+    map: &dyn Map,
+    options: &refit::Options,
+    precision: Option<u8>,
+) -> Result<WarpedPath, GeometryError> {
+    options.check()?;
+    let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
+    let held = |s: &Subpath| if options.suited { suited(options.tolerance, s.diagonal()) } else { options.tolerance };
+    let contours: Vec<f64> = outline.subpaths.iter().map(held).collect();
+    let finest = contours.iter().copied().fold(options.tolerance, f64::min);
+    let mut outline = outline.clone();
+    outline.subpaths.iter_mut().for_each(|s| drop_closing_stub(s, digits.rounding(finest)));
+    let spans = SharedEdges::held([(&outline, &contours[..])]).spans(&outline, &contours);
+    let tolerance = allowed(options.tolerance, digits.rounding(options.tolerance));
+    let options = options.clone().with_tolerance(tolerance).with_spans(digits.allowed(&spans));
+    if let Some((image, report)) = with_arcs(map, &outline, &options)? {
+        let data = arcs_data(&image, digits.more(), |i| digits.decimals(contours[i]));
+        return Ok(WarpedPath { data, path: image.to_bez_path(finest), report });
+    }
+    let warped = refit::warp_path(&outline, map, &options)?;
+    let mut report = warped.report;
+    report.share = digits.errors(&spans, &warped.spans)[1];
+    let data = digits.path_data(&warped.path, &outline, &spans, &warped.spans);
+    Ok(WarpedPath { data, path: warped.path, report })
+}
+
+/// Largest sweep of a written arc. The centre of a longer one depends on its rounded ends too much: without bound at half a turn.
+const LONGEST: f64 = 2.0 / 3.0 * PI;
+
+/// Largest distance of an image from its circle, as a fraction of the radius; rounding is below a thousandth of that.
+const ROUND: f64 = 1e-10;
+
+/// Largest radius of an image, in lengths of its chord. Flatter ones are better written as curves.
+const FLATTEST: f64 = 1e4;
+
+/// The image of an outline in which arcs stay arcs, in root user space. Returns `None` if there are none.
+pub(super) fn with_arcs(
+    map: &dyn Map,
+    outline: &Outline,
+    options: &refit::Options,
+) -> Result<Option<(Outline, PathReport)>, GeometryError> {
+    if !outline.segs().any(|s| matches!(s, Seg::Arc(_))) || !outline.segs().all(Seg::is_finite) {
+        return Ok(None);
+    }
+    let mut report = PathReport::default();
+    let image = if let Class::Affine(m) = map.class() {
+        outline.transformed(m)
+    } else if options.certify {
+        // The test for circles is no proof.
+        return Ok(None);
+    } else {
+        if map.prefers_batches() {
+            let starts = outline.subpaths.iter().map(|s| s.start);
+            map.prepare(&outline.segs().flat_map(on_circle).chain(starts).collect::<Vec<_>>(), &[]);
+        }
+        let images = |s: &Subpath| s.segs.iter().map(|g| circle_of(g, map)).collect();
+        let all: Vec<Vec<Option<EllipticArc>>> = outline.subpaths.iter().map(images).collect();
+        if all.iter().flatten().all(Option::is_none) {
+            return Ok(None);
+        }
+        let mut first = 0;
+        let subpaths = outline.subpaths.iter().zip(&all).map(|(s, arcs)| {
+            let image = subpath((s, first), arcs, map, options, &mut report);
+            first += s.segs.len();
+            image
+        });
+        Outline { subpaths: subpaths.collect::<Result<_, _>>()? }
+    };
+    let image = Outline { subpaths: image.subpaths.into_iter().map(short_arcs).collect() };
+    report.segments_in = outline.segs().count();
+    report.segments_out = image.segs().count();
+    report.account_for_rounding(outline, image.extent(), options.tolerance);
+    Ok(Some((image, report)))
+}
+
+/// Places compared with the circle.
+const SAMPLES: u32 = 24;
+
+/// The places of an arc that are compared with a circle; none of other segments.
+fn on_circle(g: &Seg) -> Vec<Point> {
+    let Seg::Arc(arc) = g else { return Vec::new() };
+    (0..=SAMPLES).map(|i| arc.eval(f64::from(i) / f64::from(SAMPLES))).collect()
+}
+
+/// The image of an arc of a circle, if that is one, too.
+fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
+    let Seg::Arc(arc) = g else { return None };
+    let r = arc.a.hypot();
+    if (arc.b.hypot() - r).abs() > ROUND * r || arc.a.dot(arc.b).abs() > ROUND * r * r {
+        return None;
+    }
+    let image = |i: u32| map.point(arc.eval(f64::from(i) / f64::from(SAMPLES)));
+    let (first, last) = (image(0), image(SAMPLES));
+    let center = center(first, image(SAMPLES / 3), image(2 * SAMPLES / 3))?;
+    let radius = first.distance(center);
+    if radius > FLATTEST * first.distance(image(SAMPLES / 2)) {
+        return None;
+    }
+    let (mut sweep, mut before) = (0.0, first - center);
+    for i in 1..=SAMPLES {
+        let v = image(i) - center;
+        if (v.hypot() - radius).abs() > ROUND * radius || !v.is_finite() {
+            return None;
+        }
+        let step = before.cross(v).atan2(before.dot(v));
+        if step * sweep < 0.0 {
+            return None;
+        }
+        sweep += step;
+        before = v;
+    }
+    let start = (first - center).atan2();
+    let (a, b) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
+    Some(EllipticArc { p0: first, p1: last, center, a, b, start, sweep })
+}
+
+/// Centre of the circle through three points.
+fn center(p: Point, q: Point, r: Point) -> Option<Point> {
+    let (u, v) = (q - p, r - p);
+    let d = 2.0 * u.cross(v);
+    let to = Vec2::new(v.y * u.hypot2() - u.y * v.hypot2(), u.x * v.hypot2() - v.x * u.hypot2()) / d;
+    (p + to).is_finite().then_some(p + to)
+}
+
+/// The image of a subpath with the images of its arcs. What lies between them is refitted. `first` is the index of its first segment in
+/// the outline.
+fn subpath(
+    (s, first): (&Subpath, usize),
+    arcs: &[Option<EllipticArc>],
+    map: &dyn Map,
+    options: &refit::Options,
+    report: &mut PathReport,
+) -> Result<Subpath, GeometryError> {
+    let mut out = Subpath { start: map.point(s.start), segs: Vec::with_capacity(s.segs.len()), closed: s.closed };
+    let mut rest = s.segs.iter().zip(arcs).zip(first..).peekable();
+    while let Some(((g, arc), from)) = rest.next() {
+        if let Some(arc) = arc {
+            let p0 = out.end();
+            out.segs.push(Seg::Arc(EllipticArc { p0, ..*arc }));
+            report.assurance = report.assurance.min(Assurance::Checked);
+            report.max_error = report.max_error.max(ROUND * arc.a.hypot());
+            continue;
+        }
+        let mut run = Subpath { start: g.start(), segs: vec![*g], closed: false };
+        while let Some(((g, _), _)) = rest.next_if(|((_, arc), _)| arc.is_none()) {
+            run.segs.push(*g);
+        }
+        let options = options.clone().with_spans(within(&options.spans, from..from + run.segs.len()));
+        let refitted = refit::warp_path(&Outline { subpaths: vec![run] }, map, &options)?;
+        report.add(refitted.report);
+        out.segs.extend(Outline::from(&refitted.path).subpaths.into_iter().flat_map(|s| s.segs));
+    }
+    Ok(out)
+}
+
+/// The spans of some of the segments.
+fn within(spans: &[Span], segments: Range<usize>) -> Vec<Span> {
+    let mut end = 0;
+    let each = spans.iter().map(|s| {
+        let start = end;
+        end += s.segments;
+        Span { segments: end.min(segments.end).saturating_sub(start.max(segments.start)), ..*s }
+    });
+    each.filter(|s| s.segments > 0).collect()
+}
+
+/// Divides long arcs.
+fn short_arcs(s: Subpath) -> Subpath {
+    let divided = |g: Seg| -> Vec<Seg> {
+        match g {
+            Seg::Arc(a) => {
+                let n = (a.sweep.abs() / LONGEST).ceil().max(1.0);
+                (0..n as u32).map(|i| Seg::Arc(a.subsegment(f64::from(i) / n, f64::from(i + 1) / n))).collect()
+            }
+            other => vec![other],
+        }
+    };
+    Subpath { segs: s.segs.into_iter().flat_map(divided).collect(), ..s }
+}
+
+/// The fraction of the tolerance that rounding may use.
+pub(super) const ROUNDING: f64 = 0.01;
+
+/// The number of decimals of coordinates: as given, or enough for [`ROUNDING`]. A unit as written is `size` units of root user
+/// space.
+pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
+    given.unwrap_or_else(|| {
+        let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
+        if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
+    })
+}
+
+/// Largest error from rounding to `decimals`, in root user units: half the diagonal of a unit of the last, and a third of that unit for
+/// cubics written as quadratics.
+pub(super) fn rounding(size: f64, decimals: u8) -> f64 {
+    size * (std::f64::consts::FRAC_1_SQRT_2 + 0.3) * 0.1_f64.powi(i32::from(decimals))
+}
+
+/// The tolerance less the room for rounding.
+pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
+    (tolerance - rounding).max(0.5 * tolerance)
+}
+
+/// Space and decimals of what is written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Digits {
+    /// A unit as written, in root user units.
+    pub(super) size: f64,
+    /// Decimals on request.
+    pub(super) given: Option<u8>,
+    /// The tolerance of the drawing.
+    pub(super) whole: f64,
+}
+
+impl Digits {
+    /// As many as the whole drawing has, unless their rounding is more than a tenth of this tolerance.
+    pub(super) fn decimals(self, tolerance: f64) -> u8 {
+        /// Tolerances whose hundredth is a tenth of the one given.
+        const COARSE: f64 = 10.0;
+        decimals(self.size, self.whole.min(COARSE * tolerance), self.given)
+    }
+
+    /// Decimals that an arc may have beside these.
+    pub(super) fn more(self) -> u8 {
+        if self.given.is_none() { 4 } else { 0 }
+    }
+
+    pub(super) fn rounding(self, tolerance: f64) -> f64 {
+        rounding(self.size, self.decimals(tolerance))
+    }
+
+    /// The same spans, less the room for rounding.
+    pub(super) fn allowed(self, spans: &[Span]) -> Vec<Span> {
+        let less = |s: &Span| Span { tolerance: allowed(s.tolerance, self.rounding(s.tolerance)), ..*s };
+        spans.iter().map(less).collect()
+    }
+
+    /// The largest error of the spans with rounding, and the largest as a share of the span's tolerance.
+    pub(super) fn errors(self, spans: &[Span], reports: &[SpanReport]) -> [f64; 2] {
+        let each = spans.iter().zip(reports).map(|(s, r)| (r.max_error + self.rounding(s.tolerance), s.tolerance));
+        each.fold([0.0, 0.0], |[most, share], (e, t)| [f64::max(most, e), f64::max(share, e / t)])
+    }
+
+    /// The text of the image of `outline`, in which every span has its own decimals.
+    pub(super) fn path_data(self, path: &BezPath, outline: &Outline, spans: &[Span], reports: &[SpanReport]) -> String {
+        let mut each: Vec<[u8; 2]> = Vec::with_capacity(path.elements().len());
+        let mut spans = spans.iter().zip(reports).map(|(s, r)| (s, r.pieces)).peekable();
+        let mut subpaths = outline.subpaths.iter();
+        let mut left = 0;
+        for el in path.elements() {
+            each.push(match el {
+                PathEl::MoveTo(_) => {
+                    // The closing lines before are not written.
+                    while left > 0 {
+                        left -= spans.next().map_or(left, |(s, _)| s.segments);
+                    }
+                    left = subpaths.next().map_or(0, |s| s.segs.len());
+                    let start = spans.peek().filter(|_| left > 0).map_or(f64::INFINITY, |(s, _)| s.nodes[0]);
+                    [self.decimals(start); 2]
+                }
+                PathEl::ClosePath => [0; 2],
+                _ => match spans.peek_mut() {
+                    None => [MOST_DECIMALS; 2],
+                    Some((s, pieces)) => {
+                        let is_last = *pieces <= 1;
+                        let own = self.decimals(s.tolerance);
+                        let node = if is_last { own.max(self.decimals(s.nodes[1])) } else { own };
+                        *pieces = pieces.saturating_sub(1);
+                        if is_last {
+                            left -= s.segments.min(left);
+                            spans.next();
+                        }
+                        [own, node]
+                    }
+                },
+            });
+        }
+        path_data_by(path, self.given.is_none(), |i| each[i])
+    }
+}
+
+/// Returns `true` if a subpath is closed by a line not longer than `shortest`, after other segments.
+pub(super) fn has_closing_stub(s: &Subpath, shortest: f64) -> bool {
+    matches!(s.segs.as_slice(), [.., _, Seg::Line(stub)] if s.closed && stub.p0.distance(stub.p1) <= shortest)
+}
+
+/// Drops the closing line of a subpath if it is a stub. The segment before it then ends at the start.
+pub(super) fn drop_closing_stub(s: &mut Subpath, shortest: f64) {
+    if has_closing_stub(s, shortest) {
+        s.segs.pop();
+        if let Some(before) = s.segs.last_mut() {
+            *end(before) = s.start;
+        }
+    }
+}
+
+/// The end of a segment.
+fn end(s: &mut Seg) -> &mut Point {
+    match s {
+        Seg::Line(l) => &mut l.p1,
+        Seg::Quad(q) => &mut q.p2,
+        Seg::Cubic(c) => &mut c.p3,
+        Seg::Arc(a) => &mut a.p1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::Outline;
+
+    #[test]
+    fn only_stubs_are_dropped() {
+        for (d, shortest, segments) in [
+            ("M0 0C5 5 9 5 9 0L1e-9 1e-9Z", 1e-6, 2),
+            ("M0 0C5 5 9 5 9 0L1e-9 1e-9Z", 1e-10, 3),
+            ("M0 0C5 5 9 5 9 0L1e-9 1e-9", 1e-6, 2),
+            ("M0 0C5 5 9 5 9 0Z", 1e-6, 2),
+            ("M0 0A5 5 0 0 1 9 1A5 5 0 0 1 1e-9 1e-9Z", 1e-6, 2),
+            ("M0 0L1e-9 0Z", 1e-6, 1),
+        ] {
+            let mut s = Outline::from_svg_lossy(d).subpaths.remove(0);
+            drop_closing_stub(&mut s, shortest);
+            assert_eq!(s.segs.len(), segments, "{d}");
+            assert!(!s.closed || s.end() == s.start, "{d}");
+        }
+    }
+}

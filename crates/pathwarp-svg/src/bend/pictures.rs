@@ -1,0 +1,157 @@
+//! Pictures made by the program around this library: bent bitmaps and gradients.
+
+use pathwarp::kurbo::{Affine, BezPath, Point, Rect};
+use pathwarp::map::Map;
+use std::error::Error;
+use std::fmt;
+use std::sync::Arc;
+
+/// A bent bitmap, or a picture of a bent gradient.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BentImage {
+    /// Content of a PNG file.
+    pub png: Vec<u8>,
+    /// Position in the requested user space.
+    pub area: Rect,
+}
+
+/// The reason why a bitmap or gradient cannot be bent.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+pub struct PictureError(Box<dyn Error + Send + Sync>);
+
+impl PictureError {
+    /// Wraps another error, or a message.
+    pub fn new(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self(error.into())
+    }
+}
+
+impl From<String> for PictureError {
+    fn from(message: String) -> Self {
+        Self::new(message)
+    }
+}
+
+impl From<&str> for PictureError {
+    fn from(message: &str) -> Self {
+        Self::new(message)
+    }
+}
+
+/// Bends bitmaps.
+pub trait ImageWarper: Send + Sync {
+    /// Bends a bitmap.
+    ///
+    /// # Errors
+    /// Returns the reason why the bitmap cannot be bent. It then follows the best affine fit.
+    fn warp(&self, request: &ImageRequest<'_>) -> Result<BentImage, PictureError>;
+}
+
+/// A bitmap to bend.
+#[non_exhaustive]
+pub struct ImageRequest<'a> {
+    /// Content of the file: PNG, JPEG, GIF or WebP.
+    pub data: &'a [u8],
+    /// From pixels to root user space.
+    pub placed: Affine,
+    /// The pixels that are shown, if not all. The drawing cuts the result there; what lies beyond need not be bent.
+    pub crop: Option<Rect>,
+    /// Pixels are shown as squares, however large.
+    pub pixelated: bool,
+    /// The map of root user space.
+    pub map: &'a dyn Map,
+    /// From root user space to the user space of the result.
+    pub after: Affine,
+    /// Root user space to px, to choose a resolution.
+    pub to_px: Affine,
+}
+
+impl fmt::Debug for ImageRequest<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ImageRequest").field("bytes", &self.data.len()).field("map", &self.map).finish_non_exhaustive()
+    }
+}
+
+/// Treatment of bitmaps.
+#[derive(Clone, Default)]
+#[non_exhaustive]
+pub enum Images {
+    /// Place them by the best affine fit, with unchanged pixels.
+    #[default]
+    Keep,
+    /// Bend them.
+    Warp(Arc<dyn ImageWarper>),
+}
+
+impl fmt::Debug for Images {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if matches!(self, Self::Keep) { "Keep" } else { "Warp" })
+    }
+}
+
+impl PartialEq for Images {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Keep, Self::Keep) => true,
+            (Self::Warp(a), Self::Warp(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+/// Paints bent gradients.
+pub trait GradientPainter: Send + Sync {
+    /// Paints a bent gradient over the whole target and a few pixels around it.
+    ///
+    /// # Errors
+    /// Returns the reason why the gradient cannot be painted. It then follows the best affine fit.
+    fn paint(&self, request: &GradientRequest<'_>) -> Result<BentImage, PictureError>;
+}
+
+/// The colours of a gradient at points of its shape's user space: red, green, blue and alpha, 0 to 1, not premultiplied.
+pub type GradientColors<'a> = dyn Fn(&[Point], &mut [[f64; 4]]) + Sync + 'a;
+
+/// A gradient on a bent shape.
+#[non_exhaustive]
+pub struct GradientRequest<'a> {
+    /// The gradient.
+    pub colors: &'a GradientColors<'a>,
+    /// Bounding box of the shape in its user space.
+    pub area: Rect,
+    /// From the shape's user space to root user space.
+    pub placed: Affine,
+    /// The map of root user space.
+    pub map: &'a dyn Map,
+    /// From root user space to the user space of the result.
+    pub after: Affine,
+    /// Bounding box of the bent shape in the user space of the result.
+    pub target: Rect,
+    /// The bent shape in the user space of the result. Only what it covers is seen.
+    pub shape: &'a BezPath,
+    /// Root user space to px, to choose a resolution.
+    pub to_px: Affine,
+    /// Upper bound on the number of gradients in the drawing, which share a budget of pixels.
+    pub among: usize,
+    /// Exact colours at places spread over the shape, to judge a resolution by.
+    pub seen: &'a [SeenColor],
+    /// No difference may be visible; otherwise, none may be noticed.
+    pub strict: bool,
+    /// Colours jump, so that only the highest resolution shows them right.
+    pub sharp: bool,
+}
+
+impl fmt::Debug for GradientRequest<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("GradientRequest").field("area", &self.area).field("map", &self.map).finish_non_exhaustive()
+    }
+}
+
+/// A colour of a bent gradient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeenColor {
+    /// Place in the user space of the result.
+    pub at: Point,
+    /// Red, green, blue and alpha, 0 to 1, premultiplied.
+    pub color: [f64; 4],
+}

@@ -1,0 +1,330 @@
+//! The areas that parts of a drawing cover: what is seen, strokes, filters.
+
+use super::geometry::stretch;
+use super::model::{Bitmap, Group, Node, Part, PartRole, Scene};
+use pathwarp::budget::{Budget, Exceeded};
+use pathwarp::kurbo::{self, Affine, Cap, Join, Point, Rect, Vec2};
+use pathwarp::{Outline, Seg, Subpath};
+use std::collections::HashMap;
+use usvg::filter::{
+    ColorMatrixKind, CompositeOperator, Filter, Input, Kind, MorphologyOperator, Primitive, TransferFunction,
+};
+use usvg::{LineCap, LineJoin, Stroke};
+
+/// What counts: flags of parts and of bitmaps.
+pub(crate) struct Counted {
+    pub(crate) parts: Vec<bool>,
+    pub(crate) bitmaps: Vec<bool>,
+    /// Strokes count by half their width.
+    pub(crate) strokes: bool,
+}
+
+/// Bounding box of what is seen of what counts. `page` is the visible area, if there is one.
+pub(crate) fn seen_box(scene: &Scene, page: Option<Rect>, counted: &Counted) -> Option<Rect> {
+    in_group(scene, &scene.root, page, counted, &|_| true)
+}
+
+/// The same, with what of it lies off the page.
+pub(crate) fn uncut_box(scene: &Scene, page: Rect, counted: &Counted) -> Option<Rect> {
+    in_group(scene, &scene.root, None, counted, &|b| overlap(b, page).is_some())
+}
+
+/// The place of a bitmap in root user space. `None` if it is hidden, or stands for one that was not read.
+pub(crate) fn picture_box(b: &Bitmap) -> Option<Rect> {
+    let [p, q, r, s] = picture_corners(b)?;
+    Some(Rect::from_points(p, q).union(Rect::from_points(r, s)))
+}
+
+/// The corners of a bitmap in root user space, likewise.
+pub(crate) fn picture_corners(b: &Bitmap) -> Option<[Point; 4]> {
+    let size = b.image.size();
+    let all = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
+    let r = b.crop.map_or(all, |c| c.intersect(all));
+    let corners = [(r.x0, r.y0), (r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)].map(|p| b.frame * Point::from(p));
+    (b.image.is_visible() && !b.is_unread()).then_some(corners).filter(|c| c.iter().all(|p| p.is_finite()))
+}
+
+/// Bounding box of what `room` leaves of what counts, as far as the box of each is `kept`.
+fn in_group(
+    scene: &Scene,
+    g: &Group,
+    room: Option<Rect>,
+    counted: &Counted,
+    kept: &dyn Fn(Rect) -> bool,
+) -> Option<Rect> {
+    let room = room_in(scene, g, room)?;
+    let left = |all: Rect| room.map_or(Some(all), |room| overlap(all, room)).filter(|b| kept(*b));
+    let one = |n: &Node| match n {
+        Node::Group(g) => in_group(scene, g, room, counted, kept),
+        Node::Text { content, .. } => in_group(scene, content, room, counted, kept),
+        Node::Part(i) => {
+            let p = &scene.parts[*i];
+            let seen = is_seen(p) && p.role == PartRole::Paint && counted.parts[*i];
+            let by = if counted.strokes { reach(p, scene.to_px) } else { 0.0 };
+            left(p.outline().bounding_box().filter(|b| seen && b.is_finite())?.inflate(by, by))
+        }
+        Node::Image(i) => left(picture_box(&scene.bitmaps[*i]).filter(|_| counted.bitmaps[*i])?),
+    };
+    g.children.iter().filter_map(one).reduce(|a, b| a.union(b))
+}
+
+/// How far a part's stroke extends from its path, in root user space: half its width.
+pub(crate) fn reach(p: &Part, to_px: Affine) -> f64 {
+    let space = if p.fixed_width { to_px.inverse() } else { p.frame };
+    p.stroke.as_ref().filter(|_| !p.in_tile).map_or(0.0, |s| 0.5 * f64::from(s.width().get()) * stretch(space))
+}
+
+/// Returns `true` if a part is visible and has a paint that is not transparent.
+pub(crate) fn is_seen(p: &Part) -> bool {
+    let fill = p.fill.as_ref().is_some_and(|f| f.opacity().get() > 0.0);
+    let stroke = p.stroke.as_ref().is_some_and(|s| s.opacity().get() > 0.0);
+    p.visible && (fill || stroke)
+}
+
+/// The room that a group leaves its content: `Some(None)` if it is unbounded, `None` if the group hides everything.
+fn room_in(scene: &Scene, g: &Group, room: Option<Rect>) -> Option<Option<Rect>> {
+    if g.opacity <= 0.0 {
+        return None;
+    }
+    let mut room = room;
+    let clip = match g.clip {
+        Some(i) => Some(clip_box(scene, i, &|i| scene.parts[i].outline().bounding_box())?),
+        None => None,
+    };
+    let mask = g.mask.map(|i| mask_box(scene, i));
+    for bound in clip.into_iter().chain(mask) {
+        room = Some(room.map_or(Some(bound), |room| overlap(room, bound))?);
+    }
+    Some(room)
+}
+
+/// Bounding box of a clip path, given the boxes of parts; `None` if it hides everything.
+pub(crate) fn clip_box(scene: &Scene, i: usize, part_box: &dyn Fn(usize) -> Option<Rect>) -> Option<Rect> {
+    fn content(g: &Group, part_box: &dyn Fn(usize) -> Option<Rect>) -> Option<Rect> {
+        let own = g.children.iter().filter_map(|n| match n {
+            Node::Group(g) => content(g, part_box),
+            Node::Text { content: text, .. } => content(text, part_box),
+            Node::Part(i) => part_box(*i),
+            Node::Image(_) => None,
+        });
+        own.reduce(|a, b| a.union(b))
+    }
+    let clip = &scene.clips[i];
+    let own = content(&clip.root, part_box)?;
+    match clip.clip {
+        Some(next) => overlap(own, clip_box(scene, next, part_box)?),
+        None => Some(own),
+    }
+}
+
+/// Bounding box of a mask in root user space, whatever its brightness.
+fn mask_box(scene: &Scene, i: usize) -> Rect {
+    let m = &scene.masks[i];
+    m.frame.transform_rect_bbox(overlap(m.rect, m.content).unwrap_or_default())
+}
+
+/// The common part of two areas, which may be lines or points.
+pub(crate) fn overlap(a: Rect, b: Rect) -> Option<Rect> {
+    let (x0, x1) = (a.x0.max(b.x0), a.x1.min(b.x1));
+    let (y0, y1) = (a.y0.max(b.y0), a.y1.min(b.y1));
+    (x0 <= x1 && y0 <= y1).then(|| Rect::new(x0, y0, x1, y1))
+}
+
+/// The work of one of the segments below: there are fewer, and fitting them is counted, too.
+const EXPANDED: f64 = 15.0;
+
+/// Segments of the outline of a dash or a subpath with its caps, and of a segment with its join. All are held three times: expanded,
+/// bent, and as they are written.
+const PER_DASH: f64 = 3.0 * 8.0;
+const PER_SEGMENT: f64 = 3.0 * 2.0;
+const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
+
+/// Segments whose work that of expanding a dash is.
+const MEASURED: f64 = 2.0;
+
+/// Share of the tolerance for gaps between sides that are closed without a join.
+const GAP: f64 = 0.3;
+
+/// Expands the stroke of `local` to a filled outline in the same user space, within `tolerance` there.
+pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -> Outline {
+    let each = stroke_outlines(local, stroke, |_| [(1.0 - 0.5 * GAP) * tolerance, GAP * tolerance]);
+    Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() }
+}
+
+/// Expands the stroke of each subpath, given by its index, within a tolerance and with gaps of its own.
+pub(crate) fn stroke_outlines(
+    local: &Outline,
+    stroke: &Stroke,
+    fine: impl Fn(usize) -> [f64; 2],
+) -> Vec<(usize, Outline)> {
+    let style = style(stroke);
+    let clipped = stroke.linejoin() == LineJoin::MiterClip;
+    let outline = |(i, s): (usize, &Subpath)| {
+        let one = Outline { subpaths: vec![s.clone()] };
+        // What is not finite is refused when the path itself is bent.
+        (i, one.stroked(&style, clipped, fine(i)).unwrap_or_default())
+    };
+    local.subpaths.iter().enumerate().map(outline).collect()
+}
+
+/// A stroke's style as kurbo's.
+fn style(stroke: &Stroke) -> kurbo::Stroke {
+    let cap = match stroke.linecap() {
+        LineCap::Butt => Cap::Butt,
+        LineCap::Round => Cap::Round,
+        LineCap::Square => Cap::Square,
+    };
+    let join = match stroke.linejoin() {
+        LineJoin::Miter | LineJoin::MiterClip => Join::Miter,
+        LineJoin::Round => Join::Round,
+        LineJoin::Bevel => Join::Bevel,
+    };
+    let style = kurbo::Stroke::new(f64::from(stroke.width().get()))
+        .with_caps(cap)
+        .with_join(join)
+        .with_miter_limit(f64::from(stroke.miterlimit().get()));
+    match stroke.dasharray() {
+        Some(dashes) => style.with_dashes(f64::from(stroke.dashoffset()), dashes.iter().copied().map(f64::from)),
+        None => style,
+    }
+}
+
+/// The area that a part's stroke covers in root user space, to be filled by the nonzero rule, within `tolerance` there. `to_px` leads from
+/// root user space to px.
+///
+/// # Errors
+/// More segments than the limit allows.
+pub(crate) fn stroked(
+    part: &Part,
+    to_px: Affine,
+    tolerance: f64,
+    budget: &Budget,
+) -> Result<Option<Outline>, Exceeded> {
+    let Some(stroke) = &part.stroke else { return Ok(None) };
+    if part.in_tile {
+        return Ok(Some(Outline::clone(&part.outline())));
+    }
+    spend_stroke(&part.local, stroke, budget)?;
+    // The space in which the width counts, as seen from root user space.
+    let frame = if part.fixed_width { to_px.inverse() } else { part.frame };
+    let scale = stretch(frame);
+    if !(scale > 0.0 && scale.is_finite()) {
+        return Ok(None);
+    }
+    let path = if part.fixed_width { part.outline().transformed(to_px) } else { Outline::clone(&part.local) };
+    Ok(Some(stroke_outline(&path, stroke, tolerance / scale).transformed(frame)))
+}
+
+/// Returns `true` if the whole segment is the point `at`.
+pub(crate) fn is_point(s: &Seg, at: Point) -> bool {
+    let c = s.to_cubic();
+    [c.p0, c.p1, c.p2, c.p3].iter().all(|p| *p == at)
+}
+
+/// The work of expanding the dashes of a stroke, in segments. They are held only until the stroke is measured.
+pub(crate) fn spend_dashes(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
+    budget.spend(EXPANDED * MEASURED * drawn_dashes(local, stroke))
+}
+
+/// Counts a bound for the segments into which a stroke is expanded.
+///
+/// # Errors
+/// It is more work than the limit allows.
+pub(crate) fn spend_stroke(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
+    let dashes = drawn_dashes(local, stroke);
+    let each = if stroke.linejoin() == LineJoin::Round { PER_ROUND_SEGMENT } else { PER_SEGMENT };
+    let segments = PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64;
+    budget.spend(EXPANDED * segments)
+}
+
+/// A bound for the number of dashes that are drawn of a stroke.
+fn drawn_dashes(local: &Outline, stroke: &Stroke) -> f64 {
+    let pattern: Vec<f64> = stroke.dasharray().into_iter().flatten().map(|d| f64::from(*d)).collect();
+    local.drawn_dashes(&pattern)
+}
+
+/// Extent of a Gaussian in standard deviations; a renderer's three box blurs end there as well (Filter Effects Module Level 1, §9.14).
+const BLUR_REACH: f64 = 3.0;
+
+/// Bounds what `filter` paints from `content` with `region` in place of its own, all in the filter's user space. `None`: nothing.
+pub(crate) fn painted(filter: &Filter, region: Rect, content: Rect) -> Option<Rect> {
+    let mut results: HashMap<&str, Option<Rect>> = HashMap::new();
+    let mut last = overlap(content, region);
+    for p in filter.primitives() {
+        let region = part(filter, p, region);
+        let of = |input: &Input| match input {
+            Input::SourceGraphic | Input::SourceAlpha => Some(content),
+            Input::Reference(name) => results.get(name.as_str()).copied().unwrap_or(Some(region)),
+        };
+        last = primitive(p.kind(), &of, region).and_then(|b| overlap(b, region));
+        results.insert(p.result(), last);
+    }
+    last
+}
+
+fn primitive(kind: &Kind, of: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> Option<Rect> {
+    let either = |a: Option<Rect>, b: Option<Rect>| a.into_iter().chain(b).reduce(|a, b| a.union(b));
+    let grown = |b: Rect, x: f32, y: f32| b.inflate(f64::from(x), f64::from(y));
+    let blurred = |b: Rect, x: f32, y: f32| b.inflate(BLUR_REACH * f64::from(x), BLUR_REACH * f64::from(y));
+    match kind {
+        Kind::GaussianBlur(b) => of(b.input()).map(|i| blurred(i, b.std_dev_x().get(), b.std_dev_y().get())),
+        Kind::DropShadow(s) => of(s.input()).map(|i| {
+            let shadow = blurred(i, s.std_dev_x().get(), s.std_dev_y().get());
+            i.union(shadow + Vec2::new(s.dx().into(), s.dy().into()))
+        }),
+        Kind::Offset(o) => of(o.input()).map(|i| i + Vec2::new(o.dx().into(), o.dy().into())),
+        Kind::Blend(b) => either(of(b.input1()), of(b.input2())),
+        Kind::Composite(c) => match c.operator() {
+            CompositeOperator::In => of(c.input1()).and_then(|a| overlap(a, of(c.input2())?)),
+            CompositeOperator::Out => of(c.input1()),
+            CompositeOperator::Atop => of(c.input2()),
+            CompositeOperator::Arithmetic { k4, .. } if k4 > 0.0 => Some(region),
+            CompositeOperator::Over
+            | CompositeOperator::Xor
+            | CompositeOperator::Lighter
+            | CompositeOperator::Arithmetic { .. } => either(of(c.input1()), of(c.input2())),
+        },
+        Kind::Merge(m) => m.inputs().iter().filter_map(of).reduce(|a, b| a.union(b)),
+        Kind::Morphology(m) => of(m.input()).map(|i| match m.operator() {
+            MorphologyOperator::Erode => i,
+            MorphologyOperator::Dilate => grown(i, m.radius_x().get(), m.radius_y().get()),
+        }),
+        Kind::DisplacementMap(m) => of(m.input1()).map(|i| grown(i, m.scale().abs() / 2.0, m.scale().abs() / 2.0)),
+        // The last value of a matrix's fourth row is the alpha of transparent pixels.
+        Kind::ColorMatrix(m) => match m.kind() {
+            ColorMatrixKind::Matrix(v) if v.get(19).is_some_and(|alpha| *alpha > 0.0) => Some(region),
+            ColorMatrixKind::LuminanceToAlpha
+            | ColorMatrixKind::Matrix(_)
+            | ColorMatrixKind::Saturate(_)
+            | ColorMatrixKind::HueRotate(_) => of(m.input()),
+        },
+        Kind::ComponentTransfer(t) if keeps_transparent(t.func_a()) => of(t.input()),
+        Kind::ComponentTransfer(_)
+        | Kind::ConvolveMatrix(_)
+        | Kind::DiffuseLighting(_)
+        | Kind::SpecularLighting(_)
+        | Kind::Flood(_)
+        | Kind::Image(_)
+        | Kind::Tile(_)
+        | Kind::Turbulence(_) => Some(region),
+    }
+}
+
+/// Returns `true` if transparent pixels stay so.
+fn keeps_transparent(alpha: &TransferFunction) -> bool {
+    match alpha {
+        TransferFunction::Identity => true,
+        TransferFunction::Table(v) | TransferFunction::Discrete(v) => v.first().is_none_or(|a| *a <= 0.0),
+        TransferFunction::Linear { intercept, .. } => *intercept <= 0.0,
+        TransferFunction::Gamma { offset, .. } => *offset <= 0.0,
+    }
+}
+
+/// The region of a primitive, which is the filter's unless it has one itself, if the filter's is `region`.
+pub(crate) fn part(filter: &Filter, p: &Primitive, region: Rect) -> Rect {
+    if p.rect() == filter.rect() { region } else { rect(p.rect()) }
+}
+
+pub(crate) fn rect(r: usvg::NonZeroRect) -> Rect {
+    Rect::new(r.left().into(), r.top().into(), r.right().into(), r.bottom().into())
+}

@@ -1,0 +1,390 @@
+//! The walk over the scene that patches each element.
+
+use super::keeper::{self, Keeper};
+use super::text;
+use crate::bend::fits::EmbeddedImage;
+use crate::bend::options::Clones;
+use crate::bend::outcome::{Skipped, WarpedPart};
+use crate::scene::geometry::stretch;
+use crate::scene::model::{Clip, Group, Mask, Node, Part, Referrer};
+use crate::source::elements::{ElementId, Namespace, Unpatchable, is_live, is_shape};
+use crate::source::number::short;
+use crate::write::boxes;
+use crate::write::fragment::FILTERS;
+use crate::write::input::WriteInput;
+use crate::write::markup::{bent_attributes, bent_url, dashes, part_data};
+use pathwarp::kurbo::Affine;
+use pathwarp_reader::xml::escape;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use usvg::{Fill, Stroke};
+
+/// Patches everything in a group.
+pub(super) fn group(k: &mut Keeper<'_, '_>, g: &Group) {
+    filters(k, g);
+    // Shapes with their markers, in painting order.
+    let mut marked: BTreeMap<ElementId, Vec<&Node>> = BTreeMap::new();
+    for n in &g.children {
+        match n {
+            Node::Group(c) => match c.owner {
+                Some(e) if k.tag(e) == "use" => copy(k, e, c),
+                Some(e) if k.tag(e) == "image" => drawing(k, e, n, c),
+                Some(e) if is_shape(k.tag(e)) => marked.entry(e).or_default().push(n),
+                _ => group(k, c),
+            },
+            Node::Text { element: Some(e), content, owners } => text::text(k, *e, content, owners),
+            Node::Text { element: None, .. } => {}
+            Node::Image(i) => bitmap(k, g, *i),
+            Node::Part(i) => {
+                let p = k.input.part(*i);
+                match (p.owner, p.source) {
+                    (Some(e), _) if is_shape(k.tag(e)) => marked.entry(e).or_default().push(n),
+                    (None, Some(e)) if k.input.warped(*i).is_some() => shape(k, e, *i),
+                    _ => {}
+                }
+            }
+        }
+    }
+    for (e, nodes) in marked {
+        marked_shape(k, e, &nodes);
+    }
+}
+
+/// Patches the filters of a group.
+fn filters(k: &mut Keeper<'_, '_>, g: &Group) {
+    if g.filters.is_empty() {
+        return;
+    }
+    let growth = boxes::growth(&k.input, g);
+    let slot = g.slot.map(|s| &k.input.scene.slots[s]);
+    if let [n @ Node::Text { element: Some(e), .. }] = g.children.as_slice()
+        && k.changed(n)
+    {
+        // Box units refer to the text's layout box, which outlines do not have. Write the filter in user space.
+        let new = |f| format!("url(#{})", k.writer.filter_id(f, boxes::grown(f, growth)));
+        let list: Vec<String> = g.filters.iter().map(new).collect();
+        k.edits.set_property(*e, "filter", list.join(" "));
+    } else if g.filters.iter().any(|f| k.input.shows_warped(f))
+        && let Some((None, Some(e))) = slot.map(|s| (s.owner, s.element))
+    {
+        let list = k.writer.filters(g);
+        k.edits.set_property(e, "filter", list);
+    } else {
+        for f in &g.filters {
+            if k.writer.keeps_filter(f) {
+                k.writer.defs.grow(f, boxes::grown(f, growth));
+            }
+        }
+    }
+    for f in &g.filters {
+        k.writer.notes.add(FILTERS, f.id());
+    }
+}
+
+const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
+
+/// Patches a shape element with the image of part `i`.
+pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
+    let p = k.input.part(i);
+    let Some(warped) = k.input.warped(i) else { return };
+    let outlined = p.stroke.is_some() && warped.stroke.outline().is_some();
+    let separate_fill = warped.fill.as_ref().is_some_and(|f| !f.elements().is_empty());
+    if k.input.in_pieces(i) || outlined || separate_fill {
+        let content = k.writer.part(i);
+        k.make_group(e, content);
+        return;
+    }
+    let tag = k.tag(e);
+    if tag != "path" {
+        k.edits.rename(e, "path");
+        k.remove_geometry(e);
+        // Only what was a line or a polygon before has markers.
+        if matches!(tag, "rect" | "circle" | "ellipse")
+            && k.source.attr(e, "style").is_some_and(|s| s.contains("marker-"))
+        {
+            for name in MARKERS {
+                k.edits.set_property(e, name, "none".into());
+            }
+        }
+    }
+    k.edits.set_attr(e, "d", part_data(p, Some(warped), k.source));
+    k.remove_lettering(e);
+    patch_paint(k, e, i, p, warped);
+    patch_stroke(k, e, p, warped);
+}
+
+fn patch_paint(k: &mut Keeper<'_, '_>, e: ElementId, i: usize, p: &Part, warped: &WarpedPart) {
+    let paints = [("fill", p.fill.as_ref().map(Fill::paint)), ("stroke", p.stroke.as_ref().map(Stroke::paint))];
+    for (name, paint) in paints {
+        if let Some(paint) = paint.filter(|paint| k.input.paint_fit(paint, p, Some(warped)).is_some()) {
+            let paint = k.writer.paint(paint, p, Some(warped));
+            k.edits.set_property(e, name, paint);
+        }
+    }
+    // A shape without width or height shows the fallback colour of a paint server in box units. The warped shape may have
+    // both, and must not show the paint server.
+    let flat = p.local.bounding_box().is_some_and(|b| b.width() == 0.0 || b.height() == 0.0);
+    if flat && (k.source.text.contains("objectBoundingBox") || k.source.text.contains("Gradient")) {
+        for (name, value) in k.writer.properties(i) {
+            if matches!(name, "fill" | "stroke") {
+                k.edits.set_property(e, name, value);
+            }
+        }
+    }
+    if warped.fill.is_some() {
+        k.edits.set_property(e, "fill", "none".into());
+    }
+}
+
+fn patch_stroke(k: &mut Keeper<'_, '_>, e: ElementId, p: &Part, warped: &WarpedPart) {
+    let scale = warped.stroke.scale();
+    let Some(s) = p.stroke.as_ref().filter(|_| (scale - 1.0).abs() > 1e-9) else { return };
+    k.edits.set_property(e, "stroke-width", short(f64::from(s.width().get()) * scale));
+    // In units of `pathLength`, dashes are the same on the new path.
+    if s.dasharray().is_some() && k.source.attr(e, "pathLength").is_none() {
+        k.edits.set_property(e, "stroke-dasharray", dashes(s, scale));
+        if s.dashoffset() != 0.0 {
+            k.edits.set_property(e, "stroke-dashoffset", short(f64::from(s.dashoffset()) * scale));
+        }
+    }
+}
+
+/// Replaces a shape with markers by a group of the shape and its markers (`nodes`, in painting order).
+fn marked_shape(k: &mut Keeper<'_, '_>, e: ElementId, nodes: &[&Node]) {
+    if !nodes.iter().any(|n| k.changed(n)) {
+        return;
+    }
+    let content = nodes.iter().map(|n| k.writer.node(n)).collect();
+    k.make_group(e, content);
+    for name in MARKERS {
+        k.edits.set_style(e, name, "none".into());
+    }
+}
+
+/// Patches the element of bitmap `i`, in group `g`.
+pub(super) fn bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
+    let bitmap = &k.input.scene.bitmaps[i];
+    let e = g.source.or(bitmap.owner).filter(|&e| k.tag(e) == "image");
+    let why = match (&k.input.images[i], e) {
+        (EmbeddedImage::Placed, _) => return,
+        (EmbeddedImage::Bent(bent), Some(e)) => {
+            for (name, value) in bent_attributes(bent, Affine::IDENTITY) {
+                k.edits.set_attr(e, name, value);
+            }
+            k.edits.set_attr(e, "href", bent_url(bent));
+            let text = &k.source.text;
+            // Inkscape's path to the file that the image was linked to.
+            k.edits.remove_attrs(e, |a| a.namespace == Namespace::Sodipodi && a.name(text) == "absref");
+            return;
+        }
+        (EmbeddedImage::Bent(_), None) => "its element was not found; it is placed by the best affine fit".to_owned(),
+        (EmbeddedImage::Approximate(why), _) => why.clone(),
+    };
+    let id = e.map_or_else(|| "an image".to_owned(), |e| k.source.display_name(e));
+    k.writer.skipped.push(Skipped { id, why });
+}
+
+/// Replaces an image that is a drawing by a group with the drawing's content.
+pub(super) fn drawing(k: &mut Keeper<'_, '_>, e: ElementId, n: &Node, g: &Group) {
+    if k.changed(n) {
+        let content = k.writer.group(g, "");
+        for name in ["href", "preserveAspectRatio"] {
+            k.edits.remove_attr(e, name);
+        }
+        k.make_group(e, content);
+    }
+}
+
+/// Returns `false` if the original of a `use` may have been warped.
+fn is_original_unchanged(k: &Keeper<'_, '_>, e: ElementId) -> bool {
+    let WriteInput { source, scene, outcomes, options, .. } = k.input;
+    if options.selection.is_everything() {
+        return true;
+    }
+    let originals: Vec<ElementId> =
+        source.href(e).and_then(|id| source.by_id().get(&id)).into_iter().flatten().copied().collect();
+    // One that shows others is taken to have changed with anything.
+    let shows_others = |o: &ElementId| k.tag(*o) == "use" || source.descendants(*o).any(|d| k.tag(d) == "use");
+    let ranges: Vec<_> = originals.iter().map(|&o| &source.elements[o].range).collect();
+    let inside = |o: ElementId| ranges.iter().any(|r| r.contains(&source.elements[o].range.start));
+    let anywhere = originals.is_empty() || originals.iter().any(shows_others);
+    let warped = scene.parts.iter().zip(outcomes).filter(|(_, o)| o.warped().is_some());
+    !warped.map(|(p, _)| p.element()).any(|o| anywhere || o.is_none_or(inside))
+}
+
+/// Replaces a `use` by a group with the resolved content, if that is no longer a copy of the original.
+pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
+    if !g.children.iter().any(|n| k.changed(n))
+        && (k.input.options.clones == Clones::Follow || is_original_unchanged(k, e))
+    {
+        return;
+    }
+    let source = k.source;
+    let text = &source.text;
+    let is_kept =
+        |name: &str| name == "id" || name == "class" || name.starts_with("data-") || name.starts_with("aria-");
+    let el = &source.elements[e];
+    let head: String = el
+        .attrs
+        .iter()
+        .filter(|a| is_kept(a.name(text)) || matches!(a.namespace, Namespace::Inkscape | Namespace::Sodipodi))
+        .filter(|a| !is_live(a, text))
+        .map(|a| format!(" {}", &text[a.range.clone()]))
+        .collect();
+    let title = el.title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
+    k.fragments.insert(e);
+    let lead = title + &keeper::kept(source, e);
+    let text = k.writer.group_with(g, &head, &lead);
+    k.edits.replace(e, text);
+}
+
+/// Patches the clip paths. For a clip path used in several frames, the first stays in its place and the others get
+/// definitions of their own.
+pub(super) fn clips(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
+    let clips = || k.input.scene.clips.iter().filter(|c| !c.foreign);
+    // What is not bent keeps its definition.
+    let kept = clips().filter(|c| !k.input.changes(c.parts.clone()));
+    let mut patched: BTreeSet<ElementId> = kept.filter_map(|c| k.definition(&c.id, "clipPath")).collect();
+    for (i, c) in k.input.scene.clips.iter().enumerate().filter(|c| !c.1.foreign) {
+        let def = k.definition(&c.id, "clipPath");
+        if !k.input.changes(c.parts.clone()) {
+            // The edge of a viewport has no definition.
+            k.writer.defs.clip_ids[i] = def.map(|_| c.id.clone());
+            continue;
+        }
+        let is_viewport = c.referrers.iter().any(|r| r.owner.is_none() && r.element.is_some_and(|e| k.tag(e) == "svg"));
+        match def {
+            None if is_viewport => viewport(k, i)?,
+            Some(def) if patched.insert(def) => clip(k, i, c, def),
+            _ => {
+                let id = k.writer.clip_id(i);
+                redirect(k, &c.referrers, "clip-path", &id)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Patches the definition of a clip path.
+fn clip(k: &mut Keeper<'_, '_>, i: usize, c: &Clip, def: ElementId) {
+    k.writer.defs.clip_ids[i] = Some(c.id.clone());
+    let units = k.source.attr(def, "clipPathUnits");
+    if units.is_none_or(|u| u != "objectBoundingBox") && has_plain_shapes(k, &c.root) {
+        group(k, &c.root);
+    } else {
+        let head = k.attributes_without(def, &["clipPathUnits", "transform", "clip-path"]);
+        let text = k.replacement(def, |w| w.clip(i, &head));
+        k.edits.replace(def, text);
+    }
+}
+
+/// Patches the masks, in the same way.
+pub(super) fn masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
+    let kept = k.input.scene.masks.iter().filter(|m| !m.foreign && !k.input.changes(m.parts.clone()));
+    let mut patched: BTreeSet<ElementId> = kept.filter_map(|m| k.definition(&m.id, "mask")).collect();
+    for (i, m) in k.input.scene.masks.iter().enumerate().filter(|m| !m.1.foreign) {
+        let def = k.definition(&m.id, "mask");
+        // A mask in box units hides a box without area completely. The result's box may have an area, so write a new mask.
+        let in_box_units = def.is_none_or(|d| k.source.attr(d, "maskUnits").is_none_or(|u| u != "userSpaceOnUse"));
+        if in_box_units && m.root.children.is_empty() {
+            let id = k.writer.mask_id(i);
+            redirect(k, &m.referrers, "mask", &id)?;
+            continue;
+        }
+        if !k.input.changes(m.parts.clone()) {
+            k.writer.defs.mask_ids[i] = def.map(|_| m.id.clone());
+            continue;
+        }
+        match def {
+            Some(def) if patched.insert(def) => mask(k, i, m, def),
+            _ => {
+                let id = k.writer.mask_id(i);
+                redirect(k, &m.referrers, "mask", &id)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Patches the definition of a mask.
+fn mask(k: &mut Keeper<'_, '_>, i: usize, m: &Mask, def: ElementId) {
+    k.writer.defs.mask_ids[i] = Some(m.id.clone());
+    let units = k.source.attr(def, "maskContentUnits");
+    let plain = units.is_none_or(|u| u != "objectBoundingBox") && boxes::edge(&k.input, i).is_none();
+    if plain {
+        for (name, value) in boxes::region(&k.input, i) {
+            k.edits.set_attr(def, name, value);
+        }
+        group(k, &m.root);
+    } else {
+        let omitted = ["maskUnits", "maskContentUnits", "x", "y", "width", "height", "mask", "mask-type"];
+        let head = k.attributes_without(def, &omitted);
+        let text = k.replacement(def, |w| w.mask(i, &head));
+        k.edits.replace(def, text);
+    }
+}
+
+/// Points all referrers to a new definition.
+fn redirect(
+    k: &mut Keeper<'_, '_>,
+    referrers: &[Referrer],
+    property: &'static str,
+    id: &str,
+) -> Result<(), Unpatchable> {
+    for r in referrers {
+        match (r.owner, r.element) {
+            // Replaced as a whole, with the right reference.
+            (Some(_), _) => {}
+            (None, Some(e)) if k.tag(e) == "use" => {}
+            (None, Some(e)) => k.edits.set_property(e, property, format!("url(#{id})")),
+            (None, None) => return Err(Unpatchable::AmbiguousReferrer(property)),
+        }
+    }
+    Ok(())
+}
+
+/// Returns `true` if a clip path holds only shape elements that become one path each.
+fn has_plain_shapes(k: &Keeper<'_, '_>, g: &Group) -> bool {
+    g.children.iter().all(|n| match n {
+        Node::Group(g) => g.owner.is_none() && has_plain_shapes(k, g),
+        Node::Part(i) => {
+            let p = k.input.part(*i);
+            p.source.is_some() && p.owner.is_none()
+        }
+        Node::Image(_) | Node::Text { .. } => false,
+    })
+}
+
+/// Patches a nested viewport, which clips its content to a rectangle. Warped content must not be clipped like that, so the
+/// viewport becomes `overflow: visible`. If it did clip anything, its warped edge becomes a clip path around it.
+fn viewport(k: &mut Keeper<'_, '_>, i: usize) -> Result<(), Unpatchable> {
+    let c = &k.input.scene.clips[i];
+    let svgs: BTreeSet<ElementId> =
+        c.referrers.iter().filter_map(|r| r.element).filter(|&e| k.tag(e) == "svg").collect();
+    for e in svgs {
+        k.edits.set_property(e, "overflow", "visible".into());
+        if !fits(k, e, c.parts.clone()) {
+            if k.source.attr(e, "transform").is_some() {
+                return Err(Unpatchable::ClippingViewport);
+            }
+            let id = k.writer.clip_id(i);
+            let g = k.writer.markup.tag("g");
+            k.edits.insert_before(e, &format!("<{g} clip-path=\"url(#{})\">", escape(&id)));
+            k.edits.insert_after(e, &format!("</{g}>"));
+        }
+    }
+    Ok(())
+}
+
+/// Returns `true` if the content of `e` is inside the box of the part `edge`.
+fn fits(k: &Keeper<'_, '_>, e: ElementId, edge: Range<usize>) -> bool {
+    let scene = k.input.scene;
+    let Some(edge) = scene.parts.get(edge.start).and_then(|p| p.outline().bounding_box()) else { return false };
+    let inside = k.source.elements[e].range.clone();
+    scene.parts.iter().filter(|p| !p.in_tile).all(|p| {
+        let is_inside = p.element().is_some_and(|s| inside.contains(&k.source.elements[s].range.start));
+        let reach = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get() * s.miterlimit().get()));
+        let reach = reach * stretch(p.frame);
+        !is_inside || p.outline().bounding_box().is_none_or(|b| edge.union(b.inflate(reach, reach)) == edge)
+    })
+}
