@@ -13,17 +13,13 @@
 //! # Ok::<(), pathwarp_psd::Error>(())
 //! ```
 
-mod bytes;
 mod descriptor;
-mod error;
-mod layers;
-mod model;
 mod warp;
 
-use bytes::ByteReader;
+use crate::descriptor::ByteReader;
 
-pub use error::Error;
-pub use model::{LayerWarp, LayerWarps, WarpMesh};
+pub use descriptor::Error;
+pub use warp::{LayerWarp, LayerWarps, WarpMesh};
 
 /// Reads the warps of a file.
 ///
@@ -50,14 +46,14 @@ pub fn warps(data: &[u8]) -> Result<LayerWarps, Error> {
     let mut out = Vec::new();
     if section.left() > 0 {
         let n = section.length(wide)?;
-        layers::layers(&mut section.window(n)?, wide, &mut out)?;
+        warp::layers(&mut section.window(n)?, wide, &mut out)?;
     }
     // Documents with more than eight bits per channel store their layers after the global mask.
     if section.left() >= 4 {
         let n = section.u32()? as usize;
         section.take(n)?;
-        layers::blocks(&mut section, wide, 4, &mut |key, mut block| match key {
-            b"Layr" | b"Lr16" | b"Lr32" => layers::layers(&mut block, wide, &mut out),
+        warp::blocks(&mut section, wide, 4, &mut |key, mut block| match key {
+            b"Layr" | b"Lr16" | b"Lr32" => warp::layers(&mut block, wide, &mut out),
             _ => Ok(()),
         })?;
     }

@@ -1,9 +1,7 @@
 //! The descriptors of warps.
 
-use crate::bytes::ByteReader;
-use crate::descriptor::{self, Items, Value, get};
-use crate::error::Error;
-use crate::model::{LayerWarp, WarpMesh};
+use crate::descriptor::{self, ByteReader, Error, Items, Value, get};
+use serde::Serialize;
 
 /// Reads `SoLd`: identifier, version, and a descriptor of everything.
 pub(crate) fn smart_object(b: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
@@ -107,4 +105,123 @@ fn mesh(items: &Items, custom: &Items) -> Result<WarpMesh, String> {
         y: slices("quiltSliceY", (rows - 1) / 3, top, bottom),
         points: (0..rows).map(|j| (0..columns).map(|i| place(j, i)).collect()).collect(),
     })
+}
+
+/// All warps of a file in the order of its layers, from bottom to top.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct LayerWarps {
+    /// A warp for each smart object and text layer; its style is `warpNone` if the layer is not warped.
+    pub warps: Vec<LayerWarp>,
+}
+
+/// The warp of a layer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct LayerWarp {
+    /// Name of the layer.
+    pub layer: String,
+    /// Name of the style, such as `warpArc`; `warpCustom` for control points.
+    pub style: String,
+    /// Bend in percent.
+    pub value: f64,
+    /// Horizontal distortion in percent.
+    pub perspective: f64,
+    /// Vertical distortion in percent.
+    pub perspective_other: f64,
+    /// `true` if the style acts vertically.
+    pub vertical: bool,
+    /// Control points of a custom warp.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<WarpMesh>,
+}
+
+/// Control points of bicubic patches.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct WarpMesh {
+    /// x, y, width and height of the warped box, in the units of the points.
+    pub region: [f64; 4],
+    /// Always `true`: the mesh is fitted to the artwork, whatever its place.
+    pub fit: bool,
+    /// Boundaries between patches along x, as fractions of the width; `None` if they are even.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<Vec<f64>>,
+    /// Boundaries between patches along y, as fractions of the height.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<Vec<f64>>,
+    /// Rows of control points from the top.
+    pub points: Vec<Vec<[f64; 2]>>,
+}
+
+/// Reads the layer records; the pixels after them are ignored.
+pub(crate) fn layers(b: &mut ByteReader<'_>, wide: bool, out: &mut Vec<LayerWarp>) -> Result<(), Error> {
+    if b.left() < 2 {
+        return Ok(());
+    }
+    // A negative count means that the first alpha channel is the transparency of the merged picture.
+    let count = b.u16()?.cast_signed().unsigned_abs();
+    for _ in 0..count {
+        b.take(16)?;
+        let channels = usize::from(b.u16()?);
+        b.take(channels * if wide { 10 } else { 6 })?;
+        b.take(12)?;
+        let n = b.u32()? as usize;
+        let mut extra = b.window(n)?;
+        for _ in 0..2 {
+            let n = extra.u32()? as usize;
+            extra.take(n)?;
+        }
+        let short = usize::from(extra.u8()?);
+        let mut name = String::from_utf8_lossy(extra.take(short)?).into_owned();
+        let padding = (4 - (short + 1) % 4) % 4;
+        extra.take(padding)?;
+        let mut warp: Option<LayerWarp> = None;
+        blocks(&mut extra, wide, 1, &mut |key, mut block| {
+            match key {
+                b"luni" => name = descriptor::text(&mut block)?,
+                b"SoLd" | b"SoLE" => warp = smart_object(&mut block)?.or(warp.take()),
+                // The older form of the same data; the newer one has precedence.
+                b"PlLd" if warp.is_none() => warp = placed(&mut block)?,
+                b"TySh" => warp = text(&mut block)?,
+                _ => {}
+            }
+            Ok(())
+        })?;
+        if let Some(warp) = warp {
+            out.push(LayerWarp { layer: name, ..warp });
+        }
+    }
+    Ok(())
+}
+
+/// Handles a block, given its key and content.
+type BlockHandler<'f, 'a> = dyn FnMut(&[u8; 4], ByteReader<'a>) -> Result<(), Error> + 'f;
+
+/// Reads the blocks of additional information, which are padded to `unit` bytes.
+pub(crate) fn blocks<'a>(
+    b: &mut ByteReader<'a>,
+    wide: bool,
+    unit: usize,
+    each: &mut BlockHandler<'_, 'a>,
+) -> Result<(), Error> {
+    /// Keys of blocks with 64-bit lengths in large documents.
+    const WIDE: [&[u8; 4]; 13] = [
+        b"LMsk", b"Lr16", b"Lr32", b"Layr", b"Mt16", b"Mt32", b"Mtrn", b"Alph", b"FMsk", b"lnk2", b"FEid", b"FXid",
+        b"PxSD",
+    ];
+    while b.left() >= 12 {
+        let signature = b.tag()?;
+        if &signature != b"8BIM" && &signature != b"8B64" {
+            // Only padding follows.
+            return Ok(());
+        }
+        let key = b.tag()?;
+        let n = b.length(wide && WIDE.contains(&&key))?;
+        let block = b.window(n)?;
+        each(&key, block)?;
+        let padding = (unit - n % unit) % unit;
+        b.take(padding.min(b.left()))?;
+    }
+    Ok(())
 }

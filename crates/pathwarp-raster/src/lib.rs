@@ -29,10 +29,8 @@
 //! ```
 
 mod compare;
-mod draw;
 mod error;
 mod load;
-mod parallel;
 mod picture;
 mod pixmap;
 mod png;
@@ -42,12 +40,12 @@ mod smooth_png;
 mod warp_image;
 
 pub use compare::{Difference, compare, diff_image};
-pub use draw::render_group;
 pub use error::Error;
 pub use picture::{Picture, PictureFormat, header_size};
 pub use pixmap::enlarged;
 pub use png::{decode_png, encode_png};
 pub use preview::{OverlayKind, Panel, Preview, PreviewOverlay};
+pub use render::render_group;
 pub use render::{RenderOptions, Size, render};
 pub use smooth_png::encode_smooth_png;
 pub use tiny_skia::{Color, IntRect, Pixmap};

@@ -2,6 +2,8 @@
 
 use crate::error::Error;
 use pathwarp::budget::{Exceeded, Limit, Limits};
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
 use tiny_skia::{FilterQuality, IntRect, Pixmap, PixmapPaint, Transform};
 
 /// Bytes held for each pixel of a picture that is made: itself, and the file that it becomes.
@@ -45,6 +47,27 @@ pub fn enlarged(source: &Pixmap, part: IntRect, factor: u32, squares: bool, limi
     let to = scale.pre_translate(-(part.x() as f32), -(part.y() as f32));
     out.draw_pixmap(0, 0, source.as_ref(), &paint, to, None);
     Ok(out)
+}
+
+/// Calls `f` with the index and the content of every chunk of `size` elements.
+pub(crate) fn for_each_chunk<T: Send>(data: &mut [T], size: usize, f: impl Fn(usize, &mut [T]) + Send + Sync) {
+    #[cfg(feature = "parallel")]
+    data.par_chunks_mut(size).enumerate().for_each(|(i, chunk)| f(i, chunk));
+    #[cfg(not(feature = "parallel"))]
+    data.chunks_mut(size).enumerate().for_each(|(i, chunk)| f(i, chunk));
+}
+
+/// Calls `f` with the index and the content of every chunk of `size` elements of two slices of the same length.
+pub(crate) fn for_each_chunk_pair<T: Send, U: Send>(
+    a: &mut [T],
+    b: &mut [U],
+    size: usize,
+    f: impl Fn(usize, &mut [T], &mut [U]) + Send + Sync,
+) {
+    #[cfg(feature = "parallel")]
+    a.par_chunks_mut(size).zip(b.par_chunks_mut(size)).enumerate().for_each(|(i, (a, b))| f(i, a, b));
+    #[cfg(not(feature = "parallel"))]
+    a.chunks_mut(size).zip(b.chunks_mut(size)).enumerate().for_each(|(i, (a, b))| f(i, a, b));
 }
 
 #[cfg(test)]

@@ -1,13 +1,10 @@
 //! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
 use crate::source::elements::{PATHWARP as NAMESPACE, tag_end};
-use crate::source::read::{text, unpacked};
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
+use crate::source::read::{packed, text, unpacked_text};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
 use pathwarp_reader::xml::{self, escape_content};
-use std::io::Write as _;
 use usvg::roxmltree;
 
 /// The origin of a drawing.
@@ -25,7 +22,7 @@ impl Origin {
     /// # Errors
     /// Returns [`Error::Input`] if `svg` is not XML, or has an empty root.
     pub fn embed(&self, svg: &str) -> Result<String, Error> {
-        let packed = self.pack().map_err(|e| Error::input("the source", format!("cannot be packed: {e}")))?;
+        let packed = packed(&self.source)?;
         let element = format!(
             "<pathwarp xmlns=\"{NAMESPACE}\"><recipe>{}</recipe><source encoding=\"gzip base64\">{packed}</source></pathwarp>",
             escape_content(&self.recipe)
@@ -82,18 +79,8 @@ impl Origin {
             let node = own.descendants().find(|n| n.has_tag_name((NAMESPACE, name)));
             node.map(|n| n.children().filter_map(|c| c.text()).collect::<String>()).unwrap_or_default()
         };
-        let damaged = |e: &dyn std::fmt::Display| Error::input("the embedded source", format!("is damaged: {e}"));
-        let packed: String = text("source").split_ascii_whitespace().collect();
-        let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
-        let source =
-            unpacked(&bytes, "the embedded source", &budget)?.ok_or_else(|| damaged(&"it is not compressed"))?;
+        let source = unpacked_text(&text("source"), "the embedded source", &budget)?;
         Ok(Some(Self { recipe: text("recipe"), source }))
-    }
-
-    fn pack(&self) -> std::io::Result<String> {
-        let mut z = flate2::GzBuilder::new().mtime(0).write(Vec::new(), flate2::Compression::best());
-        z.write_all(&self.source)?;
-        Ok(STANDARD.encode(z.finish()?))
     }
 }
 

@@ -47,6 +47,21 @@
 //! - `parallel` (default): bends shapes on all processors.
 //! - `usvg`: adds the module `usvg_tree`, which exposes types of usvg and is exempt from semantic versioning.
 
+/// Generates a setter for each option.
+macro_rules! setters {
+    ($options:ident, $($field:ident: $type:ty, $setter:ident;)*) => {
+        impl $options {
+            $(
+                #[doc = concat!("Sets [`", stringify!($field), "`](Self::", stringify!($field), ").")]
+                #[must_use]
+                pub fn $setter(self, $field: $type) -> Self {
+                    Self { $field, ..self }
+                }
+            )*
+        }
+    };
+}
+
 mod bend;
 mod document;
 mod embed;

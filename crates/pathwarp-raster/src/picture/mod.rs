@@ -11,7 +11,7 @@ mod png;
 mod webp;
 
 use crate::error::Error;
-use kind::Kind;
+use crate::picture::kind::Kind;
 use pathwarp::budget::Limits;
 use tiny_skia::Pixmap;
 

@@ -3,18 +3,16 @@
 //! Both panels show the same part of the plane at the same scale, so that a shape that did not move is in the same place in
 //! both. That part is the bounding box of both pages and all overlays. Artwork outside its page is shown on the grey around it.
 
-mod brush;
 mod overlay;
-mod skia;
 
-pub use overlay::{OverlayKind, PreviewOverlay};
-
-use crate::draw::draw;
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
+use crate::render::draw;
 use kurbo::{Affine, Rect};
 use pathwarp::budget::{Budget, Limits};
 use tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, PixmapPaint, Transform};
+
+pub use overlay::{OverlayKind, PreviewOverlay};
 
 /// Default length of the longer side of a panel, in pixels.
 const DEFAULT_PANEL: u32 = 600;
@@ -179,7 +177,7 @@ impl PanelLayout {
         let mut picture = new_pixmap(self.width, self.height, &budget.limits())?;
         picture.fill(Color::from_rgba8(0xec, 0xee, 0xf1, 0xff));
         self.draw_page(panel.page, &mut picture);
-        let tree_to_panel = skia::transform(self.to_panel * panel.user_to_px.inverse());
+        let tree_to_panel = overlay::transform(self.to_panel * panel.user_to_px.inverse());
         draw(panel.tree, tree_to_panel, &mut picture, budget)?;
         for overlay in &panel.overlays {
             overlay.draw(self.to_panel, self.unit, &mut picture);
@@ -194,7 +192,7 @@ impl PanelLayout {
             [(2.5, Color::from_rgba8(0, 0, 0, 14)), (1.2, Color::from_rgba8(0, 0, 0, 26)), (0.0, Color::WHITE)]
         {
             let shifted = sheet + kurbo::Vec2::new(offset, offset) * f64::from(self.unit);
-            let [left, top, right, bottom] = [shifted.x0, shifted.y0, shifted.x1, shifted.y1].map(skia::to_f32);
+            let [left, top, right, bottom] = [shifted.x0, shifted.y0, shifted.x1, shifted.y1].map(overlay::to_f32);
             if let Some(rect) = tiny_skia::Rect::from_ltrb(left, top, right, bottom) {
                 let mut paint = Paint::default();
                 paint.set_color(color);

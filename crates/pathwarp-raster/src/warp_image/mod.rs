@@ -18,25 +18,18 @@
 //! Tiles are independent and run in parallel. Memory is the source, the result, and a third of the source for the pyramid if the
 //! map shrinks.
 
-mod area;
-mod block;
-mod color;
-mod cover;
-mod extent;
 mod grid_inverse;
 mod image_warp;
 mod painter;
-mod pyramid;
-mod reach;
 mod resolution;
 mod rows;
 mod sample;
 mod shade;
+mod tile;
 mod trace;
 
-pub use extent::{Extent, extent};
 pub use grid_inverse::GridInverse;
-pub use image_warp::{ImageWarp, shown};
+pub use image_warp::{Extent, ImageWarp, extent, shown};
 pub use painter::warp_image;
 pub use resolution::{SeenColor, ShadeTolerance, SmoothShade};
 pub use shade::{Colors, Shade, shade};

@@ -1,9 +1,8 @@
 //! Computes the pixels of a tile row by row, in loops that the compiler vectorises. Results do not depend on the vector width: the
 //! order of summation for each pixel is fixed.
 
-use super::area::TILE;
-use super::block::{BYTES, ChannelOrder, Firsts, OUTSIDE, SourceBlock};
 use super::sample::Footprint;
+use super::tile::{BYTES, ChannelOrder, Firsts, OUTSIDE, SourceBlock, TILE};
 use super::trace::{Trace, TraceRow};
 
 /// Maximum stretch at which a kernel of radius two fits into eight pixels a side.
@@ -179,7 +178,7 @@ fn paint<const SIDE: usize, const N: usize>(
     finish(&colors, &taps.first, out, other);
 }
 
-/// Writes the colours of a row, rounded as by [`super::color::color`], and calls `other` for pixels outside the block.
+/// Writes the colours of a row, rounded as by [`super::sample::color`], and calls `other` for pixels outside the block.
 #[inline(always)]
 fn finish(colors: &[[f32; BYTES]; TILE], first: &Firsts, out: &mut [u8], mut other: impl FnMut(usize) -> [u8; BYTES]) {
     // At this magnitude the last bit has the value 1: adding it rounds and leaves an integer in the low bits.

@@ -1,4 +1,4 @@
-use super::color::{add, channels, color};
+use super::sample::{add, channels, color};
 use super::*;
 use crate::compare;
 use kurbo::{Affine, Point, Rect, Vec2};

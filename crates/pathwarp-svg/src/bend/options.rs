@@ -266,22 +266,7 @@ impl WarpOptions {
     }
 }
 
-/// Generates a setter for each option.
-macro_rules! setters {
-    ($($field:ident: $type:ty, $setter:ident;)*) => {
-        impl WarpOptions {
-            $(
-                #[doc = concat!("Sets [`", stringify!($field), "`](Self::", stringify!($field), ").")]
-                #[must_use]
-                pub fn $setter(self, $field: $type) -> Self {
-                    Self { $field, ..self }
-                }
-            )*
-        }
-    };
-}
-
-setters! {
+setters! { WarpOptions,
     refit: refit::Options, with_refit;
     precision: Option<u8>, with_precision;
     edit: Option<Edit>, with_edit;

@@ -1,10 +1,10 @@
 //! Adds to the objects of a result what they were.
 
-use super::nodes::{Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, is_definition, parse, referred};
+use super::nodes::{
+    Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, is_definition, name_end, parse, referred,
+};
 use crate::source::elements::SVG;
-use crate::source::read::{compressed, unpacked};
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
+use crate::source::read::{packed, unpacked_text};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
 use pathwarp_reader::xml::escape;
@@ -48,7 +48,7 @@ pub fn remember(before: &str, after: &str, memories: &[Memory], limits: &Limits)
         }
         let packed = pack(before, source, &used, &m.guides.markup)?;
         let made = made(&olds, &news, result).join(" ");
-        let name_end = result.range().start + 1 + qualified(after, result).len();
+        let name_end = name_end(after, result);
         let attributes = format!(
             " xmlns:pathwarp=\"{NAMESPACE}\" pathwarp:{RECIPE}=\"{}\" pathwarp:{MADE}=\"{}\" pathwarp:{NODES}=\"{}\" pathwarp:{SOURCE}=\"{packed}\"",
             escape(&m.recipe),
@@ -69,12 +69,6 @@ fn without_declared(text: &str, n: Node<'_, '_>, attributes: String) -> String {
     } else {
         attributes
     }
-}
-
-/// The name of an element as written.
-fn qualified<'t>(text: &'t str, n: Node<'_, '_>) -> &'t str {
-    let rest = &text[n.range().start + 1..];
-    &rest[..rest.find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).unwrap_or(rest.len())]
 }
 
 /// The attributes of ours at an element, each with the space before it.
@@ -142,18 +136,14 @@ pub(super) fn pack(text: &str, n: Node<'_, '_>, definitions: &[Node<'_, '_>], gu
     out.push_str("</g>");
     out.push_str(&text[n.range()]);
     out.push_str("</svg>");
-    let packed = compressed(&out).map_err(|e| Error::input("the source", format!("cannot be packed: {e}")))?;
-    Ok(STANDARD.encode(packed))
+    packed(out.as_bytes())
 }
 
 /// Unpacks to the text of the small SVG file.
 pub(super) fn unpack(value: &str, limits: &Limits) -> Result<String, Error> {
-    let damaged = |e: &dyn std::fmt::Display| Error::input("the source of a warped object", format!("is damaged: {e}"));
-    let packed: String = value.split_ascii_whitespace().collect();
-    let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
-    let text = unpacked(&bytes, "the source of a warped object", &Budget::new(*limits))?;
-    let text = text.ok_or_else(|| damaged(&"it is not compressed"))?;
-    String::from_utf8(text).map_err(|e| damaged(&e))
+    const PLACE: &str = "the source of a warped object";
+    let text = unpacked_text(value, PLACE, &Budget::new(*limits))?;
+    String::from_utf8(text).map_err(|e| Error::input(PLACE, format!("is damaged: {e}")))
 }
 
 /// The parts of a parsed package.

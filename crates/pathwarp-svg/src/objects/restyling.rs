@@ -1,7 +1,8 @@
 //! Appearance that was changed by hand: what differs between an object as the warp left it and as it is now goes into the object
 //! warped again.
 
-use super::nodes::{apply, by_id, parse};
+use super::nodes::{apply, by_id, name_end, parse};
+use crate::scene::geometry::transform;
 use crate::source::elements::INKSCAPE;
 use crate::source::elements::{declarations, with_declaration};
 use crate::source::number::matrix;
@@ -11,7 +12,6 @@ use pathwarp::kurbo::Affine;
 use pathwarp_reader::xml::escape;
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::str::FromStr;
 use usvg::roxmltree::Node;
 
 /// Presentation attributes that editors write.
@@ -102,9 +102,7 @@ fn attribute(n: Node<'_, '_>, text: &str, namespace: Option<&str>, name: &str, v
         // Escaped for either kind of quotes.
         return (a.range_value(), escape(value).replace('\'', "&apos;"));
     }
-    let start = n.range().start + 1;
-    let rest = &text[start..];
-    let end = start + rest.find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).unwrap_or(rest.len());
+    let end = name_end(text, n);
     let prefix = namespace.map_or_else(String::new, |uri| match n.lookup_prefix(uri) {
         Some(prefix) => format!("{prefix}:"),
         None => format!("xmlns:inkscape=\"{uri}\" inkscape:"),
@@ -122,22 +120,10 @@ pub fn moved(svg: &str, id: &str, by: Affine, limits: &Limits) -> Result<String,
     let around: Vec<Affine> = n.ancestors().skip(1).map(own_transform).collect();
     let around = around.into_iter().rev().fold(Affine::IDENTITY, |all, t| all * t);
     let new = matrix(around.inverse() * by * around * own_transform(n));
-    let patch = match n.attributes().find(|a| a.name() == "transform" && a.namespace().is_none()) {
-        Some(a) => (a.range_value(), new),
-        None => {
-            let start = n.range().start + 1;
-            let rest = &svg[start..];
-            let end =
-                start + rest.find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).unwrap_or(rest.len());
-            (end..end, format!(" transform=\"{new}\""))
-        }
-    };
-    Ok(apply(svg, vec![patch]))
+    Ok(apply(svg, vec![attribute(n, svg, None, "transform", &new)]))
 }
 
 /// The element's own transform.
 fn own_transform(n: Node<'_, '_>) -> Affine {
-    let read = |t| svgtypes::Transform::from_str(t).ok();
-    let t = n.attribute("transform").and_then(read).unwrap_or_default();
-    Affine::new([t.a, t.b, t.c, t.d, t.e, t.f])
+    n.attribute("transform").and_then(transform).unwrap_or_default()
 }

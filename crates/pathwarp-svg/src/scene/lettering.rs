@@ -398,8 +398,8 @@ pub(crate) fn owners(source: &SourceText, name: &str, options: &ReadOptions) -> 
     }
     let painted: Vec<ElementId> = named.iter().flat_map(|&t| std::iter::once(t).chain(inside(source, t))).collect();
     let styles = painted.iter().filter_map(|&e| Some((e, format!("fill:{};stroke:none", colour(e)?))));
-    let painted = source.instrumented_with(styles).0;
-    let (tree, _) = tree::resolve_again(&xml::parse_checked(&painted, name)?, name, options)?;
+    let painted = source.instrumented(styles).0;
+    let (tree, _) = tree::tree(&xml::parse_checked(&painted, name)?, name, &options.begin_again())?;
     collect(tree.root(), source, &mut out);
     Ok(out)
 }

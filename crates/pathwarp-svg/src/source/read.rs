@@ -1,6 +1,8 @@
 //! File content to text and back: encoding, compression, limits.
 
 use super::faces::GenericFamilies;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
@@ -68,54 +70,22 @@ impl ReadOptions {
         Self { budget: Arc::new(Budget::new(self.budget.limits())), ..self.clone() }
     }
 
-    /// Sets [`base_dir`](Self::base_dir).
-    #[must_use]
-    pub fn with_base_dir(self, base_dir: Option<PathBuf>) -> Self {
-        Self { base_dir, ..self }
-    }
-
-    /// Sets [`system_fonts`](Self::system_fonts).
-    #[must_use]
-    pub fn with_system_fonts(self, system_fonts: bool) -> Self {
-        Self { system_fonts, ..self }
-    }
-
-    /// Sets [`fonts`](Self::fonts).
-    #[must_use]
-    pub fn with_fonts(self, fonts: Vec<PathBuf>) -> Self {
-        Self { fonts, ..self }
-    }
-
-    /// Sets [`generic_families`](Self::generic_families).
-    #[must_use]
-    pub fn with_generic_families(self, generic_families: GenericFamilies) -> Self {
-        Self { generic_families, ..self }
-    }
-
-    /// Sets [`dpi`](Self::dpi).
-    #[must_use]
-    pub fn with_dpi(self, dpi: f32) -> Self {
-        Self { dpi, ..self }
-    }
-
-    /// Sets [`limits`](Self::limits).
-    #[must_use]
-    pub fn with_limits(self, limits: Limits) -> Self {
-        Self { limits, ..self }
-    }
-
     /// Sets the limit on the text, in bytes, before and after decompression.
     #[must_use]
     pub fn with_max_size(self, max_size: usize) -> Self {
         let limits = self.limits.with(Limit::Bytes, max_size as f64);
         Self { limits, ..self }
     }
+}
 
-    /// Sets [`external`](Self::external).
-    #[must_use]
-    pub fn with_external(self, external: bool) -> Self {
-        Self { external, ..self }
-    }
+setters! { ReadOptions,
+    base_dir: Option<PathBuf>, with_base_dir;
+    system_fonts: bool, with_system_fonts;
+    fonts: Vec<PathBuf>, with_fonts;
+    generic_families: GenericFamilies, with_generic_families;
+    dpi: f32, with_dpi;
+    limits: Limits, with_limits;
+    external: bool, with_external;
 }
 
 /// Decodes an SVG or svgz file. `name` identifies it in errors.
@@ -135,7 +105,7 @@ pub(crate) fn text(data: &[u8], name: &str, budget: &Budget) -> Result<String, E
 pub(super) const GZIP: &[u8] = &[0x1f, 0x8b];
 
 /// Unpacks gzip data. Returns `None` for other data. `name` identifies it in errors.
-pub(crate) fn unpacked(data: &[u8], name: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Error> {
+fn unpacked(data: &[u8], name: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Error> {
     if !data.starts_with(GZIP) {
         return Ok(None);
     }
@@ -150,13 +120,31 @@ pub(crate) fn unpacked(data: &[u8], name: &str, budget: &Budget) -> Result<Optio
     Ok(Some(out))
 }
 
+/// Packs data for an attribute or an element: gzip and base64.
+pub(crate) fn packed(data: &[u8]) -> Result<String, Error> {
+    let failed = |e: std::io::Error| Error::input("the source", format!("cannot be packed: {e}"));
+    Ok(STANDARD.encode(gzipped(data).map_err(failed)?))
+}
+
+/// Unpacks such data, whose base64 may have white space in it. `name` identifies it in errors.
+pub(crate) fn unpacked_text(packed: &str, name: &str, budget: &Budget) -> Result<Vec<u8>, Error> {
+    let damaged = |e: &dyn std::fmt::Display| Error::input(name, format!("is damaged: {e}"));
+    let packed: String = packed.split_ascii_whitespace().collect();
+    let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
+    unpacked(&bytes, name, budget)?.ok_or_else(|| damaged(&"it is not compressed"))
+}
+
 /// Compresses an SVG file to an svgz file: gzip without time and name, so that equal texts give equal files.
 ///
 /// # Errors
 /// Passes on errors of the compressor, which writes to memory.
 pub fn compressed(text: &str) -> std::io::Result<Vec<u8>> {
+    gzipped(text.as_bytes())
+}
+
+fn gzipped(data: &[u8]) -> std::io::Result<Vec<u8>> {
     let mut out = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
-    out.write_all(text.as_bytes())?;
+    out.write_all(data)?;
     out.finish()
 }
 

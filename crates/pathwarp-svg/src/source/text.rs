@@ -18,7 +18,7 @@ use usvg::roxmltree;
 const MOST_PREFIXES: usize = 16;
 
 /// The text and its elements.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct SourceText {
     pub(crate) text: String,
     pub(crate) elements: Vec<Element>,
@@ -63,15 +63,18 @@ impl SourceText {
         xml::check(&text, name, budget)?;
         let mut undeclared = Vec::new();
         let plain = plain(text, name, budget, Some(&mut undeclared))?;
-        let mut source = Self::parse(plain.text, name)?;
-        source.undeclared = undeclared;
-        source.originals = plain.changes;
-        source.far = plain.far;
-        source.unsupported_style = plain.unsupported;
-        source.declared = plain.declared;
-        source.notes = plain.notes;
-        source.unpatchable = source.unpatchable.or(plain.expanded.then_some(Unpatchable::Entities));
-        let (marked, marks) = source.instrumented();
+        let parsed = Self::parse(plain.text, name)?;
+        let mut source = Self {
+            undeclared,
+            originals: plain.changes,
+            far: plain.far,
+            unsupported_style: plain.unsupported,
+            declared: plain.declared,
+            notes: plain.notes,
+            unpatchable: parsed.unpatchable.or(plain.expanded.then_some(Unpatchable::Entities)),
+            ..parsed
+        };
+        let (marked, marks) = source.instrumented(std::iter::empty());
         source.marks = marks;
         // Without reliable positions, ids cannot be inserted.
         let marked = if source.unpatchable.is_none() { marked } else { source.text.clone() };
@@ -91,31 +94,9 @@ impl SourceText {
             ));
         };
         drop(doc);
-        Ok(Self::new(text, table))
-    }
-
-    fn new(text: String, table: Table) -> Self {
         let Table { elements, css, unpatchable } = table;
         let animated = elements.iter().any(|e| is_animation(&e.tag));
-        Self {
-            text,
-            elements,
-            css,
-            declared: BTreeSet::new(),
-            animated,
-            unpatchable,
-            undeclared: Vec::new(),
-            originals: Vec::new(),
-            far: Vec::new(),
-            unsupported_style: Vec::new(),
-            notes: BTreeSet::new(),
-            marks: Marks::default(),
-            ahead: Ahead::default(),
-            by_id: OnceLock::new(),
-            by_tree_id: OnceLock::new(),
-            line_starts: OnceLock::new(),
-            characters: OnceLock::new(),
-        }
+        Ok(Self { text, elements, css, animated, unpatchable, ..Self::default() })
     }
 
     /// Calls `f`, and on another thread reads the outlines of a large drawing.
@@ -314,13 +295,8 @@ impl SourceText {
         name.find(':').map_or("", |i| &name[..=i])
     }
 
-    /// Inserts a temporary id into every element that usvg tracks and that has no unique id.
-    fn instrumented(&self) -> (String, Marks) {
-        self.instrumented_with(std::iter::empty())
-    }
-
-    /// Inserts temporary ids, and adds declarations to style attributes.
-    pub(crate) fn instrumented_with(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (String, Marks) {
+    /// Inserts a temporary id into every element that usvg tracks and that has no unique id, and adds declarations to style attributes.
+    pub(crate) fn instrumented(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (String, Marks) {
         let mut marks = Marks { stem: stem(&self.text), elements: Vec::new() };
         let links = links(&self.text);
         let mut patches: Vec<(Range<usize>, String)> = Vec::new();
@@ -512,7 +488,7 @@ mod tests {
         ];
         for d in drawings {
             let direct = SourceText::parse(d.to_owned(), "t").unwrap();
-            let wanted = direct.instrumented().0;
+            let wanted = direct.instrumented(std::iter::empty()).0;
             let (source, n) =
                 SourceText::read(d.to_owned(), "t", &Budget::default(), |_, doc| Ok(doc.input_text().len())).unwrap();
             assert_eq!((n, &source.text), (wanted.len(), &direct.text));

@@ -1,6 +1,6 @@
 //! usvg's tree of a drawing: its fonts and images, and limits on its size.
 
-use super::check::{self, Features};
+use super::check;
 use super::elements::ElementId;
 use super::fontface;
 use super::fonts::{self, FontGuard};
@@ -30,6 +30,9 @@ pub(crate) struct Missed {
     pub(crate) notes: BTreeSet<(&'static str, String)>,
 }
 
+/// Font size where a drawing gives none, in px: that of browsers.
+const MEDIUM: f32 = 16.0;
+
 /// Resolves a drawing with usvg. `name` identifies it in errors.
 pub(crate) fn tree(
     xml: &roxmltree::Document<'_>,
@@ -37,28 +40,6 @@ pub(crate) fn tree(
     options: &ReadOptions,
 ) -> Result<(usvg::Tree, Missed), Error> {
     let features = check::drawing(xml, name, &options.budget)?;
-    resolve(xml, &features, name, options)
-}
-
-/// Resolves another version of a drawing, which asks for the same work once more.
-pub(crate) fn resolve_again(
-    xml: &roxmltree::Document<'_>,
-    name: &str,
-    options: &ReadOptions,
-) -> Result<(usvg::Tree, Missed), Error> {
-    tree(xml, name, &options.begin_again())
-}
-
-/// Font size where a drawing gives none, in px: that of browsers.
-const MEDIUM: f32 = 16.0;
-
-/// Resolves a drawing that is within the limits.
-fn resolve(
-    xml: &roxmltree::Document<'_>,
-    features: &Features,
-    name: &str,
-    options: &ReadOptions,
-) -> Result<(usvg::Tree, Missed), Error> {
     let (missing, unread, rejected) = (Missing::default(), Unread::default(), Rejected::default());
     // Reading the installed fonts takes longer than most drawings do.
     let base = if features.text {

@@ -1,21 +1,15 @@
 //! Definitions written so far, with their ids.
 
-use super::input::WriteInput;
-use super::markup::{Markup, color};
 use crate::scene::areas;
-use crate::scene::geometry::affine;
 use crate::scene::model::Scene;
 use crate::source::elements::ElementId;
-use crate::source::number::{matrix, short};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::xml::escape;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
-use std::fmt::Write as _;
 use std::ops::Range;
 use std::sync::Arc;
 use usvg::filter::Filter;
-use usvg::{LinearGradient, Pattern, RadialGradient, SpreadMethod};
 
 /// Key of a gradient or pattern: its address and the fit applied to it.
 type ServerKey = (usize, [u64; 6]);
@@ -124,105 +118,9 @@ pub(super) fn server_key(address: usize, fit: Affine) -> ServerKey {
     (address, fit.as_coeffs().map(f64::to_bits))
 }
 
-/// A gradient of either kind.
-struct GradientElement<'g> {
-    tag: &'static str,
-    base: &'g usvg::BaseGradient,
-    address: usize,
-    /// Attributes of the geometry.
-    geometry: String,
-}
-
-/// Refers to a linear gradient, writing it if necessary.
-pub(super) fn linear(
-    input: &WriteInput<'_>,
-    markup: &Markup<'_>,
-    defs: &mut Definitions,
-    g: &Arc<LinearGradient>,
-    fit: Affine,
-) -> String {
-    let geometry = format!(
-        "x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\"",
-        short(g.x1().into()),
-        short(g.y1().into()),
-        short(g.x2().into()),
-        short(g.y2().into())
-    );
-    let element = GradientElement { tag: "linearGradient", base: g, address: Arc::as_ptr(g) as usize, geometry };
-    element.reference(input, markup, defs, fit)
-}
-
-/// Refers to a radial gradient, writing it if necessary.
-pub(super) fn radial(
-    input: &WriteInput<'_>,
-    markup: &Markup<'_>,
-    defs: &mut Definitions,
-    g: &Arc<RadialGradient>,
-    fit: Affine,
-) -> String {
-    let mut geometry = format!(
-        "cx=\"{}\" cy=\"{}\" r=\"{}\" fx=\"{}\" fy=\"{}\"",
-        short(g.cx().into()),
-        short(g.cy().into()),
-        short(g.r().get().into()),
-        short(g.fx().into()),
-        short(g.fy().into())
-    );
-    if g.fr().get() > 0.0 {
-        let _ = write!(geometry, " fr=\"{}\"", short(g.fr().get().into()));
-    }
-    let element = GradientElement { tag: "radialGradient", base: g, address: Arc::as_ptr(g) as usize, geometry };
-    element.reference(input, markup, defs, fit)
-}
-
-impl GradientElement<'_> {
-    fn reference(&self, input: &WriteInput<'_>, markup: &Markup<'_>, defs: &mut Definitions, fit: Affine) -> String {
-        let g = self.base;
-        let key = server_key(self.address, fit);
-        if let Some(id) = defs.servers.get(&key) {
-            return format!("url(#{id})");
-        }
-        let id = defs.new_id(g.id());
-        let tag = markup.tag(self.tag);
-        let mut out = format!("<{tag} id=\"{}\" gradientUnits=\"userSpaceOnUse\" {}", escape(&id), self.geometry);
-        let t = fit * affine(g.transform());
-        if t != Affine::IDENTITY {
-            let _ = write!(out, " gradientTransform=\"{}\"", matrix(t));
-        }
-        match g.spread_method() {
-            SpreadMethod::Pad => {}
-            SpreadMethod::Reflect => out.push_str(" spreadMethod=\"reflect\""),
-            SpreadMethod::Repeat => out.push_str(" spreadMethod=\"repeat\""),
-        }
-        let foreign = input.scene.foreign.contains(&self.address);
-        if markup.in_source && has_usable_stops(input.source, g.id()) && !foreign {
-            // Share the stops of the original.
-            let _ = write!(out, " {}=\"#{}\"/>", markup.link(), escape(g.id()));
-        } else {
-            out.push('>');
-            push_stops(markup, g, &mut out);
-            let _ = write!(out, "</{tag}>");
-        }
-        defs.push(&out);
-        defs.servers.insert(key, id.clone());
-        format!("url(#{id})")
-    }
-}
-
-fn push_stops(markup: &Markup<'_>, g: &usvg::BaseGradient, out: &mut String) {
-    for s in g.stops() {
-        let mut properties = vec![("stop-color", color(s.color()))];
-        if s.opacity().get() < 1.0 || markup.styled {
-            properties.push(("stop-opacity", short(s.opacity().get().into())));
-        }
-        let offset = short(s.offset().get().into());
-        let _ = write!(out, "<{} offset=\"{offset}\"{}/>", markup.tag("stop"), markup.attributes(&properties));
-    }
-}
-
 /// Returns `true` if another gradient can take its stops from the source's gradient `id`: the id is unique, and the chain of
 /// links ends.
-fn has_usable_stops(source: &SourceText, id: &str) -> bool {
+pub(super) fn has_usable_stops(source: &SourceText, id: &str) -> bool {
     /// Longest chain of links followed.
     const LONGEST: usize = 16;
     let mut next = Some(id.to_owned());
@@ -235,22 +133,4 @@ fn has_usable_stops(source: &SourceText, id: &str) -> bool {
     }
     // The links may form a cycle, which renderers may follow forever.
     false
-}
-
-/// Writes the attributes of a pattern.
-pub(super) fn head(pattern: &Pattern, id: &str, fit: Affine) -> String {
-    let r = pattern.rect();
-    let mut out = format!(
-        " id=\"{}\" patternUnits=\"userSpaceOnUse\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
-        escape(id),
-        short(r.x().into()),
-        short(r.y().into()),
-        short(r.width().into()),
-        short(r.height().into())
-    );
-    let t = fit * affine(pattern.transform());
-    if t != Affine::IDENTITY {
-        let _ = write!(out, " patternTransform=\"{}\"", matrix(t));
-    }
-    out
 }

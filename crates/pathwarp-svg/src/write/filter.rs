@@ -2,44 +2,34 @@
 
 use super::markup::{self, Markup};
 use crate::scene::areas;
+use crate::source::markup::Tag;
 use crate::source::number::short;
 use pathwarp::kurbo::Rect;
-use pathwarp_reader::xml::escape;
-use std::fmt::Write as _;
 use usvg::filter::{
-    ColorChannel, ColorInterpolation, ColorMatrix, ColorMatrixKind, ComponentTransfer, Composite, CompositeOperator,
-    ConvolveMatrix, DiffuseLighting, DisplacementMap, DropShadow, EdgeMode, Filter, Input, Kind, LightSource, Merge,
-    Morphology, MorphologyOperator, SpecularLighting, TransferFunction, Turbulence, TurbulenceKind,
+    ColorChannel, ColorInterpolation, ColorMatrixKind, Composite, CompositeOperator, ConvolveMatrix, EdgeMode, Filter,
+    Input, Kind, LightSource, MorphologyOperator, TransferFunction, Turbulence, TurbulenceKind,
 };
 
-/// Writes a `<filter>` with the region `all`. `head` holds its id, `pictures` the link attributes of its `feImage`s in order.
-pub(super) fn element(markup: &Markup<'_>, f: &Filter, all: Rect, head: &str, pictures: Vec<String>) -> String {
+/// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order.
+pub(super) fn element(markup: &Markup<'_>, f: &Filter, all: Rect, id: &str, pictures: Vec<String>) -> String {
     let mut pictures = pictures.into_iter();
-    let region = |r: Rect| region(r).map(|(name, value)| word(name, &value)).concat();
-    let filter = markup.tag("filter");
-    let mut out = format!("<{filter}{head} filterUnits=\"userSpaceOnUse\"{}>", region(all));
-    for p in f.primitives() {
-        let Primitive { tag, attributes, content } = primitive(markup, p.kind(), &mut pictures);
+    let primitives = f.primitives().iter().map(|p| {
         let space = match p.color_interpolation() {
             ColorInterpolation::SRGB => "sRGB",
             ColorInterpolation::LinearRGB => "linearRGB",
         };
-        let tag = markup.tag(tag);
-        let _ = write!(
-            out,
-            "<{tag}{}{}{attributes}{}",
-            region(areas::part(f, p, all)),
-            word("color-interpolation-filters", space),
-            word("result", &escape(p.result()))
-        );
-        if content.is_empty() {
-            out.push_str("/>");
-        } else {
-            let _ = write!(out, ">{content}</{tag}>");
+        let begin = |tag: &str| {
+            let tag = markup.element(tag).with_all(region(areas::part(f, p, all)));
+            tag.with("color-interpolation-filters", space).with("result", p.result())
+        };
+        match p.kind() {
+            Kind::Image(_) => begin("feImage").raw(&pictures.next().unwrap_or_default()).empty(),
+            kind => primitive(markup, &begin, kind),
         }
-    }
-    let _ = write!(out, "</{filter}>");
-    out
+    });
+    let primitives: String = primitives.collect();
+    let filter = markup.element("filter").with("id", id).with("filterUnits", "userSpaceOnUse");
+    filter.with_all(region(all)).around(&primitives)
 }
 
 /// The attributes of a region in user space.
@@ -47,249 +37,188 @@ pub(super) fn region(r: Rect) -> [(&'static str, String); 4] {
     [("x", short(r.x0)), ("y", short(r.y0)), ("width", short(r.width())), ("height", short(r.height()))]
 }
 
-/// A filter primitive.
-struct Primitive {
-    tag: &'static str,
-    attributes: String,
-    content: String,
-}
-
-impl Primitive {
-    fn new(tag: &'static str, attributes: String) -> Self {
-        Self { tag, attributes, content: String::new() }
-    }
-
-    fn with_content(self, content: String) -> Self {
-        Self { content, ..self }
-    }
-}
-
-fn primitive(markup: &Markup<'_>, kind: &Kind, pictures: &mut impl Iterator<Item = String>) -> Primitive {
-    match kind {
-        Kind::DropShadow(s) => drop_shadow(s),
-        Kind::GaussianBlur(b) => {
-            let deviation = pair("stdDeviation", b.std_dev_x().get(), b.std_dev_y().get());
-            Primitive::new("feGaussianBlur", input("in", b.input()) + &deviation)
-        }
-        Kind::Offset(o) => {
-            Primitive::new("feOffset", input("in", o.input()) + &number("dx", o.dx()) + &number("dy", o.dy()))
-        }
+/// Writes a primitive other than a picture; `begin` begins its element.
+fn primitive(markup: &Markup<'_>, begin: &dyn Fn(&str) -> Tag, kind: &Kind) -> String {
+    let tag = match kind {
+        Kind::DropShadow(s) => begin("feDropShadow")
+            .input("in", s.input())
+            .numbers("stdDeviation", &[s.std_dev_x().get(), s.std_dev_y().get()])
+            .numbers("dx", &[s.dx()])
+            .numbers("dy", &[s.dy()])
+            .with("flood-color", &markup::color(s.color()))
+            .numbers("flood-opacity", &[s.opacity().get()]),
+        Kind::GaussianBlur(b) => begin("feGaussianBlur")
+            .input("in", b.input())
+            .numbers("stdDeviation", &[b.std_dev_x().get(), b.std_dev_y().get()]),
+        Kind::Offset(o) => begin("feOffset").input("in", o.input()).numbers("dx", &[o.dx()]).numbers("dy", &[o.dy()]),
         Kind::Blend(b) => {
-            let inputs = input("in", b.input1()) + &input("in2", b.input2());
-            Primitive::new("feBlend", inputs + &word("mode", &b.mode().to_string()))
+            begin("feBlend").input("in", b.input1()).input("in2", b.input2()).with("mode", &b.mode().to_string())
         }
-        Kind::Flood(f) => {
-            let opacity = number("flood-opacity", f.opacity().get());
-            Primitive::new("feFlood", color("flood-color", f.color()) + &opacity)
+        Kind::Flood(f) => begin("feFlood")
+            .with("flood-color", &markup::color(f.color()))
+            .numbers("flood-opacity", &[f.opacity().get()]),
+        Kind::Composite(c) => composite(begin("feComposite"), c),
+        Kind::Merge(m) if m.inputs().is_empty() => begin("feMerge"),
+        Kind::Merge(m) => {
+            let node = |i: &Input| markup.element("feMergeNode").input("in", i).empty();
+            return begin("feMerge").around(&m.inputs().iter().map(node).collect::<String>());
         }
-        Kind::Composite(c) => composite(c),
-        Kind::Merge(m) => merge(markup, m),
-        Kind::Tile(t) => Primitive::new("feTile", input("in", t.input())),
-        Kind::Image(_) => Primitive::new("feImage", pictures.next().unwrap_or_default()),
-        Kind::ComponentTransfer(t) => component_transfer(markup, t),
-        Kind::ColorMatrix(m) => color_matrix(m),
-        Kind::ConvolveMatrix(m) => convolve_matrix(m),
-        Kind::Morphology(m) => morphology(m),
-        Kind::DisplacementMap(m) => displacement_map(m),
-        Kind::Turbulence(t) => turbulence(t),
-        Kind::DiffuseLighting(l) => diffuse_lighting(markup, l),
-        Kind::SpecularLighting(l) => specular_lighting(markup, l),
+        Kind::Tile(t) => begin("feTile").input("in", t.input()),
+        Kind::Image(_) => begin("feImage"),
+        Kind::ComponentTransfer(t) => {
+            let all =
+                [("feFuncR", t.func_r()), ("feFuncG", t.func_g()), ("feFuncB", t.func_b()), ("feFuncA", t.func_a())];
+            let functions: String = all.into_iter().map(|(tag, f)| transfer(markup.element(tag), f).empty()).collect();
+            return begin("feComponentTransfer").input("in", t.input()).around(&functions);
+        }
+        Kind::ColorMatrix(m) => color_matrix(begin("feColorMatrix").input("in", m.input()), m.kind()),
+        Kind::ConvolveMatrix(m) => convolve_matrix(begin("feConvolveMatrix"), m),
+        Kind::Morphology(m) => {
+            let operator = match m.operator() {
+                MorphologyOperator::Erode => "erode",
+                MorphologyOperator::Dilate => "dilate",
+            };
+            let tag = begin("feMorphology").input("in", m.input()).with("operator", operator);
+            tag.numbers("radius", &[m.radius_x().get(), m.radius_y().get()])
+        }
+        Kind::DisplacementMap(m) => begin("feDisplacementMap")
+            .input("in", m.input1())
+            .input("in2", m.input2())
+            .numbers("scale", &[m.scale()])
+            .with("xChannelSelector", channel(m.x_channel_selector()))
+            .with("yChannelSelector", channel(m.y_channel_selector())),
+        Kind::Turbulence(t) => turbulence(begin("feTurbulence"), t),
+        Kind::DiffuseLighting(l) => {
+            return begin("feDiffuseLighting")
+                .input("in", l.input())
+                .numbers("surfaceScale", &[l.surface_scale()])
+                .numbers("diffuseConstant", &[l.diffuse_constant()])
+                .with("lighting-color", &markup::color(l.lighting_color()))
+                .around(&light(markup, l.light_source()));
+        }
+        Kind::SpecularLighting(l) => {
+            return begin("feSpecularLighting")
+                .input("in", l.input())
+                .numbers("surfaceScale", &[l.surface_scale()])
+                .numbers("specularConstant", &[l.specular_constant()])
+                .numbers("specularExponent", &[l.specular_exponent()])
+                .with("lighting-color", &markup::color(l.lighting_color()))
+                .around(&light(markup, l.light_source()));
+        }
+    };
+    tag.empty()
+}
+
+impl Tag {
+    fn input(self, name: &str, i: &Input) -> Self {
+        match i {
+            Input::SourceGraphic => self.with(name, "SourceGraphic"),
+            Input::SourceAlpha => self.with(name, "SourceAlpha"),
+            Input::Reference(r) => self.with(name, r),
+        }
+    }
+
+    fn numbers(self, name: &str, values: &[f32]) -> Self {
+        let all: Vec<String> = values.iter().map(|v| short((*v).into())).collect();
+        self.with(name, &all.join(" "))
     }
 }
 
-fn drop_shadow(s: &DropShadow) -> Primitive {
-    let attributes = input("in", s.input())
-        + &pair("stdDeviation", s.std_dev_x().get(), s.std_dev_y().get())
-        + &number("dx", s.dx())
-        + &number("dy", s.dy())
-        + &color("flood-color", s.color())
-        + &number("flood-opacity", s.opacity().get());
-    Primitive::new("feDropShadow", attributes)
-}
-
-fn composite(c: &Composite) -> Primitive {
+fn composite(tag: Tag, c: &Composite) -> Tag {
+    let tag = tag.input("in", c.input1()).input("in2", c.input2());
     let operator = match c.operator() {
-        CompositeOperator::Over => word("operator", "over"),
-        CompositeOperator::In => word("operator", "in"),
-        CompositeOperator::Out => word("operator", "out"),
-        CompositeOperator::Atop => word("operator", "atop"),
-        CompositeOperator::Xor => word("operator", "xor"),
-        CompositeOperator::Lighter => word("operator", "lighter"),
+        CompositeOperator::Over => "over",
+        CompositeOperator::In => "in",
+        CompositeOperator::Out => "out",
+        CompositeOperator::Atop => "atop",
+        CompositeOperator::Xor => "xor",
+        CompositeOperator::Lighter => "lighter",
         CompositeOperator::Arithmetic { k1, k2, k3, k4 } => {
-            word("operator", "arithmetic")
-                + &number("k1", k1)
-                + &number("k2", k2)
-                + &number("k3", k3)
-                + &number("k4", k4)
+            let tag = tag.with("operator", "arithmetic");
+            return tag.numbers("k1", &[k1]).numbers("k2", &[k2]).numbers("k3", &[k3]).numbers("k4", &[k4]);
         }
     };
-    Primitive::new("feComposite", input("in", c.input1()) + &input("in2", c.input2()) + &operator)
+    tag.with("operator", operator)
 }
 
-fn merge(markup: &Markup<'_>, m: &Merge) -> Primitive {
-    let node = markup.tag("feMergeNode");
-    let inputs = m.inputs().iter().map(|i| format!("<{node}{}/>", input("in", i))).collect();
-    Primitive::new("feMerge", String::new()).with_content(inputs)
-}
-
-fn component_transfer(markup: &Markup<'_>, t: &ComponentTransfer) -> Primitive {
-    let functions = transfer(&markup.tag("feFuncR"), t.func_r())
-        + &transfer(&markup.tag("feFuncG"), t.func_g())
-        + &transfer(&markup.tag("feFuncB"), t.func_b())
-        + &transfer(&markup.tag("feFuncA"), t.func_a());
-    Primitive::new("feComponentTransfer", input("in", t.input())).with_content(functions)
-}
-
-fn color_matrix(m: &ColorMatrix) -> Primitive {
-    let kind = match m.kind() {
-        ColorMatrixKind::Matrix(v) => word("type", "matrix") + &list("values", v),
+fn color_matrix(tag: Tag, kind: &ColorMatrixKind) -> Tag {
+    match kind {
+        ColorMatrixKind::Matrix(v) => tag.with("type", "matrix").numbers("values", v),
         // The CSS function allows values that the primitive does not.
-        ColorMatrixKind::Saturate(v) if v.get() > 1.0 => word("type", "matrix") + &list("values", &saturate(v.get())),
-        ColorMatrixKind::Saturate(v) => word("type", "saturate") + &number("values", v.get()),
-        ColorMatrixKind::HueRotate(v) => word("type", "hueRotate") + &number("values", *v),
-        ColorMatrixKind::LuminanceToAlpha => word("type", "luminanceToAlpha"),
-    };
-    Primitive::new("feColorMatrix", input("in", m.input()) + &kind)
+        ColorMatrixKind::Saturate(v) if v.get() > 1.0 => {
+            tag.with("type", "matrix").numbers("values", &saturate(v.get()))
+        }
+        ColorMatrixKind::Saturate(v) => tag.with("type", "saturate").numbers("values", &[v.get()]),
+        ColorMatrixKind::HueRotate(v) => tag.with("type", "hueRotate").numbers("values", &[*v]),
+        ColorMatrixKind::LuminanceToAlpha => tag.with("type", "luminanceToAlpha"),
+    }
 }
 
-fn convolve_matrix(m: &ConvolveMatrix) -> Primitive {
+fn convolve_matrix(tag: Tag, m: &ConvolveMatrix) -> Tag {
     let data = m.matrix();
     let edge = match m.edge_mode() {
         EdgeMode::None => "none",
         EdgeMode::Duplicate => "duplicate",
         EdgeMode::Wrap => "wrap",
     };
-    let attributes = input("in", m.input())
-        + &word("order", &format!("{} {}", data.columns(), data.rows()))
-        + &list("kernelMatrix", data.data())
-        + &number("divisor", m.divisor().get())
-        + &number("bias", m.bias())
-        + &word("targetX", &data.target_x().to_string())
-        + &word("targetY", &data.target_y().to_string())
-        + &word("edgeMode", edge)
-        + &word("preserveAlpha", if m.preserve_alpha() { "true" } else { "false" });
-    Primitive::new("feConvolveMatrix", attributes)
+    tag.input("in", m.input())
+        .with("order", &format!("{} {}", data.columns(), data.rows()))
+        .numbers("kernelMatrix", data.data())
+        .numbers("divisor", &[m.divisor().get()])
+        .numbers("bias", &[m.bias()])
+        .with("targetX", &data.target_x().to_string())
+        .with("targetY", &data.target_y().to_string())
+        .with("edgeMode", edge)
+        .with("preserveAlpha", if m.preserve_alpha() { "true" } else { "false" })
 }
 
-fn morphology(m: &Morphology) -> Primitive {
-    let operator = match m.operator() {
-        MorphologyOperator::Erode => "erode",
-        MorphologyOperator::Dilate => "dilate",
-    };
-    let attributes =
-        input("in", m.input()) + &word("operator", operator) + &pair("radius", m.radius_x().get(), m.radius_y().get());
-    Primitive::new("feMorphology", attributes)
-}
-
-fn displacement_map(m: &DisplacementMap) -> Primitive {
-    let attributes = input("in", m.input1())
-        + &input("in2", m.input2())
-        + &number("scale", m.scale())
-        + &word("xChannelSelector", channel(m.x_channel_selector()))
-        + &word("yChannelSelector", channel(m.y_channel_selector()));
-    Primitive::new("feDisplacementMap", attributes)
-}
-
-fn turbulence(t: &Turbulence) -> Primitive {
+fn turbulence(tag: Tag, t: &Turbulence) -> Tag {
     let kind = match t.kind() {
         TurbulenceKind::FractalNoise => "fractalNoise",
         TurbulenceKind::Turbulence => "turbulence",
     };
-    let attributes = pair("baseFrequency", t.base_frequency_x().get(), t.base_frequency_y().get())
-        + &word("numOctaves", &t.num_octaves().to_string())
-        + &word("seed", &t.seed().to_string())
-        + &word("stitchTiles", if t.stitch_tiles() { "stitch" } else { "noStitch" })
-        + &word("type", kind);
-    Primitive::new("feTurbulence", attributes)
-}
-
-fn diffuse_lighting(markup: &Markup<'_>, l: &DiffuseLighting) -> Primitive {
-    let attributes = input("in", l.input())
-        + &number("surfaceScale", l.surface_scale())
-        + &number("diffuseConstant", l.diffuse_constant())
-        + &color("lighting-color", l.lighting_color());
-    Primitive::new("feDiffuseLighting", attributes).with_content(light(markup, l.light_source()))
-}
-
-fn specular_lighting(markup: &Markup<'_>, l: &SpecularLighting) -> Primitive {
-    let attributes = input("in", l.input())
-        + &number("surfaceScale", l.surface_scale())
-        + &number("specularConstant", l.specular_constant())
-        + &number("specularExponent", l.specular_exponent())
-        + &color("lighting-color", l.lighting_color());
-    Primitive::new("feSpecularLighting", attributes).with_content(light(markup, l.light_source()))
+    tag.numbers("baseFrequency", &[t.base_frequency_x().get(), t.base_frequency_y().get()])
+        .with("numOctaves", &t.num_octaves().to_string())
+        .with("seed", &t.seed().to_string())
+        .with("stitchTiles", if t.stitch_tiles() { "stitch" } else { "noStitch" })
+        .with("type", kind)
 }
 
 fn light(markup: &Markup<'_>, l: LightSource) -> String {
-    match l {
+    let tag = match l {
         LightSource::DistantLight(l) => {
-            let at = number("azimuth", l.azimuth) + &number("elevation", l.elevation);
-            format!("<{}{at}/>", markup.tag("feDistantLight"))
+            markup.element("feDistantLight").numbers("azimuth", &[l.azimuth]).numbers("elevation", &[l.elevation])
         }
         LightSource::PointLight(l) => {
-            let at = number("x", l.x) + &number("y", l.y) + &number("z", l.z);
-            format!("<{}{at}/>", markup.tag("fePointLight"))
+            markup.element("fePointLight").numbers("x", &[l.x]).numbers("y", &[l.y]).numbers("z", &[l.z])
         }
         LightSource::SpotLight(l) => {
-            let mut at = number("x", l.x) + &number("y", l.y) + &number("z", l.z);
-            at += &(number("pointsAtX", l.points_at_x)
-                + &number("pointsAtY", l.points_at_y)
-                + &number("pointsAtZ", l.points_at_z));
-            at += &number("specularExponent", l.specular_exponent.get());
-            if let Some(angle) = l.limiting_cone_angle {
-                at += &number("limitingConeAngle", angle);
+            let tag = markup.element("feSpotLight").numbers("x", &[l.x]).numbers("y", &[l.y]).numbers("z", &[l.z]);
+            let tag = tag.numbers("pointsAtX", &[l.points_at_x]).numbers("pointsAtY", &[l.points_at_y]);
+            let tag = tag.numbers("pointsAtZ", &[l.points_at_z]);
+            let tag = tag.numbers("specularExponent", &[l.specular_exponent.get()]);
+            match l.limiting_cone_angle {
+                Some(angle) => tag.numbers("limitingConeAngle", &[angle]),
+                None => tag,
             }
-            format!("<{}{at}/>", markup.tag("feSpotLight"))
         }
-    }
-}
-
-fn input(name: &str, i: &Input) -> String {
-    let value = match i {
-        Input::SourceGraphic => "SourceGraphic".into(),
-        Input::SourceAlpha => "SourceAlpha".into(),
-        Input::Reference(r) => escape(r),
     };
-    format!(" {name}=\"{value}\"")
+    tag.empty()
 }
 
-fn number(name: &str, v: f32) -> String {
-    format!(" {name}=\"{}\"", short(v.into()))
-}
-
-fn pair(name: &str, a: f32, b: f32) -> String {
-    format!(" {name}=\"{} {}\"", short(a.into()), short(b.into()))
-}
-
-fn list(name: &str, values: &[f32]) -> String {
-    let all: Vec<String> = values.iter().map(|v| short((*v).into())).collect();
-    format!(" {name}=\"{}\"", all.join(" "))
-}
-
-fn word(name: &str, value: &str) -> String {
-    format!(" {name}=\"{value}\"")
-}
-
-fn color(name: &str, c: usvg::Color) -> String {
-    format!(" {name}=\"{}\"", markup::color(c))
-}
-
-fn transfer(tag: &str, f: &TransferFunction) -> String {
-    let body = match f {
-        TransferFunction::Identity => word("type", "identity"),
-        TransferFunction::Table(v) => word("type", "table") + &list("tableValues", v),
-        TransferFunction::Discrete(v) => word("type", "discrete") + &list("tableValues", v),
+fn transfer(tag: Tag, f: &TransferFunction) -> Tag {
+    match f {
+        TransferFunction::Identity => tag.with("type", "identity"),
+        TransferFunction::Table(v) => tag.with("type", "table").numbers("tableValues", v),
+        TransferFunction::Discrete(v) => tag.with("type", "discrete").numbers("tableValues", v),
         TransferFunction::Linear { slope, intercept } => {
-            word("type", "linear") + &number("slope", *slope) + &number("intercept", *intercept)
+            tag.with("type", "linear").numbers("slope", &[*slope]).numbers("intercept", &[*intercept])
         }
         TransferFunction::Gamma { amplitude, exponent, offset } => {
-            word("type", "gamma")
-                + &number("amplitude", *amplitude)
-                + &number("exponent", *exponent)
-                + &number("offset", *offset)
+            let tag = tag.with("type", "gamma").numbers("amplitude", &[*amplitude]);
+            tag.numbers("exponent", &[*exponent]).numbers("offset", &[*offset])
         }
-    };
-    format!("<{tag}{body}/>")
+    }
 }
 
 fn channel(c: ColorChannel) -> &'static str {

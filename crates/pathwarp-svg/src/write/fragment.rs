@@ -3,15 +3,17 @@
 //! Group transforms are kept, and the geometry inside is written in its own user space, so that strokes, filters and paint
 //! servers keep their frames. Groups refer to definitions, which hold groups in turn; this is the one file of that recursion.
 
-use super::defs::{self, Definitions, filter_key, server_key};
+use super::defs::{Definitions, filter_key, has_usable_stops, server_key};
 use super::input::WriteInput;
 use super::markup::{
-    self, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, push_all, stroke_scale,
+    self, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
 };
 use super::{boxes, filter};
 use crate::bend::fits::EmbeddedImage;
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::bend::pictures::BentImage;
+use crate::scene::geometry::affine;
+use crate::scene::model::Tiles;
 use crate::scene::model::{Group, Node, Part};
 use crate::source::number::{matrix, outline_data, short};
 use pathwarp::kurbo::{Affine, Rect};
@@ -19,6 +21,7 @@ use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
 use std::sync::Arc;
 use usvg::filter::Filter;
+use usvg::{BaseGradient, SpreadMethod};
 use usvg::{BlendMode, FillRule, ImageKind, ImageRendering, Paint, PaintOrder};
 
 /// Note on filters.
@@ -102,11 +105,8 @@ impl<'a> Writer<'a> {
         if head.is_empty() {
             return content;
         }
-        let prefix = &self.markup.prefix;
         let tag = if self.link_of(g).is_empty() { "g" } else { "a" };
-        let mut out = String::with_capacity(head.len() + content.len() + 2 * (prefix.len() + "<g></".len()));
-        push_all(&mut out, ["<", prefix, tag, head, ">", &content, "</", prefix, tag, ">"]);
-        out
+        self.markup.element(tag).raw(head).around(&content)
     }
 
     /// Writes a group's attributes.
@@ -200,15 +200,18 @@ impl<'a> Writer<'a> {
         if self.input.part(i).paint_order == PaintOrder::StrokeAndFill { stroke + &fill } else { fill + &stroke }
     }
 
+    /// Tiles or else a picture in the place of a paint.
+    fn piece(&mut self, tiles: Option<&Tiles>, picture: Option<&BentImage>, opacity: f32) -> Option<Clipped> {
+        match tiles {
+            Some(t) => Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity }),
+            None => picture.map(|b| Clipped { content: bent(&self.markup, b, Affine::IDENTITY), opacity }),
+        }
+    }
+
     fn fill_piece(&mut self, i: usize, warped: &WarpedPart, d: &str) -> String {
         let p = self.input.part(i);
-        let content = if let Some(t) = self.input.fill_tiles(i) {
-            Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity })
-        } else {
-            let opacity = p.fill.as_ref().map_or(1.0, |f| f.opacity().get());
-            let picture = warped.fill_image.as_ref().map(|b| bent(&self.markup, b, Affine::IDENTITY));
-            picture.map(|content| Clipped { content, opacity })
-        };
+        let opacity = p.fill.as_ref().map_or(1.0, |f| f.opacity().get());
+        let content = self.piece(self.input.fill_tiles(i), warped.fill_image.as_ref(), opacity);
         // The fill may have an outline of its own, or be empty.
         let area = warped.fill.as_ref().map_or_else(|| d.to_owned(), |a| warped.text(a));
         match (p.fill.as_ref().filter(|_| !area.is_empty()), content) {
@@ -228,13 +231,8 @@ impl<'a> Writer<'a> {
 
     fn stroke_piece(&mut self, i: usize, warped: &WarpedPart, d: &str) -> String {
         let p = self.input.part(i);
-        let content = if let Some(t) = self.input.stroke_tiles(i) {
-            Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity })
-        } else {
-            let opacity = p.stroke.as_ref().map_or(1.0, |s| s.opacity().get());
-            let picture = warped.stroke_image.as_ref().map(|b| bent(&self.markup, b, Affine::IDENTITY));
-            picture.map(|content| Clipped { content, opacity })
-        };
+        let opacity = p.stroke.as_ref().map_or(1.0, |s| s.opacity().get());
+        let content = self.piece(self.input.stroke_tiles(i), warped.stroke_image.as_ref(), opacity);
         let Some(s) = &p.stroke else { return String::new() };
         match (&warped.stroke, content) {
             (StrokeOutcome::Outlined(o), Some(content)) => self.clipped_to(&warped.text(o), "nonzero", &content, i),
@@ -260,12 +258,12 @@ impl<'a> Writer<'a> {
             properties.push(("clip-rule", rule.into()));
         }
         let path = self.markup.path(d, "", &properties);
-        self.defs.push(&format!("<{0} id=\"{1}\">{path}</{0}>", self.markup.tag("clipPath"), escape(&id)));
+        self.defs.push(&self.markup.element("clipPath").with("id", &id).around(&path));
         let mut outer = vec![("clip-path", format!("url(#{id})"))];
         if inner.opacity < 1.0 {
             outer.push(("opacity", short(f64::from(inner.opacity))));
         }
-        format!("<{0}{1}>{2}</{0}>", self.markup.tag("g"), self.markup.attributes(&outer), inner.content)
+        self.markup.element("g").raw(&self.markup.attributes(&outer)).around(&inner.content)
     }
 
     /// The resolved presentation of a part.
@@ -288,10 +286,57 @@ impl<'a> Writer<'a> {
         let fit = self.input.paint_fit(paint, p, warped).map_or(Affine::IDENTITY, |f| f.affine);
         match paint {
             Paint::Color(c) => color(*c),
-            Paint::LinearGradient(g) => defs::linear(&self.input, &self.markup, &mut self.defs, g, fit),
-            Paint::RadialGradient(g) => defs::radial(&self.input, &self.markup, &mut self.defs, g, fit),
+            Paint::LinearGradient(g) => {
+                let geometry = [("x1", g.x1()), ("y1", g.y1()), ("x2", g.x2()), ("y2", g.y2())];
+                self.gradient("linearGradient", g, Arc::as_ptr(g) as usize, &geometry, fit)
+            }
+            Paint::RadialGradient(g) => {
+                let (r, fr) = (g.r().get(), g.fr().get());
+                let geometry = [("cx", g.cx()), ("cy", g.cy()), ("r", r), ("fx", g.fx()), ("fy", g.fy()), ("fr", fr)];
+                let geometry = &geometry[..if fr > 0.0 { 6 } else { 5 }];
+                self.gradient("radialGradient", g, Arc::as_ptr(g) as usize, geometry, fit)
+            }
             Paint::Pattern(pattern) => self.pattern(pattern, fit),
         }
+    }
+
+    /// Refers to a gradient, writing it if necessary.
+    fn gradient(&mut self, tag: &str, g: &BaseGradient, at: usize, geometry: &[(&str, f32)], fit: Affine) -> String {
+        let key = server_key(at, fit);
+        if let Some(id) = self.defs.servers.get(&key) {
+            return format!("url(#{id})");
+        }
+        let id = self.defs.new_id(g.id());
+        let mut tag = self.markup.element(tag).with("id", &id).with("gradientUnits", "userSpaceOnUse");
+        tag = geometry.iter().fold(tag, |tag, (name, v)| tag.with(name, &short((*v).into())));
+        let t = fit * affine(g.transform());
+        if t != Affine::IDENTITY {
+            tag = tag.with("gradientTransform", &matrix(t));
+        }
+        tag = match g.spread_method() {
+            SpreadMethod::Pad => tag,
+            SpreadMethod::Reflect => tag.with("spreadMethod", "reflect"),
+            SpreadMethod::Repeat => tag.with("spreadMethod", "repeat"),
+        };
+        let foreign = self.input.scene.foreign.contains(&at);
+        let text = if self.markup.in_source && has_usable_stops(self.input.source, g.id()) && !foreign {
+            // Share the stops of the original.
+            tag.with(self.markup.link(), &format!("#{}", g.id())).empty()
+        } else {
+            tag.around(&g.stops().iter().map(|s| self.stop(s)).collect::<String>())
+        };
+        self.defs.push(&text);
+        self.defs.servers.insert(key, id.clone());
+        format!("url(#{id})")
+    }
+
+    fn stop(&self, s: &usvg::Stop) -> String {
+        let mut properties = vec![("stop-color", color(s.color()))];
+        if s.opacity().get() < 1.0 || self.markup.styled {
+            properties.push(("stop-opacity", short(s.opacity().get().into())));
+        }
+        let tag = self.markup.element("stop").with("offset", &short(s.offset().get().into()));
+        tag.raw(&self.markup.attributes(&properties)).empty()
     }
 
     /// Refers to a pattern, writing it if necessary.
@@ -307,9 +352,17 @@ impl<'a> Writer<'a> {
         self.notes.add(PATTERNS, pattern.id());
         let id = self.defs.new_id(pattern.id());
         self.defs.servers.insert(key, id.clone());
-        let head = defs::head(pattern, &id, fit);
+        let r = pattern.rect();
+        let mut head = self.markup.element("pattern").with("id", &id).with("patternUnits", "userSpaceOnUse");
+        for (name, v) in [("x", r.x()), ("y", r.y()), ("width", r.width()), ("height", r.height())] {
+            head = head.with(name, &short(v.into()));
+        }
+        let t = fit * affine(pattern.transform());
+        if t != Affine::IDENTITY {
+            head = head.with("patternTransform", &matrix(t));
+        }
         let inner = self.group(&tile.root, "");
-        self.defs.push(&format!("<{0}{head}>{inner}</{0}>", self.markup.tag("pattern")));
+        self.defs.push(&head.around(&inner));
         format!("url(#{id})")
     }
 
@@ -328,18 +381,17 @@ impl<'a> Writer<'a> {
     /// Writes a clip path. As it must not contain groups, all transforms are on its paths.
     pub(super) fn clip(&mut self, i: usize, head: &str) -> String {
         let c = &self.input.scene.clips[i];
-        let mut out = format!("<{}{head}", self.markup.tag("clipPath"));
+        let mut tag = self.markup.element("clipPath").raw(head);
         if c.transform != Affine::IDENTITY {
-            let _ = write!(out, " transform=\"{}\"", matrix(c.transform));
+            tag = tag.with("transform", &matrix(c.transform));
         }
         if let Some(next) = c.clip {
             let id = self.clip_id(next);
-            out.push_str(&self.markup.attributes(&vec![("clip-path", format!("url(#{id})"))]));
+            tag = tag.raw(&self.markup.attributes(&vec![("clip-path", format!("url(#{id})"))]));
         }
-        out.push('>');
-        self.clip_children(&c.root, c.root.transform, None, &mut out);
-        let _ = write!(out, "</{}>", self.markup.tag("clipPath"));
-        out
+        let mut paths = String::new();
+        self.clip_children(&c.root, c.root.transform, None, &mut paths);
+        tag.around(&paths)
     }
 
     /// `clip` is a clip path of a group around, with the transform that leads out of that group.
@@ -417,12 +469,12 @@ impl<'a> Writer<'a> {
         if let Some(edge) = boxes::edge(&self.input, i) {
             let id = self.defs.new_id(&format!("{}-edge", m.id));
             let path = self.markup.path(&edge, "", &Properties::new());
-            self.defs.push(&format!("<{0} id=\"{1}\">{path}</{0}>", self.markup.tag("clipPath"), escape(&id)));
+            self.defs.push(&self.markup.element("clipPath").with("id", &id).around(&path));
             let clip = self.markup.attributes(&vec![("clip-path", format!("url(#{id})"))]);
-            inner = format!("<{0}{clip}>{inner}</{0}>", self.markup.tag("g"));
+            inner = self.markup.element("g").raw(&clip).around(&inner);
         }
-        let attrs: String = region.into_iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
-        format!("<{0}{head}{attrs}{1}>{inner}</{0}>", self.markup.tag("mask"), self.markup.attributes(&properties))
+        let tag = self.markup.element("mask").raw(head).with_all(region);
+        tag.raw(&self.markup.attributes(&properties)).around(&inner)
     }
 
     /// Refers to the filters of a group: the source's, or ones that are written if necessary.
@@ -457,13 +509,12 @@ impl<'a> Writer<'a> {
         }
         let id = self.defs.new_id(f.id());
         self.defs.filters.insert(key, id.clone());
-        let head = format!(" id=\"{}\"", escape(&id));
         let pictures = f.primitives().iter().filter_map(|p| match p.kind() {
             usvg::filter::Kind::Image(i) => Some(self.picture(i.root())),
             _ => None,
         });
         let pictures: Vec<String> = pictures.collect();
-        let text = filter::element(&self.markup, f, region, &head, pictures);
+        let text = filter::element(&self.markup, f, region, &id, pictures);
         self.defs.push(&text);
         id
     }
@@ -482,10 +533,8 @@ impl<'a> Writer<'a> {
 
 /// Writes a bent bitmap.
 pub(super) fn bent(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String {
-    let mut all = bent_attributes(bent, to).to_vec();
-    all.push((markup.link(), bent_url(bent)));
-    let all: String = all.iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
-    format!("<{}{all}/>", markup.tag("image"))
+    let tag = markup.element("image").with_all(bent_attributes(bent, to));
+    tag.with(markup.link(), &bent_url(bent)).empty()
 }
 
 /// Writes bitmap `i`, bent or not.
@@ -513,21 +562,16 @@ pub(super) fn image(input: &WriteInput<'_>, markup: &Markup<'_>, skipped: &mut V
         ImageKind::WEBP(d) => data_url("image/webp", d),
         ImageKind::SVG(t) => data_url("image/svg+xml", t.to_string(&usvg::WriteOptions::default()).as_bytes()),
     };
-    let mut properties = Properties::new();
-    match image.rendering_mode() {
-        ImageRendering::OptimizeQuality => {}
-        ImageRendering::OptimizeSpeed => properties.push(("image-rendering", "optimizeSpeed".into())),
-        ImageRendering::Smooth => properties.push(("image-rendering", "smooth".into())),
-        ImageRendering::HighQuality => properties.push(("image-rendering", "high-quality".into())),
-        ImageRendering::CrispEdges => properties.push(("image-rendering", "crisp-edges".into())),
-        ImageRendering::Pixelated => properties.push(("image-rendering", "pixelated".into())),
-    }
-    let style = properties.iter().map(|(n, v)| format!(" style=\"{n}:{v}\"")).collect::<String>();
-    let link = markup.link();
-    format!(
-        "<{} width=\"{}\" height=\"{}\"{style} {link}=\"{url}\"/>",
-        markup.tag("image"),
-        short(image.size().width().into()),
-        short(image.size().height().into()),
-    )
+    let rendering = match image.rendering_mode() {
+        ImageRendering::OptimizeQuality => None,
+        ImageRendering::OptimizeSpeed => Some("optimizeSpeed"),
+        ImageRendering::Smooth => Some("smooth"),
+        ImageRendering::HighQuality => Some("high-quality"),
+        ImageRendering::CrispEdges => Some("crisp-edges"),
+        ImageRendering::Pixelated => Some("pixelated"),
+    };
+    let tag = markup.element("image").with("width", &short(image.size().width().into()));
+    let tag = tag.with("height", &short(image.size().height().into()));
+    let style = rendering.map(|how| ("style", format!("image-rendering:{how}")));
+    tag.with_all(style).with(markup.link(), &url).empty()
 }

@@ -3,6 +3,7 @@
 use crate::bend::outcome::WarpedPart;
 use crate::bend::pictures::BentImage;
 use crate::scene::model::Part;
+use crate::source::markup::Tag;
 use crate::source::number::{outline_data, short};
 use crate::source::text::SourceText;
 use base64::Engine as _;
@@ -47,8 +48,9 @@ impl<'a> Markup<'a> {
         self.in_source && *self.mentioned.borrow_mut().entry(name).or_insert_with(is_mentioned)
     }
 
-    pub(super) fn tag(&self, name: &str) -> String {
-        format!("{}{name}", self.prefix)
+    /// Begins an element.
+    pub(super) fn element(&self, name: &str) -> Tag {
+        Tag::new(format!("{}{name}", self.prefix))
     }
 
     /// Name of the attribute for links.
@@ -60,13 +62,12 @@ impl<'a> Markup<'a> {
 
     /// Writes a `<title>`.
     pub(super) fn title(&self, text: &str) -> String {
-        let tag = self.tag("title");
-        format!("<{tag}>{}</{tag}>", escape(text))
+        self.element("title").around(&escape(text))
     }
 
     /// Wraps content in a group with an id attribute, if there is one.
     pub(super) fn named_group(&self, id: &str, content: String) -> String {
-        if id.is_empty() { content } else { format!("<{0}{id}>{content}</{0}>", self.tag("g")) }
+        if id.is_empty() { content } else { self.element("g").raw(id).around(&content) }
     }
 
     pub(super) fn attributes(&self, properties: &Properties) -> String {

@@ -368,9 +368,9 @@ fn viewport(k: &mut Keeper<'_, '_>, i: usize) -> Result<(), Unpatchable> {
                 return Err(Unpatchable::ClippingViewport);
             }
             let id = k.writer.clip_id(i);
-            let g = k.writer.markup.tag("g");
-            k.edits.insert_before(e, &format!("<{g} clip-path=\"url(#{})\">", escape(&id)));
-            k.edits.insert_after(e, &format!("</{g}>"));
+            let prefix = &k.writer.markup.prefix;
+            k.edits.insert_before(e, &format!("<{prefix}g clip-path=\"url(#{})\">", escape(&id)));
+            k.edits.insert_after(e, &format!("</{prefix}g>"));
         }
     }
     Ok(())

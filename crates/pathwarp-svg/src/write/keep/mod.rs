@@ -48,7 +48,7 @@ pub(super) fn write(
     if edits.is_empty() && defs.is_empty() {
         return Ok(input.source.as_in_file().into_owned());
     }
-    let (text, places) = finish(input.source, edits, &defs, &writer.markup.tag("defs"))?;
+    let (text, places) = finish(input.source, edits, &defs, &writer.markup.prefix)?;
     if !input.source.has_css() {
         return Ok(text);
     }
@@ -90,7 +90,7 @@ fn finish(
     source: &SourceText,
     mut edits: Edits<'_>,
     defs: &str,
-    tag: &str,
+    prefix: &str,
 ) -> Result<(String, Vec<(ElementId, usize)>), Unpatchable> {
     if defs.is_empty() {
         return Ok(edits.apply());
@@ -99,7 +99,7 @@ fn finish(
     match home {
         Some(home) => edits.wrap_content(home, String::new(), defs.to_owned()),
         None if source.elements[0].close.is_some() => {
-            edits.wrap_content(0, String::new(), format!("<{tag}>\n{defs}</{tag}>\n"));
+            edits.wrap_content(0, String::new(), format!("<{prefix}defs>\n{defs}</{prefix}defs>\n"));
         }
         None => return Err(Unpatchable::EmptyRoot),
     }

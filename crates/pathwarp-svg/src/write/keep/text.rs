@@ -136,7 +136,7 @@ impl SpanWriter<'_, '_, '_, '_> {
         let title = el.title.as_ref().filter(|_| !again);
         let title = title.map_or(String::new(), |t| self.k.writer.markup.title(t));
         let inner = self.items(span);
-        format!("<{0}{head}>{title}{inner}</{0}>", self.k.writer.markup.tag("g"))
+        self.k.writer.markup.element("g").raw(&head).around(&(title + &inner))
     }
 }
 
