@@ -56,9 +56,9 @@ pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
 }
 
 /// The message of an error about a surface in space, with advice.
-pub(crate) fn surface(e: &pathwarp_mesh::Error) -> String {
+pub(crate) fn surface(e: &pathwarp_solid::artwork::Error) -> String {
     match e {
-        pathwarp_mesh::Error::TooMany { exceeded, .. } => {
+        pathwarp_solid::artwork::Error::TooMany { exceeded, .. } => {
             format!("{e}; allow a larger --tolerance, or {}", raise(exceeded))
         }
         _ => e.to_string(),

@@ -1,6 +1,6 @@
 //! Colours that usvg does not read (CSS Color 4), as the nearest in sRGB.
 
-use super::value::{reference, safe_id};
+use crate::value::{reference, safe_id};
 use std::borrow::Cow;
 use std::str::FromStr as _;
 

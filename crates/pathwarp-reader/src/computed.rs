@@ -1,13 +1,12 @@
 //! Computes the style of one element: declarations that usvg reads, attributes, and the declarations of the transform.
 
-use super::color;
-use super::ids::{Ids, attribute};
-use super::range;
-use super::shapes::shape_length;
-use super::sheet::{Declaration, simple};
-use super::table::{Kind, Property, Sign, length_attribute, of_attribute, property};
-use super::text::{self, Letters, TextStyle};
-use super::value::{self, Custom, Units, reference};
+use crate::geometry::shape_length;
+use crate::ids::{Ids, attribute};
+use crate::sheet::{Declaration, simple};
+use crate::table::{Kind, Property, Sign, length_attribute, of_attribute, property};
+use crate::text::{self, Letters, TextStyle};
+use crate::value::{self, Custom, Units, reference};
+use crate::{color, range};
 use pathwarp::kurbo::Affine;
 use roxmltree::Node;
 use std::borrow::Cow;

@@ -1,13 +1,12 @@
 //! Keeps the style of an edited drawing what it was: rules of its sheets that now hit other elements are overridden.
 
-use super::cascade::applying;
-use super::computed::MARKERS;
-use super::element::Looks;
-use super::rewrite::ReadError;
-use super::sheet::{Declaration, declarations};
-use super::table::of_attribute;
-use super::tree::rules;
-use super::xml::{self, escape};
+use crate::computed::MARKERS;
+use crate::element::{Looks, applying};
+use crate::rewrite::ReadError;
+use crate::sheet::{Declaration, declarations};
+use crate::table::of_attribute;
+use crate::tree::rules;
+use crate::xml::{self, escape};
 use pathwarp::budget::Budget;
 use roxmltree::Node;
 use selectors::context::SelectorCaches;

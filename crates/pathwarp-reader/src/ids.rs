@@ -1,6 +1,6 @@
 //! The elements that references lead to, and attributes by their names.
 
-use super::value::percent_decoded;
+use crate::value::percent_decoded;
 use roxmltree::{Document, NS_XML_URI, Node};
 use std::cell::OnceCell;
 use std::collections::HashMap;

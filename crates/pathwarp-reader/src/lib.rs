@@ -17,24 +17,18 @@
 //! One table of properties says what each of them is (`table.rs`); what usvg learns can be deleted there. It is written for usvg
 //! 0.49.
 
-mod cascade;
 mod color;
 mod computed;
 mod element;
+mod geometry;
 mod guard;
 mod ids;
-mod letters;
-mod media;
 mod names;
-mod precheck;
 mod range;
 mod rewrite;
-mod shapes;
 mod sheet;
-mod structure;
 mod table;
 mod text;
-mod transform;
 mod tree;
 mod value;
 pub mod xml;

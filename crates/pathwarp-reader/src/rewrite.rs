@@ -1,12 +1,12 @@
 //! Writes computed style into the text.
 
-use super::letters::{Rewritten, joined, rewritten};
-use super::sheet::declarations;
-use super::structure;
-use super::text::Letters;
-use super::tree::{Styled, Tree, styled};
-use super::value::{percent_decoded, safe_id};
-use super::xml::{self, escape};
+use crate::sheet::declarations;
+use crate::text::{Letters, Rewritten, joined, rewritten};
+use crate::tree::{Styled, Tree, styled};
+use crate::value::{percent_decoded, safe_id};
+use crate::xml::{self, escape};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use memchr::memmem;
 use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::Affine;
@@ -272,7 +272,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
     let mut out: Vec<Edit> =
         attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
     out.extend(names(node, renamed));
-    out.extend(structure::attributes(node).map(|(name, value)| Edit { name, value, kept: None }));
+    out.extend(structural(node).map(|(name, value)| Edit { name, value, kept: None }));
     // The origin of what only an animation turns stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
     let frozen =
@@ -377,4 +377,43 @@ fn place(text: &str, node: Node<'_, '_>, attribute: Option<roxmltree::Attribute<
     let end =
         text[start..].find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).map_or(start, |i| start + i);
     end..end
+}
+
+/// The attributes that change, each with its new value; `None` takes it away.
+pub(super) fn structural(node: Node<'_, '_>) -> impl Iterator<Item = (&'static str, Option<String>)> + use<> {
+    let root = ["display", "systemLanguage"].into_iter().filter(|name| {
+        // A drawing of its own is shown.
+        node.parent_element().is_none() && node.has_attribute(*name)
+    });
+    // No browser knows `tref`.
+    let tref = (node.tag_name().name() == "tref" && link(node).is_some()).then_some("href");
+    let aspect = (node.tag_name().name() == "image").then(|| picture_aspect(node)).flatten();
+    let aspect = aspect.map(|value| ("preserveAspectRatio", Some(value)));
+    // A list with anything else draws nothing.
+    let is_list =
+        |b: u8| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b',' | b'e' | b'E') || b.is_ascii_whitespace();
+    let damaged = node.attribute("points").is_some_and(|list| !list.bytes().all(is_list));
+    let gone: Vec<_> = root.chain(tref).chain(damaged.then_some("points")).map(|name| (name, None)).collect();
+    gone.into_iter().chain(aspect)
+}
+
+fn link<'a>(node: Node<'a, '_>) -> Option<&'a str> {
+    node.attributes().find(|a| a.name() == "href").map(|a| a.value())
+}
+
+/// How an embedded drawing without a size of its own fits into its image: as it says itself (CSS Images 3, section 4.2).
+fn picture_aspect(image: Node<'_, '_>) -> Option<String> {
+    let data = link(image)?.trim().strip_prefix("data:")?;
+    let (kind, data) = data.split_once(',').filter(|(kind, _)| kind.starts_with("image/svg+xml"))?;
+    let text = if kind.ends_with("base64") {
+        let data: String = data.split_ascii_whitespace().collect();
+        String::from_utf8(STANDARD.decode(data).ok()?).ok()?
+    } else {
+        percent_decoded(data).into_owned()
+    };
+    let drawing = xml::document(&text).ok()?;
+    let root = drawing.root_element();
+    let sized = ["width", "height"].iter().any(|name| root.attribute(*name).is_some_and(|v| !v.contains('%')));
+    (root.has_attribute("viewBox") && !sized)
+        .then(|| root.attribute("preserveAspectRatio").unwrap_or("xMidYMid").to_owned())
 }

@@ -2,6 +2,11 @@
 //!
 //! Facts are from Chromium's computed values. An entry with a [`Kind`] of its own is there because usvg reads the property otherwise.
 
+use Kind::{
+    Any, BaselineShift, Color, Dashes, Filter, FontSize, FontWeight, Geometry, Length, Link, Number, Paint, Path,
+    Share, Spacing, Transform, Word, Words,
+};
+
 /// A property of CSS that stands in style sheets, style attributes, and mostly in an attribute of its name.
 #[derive(Debug)]
 pub(super) struct Property {
@@ -53,11 +58,6 @@ pub(super) enum Sign {
     Any,
     Positive,
 }
-
-use Kind::{
-    Any, BaselineShift, Color, Dashes, Filter, FontSize, FontWeight, Geometry, Length, Link, Number, Paint, Path,
-    Share, Spacing, Transform, Word, Words,
-};
 
 #[rustfmt::skip]
 const DISPLAY: &[&str] = &[

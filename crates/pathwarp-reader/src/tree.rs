@@ -1,15 +1,13 @@
 //! The style of every element, from the root down, and the transforms, from the leaves up: the box of a group depends on those
 //! of its children.
 
-use super::cascade::{applying, work};
-use super::computed::{Computed, Inherited, computed};
-use super::element::Looks;
-use super::ids::Ids;
-use super::shapes::shape_box;
-use super::sheet::{Declaration, Rules, declarations};
-use super::text::TextStyle;
-use super::value::{Custom, MEDIUM, Units, length};
-use super::{media, transform};
+use crate::computed::{Computed, Inherited, computed};
+use crate::element::{Looks, applying, work};
+use crate::geometry::{self, shape_box};
+use crate::ids::Ids;
+use crate::sheet::{self, Declaration, Rules, declarations};
+use crate::text::TextStyle;
+use crate::value::{Custom, MEDIUM, Units, length};
 use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{Affine, Rect};
 use roxmltree::{Document, Node, NodeId};
@@ -127,7 +125,7 @@ pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheet
     for (e, node) in nodes.iter().enumerate().filter(|(_, n)| is_sheet(n)) {
         sheets.insert(e);
         let queries = node.attribute("media").unwrap_or_default();
-        match media::applies(queries) {
+        match sheet::applies(queries) {
             Some(true) => {}
             Some(false) => continue,
             None => {
@@ -208,7 +206,7 @@ fn matrices<'a>(nodes: &[Node<'a, '_>], styles: &[(Computed<'a>, Units)]) -> Vec
             // Strokes are left out of account.
             _ => own,
         };
-        let matrix = reference.and_then(|r| transform::matrix(declared, units, r, e == 0));
+        let matrix = reference.and_then(|r| geometry::matrix(declared, units, r, e == 0));
         out[e] = if style.transform.is_empty() && e > 0 { Some(Affine::IDENTITY) } else { matrix };
         if let (Some(own), Some(m), Some(&parent)) =
             (own, matrix, node.parent_element().and_then(|p| numbers.get(&p.id())))

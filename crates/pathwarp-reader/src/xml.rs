@@ -1,9 +1,9 @@
 //! XML text: parsing it, and the escapes for writing it.
 
-use super::precheck;
-use memchr::memchr3;
+use memchr::{memchr, memchr_iter, memchr2_iter, memchr3, memmem};
 use pathwarp::Error;
-use pathwarp::budget::Budget;
+use pathwarp::budget::{Budget, Exceeded, Limit, cost};
+use std::collections::{HashMap, HashSet};
 
 /// Parses XML that is known to be within the budget.
 ///
@@ -28,7 +28,7 @@ pub fn parse<'a>(text: &'a str, name: &str, budget: &Budget) -> Result<roxmltree
 /// # Errors
 /// It exceeds the budget.
 pub fn check(text: &str, name: &str, budget: &Budget) -> Result<(), Error> {
-    precheck::count(text, budget).map_err(|e| Error::limit(name, "its markup takes", e))
+    count(text, budget).map_err(|e| Error::limit(name, "its markup takes", e))
 }
 
 /// Parses XML that is known to be within the budget. `name` identifies the text in errors.
@@ -44,7 +44,7 @@ pub fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Documen
 
 /// Writes the elements that entities hold in their places. `None` if there are none.
 pub(super) fn with_elements_of_entities(text: &str) -> Option<String> {
-    let entities = precheck::declared(text);
+    let entities = declared(text);
     // The subset of the DTD ends with a bracket.
     let start = text.find("]").filter(|_| entities.iter().any(|(_, v)| v.contains('<')))?;
     let mut out = text[..start].to_owned();
@@ -56,7 +56,7 @@ pub(super) fn with_elements_of_entities(text: &str) -> Option<String> {
         };
         out.push_str(before);
         left.push((after, level));
-        match entities.iter().find(|e| e.0 == name).filter(|_| level < precheck::LEVELS) {
+        match entities.iter().find(|e| e.0 == name).filter(|_| level < LEVELS) {
             Some((_, value)) => left.push((value, level + 1)),
             None => {
                 out.push('&');
@@ -107,4 +107,154 @@ fn escaped(text: &str, in_attribute: bool) -> String {
         }
     }
     out
+}
+
+/// Shorter tags have so few attributes that comparing them takes no time.
+const LONG_TAG: usize = 4096;
+
+/// Counts the bytes that the entities of a text expand to, and the comparisons of attributes.
+///
+/// # Errors
+/// They exceed the limits.
+pub(crate) fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    tags(text, budget)?;
+    entities(text, budget)?;
+    namespaces(text, budget)?;
+    attributes(text, budget)
+}
+
+/// Declarations of namespaces. An element with one gets a copy of all that hold around it, each compared with the others.
+fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    /// Namespaces that are compared in the time of a comparison.
+    const COPIED: f64 = 3.0;
+    /// Ordinary drawings, in which any element may declare a few.
+    const FEW: usize = 64;
+    let declarations = || memmem::find_iter(text.as_bytes(), "xmlns").map(|at| at + "xmlns".len());
+    let end = |at: usize| memchr3(b' ', b'>', b'/', &text.as_bytes()[at..]).map_or(text.len(), |i| at + i);
+    let all: HashSet<&str> = declarations().filter_map(|at| text.get(at..end(at))).collect();
+    if all.len() <= FEW {
+        return Ok(());
+    }
+    budget.spend(cost::COMPARISON * declarations().count() as f64 * all.len() as f64 / COPIED)
+}
+
+/// Tags, which also count comments and texts: several make an element. Short texts are parsed and counted exactly.
+fn tags(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    /// More per element than in any ordinary drawing.
+    const PER_ELEMENT: f64 = 8.0;
+    const FEW: usize = 10_000;
+    let tags = memchr_iter(b'<', text.as_bytes()).count();
+    if tags < FEW {
+        return Ok(());
+    }
+    budget.check(Limit::Elements, tags as f64 / PER_ELEMENT).map_err(Exceeded::cut_short)
+}
+
+/// Declarations of entities, and what they expand to.
+fn entities(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    let declared = declared(text);
+    if declared.is_empty() {
+        return Ok(());
+    }
+    // The parser takes the first of several, and searches them in order.
+    let mut index: HashMap<&str, usize> = HashMap::new();
+    for (i, (name, _)) in declared.iter().enumerate() {
+        index.entry(name).or_insert(i);
+    }
+    // An entity may refer to later ones. Values grow with every round until none does; the parser allows ten levels.
+    let mut sizes: Vec<f64> = declared.iter().map(|(_, value)| value.len() as f64).collect();
+    for _ in 0..=LEVELS {
+        let next: Vec<f64> = declared.iter().map(|(_, value)| expanded(value, &index, &sizes)).collect();
+        if next == sizes {
+            break;
+        }
+        sizes = next;
+    }
+    let total = expanded(text, &index, &sizes) - text.len() as f64;
+    budget.take(Limit::Bytes, total.max(0.0))?;
+    let lookups: u64 = references(text).filter_map(|name| index.get(name)).map(|&i| i as u64 + 1).sum();
+    budget.spend(cost::COMPARISON * lookups as f64)
+}
+
+/// Levels of entities in entities that the parser follows.
+pub(super) const LEVELS: usize = 10;
+
+/// The entities that a text declares: names and values.
+pub(super) fn declared(text: &str) -> Vec<(&str, &str)> {
+    memmem::find_iter(text.as_bytes(), "<!ENTITY").filter_map(|at| declaration(&text[at..])).collect()
+}
+
+/// Name and value of the declaration that a text begins with.
+fn declaration(text: &str) -> Option<(&str, &str)> {
+    let rest = text.strip_prefix("<!ENTITY")?.trim_start();
+    let (name, rest) = rest.split_once(|c: char| c.is_ascii_whitespace())?;
+    let rest = rest.trim_start();
+    let quote = rest.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+    let rest = &rest[1..];
+    Some((name, &rest[..rest.find(quote)?]))
+}
+
+/// The names of the entities that a text refers to.
+fn references(text: &str) -> impl Iterator<Item = &str> {
+    text.split('&').skip(1).filter_map(|rest| {
+        // Names are short; a lone ampersand is no reference.
+        let end = memchr(b';', rest.as_bytes())?;
+        rest.get(..end)
+    })
+}
+
+/// Size of a text with its references expanded.
+fn expanded(text: &str, index: &HashMap<&str, usize>, sizes: &[f64]) -> f64 {
+    let inner = references(text).filter_map(|name| index.get(name)).map(|&i| sizes[i]);
+    text.len() as f64 + inner.sum::<f64>()
+}
+
+/// Comparisons of the names of attributes with each other, and of the declarations in style attributes.
+fn attributes(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while let Some(from) = bytes.get(at..).and_then(|b| memchr(b'<', b)).map(|i| at + i) {
+        let to = bytes.get(from..).and_then(|b| memchr(b'>', b)).map_or(bytes.len(), |i| from + i);
+        at = to + 1;
+        if to - from >= LONG_TAG {
+            let tag = &bytes[from..to];
+            let attributes = memchr2_iter(b'"', b'\'', tag).count() as f64 / 2.0;
+            let declarations = memchr_iter(b';', tag).count() as f64;
+            budget.spend(cost::COMPARISON * (attributes * attributes + declarations * declarations) / 2.0)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::budget::Limits;
+
+    /// The expected sizes are counted by hand.
+    #[test]
+    fn expansions_are_counted_before_they_happen() {
+        let within = |text: &str, bytes: f64| {
+            let budget = Budget::new(Limits::default().with(Limit::Bytes, bytes));
+            count(text, &budget).is_ok()
+        };
+        // 10 bytes in four references, less the references themselves.
+        let flat = "<!DOCTYPE s [<!ENTITY a \"aaaaaaaaaa\">]><s>&a;&a;&a;&a;</s>";
+        assert!(within(flat, 40.0) && !within(flat, 39.0));
+        let mut nested = "<!DOCTYPE s [<!ENTITY a0 'ten bytes.'>".to_owned();
+        for i in 1..10 {
+            nested += &format!("<!ENTITY a{i} '{}'>", format!("&a{};", i - 1).repeat(10));
+        }
+        nested += "]><s>&a9;</s>";
+        assert!(!within(&nested, 1e10) && within(&nested, 1e12));
+        assert!(within("<s>a & b; &lt; &amp;</s>", 1.0));
+        assert!(within("<s/>", 0.0));
+    }
+
+    #[test]
+    fn many_attributes_are_many_comparisons() {
+        let tag = |n: usize| format!("<s {}/>", (0..n).map(|i| format!("a{i}=''")).collect::<Vec<_>>().join(" "));
+        let within = |text: &str| count(text, &Budget::default()).is_ok();
+        assert!(within(&tag(1000)) && !within(&tag(100_000)));
+    }
 }

@@ -4,10 +4,12 @@
 //! - [`deform`]: free-form deformation and its relatives, typed and by name from text ([`Registry3`](deform::Registry3)).
 //! - [`recipe`]: steps one after another as one map.
 //! - [`mesh`]: polygon meshes with groups, materials and texture coordinates, and their files.
+//! - [`artwork`]: outlines in the plane as triangles, and on a surface in space as OBJ.
 //! - [`patch`]: Bézier patches and NURBS surfaces, whose images are exact where the map allows it.
 //!
 //! Space is x right, y up, z towards the viewer. The crate is pure: no I/O, no globals, no printing.
 
+pub mod artwork;
 mod box3;
 pub mod check;
 pub mod deform;

@@ -188,17 +188,18 @@ impl Document {
     /// hide, nor what lies off the page. If nothing is seen, the same as [`Document::artwork_box`].
     #[must_use]
     pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
-        let counted = self.counted(selection);
-        let seen = areas::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
+        self.box_of(selection, &self.counted(selection))
+    }
+
+    fn box_of(&self, selection: &Selection, counted: &areas::Counted) -> Option<Rect> {
+        let seen = areas::seen_box(self.drawing.scene(), self.drawing.specified_area(), counted);
         seen.or_else(|| self.artwork_box(selection))
     }
 
     /// The box of what is seen, [`Document::seen_box`], with strokes by half their width.
     #[must_use]
     pub fn painted_box(&self, selection: &Selection) -> Option<Rect> {
-        let counted = areas::Counted { strokes: true, ..self.counted(selection) };
-        let seen = areas::seen_box(self.drawing.scene(), self.drawing.specified_area(), &counted);
-        seen.or_else(|| self.artwork_box(selection))
+        self.box_of(selection, &areas::Counted { strokes: true, ..self.counted(selection) })
     }
 
     /// The box of what is seen, [`Document::seen_box`], with what the page cuts off the shapes in it. `None` if it cuts nothing.

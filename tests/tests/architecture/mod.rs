@@ -47,7 +47,6 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-svg", &["pathwarp", "pathwarp-reader", "pathwarp-text"]);
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-gimp", &["pathwarp"]);
-    allowed("pathwarp-mesh", &["pathwarp"]);
     allowed("pathwarp-solid", &["pathwarp"]);
     allowed("pathwarp-plugin", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
@@ -60,7 +59,6 @@ fn dependencies_run_one_way() {
         "pathwarp-dxf",
         "pathwarp-editor",
         "pathwarp-gimp",
-        "pathwarp-mesh",
         "pathwarp-pdf",
         "pathwarp-plugin",
         "pathwarp-psd",

@@ -9,8 +9,8 @@ use pathwarp::deform::{Built, Role};
 use pathwarp::kurbo::{Point, Rect, Shape};
 use pathwarp::map::Map;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe};
-use pathwarp_mesh::NamedShape;
 use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
+use pathwarp_solid::artwork::{self, NamedShape};
 use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use std::path::{Path, PathBuf};
 
@@ -95,9 +95,9 @@ pub(super) fn surface_files(
             let wanted: Vec<NamedShape<'_>> =
                 wanted.map(|s| NamedShape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect();
             let made = if file.filled {
-                pathwarp_mesh::filled(&wanted, &place, options.refit.tolerance, doc.budget())
+                artwork::filled(&wanted, &place, options.refit.tolerance, doc.budget())
             } else {
-                pathwarp_mesh::outlines(&wanted, &place, options.refit.tolerance, doc.budget())
+                artwork::outlines(&wanted, &place, options.refit.tolerance, doc.budget())
             };
             let text = made.map_err(|e| Failure::Geometry(format!("--{}: {}", file.param, advice::surface(&e))))?;
             out.push((PathBuf::from(&file.name), text));

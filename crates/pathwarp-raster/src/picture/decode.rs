@@ -1,9 +1,8 @@
 //! From the bytes of a file to its pixels, within limits.
 
-use super::bitmap::Bitmap;
+use super::bitmap::{Bitmap, Kind};
 use super::gif::Gif;
 use super::jpeg::Jpeg;
-use super::kind::Kind;
 use super::orientation::Orientation;
 use super::png::{self, Png};
 use super::webp::WebP;

@@ -5,19 +5,18 @@ mod decode;
 mod encode;
 mod gif;
 mod jpeg;
-mod kind;
 mod orientation;
 mod png;
 mod webp;
 
 use crate::error::Error;
-use crate::picture::kind::Kind;
+use crate::picture::bitmap::Kind;
 use pathwarp::budget::Limits;
 use tiny_skia::Pixmap;
 
+pub(crate) use bitmap::PNG_SIGNATURE;
 pub use decode::header_size;
 pub use encode::PictureFormat;
-pub(crate) use kind::PNG_SIGNATURE;
 
 /// A bitmap with its colour profile.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@ use crate::source::images::shown;
 use crate::source::read::{self, ReadOptions};
 use crate::source::select::Selection;
 use crate::source::text::{SourceText, WORTH_THREADS};
-use crate::source::threads::{is_shallow, map_parallel, with_stack};
+use crate::source::threads::{map_parallel, with_stack};
 use crate::source::tree::{self, Missed};
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Rect, Size};
@@ -50,7 +50,7 @@ impl Drawing {
         let text = read::text(data, name, &options.budget)?;
         let dpi = f64::from(options.dpi);
         let (source, read) = SourceText::read(text, name, &options.budget, |source, xml| {
-            let shallow = is_shallow(source);
+            let shallow = source.is_shallow();
             let resolve = || {
                 let (tree, missed) = tree::tree(xml, name, options)?;
                 let letters = lettering::owners(source, name, options)?;

@@ -130,16 +130,15 @@ impl GeometryReader<'_> {
         if let Some(text) = self.source.attr(e, "transform") {
             t = transform(&text)?;
         }
+        let shifted = |t: Affine| {
+            let shift =
+                (self.length_or_zero(e, "x", Dimension::Width)?, self.length_or_zero(e, "y", Dimension::Height)?);
+            Some(t * Affine::translate(shift))
+        };
         match el.tag.as_ref() {
-            "use" => {
-                let shift =
-                    (self.length_or_zero(e, "x", Dimension::Width)?, self.length_or_zero(e, "y", Dimension::Height)?);
-                Some(t * Affine::translate(shift))
-            }
+            "use" => shifted(t),
             "svg" if el.parent.is_some() => {
-                let shift =
-                    (self.length_or_zero(e, "x", Dimension::Width)?, self.length_or_zero(e, "y", Dimension::Height)?);
-                t *= Affine::translate(shift);
+                t = shifted(t)?;
                 let view = self.viewport_size(e);
                 let side = |name, of, full: fn(Size) -> f64| match self.length(e, name, of)? {
                     Some(l) => Some(l),

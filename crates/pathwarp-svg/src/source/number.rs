@@ -1,7 +1,7 @@
 //! Numbers and path data as text: rounded once, in the shortest form.
 
 use pathwarp::decimal::push_trimmed;
-use pathwarp::kurbo::{Affine, BezPath, PathEl, Point, Vec2};
+use pathwarp::kurbo::{Affine, BezPath, CubicBez, PathEl, Point, Vec2};
 use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
@@ -280,8 +280,8 @@ fn push_exact(out: &mut String, v: f64) {
 /// Formats an outline as a `d` attribute without rounding, with arcs as arcs.
 pub(crate) fn outline_data(outline: &Outline) -> String {
     let mut out = String::new();
-    let mut add = |command: &str, numbers: &[f64]| {
-        out.push_str(command);
+    let mut add = |command: char, numbers: &[f64]| {
+        out.push(command);
         for (i, v) in numbers.iter().enumerate() {
             if i > 0 {
                 out.push(' ');
@@ -289,33 +289,47 @@ pub(crate) fn outline_data(outline: &Outline) -> String {
             push_exact(&mut out, *v);
         }
     };
+    let arc = |a: &EllipticArc| {
+        let [rx, ry, turn] = radii(a)?;
+        let large = a.sweep.abs() > std::f64::consts::PI;
+        Some([rx, ry, turn, flag(large), flag(a.sweep > 0.0), a.p1.x, a.p1.y])
+    };
     for s in &outline.subpaths {
-        add("M", &[s.start.x, s.start.y]);
-        let closing = s.closed && matches!(s.segs.last(), Some(Seg::Line(_)));
-        for g in s.segs.iter().take(s.segs.len() - usize::from(closing)) {
-            match g {
-                Seg::Line(l) => add("L", &[l.p1.x, l.p1.y]),
-                Seg::Quad(q) => add("Q", &[q.p1.x, q.p1.y, q.p2.x, q.p2.y]),
-                Seg::Cubic(c) => add("C", &[c.p1.x, c.p1.y, c.p2.x, c.p2.y, c.p3.x, c.p3.y]),
-                Seg::Arc(a) => match radii(a) {
-                    Some([rx, ry, turn]) => {
-                        let flag = |yes| if yes { 1.0 } else { 0.0 };
-                        let large = a.sweep.abs() > std::f64::consts::PI;
-                        add("A", &[rx, ry, turn, flag(large), flag(a.sweep > 0.0), a.p1.x, a.p1.y]);
-                    }
-                    None => {
-                        for c in a.to_cubics(a.major() * FINE) {
-                            add("C", &[c.p1.x, c.p1.y, c.p2.x, c.p2.y, c.p3.x, c.p3.y]);
-                        }
-                    }
-                },
-            }
-        }
-        if s.closed {
-            add("Z", &[]);
-        }
+        commands(s, &mut add, arc, |a| a.major() * FINE);
     }
     out
+}
+
+fn flag(yes: bool) -> f64 {
+    f64::from(u8::from(yes))
+}
+
+/// Lists the commands of a subpath with their numbers. `arc` gives the numbers of an arc, or else it becomes cubics within `fine`.
+fn commands(
+    s: &Subpath,
+    add: &mut impl FnMut(char, &[f64]),
+    arc: impl Fn(&EllipticArc) -> Option<[f64; 7]>,
+    fine: impl Fn(&EllipticArc) -> f64,
+) {
+    let cubic = |add: &mut dyn FnMut(char, &[f64]), c: &CubicBez| {
+        add('C', &[c.p1.x, c.p1.y, c.p2.x, c.p2.y, c.p3.x, c.p3.y]);
+    };
+    add('M', &[s.start.x, s.start.y]);
+    let closing = s.closed && matches!(s.segs.last(), Some(Seg::Line(_)));
+    for g in s.segs.iter().take(s.segs.len() - usize::from(closing)) {
+        match g {
+            Seg::Line(l) => add('L', &[l.p1.x, l.p1.y]),
+            Seg::Quad(q) => add('Q', &[q.p1.x, q.p1.y, q.p2.x, q.p2.y]),
+            Seg::Cubic(c) => cubic(add, c),
+            Seg::Arc(a) => match arc(a) {
+                Some(numbers) => add('A', &numbers),
+                None => a.to_cubics(fine(a)).for_each(|c| cubic(add, &c)),
+            },
+        }
+    }
+    if s.closed {
+        add('Z', &[]);
+    }
 }
 
 /// Formats an outline with arcs as a `d` attribute, as accurately as [`path_data`] does with that number of decimals, which
@@ -341,42 +355,30 @@ fn subpath_with_arcs(
     nominal: f64,
     holds: impl Fn(&EllipticArc, Point, u8) -> bool,
 ) {
-    let mut add = |command: char, numbers: &[(f64, u8)]| {
+    // Of an arc: its radii and turn, two flags, and its end.
+    let of_arc = |i: usize| match i {
+        0..3 => decimals.saturating_add(2).min(MOST_DECIMALS),
+        3..5 => 0,
+        _ => decimals,
+    };
+    let mut add = |command: char, numbers: &[f64]| {
         if !out.is_empty() {
             out.push(' ');
         }
         out.push(command);
-        for (i, (v, decimals)) in numbers.iter().enumerate() {
+        for (i, v) in numbers.iter().enumerate() {
             if i > 0 {
                 out.push(if i % 2 == 1 && command != 'A' { ',' } else { ' ' });
             }
-            push(out, *v, *decimals);
+            push(out, *v, if command == 'A' { of_arc(i) } else { decimals });
         }
     };
-    let at = |p: Point| [(p.x, decimals), (p.y, decimals)];
-    add('M', &at(s.start));
-    let closing = s.closed && matches!(s.segs.last(), Some(Seg::Line(_)));
-    for g in s.segs.iter().take(s.segs.len() - usize::from(closing)) {
-        match g {
-            Seg::Line(l) => add('L', &at(l.p1)),
-            Seg::Quad(q) => add('Q', &[at(q.p1), at(q.p2)].concat()),
-            Seg::Cubic(c) => add('C', &[at(c.p1), at(c.p2), at(c.p3)].concat()),
-            Seg::Arc(a) if holds(a, rounded(a.p0, decimals), decimals) => {
-                let ArcText { radii: [rx, ry], turn, large, sweep, finer, .. } = ArcText::new(a, decimals);
-                let flag = |yes: bool| (f64::from(u8::from(yes)), 0);
-                let [x, y] = at(a.p1);
-                add('A', &[(rx, finer), (ry, finer), (turn, finer), flag(large), flag(sweep), x, y]);
-            }
-            Seg::Arc(a) => {
-                for c in a.to_cubics(0.1 * nominal) {
-                    add('C', &[at(c.p1), at(c.p2), at(c.p3)].concat());
-                }
-            }
-        }
-    }
-    if s.closed {
-        out.push_str(" Z");
-    }
+    let arc = |a: &EllipticArc| {
+        let ArcText { radii: [rx, ry], turn, large, sweep, .. } = ArcText::new(a, decimals);
+        let numbers = [rx, ry, turn, flag(large), flag(sweep), a.p1.x, a.p1.y];
+        holds(a, rounded(a.p0, decimals), decimals).then_some(numbers)
+    };
+    commands(s, &mut add, arc, |_| 0.1 * nominal);
 }
 
 /// What is written for an arc.

@@ -99,6 +99,25 @@ impl SourceText {
         Ok(Self { text, elements, css, animated, unpatchable, ..Self::default() })
     }
 
+    /// Returns `true` if any stack is deep enough for the drawing and nothing in it could make its readers panic. References
+    /// multiply the depth, as their targets may hold further references.
+    pub(crate) fn is_shallow(&self) -> bool {
+        /// Limit on depth times references. A level takes a few kilobytes.
+        const SHALLOW: usize = 80;
+        let mut depths: Vec<usize> = Vec::with_capacity(self.elements.len());
+        let mut references = 1;
+        for e in &self.elements {
+            depths.push(e.parent.map_or(0, |p| depths[p] + 1));
+            let refers =
+                matches!(e.tag.as_ref(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
+            references += usize::from(refers);
+        }
+        // An embedded font may be crafted to make its reader panic, which only `with_stack` catches.
+        self.unpatchable.is_none()
+            && !self.css.contains("@font-face")
+            && depths.iter().max().is_none_or(|d| d * references <= SHALLOW)
+    }
+
     /// Calls `f`, and on another thread reads the outlines of a large drawing.
     pub(crate) fn reading_ahead<T: Send>(&self, f: impl FnOnce() -> T + Send) -> T {
         if self.text.len() < WORTH_THREADS {

@@ -1,6 +1,5 @@
 //! Work on several threads, and with a large stack.
 
-use super::text::SourceText;
 use pathwarp::Error;
 
 /// Returns `f(0)`, …, `f(n − 1)`.
@@ -26,24 +25,6 @@ pub(crate) fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnc
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn both<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B) {
     (a(), b())
-}
-
-/// Returns `true` if any stack is deep enough for the drawing and nothing in it could make its readers panic. References
-/// multiply the depth, as their targets may hold further references.
-pub(crate) fn is_shallow(source: &SourceText) -> bool {
-    /// Limit on depth times references. A level takes a few kilobytes.
-    const SHALLOW: usize = 80;
-    let mut depths: Vec<usize> = Vec::with_capacity(source.elements.len());
-    let mut references = 1;
-    for e in &source.elements {
-        depths.push(e.parent.map_or(0, |p| depths[p] + 1));
-        let refers = matches!(e.tag.as_ref(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
-        references += usize::from(refers);
-    }
-    // An embedded font may be crafted to make its reader panic, which only `with_stack` catches.
-    source.unpatchable.is_none()
-        && !source.css.contains("@font-face")
-        && depths.iter().max().is_none_or(|d| d * references <= SHALLOW)
 }
 
 /// Runs `f` with a stack for the deepest nesting that the parsers accept (1024 elements). A panic inside, which no known file

@@ -8,7 +8,7 @@ use crate::{advice, input};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Point};
-use pathwarp_mesh::NamedShape;
+use pathwarp_solid::artwork::{self, NamedShape};
 use pathwarp_solid::mesh::{
     FlatShape, Mark, Mesh, MeshError, MeshFault, NONE, PolygonKind, extrude, gltf, obj, ply, stl,
 };
@@ -241,7 +241,7 @@ fn read_drawing(bytes: &[u8], file: &Path, reading: &Reading, depth: f64) -> Res
     let mut shapes = Vec::new();
     let mut add = |name: &str, outline: &Outline, even_odd: bool| -> Result<(), Failure> {
         let named = NamedShape { name, outline, even_odd };
-        let flat = pathwarp_mesh::flat(&named, TOLERANCE / unit, doc.budget())
+        let flat = artwork::flat(&named, TOLERANCE / unit, doc.budget())
             .map_err(|e| Failure::Geometry(format!("{}: {}", input::display(file), advice::surface(&e))))?;
         let points = flat.points.iter().map(|p| {
             let p: Point = to_mm * *p;
