@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 /// Maximum nesting of descriptors.
-const MOST_DEPTH: usize = 32;
+const MAX_DEPTH: usize = 32;
 
 /// Values with their keys, in file order.
 pub(crate) type Items = Vec<(String, Value)>;
@@ -48,8 +48,8 @@ pub(crate) fn read(b: &mut ByteReader<'_>) -> Result<Items, Error> {
 }
 
 fn descriptor(b: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> {
-    if depth > MOST_DEPTH {
-        return Err(b.error(format!("descriptors are nested more than {MOST_DEPTH} deep")));
+    if depth > MAX_DEPTH {
+        return Err(b.error(format!("descriptors are nested more than {MAX_DEPTH} deep")));
     }
     text(b)?;
     id(b)?;
@@ -115,8 +115,8 @@ fn value(b: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Value, E
         b"Objc" | b"GlbO" => Value::Items(descriptor(b, depth + 1)?),
         b"ObAr" => Value::Items(array(b, depth + 1)?),
         b"VlLs" => {
-            if depth > MOST_DEPTH {
-                return Err(b.error(format!("lists are nested more than {MOST_DEPTH} deep")));
+            if depth > MAX_DEPTH {
+                return Err(b.error(format!("lists are nested more than {MAX_DEPTH} deep")));
             }
             let n = counted(b)?;
             let mut numbers = Vec::new();

@@ -43,7 +43,7 @@ const DASH: f64 = 200.0;
 const PIXEL_BYTES: f64 = 4.0;
 
 /// Octaves of turbulence beyond these change no colour of eight bits, and overflow in the renderer.
-const MOST_OCTAVES: u32 = 24;
+const MAX_OCTAVES: u32 = 24;
 
 /// Counts the work of drawing a group with `transform` on a picture of `width` × `height` pixels.
 ///
@@ -261,7 +261,7 @@ impl Load {
                 return Err(Error::TooFar);
             }
             let more = match p.kind() {
-                Kind::Turbulence(t) if t.num_octaves() > MOST_OCTAVES => return Err(Error::Octaves(t.num_octaves())),
+                Kind::Turbulence(t) if t.num_octaves() > MAX_OCTAVES => return Err(Error::Octaves(t.num_octaves())),
                 Kind::Turbulence(t) => OCTAVE * f64::from(t.num_octaves()),
                 Kind::Morphology(m) => {
                     let side = |radius: f32, scale: f32| 2.0 * f64::from(radius * scale) + 1.0;

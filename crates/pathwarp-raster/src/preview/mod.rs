@@ -21,7 +21,7 @@ const DEFAULT_PANEL: u32 = 600;
 const NOMINAL_PANEL: f32 = 600.0;
 
 /// Minimum width and height of a panel, in nominal pixels, so that a flat drawing is still visible.
-const LEAST_SIDE: f64 = 48.0;
+const MIN_SIDE: f64 = 48.0;
 
 /// Space around the view within its panel, in nominal pixels.
 const MARGIN: f64 = 20.0;
@@ -162,7 +162,7 @@ impl PanelLayout {
         let nominal = f64::from(unit);
         let margin = MARGIN * nominal;
         let scale = (f64::from(panel_size) - 2.0 * margin) / longer;
-        let side = |length: f64| (length * scale + 2.0 * margin).max(LEAST_SIDE * nominal).round().max(1.0);
+        let side = |length: f64| (length * scale + 2.0 * margin).max(MIN_SIDE * nominal).round().max(1.0);
         let (width, height) = (side(view.width()), side(view.height()));
         let centre = kurbo::Vec2::new(width / 2.0, height / 2.0);
         let to_panel = Affine::translate(centre) * Affine::scale(scale) * Affine::translate(-view.center().to_vec2());

@@ -6,9 +6,9 @@ use super::tile::{BYTES, ChannelOrder, Firsts, OUTSIDE, SourceBlock, TILE};
 use super::trace::{Trace, TraceRow};
 
 /// Maximum stretch at which a kernel of radius two fits into eight pixels a side.
-const MOST_STRETCH: f64 = 1.99;
+const MAX_STRETCH: f64 = 1.99;
 /// Off-diagonal entry of the footprint's matrix up to which the kernel is stretched along the axes of the picture.
-const MOST_SKEW: f64 = 0.1;
+const MAX_SKEW: f64 = 0.1;
 /// Sample points of the stretch along a side of a tile.
 const SAMPLES: usize = 5;
 
@@ -69,14 +69,14 @@ impl TileMethod {
             let jet = trace.at(share(k % SAMPLES), share(k / SAMPLES));
             let Some(footprint) = Footprint::new(&jet) else { continue };
             let [sx, s, sy] = footprint.stretch();
-            if sx.max(sy) + s.abs() > MOST_STRETCH {
+            if sx.max(sy) + s.abs() > MAX_STRETCH {
                 return Self::Each;
             }
             (shrinks, skew) = (true, skew.max(s.abs()));
         }
         match shrinks {
             false => Self::Interpolated,
-            true if skew <= MOST_SKEW => Self::Stretched,
+            true if skew <= MAX_SKEW => Self::Stretched,
             true => Self::Skewed(CornerShapes::of(trace)),
         }
     }
@@ -205,7 +205,7 @@ pub(super) fn skewed(
     other: impl FnMut(usize) -> [u8; BYTES],
 ) {
     const SIDE: usize = 8;
-    const MOST: f32 = MOST_STRETCH as f32;
+    const MAX: f32 = MAX_STRETCH as f32;
     let RowPlaces { x, y } = RowPlaces::new(row, block);
     let mut shapes = [[0.0; TILE]; 3];
     for (k, values) in shapes.iter_mut().enumerate() {
@@ -217,7 +217,7 @@ pub(super) fn skewed(
     for i in 0..TILE {
         let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
         let det = ix * iy - k * k;
-        let (wide, high) = (2.0 * least((iy + k.abs()) / det, MOST), 2.0 * least((ix + k.abs()) / det, MOST));
+        let (wide, high) = (2.0 * least((iy + k.abs()) / det, MAX), 2.0 * least((ix + k.abs()) / det, MAX));
         (left[i], top[i], bottom[i]) = ((x[i] - wide).ceil(), (y[i] - high).ceil(), y[i] + high);
     }
     let first = block.firsts(&left, &top, SIDE, ChannelOrder::Planar);
@@ -286,7 +286,7 @@ fn stretches(row: &TraceRow, coordinate: usize) -> [f32; TILE] {
     let mut out = [0.0; TILE];
     for (o, (a, b)) in out.iter_mut().zip(along.iter().zip(&down)) {
         // Tiles with a larger stretch use another method.
-        *o = least(most((a * a + b * b).sqrt(), 1.0), MOST_STRETCH as f32);
+        *o = least(most((a * a + b * b).sqrt(), 1.0), MAX_STRETCH as f32);
     }
     out
 }

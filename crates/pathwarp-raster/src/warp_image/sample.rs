@@ -1,14 +1,14 @@
 //! Computes one pixel of the result as the average over its footprint in the source.
 
-use super::tile::BYTES;
 use pathwarp::map::Jet;
 use std::sync::OnceLock;
+use super::tile::BYTES;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// Maximum aspect ratio of a footprint. Longer ones are widened, which blurs them.
 const LONGEST: f64 = 16.0;
 /// Minimum number of pixels of a pyramid level per pixel of the result, along each side; the maximum is twice as many.
-const LEAST_SHRINK: f64 = 2.0;
+const MIN_SHRINK: f64 = 2.0;
 /// Stretches below this are rounding errors.
 const SAME: f64 = 1e-9;
 
@@ -146,7 +146,7 @@ impl Footprint {
 
     /// Returns the weighted average around a place.
     fn average(&self, pyramid: &Pyramid<'_>, x: f64, y: f64) -> Channels {
-        let steps = (self.shortest / LEAST_SHRINK).log2().floor().max(0.0) as usize;
+        let steps = (self.shortest / MIN_SHRINK).log2().floor().max(0.0) as usize;
         let steps = steps.min(pyramid.deepest());
         let level = pyramid.level(steps);
         let scale = 0.5_f64.powi(steps as i32);
@@ -204,7 +204,7 @@ impl Footprint {
 }
 
 /// Maximum width of an upright footprint: twice the radius of the cubic, which is two, times the largest stretch of a level.
-const COLUMNS: usize = (4.0 * 2.0 * LEAST_SHRINK * LONGEST) as usize + 2;
+const COLUMNS: usize = (4.0 * 2.0 * MIN_SHRINK * LONGEST) as usize + 2;
 
 /// Solves |slope·d + rest| < 2 for d.
 #[inline]

@@ -1,8 +1,8 @@
 //! Tiles of the result, and the part of a bitmap that each reads.
 
-use super::trace::{ChebyshevBasis, SAMPLES, Trace};
 use kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
+use super::trace::{ChebyshevBasis, SAMPLES, Trace};
 
 /// Side of a tile in pixels; its part of the source fits into the cache.
 pub(super) const TILE: usize = 32;
@@ -111,7 +111,7 @@ pub(super) fn announce(
 /// Bytes and channels per pixel.
 pub(super) const BYTES: usize = 4;
 /// Maximum side of a block in pixels.
-const MOST: usize = 160;
+const MAX: usize = 160;
 /// Sample points along a side of a tile for finding its part of the source.
 const PER_SIDE: usize = 5;
 
@@ -158,7 +158,7 @@ impl SourceBlock {
             (self.corner[k], self.size[k]) = (from as usize, (to - from) as usize);
         }
         let [width, height] = self.size;
-        if width == 0 || height == 0 || width > MOST || height > MOST {
+        if width == 0 || height == 0 || width > MAX || height > MAX {
             return false;
         }
         self.values.resize(width * height * BYTES, 0.0);

@@ -1,7 +1,7 @@
 //! The image of an outline as path data: arcs that stay arcs, decimals, closing lines that come from rounding.
 
 use super::options::Edit;
-use crate::source::number::{MOST_DECIMALS, arcs_data, path_data, path_data_by};
+use crate::source::number::{MAX_DECIMALS, arcs_data, path_data, path_data_by};
 use pathwarp::kurbo::{BezPath, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Class, Map, Undeclared};
 use pathwarp::outline::{EllipticArc, Subpath};
@@ -257,7 +257,7 @@ pub(super) const ROUNDING: f64 = 0.01;
 pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
     given.unwrap_or_else(|| {
         let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
-        if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
+        if needed.is_finite() { needed.clamp(0.0, f64::from(MAX_DECIMALS)) as u8 } else { MAX_DECIMALS }
     })
 }
 
@@ -331,7 +331,7 @@ impl Digits {
                 }
                 PathEl::ClosePath => [0; 2],
                 _ => match spans.peek_mut() {
-                    None => [MOST_DECIMALS; 2],
+                    None => [MAX_DECIMALS; 2],
                     Some((s, pieces)) => {
                         let is_last = *pieces <= 1;
                         let own = self.decimals(s.tolerance);

@@ -4,7 +4,7 @@ use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of
 use super::images::{self, Missing, Rejected};
 use super::read::ReadOptions;
 use pathwarp::Error;
-use pathwarp_text::{GlyphWork, MOST_WORK};
+use pathwarp_text::{GlyphWork, MAX_WORK};
 use skrifa::raw::{FileRef, TableProvider as _};
 use skrifa::{FontRef, MetadataProvider as _, Tag};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -59,14 +59,14 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
 /// Loads a font file.
 pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
     /// Far more than the collections of any maker.
-    const MOST: u64 = 32_000_000;
+    const MAX: u64 = 32_000_000;
     let unreadable = |e: std::io::Error| format!("cannot be read: {e}");
     let is_collection = |file: &Path| -> std::io::Result<bool> {
         let mut tag = Vec::new();
         fs::File::open(file)?.take(4).read_to_end(&mut tag)?;
         Ok(tag == b"ttcf")
     };
-    if is_collection(path).map_err(unreadable)? && listing(&fs::read(path).map_err(unreadable)?, MOST) > MOST {
+    if is_collection(path).map_err(unreadable)? && listing(&fs::read(path).map_err(unreadable)?, MAX) > MAX {
         return Err("has more fonts, or longer names, than can be listed".into());
     }
     let before = db.len();
@@ -429,7 +429,7 @@ impl FontGuard {
         }
         let place = format!("the font {name}");
         if let Some(glyph) = GlyphWork::new(data, index).and_then(|mut all| all.endless()) {
-            let problem = format!("glyph {glyph} takes {MOST_WORK} points or more, with all of its parts and layers");
+            let problem = format!("glyph {glyph} takes {MAX_WORK} points or more, with all of its parts and layers");
             return Err(Error::input(place, problem + "; use another font"));
         }
         // Glyphs may be drawings themselves.

@@ -7,12 +7,12 @@ use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 
 /// Beyond this many decimals, digits of an f64 carry no information.
-pub(crate) const MOST_DECIMALS: u8 = 14;
+pub(crate) const MAX_DECIMALS: u8 = 14;
 
 /// Appends `v` rounded to `decimals`, without trailing zeros and never as `-0`.
 pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
     let mut digits = Digits::new();
-    let decimals = usize::from(decimals.min(MOST_DECIMALS));
+    let decimals = usize::from(decimals.min(MAX_DECIMALS));
     match digits.write(v, decimals).and_then(|text| std::str::from_utf8(text).ok()) {
         Some(text) => out.push_str(text),
         None => push_trimmed(out, v, decimals),
@@ -21,7 +21,7 @@ pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
 
 /// Does the same for a text that is checked as a whole.
 fn push_bytes(out: &mut Vec<u8>, v: f64, decimals: u8) {
-    let decimals = usize::from(decimals.min(MOST_DECIMALS));
+    let decimals = usize::from(decimals.min(MAX_DECIMALS));
     match Digits::new().write(v, decimals) {
         Some(text) => out.extend_from_slice(text),
         None => {
@@ -115,8 +115,8 @@ const PAIRS: [u8; 200] = {
     out
 };
 
-const UNITS: [u64; MOST_DECIMALS as usize + 1] = {
-    let mut out = [1; MOST_DECIMALS as usize + 1];
+const UNITS: [u64; MAX_DECIMALS as usize + 1] = {
+    let mut out = [1; MAX_DECIMALS as usize + 1];
     let mut i = 1;
     while i < out.len() {
         out[i] = out[i - 1] * 10;
@@ -125,7 +125,7 @@ const UNITS: [u64; MOST_DECIMALS as usize + 1] = {
     out
 };
 
-const POWERS: [f64; MOST_DECIMALS as usize + 1] =
+const POWERS: [f64; MAX_DECIMALS as usize + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
 
 /// Formats `v` with nine significant digits: for lengths, offsets and matrices.
@@ -150,7 +150,7 @@ fn push_significant(out: &mut String, v: f64, digits: i32) {
     }
     let size = v.abs().log10().floor() as i32 + 1;
     match u8::try_from((digits - size).max(0)) {
-        Ok(d) if d <= MOST_DECIMALS => push(out, v, d),
+        Ok(d) if d <= MAX_DECIMALS => push(out, v, d),
         // Thirty decimals resolve everything that can occur in a drawing.
         _ => push_trimmed(out, v, (digits - size).clamp(0, 30) as usize),
     }
@@ -207,7 +207,7 @@ pub(crate) fn path_data_by(path: &BezPath, smooth: bool, decimals: impl Fn(usize
             }
             PathEl::CurveTo(a, b, p) => {
                 // A quadratic, if it differs by less than the rounding and has the same directions.
-                let near = NEAR * POWERS[usize::from(handle.min(MOST_DECIMALS))].recip();
+                let near = NEAR * POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
                 let quad = quadratic(at, a, b, p).filter(|(_, off)| *off < near).map(|(q, _)| q).filter(|q| {
                     let q = rounded(*q, handle);
                     is_kept(a - at, q - from) && is_kept(b - p, q - to)
@@ -237,7 +237,7 @@ const NEAR: f64 = 3.0;
 
 /// A point as its text will be read.
 fn rounded(p: Point, decimals: u8) -> Point {
-    let unit = POWERS[usize::from(decimals.min(MOST_DECIMALS))];
+    let unit = POWERS[usize::from(decimals.min(MAX_DECIMALS))];
     Point::new((p.x * unit).round() / unit, (p.y * unit).round() / unit)
 }
 
@@ -256,7 +256,7 @@ fn kept(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point,
     if is_kept(v, rounded(handle, decimals) - written) {
         return (handle, decimals);
     }
-    let more = (1..=MORE).map(|n| decimals.saturating_add(n).min(MOST_DECIMALS));
+    let more = (1..=MORE).map(|n| decimals.saturating_add(n).min(MAX_DECIMALS));
     let fine = more.into_iter().find(|d| is_kept(v, rounded(written + v, *d) - written));
     fine.map_or((handle, decimals), |d| (written + v, d))
 }
@@ -338,11 +338,11 @@ fn commands(
 pub(crate) fn arcs_data(outline: &Outline, more: u8, decimals: impl Fn(usize) -> u8) -> String {
     let mut out = String::new();
     for (i, s) in outline.subpaths.iter().enumerate() {
-        let nominal = POWERS[usize::from(decimals(i).min(MOST_DECIMALS))].recip();
+        let nominal = POWERS[usize::from(decimals(i).min(MAX_DECIMALS))].recip();
         let holds = |a: &EllipticArc, from: Point, d: u8| ArcText::new(a, d).error(a, from) <= nominal;
-        let first = decimals(i).saturating_add(1).min(MOST_DECIMALS);
+        let first = decimals(i).saturating_add(1).min(MAX_DECIMALS);
         let all = |d: u8| s.segs.iter().all(|g| if let Seg::Arc(a) = g { holds(a, rounded(a.p0, d), d) } else { true });
-        let decimals = (first..=(first + more).min(MOST_DECIMALS)).find(|d| all(*d)).unwrap_or(first);
+        let decimals = (first..=(first + more).min(MAX_DECIMALS)).find(|d| all(*d)).unwrap_or(first);
         subpath_with_arcs(&mut out, s, decimals, nominal, holds);
     }
     out
@@ -357,7 +357,7 @@ fn subpath_with_arcs(
 ) {
     // Of an arc: its radii and turn, two flags, and its end.
     let of_arc = |i: usize| match i {
-        0..3 => decimals.saturating_add(2).min(MOST_DECIMALS),
+        0..3 => decimals.saturating_add(2).min(MAX_DECIMALS),
         3..5 => 0,
         _ => decimals,
     };
@@ -395,7 +395,7 @@ struct ArcText {
 
 impl ArcText {
     fn new(a: &EllipticArc, decimals: u8) -> Self {
-        let finer = decimals.saturating_add(2).min(MOST_DECIMALS);
+        let finer = decimals.saturating_add(2).min(MAX_DECIMALS);
         let (radii, turn) = axes(a);
         let (large, sweep) = (a.sweep.abs() > std::f64::consts::PI, a.sweep * a.a.cross(a.b) > 0.0);
         Self { radii, turn, large, sweep, to: rounded(a.p1, decimals), finer }

@@ -15,7 +15,7 @@ use std::sync::{Arc, OnceLock};
 use usvg::roxmltree;
 
 /// Limit on prefixes to declare. Each costs one parse.
-const MOST_PREFIXES: usize = 16;
+const MAX_PREFIXES: usize = 16;
 
 /// The text and its elements.
 #[derive(Debug, Default)]
@@ -371,7 +371,7 @@ pub(super) fn plain(
             Err(ReadError::Limit(e)) => return Err(Error::limit(name, "its style takes", e)),
             Err(ReadError::Xml(why)) => why,
         };
-        let known = undeclared.as_mut().filter(|u| u.len() < MOST_PREFIXES);
+        let known = undeclared.as_mut().filter(|u| u.len() < MAX_PREFIXES);
         if let (roxmltree::Error::UnknownNamespace(prefix, _), Some(known)) = (&why, known)
             && let Some(mended) = with_prefix(&text, prefix)
         {

@@ -20,12 +20,14 @@ pub(super) fn element(markup: &Markup<'_>, f: &Filter, all: Rect, id: &str, pict
         };
         let begin = |tag: &str| {
             let tag = markup.element(tag).with_all(region(areas::part(f, p, all)));
-            tag.with("color-interpolation-filters", space).with("result", p.result())
+            tag.with("color-interpolation-filters", space)
         };
-        match p.kind() {
-            Kind::Image(_) => begin("feImage").raw(&pictures.next().unwrap_or_default()).empty(),
+        let (tag, content) = match p.kind() {
+            Kind::Image(_) => (begin("feImage").raw(&pictures.next().unwrap_or_default()), String::new()),
             kind => primitive(markup, &begin, kind),
-        }
+        };
+        let tag = tag.with("result", p.result());
+        if content.is_empty() { tag.empty() } else { tag.around(&content) }
     });
     let primitives: String = primitives.collect();
     let filter = markup.element("filter").with("id", id).with("filterUnits", "userSpaceOnUse");
@@ -37,8 +39,8 @@ pub(super) fn region(r: Rect) -> [(&'static str, String); 4] {
     [("x", short(r.x0)), ("y", short(r.y0)), ("width", short(r.width())), ("height", short(r.height()))]
 }
 
-/// Writes a primitive other than a picture; `begin` begins its element.
-fn primitive(markup: &Markup<'_>, begin: &dyn Fn(&str) -> Tag, kind: &Kind) -> String {
+/// A primitive other than a picture with its content; `begin` begins its element.
+fn primitive(markup: &Markup<'_>, begin: &dyn Fn(&str) -> Tag, kind: &Kind) -> (Tag, String) {
     let tag = match kind {
         Kind::DropShadow(s) => begin("feDropShadow")
             .input("in", s.input())
@@ -58,18 +60,17 @@ fn primitive(markup: &Markup<'_>, begin: &dyn Fn(&str) -> Tag, kind: &Kind) -> S
             .with("flood-color", &markup::color(f.color()))
             .numbers("flood-opacity", &[f.opacity().get()]),
         Kind::Composite(c) => composite(begin("feComposite"), c),
-        Kind::Merge(m) if m.inputs().is_empty() => begin("feMerge"),
         Kind::Merge(m) => {
             let node = |i: &Input| markup.element("feMergeNode").input("in", i).empty();
-            return begin("feMerge").around(&m.inputs().iter().map(node).collect::<String>());
+            return (begin("feMerge"), m.inputs().iter().map(node).collect());
         }
         Kind::Tile(t) => begin("feTile").input("in", t.input()),
         Kind::Image(_) => begin("feImage"),
         Kind::ComponentTransfer(t) => {
             let all =
                 [("feFuncR", t.func_r()), ("feFuncG", t.func_g()), ("feFuncB", t.func_b()), ("feFuncA", t.func_a())];
-            let functions: String = all.into_iter().map(|(tag, f)| transfer(markup.element(tag), f).empty()).collect();
-            return begin("feComponentTransfer").input("in", t.input()).around(&functions);
+            let functions = all.into_iter().map(|(tag, f)| transfer(markup.element(tag), f).empty());
+            return (begin("feComponentTransfer").input("in", t.input()), functions.collect());
         }
         Kind::ColorMatrix(m) => color_matrix(begin("feColorMatrix").input("in", m.input()), m.kind()),
         Kind::ConvolveMatrix(m) => convolve_matrix(begin("feConvolveMatrix"), m),
@@ -89,24 +90,24 @@ fn primitive(markup: &Markup<'_>, begin: &dyn Fn(&str) -> Tag, kind: &Kind) -> S
             .with("yChannelSelector", channel(m.y_channel_selector())),
         Kind::Turbulence(t) => turbulence(begin("feTurbulence"), t),
         Kind::DiffuseLighting(l) => {
-            return begin("feDiffuseLighting")
+            let tag = begin("feDiffuseLighting")
                 .input("in", l.input())
                 .numbers("surfaceScale", &[l.surface_scale()])
                 .numbers("diffuseConstant", &[l.diffuse_constant()])
-                .with("lighting-color", &markup::color(l.lighting_color()))
-                .around(&light(markup, l.light_source()));
+                .with("lighting-color", &markup::color(l.lighting_color()));
+            return (tag, light(markup, l.light_source()));
         }
         Kind::SpecularLighting(l) => {
-            return begin("feSpecularLighting")
+            let tag = begin("feSpecularLighting")
                 .input("in", l.input())
                 .numbers("surfaceScale", &[l.surface_scale()])
                 .numbers("specularConstant", &[l.specular_constant()])
                 .numbers("specularExponent", &[l.specular_exponent()])
-                .with("lighting-color", &markup::color(l.lighting_color()))
-                .around(&light(markup, l.light_source()));
+                .with("lighting-color", &markup::color(l.lighting_color()));
+            return (tag, light(markup, l.light_source()));
         }
     };
-    tag.empty()
+    (tag, String::new())
 }
 
 impl Tag {

@@ -148,7 +148,7 @@ fn divided(path: &Path) -> Path {
 
 /// Points close enough for chords of images.
 fn flatten(path: &Path, out: &mut Vec<Vec<Point>>) {
-    const LEAST: f64 = 16.0;
+    const MIN: f64 = 16.0;
     const LONGEST: f64 = 0.35;
     let point = |p: resvg::tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
     let mut ring: Vec<Point> = Vec::new();
@@ -158,7 +158,7 @@ fn flatten(path: &Path, out: &mut Vec<Vec<Point>>) {
         ring.extend((1..=n as u32).map(|i| from.lerp(to, f64::from(i) / n)));
     };
     let curve = |ring: &mut Vec<Point>, length: f64, at: &dyn Fn(f64) -> Point| {
-        let n = (length / LONGEST).ceil().max(LEAST);
+        let n = (length / LONGEST).ceil().max(MIN);
         ring.extend((1..=n as u32).map(|i| at(f64::from(i) / n)));
     };
     for s in path.segments() {

@@ -187,7 +187,7 @@ fn exact_transforms(reader: &GeometryReader<'_>) -> HashMap<[u32; 6], Option<Aff
 }
 
 /// Total number of segments in the tiles of a drawing; more would make the result slow to open.
-const MOST_SEGMENTS: usize = 250_000;
+const MAX_SEGMENTS: usize = 250_000;
 
 /// Decides which patterns are laid out as geometry, and how much of it there may be.
 pub(crate) struct Tiling<'a> {
@@ -212,7 +212,7 @@ pub(crate) enum Painted {
 
 impl<'a> Tiling<'a> {
     pub(crate) fn new(needed: &'a (dyn Fn(Painted, Rect, Affine) -> bool + Sync), strokes: bool) -> Self {
-        Self { needed, strokes, budget: MOST_SEGMENTS, notes: Vec::new() }
+        Self { needed, strokes, budget: MAX_SEGMENTS, notes: Vec::new() }
     }
 }
 

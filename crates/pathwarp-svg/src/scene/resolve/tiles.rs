@@ -16,7 +16,7 @@ use std::sync::Arc;
 use usvg::{BlendMode, Paint, PaintOrder};
 
 /// Cells over one shape. More are a texture in which single tiles cannot be seen.
-const MOST_CELLS: f64 = 5_000.0;
+const MAX_CELLS: f64 = 5_000.0;
 /// Tolerance for clipped arcs and expanded strokes, as a fraction of a tile's side.
 const FINE: f64 = 1e-6;
 /// Margin around a shape's box as a fraction of its size, so that rounding does not show at its edge.
@@ -118,7 +118,7 @@ fn tiles_over(
     let cells = cells(r, place, area)?;
     let work = weight(pattern.root())?.saturating_mul(cells.len());
     let budget = b.tiling.as_ref().map_or(0, |t| t.budget);
-    if cells.len() as f64 > MOST_CELLS || work > budget {
+    if cells.len() as f64 > MAX_CELLS || work > budget {
         return Err(TOO_MANY);
     }
     if let Some(t) = &mut b.tiling {
@@ -143,7 +143,7 @@ fn cells(r: usvg::NonZeroRect, place: Affine, area: Rect) -> Result<Vec<Vec2>, &
     let columns = (((needed.x0 - x) / w).floor(), ((needed.x1 - x) / w).ceil());
     let rows = (((needed.y0 - y) / h).floor(), ((needed.y1 - y) / h).ceil());
     let count = (columns.1 - columns.0) * (rows.1 - rows.0);
-    if count.is_nan() || count > SPARE * MOST_CELLS {
+    if count.is_nan() || count > SPARE * MAX_CELLS {
         return Err(TOO_MANY);
     }
     let cell = Rect::new(0.0, 0.0, w, h);

@@ -27,7 +27,7 @@ fn every_number_of_decimals_agrees_with_the_standard_library() {
     let mut seed = 7_u64;
     for i in 0..100_000_u32 {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let decimals = (seed >> 59) as u8 % (MOST_DECIMALS + 1);
+        let decimals = (seed >> 59) as u8 % (MAX_DECIMALS + 1);
         let v = ((seed >> 11) as f64 / 2f64.powi(52) - 1.0) * 10f64.powi((i % 16) as i32 - 4);
         let mut out = String::new();
         push(&mut out, v, decimals);
