@@ -109,10 +109,10 @@ fn demultiplied(p: &PremultipliedColorU8) -> [u8; 4] {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::picture::Picture;
     use proptest::prelude::*;
-    use super::*;
-    use tiny_skia::{PremultipliedColorU8, ColorU8};
+    use tiny_skia::{ColorU8, PremultipliedColorU8};
 
     #[test]
     fn every_premultiplied_colour_survives() {

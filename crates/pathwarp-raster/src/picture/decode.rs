@@ -1,14 +1,14 @@
 //! From the bytes of a file to its pixels, within limits.
 
-use crate::error::Error;
-use crate::pixmap::{check_size, new_pixmap};
-use pathwarp::budget::{Limit, Limits};
 use super::bitmap::{Bitmap, Kind};
 use super::gif::Gif;
 use super::jpeg::Jpeg;
 use super::orientation::Orientation;
 use super::png::{self, Png};
 use super::webp::WebP;
+use crate::error::Error;
+use crate::pixmap::{check_size, new_pixmap};
+use pathwarp::budget::{Limit, Limits};
 use tiny_skia::Pixmap;
 
 /// The pixels and the ICC profile, upright if asked.

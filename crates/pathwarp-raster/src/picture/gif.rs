@@ -1,8 +1,8 @@
 //! Reads GIF: the first frame at its place on a transparent page.
 
+use super::bitmap::{Bitmap, undecodable};
 use crate::error::Error;
 use gif::{DecodeOptions, Decoder, DecodingError};
-use super::bitmap::{Bitmap, undecodable};
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
 /// An opened GIF.

@@ -1,7 +1,7 @@
 //! Reads JPEG: grey, RGB, YCbCr, CMYK and YCCK.
 
-use crate::error::Error;
 use super::bitmap::{Bitmap, set_opaque, undecodable};
+use crate::error::Error;
 use tiny_skia::Pixmap;
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::errors::DecodeErrors;

@@ -1,9 +1,9 @@
 //! Reads PNG: every colour type and depth as eight bits per channel; of an animation, the image that programs without animations show.
 
+use super::bitmap::{Bitmap, PNG_SIGNATURE, premultiply, set_opaque, set_straight, undecodable};
 use crate::error::Error;
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 use std::io::Cursor;
-use super::bitmap::{Bitmap, PNG_SIGNATURE, premultiply, set_opaque, set_straight, undecodable};
 use tiny_skia::Pixmap;
 
 /// An opened PNG.

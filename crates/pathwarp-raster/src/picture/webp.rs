@@ -1,9 +1,9 @@
 //! Reads WebP; of an animation, the first frame.
 
+use super::bitmap::{Bitmap, premultiply, set_opaque, undecodable};
 use crate::error::Error;
 use image_webp::{DecodingError, WebPDecoder};
 use std::io::Cursor;
-use super::bitmap::{Bitmap, premultiply, set_opaque, undecodable};
 use tiny_skia::Pixmap;
 
 /// An opened WebP.

@@ -7,11 +7,11 @@
 //!
 //! Unlike [`NewtonInverse`](pathwarp::map::NewtonInverse), answers are not certified: this serves colours, not geometry.
 
+use super::image_warp::in_pixels;
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::Cost;
 use pathwarp::map::{Batches, Creases, Jet, Map};
 use std::fmt;
-use super::image_warp::in_pixels;
 
 /// Pixels of the result per side of a cell.
 const PIXELS: f64 = 2.0;

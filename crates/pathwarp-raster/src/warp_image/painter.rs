@@ -1,15 +1,15 @@
 //! Warps a bitmap tile by tile.
 
-use crate::error::Error;
-use crate::pixmap::{for_each_chunk, new_pixmap};
-use kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::budget::Limits;
-use pathwarp::map::{Batches, Creases, Gathered, Jet, Map};
 use super::image_warp::{ImageWarp, in_pixels};
 use super::rows::{self, TileMethod};
 use super::sample::{self, Pyramid, bytes};
 use super::tile::{BYTES, BitmapBytes, PixelArea, SMALLEST, SourceBlock, TILE, announce};
 use super::trace::{ChebyshevBasis, Trace};
+use crate::error::Error;
+use crate::pixmap::{for_each_chunk, new_pixmap};
+use kurbo::{Affine, Point, Rect, Vec2};
+use pathwarp::budget::Limits;
+use pathwarp::map::{Batches, Creases, Gathered, Jet, Map};
 use tiny_skia::Pixmap;
 
 /// Warps a bitmap.

@@ -3,13 +3,13 @@
 //! Renderers interpolate between the pixels of a picture. A smooth gradient therefore needs only so many pixels that the
 //! interpolated colours are right; only jumps and kinks need as many as the screen has.
 
+use super::grid_inverse::GridInverse;
+use super::image_warp::shown;
+use super::shade::{Colors, Shade, shade};
 use crate::error::Error;
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use pathwarp::map::Map;
 use std::fmt;
-use super::grid_inverse::GridInverse;
-use super::image_warp::shown;
-use super::shade::{Colors, Shade, shade};
 use tiny_skia::Pixmap;
 
 /// Pixels along each side of the first picture, without its margin.

@@ -1,8 +1,8 @@
 //! Computes one pixel of the result as the average over its footprint in the source.
 
+use super::tile::BYTES;
 use pathwarp::map::Jet;
 use std::sync::OnceLock;
-use super::tile::BYTES;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// Maximum aspect ratio of a footprint. Longer ones are widened, which blurs them.

@@ -1,5 +1,8 @@
 //! Warps a paint: every pixel of the result asks the inverse map for its place in the paint, and the paint for its colour.
 
+use super::grid_inverse::GridInverse;
+use super::tile::{PixelArea, SMALLEST, TILE, announce};
+use super::trace::{ChebyshevBasis, MAX_ERROR};
 use crate::error::Error;
 use crate::pixmap::{for_each_chunk_pair, new_pixmap};
 use kurbo::{Affine, BezPath, Point, Rect};
@@ -7,9 +10,6 @@ use pathwarp::budget::Limits;
 use pathwarp::map::{Batches, Gathered, Map};
 use pathwarp::outline::boundary;
 use std::fmt;
-use super::grid_inverse::GridInverse;
-use super::tile::{PixelArea, SMALLEST, TILE, announce};
-use super::trace::{ChebyshevBasis, MAX_ERROR};
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
 /// Largest error of a place in pixels if a tile is traced.

@@ -1,8 +1,8 @@
 //! Tiles of the result, and the part of a bitmap that each reads.
 
+use super::trace::{ChebyshevBasis, SAMPLES, Trace};
 use kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
-use super::trace::{ChebyshevBasis, SAMPLES, Trace};
 
 /// Side of a tile in pixels; its part of the source fits into the cache.
 pub(super) const TILE: usize = 32;
