@@ -4,7 +4,7 @@ use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of
 use super::images::{self, Missing, Rejected};
 use super::read::ReadOptions;
 use pathwarp::Error;
-use pathwarp_text::{GlyphWork, MAX_WORK};
+use pathwarp_text::{GlyphWork, MOST_WORK};
 use skrifa::raw::{FileRef, TableProvider as _};
 use skrifa::{FontRef, MetadataProvider as _, Tag};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -429,7 +429,7 @@ impl FontGuard {
         }
         let place = format!("the font {name}");
         if let Some(glyph) = GlyphWork::new(data, index).and_then(|mut all| all.endless()) {
-            let problem = format!("glyph {glyph} takes {MAX_WORK} points or more, with all of its parts and layers");
+            let problem = format!("glyph {glyph} takes {MOST_WORK} points or more, with all of its parts and layers");
             return Err(Error::input(place, problem + "; use another font"));
         }
         // Glyphs may be drawings themselves.
