@@ -1,10 +1,10 @@
 #!/bin/sh
 # Installs the header and both libraries, with what pkg-config and CMake look for: install.sh PREFIX [FOLDER], where FOLDER holds the
-# libraries that cargo built, by default target/release.
+# libraries that cargo built, by default target/dist.
 set -eu
 prefix=$(mkdir -p "$1" && cd "$1" && pwd)
 here=$(cd "$(dirname "$0")" && pwd)
-built=${2:-$here/../../target/release}
+built=${2:-$here/../../target/dist}
 version=$(sed -n '/^\[workspace.package\]/,/^$/s/^version = "\(.*\)"/\1/p' "$here/../../Cargo.toml")
 case $version in 0.*) abi=${version%.*} ;; *) abi=${version%%.*} ;; esac
 mkdir -p "$prefix/include" "$prefix/lib/pkgconfig" "$prefix/lib/cmake/pathwarp"

@@ -1,6 +1,6 @@
 /* Bends a path and four points by an arc, a drawing if one is named, and shows an error.
  *
- *   cc bend.c -I../include -L../../../target/release -lpathwarp_c -o bend && ./bend logo.svg > bent.svg
+ *   cc bend.c -I../include -L../../../target/dist -lpathwarp_c -o bend && ./bend logo.svg > bent.svg
  */
 #include <pathwarp.h>
 #include <stdio.h>

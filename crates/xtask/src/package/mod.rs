@@ -96,15 +96,13 @@ impl Build<'_> {
     fn program(&self) -> Result<PathBuf, ChoreError> {
         let host = host()?;
         let mut cargo = process::Command::new(env!("CARGO"));
-        cargo.args(["build", "--release", "--locked", "--package", "pathwarp-cli", "--target", &host]);
+        cargo.args(["build", "--profile", "dist", "--locked", "--package", "pathwarp-cli", "--target", &host]);
         cargo.arg("--target-dir").arg(self.target).current_dir(self.root);
         cargo.env("CARGO_ENCODED_RUSTFLAGS", self.flags()?.join(SEPARATOR));
-        // The names of functions take a third of the program.
-        cargo.env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
         if !cargo.status().map_err(|e| e.to_string())?.success() {
             return Err("the program does not build".into());
         }
-        let folder = self.target.join(host).join("release");
+        let folder = self.target.join(host).join("dist");
         Ok(folder.join("pathwarp").with_extension(std::env::consts::EXE_EXTENSION))
     }
 
