@@ -11,16 +11,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Points that are tried on either side of each stroke.
-const PROBES: usize = 120;
+const PROBES: usize = 200;
 
 /// A polygon with the numbers by which windings around it are counted.
 struct Polygon(Vec<[Point; 2]>);
 
 impl Polygon {
-    fn of(subpaths: &[Vec<Curve>], height: f64) -> Self {
+    /// Subpaths as chords that are within a tenth of `height` of them.
+    fn along(subpaths: &[Vec<Curve>], height: f64) -> Self {
         let same = |ps: &[Point]| ps.to_vec();
-        let all = curves::closed(subpaths.to_vec());
-        let runs = all.iter().map(|run| sampled(run, &same, 24, height).points);
+        let runs = subpaths.iter().map(|run| sampled(run, &same, 64, height).points);
         Self(runs.flat_map(|p| p.windows(2).map(|w| [w[0], w[1]]).collect::<Vec<_>>()).collect())
     }
 
@@ -45,6 +45,21 @@ fn from_line(chords: &[[Point; 2]], p: Point) -> f64 {
         p.distance(*a + along * t)
     };
     chords.iter().map(to).fold(f64::INFINITY, f64::min)
+}
+
+/// Points on the edges of a stroke, on either side, as far as other parts of it do not cover them.
+fn edges(r: &mut Random, source: &[Vec<Curve>], width: f64) -> Vec<Point> {
+    let mut out = Vec::new();
+    for _ in 0..PROBES {
+        let run = &source[r.below(source.len())];
+        let (curve, t) = (run[r.below(run.len())], r.between(0.001, 0.999));
+        let along = curve.at(t + 5e-4) - curve.at(t - 5e-4);
+        if along.hypot() > 0.0 {
+            let side = if r.below(2) == 0 { 0.5 } else { -0.5 };
+            out.push(curve.at(t) + Vec2::new(-along.y, along.x) * (side * width / along.hypot()));
+        }
+    }
+    out
 }
 
 /// How many probes were decided, and where one is on the wrong side.
@@ -77,34 +92,14 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
         // An affine map takes the stroke along as it is.
         return None;
     }
-    let written = Polygon::of(&curves::read(written), 0.2 * tolerance);
+    let written = Polygon::along(&curves::closed(curves::read(written)), 0.2 * tolerance);
     let points = warper.point_map(|| Some(frame), || Outline::from_svg(d).unwrap_or_default()).ok()?;
     let source = curves::read(d);
     if source.is_empty() {
         return None;
     }
-    let same = |ps: &[Point]| ps.to_vec();
-    // Chords a hundredth of the tolerance from the line, as far as that is to be had.
-    let lines = Polygon(
-        source
-            .iter()
-            .map(|run| sampled(run, &same, 64, 0.05 * tolerance).points)
-            .flat_map(|p| p.windows(2).map(|w| [w[0], w[1]]).collect::<Vec<_>>())
-            .collect(),
-    );
-    let mut probes: Vec<(Point, f64)> = Vec::new();
-    for _ in 0..PROBES {
-        let run = &source[r.below(source.len())];
-        let (curve, t) = (run[r.below(run.len())], r.between(0.001, 0.999));
-        let along = curve.at(t + 5e-4) - curve.at(t - 5e-4);
-        if along.hypot() > 0.0 {
-            let normal = Vec2::new(-along.y, along.x) / along.hypot();
-            let side = if r.below(2) == 0 { 0.5 } else { -0.5 };
-            probes.push((curve.at(t) + normal * (side * width), side.signum()));
-            probes.push((curve.at(t) + normal * (side * width), -side.signum()));
-        }
-    }
-    let edges: Vec<Point> = probes.iter().map(|p| p.0).collect();
+    let lines = Polygon::along(&source, 0.05 * tolerance);
+    let edges = edges(r, &source, width);
     let mut jacobians = vec![[Vec2::ZERO; 2]; edges.len()];
     points.jacobians(&edges, &mut jacobians);
     let mut all = Probed { decided: 0, wrong: Vec::new() };
