@@ -41,7 +41,7 @@ impl Chain {
         if class == Class::Affine(Affine::IDENTITY) {
             return;
         }
-        let folded: Option<Arc<dyn Map>> = match (self.steps.last().map(|s| s.class()), class) {
+        let folded: Option<Arc<dyn Map>> = match (self.steps.last().map(Map::class), class) {
             (Some(Class::Affine(a)), Class::Affine(b)) => Some(Arc::new(AffineMap(b * a))),
             (Some(Class::Affine(a)), Class::Projective(b)) => Some(Arc::new(b.after_affine(a))),
             (Some(Class::Projective(a)), Class::Affine(b)) => Some(Arc::new(a.then_affine(b))),
@@ -254,7 +254,7 @@ impl Map for Chain {
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let back: Option<Vec<_>> = self.steps.iter().rev().map(|s| s.inverse()).collect();
+        let back: Option<Vec<_>> = self.steps.iter().rev().map(Map::inverse).collect();
         back.map(|steps| Arc::new(Self::new(steps)) as Arc<dyn Map>)
     }
 
