@@ -219,8 +219,7 @@ impl Map for Inverse {
         self.points(ps, &mut sources);
         self.0.jets(&sources, out);
         for (o, source) in out.iter_mut().zip(sources) {
-            let (dx, dy, det) = (o.dx, o.dy, o.det());
-            *o = Jet { p: source, dx: Vec2::new(dy.y, -dx.y) / det, dy: Vec2::new(-dy.x, dx.x) / det };
+            *o = o.inverted(source);
         }
     }
 

@@ -2,9 +2,9 @@
 //!
 //! It checks the parameter table, Jacobians against finite differences, batches, the inverse there and back, laws and cases.
 
-use crate::box3::Box3;
 use crate::deform::{Deformation3, Law3};
 use crate::map::{Creases3, Jet3, Map3, NewtonInverse3};
+use crate::settings::Box3;
 use crate::settings::Frame3;
 use glam::DVec3;
 use pathwarp::deform::Pairs;
@@ -21,18 +21,7 @@ pub fn frame() -> Frame3 {
 #[must_use]
 pub fn entry(entry: &dyn Deformation3) -> Vec<String> {
     let info = &entry.about().info;
-    let mut faults = Vec::new();
-    if info.title.is_empty() || info.about.is_empty() || info.source.is_empty() || info.group.is_empty() {
-        faults.push("has an empty title, group, about or source".into());
-    }
-    if info.examples.len() < 2 {
-        faults.push("has fewer than two examples".into());
-    }
-    for p in info.params {
-        if !p.help.ends_with('.') {
-            faults.push(format!("{}: its help does not end with a full stop", p.name));
-        }
-    }
+    let mut faults: Vec<String> = pathwarp::check::table(info).into_iter().flat_map(|c| c.faults).collect();
     match build(entry, info.demo) {
         Ok(map) => {
             derivatives(&*map, &mut faults);

@@ -10,7 +10,6 @@
 //! Space is x right, y up, z towards the viewer. The crate is pure: no I/O, no globals, no printing.
 
 pub mod artwork;
-mod box3;
 pub mod check;
 pub mod deform;
 mod lattice;
@@ -21,7 +20,7 @@ pub mod picture;
 pub mod recipe;
 mod settings;
 
-pub use box3::Box3;
+pub use crate::settings::Box3;
 pub use glam;
 pub use lattice::{Lattice3, LatticeMap3};
 pub use settings::{Extent, Frame3, Settings3};

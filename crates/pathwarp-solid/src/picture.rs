@@ -1,7 +1,7 @@
 //! Pictures of meshes: a small rasteriser with depth and shading.
 
-use crate::box3::Box3;
 use crate::mesh::Mesh;
+use crate::settings::Box3;
 use glam::{DMat3, DVec3};
 
 /// A camera in perspective.

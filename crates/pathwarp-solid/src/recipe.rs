@@ -1,8 +1,8 @@
 //! Recipes in space: deformations one after another, composed into one map.
 
-use crate::box3::Box3;
 use crate::deform::{Built3, Registry3};
 use crate::map::{Chain3, Creases3, Map3, NewtonInverse3};
+use crate::settings::Box3;
 use crate::settings::Frame3;
 use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded, Limits};

@@ -5,7 +5,7 @@
 
 use crate::deform::{Built, Role};
 use crate::error::{Error, GeometryError};
-use crate::map::{AffineMap, Homography, Map};
+use crate::map::{AffineMap, Class, Homography, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Frame, NamedPath, Settings};
 use kurbo::{Affine, Line, Point, Rect};
@@ -300,14 +300,15 @@ pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error
     }
 }
 
-/// Returns `m`, or the exact identity if `m` moves no corner of the frame by more than rounding.
-pub(crate) fn settled(m: Affine, frame: &Frame) -> Affine {
+/// The map in its simplest form: an affine one by its matrix, which is the identity if rounding alone moves the corners of `frame`.
+pub(crate) fn settled(map: Arc<dyn Map>, frame: Rect) -> Arc<dyn Map> {
     /// A few dozen operations on numbers of the corners' size.
     const ROUNDING: f64 = 1e-14;
-    let corners = frame.corners();
+    let Class::Affine(m) = map.class() else { return map };
+    let corners = Frame::new(frame).corners();
     let size = corners.iter().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max);
     let moves = corners.iter().any(|p| (m * *p).distance(*p) > ROUNDING * size);
-    if moves || frame.rect.area() == 0.0 { m } else { Affine::IDENTITY }
+    Arc::new(AffineMap(if moves || frame.area() == 0.0 { m } else { Affine::IDENTITY }))
 }
 
 /// Returns the projective map from four points to four points; an error names `name`.

@@ -32,7 +32,6 @@
 // Without the presets, the parts that only they use have no caller.
 #![cfg_attr(not(feature = "serde"), allow(dead_code, unused_imports))]
 
-mod ambiguity;
 pub(crate) mod anchors;
 pub mod budget;
 pub mod check;

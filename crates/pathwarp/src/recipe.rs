@@ -22,13 +22,11 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 
-use crate::ambiguity::{SAMPLES, ambiguity};
 use crate::budget::{Budget, Limits};
 use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
-use crate::map::{Chain, Class, Map, inverse_over};
-use crate::outline::Outline;
-use crate::outline::Seg;
+use crate::map::{Chain, Class, Creases, Map, inverse_over};
+use crate::outline::{Outline, Seg};
 use crate::param::{Args, Frame, Kind, Param};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::collections::HashSet;
@@ -120,7 +118,7 @@ pub struct BuiltParts {
 impl Recipe {
     /// Builds every step within a budget, which counts the segments of the paths that control the steps, and the
     /// evaluations that find out where the artwork is after each step. Inverses that search spend from it what each search takes beyond
-    /// [`Map::work`], for as long as they are used: once nothing is left they are undefined everywhere, and
+    /// [`Cost::work`](crate::map::Cost::work), for as long as they are used: once nothing is left they are undefined everywhere, and
     /// [`BuiltRecipe::failure`] says so. See [`Recipe::build`].
     ///
     /// # Errors
@@ -596,10 +594,56 @@ fn first_across<'a>(
     images.find_map(|ps| ps.windows(2).find_map(|w| cross(w[0], w[1])))
 }
 
+// Finds places where undoing a map cannot be right: two points of the source have the same image, so that its inverse can return
+// only one of them.
+
+/// Samples in each direction over the box. Places smaller than the spacing can go unnoticed.
+const GRID: usize = 32;
+/// All samples.
+pub(crate) const SAMPLES: usize = GRID * GRID;
+/// Distance between a point and what the inverse makes of its image, as a share of the box's diagonal, beyond which they are two
+/// points: far above the error of an inverse by Newton's method.
+const APART: f64 = 1e-6;
+
+/// A point of the source whose image comes back as another point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ambiguity {
+    pub(crate) source: Point,
+    pub(crate) returned: Point,
+    pub(crate) image: Point,
+}
+
+/// Returns the first point inside `frame` that `inverse` does not bring back from its image under `map`. Points without an image
+/// or without a preimage are passed over: they are errors or warnings of their own.
+pub(crate) fn ambiguity(map: &dyn Map, inverse: &dyn Map, frame: Rect) -> Option<Ambiguity> {
+    let mut creases = Creases::default();
+    map.creases(&mut creases);
+    // The middles of cells: the two ends of a seam along the box's edge share their image by design.
+    let at = |i: usize, j: usize| {
+        let share = |n: usize| (n as f64 + 0.5) / GRID as f64;
+        Point::new(frame.x0 + frame.width() * share(i), frame.y0 + frame.height() * share(j))
+    };
+    let sources: Vec<Point> = (0..SAMPLES).map(|n| at(n % GRID, n / GRID)).filter(|p| creases.defined_at(*p)).collect();
+    let mut images = vec![Point::ORIGIN; sources.len()];
+    map.points(&sources, &mut images);
+    let mut returned = vec![Point::ORIGIN; sources.len()];
+    inverse.points(&images, &mut returned);
+    let apart = APART * frame.width().hypot(frame.height());
+    let all = sources.into_iter().zip(images).zip(returned).map(|((source, image), returned)| Ambiguity {
+        source,
+        returned,
+        image,
+    });
+    all.filter(|a| a.image.is_finite() && a.returned.is_finite()).find(|a| a.source.distance(a.returned) > apart)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::{AffineMap, Formula, NewtonInverse, Real};
     use crate::refit::{Options, warp_path};
+    use kurbo::Affine;
+    use std::sync::Arc;
 
     #[test]
     fn later_percentages_mean_the_box_at_that_step() {
@@ -684,5 +728,25 @@ mod tests {
             // Boxes are sampled.
             assert!(off < 0.02, "{p:?} comes back {off} away");
         }
+    }
+
+    /// Folds along x = 0.
+    struct Fold;
+    impl Formula for Fold {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x * x, y)
+        }
+    }
+
+    #[test]
+    fn a_fold_is_ambiguous_and_one_side_of_it_is_not() {
+        let inverse = |frame| NewtonInverse::over(Arc::new(Fold), frame, 0.25);
+        let both = Rect::new(-1.0, 0.0, 2.0, 1.0);
+        let found = ambiguity(&Fold, &inverse(both), both).unwrap();
+        assert!((found.source.x + found.returned.x).abs() < 1e-6, "{found:?}");
+        let half = Rect::new(1.0, 0.0, 2.0, 1.0);
+        assert_eq!(ambiguity(&Fold, &inverse(half), half), None);
+        let turn = Affine::rotate(1.0);
+        assert_eq!(ambiguity(&AffineMap(turn), &AffineMap(turn.inverse()), both), None);
     }
 }

@@ -10,6 +10,7 @@ mod new_deformation;
 mod outputs;
 mod package;
 mod process;
+mod public;
 mod refit_report;
 mod shell;
 mod speed;
@@ -19,7 +20,7 @@ use clap::Command;
 use std::process::ExitCode;
 
 /// Every chore, declared with its options in a separate file.
-const CHORES: [Chore; 11] = [
+const CHORES: [Chore; 12] = [
     new_deformation::CHORE,
     corpus::CHORE,
     refit_report::CHORE,
@@ -30,6 +31,7 @@ const CHORES: [Chore; 11] = [
     package::CHORE,
     package::REPRODUCIBLE,
     docs::CHORE,
+    public::CHORE,
     browser::CHORE,
 ];
 

@@ -84,8 +84,7 @@ const TEMPLATE: &str = r#"//! One sentence that says what NAME does to artwork.
 //! The formula and its source (paper and equation):
 //! x' = x, y' = y + h·sin(2π·x/l).
 
-use super::built::Built;
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{Built, Case, Deformation, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{Formula, Real};
 use crate::param::{Axis, Param, Settings};

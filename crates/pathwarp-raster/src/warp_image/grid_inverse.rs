@@ -143,9 +143,7 @@ impl Map for GridInverse<'_> {
         if !p.is_finite() {
             return Jet::UNDEFINED;
         }
-        let there = in_pixels(&self.map.jet(self.read * p), self.write, self.read);
-        let det = there.det();
-        Jet { p, dx: Vec2::new(there.dy.y, -there.dx.y) / det, dy: Vec2::new(-there.dy.x, there.dx.x) / det }
+        in_pixels(&self.map.jet(self.read * p), self.write, self.read).inverted(p)
     }
 
     fn cost(&self) -> Cost<'_> {

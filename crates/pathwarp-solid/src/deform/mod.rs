@@ -5,23 +5,62 @@
 
 mod anamorph;
 mod bend;
-mod built;
 mod entry;
 mod ffd;
-mod registry;
 mod wrap;
+
+use std::fmt;
+use std::sync::Arc;
 
 pub use anamorph::{Anamorph3, Push3, Reference3};
 pub use bend::{Bend3, Handle3, Spine3};
-pub use built::Built3;
-pub use entry::{About3, Case3, Deformation3, Law3};
+pub use entry::{About3, Built3, Case3, Deformation3, Law3};
 pub use ffd::{Change3, Ffd3};
-pub use registry::Registry3;
 pub use wrap::Wrap3;
-
-use std::sync::Arc;
 
 /// The deformations of this crate, in the order of help.
 pub(crate) fn builtin() -> Vec<Arc<dyn Deformation3>> {
     vec![Arc::new(ffd::Entry), Arc::new(anamorph::Entry), Arc::new(bend::Entry), Arc::new(wrap::Entry)]
+}
+
+// The registry: the deformations of space that a program knows, by name.
+
+/// The deformations of space that a program knows.
+#[derive(Clone)]
+pub struct Registry3 {
+    entries: Vec<Arc<dyn Deformation3>>,
+}
+
+impl fmt::Debug for Registry3 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Registry3").field("entries", &self.entries.len()).finish_non_exhaustive()
+    }
+}
+
+impl Registry3 {
+    /// Returns the deformations of this crate.
+    #[must_use]
+    pub fn builtin() -> Self {
+        Self { entries: builtin() }
+    }
+
+    /// Adds an entry; an entry of the same name is replaced.
+    #[must_use]
+    pub fn with(mut self, entry: impl Deformation3 + 'static) -> Self {
+        self.entries.retain(|e| e.about().info.name != entry.about().info.name);
+        self.entries.push(Arc::new(entry));
+        self
+    }
+
+    /// Returns all entries, in the order of help.
+    #[must_use]
+    pub fn entries(&self) -> &[Arc<dyn Deformation3>] {
+        &self.entries
+    }
+
+    /// Returns the entry called `name`.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&Arc<dyn Deformation3>> {
+        self.entries.iter().find(|e| e.about().info.name == name)
+    }
 }

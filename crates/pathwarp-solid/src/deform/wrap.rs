@@ -6,10 +6,10 @@
 //! For a cone the model is first turned by the slope β of its side, sin β = (R₁ − R₀)/H, about the middle of its back; R is the mean
 //! of both radii. Lengths along the side are kept, and lengths round it in the middle of the height; level lines stay level.
 
-use super::built::Built3;
 use super::entry::{About3, Case3, Deformation3, Law3};
-use crate::box3::Box3;
+use crate::deform::entry::Built3;
 use crate::map::{Chain3, Collineation, Creases3, Jet3, Map3};
+use crate::settings::Box3;
 use crate::settings::{Extent, Settings3};
 use glam::{DMat3, DMat4, DVec3};
 use pathwarp::Error;

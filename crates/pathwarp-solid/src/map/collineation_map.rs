@@ -1,9 +1,9 @@
 //! A collineation as a map: its value and Jacobian, its domain, and its inverse.
 
 use super::collineation::Collineation;
-use super::crease::Creases3;
-use super::jet::Jet3;
-use super::traits::Map3;
+use crate::map::Creases3;
+use crate::map::Jet3;
+use crate::map::Map3;
 use glam::{DMat3, DVec3, DVec4};
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ impl Map3 for Collineation {
     }
 
     fn points(&self, ps: &mut [DVec3]) {
-        super::batch::collineation(&self.matrix, ps);
+        crate::map::tensor::collineation(&self.matrix, ps);
     }
 
     fn collineation(&self) -> Option<&Collineation> {

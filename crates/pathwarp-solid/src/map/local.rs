@@ -1,6 +1,5 @@
 //! Coordinates of a box, in which polynomials are stored.
 
-use super::lane::Lane;
 use glam::DVec3;
 
 /// Coordinates −1 to 1 across a box: t = (p − middle)·scale.
@@ -18,3 +17,11 @@ impl Local {
         std::array::from_fn(|k| std::array::from_fn(|i| (p[k][i] - middle[k]) * scale[k]))
     }
 }
+
+// One number for each point of a batch.
+
+/// Points in a batch: two AVX registers of four, or four SSE2 registers of two.
+pub(crate) const WIDTH: usize = 8;
+
+/// A coordinate of each point of a batch.
+pub(crate) type Lane = [f64; WIDTH];

@@ -4,33 +4,333 @@
 //! speed and knowledge: batches, creases, the inverse, and whether planes stay planes. [`Chain3`] composes maps;
 //! [`NewtonInverse3`] inverts any smooth map over a box.
 
-mod batch;
-mod chain;
 mod collineation;
 mod collineation_map;
-#[cfg(test)]
-#[path = "../../../pathwarp/src/map/counted.rs"]
-pub(crate) mod counted;
-mod crease;
-mod jet;
-mod lane;
 mod local;
 mod newton;
 mod poly;
 mod tensor;
-mod traits;
 
-pub use chain::Chain3;
+use crate::settings::Box3;
+use glam::{DMat3, DVec3};
+use pathwarp::budget::Budget;
+use pathwarp::map::CreaseKind;
+use std::fmt;
+use std::sync::Arc;
+
 pub use collineation::Collineation;
-pub use crease::{Crease3, Creases3, Level3};
-pub use jet::Jet3;
 pub use newton::NewtonInverse3;
 pub use poly::{Chart, Fraction3};
-pub use traits::Map3;
 
-pub(crate) use batch::{Displaced, Quotient, Radial, Swept, for_all};
 pub(crate) use local::Local;
-#[cfg(test)]
-use pathwarp::map::Real;
 pub(crate) use poly::Poly3;
-pub(crate) use tensor::Tensor;
+pub(crate) use tensor::{Displaced, Quotient, Radial, Swept, Tensor, for_all};
+
+// The trait that every map of space implements.
+
+/// A differentiable map of space: x right, y up, z towards the viewer.
+///
+/// Only [`Map3::jet`] is required. [`point`](Map3::point), [`points`](Map3::points) and [`jets`](Map3::jets) are faster ways to
+/// the same values.
+pub trait Map3: Send + Sync {
+    /// Value and Jacobian at `p`. On a crease, those of either side; outside the domain, not finite.
+    fn jet(&self, p: DVec3) -> Jet3;
+
+    /// The value alone.
+    fn point(&self, p: DVec3) -> DVec3 {
+        self.jet(p).p
+    }
+
+    /// The jets at `ps`. `out` has the length of `ps`.
+    fn jets(&self, ps: &[DVec3], out: &mut [Jet3]) {
+        for (p, o) in ps.iter().zip(out) {
+            *o = self.jet(*p);
+        }
+    }
+
+    /// Replaces points by their images.
+    fn points(&self, ps: &mut [DVec3]) {
+        for p in ps {
+            *p = self.point(*p);
+        }
+    }
+
+    /// The map as a collineation, if it is one: planes stay planes. Neighbours fold into one in a [`Chain3`].
+    fn collineation(&self) -> Option<&Collineation> {
+        None
+    }
+
+    /// The map on a box as a quotient of polynomials of degree `most` or less, if it is one there: the images of rational surfaces
+    /// are then exact.
+    fn fraction(&self, _on: &Box3, _most: usize) -> Option<Fraction3> {
+        None
+    }
+
+    /// The smooth map that this one is on a box, if it is one there; it goes on beyond the box. A box that a crease only touches lies on
+    /// its own side of it, where the map itself may take the points of the crease to the other.
+    fn branch(&self, _on: &Box3) -> Option<Arc<dyn Map3>> {
+        None
+    }
+
+    /// Adds the surfaces on which the map is not smooth, and the boundary of its domain.
+    fn creases(&self, _out: &mut Creases3) {}
+
+    /// The inverse map, if there is a better one than [`NewtonInverse3`].
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        None
+    }
+
+    /// The cost of one evaluation, relative to that of a bend, for the [budget](pathwarp::budget). 1 or more.
+    fn work(&self) -> f64 {
+        1.0
+    }
+
+    /// The same map, whose searches spend from a budget what they take beyond [`work`](Map3::work), and find nothing once it is used up.
+    /// `None`: nothing is searched.
+    #[doc(hidden)]
+    fn within(&self, _budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        None
+    }
+}
+
+/// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
+impl<M: Map3 + ?Sized> Map3 for Arc<M> {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        (**self).jet(p)
+    }
+    fn point(&self, p: DVec3) -> DVec3 {
+        (**self).point(p)
+    }
+    fn jets(&self, ps: &[DVec3], out: &mut [Jet3]) {
+        (**self).jets(ps, out);
+    }
+    fn points(&self, ps: &mut [DVec3]) {
+        (**self).points(ps);
+    }
+    fn collineation(&self) -> Option<&Collineation> {
+        (**self).collineation()
+    }
+    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
+        (**self).fraction(on, most)
+    }
+    fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        (**self).branch(on)
+    }
+    fn creases(&self, out: &mut Creases3) {
+        (**self).creases(out);
+    }
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        (**self).inverse()
+    }
+    fn work(&self) -> f64 {
+        (**self).work()
+    }
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        (**self).within(budget)
+    }
+}
+
+// The first-order behaviour of a map of space at a point.
+
+/// Value and Jacobian of a map of space at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Jet3 {
+    /// The value F(x, y, z).
+    pub p: DVec3,
+    /// The Jacobian: its columns are ∂F/∂x, ∂F/∂y and ∂F/∂z.
+    pub d: DMat3,
+}
+
+impl Jet3 {
+    /// The jet of a map outside its domain.
+    pub const UNDEFINED: Self = Self { p: DVec3::NAN, d: DMat3::NAN };
+
+    /// The jet of the map that moves nothing.
+    #[must_use]
+    pub fn identity(p: DVec3) -> Self {
+        Self { p, d: DMat3::IDENTITY }
+    }
+
+    /// The determinant of the Jacobian: the local scale of volumes, negative where the map mirrors.
+    #[must_use]
+    pub fn det(&self) -> f64 {
+        self.d.determinant()
+    }
+
+    /// The jet of `outer ∘ self`, where `outer` is the jet of the outer map at `self.p`.
+    #[must_use]
+    pub fn then(&self, outer: &Self) -> Self {
+        Self { p: outer.p, d: outer.d * self.d }
+    }
+
+    /// The direction of the image of a surface's normal `n`: the cofactors of the Jacobian, det J · J⁻ᵀ, times `n`. Unlike the
+    /// inverse transpose it exists for a singular Jacobian too, and its sign follows the orientation of transformed triangles.
+    #[must_use]
+    pub fn normal(&self, n: DVec3) -> DVec3 {
+        let [a, b, c] = [self.d.x_axis, self.d.y_axis, self.d.z_axis];
+        b.cross(c) * n.x + c.cross(a) * n.y + a.cross(b) * n.z
+    }
+
+    /// Returns `true` if all twelve numbers are finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.p.is_finite() && self.d.is_finite()
+    }
+}
+
+// Creases: surfaces on which a map of space is not smooth, and the boundary of its domain.
+//
+// Both are level sets φ(x, y, z) = 0 in the source, so that a chain can pull the crease of a later map back through the earlier
+// maps, as φ ∘ F.
+
+/// A continuous function on space whose zero set is a crease.
+pub type Level3 = Arc<dyn Fn(DVec3) -> f64 + Send + Sync>;
+
+/// A crease: a level set and the behaviour there.
+#[derive(Clone)]
+pub struct Crease3 {
+    /// The level set. At an edge, the map is defined where it is positive.
+    pub level: Level3,
+    /// The behaviour of the map at it.
+    pub kind: CreaseKind,
+}
+
+impl fmt::Debug for Crease3 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Crease3").field("kind", &self.kind).finish_non_exhaustive()
+    }
+}
+
+/// The creases of a map.
+#[derive(Debug, Clone, Default)]
+pub struct Creases3 {
+    items: Vec<Crease3>,
+}
+
+impl Creases3 {
+    /// Adds a surface on which the derivative jumps.
+    pub fn kink(&mut self, level: impl Fn(DVec3) -> f64 + Send + Sync + 'static) {
+        self.push(Crease3 { level: Arc::new(level), kind: CreaseKind::Kink });
+    }
+
+    /// Adds a part of the domain's boundary: the map is defined where `level` is positive.
+    pub fn edge(&mut self, level: impl Fn(DVec3) -> f64 + Send + Sync + 'static) {
+        self.push(Crease3 { level: Arc::new(level), kind: CreaseKind::Edge });
+    }
+
+    /// Adds a crease.
+    pub fn push(&mut self, crease: Crease3) {
+        self.items.push(crease);
+    }
+
+    /// The creases, in the order they were added.
+    #[must_use]
+    pub fn items(&self) -> &[Crease3] {
+        &self.items
+    }
+
+    /// Returns `true` if the map is defined at `p`.
+    #[must_use]
+    pub fn defined_at(&self, p: DVec3) -> bool {
+        self.items.iter().all(|c| c.kind != CreaseKind::Edge || (c.level)(p) > 0.0)
+    }
+
+    /// Returns `true` if a crease separates `p` and `q`, or passes through one of them.
+    #[must_use]
+    pub fn separate(&self, p: DVec3, q: DVec3) -> bool {
+        self.items.iter().any(|c| (c.level)(p) * (c.level)(q) <= 0.0)
+    }
+}
+
+// Maps of space one after another.
+
+/// Maps one after another; the first is applied first. Neighbouring collineations are folded into one.
+#[derive(Clone, Default)]
+pub struct Chain3 {
+    steps: Vec<Arc<dyn Map3>>,
+}
+
+impl fmt::Debug for Chain3 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Chain3").field("steps", &self.steps.len()).finish_non_exhaustive()
+    }
+}
+
+impl Chain3 {
+    /// Appends a map.
+    pub fn push(&mut self, map: Arc<dyn Map3>) {
+        let folded = match (self.steps.last().and_then(|m| m.collineation()), map.collineation()) {
+            (Some(last), Some(next)) => Some(last.then(next)),
+            _ => None,
+        };
+        match folded {
+            Some(both) => {
+                self.steps.pop();
+                self.steps.push(Arc::new(both));
+            }
+            None => self.steps.push(map),
+        }
+    }
+
+    /// The maps that are left after folding.
+    #[must_use]
+    pub fn steps(&self) -> &[Arc<dyn Map3>] {
+        &self.steps
+    }
+}
+
+impl Map3 for Chain3 {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        self.steps.iter().fold(Jet3::identity(p), |jet, s| jet.then(&s.jet(jet.p)))
+    }
+
+    fn point(&self, p: DVec3) -> DVec3 {
+        self.steps.iter().fold(p, |p, s| s.point(p))
+    }
+
+    fn points(&self, ps: &mut [DVec3]) {
+        for s in &self.steps {
+            s.points(ps);
+        }
+    }
+
+    fn collineation(&self) -> Option<&Collineation> {
+        match &self.steps[..] {
+            [only] => only.collineation(),
+            _ => None,
+        }
+    }
+
+    fn creases(&self, out: &mut Creases3) {
+        let mut before = Self::default();
+        for s in &self.steps {
+            let mut own = Creases3::default();
+            s.creases(&mut own);
+            for Crease3 { level, kind } in own.items().iter().cloned() {
+                let first = before.clone();
+                out.push(Crease3 { level: Arc::new(move |p| level(first.point(p))), kind });
+            }
+            before.steps.push(Arc::clone(s));
+        }
+    }
+
+    fn work(&self) -> f64 {
+        self.steps.iter().map(Map3::work).sum::<f64>().max(1.0)
+    }
+
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        let within: Vec<Option<Arc<dyn Map3>>> = self.steps.iter().map(|s| s.within(budget)).collect();
+        within.iter().any(Option::is_some).then(|| {
+            let steps = within.into_iter().zip(&self.steps).map(|(within, s)| within.unwrap_or_else(|| Arc::clone(s)));
+            Arc::new(Self { steps: steps.collect() }) as Arc<dyn Map3>
+        })
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        let mut out = Self::default();
+        for s in self.steps.iter().rev() {
+            out.push(s.inverse()?);
+        }
+        Some(Arc::new(out))
+    }
+}

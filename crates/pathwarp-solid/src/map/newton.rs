@@ -10,9 +10,9 @@
 //! If the map folds, a point can have several preimages. Those in the *core* of the box, the part that the map is designed for,
 //! take precedence; outside the core, only those with the orientation of the core's middle count, and of them the nearest.
 
-use super::jet::Jet3;
-use super::traits::Map3;
-use crate::box3::Box3;
+use crate::map::Jet3;
+use crate::map::Map3;
+use crate::settings::Box3;
 use glam::{DMat3, DVec3};
 use pathwarp::budget::Budget;
 use pathwarp::budget::{Search, is_over};

@@ -1,7 +1,7 @@
 //! Polynomials in three variables as lists of terms: the form in which maps say that they are polynomial or rational.
 
 use super::local::Local;
-use crate::box3::Box3;
+use crate::settings::Box3;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeMap;
 

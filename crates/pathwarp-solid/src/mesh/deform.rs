@@ -1,12 +1,13 @@
 //! A mesh under a map: vertices by value, normals by the cofactors of the Jacobian.
 
-use super::model::{Corner, Mesh, NONE};
-use crate::box3::Box3;
+use super::{Corner, Mark, Mesh, MeshError, NONE, PolygonKind};
 use crate::map::{Creases3, Jet3, Map3};
+use crate::settings::Box3;
 use glam::DVec3;
+use pathwarp::budget::{Budget, cost};
 use pathwarp::map::CreaseKind;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Vertices that one thread takes at a time.
 const CHUNK: usize = 1 << 14;
@@ -163,4 +164,317 @@ fn turn_normals(mesh: &mut Mesh, before: &[DVec3], map: &dyn Map3) {
         turned.collect()
     };
     mesh.normals = pairs.par_chunks(CHUNK).flat_map_iter(turn).collect();
+}
+
+// Subdivides a mesh until its faces follow their images under a map.
+//
+// An edge is halved while the map bends it away from its chord by more than the tolerance, at its quarters or its middle; a face
+// whose middle bulges gets all its edges halved. The decision depends on the places of an edge's ends alone, so that faces that
+// share them are split alike and the mesh has no cracks, even where a file repeats vertices along a seam. Faces without a
+// split edge stay as they are; others become triangles.
+
+/// Most rounds of halving, which give at most 2¹⁶ parts of an edge.
+const MOST_ROUNDS: usize = 16;
+
+/// Subdivides a mesh so that its image under `map` is within `tolerance` of the exact image of its surface, as far as the edges'
+/// quarters and middles and the faces' middles tell.
+///
+/// # Errors
+/// More evaluations of the map, or more edges, than the limits allow.
+pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) -> Result<(), MeshError> {
+    let mut work = Refining { images: mesh.positions.clone(), map, tolerance, budget, close: HashSet::new() };
+    work.map.points(&mut work.images);
+    for _ in 0..MOST_ROUNDS {
+        let split = work.edges_to_split(mesh)?;
+        if split.is_empty() {
+            break;
+        }
+        budget.spend(cost::SEGMENT * (PER_SPLIT * halved(mesh, &split)) as f64)?;
+        work.split(mesh, &split);
+    }
+    Ok(())
+}
+
+/// Segments of the mesh for the side of a polygon that is halved: half of it, and one across the face, which are in turn looked at in the
+/// next round.
+const PER_SPLIT: u64 = 2;
+
+/// The sides of polygons that are to be halved: an edge may belong to any number of them. A face that is cut becomes triangles, whose
+/// sides count as well.
+fn halved(mesh: &Mesh, split: &HashSet<Edge>) -> u64 {
+    let of = |corners: &[Corner]| {
+        let next = corners.iter().cycle().skip(1);
+        let sides = corners.iter().zip(next).filter(|(a, b)| split.contains(&edge(a.vertex, b.vertex))).count();
+        if sides > 0 { sides + corners.len().saturating_sub(3) } else { 0 }
+    };
+    mesh.polygons().map(|(_, corners)| of(corners) as u64).sum()
+}
+
+type Edge = (u32, u32);
+
+fn edge(a: u32, b: u32) -> Edge {
+    (a.min(b), a.max(b))
+}
+
+struct Refining<'a> {
+    /// The images of the vertices.
+    images: Vec<DVec3>,
+    map: &'a dyn Map3,
+    tolerance: f64,
+    budget: &'a Budget,
+    /// Edges that are known to be close enough.
+    close: HashSet<Edge>,
+}
+
+impl Refining<'_> {
+    /// The edges that are too far from their images.
+    fn edges_to_split(&mut self, mesh: &Mesh) -> Result<HashSet<Edge>, MeshError> {
+        let mut split = HashSet::new();
+        for (kind, corners) in mesh.polygons() {
+            let edges = match kind {
+                PolygonKind::Face => corners.len(),
+                PolygonKind::Line => corners.len().saturating_sub(1),
+                PolygonKind::Points => 0,
+            };
+            for i in 0..edges {
+                let e = edge(corners[i].vertex, corners[(i + 1) % corners.len()].vertex);
+                if e.0 == e.1 || split.contains(&e) || self.close.contains(&e) {
+                    continue;
+                }
+                if self.bends(mesh, e)? {
+                    split.insert(e);
+                } else {
+                    self.close.insert(e);
+                }
+            }
+        }
+        // A bulge matters only where no edge tells of it.
+        let mut bulging = Vec::new();
+        for corners in mesh.faces() {
+            let edges = || (0..corners.len()).map(|i| edge(corners[i].vertex, corners[(i + 1) % corners.len()].vertex));
+            if edges().all(|e| !split.contains(&e)) && self.bulges(mesh, corners)? {
+                bulging.extend(edges());
+            }
+        }
+        split.extend(bulging);
+        Ok(split)
+    }
+
+    fn bends(&self, mesh: &Mesh, (i, j): Edge) -> Result<bool, MeshError> {
+        let ends = [mesh.positions[i as usize], mesh.positions[j as usize]];
+        // The same order for every copy of the edge.
+        let swap = ends[0].to_array().partial_cmp(&ends[1].to_array()) == Some(std::cmp::Ordering::Greater);
+        let [a, b] = if swap { [ends[1], ends[0]] } else { ends };
+        let [p, q] = (if swap { [j, i] } else { [i, j] }).map(|v| self.images[v as usize]);
+        self.budget.spend(3.0)?;
+        Ok([0.25, 0.5, 0.75].iter().any(|t| from_chord(p, q, self.map.point(a.lerp(b, *t))) > self.tolerance))
+    }
+
+    fn bulges(&self, mesh: &Mesh, corners: &[Corner]) -> Result<bool, MeshError> {
+        self.budget.spend(1.0)?;
+        let n = corners.len() as f64;
+        let mean = |of: &[DVec3]| corners.iter().map(|c| of[c.vertex as usize]).sum::<DVec3>() / n;
+        let (middle, image) = (mean(&mesh.positions), mean(&self.images));
+        let at = |c: &Corner| self.images[c.vertex as usize];
+        let normal = corners.windows(2).map(|w| (at(&w[0]) - image).cross(at(&w[1]) - image)).sum::<DVec3>();
+        Ok((self.map.point(middle) - image).dot(normal.normalize_or_zero()).abs() > self.tolerance)
+    }
+
+    fn split(&mut self, mesh: &mut Mesh, split: &HashSet<Edge>) {
+        let mut out = Mesh {
+            positions: std::mem::take(&mut mesh.positions),
+            colors: std::mem::take(&mut mesh.colors),
+            normals: std::mem::take(&mut mesh.normals),
+            uvs: std::mem::take(&mut mesh.uvs),
+            left_out: std::mem::take(&mut mesh.left_out),
+            assets: mesh.assets.take(),
+            ..Mesh::default()
+        };
+        let old = out.positions.len();
+        let mut halves = Halves::default();
+        let mut marks = std::mem::take(&mut mesh.marks).into_iter().peekable();
+        for (n, (kind, corners)) in mesh.polygons().enumerate() {
+            while let Some((_, mark)) = marks.next_if(|(first, _)| *first as usize <= n) {
+                push_mark(&mut out, mark);
+            }
+            let is_split = |i: usize| split.contains(&edge(corners[i].vertex, corners[(i + 1) % corners.len()].vertex));
+            match kind {
+                PolygonKind::Face if (0..corners.len()).any(is_split) => {
+                    for t in self.triangles(corners) {
+                        let marked: [bool; 3] =
+                            std::array::from_fn(|i| split.contains(&edge(t[i].vertex, t[(i + 1) % 3].vertex)));
+                        triangle(&mut out, &mut halves, t, marked);
+                    }
+                }
+                PolygonKind::Line => {
+                    let mut line = Vec::with_capacity(2 * corners.len());
+                    for (i, c) in corners.iter().enumerate() {
+                        line.push(*c);
+                        if i + 1 < corners.len() && is_split(i) {
+                            line.push(halves.middle(&mut out, *c, corners[i + 1]));
+                        }
+                    }
+                    out.push(kind, line);
+                }
+                _ => out.push(kind, corners.iter().copied()),
+            }
+        }
+        marks.for_each(|(_, mark)| push_mark(&mut out, mark));
+        let mut images = out.positions[old..].to_vec();
+        self.map.points(&mut images);
+        self.images.append(&mut images);
+        *mesh = out;
+    }
+
+    /// A face as triangles. A quad is cut along the diagonal that is shorter in the image.
+    fn triangles(&self, corners: &[Corner]) -> Vec<[Corner; 3]> {
+        let at = |i: usize| self.images[corners[i].vertex as usize];
+        if let [a, b, c, d] = *corners
+            && at(1).distance_squared(at(3)) < at(0).distance_squared(at(2))
+        {
+            return vec![[b, c, d], [b, d, a]];
+        }
+        corners.windows(2).skip(1).map(|w| [corners[0], w[0], w[1]]).collect()
+    }
+}
+
+fn push_mark(mesh: &mut Mesh, mark: Mark) {
+    mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), mark));
+}
+
+/// The middles of edges, made once for each pair of indices.
+#[derive(Default)]
+struct Halves {
+    vertices: HashMap<Edge, u32>,
+    uvs: HashMap<Edge, u32>,
+    normals: HashMap<Edge, u32>,
+}
+
+impl Halves {
+    /// The corner in the middle between two.
+    fn middle(&mut self, mesh: &mut Mesh, a: Corner, b: Corner) -> Corner {
+        let colored = mesh.colors.len() == mesh.positions.len();
+        let vertex = *self.vertices.entry(edge(a.vertex, b.vertex)).or_insert_with(|| {
+            let (i, j) = (a.vertex as usize, b.vertex as usize);
+            if colored {
+                let (p, q) = (mesh.colors[i], mesh.colors[j]);
+                mesh.colors.push(std::array::from_fn(|k| 0.5 * (p[k] + q[k])));
+            }
+            let middle = 0.5 * (mesh.positions[i] + mesh.positions[j]);
+            push(&mut mesh.positions, middle)
+        });
+        let between = |i: u32, j: u32| i != NONE && j != NONE;
+        let uv = if between(a.uv, b.uv) {
+            *self.uvs.entry(edge(a.uv, b.uv)).or_insert_with(|| {
+                let (p, q) = (mesh.uvs[a.uv as usize], mesh.uvs[b.uv as usize]);
+                push(&mut mesh.uvs, std::array::from_fn(|k| 0.5 * (p[k] + q[k])))
+            })
+        } else {
+            NONE
+        };
+        let normal = if between(a.normal, b.normal) {
+            *self.normals.entry(edge(a.normal, b.normal)).or_insert_with(|| {
+                let (p, q) = (mesh.normals[a.normal as usize], mesh.normals[b.normal as usize]);
+                push(&mut mesh.normals, (p + q).try_normalize().unwrap_or(p))
+            })
+        } else {
+            NONE
+        };
+        Corner { vertex, uv, normal }
+    }
+}
+
+/// Appends a value, and returns its index.
+fn push<T>(list: &mut Vec<T>, value: T) -> u32 {
+    list.push(value);
+    u32::try_from(list.len() - 1).unwrap_or(NONE)
+}
+
+/// Appends a triangle whose marked edges, each from a corner to the next, are halved.
+fn triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], marked: [bool; 3]) {
+    // Turn it until a lone marked edge is the first, and a lone unmarked one the last.
+    let count = marked.iter().filter(|m| **m).count();
+    let turn = match count {
+        1 => marked.iter().position(|m| *m),
+        2 => marked.iter().position(|m| !*m).map(|i| i + 1),
+        _ => None,
+    };
+    let turn = turn.unwrap_or(0);
+    let [a, b, c] = std::array::from_fn(|i| t[(i + turn) % 3]);
+    let add = |corners: [Corner; 3], mesh: &mut Mesh| mesh.push(PolygonKind::Face, corners);
+    match count {
+        0 => add([a, b, c], mesh),
+        1 => {
+            let ab = halves.middle(mesh, a, b);
+            add([a, ab, c], mesh);
+            add([ab, b, c], mesh);
+        }
+        2 => {
+            let (ab, bc) = (halves.middle(mesh, a, b), halves.middle(mesh, b, c));
+            add([ab, b, bc], mesh);
+            add([a, ab, bc], mesh);
+            add([a, bc, c], mesh);
+        }
+        _ => {
+            let (ab, bc, ca) = (halves.middle(mesh, a, b), halves.middle(mesh, b, c), halves.middle(mesh, c, a));
+            for corners in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+                add(corners, mesh);
+            }
+        }
+    }
+}
+
+/// Distance of `q` from the segment between two points.
+fn from_chord(a: DVec3, b: DVec3, q: DVec3) -> f64 {
+    let chord = b - a;
+    let n = chord.length_squared();
+    let t = if n > 0.0 { ((q - a).dot(chord) / n).clamp(0.0, 1.0) } else { 0.0 };
+    (q - a - chord * t).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::deform::{Bend3, Spine3};
+    use crate::mesh::{deform, obj, topology};
+    use crate::settings::Box3;
+    use pathwarp::budget::{Limit, Limits};
+
+    /// A bar of quads with texture coordinates: 100 × 10 × 10, one face on each side.
+    const BAR: &str = "v 0 0 0\nv 100 0 0\nv 100 10 0\nv 0 10 0\nv 0 0 10\nv 100 0 10\nv 100 10 10\nv 0 10 10\nvt 0 0\nvt 1 0\nvt 1 1\n\
+                       vt 0 1\no bar\nf 4/1 3/2 2/3 1/4\nf 5/1 6/2 7/3 8/4\nf 1/1 2/2 6/3 5/4\nf 2 3 7 6\ng top\nf 3 4 8 7\nf 4 1 5 8\n";
+
+    #[test]
+    fn a_twisted_bar_follows_the_map_and_stays_closed() {
+        let frame = Box3::new(DVec3::ZERO, DVec3::new(100.0, 10.0, 10.0));
+        let map = Bend3::new(frame, Spine3::Twist(2.0)).build().unwrap().map;
+        let mut faces = 0;
+        for tolerance in [1.0, 0.1, 0.01] {
+            let mut mesh = obj::read(BAR.as_bytes()).unwrap();
+            let budget = Budget::new(Limits::default());
+            refine(&mut mesh, &*map, tolerance, &budget).unwrap();
+            deform(&mut mesh, &*map).unwrap();
+            let t = topology(&mesh);
+            assert!(t.is_closed() && t.euler() == 2 && t.faces > faces, "{tolerance}: {t:?}");
+            faces = t.faces;
+            // A twist keeps the volume.
+            assert!((t.volume / 10_000.0 - 1.0).abs() < 0.1 * tolerance.sqrt(), "{tolerance}: {}", t.volume);
+            assert!(
+                mesh.uvs.iter().all(|uv| (0.0..=1.0).contains(&uv[0]))
+                    && mesh.name_of(mesh.polygons.len() - 1) == "top"
+            );
+        }
+    }
+
+    #[test]
+    fn straight_faces_stay_quads_and_too_fine_a_tolerance_is_refused() {
+        let frame = Box3::new(DVec3::ZERO, DVec3::new(100.0, 10.0, 10.0));
+        let taper = Bend3::new(frame, Spine3::Taper(0.5)).build().unwrap().map;
+        let mut mesh = obj::read(BAR.as_bytes()).unwrap();
+        refine(&mut mesh, &*taper, 0.01, &Budget::new(Limits::default())).unwrap();
+        assert_eq!(mesh, obj::read(BAR.as_bytes()).unwrap());
+        let twist = Bend3::new(frame, Spine3::Twist(2.0)).build().unwrap().map;
+        let budget = Budget::new(Limits::default().with(Limit::Work, 1e4));
+        assert!(refine(&mut mesh, &*twist, 1e-6, &budget).unwrap_err().to_string().contains("`work`"));
+    }
 }

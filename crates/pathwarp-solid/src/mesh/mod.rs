@@ -1,24 +1,356 @@
 //! Polygon meshes: vertices, faces of any number of corners, groups, materials, texture coordinates and normals.
 
-mod assets;
 mod deform;
-mod error;
-mod extrude;
 mod flat;
 pub mod gltf;
-mod model;
 pub mod obj;
 pub mod ply;
-mod refine;
 pub mod stl;
-mod topology;
-mod unify;
 
-pub use assets::Assets;
-pub use deform::{Deformed, Undefined3, deform};
-pub use error::{MeshError, MeshFault};
-pub use extrude::extrude;
-pub use flat::FlatShape;
-pub use model::{Corner, Mark, Mesh, NONE, Polygon, PolygonKind};
-pub use refine::refine;
-pub use topology::{Topology, topology};
+use crate::settings::Box3;
+use glam::DVec3;
+use pathwarp::budget::Exceeded;
+use serde_json::{Map, Value};
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::Arc;
+use thiserror::Error;
+
+pub use deform::{Deformed, Undefined3, deform, refine};
+pub use flat::{FlatShape, extrude};
+
+// The mesh as data.
+
+/// An index that is not there.
+pub const NONE: u32 = u32::MAX;
+
+/// A corner of a polygon: indices of its vertex, texture coordinates and normal. The last two may be [`NONE`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Corner {
+    /// Index into [`Mesh::positions`].
+    pub vertex: u32,
+    /// Index into [`Mesh::uvs`].
+    pub uv: u32,
+    /// Index into [`Mesh::normals`].
+    pub normal: u32,
+}
+
+/// The kind of a polygon.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PolygonKind {
+    /// A face.
+    Face,
+    /// A polyline.
+    Line,
+    /// Single points.
+    Points,
+}
+
+/// A face, polyline or list of points: the corners from the end of the previous polygon to `end`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Polygon {
+    /// Index after its last corner in [`Mesh::corners`].
+    pub end: u32,
+    /// Its kind.
+    pub kind: PolygonKind,
+}
+
+/// Something that holds from a polygon on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Mark {
+    /// An object begins.
+    Object(String),
+    /// The groups change.
+    Group(String),
+    /// The material changes.
+    Material(String),
+    /// The smoothing group changes.
+    Smoothing(String),
+    /// A file of materials is named.
+    Library(String),
+}
+
+/// A mesh of polygons.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    /// Vertices.
+    pub positions: Vec<DVec3>,
+    /// Colours of the vertices, red, green, blue and opacity: none, or one for each vertex.
+    pub colors: Vec<[f64; 4]>,
+    /// Normals.
+    pub normals: Vec<DVec3>,
+    /// Texture coordinates; the third is 0 unless the file has it.
+    pub uvs: Vec<[f64; 3]>,
+    /// The corners of all polygons.
+    pub corners: Vec<Corner>,
+    /// The polygons, in order.
+    pub polygons: Vec<Polygon>,
+    /// Marks with the index of the first polygon that they hold for, in order.
+    pub marks: Vec<(u32, Mark)>,
+    /// Materials of a glTF file, to which the marks refer by name.
+    pub assets: Option<Arc<Assets>>,
+    /// What was in the file and is not in the mesh, each a phrase for a warning.
+    pub left_out: Vec<String>,
+}
+
+impl Mesh {
+    /// Returns `true` if vertices are translucent.
+    #[must_use]
+    pub fn is_translucent(&self) -> bool {
+        self.colors.iter().any(|c| c[3] != 1.0)
+    }
+
+    /// The bounding box of the vertices; `None` if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Box3> {
+        Box3::around(self.positions.iter().copied())
+    }
+
+    /// The corners of each polygon with its kind.
+    pub fn polygons(&self) -> impl Iterator<Item = (PolygonKind, &[Corner])> {
+        let mut start = 0;
+        self.polygons.iter().map(move |p| {
+            let own = start..p.end as usize;
+            start = own.end;
+            (p.kind, self.corners.get(own).unwrap_or_default())
+        })
+    }
+
+    /// The corners of each face.
+    pub fn faces(&self) -> impl Iterator<Item = &[Corner]> {
+        self.polygons().filter(|(kind, _)| *kind == PolygonKind::Face).map(|(_, corners)| corners)
+    }
+
+    /// Appends a polygon.
+    pub fn push(&mut self, kind: PolygonKind, corners: impl IntoIterator<Item = Corner>) {
+        self.corners.extend(corners);
+        self.polygons.push(Polygon { end: u32::try_from(self.corners.len()).unwrap_or(NONE), kind });
+    }
+
+    /// The faces as triangles: fans from the first corner.
+    pub fn triangles(&self) -> impl Iterator<Item = [Corner; 3]> {
+        self.faces().flat_map(|f| f.windows(2).skip(1).map(|w| [f[0], w[0], w[1]]))
+    }
+
+    /// The name of the object or group that a polygon belongs to; empty if it has none.
+    #[must_use]
+    pub fn name_of(&self, polygon: usize) -> &str {
+        let before = self.marks.iter().take_while(|(first, _)| *first as usize <= polygon);
+        let name = before.filter_map(|(_, m)| match m {
+            Mark::Object(name) | Mark::Group(name) => Some(name.as_str()),
+            _ => None,
+        });
+        name.last().unwrap_or_default()
+    }
+}
+
+// The topology of a mesh: whether its surface is closed and consistently oriented, its Euler number and volume.
+
+/// The topology and the measures of a mesh's faces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Topology {
+    /// Vertices that belong to a face. Vertices at the same place count as one.
+    pub vertices: usize,
+    /// Edges.
+    pub edges: usize,
+    /// Faces.
+    pub faces: usize,
+    /// Edges of a single face.
+    pub open_edges: usize,
+    /// Edges of more than two faces, or of two that run along it in the same direction.
+    pub bad_edges: usize,
+    /// Volume inside a closed, consistently oriented surface, positive if faces are counter-clockwise seen from outside.
+    pub volume: f64,
+    /// Area of the surface.
+    pub area: f64,
+}
+
+impl Topology {
+    /// Returns `true` if the surface has no boundary and every edge joins two faces of one orientation.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.faces > 0 && self.open_edges == 0 && self.bad_edges == 0
+    }
+
+    /// V − E + F: 2 for every ball, 0 for every ring.
+    #[must_use]
+    pub fn euler(&self) -> i64 {
+        let signed = |n: usize| i64::try_from(n).unwrap_or(i64::MAX);
+        signed(self.vertices) - signed(self.edges) + signed(self.faces)
+    }
+}
+
+/// Examines a mesh. Vertices at the same place are taken for one: many files repeat them along seams.
+#[must_use]
+pub fn topology(mesh: &Mesh) -> Topology {
+    // Adding 0 makes −0 and 0 the same place.
+    let key = |p: &DVec3| (*p + 0.0).to_array().map(f64::to_bits);
+    let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(mesh.positions.len());
+    let place: Vec<u32> = mesh
+        .positions
+        .iter()
+        .map(|p| {
+            let next = u32::try_from(places.len()).unwrap_or(u32::MAX);
+            *places.entry(key(p)).or_insert(next)
+        })
+        .collect();
+    let mut used = vec![false; places.len()];
+    // How often each edge is run along forwards and backwards.
+    let mut edges: HashMap<(u32, u32), [u32; 2]> = HashMap::new();
+    let (mut faces, mut volume, mut area) = (0, 0.0, 0.0);
+    let origin = mesh.bounds().map_or(DVec3::ZERO, |b| b.center());
+    for face in mesh.faces() {
+        faces += 1;
+        for (i, c) in face.iter().enumerate() {
+            let next = face[(i + 1) % face.len()];
+            let (a, b) = (place[c.vertex as usize], place[next.vertex as usize]);
+            used[a as usize] = true;
+            if a != b {
+                edges.entry((a.min(b), a.max(b))).or_default()[usize::from(a > b)] += 1;
+            }
+        }
+    }
+    for t in mesh.triangles() {
+        let [a, b, c] = t.map(|c| mesh.positions[c.vertex as usize] - origin);
+        volume += a.dot(b.cross(c)) / 6.0;
+        area += 0.5 * (b - a).cross(c - a).length();
+    }
+    Topology {
+        vertices: used.iter().filter(|u| **u).count(),
+        edges: edges.len(),
+        faces,
+        open_edges: edges.values().filter(|n| n[0] + n[1] == 1).count(),
+        bad_edges: edges.values().filter(|n| n[0] + n[1] > 1 && **n != [1, 1]).count(),
+        volume,
+        area,
+    }
+}
+
+// One index for each corner, as PLY has it: a vertex with its texture coordinates and normal.
+
+/// The different corners of a mesh, and the number of each corner's.
+struct Unified {
+    corners: Vec<Corner>,
+    index: Vec<u32>,
+}
+
+/// Numbers the different corners. If every vertex has one, they are numbered like the vertices, also those without a polygon.
+fn unify(mesh: &Mesh) -> Unified {
+    let bare = |v: usize| Corner { vertex: u32::try_from(v).unwrap_or(NONE), uv: NONE, normal: NONE };
+    let mut corners: Vec<Corner> = (0..mesh.positions.len()).map(bare).collect();
+    let mut taken = vec![false; corners.len()];
+    let mut others: HashMap<Corner, u32> = HashMap::new();
+    let mut index = Vec::with_capacity(mesh.corners.len());
+    for c in &mesh.corners {
+        let v = c.vertex as usize;
+        if !taken[v] && *c != bare(v) {
+            (taken[v], corners[v]) = (true, *c);
+        }
+        // A corner of a line has neither, and takes what its vertex has.
+        let is_bare = *c == bare(v);
+        index.push(if is_bare || corners[v] == *c {
+            c.vertex
+        } else {
+            *others.entry(*c).or_insert_with(|| {
+                corners.push(*c);
+                u32::try_from(corners.len() - 1).unwrap_or(NONE)
+            })
+        });
+    }
+    Unified { corners, index }
+}
+
+// The parts of a glTF file that a map leaves alone: materials, textures, samplers and pictures.
+
+/// Materials with all they refer to.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Assets {
+    /// The arrays `materials`, `textures`, `samplers`, `images` and `extensionsUsed`, as they were.
+    pub(crate) json: Map<String, Value>,
+    /// The names of the materials, made different.
+    pub(crate) materials: Vec<String>,
+    /// The bytes of pictures that were in a buffer, by the number of the picture.
+    pub(crate) pictures: Vec<(usize, Vec<u8>)>,
+}
+
+/// The arrays that are kept.
+pub(crate) const KEPT: [&str; 5] = ["materials", "textures", "samplers", "images", "extensionsUsed"];
+
+impl Assets {
+    /// Returns `true` if there are no materials.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.materials.is_empty()
+    }
+
+    /// Takes the assets from a file's JSON.
+    pub(crate) fn of(root: &Value) -> Self {
+        let mut out = Self::default();
+        for key in KEPT {
+            if let Some(v) = root.get(key) {
+                out.json.insert(key.to_owned(), v.clone());
+            }
+        }
+        let materials = root.get("materials").and_then(Value::as_array);
+        for (i, m) in materials.into_iter().flatten().enumerate() {
+            let name = m.get("name").and_then(Value::as_str).unwrap_or_default();
+            let name = if name.is_empty() { format!("material {}", i + 1) } else { name.to_owned() };
+            let taken = out.materials.contains(&name);
+            out.materials.push(if taken { format!("{name} {}", i + 1) } else { name });
+        }
+        out
+    }
+}
+
+// Errors of reading a mesh.
+
+/// The reason why a file is not a mesh, with its place.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{}{problem}", self.place())]
+pub struct MeshError {
+    /// The line, counted from 1, if the file has lines.
+    pub line: Option<usize>,
+    /// The problem.
+    pub problem: MeshFault,
+}
+
+/// A fault of a mesh file.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum MeshFault {
+    /// Text that says what is wrong.
+    Text(String),
+    /// More work than a limit allows.
+    Limit(Exceeded),
+}
+
+impl fmt::Display for MeshFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(t) => f.write_str(t),
+            Self::Limit(e) => write!(f, "the mesh takes {e}"),
+        }
+    }
+}
+
+impl MeshError {
+    /// An error at a line.
+    pub(crate) fn at(line: usize, problem: impl Into<String>) -> Self {
+        Self { line: Some(line), problem: MeshFault::Text(problem.into()) }
+    }
+
+    /// An error about the whole file.
+    pub(crate) fn whole(problem: impl Into<String>) -> Self {
+        Self { line: None, problem: MeshFault::Text(problem.into()) }
+    }
+
+    fn place(&self) -> String {
+        self.line.map_or_else(String::new, |n| format!("line {n}: "))
+    }
+}
+
+impl From<Exceeded> for MeshError {
+    fn from(e: Exceeded) -> Self {
+        Self { line: None, problem: MeshFault::Limit(e) }
+    }
+}

@@ -3,8 +3,8 @@
 //! STL has triangles without shared vertices, in single precision; corners at the same place become one vertex. The numbers of
 //! a file are checked against its length before it is read.
 
-use super::error::MeshError;
-use super::model::{Corner, Mesh, NONE, PolygonKind};
+use crate::mesh::MeshError;
+use crate::mesh::{Corner, Mesh, NONE, PolygonKind};
 use glam::DVec3;
 use std::io::Cursor;
 use stl_io::{Normal, Triangle, Vertex};

@@ -1,9 +1,9 @@
 //! Bézier patches as text (`.bpt`), as programs of curve and surface design store Newell's teapot: the number of patches, then for
 //! each its two degrees and its control points `x y z`, (m + 1)·(n + 1) of them, one a line, the second index fastest.
 
-use super::bezier::MAX_DEGREE;
 use super::surface::Surface;
 use crate::mesh::MeshError;
+use crate::patch::surface::MAX_DEGREE;
 use glam::DVec3;
 use std::fmt::Write as _;
 

@@ -1,7 +1,7 @@
 //! The curves on a patch along which the derivative of a map jumps, as graphs over u where they are graphs.
 
-use super::bezier::BezierPatch;
 use crate::map::{Creases3, Jet3, Level3, Map3};
+use crate::patch::surface::BezierPatch;
 use glam::{DMat3, DVec3};
 use pathwarp::map::CreaseKind;
 

@@ -1,8 +1,8 @@
 //! Rational patches and NURBS surfaces as JSON, with trimming curves; `docs/solid.md` describes it.
 
-use super::knots;
 use super::surface::{Surface, TrimCurve};
 use crate::mesh::MeshError;
+use crate::patch::surface;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +51,7 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     for (n, entry) in file.surfaces.into_iter().enumerate() {
         let ones = |given: Option<Vec<f64>>, n: usize| given.unwrap_or_else(|| vec![1.0; n]);
         // The degrees are checked below; here they must not overflow.
-        let default = |d: usize| knots::single(d.min(usize::from(u8::MAX)), [0.0, 1.0]);
+        let default = |d: usize| surface::single(d.min(usize::from(u8::MAX)), [0.0, 1.0]);
         let curve = |c: Curve| TrimCurve {
             degree: c.degree,
             knots: c.knots.unwrap_or_else(|| default(c.degree)),
@@ -85,14 +85,14 @@ pub fn write(surfaces: &[Surface]) -> Result<String, String> {
     let weights = |w: &[f64]| w.iter().any(|w| *w != 1.0).then(|| w.to_vec());
     let curve = |c: &TrimCurve| Curve {
         degree: c.degree,
-        knots: (c.knots != knots::single(c.degree, [0.0, 1.0])).then(|| c.knots.clone()),
+        knots: (c.knots != surface::single(c.degree, [0.0, 1.0])).then(|| c.knots.clone()),
         points: c.points.clone(),
         weights: weights(&c.weights),
     };
     let entry = |s: &Surface| Entry {
         name: s.name.clone(),
         degree: s.degree,
-        knots: (s.knots != s.degree.map(|d| knots::single(d, [0.0, 1.0]))).then(|| s.knots.clone()),
+        knots: (s.knots != s.degree.map(|d| surface::single(d, [0.0, 1.0]))).then(|| s.knots.clone()),
         points: s.points.iter().map(DVec3::to_array).collect(),
         weights: weights(&s.weights),
         trims: s.trims.iter().map(|l| l.iter().map(curve).collect()).collect(),

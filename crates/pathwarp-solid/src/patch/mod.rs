@@ -1,24 +1,178 @@
 //! Curved surfaces: Bézier patches and NURBS, rational or not, with trimming curves; their files, their exact images, and refitting
 //! where an exact image would be of too high a degree.
 
-mod bernstein;
-mod bezier;
 pub mod bpt;
-mod compose;
 mod crossing;
 mod cut;
-mod deform;
 pub mod json;
-mod knots;
-mod layers;
 mod part;
 mod refit;
-mod side;
 mod surface;
 mod tessellate;
 mod trims;
 
-pub use bezier::{BezierPatch, MAX_DEGREE};
-pub use deform::{DeformedPatches, PatchError, deform_patches};
-pub use surface::{Surface, TrimCurve};
+use crate::map::{Chain3, Creases3, Map3};
+use cut::Cutter;
+use glam::DVec3;
+use part::Sided;
+use pathwarp::budget::{Budget, Exceeded};
+use refit::{INSIDE, MOST_CELLS};
+use thiserror::Error;
+
+pub use surface::{BezierPatch, MAX_DEGREE, Surface, TrimCurve};
 pub use tessellate::{tessellate, tessellate_image};
+
+// Surfaces under a chain of maps: exactly where the degree allows it, otherwise refitted.
+
+/// Counts of deformed surfaces, and the largest error.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DeformedPatches {
+    /// Surfaces whose image is exact.
+    pub exact: usize,
+    /// Surfaces that were refitted by bicubic patches.
+    pub refitted: usize,
+    /// Those of them that a crease crosses: they are replaced by parts, of which some are exact.
+    pub cut: usize,
+    /// The largest distance between those and their exact images that was measured.
+    pub distance: f64,
+    /// Places of a grid on the surfaces at which the map turns space inside out.
+    pub folded: usize,
+    /// The first of them, before the map.
+    pub folded_at: Option<DVec3>,
+    /// A place on a surface at which the map jumps, before the map.
+    pub torn_at: Option<DVec3>,
+}
+
+/// The reason why surfaces have no image.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PatchError {
+    /// The map is not defined at a point of a surface.
+    #[error("surface {} at {at} has no image", .surface + 1)]
+    Undefined {
+        /// The surface's index.
+        surface: usize,
+        /// The point, before the map.
+        at: DVec3,
+    },
+    /// More work than a limit allows.
+    #[error("the surfaces take {0}")]
+    Limit(#[from] Exceeded),
+}
+
+/// Replaces surfaces by their images. Those that are not exact are within `tolerance` of the image at equal parameters, if that
+/// is reached with 64 cells along a patch; [`DeformedPatches::distance`] tells. A surface that a crease crosses is replaced by its
+/// parts, cut along the crease.
+///
+/// # Errors
+/// A place without image on a grid of 8 × 8 points of a patch, or more evaluations than the limit allows.
+pub fn deform_patches(
+    surfaces: &mut Vec<Surface>,
+    map: &Chain3,
+    tolerance: f64,
+    budget: &Budget,
+) -> Result<DeformedPatches, PatchError> {
+    let mut out = DeformedPatches::default();
+    let mut creases = Creases3::default();
+    map.creases(&mut creases);
+    let levels = crossing::levels(&creases);
+    let cutter = Cutter { map, levels: &levels, tolerance, budget };
+    let mut images: Vec<Vec<Surface>> = Vec::with_capacity(surfaces.len());
+    let mut left = Vec::new();
+    for (n, surface) in surfaces.iter().enumerate() {
+        let (pieces, breaks) = surface.pieces();
+        examine(n, &pieces, map, &creases, &mut out, budget)?;
+        if out.torn_at.is_none() {
+            out.torn_at = pieces.iter().find_map(|p| crossing::tear(p, map, &levels));
+        }
+        let mut image = Some(surface.clone());
+        for step in map.steps() {
+            image = match image {
+                Some(s) => refit::image(&s, step, budget)?,
+                None => None,
+            };
+        }
+        if let Some(image) = image {
+            out.exact += 1;
+            images.push(vec![image]);
+        } else if let Some(parts) = cutter.image(surface, &pieces, &breaks)? {
+            out.cut += 1;
+            out.distance = out.distance.max(parts.distance);
+            images.push(parts.surfaces);
+        } else {
+            images.push(Vec::new());
+            let pieces = pieces.into_iter().map(|p| (Sided::new(&p, map), p)).collect();
+            left.push((n, pieces, breaks));
+        }
+    }
+    out.refitted = left.len() + out.cut;
+    let far = refitted(surfaces, &left, tolerance, &mut images, budget)?;
+    out.distance = out.distance.max(far);
+    *surfaces = images.into_iter().flatten().collect();
+    Ok(out)
+}
+
+/// A surface's index, its pieces with the map on each, and the parameters between them.
+type Left = (usize, Vec<(Sided, BezierPatch)>, [Vec<f64>; 2]);
+
+/// Fits surfaces alike, with as many cells as the worst of them needs to come within the tolerance. Returns the largest distance.
+fn refitted(
+    surfaces: &[Surface],
+    left: &[Left],
+    tolerance: f64,
+    images: &mut [Vec<Surface>],
+    budget: &Budget,
+) -> Result<f64, Exceeded> {
+    // A crease may lie along sides. Neighbours take derivatives at the same places.
+    let smooth = left.iter().flat_map(|(_, pieces, _)| pieces).all(|(side, _)| side.smooth);
+    let inside = if smooth { 0.0 } else { INSIDE };
+    let mut n = 1;
+    loop {
+        let mut fitted = Vec::with_capacity(left.len());
+        let mut distance = 0.0_f64;
+        for (_, pieces, _) in left {
+            let mut cells = Vec::with_capacity(pieces.len());
+            for (side, piece) in pieces {
+                budget.spend(refit::work(piece, n))?;
+                let fit = refit::fit(piece, &side.map, n, inside);
+                distance = distance.max(fit.distance);
+                cells.push(fit);
+            }
+            fitted.push(cells);
+        }
+        if distance <= tolerance || n >= MOST_CELLS {
+            for ((i, _, breaks), cells) in left.iter().zip(&fitted) {
+                images[*i] = vec![refit::joined(&surfaces[*i], breaks, cells)];
+            }
+            return Ok(distance);
+        }
+        n *= 2;
+    }
+}
+
+/// Looks for places without image and folds on a grid.
+fn examine(
+    surface: usize,
+    pieces: &[BezierPatch],
+    map: &Chain3,
+    creases: &Creases3,
+    out: &mut DeformedPatches,
+    budget: &Budget,
+) -> Result<(), PatchError> {
+    const GRID: usize = 8;
+    for piece in pieces {
+        budget.spend((GRID * GRID) as f64)?;
+        for k in 0..GRID * GRID {
+            let at = |i: usize| i as f64 / (GRID - 1) as f64;
+            let p = piece.point(at(k % GRID), at(k / GRID));
+            let jet = map.jet(p);
+            if !jet.p.is_finite() || !creases.defined_at(p) {
+                return Err(PatchError::Undefined { surface, at: p });
+            }
+            if jet.det() < 0.0 {
+                out.folded += 1;
+                out.folded_at = out.folded_at.or(Some(p));
+            }
+        }
+    }
+    Ok(())
+}

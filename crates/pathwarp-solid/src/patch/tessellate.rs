@@ -1,9 +1,9 @@
 //! Surfaces as meshes of quads.
 
-use super::bezier::BezierPatch;
 use super::surface::Surface;
 use crate::map::{Chain3, Map3};
 use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind};
+use crate::patch::surface::BezierPatch;
 use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded};
 use std::collections::HashMap;

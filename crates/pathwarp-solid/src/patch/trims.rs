@@ -4,11 +4,10 @@
 //! side is left out, and the ends are joined along the side. Clipped loops may run along a side to and fro, which does not change the
 //! points that an odd number of loops surrounds.
 
-use super::bezier;
 use super::crossing::Graphs;
-use super::knots;
 use super::part::section;
 use super::surface::{Surface, TrimCurve};
+use crate::patch::surface;
 use glam::DVec4;
 
 /// A Bézier curve in homogeneous coordinates (u·w, v·w, 0, w).
@@ -30,7 +29,7 @@ impl Trims {
     pub(super) fn of(surface: &Surface) -> Option<Self> {
         let curves = |t: &TrimCurve| {
             let points = t.points.iter().zip(&t.weights).map(|([u, v], w)| DVec4::new(u * w, v * w, 0.0, *w));
-            let row = knots::bezier_row(t.degree, &t.knots, &points.collect::<Vec<_>>());
+            let row = surface::bezier_row(t.degree, &t.knots, &points.collect::<Vec<_>>());
             (0..(row.len() - 1) / t.degree).map(|i| row[i * t.degree..=(i + 1) * t.degree].to_vec()).collect::<Vec<_>>()
         };
         let loops: Vec<Vec<Curve>> = surface.trims.iter().map(|l| l.iter().flat_map(curves).collect()).collect();
@@ -91,7 +90,7 @@ impl Trims {
     pub(super) fn curves(&self) -> Vec<Vec<TrimCurve>> {
         let curve = |c: &Curve| TrimCurve {
             degree: c.len() - 1,
-            knots: knots::single(c.len() - 1, [0.0, 1.0]),
+            knots: surface::single(c.len() - 1, [0.0, 1.0]),
             points: c.iter().map(|p| [p.x / p.w, p.y / p.w]).collect(),
             weights: c.iter().map(|p| p.w).collect(),
         };
@@ -135,7 +134,7 @@ fn on_sides([s, t]: [f64; 2]) -> [f64; 2] {
 }
 
 fn point(curve: &Curve, t: f64) -> [f64; 2] {
-    let (p, _) = bezier::curve(curve.iter().copied(), t);
+    let (p, _) = surface::curve(curve.iter().copied(), t);
     [p.x / p.w, p.y / p.w]
 }
 
@@ -240,7 +239,7 @@ fn clipped(curves: &[Curve], side: DVec4) -> Vec<Curve> {
         cuts.push(1.0);
         for w in cuts.windows(2).filter(|w| w[0] < w[1]) {
             let piece = if cuts.len() == 2 { curve.clone() } else { section(curve, w[0], w[1]) };
-            if above(side, bezier::curve(piece.iter().copied(), 0.5).0) >= 0.0 {
+            if above(side, surface::curve(piece.iter().copied(), 0.5).0) >= 0.0 {
                 kept.add(piece);
             } else {
                 kept.leave_out();
@@ -358,7 +357,7 @@ mod tests {
         (0..4)
             .map(|k| TrimCurve {
                 degree: 2,
-                knots: knots::single(2, [0.0, 1.0]),
+                knots: surface::single(2, [0.0, 1.0]),
                 points: (0..3).map(|i| corner(2 * k + i)).map(|[x, y]| [u + r * x, v + r * y]).collect(),
                 weights: vec![1.0, 0.5f64.sqrt(), 1.0],
             })

@@ -102,7 +102,7 @@ impl Deformation for Bad {
 
 #[test]
 fn two_answers_for_a_point_end_the_check() {
-    let [check] = super::maps::all(&Built::new(Arc::new(Fickle))).try_into().unwrap();
+    let [check] = crate::check::all(&Built::new(Arc::new(Fickle))).try_into().unwrap();
     assert_eq!(check.faults, ["gives two answers for the point 3.7,4.3: 3.7,4.3 and then 3.71849,4.3"]);
 }
 

@@ -2,8 +2,8 @@
 //!
 //! x' = a·x + c·y + e, y' = b·x + d·y + f. By parts, about a fixed point O: first scale, then skew, then rotate, then move.
 
-use super::built::Built;
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use crate::deform::entry::Built;
 use crate::error::Error;
 use crate::map::AffineMap;
 use crate::param::{Axis, Kind, Param, Settings};

@@ -8,11 +8,11 @@
 //! twice the leading coefficient times u plus the middle one is −det F', so the root is chosen by the side of the fold that the
 //! corners lie on. G. Wolberg, *Digital Image Warping* (1990), §3.6.
 
-use super::built::Built;
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors, FourToFour};
+use crate::deform::entry::Built;
 use crate::error::Error;
-use crate::map::polynomial::bernstein::Scaled;
+use crate::map::rational_bezier::Scaled;
 use crate::map::{AffineMap, Chain, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
 use crate::param::{Param, Settings};
 use kurbo::{Affine, Point, Vec2};

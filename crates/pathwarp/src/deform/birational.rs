@@ -5,9 +5,9 @@
 //! 2016, equations 11-13 and 26): see [`map::Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
 //! CAGD 2015.
 
-use super::built::{Built, Explanation, Role};
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use super::ffd::{MAX_CELLS, MAX_DEGREE};
+use crate::deform::entry::{Built, Explanation, Role};
 use crate::error::{Error, GeometryError, within};
 use crate::map::{self, AffineMap, Class, Map, Rows};
 use crate::outline::Seg;

@@ -9,8 +9,8 @@
 //!
 //! Both are smooth at the centre, being smooth in r². Elementary.
 
-use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
+use crate::deform::entry::Built;
 use crate::error::{Error, within};
 use crate::map::Cost;
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real};
@@ -244,10 +244,7 @@ impl Map for SoftInverse {
             return Jet { p, dx: Vec2::new(1.0, 0.0), dy: Vec2::new(0.0, 1.0) };
         }
         let at = self.source(p);
-        // The inverse of the forward map's Jacobian.
-        let j = self.0.jet(at);
-        let det = j.det();
-        Jet { p: at, dx: Vec2::new(j.dy.y, -j.dx.y) / det, dy: Vec2::new(-j.dy.x, j.dx.x) / det }
+        self.0.jet(at).inverted(at)
     }
 
     fn point(&self, p: Point) -> Point {

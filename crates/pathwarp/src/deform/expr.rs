@@ -4,8 +4,8 @@
 //! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each. A branch is the list with
 //! every side resolved.
 
-use super::built::Built;
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use crate::deform::entry::Built;
 use crate::error::Error;
 use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
 use crate::map::Cost;

@@ -14,8 +14,8 @@
 //! Kannala & Brandt, *A generic camera model and calibration method for conventional, wide-angle, and fish-eye lenses*, IEEE
 //! PAMI 28 (2006), equations (1)–(5).
 
-use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
+use crate::deform::entry::Built;
 use crate::error::{Error, within};
 use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Kind, Param, Settings};

@@ -12,9 +12,9 @@
 //! nearest handle k, held fixed; and means are counted from pₖ, so that nothing cancels near it. *At* pₖ, M is made from the
 //! other handles alone, since p̂ₖ there is of second order: F(pₖ) = qₖ with that M for derivative (for α ≥ 1).
 
-use super::built::{Built, Role};
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors;
+use crate::deform::entry::{Built, Role};
 use crate::error::{Error, GeometryError, within};
 use crate::map::Cost;
 use crate::map::{AffineMap, Formula, Real};

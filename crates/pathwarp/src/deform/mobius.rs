@@ -11,11 +11,11 @@
 //! rational of degree 2n, exactly. The inverse is (d·w − b)/(a − c·w). Ahlfors, *Complex Analysis* (3rd ed. 1979), §3.3;
 //! Needham, *Visual Complex Analysis* (1997), chapter 3.
 
-use super::built::{Built, Explanation, Overlay, Role};
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors;
+use crate::deform::entry::{Built, Explanation, Overlay, Role};
 use crate::error::{Error, GeometryError, show};
-use crate::map::polynomial::bernstein::Scaled;
+use crate::map::rational_bezier::Scaled;
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
 use crate::outline::Outline;
 use crate::param::{Kind, NamedPath, Param, Settings};

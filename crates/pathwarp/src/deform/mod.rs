@@ -14,9 +14,7 @@ mod anamorph;
 mod bend;
 mod bilinear;
 mod birational;
-mod built;
 mod bulge;
-mod change;
 mod entry;
 mod envelope;
 mod expr;
@@ -38,14 +36,14 @@ mod wave;
 #[cfg(feature = "serde")]
 mod wordart;
 
+pub use crate::deform::entry::{
+    Built, Explanation, Failure, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile, Undefined,
+};
 pub use affine::Affine;
 pub use anamorph::{Anamorph, Onto};
 pub use bend::{Align, Bend, LetterSetting, Stretch};
 pub use bilinear::Bilinear;
 pub use birational::Birational;
-pub use built::{
-    Built, Explanation, Failure, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile, Undefined,
-};
 pub use bulge::Bulge;
 pub use entry::{ByHand, Case, Deformation, Example, Gallery, Guides, Info, Instead, Law, Pairs, Variant};
 pub use envelope::{Envelope, Keep, Spread};

@@ -12,8 +12,8 @@
 //! direction, exact up to the ray opposite the middle. A whole turn meets itself there; artwork that crosses it is cut and joined
 //! by a straight line, and the recipe warns of it. Elementary.
 
-use super::built::{Built, Seam};
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use crate::deform::entry::{Built, Seam};
 use crate::error::{Error, within};
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings, word_space};

@@ -3,12 +3,11 @@
 //! (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs (Heckbert, *Fundamentals of Texture Mapping and
 //! Image Warping*, 1989, §2.2). Straight lines stay straight.
 
-use super::built::Built;
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, FourToFour};
+use crate::deform::entry::Built;
 use crate::error::Error;
-use crate::map::{AffineMap, Class, Map};
-use crate::param::{Frame, Param, Settings};
+use crate::param::{Param, Settings};
 use kurbo::Point;
 use std::sync::Arc;
 
@@ -43,10 +42,7 @@ impl Projective {
         let FourToFour { from, to, frame } = self.corners;
         self.corners.check()?;
         let map = anchors::projective("target", from, to)?;
-        let map: Arc<dyn Map> = match map.class() {
-            Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, &Frame::new(frame)))),
-            _ => Arc::new(map),
-        };
+        let map = anchors::settled(Arc::new(map), frame);
         Ok(self.corners.shown_on(Built::new(map)))
     }
 }

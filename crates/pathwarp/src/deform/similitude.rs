@@ -2,9 +2,9 @@
 //!
 //! In complex numbers z ↦ P + (z − A)·(Q − P)/(B − A).
 
-use super::built::{Built, Role};
 use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors};
+use crate::deform::entry::{Built, Role};
 use crate::error::{Error, GeometryError};
 use crate::map::AffineMap;
 use crate::param::{Param, Settings};

@@ -9,8 +9,8 @@
 //! The shear leaves s alone: its determinant is 1, and its inverse is the same wave with −h. Both are elementary; waves of this
 //! kind are in A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, as profiles of offsets along an axis.
 
-use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
+use crate::deform::entry::Built;
 use crate::error::{Error, within};
 use crate::map::{Class, Formula, Map, Real};
 use crate::param::{Axis, Frame, Kind, Param, Settings};

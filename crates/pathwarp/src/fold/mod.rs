@@ -4,18 +4,15 @@
 //! mirrors everything folds nothing; a map whose determinant changes sign on the artwork folds it.
 //!
 //! A [`Survey`] first tries to prove for the whole artwork that the determinant keeps its sign (`sign.rs`). If that succeeds, as it does
-//! for most nets, no shape is sampled; otherwise every shape is sampled along its outline and inside (`interior.rs`).
+//! for most nets, no shape is sampled; otherwise every shape is sampled along its outline and inside.
 
-mod interior;
-mod orientation;
 mod sign;
-mod survey;
 
-pub use orientation::Orientation;
-pub use survey::Survey;
-
-use crate::map::Map;
-use crate::outline::Outline;
+use crate::budget::Budget;
+use crate::error::GeometryError;
+use crate::map::{Class, Creases, Jet, Map};
+use crate::outline::{Outline, Seg, boundary};
+use kurbo::{Affine, Point, Rect};
 
 /// Examines one shape: a [`Survey`] of its own.
 #[must_use]
@@ -23,10 +20,304 @@ pub fn orientation(outline: &Outline, filled: bool, map: &dyn Map) -> Orientatio
     Survey::new(map, outline.bounding_box(), outline.segs().count()).orientation(outline, filled)
 }
 
+/// Intervals per segment.
+const PER_SEGMENT: usize = 16;
+/// Samples in each direction over the bounding box of a filled shape.
+const GRID: usize = 24;
+/// Samples that a proof may always take: those of two filled shapes.
+const FOR_ANY_PROOF: usize = 2 * GRID * GRID;
+
+/// Examines the shapes of a drawing for folds of one map.
+#[derive(Debug)]
+pub struct Survey<'a> {
+    map: &'a dyn Map,
+    creases: Creases,
+    knowledge: Knowledge,
+}
+
+/// Signs known before any shape is sampled.
+#[derive(Debug)]
+enum Knowledge {
+    /// The map is affine and folds nothing.
+    Affine,
+    /// The determinant has this sign, 1 or −1, on all of the artwork.
+    Sign(f64),
+    Nothing,
+}
+
+impl<'a> Survey<'a> {
+    /// Prepares the survey of artwork with this bounding box and this number of segments. The more segments it has, the more
+    /// effort goes into proving for the whole box that the map does not fold.
+    #[must_use]
+    pub fn new(map: &'a dyn Map, bounds: Option<Rect>, segments: usize) -> Self {
+        let mut creases = Creases::default();
+        let proven = |b: Rect| sign::proven(map, b, FOR_ANY_PROOF.max(segments.saturating_mul(PER_SEGMENT)));
+        let knowledge = match (map.class(), bounds) {
+            (Class::Affine(_), _) => Knowledge::Affine,
+            (_, Some(b)) if b.is_finite() => proven(b).map_or(Knowledge::Nothing, Knowledge::Sign),
+            _ => Knowledge::Nothing,
+        };
+        if matches!(knowledge, Knowledge::Nothing) {
+            map.creases(&mut creases);
+        }
+        Self { map, creases, knowledge }
+    }
+
+    /// Returns `true` if shapes must be sampled: the map is not known to keep its orientation on the whole artwork.
+    #[must_use]
+    pub fn samples(&self) -> bool {
+        matches!(self.knowledge, Knowledge::Nothing)
+    }
+
+    /// Counts the work of sampling `shapes` outlines with `segments` together, in as many copies.
+    ///
+    /// # Errors
+    /// It exceeds the limit.
+    pub fn spend(&self, shapes: usize, segments: usize, copies: usize, budget: &Budget) -> Result<(), GeometryError> {
+        /// A sample is taken in a batch.
+        const SAMPLE: f64 = 0.25;
+        /// Share of a grid over a box that is inside of the shape, and the work to find out.
+        const FILLED: f64 = 0.5;
+        let samples = segments as f64 * (PER_SEGMENT + 1) as f64 + shapes as f64 * FILLED * (GRID * GRID) as f64;
+        let work = if self.samples() { SAMPLE * self.map.work() * samples * copies.max(1) as f64 } else { 0.0 };
+        budget.spend(work).map_err(GeometryError::Limit)
+    }
+
+    /// Returns the orientation of a shape of the artwork. Unless the survey has a proof, the determinant is sampled along `outline`, and
+    /// inside it if `filled`; of an affine map no samples are taken.
+    ///
+    /// Folds narrower than the spacing of the samples (a sixteenth of a segment, a twenty-fourth of the bounding box) can go
+    /// unnoticed.
+    #[must_use]
+    pub fn orientation(&self, outline: &Outline, filled: bool) -> Orientation {
+        match self.knowledge {
+            Knowledge::Affine => Orientation::default(),
+            Knowledge::Sign(sign) => {
+                let samples = outline.segs().count() * (PER_SEGMENT + 1);
+                Orientation::uniform(sign, samples, outline.segs().next().map(Seg::start))
+            }
+            Knowledge::Nothing => self.sampled(outline, filled),
+        }
+    }
+
+    /// Returns the orientation of all copies of a shape, at `places`; of the shape itself if there are none.
+    #[must_use]
+    pub fn orientation_of_copies(&self, outline: &Outline, places: &[Affine], filled: bool) -> Orientation {
+        match (places, &self.knowledge) {
+            ([], _) => self.orientation(outline, filled),
+            (_, Knowledge::Nothing) => self.sampled(&outline.repeated(places), filled),
+            ([first, ..], _) => {
+                let one = self.orientation(outline, filled);
+                Orientation {
+                    positive: one.positive * places.len(),
+                    negative: one.negative * places.len(),
+                    first_positive: one.first_positive.map(|p| *first * p),
+                    first_negative: one.first_negative.map(|p| *first * p),
+                    ..one
+                }
+            }
+        }
+    }
+
+    fn sampled(&self, outline: &Outline, filled: bool) -> Orientation {
+        if self.map.prefers_batches() {
+            return self.sampled_at_once(outline, filled);
+        }
+        let map = self.map;
+        let mut out = Orientation::default();
+        let mut jets = [Jet::default(); PER_SEGMENT + 1];
+        for seg in outline.segs() {
+            let points = along(seg);
+            map.jets(&points, &mut jets);
+            out.add(&points, &jets);
+        }
+        if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
+            let mut jets = [Jet::default(); GRID];
+            for mut row in interior(outline, bounds, GRID) {
+                row.retain(|p| self.creases.defined_at(*p));
+                let jets = &mut jets[..row.len()];
+                map.jets(&row, jets);
+                out.add(&row, jets);
+            }
+        }
+        out
+    }
+
+    /// The same with one call of the map for all samples.
+    fn sampled_at_once(&self, outline: &Outline, filled: bool) -> Orientation {
+        let mut points: Vec<Point> = outline.segs().flat_map(along).collect();
+        let mut rows = vec![PER_SEGMENT + 1; points.len() / (PER_SEGMENT + 1)];
+        if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
+            for row in interior(outline, bounds, GRID) {
+                let before = points.len();
+                points.extend(row.into_iter().filter(|p| self.creases.defined_at(*p)));
+                rows.push(points.len() - before);
+            }
+        }
+        let mut jets = vec![Jet::default(); points.len()];
+        self.map.jets(&points, &mut jets);
+        let mut out = Orientation::default();
+        let (mut points, mut jets) = (points.as_slice(), jets.as_slice());
+        for n in rows {
+            out.add(&points[..n], &jets[..n]);
+            (points, jets) = (&points[n..], &jets[n..]);
+        }
+        out
+    }
+}
+
+/// The samples of a segment.
+fn along(seg: &Seg) -> [Point; PER_SEGMENT + 1] {
+    std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64))
+}
+
+// The orientation of a shape under a map: signs of the Jacobian determinant.
+
+/// Signs of the Jacobian determinant over samples of a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Orientation {
+    /// Number of samples with a positive determinant.
+    pub positive: usize,
+    /// Number of samples with a negative determinant.
+    pub negative: usize,
+    /// Number of sign changes between neighbouring samples.
+    pub changes: usize,
+    /// The first sample with a positive determinant.
+    pub first_positive: Option<Point>,
+    /// The first sample with a negative determinant.
+    pub first_negative: Option<Point>,
+}
+
+impl Orientation {
+    /// `count` samples of the same sign, beginning at `first`.
+    fn uniform(sign: f64, count: usize, first: Option<Point>) -> Self {
+        let first = first.filter(|_| count > 0);
+        if sign > 0.0 {
+            Self { positive: count, first_positive: first, ..Self::default() }
+        } else {
+            Self { negative: count, first_negative: first, ..Self::default() }
+        }
+    }
+
+    /// Adds neighbouring samples.
+    fn add(&mut self, points: &[Point], jets: &[Jet]) {
+        let mut last = 0.0;
+        for (p, j) in points.iter().zip(jets) {
+            let det = j.det();
+            if !det.is_finite() || det == 0.0 {
+                continue;
+            }
+            if det > 0.0 {
+                self.positive += 1;
+                self.first_positive.get_or_insert(*p);
+            } else {
+                self.negative += 1;
+                self.first_negative.get_or_insert(*p);
+            }
+            if det * last < 0.0 {
+                self.changes += 1;
+            }
+            last = det;
+        }
+    }
+
+    /// The samples of both.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            positive: self.positive + other.positive,
+            negative: self.negative + other.negative,
+            changes: self.changes + other.changes,
+            first_positive: self.first_positive.or(other.first_positive),
+            first_negative: self.first_negative.or(other.first_negative),
+        }
+    }
+
+    /// A point of this shape that is turned over relative to the majority of the artwork's samples, `all`.
+    #[must_use]
+    pub fn folded_against(&self, all: &Self) -> Option<Point> {
+        if all.positive >= all.negative { self.first_negative } else { self.first_positive }
+    }
+}
+
+/// Flattening tolerance, relative to the diagonal of the outline: far below the spacing of any grid.
+const FLATNESS: f64 = 1e-3;
+
+/// Returns the points of an `n` × `n` grid over `bounds` that lie inside the outline by the nonzero rule, row by row. Open subpaths
+/// are closed by a line, as SVG fills them.
+///
+/// Every line of the flattened outline is visited once and recorded in the rows it crosses. The cost is the number of lines
+/// plus crossings, where a winding number for each point would cost segments times points.
+fn interior(outline: &Outline, bounds: Rect, n: usize) -> Vec<Vec<Point>> {
+    let mut rows = Rows { bounds, n, crossings: vec![Vec::new(); n] };
+    let tolerance = FLATNESS * bounds.width().hypot(bounds.height());
+    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| rows.add(a, b));
+    rows.points()
+}
+
+/// The crossings of each row: abscissa, and 1 for downwards or −1 for upwards.
+struct Rows {
+    bounds: Rect,
+    n: usize,
+    crossings: Vec<Vec<(f64, i32)>>,
+}
+
+impl Rows {
+    fn x(&self, i: usize) -> f64 {
+        self.bounds.x0 + self.bounds.width() * (i as f64 + 0.5) / self.n as f64
+    }
+
+    fn y(&self, k: usize) -> f64 {
+        self.bounds.y0 + self.bounds.height() * (k as f64 + 0.5) / self.n as f64
+    }
+
+    /// The first row at or below `y`.
+    fn first_from(&self, y: f64) -> usize {
+        let k = ((y - self.bounds.y0) / self.bounds.height() * self.n as f64 - 0.5).ceil();
+        k.clamp(0.0, self.n as f64) as usize
+    }
+
+    /// Records where the line crosses rows.
+    fn add(&mut self, a: Point, b: Point) {
+        let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
+        if top.y < bottom.y {
+            for k in self.first_from(top.y)..self.first_from(bottom.y) {
+                let t = (self.y(k) - top.y) / (bottom.y - top.y);
+                self.crossings[k].push((top.x + (bottom.x - top.x) * t, direction));
+            }
+        }
+    }
+
+    /// The points of every row at which the winding number is not 0.
+    fn points(mut self) -> Vec<Vec<Point>> {
+        let mut out = Vec::with_capacity(self.n);
+        for k in 0..self.n {
+            let mut crossings = std::mem::take(&mut self.crossings[k]);
+            crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (mut winding, mut next) = (0, 0);
+            let mut row = Vec::new();
+            for i in 0..self.n {
+                let p = Point::new(self.x(i), self.y(k));
+                while next < crossings.len() && crossings[next].0 <= p.x {
+                    winding += crossings[next].1;
+                    next += 1;
+                }
+                if winding != 0 {
+                    row.push(p);
+                }
+            }
+            out.push(row);
+        }
+        out
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Formula, Real};
+    use crate::map::{BicubicNet, Formula, Net, Real};
+    use kurbo::{Shape, Vec2};
 
     /// Folds along x = 0.
     struct Fold;
@@ -49,5 +340,94 @@ mod tests {
         let left = Outline::from_svg("M-6,0 H-5 V1 H-6 Z").unwrap();
         let l = orientation(&left, true, &Fold);
         assert!(l.folded_against(&l).is_none() && l.folded_against(&l.and(&o).and(&o)).is_some());
+    }
+
+    /// A net over the unit square that pulls its middle by `by`.
+    fn net(by: f64) -> BicubicNet {
+        let mut net: Net = std::array::from_fn(|r| std::array::from_fn(|s| Point::new(s as f64 / 3.0, r as f64 / 3.0)));
+        for row in &mut net[1..3] {
+            row[1].x += by;
+        }
+        BicubicNet::new(&net, Affine::IDENTITY)
+    }
+
+    /// The same map, without its algebra.
+    struct Hidden(BicubicNet);
+    impl Map for Hidden {
+        fn jet(&self, p: Point) -> Jet {
+            self.0.jet(p)
+        }
+    }
+
+    #[test]
+    fn a_proof_and_samples_agree() {
+        let shape = Outline::from_svg("M0.1,0.1 H0.9 V0.9 H0.1 Z").unwrap();
+        let bounds = shape.bounding_box();
+        for (by, proves) in [(0.1, true), (1.2, false)] {
+            let (known, hidden) = (net(by), Hidden(net(by)));
+            let (survey, sampled) = (Survey::new(&known, bounds, 4), Survey::new(&hidden, bounds, 4));
+            assert_eq!((survey.samples(), sampled.samples()), (!proves, true));
+            let (a, b) = (survey.orientation(&shape, true), sampled.orientation(&shape, true));
+            assert_eq!(a.folded_against(&a), b.folded_against(&b), "{by}");
+            assert_eq!((a.negative > 0, a.first_positive), (b.negative > 0, b.first_positive), "{by}");
+        }
+    }
+
+    #[test]
+    fn copies_are_all_counted() {
+        let shape = Outline::from_svg("M0,0 H0.1 V0.1 H0 Z").unwrap();
+        let places = [Affine::translate((0.2, 0.2)), Affine::translate((0.5, 0.5))];
+        let (known, hidden) = (net(0.1), Hidden(net(0.1)));
+        let all = Some(Rect::new(0.2, 0.2, 0.6, 0.6));
+        let proven = Survey::new(&known, all, 8).orientation_of_copies(&shape, &places, false);
+        assert_eq!(proven, Survey::new(&hidden, all, 8).orientation_of_copies(&shape, &places, false));
+        assert_eq!(proven.positive, 2 * 4 * (PER_SEGMENT + 1));
+    }
+
+    #[test]
+    fn a_mirrored_drawing_does_not_fold() {
+        struct Mirror;
+        impl Formula for Mirror {
+            fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+                (-x + (y * 0.1).sin(), y)
+            }
+        }
+        let shape = Outline::from_svg("M0,0 H10 V10 H0 Z").unwrap();
+        let o = Survey::new(&Mirror, shape.bounding_box(), 4).orientation(&shape, true);
+        assert!(o.positive == 0 && o.negative > 500 && o.folded_against(&o).is_none(), "{o:?}");
+    }
+
+    /// kurbo's winding number, computed point by point from the curves, agrees except on the outline itself.
+    #[test]
+    fn the_sweep_agrees_with_winding_numbers() {
+        const N: usize = 24;
+        for data in [
+            "M0,0 H100 V80 H0 Z M20,20 V60 H80 V20 Z",
+            "M50,0 C110,10 90,100 40,90 S-20,10 50,0 Z M30,30 h20 v20 h-20 Z",
+            "M0,50 A50,50 0 1 1 100,50 A50,50 0 1 1 0,50 Z",
+            "M0,0 L100,0 L0,70 L100,70 Z",
+        ] {
+            let outline = Outline::from_svg(data).unwrap();
+            let bounds = outline.bounding_box().unwrap();
+            let path = outline.to_bez_path(1e-6);
+            let found = interior(&outline, bounds, N).concat();
+            assert!(found.len() > N, "{data}");
+            for j in 0..N {
+                for i in 0..N {
+                    let at = |k: usize, from: f64, size: f64| from + size * (k as f64 + 0.5) / N as f64;
+                    let p = Point::new(at(i, bounds.x0, bounds.width()), at(j, bounds.y0, bounds.height()));
+                    let near = [-0.2, 0.2].iter().any(|d| path.winding(p + Vec2::new(*d, 0.0)) != path.winding(p));
+                    assert!(near || (path.winding(p) != 0) == found.contains(&p), "{data} at {p}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn open_subpaths_are_closed_and_flat_ones_are_empty() {
+        let square = Outline::from_svg("M0,0 H10 V10 H0").unwrap();
+        assert_eq!(interior(&square, square.bounding_box().unwrap(), 4).concat().len(), 16);
+        let line = Outline::from_svg("M0,0 H10").unwrap();
+        assert!(interior(&line, line.bounding_box().unwrap(), 4).concat().is_empty());
     }
 }

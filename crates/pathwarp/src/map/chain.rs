@@ -310,8 +310,8 @@ mod tests {
     }
 
     fn tilt() -> Homography {
-        Homography::from_unit_square([(0.0, 0.0).into(), (1.0, 0.0).into(), (0.8, 0.9).into(), (0.1, 1.0).into()])
-            .unwrap()
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(Point::from);
+        Homography::from_points(square, [(0.0, 0.0), (1.0, 0.0), (0.8, 0.9), (0.1, 1.0)].map(Point::from)).unwrap()
     }
 
     #[test]

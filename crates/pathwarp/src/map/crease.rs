@@ -276,7 +276,7 @@ impl Creases {
 
     /// The first point of `seg` at which the map is not defined.
     #[must_use]
-    pub fn first_undefined(&self, seg: &Seg) -> Option<Point> {
+    pub(crate) fn first_undefined(&self, seg: &Seg) -> Option<Point> {
         let mut ts = Vec::new();
         for c in &self.items {
             if c.kind == CreaseKind::Edge {

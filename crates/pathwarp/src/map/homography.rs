@@ -22,26 +22,6 @@ impl Homography {
         Self { m, from: Point::ORIGIN, to: Point::ORIGIN }
     }
 
-    /// The projective map that takes the corners (0,0), (1,0), (1,1), (0,1) of the unit square to `q`, in order, with W > 0 on
-    /// all four. `None` if three of the points lie on a line, or if the quadrilateral is not convex: the horizon would cut the
-    /// square.
-    ///
-    /// Solved as in Heckbert, *Fundamentals of Texture Mapping and Image Warping* (1989), §2.2.3. A parallelogram gives an
-    /// exactly affine map.
-    #[must_use]
-    pub fn from_unit_square(q: [Point; 4]) -> Option<Self> {
-        let s = (q[0] - q[1]) + (q[2] - q[3]);
-        let (d1, d2) = (q[1] - q[2], q[3] - q[2]);
-        let det = d1.cross(d2);
-        let (g, h) = if s == Vec2::ZERO { (0.0, 0.0) } else { (s.cross(d2) / det, d1.cross(s) / det) };
-        let (u, v) = (q[1] - q[0], q[3] - q[0]);
-        let (a, b) = (u * (1.0 + g), v * (1.0 + h));
-        let m = [[a.x, b.x, 0.0], [a.y, b.y, 0.0], [g, h, 1.0]];
-        let out = Self { m, from: Point::ORIGIN, to: q[0] };
-        let positive = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].iter().all(|&c| out.w(c.into()) > 0.0);
-        (positive && det != 0.0 && m.iter().flatten().all(|v| v.is_finite())).then_some(out)
-    }
-
     /// The projective map that takes four points to four points, in order. `None` if three points of either quadrilateral lie
     /// on a line, or if one is convex and the other is not: the horizon would run between the points.
     #[must_use]
@@ -118,14 +98,14 @@ impl Homography {
 
     /// `m` after this map.
     #[must_use]
-    pub fn then_affine(&self, m: Affine) -> Self {
+    pub(crate) fn then_affine(&self, m: Affine) -> Self {
         let [a, b, c, d, ..] = m.as_coeffs();
         Self { m: mul(&[[a, c, 0.0], [b, d, 0.0], [0.0, 0.0, 1.0]], &self.m), from: self.from, to: m * self.to }
     }
 
     /// This map after `m`, which can be inverted.
     #[must_use]
-    pub fn after_affine(&self, m: Affine) -> Self {
+    pub(crate) fn after_affine(&self, m: Affine) -> Self {
         let near = m.inverse() * self.from;
         if !near.is_finite() {
             return self.after(&m.into());
@@ -136,7 +116,7 @@ impl Homography {
 
     /// The same map as an affine one, if it is affine.
     #[must_use]
-    pub fn as_affine(&self) -> Option<Affine> {
+    pub(crate) fn as_affine(&self) -> Option<Affine> {
         let [[a, c, e], [b, d, f], [g, h, w]] = self.m;
         (g == 0.0 && h == 0.0 && w != 0.0).then(|| {
             let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|v| v / w);
@@ -197,8 +177,7 @@ mod tests {
 
     #[test]
     fn corners_land_on_corners() {
-        for h in [Homography::from_unit_square(TRAPEZOID).unwrap(), Homography::from_points(SQUARE, TRAPEZOID).unwrap()]
-        {
+        for h in [Homography::from_points(SQUARE, TRAPEZOID).unwrap()] {
             for (a, b) in SQUARE.iter().zip(TRAPEZOID) {
                 assert!(h.point(*a).distance(b) < 1e-12);
             }
@@ -213,15 +192,14 @@ mod tests {
         let h = Homography::from_points(SQUARE, q).unwrap();
         assert!(matches!(h.class(), Class::Affine(_)), "{h:?}");
         let dented = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(0.2, 0.2), Point::new(0.0, 1.0)];
-        assert!(Homography::from_unit_square(dented).is_none());
         assert!(Homography::from_points(SQUARE, dented).is_none());
         let line = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
-        assert!(Homography::from_points(SQUARE, line).is_none() && Homography::from_unit_square(line).is_none());
+        assert!(Homography::from_points(SQUARE, line).is_none());
     }
 
     #[test]
     fn the_derivative_is_the_difference_quotient() {
-        let h = Homography::from_unit_square(TRAPEZOID).unwrap();
+        let h = Homography::from_points(SQUARE, TRAPEZOID).unwrap();
         let (p, e) = (Point::new(0.4, 0.6), 1e-6);
         let j = h.jet(p);
         let dx = (h.point((p.x + e, p.y).into()) - h.point((p.x - e, p.y).into())) / (2.0 * e);

@@ -35,48 +35,408 @@
 //! [`warp_path`]: crate::refit::warp_path
 
 mod batches;
+mod bicubic;
 mod birational;
+pub mod bspline;
 mod chain;
-mod class;
-#[cfg(test)]
-pub(crate) mod counted;
+mod coons;
 mod crease;
-mod creased;
 pub(crate) mod curves;
-mod dual;
 mod formula;
-mod from_fn;
 mod homography;
-mod jet;
 mod lattice;
-pub(crate) mod nets;
+mod local;
 mod newton;
-pub(crate) mod piecewise;
-pub(crate) mod polynomial;
+pub(crate) mod patch;
 mod projective;
-mod rational_bezier;
-mod traits;
+pub(crate) mod quotient;
+pub(crate) mod rational_bezier;
+pub(crate) mod tiled;
+
+use crate::budget::Budget;
+use kurbo::{Affine, Point, Vec2};
+use std::fmt;
+use std::sync::Arc;
 
 pub use batches::Gathered;
+pub(crate) use bicubic::complete_net;
+pub use bicubic::{BicubicNet, Net};
 pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
-pub use class::{Class, RationalDegree};
+pub use coons::{Coons, Sides};
 pub use crease::{Crease, CreaseKind, Creases, Level};
-pub use creased::inverse_over;
 pub use curves::{Pace, Side};
-pub use dual::{Dual, Real};
-pub use formula::Formula;
-pub use from_fn::{FromFn, FromFnWith, from_fn, from_fn_with};
+pub use formula::{Dual, Formula, FromFn, FromFnWith, Real, from_fn, from_fn_with};
 pub use homography::Homography;
-pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
-pub use nets::{BicubicNet, Net, bspline, complete_net};
-pub(crate) use newton::INVERSE_WORK;
-pub use newton::NewtonInverse;
-pub use piecewise::{Coons, Sides};
+pub use newton::{NewtonInverse, inverse_over};
 pub use projective::{AffineMap, Undeclared};
 pub use rational_bezier::RationalBezier;
-pub use traits::{Batches, Cost, Images, Map, Searches};
 
 pub(crate) use curves::{Along, Guide, increasing_root};
-pub(crate) use piecewise::{Local, TileRow, Tiled, ruled};
+pub(crate) use local::Local;
+pub(crate) use newton::INVERSE_WORK;
+pub(crate) use patch::{Patch, powers};
+pub(crate) use quotient::{Plane, Quotient, source_coordinates};
+pub(crate) use tiled::{TileRow, Tiled};
+
+/// A differentiable map of the plane, in root user units, y down.
+///
+/// Only [`Map::jet`] is required. [`point`](Map::point), [`points`](Map::points) and [`jets`](Map::jets) are faster ways to the
+/// same values; the other methods tell the refitter where the map is not smooth and what is known about it exactly.
+pub trait Map: Send + Sync {
+    /// Value and both partial derivatives at `p`. On a crease, those of either side.
+    fn jet(&self, p: Point) -> Jet;
+
+    /// The value alone.
+    fn point(&self, p: Point) -> Point {
+        self.jet(p).p
+    }
+
+    /// The jets at `ps`: one virtual call for all of them. `out` has the length of `ps`.
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        for (p, o) in ps.iter().zip(out) {
+            *o = self.jet(*p);
+        }
+    }
+
+    /// The values at `ps`: one virtual call for all of them. `out` has the length of `ps`.
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        for (p, o) in ps.iter().zip(out) {
+            *o = self.point(*p);
+        }
+    }
+
+    /// The class of the map. Affine and projective maps need no refitting, and neighbours fold into one in a
+    /// [`Chain`].
+    fn class(&self) -> Class {
+        Class::Smooth
+    }
+
+    /// Adds the places where the map is not smooth, and the boundary of its domain.
+    fn creases(&self, _out: &mut Creases) {}
+
+    /// For a map with creases: the smooth map that agrees with this one on the piece of the plane, cut at the creases, that
+    /// contains `inside`. On the boundary of that piece it gives the limit from inside. `None`: the map itself is smooth.
+    fn branch(&self, _inside: Point) -> Option<Arc<dyn Map>> {
+        None
+    }
+
+    /// The exact image of a (rational) Bézier curve, if the image is one again.
+    fn image(&self, _curve: &RationalBezier) -> Option<RationalBezier> {
+        None
+    }
+
+    /// The common denominator W of the coordinates at `p`, for maps of a [rational class](Class::Rational): positive where the map is
+    /// defined, 1 for polynomials.
+    fn denominator(&self, _p: Point) -> f64 {
+        1.0
+    }
+
+    /// The inverse map, if there is one.
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        None
+    }
+
+    /// What an evaluation costs, for [`budget`](crate::budget). A map that takes longer the more parts it has says so here.
+    fn cost(&self) -> Cost<'_> {
+        Cost::NET
+    }
+}
+
+/// What evaluating a map takes.
+#[derive(Clone, Copy)]
+pub struct Cost<'a> {
+    /// The cost of one evaluation, relative to that of a bicubic net: 1 or more.
+    pub work: f64,
+    /// The cost of a jet alone, as Newton's method asks for it. A map of many parts takes longer alone than in a batch.
+    pub jet: f64,
+    /// Set if a call costs much and a point little, as where another program is asked.
+    pub batches: Option<&'a dyn Batches>,
+    /// Set if the map searches, as inverses do, and may take more than `work`.
+    pub searches: Option<&'a dyn Searches>,
+}
+
+/// A map that searches for its values.
+pub trait Searches {
+    /// The same map, which spends from a budget what its searches take beyond [`Cost::work`], and finds nothing once the budget is used up.
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map>;
+}
+
+impl<'a> Cost<'a> {
+    /// The cost of a bicubic net.
+    pub const NET: Self = Self::new(1.0);
+
+    /// The cost of a map of which an evaluation takes `work`.
+    #[must_use]
+    pub const fn new(work: f64) -> Self {
+        const SINGLY: f64 = 3.0;
+        Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
+    }
+
+    /// The same for a map that is asked in batches.
+    #[must_use]
+    pub fn batched(self, by: &'a dyn Batches) -> Self {
+        Self { batches: Some(by), ..self }
+    }
+
+    /// The same for a map that searches.
+    #[must_use]
+    pub fn searching(self, by: &'a dyn Searches) -> Self {
+        Self { searches: Some(by), ..self }
+    }
+}
+
+impl fmt::Debug for Cost<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Cost").field("work", &self.work).field("jet", &self.jet).finish_non_exhaustive()
+    }
+}
+
+/// Points, and room for what belongs to each.
+pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
+
+/// A map of which a call costs much and a point little. It says so in its [`cost`](Map::cost); callers then collect the points they need.
+pub trait Batches: Map {
+    /// Maps a batch of points, and gives the jets at others: in one call where possible.
+    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
+        self.points(ps, images);
+        self.jets(qs, jets);
+    }
+
+    /// Returns `true` if derivatives are computed from several values each, by differences. Callers then use values where they can.
+    fn differentiates(&self) -> bool {
+        false
+    }
+
+    /// Returns `true` for a memory, which takes notice of announcements.
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// Announces points whose values and points whose jets are asked for next.
+    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
+}
+
+/// What the cost and the class of a map tell, in short.
+impl dyn Map + '_ {
+    /// See [`Cost::work`].
+    #[must_use]
+    pub fn work(&self) -> f64 {
+        self.cost().work
+    }
+
+    /// The same map, whose searches spend from a budget. `None`: it searches nothing.
+    #[must_use]
+    pub fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
+        self.cost().searches.map(|s| s.within(budget))
+    }
+
+    /// Returns `true` if a call costs much and a point little; see [`Batches`].
+    #[must_use]
+    pub fn prefers_batches(&self) -> bool {
+        self.cost().batches.is_some()
+    }
+
+    /// Announces points whose values and points whose jets are asked for next. Only a memory of a map takes notice.
+    pub fn prepare(&self, points: &[Point], jets: &[Point]) {
+        if let Some(batches) = self.cost().batches {
+            batches.prepare(points, jets);
+        }
+    }
+
+    /// See [`Class::degree`].
+    #[must_use]
+    pub fn rational_degree(&self) -> Option<RationalDegree> {
+        self.class().degree()
+    }
+}
+
+/// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
+macro_rules! forward {
+    () => {
+        fn jet(&self, p: Point) -> Jet {
+            (**self).jet(p)
+        }
+        fn point(&self, p: Point) -> Point {
+            (**self).point(p)
+        }
+        fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+            (**self).jets(ps, out);
+        }
+        fn points(&self, ps: &[Point], out: &mut [Point]) {
+            (**self).points(ps, out);
+        }
+        fn class(&self) -> Class {
+            (**self).class()
+        }
+        fn creases(&self, out: &mut Creases) {
+            (**self).creases(out);
+        }
+        fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+            (**self).branch(inside)
+        }
+        fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+            (**self).image(curve)
+        }
+        fn denominator(&self, p: Point) -> f64 {
+            (**self).denominator(p)
+        }
+        fn inverse(&self) -> Option<Arc<dyn Map>> {
+            (**self).inverse()
+        }
+        fn cost(&self) -> Cost<'_> {
+            (**self).cost()
+        }
+    };
+}
+
+impl<M: Map + ?Sized> Map for Arc<M> {
+    forward!();
+}
+
+/// Of pointers that are not shared, those to `dyn Map` are maps, as every [`Formula`] is one, and any crate may write a
+/// formula for a reference or a box of its own type.
+impl Map for &(dyn Map + '_) {
+    forward!();
+}
+
+impl Map for Box<dyn Map + '_> {
+    forward!();
+}
+
+impl fmt::Debug for dyn Map + '_ {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Map({:?})", self.class())
+    }
+}
+
+/// Value and both partial derivatives of a map at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Jet {
+    /// The value F(x, y).
+    pub p: Point,
+    /// ∂F/∂x.
+    pub dx: Vec2,
+    /// ∂F/∂y.
+    pub dy: Vec2,
+}
+
+impl Jet {
+    /// The jet of a map outside its domain: six NaNs.
+    pub const UNDEFINED: Self = Self {
+        p: Point::new(f64::NAN, f64::NAN),
+        dx: Vec2::new(f64::NAN, f64::NAN),
+        dy: Vec2::new(f64::NAN, f64::NAN),
+    };
+
+    /// The derivative in direction `v`: the Jacobian times `v`.
+    #[inline]
+    #[must_use]
+    pub fn push(&self, v: Vec2) -> Vec2 {
+        self.dx * v.x + self.dy * v.y
+    }
+
+    /// The determinant of the Jacobian: the local scale of areas, negative where the map mirrors.
+    #[inline]
+    #[must_use]
+    pub fn det(&self) -> f64 {
+        self.dx.cross(self.dy)
+    }
+
+    /// The jet of `outer ∘ self`, where `outer` is the jet of the outer map at `self.p`.
+    #[inline]
+    #[must_use]
+    pub fn then(&self, outer: &Self) -> Self {
+        Self { p: outer.p, dx: outer.push(self.dx), dy: outer.push(self.dy) }
+    }
+
+    /// The jet of the inverse map, which leads back to `p`.
+    #[inline]
+    #[must_use]
+    pub fn inverted(&self, p: Point) -> Self {
+        let (dx, dy, det) = (self.dx, self.dy, self.det());
+        Self { p, dx: Vec2::new(dy.y, -dx.y) / det, dy: Vec2::new(-dy.x, dx.x) / det }
+    }
+
+    /// Returns `true` if all six numbers are finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.p.is_finite() && self.dx.is_finite() && self.dy.is_finite()
+    }
+}
+
+/// The class of a map. Affine and projective maps need no refitting, and neighbours fold into one in a
+/// [`Chain`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Class {
+    /// Control points map exactly.
+    Affine(Affine),
+    /// Lines stay lines.
+    Projective(Homography),
+    /// The coordinates are quotients of polynomials: enough to prove error bounds without writing out an image. If they have a
+    /// denominator, the map implements [`Map::denominator`] too.
+    Rational(RationalDegree),
+    /// Anything else.
+    Smooth,
+}
+
+impl Class {
+    /// The degree of the map if its coordinates are quotients of polynomials.
+    #[must_use]
+    pub const fn degree(&self) -> Option<RationalDegree> {
+        match self {
+            Self::Affine(_) => Some(RationalDegree::polynomial(1)),
+            Self::Projective(_) => Some(RationalDegree::rational(1)),
+            Self::Rational(degree) => Some(*degree),
+            Self::Smooth => None,
+        }
+    }
+}
+
+/// The degree of a map (x, y) ↦ (X/W, Y/W) with polynomials X, Y, W.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RationalDegree {
+    /// The largest total degree (exponents of x and y together) of X, Y and W.
+    pub degree: usize,
+    /// `true` if W is not the constant 1. [`Map::denominator`] gives its values.
+    pub rational: bool,
+}
+
+impl RationalDegree {
+    /// A polynomial map: W = 1.
+    #[must_use]
+    pub const fn polynomial(degree: usize) -> Self {
+        Self { degree, rational: false }
+    }
+
+    /// A map with a denominator.
+    #[must_use]
+    pub const fn rational(degree: usize) -> Self {
+        Self { degree, rational: true }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A map written with `jet` alone has batches that agree with it to the last bit, also behind a pointer.
+    #[test]
+    fn default_batches_follow_from_the_jet() {
+        struct OnlyJet;
+        impl Map for OnlyJet {
+            fn jet(&self, p: Point) -> Jet {
+                Jet { p: Point::new(p.x * p.y, p.x - 3.0 * p.y), ..Jet::default() }
+            }
+        }
+        let ps: Vec<Point> = (0..9).map(|i| Point::new(0.1 * f64::from(i) - 0.3, 1.7 / f64::from(i + 1))).collect();
+        let expected: Vec<Point> = ps.iter().map(|p| OnlyJet.jet(*p).p).collect();
+        let shared: Arc<dyn Map> = Arc::new(OnlyJet);
+        let mut out = vec![Point::ORIGIN; ps.len()];
+        for map in [&OnlyJet as &dyn Map, &shared] {
+            map.points(&ps, &mut out);
+            assert_eq!(out, expected);
+        }
+    }
+}

@@ -197,14 +197,14 @@ impl EllipticArc {
     /// circle by (2/27)·sin⁶(φ/4)/cos²(φ/4) (Goldapp, *Approximation of circular arcs by cubic polynomials*, 1991), and from an
     /// affine image of the circle by at most the major semi-axis times that.
     #[must_use]
-    pub fn cubics_error(&self, n: usize) -> f64 {
+    pub(crate) fn cubics_error(&self, n: usize) -> f64 {
         let (s, c) = (self.sweep / n as f64 / 4.0).sin_cos();
         2.0 / 27.0 * s.powi(6) / (c * c) * self.major()
     }
 
     /// The number of cubics needed to stay within `tolerance` of the arc: at least one per quarter turn.
     #[must_use]
-    pub fn cubics_needed(&self, tolerance: f64) -> usize {
+    pub(crate) fn cubics_needed(&self, tolerance: f64) -> usize {
         /// Enough for an error of 1e-16 of the radius.
         const MAX_CUBICS: usize = 1000;
         let mut n = ((self.sweep.abs() / (PI / 2.0) - 1e-9).ceil().max(1.0) as usize).min(MAX_CUBICS);

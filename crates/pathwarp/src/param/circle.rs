@@ -9,9 +9,9 @@
 //! inner radius, and runs outwards, clockwise (`cw`) or counter-clockwise (`ccw`). Its cubics are within
 //! [`SPIRAL_WITHIN`]·outer of it.
 
-use super::number::ValueError;
 use super::{Axis, Frame, value};
 use crate::outline::{EllipticArc, Outline, Seg, Subpath};
+use crate::param::value::ValueError;
 use kurbo::{BezPath, CurveFitSample, ParamCurveFit, Point, Vec2};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;

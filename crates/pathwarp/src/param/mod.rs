@@ -23,21 +23,163 @@
 //! Values remain text until the deformation is built, so that a saved recipe means the same on other artwork. Lengths become user
 //! units, angles degrees. Errors name parameters without dashes.
 
-mod args;
 mod circle;
 mod declaration;
 mod frame;
-mod length;
 mod letter;
-mod number;
 mod settings;
 mod value;
 
-pub use args::{Args, NamedPath, NamedText, is_inline};
-pub(crate) use circle::is_spiral;
+use crate::error::Error;
+use crate::outline::Outline;
+use circle::is_circle;
+use std::collections::BTreeMap;
+
 pub use declaration::{Axis, Kind, Param};
 pub use frame::Frame;
-pub use length::{Length, LengthError, LengthUnit};
 pub use letter::Letter;
 pub(crate) use letter::word_space;
 pub use settings::Settings;
+pub use value::{Length, LengthError, LengthUnit};
+
+pub(crate) use circle::is_spiral;
+
+/// A path referred to by a value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedPath {
+    /// The reference as typed, for messages.
+    pub name: String,
+    /// The geometry in root user units.
+    pub outline: Outline,
+}
+
+/// A file named by a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedText {
+    /// The file as typed, for messages.
+    pub name: String,
+    /// The text of the file.
+    pub text: String,
+}
+
+/// The values given for each parameter, with the geometry of path references and the text of files.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Args {
+    typed: BTreeMap<String, Vec<String>>,
+    paths: BTreeMap<String, NamedPath>,
+    files: BTreeMap<String, NamedText>,
+}
+
+impl Args {
+    /// No values.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a value. The value of a flag is `true`.
+    pub fn push(&mut self, name: &str, value: impl Into<String>) {
+        self.typed.entry(name.to_owned()).or_default().push(value.into());
+    }
+
+    /// Replaces the values given for `name`.
+    pub fn set(&mut self, name: &str, values: Vec<String>) {
+        self.typed.insert(name.to_owned(), values);
+    }
+
+    /// Values from pairs of name and value.
+    #[must_use]
+    pub fn from_pairs(pairs: &[(&str, &str)]) -> Self {
+        let mut a = Self::new();
+        for (n, v) in pairs {
+            a.push(n, *v);
+        }
+        a
+    }
+
+    /// The values given for `name`.
+    #[must_use]
+    pub fn get(&self, name: &str) -> &[String] {
+        self.typed.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// All values, by name.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &[String])> {
+        self.typed.iter().map(|(n, v)| (n.as_str(), v.as_slice()))
+    }
+
+    /// Looks up every path reference that is not inline (`M …`, `x,y …`) with `look_up`, so that building a deformation needs no
+    /// files. `look_up` returns `None` to leave a reference to a later call; references already looked up are kept.
+    ///
+    /// # Errors
+    /// The errors of `look_up`.
+    pub fn resolve_paths(
+        &mut self,
+        params: &[Param],
+        mut look_up: impl FnMut(&str) -> Result<Option<Outline>, Error>,
+    ) -> Result<(), Error> {
+        for p in params.iter().filter(|p| p.kind == Kind::Path) {
+            for text in self.typed.get(p.name).into_iter().flatten() {
+                if !is_inline(text)
+                    && !self.paths.contains_key(text)
+                    && let Some(outline) = look_up(text)?
+                {
+                    self.paths.insert(text.clone(), NamedPath { name: text.clone(), outline });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of segments of all paths, those that were looked up and those that were typed.
+    pub(crate) fn path_segments(&self) -> usize {
+        /// Shorter texts hold few segments.
+        const LONG: usize = 2000;
+        let typed = self.typed.values().flatten().filter(|text| text.len() > LONG && is_inline(text));
+        let typed: usize = typed.map(|text| Outline::from_svg_lossy(text).segs().count()).sum();
+        self.paths.values().map(|p| p.outline.segs().count()).sum::<usize>() + typed
+    }
+
+    /// Reads every file that a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`] names, with `read`.
+    ///
+    /// # Errors
+    /// The errors of `read`.
+    pub fn resolve_files(
+        &mut self,
+        params: &[Param],
+        mut read: impl FnMut(&str) -> Result<String, Error>,
+    ) -> Result<(), Error> {
+        for p in params {
+            let typed = self.typed.get(p.name).into_iter().flatten();
+            for name in typed.filter(|v| p.reads_file(v)) {
+                if !self.files.contains_key(name) {
+                    let text = read(name)?;
+                    self.files.insert(name.clone(), NamedText { name: name.clone(), text });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn file(&self, name: &str) -> Option<&NamedText> {
+        self.files.get(name)
+    }
+
+    fn looked_up(&self, reference: &str) -> Option<&NamedPath> {
+        self.paths.get(reference)
+    }
+}
+
+/// Returns `true` if a path reference is the path itself, as path data, points, a circle, an arc or a spiral, and not a name.
+#[must_use]
+pub fn is_inline(text: &str) -> bool {
+    is_path_data(text) || is_circle(text) || value::looks_like_points(text)
+}
+
+/// Returns `true` if `text` looks like SVG path data: a move command followed by coordinates.
+fn is_path_data(text: &str) -> bool {
+    let rest = text.trim_start().strip_prefix(['M', 'm']);
+    rest.is_some_and(|r| r.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)))
+}
+
+// Letters of the artwork, for deformations that place lettering letter by letter.

@@ -1,10 +1,11 @@
 //! Typed and range-checked access to the values of parameters.
 
-use super::number::ValueError;
 use super::value;
-use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, args, circle};
+use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, circle};
 use crate::error::Error;
 use crate::outline::Outline;
+use crate::param;
+use crate::param::value::ValueError;
 use kurbo::{Point, Rect};
 
 /// A number out of range that is at least this large may be meant as a percentage.
@@ -243,7 +244,7 @@ impl<'a> Settings<'a> {
         }
         let outline = if let Some(circle) = circle::circle(text, self.frame) {
             circle.map_err(|e| Error::usage(name, text, e))?
-        } else if args::is_path_data(text) {
+        } else if param::is_path_data(text) {
             Outline::from_svg(text).map_err(|e| Error::usage(name, text, format!("is not valid path data: {e}")))?
         } else {
             let points = value::points(text, self.frame)

@@ -1,6 +1,6 @@
 //! The reference: a regular net of control points, before it is moved.
 
-use crate::box3::Box3;
+use crate::settings::Box3;
 use glam::DVec3;
 use pathwarp::Error;
 

@@ -1,5 +1,5 @@
 use super::{read, sniff, write_binary, write_text};
-use crate::mesh::model::{Corner, Mark, Mesh, PolygonKind};
+use crate::mesh::{Corner, Mark, Mesh, PolygonKind};
 use crate::mesh::{deform, obj};
 use glam::DVec3;
 use pathwarp::budget::{Budget, Limit, Limits};

@@ -10,9 +10,9 @@
 //! plane of the drawing that is a map of the plane; at degree 1 of a triangle δ(p) = d·(p − O) + d₀ is linear and the map the
 //! perspective collineation with the matrix [I 0; d d₀] about O, whose axis is the line δ = 1.
 
-use crate::deform::triangle::net as triangle;
-use crate::map::nets::powers;
-use crate::map::polynomial::{Plane, Quotient, source_coordinates};
+use crate::deform::triangle;
+use crate::map::powers;
+use crate::map::{Plane, Quotient, source_coordinates};
 use kurbo::{Affine, BezPath, Point, Rect, Shape, Vec2};
 
 /// A regular net of control points in the plane of the drawing.

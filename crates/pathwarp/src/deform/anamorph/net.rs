@@ -3,7 +3,7 @@
 use super::dilation::{Dilation, Reference};
 use super::scene::Scene;
 use super::surface::SpacePlane;
-use crate::deform::built::Built;
+use crate::deform::entry::Built;
 use crate::error::{Error, GeometryError, show};
 use kurbo::{Point, Rect, Shape};
 

@@ -1,20 +1,225 @@
-//! Surfaces in front of the eye, and their intersections with the rays through a drawing.
-//!
-//! Space is measured in user units: x to the right, y down, z away from the viewer; the drawing lies in z = 0 and the eye O at
-//! (x, y, −distance). The ray through the drawing's point p is O + λ·d, d = (p, 0) − O, and the surface determines λ = 1/δ:
-//!
-//! - a plane through P with normal n: δ = n·d / n·(P − O), linear in p;
-//! - a net of control points on rays, or the sphere on whose near pole the eye sits and whose far pole touches the drawing
-//!   (δ = |d|²/distance², the inverse of the stereographic projection): δ is a polynomial;
-//! - cylinders, cones and other spheres: the nearer root of a quadratic aλ² + 2bλ + c = 0, or the positive one from inside,
-//!   each in the form that does not cancel, λ = c/(−b ± √(b² − ac)).
-//!
-//! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3, for the polynomial ones.
+//! The surfaces that artwork is projected onto.
 
 use super::dilation::Dilation;
-use crate::map::Real;
-use crate::map::polynomial::Plane;
+use super::scene::Scene;
+use crate::error::{Error, show};
+use crate::map::{
+    AffineMap, Crease, Creases, Formula, Level, Map, NewtonInverse, Plane, Quotient, Real, source_coordinates,
+};
 use kurbo::{Affine, Point, Rect};
+use std::sync::Arc;
+
+/// A surface that artwork is projected onto. Lengths in user units, angles in degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Onto {
+    /// The ground under the artwork's bottom edge.
+    Floor,
+    /// A plane above its top edge.
+    Ceiling,
+    /// A side wall along its left edge.
+    LeftWall,
+    /// A side wall along its right edge.
+    RightWall,
+    /// Ground that rises by an angle away from the eye.
+    Ramp(f64),
+    /// A vertical wall, its right side turned away by an angle.
+    Wall(f64),
+    /// A cylinder whose front touches the artwork's middle.
+    Cylinder {
+        /// The radius.
+        radius: f64,
+        /// The axis is horizontal.
+        level: bool,
+        /// It is seen from inside.
+        inside: bool,
+    },
+    /// A vertical cone whose front touches the artwork's middle.
+    Cone {
+        /// The radius at the top.
+        top: f64,
+        /// The radius at the bottom.
+        bottom: f64,
+        /// The height; the artwork's if `None`.
+        height: Option<f64>,
+        /// It is seen from inside.
+        inside: bool,
+    },
+    /// A sphere whose front touches the artwork's middle. It cannot be laid flat.
+    Sphere {
+        /// The radius.
+        radius: f64,
+        /// It is seen from inside.
+        inside: bool,
+    },
+    /// A sphere through the eye, a dome with the eye on its near pole: lines become circles.
+    Dome,
+}
+
+impl Onto {
+    /// Returns the text that means this surface.
+    fn text(self) -> String {
+        let inside = |inside: bool| if inside { ",inside" } else { "" };
+        match self {
+            Self::Floor => "plane:floor".into(),
+            Self::Ceiling => "plane:ceiling".into(),
+            Self::LeftWall => "plane:left".into(),
+            Self::RightWall => "plane:right".into(),
+            Self::Ramp(a) => format!("plane:ramp={a}"),
+            Self::Wall(a) => format!("plane:wall={a}"),
+            Self::Cylinder { radius, level, inside: i } => {
+                format!("cylinder:radius={radius}{}{}", if level { ",level" } else { "" }, inside(i))
+            }
+            Self::Cone { top, bottom, inside: i, .. } => format!("cone:top={top},bottom={bottom}{}", inside(i)),
+            Self::Sphere { radius, inside: i } => format!("sphere:radius={radius}{}", inside(i)),
+            Self::Dome => "sphere:eye".into(),
+        }
+    }
+
+    fn wrong(self, problem: impl Into<String>) -> Error {
+        Error::usage("onto", self.text(), problem)
+    }
+
+    /// Returns the angle of a floor or ramp, radians.
+    fn rise(self) -> Option<f64> {
+        match self {
+            Self::Floor => Some(0.0),
+            Self::Ramp(a) => Some(a.to_radians()),
+            _ => None,
+        }
+    }
+
+    /// Returns the surface in space.
+    pub(super) fn surface(self, scene: &Scene, distance: f64) -> Result<Surface, Error> {
+        let r = scene.frame;
+        let middle = r.center();
+        let positive = |name: &str, v: f64| {
+            if v > 0.0 && v < 1e9 { Ok(v) } else { Err(self.wrong(format!("has a {name} that is not positive"))) }
+        };
+        match self {
+            Self::Cylinder { radius, level, inside } => {
+                let radius = positive("radius", radius)?;
+                Ok(Surface::Round(Round { middle, radius, slope: 0.0, level, inside }))
+            }
+            Self::Cone { top, bottom, height, inside } => {
+                let (top, bottom) = (positive("top", top)?, positive("bottom", bottom)?);
+                let height = height.unwrap_or(r.height());
+                if height <= 0.0 {
+                    return Err(self.wrong("needs a height=… for artwork that has none"));
+                }
+                let (radius, slope) = ((top + bottom) / 2.0, (bottom - top) / height);
+                Ok(Surface::Round(Round { middle, radius, slope, level: false, inside }))
+            }
+            Self::Sphere { radius, inside } => {
+                Ok(Surface::Sphere(Sphere { middle, radius: positive("radius", radius)?, inside }))
+            }
+            Self::Dome => Ok(Surface::Radial(Radial::stereographic(scene.eye, distance, r))),
+            _ => self.plane(scene, distance).map(Surface::Plane),
+        }
+    }
+
+    fn plane(self, scene: &Scene, distance: f64) -> Result<SpacePlane, Error> {
+        let r = scene.frame;
+        let c = r.center();
+        let upright = |angle: f64| [-angle.sin(), 0.0, angle.cos()];
+        let (at, normal) = match (self, self.rise()) {
+            (_, Some(a)) => (Point::new(c.x, r.y1), [0.0, exact(a.cos()), a.sin()]),
+            (Self::Ceiling, _) => (Point::new(c.x, r.y0), [0.0, -1.0, 0.0]),
+            (Self::LeftWall, _) => (Point::new(r.x0, c.y), [-1.0, 0.0, 0.0]),
+            (Self::RightWall, _) => (Point::new(r.x1, c.y), [1.0, 0.0, 0.0]),
+            (Self::Wall(a), _) => (c, upright(a.to_radians()).map(exact)),
+            _ => (c, upright(0.0).map(exact)),
+        };
+        let through = [at.x, at.y, 0.0];
+        let eye = [scene.eye.x, scene.eye.y, -distance];
+        let gap: f64 = (0..3).map(|i| normal[i] * (through[i] - eye[i])).sum();
+        if gap <= 1e-9 * distance {
+            return Err(self.wrong(format!(
+                "is seen from behind or edge-on by an eye at {}, {distance} in front; move the eye to its front side, for a floor above it",
+                show(scene.eye)
+            )));
+        }
+        Ok(SpacePlane::new(through, normal, at))
+    }
+}
+
+/// The cosine of a right angle is zero.
+fn exact(v: f64) -> f64 {
+    if v.abs() < 1e-15 { 0.0 } else { v }
+}
+
+/// Returns the scale at which artwork `drawn` high becomes `length` long on the floor or ramp.
+pub(super) fn scale_for(
+    onto: Option<Onto>,
+    length: f64,
+    drawn: f64,
+    eye_height: Option<f64>,
+    distance: f64,
+) -> Result<f64, Error> {
+    let Some(angle) = onto.and_then(Onto::rise) else {
+        let problem = "is for `onto plane:floor` and plane:ramp=ANGLE; elsewhere use `picture-width`";
+        return Err(Error::usage("length", "", problem));
+    };
+    let Some(eye) = eye_height else {
+        return Err(Error::missing("eye-height", "the height of the eye above the floor; `length` needs it"));
+    };
+    let (up, away) = (length * angle.sin(), length * angle.cos());
+    let seen = eye + (up - eye) * distance / (distance + away);
+    if seen > 0.0 && distance + away > 0.0 && drawn > 0.0 {
+        return Ok(seen / drawn);
+    }
+    let problem = "is impossible: from there, so long a stretch of this ground is not seen from its front";
+    Err(Error::usage("length", "", problem))
+}
+
+/// Samples the artwork's box.
+fn samples(r: Rect) -> impl Iterator<Item = Point> {
+    const N: u32 = 16;
+    let at = move |i: u32, j: u32| {
+        let (u, v) = (f64::from(i) / f64::from(N), f64::from(j) / f64::from(N));
+        Point::new(r.x0 + u * r.width(), r.y0 + v * r.height())
+    };
+    (0..=N).flat_map(move |i| (0..=N).map(move |j| at(i, j)))
+}
+
+/// Refuses a surface that a ray through the artwork's box misses.
+pub(super) fn check_met(onto: Option<Onto>, cast: &Anamorphosis, frame: Rect) -> Result<(), Error> {
+    let missed = samples(frame).find(|p| cast.defined(*p).max(0.0) == 0.0);
+    let Some(p) = missed else { return Ok(()) };
+    let advice = match cast.surface {
+        Surface::Plane(_) => {
+            "the ray there never comes down on the plane; raise the eye, go nearer, or make the artwork smaller (`picture-width`, `length`)"
+        }
+        Surface::Radial(_) => "the control points are pushed through infinity there; push them less",
+        _ => "the ray there misses the surface; make the artwork smaller (`picture-width`) or the radius larger",
+    };
+    let problem = format!("does not hold the artwork's box: at {} {advice}", show(p));
+    Err(onto.map_or_else(|| Error::usage("push", "", problem.clone()), |onto| onto.wrong(problem.clone())))
+}
+
+/// Refuses a camera that has part of the image behind it.
+pub(super) fn check_in_view(text: &str, cast: &Anamorphosis, camera: &Camera, frame: Rect) -> Result<(), Error> {
+    match samples(frame).find(|p| camera.depth_of(cast.point(*p)) <= 0.0) {
+        Some(p) => {
+            let problem = format!("is too near: the image of {} lies behind it; go further away", show(p));
+            Err(Error::usage("view", text, problem))
+        }
+        None => Ok(()),
+    }
+}
+
+// Surfaces in front of the eye, and their intersections with the rays through a drawing.
+//
+// Space is measured in user units: x to the right, y down, z away from the viewer; the drawing lies in z = 0 and the eye O at
+// (x, y, −distance). The ray through the drawing's point p is O + λ·d, d = (p, 0) − O, and the surface determines λ = 1/δ:
+//
+// - a plane through P with normal n: δ = n·d / n·(P − O), linear in p;
+// - a net of control points on rays, or the sphere on whose near pole the eye sits and whose far pole touches the drawing
+//   (δ = |d|²/distance², the inverse of the stereographic projection): δ is a polynomial;
+// - cylinders, cones and other spheres: the nearer root of a quadratic aλ² + 2bλ + c = 0, or the positive one from inside,
+//   each in the form that does not cancel, λ = c/(−b ± √(b² − ac)).
+//
+// J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3, for the polynomial ones.
 
 /// A vector or point in space.
 pub(crate) type Space = [f64; 3];
@@ -271,5 +476,256 @@ impl Anamorphosis {
             Surface::Plane(_) => 1.0 / self.stretch(p.x, p.y),
             Surface::Radial(r) => r.at(p.x, p.y),
         }
+    }
+}
+
+// Views of an anamorphosis: unrolled true to size, from the eye, and from elsewhere.
+//
+// **Unrolled.** A plane has coordinates in itself. A cylinder or cone is cut along its far line and rolled out. With the
+// radius R(y) = r + g·(y − y₀), σ = √(1 + g²) and κ = −g/σ, the point at angle θ and height y lies, measured from the middle
+// (x₀, y₀), at
+//
+// > X = R·sin(κθ)/κ,  Y = σ·(y − y₀) + 2R·sin²(κθ/2)/κ
+//
+// which are polar coordinates about the cone's apex, written so that the cylinder (κ → 0: X = rθ, Y = y − y₀) is no special
+// case. Both directions are in closed form: (X, Y) gives R = |(κX, r − κY)|, κθ its angle, σ(y − y₀) = (2rY − κ(X² + Y²))/(r + R),
+// and a point in space is seen at O + (q − O)·D/(z + D), D being the eye's distance and z the point's depth.
+//
+// **From elsewhere.** A pinhole camera at C looks at the image of the drawing's middle, scaled so that the surroundings of that
+// point are true to size. Where δ is a polynomial of degree n, so are numerators and denominator of the view.
+
+/// A pinhole camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Camera {
+    /// Its position.
+    pub(crate) at: Space,
+    forward: Space,
+    axes: [Space; 2],
+    reach: f64,
+    centre: Point,
+}
+
+impl Camera {
+    /// Creates a camera at `at` that looks towards `target`, which appears at `centre`, true to size. `None` if the two coincide.
+    #[must_use]
+    pub(crate) fn new(at: Space, target: Space, centre: Point) -> Option<Self> {
+        let along = minus(target, at);
+        let reach = length(along);
+        let forward = along.map(|v| v / reach);
+        (reach > 0.0 && reach.is_finite()).then(|| Self { at, forward, axes: picture_axes(forward), reach, centre })
+    }
+
+    /// Returns the distance of a point in front of the camera.
+    #[must_use]
+    pub(crate) fn depth_of(&self, q: Space) -> f64 {
+        self.depth(q)
+    }
+
+    fn depth<S: Real>(&self, q: [S; 3]) -> S {
+        project(self.forward, self.at, q)
+    }
+}
+
+/// Returns n·(q − o).
+fn project<S: Real>(n: Space, o: Space, [x, y, z]: [S; 3]) -> S {
+    (x - o[0]) * n[0] + (y - o[1]) * n[1] + (z - o[2]) * n[2]
+}
+
+impl Anamorphosis {
+    /// Returns δ, if it is a polynomial, with its coordinates and its domain.
+    fn polynomial(&self) -> Option<(Affine, Plane, Rect)> {
+        match &self.surface {
+            Surface::Radial(Radial { pre, delta, domain }) => Some((*pre, delta.clone(), *domain)),
+            Surface::Plane(p) => {
+                let k = 1.0 / dot(p.normal, minus(p.through, self.eye()));
+                let [nx, ny, nz] = p.normal.map(|v| v * k);
+                let pre = Affine::translate(-self.foot.to_vec2());
+                Some((pre, Plane::linear([nz * self.distance, nx, ny]), Rect::ZERO))
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns the quotient (axis₀·(q − from), axis₁·(q − from))·scale / depth + origin of the image q, if δ is a polynomial.
+    /// Without a `depth` direction it is undivided.
+    fn flattened(
+        &self,
+        from: Space,
+        axes: [Space; 2],
+        scale: f64,
+        depth: Option<Space>,
+        origin: Point,
+    ) -> Option<Quotient> {
+        let (pre, delta, domain) = self.polynomial()?;
+        let [x, y] = source_coordinates(pre);
+        // n·(q − from)·δ = n·(O − from)·δ + n·d.
+        let along = |n: Space| {
+            let d = Plane::linear(std::array::from_fn(|i| {
+                let foot = if i == 0 { n[0] * self.foot.x + n[1] * self.foot.y - n[2] * self.distance } else { 0.0 };
+                n[0] * x[i] + n[1] * y[i] - foot
+            }));
+            d.plus(dot(n, minus(self.eye(), from)), &delta)
+        };
+        let [u, v] = axes.map(|n| along(n).scaled(scale));
+        Some(match depth {
+            None => Quotient::rational(pre, origin, u, v, delta, domain),
+            Some(n) => Quotient::rational(pre, origin, u, v, along(n), domain).guarded(delta),
+        })
+    }
+
+    /// Returns the surface laid flat, true to size; `None` for surfaces that cannot be.
+    #[must_use]
+    pub(crate) fn unrolled(&self) -> Option<Arc<dyn Map>> {
+        match &self.surface {
+            Surface::Plane(p) => Some(self.flattened(p.through, p.axes, 1.0, None, p.at)?.simplest()),
+            Surface::Round(r) => Some(Arc::new(Unrolled { of: self.clone(), round: *r })),
+            _ => None,
+        }
+    }
+
+    /// Returns the eye's view: the drawing itself, computed through space.
+    #[must_use]
+    pub(crate) fn seen(&self) -> Arc<dyn Map> {
+        Arc::new(Seen(self.clone()))
+    }
+
+    /// Returns a camera's view. The inverse is searched over `domain`.
+    #[must_use]
+    pub(crate) fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
+        match self.flattened(camera.at, camera.axes, camera.reach, Some(camera.forward), camera.centre) {
+            Some(q) => q.simplest(),
+            None => Arc::new(Viewed { of: self.clone(), camera: *camera, domain }),
+        }
+    }
+
+    fn edge(&self) -> Crease {
+        let own = self.clone();
+        Crease::edge(Level::Field(Arc::new(move |p| own.defined(p))))
+    }
+
+    /// Returns the point of the drawing at which the eye sees a point in space.
+    fn back<S: Real>(&self, [x, y, z]: [S; 3]) -> (S, S) {
+        let k = S::from(self.distance) / (z + self.distance);
+        ((x - self.foot.x) * k + self.foot.x, (y - self.foot.y) * k + self.foot.y)
+    }
+}
+
+struct Seen(Anamorphosis);
+
+impl Formula for Seen {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        self.0.back(self.0.at(x, y))
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        out.push(self.0.edge());
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(AffineMap::IDENTITY))
+    }
+}
+
+struct Viewed {
+    of: Anamorphosis,
+    camera: Camera,
+    domain: Rect,
+}
+
+impl Formula for Viewed {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let q = self.of.at(x, y);
+        let c = &self.camera;
+        let k = S::from(c.reach) / c.depth(q);
+        let [u, v] = c.axes.map(|n| project(n, c.at, q) * k);
+        (u + c.centre.x, v + c.centre.y)
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        out.push(self.of.edge());
+        let (of, camera) = (self.of.clone(), self.camera);
+        out.push(Crease::edge(Level::Field(Arc::new(move |p| {
+            if of.defined(p) > 0.0 { camera.depth(of.point(p)) } else { 1.0 }
+        }))));
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        let own = Self { of: self.of.clone(), camera: self.camera, domain: self.domain };
+        let reach = 1e-9 * (self.domain.width() + self.domain.height());
+        Some(Arc::new(NewtonInverse::new(Arc::new(own), self.domain, reach, [1, 1])))
+    }
+}
+
+/// A cylinder or cone rolled out.
+#[derive(Clone)]
+struct Unrolled {
+    of: Anamorphosis,
+    round: Round,
+}
+
+impl Unrolled {
+    /// Returns the surface, κ, σ, and its middle after turning the axis vertical.
+    fn round(&self) -> (Round, f64, f64, Point) {
+        let r = self.round;
+        let sigma = r.slope.hypot(1.0);
+        (r, -r.slope / sigma, sigma, if r.level { swap(r.middle) } else { r.middle })
+    }
+}
+
+impl Formula for Unrolled {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let (r, kappa, sigma, m) = self.round();
+        let [x, y, z] = self.of.at(x, y);
+        let (x, y) = if r.level { (y, x) } else { (x, y) };
+        let (dx, dy) = (x - m.x, y - m.y);
+        let towards = z - r.axis();
+        let angle = dx.atan2(if r.inside { towards } else { -towards });
+        let radius = dy * r.slope + r.radius;
+        let (u, v) = if kappa == 0.0 {
+            (angle * radius, dy)
+        } else {
+            let half = (angle * (kappa / 2.0)).sin();
+            (radius * (angle * kappa).sin() / kappa, dy * sigma + radius * half * half * (2.0 / kappa))
+        };
+        let (u, v) = (u + m.x, v + m.y);
+        if r.level { (v, u) } else { (u, v) }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        out.push(self.of.edge());
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Rolled(self.clone())))
+    }
+}
+
+/// The inverse: rolled up again, and seen by the eye.
+struct Rolled(Unrolled);
+
+impl Formula for Rolled {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let (r, kappa, sigma, m) = self.0.round();
+        let (x, y) = if r.level { (y, x) } else { (x, y) };
+        let (u, v) = (x - m.x, y - m.y);
+        let (radius, angle, dy) = if kappa == 0.0 {
+            (S::from(r.radius), u / r.radius, v)
+        } else {
+            let (p, q) = (u * kappa, v * -kappa + r.radius);
+            let radius = p.hypot(q);
+            let t = (v * (2.0 * r.radius) - (u * u + v * v) * kappa) / (radius + r.radius);
+            (radius, p.atan2(q) / kappa, t / sigma)
+        };
+        let towards = radius * angle.cos();
+        let z = if r.inside { towards } else { -towards } + r.axis();
+        let (x, y) = (radius * angle.sin() + m.x, dy + m.y);
+        self.0.of.back(if r.level { [y, x, z] } else { [x, y, z] })
+    }
+
+    /// Behind the eye nothing is seen.
+    fn creases(&self, _: &mut Creases) {}
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.0.clone()))
     }
 }

@@ -1,11 +1,11 @@
 //! Anamorphoses against geometry in space, the papers' figures, and their faults.
 
-use super::camera::Camera;
 use super::dilation::{Dilation, Reference};
-use super::entry::INFO;
 use super::surface::{Round, Space, SpacePlane, Sphere};
 use super::*;
 use crate::check;
+use crate::deform::anamorph::INFO;
+use crate::deform::anamorph::surface::Camera;
 use crate::deform::{Deformation, Info};
 use crate::map::{Class, Dual, Homography, RationalBezier};
 use crate::outline::Seg;

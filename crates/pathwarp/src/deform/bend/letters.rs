@@ -14,7 +14,7 @@
 
 use super::listed::listed;
 use super::map::{BendMap, ToStrip};
-use super::piece::normal;
+use crate::deform::bend::map::normal;
 use crate::error::show;
 use crate::outline::{Outline, Seg};
 use crate::param::Letter;

@@ -1,9 +1,9 @@
 //! Bends against the paper, exact shapes and the letters' settings.
 
-use super::entry::INFO;
 use super::*;
 use crate::check;
 use crate::deform::Deformation;
+use crate::deform::bend::INFO;
 use crate::map::{Creases, Level, Map as _, RationalBezier};
 use crate::outline::{Outline, Seg};
 use crate::param::Args;

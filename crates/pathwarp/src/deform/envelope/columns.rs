@@ -8,8 +8,8 @@
 //! x and y exchanged.
 
 use super::fit::to_unit;
-use super::ring::{SAMPLES, bounds, part, shown};
-use crate::deform::built::{Built, Role};
+use crate::deform::entry::{Built, Role};
+use crate::deform::envelope::fit::{SAMPLES, bounds, part, shown};
 use crate::error::{Error, show};
 use crate::map::{AffineMap, Coons, Pace, Side, Sides, increasing_root};
 use crate::outline::{Outline, Seg, Subpath};
@@ -132,7 +132,7 @@ impl Columns {
         let back = |c: &[Span]| -> Vec<Seg> { all.cut(c).iter().map(|s| s.transformed(turn)).collect() };
         let (low, high) = (back(low), back(high));
         Some(Self {
-            curves: if upright { [high, low] } else { [low, high].map(|c| super::ring::reversed(&c)) },
+            curves: if upright { [high, low] } else { [low, high].map(|c| crate::deform::envelope::fit::reversed(&c)) },
             range: if upright { range } else { [1.0 - range[1], 1.0 - range[0]] },
             jumps: jumps.iter().map(|p| turn * *p).collect(),
             coverage: held / area,

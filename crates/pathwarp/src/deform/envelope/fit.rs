@@ -1,14 +1,12 @@
 //! The map of a box into a ring of four sides.
 
-use super::faults;
-use super::ring::{Ring, SIDES, reversed};
 use crate::anchors;
-use crate::deform::built::{Built, Role};
+use crate::deform::entry::{Built, Role};
 use crate::error::{Error, show};
-use crate::map::{AffineMap, Class, Coons, Pace, Side, Sides};
-use crate::outline::Seg;
+use crate::map::{AffineMap, Coons, Map, Pace, Side, Sides};
+use crate::outline::{Outline, Seg, Subpath};
 use crate::param::Frame;
-use kurbo::{Affine, Point, Rect};
+use kurbo::{Affine, BezPath, Line, Point, Rect};
 use std::sync::Arc;
 
 /// A side that strays from the line between its ends by no more than this share of its length is straight.
@@ -110,12 +108,9 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
 
     let map = Coons::new(paced(ring, spread, keep, &mut built)?, pre);
     let inverse = Affine::new([frame.width(), 0.0, 0.0, -frame.height(), frame.x0, frame.y1]);
-    built.explanation.warnings.extend(faults::warnings(&map, inverse));
+    built.explanation.warnings.extend(warnings(&map, inverse));
     let map = map.simplest();
-    built.map = match map.class() {
-        Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, &Frame::new(frame)))),
-        _ => map,
-    };
+    built.map = anchors::settled(map, frame);
     Ok(built)
 }
 
@@ -218,4 +213,200 @@ fn no_pace(name: &str, pace: Pace, spread: Spread) -> Error {
     let problem =
         format!("needs sides that run {across} without turning back; the {name} side does not: use `by length`");
     Error::usage("by", spread.name(), problem)
+}
+
+// Warnings about an envelope: sides that cross, and folds of the map.
+
+/// Chords of a side.
+const CHORDS: u32 = 400;
+/// Chords that are looked at only if their common box is met.
+const BLOCK: usize = 20;
+/// Overshoot, in lengths of a chord, that still counts as its end.
+const ROUNDING: f64 = 1e-9;
+/// Samples of the map's determinant along an axis.
+const GRID: u32 = 64;
+
+/// Returns the warnings. `inverse` takes the unit square to the source.
+pub(super) fn warnings(map: &Coons, inverse: Affine) -> Vec<String> {
+    let s = map.sides();
+    let sides = [&s.bottom, &s.right, &s.top, &s.left];
+    let mut out = crossings(sides);
+    out.extend(fold(map, inverse));
+    out
+}
+
+fn crossings(sides: [&Side; 4]) -> Vec<String> {
+    let size = sides[0].length() + sides[2].length();
+    let chords = sides.map(|s| Chords::new(s, ROUNDING * size));
+    let mut out = Vec::new();
+    for i in 0..4 {
+        for j in i..4 {
+            let meets = |p: Point| sides[i].ends().iter().chain(&sides[j].ends()).any(|e| e.distance(p) <= 1e-6 * size);
+            let pairs = chords[i].all.iter().enumerate().flat_map(|(k, a)| {
+                // A side against itself: each pair once, without neighbours.
+                let from = if i == j { k + 2 } else { 0 };
+                chords[j].near(a, from).map(move |b| (a, b))
+            });
+            let found = pairs.filter_map(|(a, b)| crossing(a, b)).find(|p| !meets(*p));
+            if let Some(at) = found {
+                let what = if i == j {
+                    format!("the {} side crosses itself", SIDES[i])
+                } else {
+                    format!("the {} and the {} side cross", SIDES[i], SIDES[j])
+                };
+                out.push(format!(
+                    "envelope: {what} near {}: the artwork folds over there; move the curves apart",
+                    show(at)
+                ));
+            }
+        }
+    }
+    out
+}
+
+/// The chords of a side.
+struct Chords {
+    all: Vec<Line>,
+    /// The box of every [`BLOCK`] of them.
+    boxes: Vec<Rect>,
+}
+
+impl Chords {
+    /// Cuts a side into chords. Their boxes are wider by `room`.
+    fn new(side: &Side, room: f64) -> Self {
+        let points: Vec<Point> = (0..=CHORDS).map(|i| side.at(f64::from(i) / f64::from(CHORDS)).0).collect();
+        let all: Vec<Line> = points.windows(2).map(|p| Line::new(p[0], p[1])).collect();
+        let of = |lines: &[Line]| {
+            let start = Rect::from_points(lines[0].p0, lines[0].p1);
+            lines.iter().fold(start, |b, l| b.union_pt(l.p1)).inflate(room, room)
+        };
+        let boxes = all.chunks(BLOCK).map(of).collect();
+        Self { all, boxes }
+    }
+
+    /// Returns the chords, from a number on, in the blocks whose box meets that of `line`.
+    fn near(&self, line: &Line, from: usize) -> impl Iterator<Item = &Line> {
+        let here = Rect::from_points(line.p0, line.p1);
+        let first = from / BLOCK;
+        let blocks = self.boxes.iter().enumerate().skip(first).filter(move |(_, b)| b.overlaps(here));
+        blocks.flat_map(move |(k, _)| {
+            let (start, end) = ((k * BLOCK).max(from), self.all.len().min((k + 1) * BLOCK));
+            &self.all[start.min(end)..end]
+        })
+    }
+}
+
+/// Returns the point where two chords cross or touch, ends included: sides may cross in the joint of two chords.
+fn crossing(a: &Line, b: &Line) -> Option<Point> {
+    let (v, w, d) = (a.p1 - a.p0, b.p1 - b.p0, b.p0 - a.p0);
+    let det = v.cross(w);
+    // Parallel chords, as of a straight stretch, meet nowhere or everywhere.
+    if det.abs() <= 1e-9 * v.hypot() * w.hypot() {
+        return None;
+    }
+    let (t, u) = (d.cross(w) / det, d.cross(v) / det);
+    let inside = |t: f64| (-ROUNDING..=1.0 + ROUNDING).contains(&t);
+    (inside(t) && inside(u)).then(|| a.p0 + v * t)
+}
+
+fn fold(map: &Coons, inverse: Affine) -> Option<String> {
+    /// Below this share of the mean a negative determinant counts as zero: it vanishes at smooth corners.
+    const NOTHING: f64 = 1e-6;
+    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(GRID);
+    let places = (0..GRID * GRID).map(|k| Point::new(at(k % GRID), at(k / GRID)));
+    let dets: Vec<(Point, f64)> = places.map(|q| (q, map.jet(inverse * q).det())).collect();
+    let sum: f64 = dets.iter().map(|d| d.1).sum();
+    let mean = dets.iter().map(|d| d.1.abs()).sum::<f64>() / dets.len() as f64;
+    let up = sum.signum();
+    let folded: Vec<_> = dets.iter().filter(|d| d.1 * up < -NOTHING * mean).collect();
+    let worst = folded.iter().min_by(|a, b| (a.1 * up).total_cmp(&(b.1 * up)))?;
+    let q = worst.0;
+    let distances = [q.y, 1.0 - q.x, 1.0 - q.y, q.x];
+    let side = (0..4).fold(0, |best, i| if distances[i] < distances[best] { i } else { best });
+    let along = 100.0 * if side % 2 == 0 { q.x } else { q.y };
+    Some(format!(
+        "envelope: the map folds over near {} (nearest to the {} side, {along:.0} % along it; {:.1} % of the box): a side there \
+bends too sharply for its neighbours; straighten it, or move the corners",
+        show(map.point(inverse * q)),
+        SIDES[side],
+        100.0 * folded.len() as f64 / dets.len() as f64
+    ))
+}
+
+/// The sides' names, in the order of [`Ring::sides`].
+pub(super) const SIDES: [&str; 4] = ["bottom", "right", "top", "left"];
+/// Samples of a piece.
+pub(super) const SAMPLES: u32 = 64;
+
+/// Four sides, head to tail.
+pub(in crate::deform) struct Ring {
+    /// Bottom (left to right), right (upwards), top (right to left), left (downwards).
+    pub(in crate::deform) sides: [Vec<Seg>; 4],
+    pub(in crate::deform) notes: Vec<String>,
+    pub(in crate::deform) warnings: Vec<String>,
+}
+
+/// The four corners of a closed path.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Corners {
+    /// Numbers of nodes, from 1.
+    Nodes([usize; 4]),
+    /// The points of the path nearest to these.
+    Points([Point; 4]),
+}
+
+impl Ring {
+    /// Returns the sides as one closed path.
+    pub(super) fn closed(&self) -> Subpath {
+        let segs: Vec<Seg> = self.sides.iter().flatten().copied().collect();
+        Subpath { start: segs.first().map_or(Point::ORIGIN, Seg::start), segs, closed: true }
+    }
+
+    /// Returns `true` if the bottom and the top meet at an end.
+    pub(super) fn meets(&self) -> bool {
+        let point = |side: &[Seg]| side.iter().all(|s| s.bounding_box().size().max_side() == 0.0);
+        point(&self.sides[1]) || point(&self.sides[3])
+    }
+
+    /// Returns the sides for a preview.
+    pub(super) fn path(&self) -> BezPath {
+        shown(&self.closed())
+    }
+}
+
+/// Returns a closed path for a preview.
+pub(super) fn shown(path: &Subpath) -> BezPath {
+    let all = Outline { subpaths: vec![path.clone()] };
+    let size = all.bounding_box().map_or(1.0, |b| b.width() + b.height());
+    all.to_bez_path(1e-4 * size)
+}
+
+/// Reverses a side.
+pub(super) fn reversed(side: &[Seg]) -> Vec<Seg> {
+    side.iter().rev().map(Seg::reversed).collect()
+}
+
+/// Runs the ring the other way from the bottom's end: left and right change places.
+pub(super) fn mirrored([bottom, right, top, left]: [Vec<Seg>; 4]) -> [Vec<Seg>; 4] {
+    [reversed(&bottom), reversed(&left), reversed(&top), reversed(&right)]
+}
+
+/// Returns twice the area between a piece and the origin.
+pub(super) fn area(s: &Seg) -> f64 {
+    let at = |i: u32| s.eval(f64::from(i) / f64::from(SAMPLES)).to_vec2();
+    (0..SAMPLES).map(|i| at(i).cross(at(i + 1))).sum()
+}
+
+/// Returns the box of a closed path.
+pub(super) fn bounds(sub: &Subpath) -> Rect {
+    sub.segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
+}
+
+/// Returns a part of a segment.
+pub(super) fn part(s: &Seg, a: f64, b: f64) -> Seg {
+    match s {
+        _ if a == 0.0 && b == 1.0 => *s,
+        Seg::Arc(arc) => Seg::Arc(arc.subsegment(a, b)),
+        other => other.part(a, b).unwrap_or(*other),
+    }
 }

@@ -3,31 +3,27 @@
 //! The map is the Coons patch of the sides ([`Coons`](crate::map::Coons)), which for sides of one cubic is the shaper's
 //! (Koppinen, *A plane transformation from 16 control points*, equation 7).
 
-mod choice;
 mod columns;
 mod corners;
-mod curves;
 mod distortion;
-mod entry;
-mod faults;
 mod fit;
-mod ring;
 #[cfg(test)]
 mod tests;
 
-pub(super) use entry::Entry;
-pub(super) use fit::fit;
-pub use fit::{Keep, Spread};
-use ring::Corners;
-pub(super) use ring::Ring;
-
-use super::built::Built;
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Variant};
 use crate::error::{Error, show, within};
-use crate::outline::{Outline, Subpath};
-use crate::param::NamedPath;
-use columns::Room;
-use kurbo::{Point, Rect};
+use crate::map::{Coons, Jet, Map, Pace, Side, Sides};
+use crate::outline::{Outline, Seg, Subpath};
+use crate::param::{Axis, Kind, NamedPath, Param, Settings};
+use columns::{Columns, Room, bisected, filled, nothing};
+use distortion::{distortion, grid, stretches, turned};
+use fit::{Corners, SIDES, area, bounds, is_curved, reversed};
+use kurbo::{Affine, Line, Point, Rect, Vec2};
 use std::sync::Arc;
+
+pub use fit::{Keep, Spread};
+
+pub(super) use fit::{Ring, fit};
 
 /// The share of the greatest height at which lettering ends.
 const ENDS: f64 = 0.25;
@@ -93,7 +89,7 @@ impl Envelope {
     }
 
     fn side(mut self, k: usize, curve: &Outline) -> Self {
-        self.curves[k] = Some(NamedPath { name: ring::SIDES[k].into(), outline: curve.clone() });
+        self.curves[k] = Some(NamedPath { name: SIDES[k].into(), outline: curve.clone() });
         self
     }
 
@@ -215,7 +211,7 @@ impl Envelope {
             }
             shape => (shape, Vec::new()),
         };
-        let choice = choice::Choice {
+        let choice = Choice {
             frame: self.frame,
             keep: self.keep,
             spread: self.spread,
@@ -240,7 +236,7 @@ impl Envelope {
         const PLACES: u32 = 5;
         let step = (self.ink.len() / (2 * PLACES * PLACES) as usize).max(1);
         let places: Vec<Point> = self.ink.iter().step_by(step).map(|p| fit::to_unit(self.frame) * *p).collect();
-        if places.is_empty() { distortion::grid(PLACES).collect() } else { places }
+        if places.is_empty() { grid(PLACES).collect() } else { places }
     }
 
     /// Refuses values that contradict each other.
@@ -279,7 +275,7 @@ impl Envelope {
         if let Some((name, path)) = shape {
             return corners::ring(name, path, self.corners.as_ref(), self.bottom_side, self.reverse, &self.places());
         }
-        let curves = curves::Curves {
+        let curves = corners::Curves {
             drawn: &self.curves,
             height: self.height,
             frame_height: self.frame.height(),
@@ -288,4 +284,351 @@ impl Envelope {
         };
         curves.ring()
     }
+}
+
+pub(in crate::deform) struct Entry;
+
+static INFO: Info = Info::new("envelope", "put artwork into any closed shape, or between curves")
+    .group("Envelopes")
+    .by_hand(ByHand {
+        neutral: &[
+            ("top", "M0,0 C33.3333,0 66.6667,0 100,0"),
+            ("bottom", "M0,100 C33.3333,100 66.6667,100 100,100"),
+        ],
+        variants: &[Variant {
+            label: "Closed shape",
+            param: "envelope",
+            neutral: "M0,100 L50,100 L100,100 L100,50 L100,0 L50,0 L0,0 L0,50 Z",
+            showing: "M10,95 L50,120 L90,95 L100,50 L90,5 L50,-20 L10,5 L0,50 Z",
+        }],
+        ..ByHand::NONE
+    })
+    .guides(&["envelope"], 1)
+    .with_letters()
+    .about("The artwork's box is laid onto a shape, and the artwork follows. Name a closed path (--envelope, for instance an object of \
+the drawing itself), or draw the sides one by one: --bottom and --top, with --left and --right if they are to be curves as well, or \
+--bottom alone with a --height.\n\nHow a closed path is filled is chosen (--keep auto). A path with four corners of its own (a flag, a \
+banner, a trapezoid) bends the artwork between its four sides. Lettering in any other shape stands in columns between the lower and \
+the upper outline, its stems upright; other artwork takes whatever distorts it less: columns, rows or four sides. Tails, such as a speech \
+bubble's, and thin ends stay free. In columns, lettering ends where the shape is still a quarter of its greatest height (--ends). \
+--explain says what was chosen.\n\nA closed path's corners are its nodes, if it has just four and one lies in each quarter of its box. \
+Otherwise they are those of its nodes that turn by 20° or more which distort the artwork least; for a quarter of the box without such \
+a node, the point nearest to its corner stands in. --corners overrules that; where another choice is hardly worse, a warning names it. \
+The bottom is the lowest side on the screen that can be read from left to right, so that lettering is never mirrored; --bottom-side and \
+--reverse overrule that.\n\nAlong a side the artwork is spread evenly by length. --by parameter follows the curve's parameter instead \
+(pieces share a side by their lengths); with one cubic for every side that is the shaper's map. --by extent goes by even steps across the \
+screen.\n\n--keep verticals fills a closed path in columns, and makes verticals straight lines between --bottom and --top, exactly vertical \
+where both span the same width; --keep horizontals does the same in rows. --keep lines keeps every line, which needs four straight sides: \
+a projective map. --keep nothing bends artwork between four sides, whatever the shape.")
+    .source("S. A. Coons, Surfaces for Computer-Aided Design of Space Forms, MIT 1967; Markku Koppinen, A plane transformation from 16 control points, equation (7)")
+    .params(&[
+        Param::path("envelope", "The closed path to put the artwork into."),
+        Param::path("bottom", "Instead of --envelope, the bottom side, an open curve."),
+        Param::path("top", "The top side."),
+        Param::path("left", "The left side. Default: as --sides says."),
+        Param::path("right", "The right side. Default: as --sides says."),
+        Param::length("height", Axis::Y, "With --bottom or --top alone: distance of the facing side, which is the same curve again. Default: the artwork's height.")
+            .within(1e-9, 1e9)
+            .slider(1.0, 500.0),
+        Param::new("sides", Kind::Choice(&["straight", "square"]), "The sides between the ends of two curves: straight lines, or curves that meet both at right angles.")
+            .default("straight"),
+        Param::new("by", Kind::Choice(&["length", "parameter", "extent"]), "The spacing along a side: even by length, by the curve's parameter, or by steps across the screen.")
+            .default("length"),
+        Param::new("corners", Kind::Text("N,N,N,N|X,Y…"), "The closed path's corners: four numbers of its nodes, or four points near it. Default: found."),
+        Param::new("bottom-side", Kind::Count, "The closed path's side that is the bottom: 1 to 4, from its first corner on as drawn. Default: the lowest.")
+            .within(1.0, 4.0),
+        Param::flag("reverse", "Run the bottom the other way: the result is mirrored."),
+        Param::new("keep", Kind::Choice(&["auto", "nothing", "verticals", "horizontals", "lines"]), "Lines that stay straight.")
+            .default("auto"),
+        Param::number("ends", "In columns or rows: the artwork ends where the shape is still this share of its greatest height (width). Default: 25% for lettering, else 0.")
+            .within(0.0, 0.99)
+            .slider(0.0, 0.5),
+        Param::length("padding", Axis::Y, "Distance that the artwork keeps from the shape's outline.").default("0").within(0.0, 1e9).slider(0.0, 50.0),
+    ])
+    .demo(&[("envelope", "M8,78 Q30,96 50,84 T95,85 C85,60 105,40 90,15 L70,6 C50,-5 30,30 5,10 C15,40 0,60 8,78 Z"), ("corners", "1,3,4,6")])
+    .examples(&[
+        Example {
+            what: "A logo in a swallow-tailed pennant: the shape's corners and its bottom are found",
+            command: "envelope samples/logo.svg --envelope samples/envelopes.svg#pennant --explain -o out.svg",
+        },
+        Example {
+            what: "A word between two curves of several pieces, its verticals kept vertical",
+            command: "envelope samples/lettering.svg --bottom samples/envelopes.svg#valley --top samples/envelopes.svg#hill --keep verticals --fit page -o out.svg --preview out.png",
+        },
+        Example {
+            what: "The same curve above and below, typed in place",
+            command: "envelope samples/lettering.svg --bottom 'M0,160 C120,100 260,220 400,150' --height 90 -o out.svg",
+        },
+        Example {
+            what: "Text whose baseline lies on the lower curve and whose capitals reach the upper one",
+            command: "envelope samples/headline.svg --frame baseline-capheight --bottom 'M30,200 Q240,90 450,200' --height 80 -o out.svg",
+        },
+        Example {
+            what: "A word in a leaf: its stems stay upright",
+            command: "envelope samples/headline.svg --envelope samples/shapes.svg#leaf -o out.svg",
+        },
+    ])
+    .laws(&[
+        Law::Identity(&[("envelope", "0,0 100,0 100,100 0,100")]),
+        Law::Identity(&[("bottom", "0,100 100,100"), ("top", "0,0 30,0 100,0")]),
+        Law::Identity(&[("bottom", "0,100 100,100")]),
+        // The start and the direction of a closed path do not matter.
+        Law::Same(
+            &[("envelope", "M10,90 Q40,110 95,85 L90,15 50,30 5,10 Z"), ("corners", "10,90 95,85 90,15 5,10")],
+            &[("envelope", "M50,30 L90,15 95,85 Q40,110 10,90 L5,10 Z"), ("corners", "10,90 95,85 90,15 5,10")],
+        ),
+        // A circle's corners are found on its diagonals.
+        Law::Same(
+            &[("envelope", CIRCLE)],
+            &[("envelope", CIRCLE), ("corners", "14.6446609406726,85.3553390593274 85.3553390593274,85.3553390593274 85.3553390593274,14.6446609406726 14.6446609406726,14.6446609406726")],
+        ),
+        // Sides one by one are the closed path.
+        Law::Same(
+            &[("bottom", "M0,90 Q50,110 100,90"), ("top", "M0,0 Q40,20 100,10"), ("right", "M100,90 Q80,50 100,10"), ("left", "0,0 0,90")],
+            &[("envelope", "M0,90 Q50,110 100,90 Q80,50 100,10 Q40,20 0,0 Z")],
+        ),
+        Law::KeepsLinesAlong(&[("bottom", "M0,90 C30,130 60,60 100,95"), ("top", "M5,10 Q60,-30 90,5"), ("by", "parameter")], (0.0, 1.0)),
+        Law::KeepsLinesAlong(&[("bottom", "M0,90 C30,130 60,60 100,95 L140,100"), ("top", "M5,10 Q60,-30 90,5"), ("keep", "verticals")], (0.0, 1.0)),
+        Law::KeepsLinesAlong(&[("left", "M0,90 C30,60 -30,40 0,0"), ("right", "M100,110 L80,50 110,5"), ("keep", "horizontals")], (1.0, 0.0)),
+        Law::KeepsLines(&[("envelope", "0,90 100,80 80,10 10,0"), ("keep", "lines")]),
+    ])
+    .cases(&[
+        // Half a circle of radius 50, and the same 40 higher: quarter of the way along is 45° round.
+        Case { args: ARCH, at: (25.0, 100.0), to: (50.0 - 50.0 * R2, 100.0 - 50.0 * R2), tolerance: 1e-10 },
+        Case { args: ARCH, at: (50.0, 0.0), to: (50.0, 10.0), tolerance: 1e-10 },
+        Case { args: ARCH, at: (75.0, 50.0), to: (50.0 + 50.0 * R2, 80.0 - 50.0 * R2), tolerance: 1e-10 },
+        // The shaper's own case: the middle of a Coons patch.
+        Case { args: CAGE, at: (50.0, 50.0), to: (46.875, 55.625), tolerance: 1e-12 },
+        // y = 100 − 1.6·x·(100−x)/100: at x = 20 the curve is 25.6 higher.
+        Case { args: UPRIGHT, at: (20.0, 100.0), to: (20.0, 74.4), tolerance: 1e-10 },
+        Case { args: UPRIGHT, at: (20.0, 0.0), to: (20.0, 24.4), tolerance: 1e-10 },
+    ]);
+
+const CIRCLE: &str = "M100,50 A50,50 0 1 1 0,50 A50,50 0 1 1 100,50 Z";
+const ARCH: Pairs = &[("bottom", "M0,100 A50,50 0 0 1 100,100"), ("height", "40")];
+const CAGE: Pairs = &[("envelope", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z"), ("by", "parameter")];
+const UPRIGHT: Pairs = &[("bottom", "M0,100 Q50,20 100,100"), ("height", "50"), ("keep", "verticals")];
+const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+impl Deformation for Entry {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let mut curves: [Option<NamedPath>; 4] = Default::default();
+        for (curve, name) in curves.iter_mut().zip(SIDES) {
+            *curve = s.path_if(name)?;
+        }
+        let spread = match s.choice("by")? {
+            "parameter" => Spread::Parameter,
+            "extent" => Spread::Extent,
+            _ => Spread::Length,
+        };
+        let envelope = Envelope {
+            frame: s.frame().rect,
+            shape: s.path_if("envelope")?,
+            curves,
+            height: s.number_if("height")?,
+            square: s.choice("sides")? == "square",
+            spread: s.given("by").then_some(spread),
+            corners: corners(s)?,
+            bottom_side: s.number_if("bottom-side")?.map(|n| n as usize),
+            reverse: s.flag("reverse")?,
+            keep: Keep::named(s.choice("keep")?),
+            room: Room { ends: s.number_if("ends")?, padding: s.number("padding")? },
+            lettering: !s.frame().letters.is_empty(),
+            ink: Arc::clone(&s.frame().ink),
+        };
+        envelope.build()
+    }
+}
+
+/// Reads the corners: four numbers of nodes, or points.
+fn corners(s: &Settings<'_>) -> Result<Option<Corners>, Error> {
+    let Some(text) = s.texts("corners").pop() else { return Ok(None) };
+    let words: Vec<&str> = text.split([',', ' ', ';']).filter(|w| !w.is_empty()).collect();
+    let numbers: Option<Vec<usize>> = words.iter().map(|w| w.parse().ok()).collect();
+    match numbers.map(<[usize; 4]>::try_from) {
+        Some(Ok(nodes)) => Ok(Some(Corners::Nodes(nodes))),
+        _ => {
+            let points = s.points_in("corners", text).ok().and_then(|p| p.try_into().ok());
+            let problem = "is neither four numbers of nodes (1,4,7,9) nor four points x,y";
+            points.map(|p| Some(Corners::Points(p))).ok_or_else(|| Error::usage("corners", text, problem))
+        }
+    }
+}
+
+// The map that suits the shape and the artwork: the patch of four sides, columns or rows.
+
+/// Columns that hold at least this part of a shape's area fill it.
+const FILLS: f64 = 0.8;
+/// Samples along an axis of the box, where the artwork is not known.
+const GRID: u32 = 24;
+
+/// What a map is chosen by.
+#[derive(Clone, Copy)]
+struct Choice<'a> {
+    frame: Rect,
+    keep: Keep,
+    spread: Option<Spread>,
+    room: Room,
+    lettering: bool,
+    /// Points of the artwork; empty if they are not known.
+    ink: &'a [Point],
+}
+
+impl Choice<'_> {
+    /// Builds the map. `closed` is the shape if it is not divided by the user, `ring` its division.
+    fn build(&self, closed: Option<Subpath>, ring: Result<Ring, Error>) -> Result<Built, Error> {
+        // Curves that meet enclose a shape.
+        let closed = closed.or_else(|| ring.as_ref().ok().filter(|r| r.meets()).map(Ring::closed));
+        match (self.keep, closed) {
+            (Keep::Verticals | Keep::Horizontals, Some(shape)) => {
+                filled(self.frame, &shape, self.keep == Keep::Verticals, &self.room)
+            }
+            (Keep::Auto, Some(shape)) => self.suited(&shape, ring.ok()),
+            (keep, _) => {
+                let ring = ring?;
+                // No ruled map keeps lines between curved sides; columns and rows do.
+                let across = match keep {
+                    Keep::Verticals => [1, 3],
+                    Keep::Horizontals => [0, 2],
+                    _ => return self.patched(&ring, keep),
+                };
+                if across.iter().any(|k| is_curved(&ring, *k)) {
+                    return filled(self.frame, &ring.closed(), keep == Keep::Verticals, &self.room);
+                }
+                self.patched(&ring, keep)
+            }
+        }
+    }
+
+    /// Builds the patch of four sides.
+    fn patched(&self, ring: &Ring, keep: Keep) -> Result<Built, Error> {
+        let keep = if keep == Keep::Auto { Keep::Nothing } else { keep };
+        fit(padded(self.frame, ring, self.room.padding)?, ring, keep, self.spread)
+    }
+
+    /// Builds what suits the shape and the artwork.
+    fn suited(&self, shape: &Subpath, ring: Option<Ring>) -> Result<Built, Error> {
+        let is_honest = ring.as_ref().is_some_and(|ring| honest(shape, ring));
+        let (ring, frame) = match ring {
+            Some(ring) if is_honest && self.lettering => {
+                let (ring, frame) = between_notches(ring, shape, self.frame);
+                (Some(ring), frame)
+            }
+            ring => (ring, self.frame),
+        };
+        let patch = || Choice { frame, ..*self }.patched(ring.as_ref()?, Keep::Nothing).ok();
+        if is_honest && let Some(built) = patch() {
+            return Ok(built);
+        }
+        if self.lettering {
+            return filled(self.frame, shape, true, &self.room).or_else(|e| patch().ok_or(e));
+        }
+        let fills = |upright: bool| Columns::new(shape, upright, &Room::default()).map_or(0.0, |c| c.coverage);
+        let scored = |b: Built| {
+            let d = self.distortion(&*b.map);
+            (b, d)
+        };
+        let mut all: Vec<(Built, f64)> = Vec::new();
+        all.extend(patch().map(scored));
+        for upright in [true, false].into_iter().filter(|u| fills(*u) >= FILLS) {
+            all.extend(filled(self.frame, shape, upright, &self.room).map(scored).ok());
+        }
+        let least = all.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a });
+        least.map(|b| b.0).ok_or_else(|| nothing(shape))
+    }
+
+    /// Returns the distortion of the artwork.
+    fn distortion(&self, map: &dyn Map) -> f64 {
+        let f = self.frame;
+        let grid: Vec<Point> = grid(GRID).map(|p| f.origin() + Vec2::new(p.x * f.width(), p.y * f.height())).collect();
+        let points = if self.ink.is_empty() { &grid } else { self.ink };
+        let corners = [(f.x0, f.y1), (f.x1, f.y1), (f.x1, f.y0), (f.x0, f.y0)].map(|p| map.point(p.into()));
+        distortion(&points.iter().map(|p| map.jet(*p)).collect::<Vec<_>>()) + turned(corners)
+    }
+}
+
+/// Returns `true` if a shape has four corners of its own: no other sharp node points outwards, its bottom runs to the right and its
+/// sides upwards, and nothing folds or is stretched much more one way than the other.
+fn honest(shape: &Subpath, ring: &Ring) -> bool {
+    /// The largest angle of the bottom and of the sides with the screen's axes, as a tangent.
+    const TURNED: f64 = 0.9;
+    /// The largest ratio of both stretches, beside their means, but for a tenth of the places.
+    const UNEVEN: f64 = 2.2;
+    let around: f64 = shape.segs.iter().map(area).sum();
+    let pointed: Vec<Point> = corners::sharp(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
+    let size = bounds(shape).size().max_side();
+    let is_corner =
+        |p: &Point| ring.sides.iter().flat_map(|s| s.first()).any(|s| s.start().distance(*p) <= 1e-9 * size);
+    if pointed.len() != 4 || !pointed.iter().all(is_corner) {
+        return false;
+    }
+    let side = |k: usize, back: bool| {
+        let s = &ring.sides[k];
+        Side::new(&if back { reversed(s) } else { s.clone() }, Pace::Length)
+    };
+    let (Some(bottom), Some(right), Some(top), Some(left)) =
+        (side(0, false), side(1, false), side(2, true), side(3, true))
+    else {
+        return false;
+    };
+    let map = Coons::new(Sides { bottom, right, top, left }, Affine::IDENTITY);
+    let jets: Vec<Jet> = grid(GRID).map(|p| map.jet(p)).collect();
+    let [right, up] = [jets.iter().map(|j| j.dx).sum::<Vec2>(), jets.iter().map(|j| j.dy).sum::<Vec2>()];
+    let level = right.y.abs() <= TURNED * right.x && up.x.abs() <= -TURNED * up.y;
+    let screen: Vec<Jet> = jets.iter().map(|j| Jet { dy: -j.dy, ..*j }).collect();
+    let mut ratios: Vec<f64> =
+        stretches(&screen).iter().map(|[a, b]| if *b > 0.0 { a / b } else { f64::INFINITY }).collect();
+    ratios.sort_by(f64::total_cmp);
+    level && ratios[ratios.len() - 1] < f64::INFINITY && ratios[ratios.len() * 9 / 10] <= UNEVEN
+}
+
+/// Ends lettering between the notches of a swallow-tailed banner: a side with one becomes straight, and the box is widened, so that its
+/// own upright through the notch ends the letters.
+fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect) {
+    let around: f64 = shape.segs.iter().map(area).sum();
+    let notches: Vec<Point> = corners::sharp(shape, -around.signum()).map(|i| shape.segs[i].start()).collect();
+    let (Some(bottom), Some(top)) =
+        (Side::new(&ring.sides[0], Pace::Length), Side::new(&reversed(&ring.sides[2]), Pace::Length))
+    else {
+        return (ring, frame);
+    };
+    // The share of the width, from its side on, whose upright has the notch on it.
+    let share = |notch: Point, right: bool| {
+        let outside = |t: f64| {
+            let u = if right { 1.0 - t } else { t };
+            let (from, to) = (bottom.at(u).0, top.at(u).0);
+            ((to - from).cross(notch - from) > 0.0) != right
+        };
+        (outside(0.0) && !outside(0.5)).then(|| bisected(0.5, 0.0, |t| if outside(t) { 1.0 } else { -1.0 }))
+    };
+    let [mut left, mut right] = [0.0_f64; 2];
+    for (k, is_right, out) in [(3, false, &mut left), (1, true, &mut right)] {
+        let side = &ring.sides[k];
+        let nodes: Vec<Point> = side.iter().skip(1).map(Seg::start).filter(|p| notches.contains(p)).collect();
+        let Some(deepest) = nodes.iter().filter_map(|p| share(*p, is_right)).reduce(f64::max) else { continue };
+        let (from, to) = (side[0].start(), side[side.len() - 1].end());
+        ring.notes.push(format!("the letters end at {}", nodes.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" ")));
+        ring.sides[k] = vec![Seg::Line(Line::new(from, to))];
+        *out = deepest;
+    }
+    let width = frame.width() / (1.0 - left - right);
+    (ring, Rect::new(frame.x0 - left * width, frame.y0, frame.x1 + right * width, frame.y1))
+}
+
+/// Returns a box wider than `frame`, whose map into the sides keeps the frame `padding` off them.
+fn padded(frame: Rect, ring: &Ring, padding: f64) -> Result<Rect, Error> {
+    if padding == 0.0 {
+        return Ok(frame);
+    }
+    let length = |k: usize| Side::new(&ring.sides[k], Pace::Length).map_or(0.0, |s| s.length());
+    let share = |a: usize, b: usize| padding / length(a).min(length(b));
+    let (x, y) = (share(0, 2), share(1, 3));
+    if !(x < 0.5 && y < 0.5) {
+        return Err(Error::usage("padding", padding.to_string(), "leaves nothing of the shape"));
+    }
+    Ok(frame.inflate(frame.width() * x / (1.0 - 2.0 * x), frame.height() * y / (1.0 - 2.0 * y)))
 }

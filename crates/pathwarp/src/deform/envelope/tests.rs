@@ -1,10 +1,10 @@
 //! The envelope against formulas written out separately, and against the shaper.
 
-use super::entry::INFO;
 use super::fit::paced;
 use super::*;
 use crate::deform::Deformation;
 use crate::deform::Registry;
+use crate::deform::envelope::INFO;
 use crate::error::show;
 use crate::map::Creases;
 use crate::map::{AffineMap, Class, Coons, Map};
@@ -208,9 +208,8 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                 let mut turned = if reversed { sub.reversed() } else { sub.clone() };
                 turned.segs.rotate_left(start);
                 turned.start = turned.segs[0].start();
-                let ring =
-                    corners::ring("envelope", &turned, None, None, false, &distortion::grid(5).collect::<Vec<_>>())
-                        .unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
+                let ring = corners::ring("envelope", &turned, None, None, false, &super::grid(5).collect::<Vec<_>>())
+                    .unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
                 let sides = paced(&ring, None, Keep::Nothing, &mut Built::new(Arc::new(AffineMap::IDENTITY))).unwrap();
                 let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
                 // On both sides of the middle, where a heart has its notch.

@@ -14,7 +14,11 @@
 //! laid onto the artwork's box.
 
 use super::quilt::Quilt;
+use crate::deform::entry::Built;
+use crate::deform::warp;
+use crate::deform::warp::{Style, StyleParams};
 use crate::error::Error;
+use crate::param::NamedText;
 use kurbo::{Point, Rect};
 use serde::Deserialize;
 
@@ -52,4 +56,84 @@ impl QuiltFile {
         let quilt = Quilt::new(name, region, points, self.x, self.y)?;
         Ok(if self.fit { quilt.on(frame) } else { quilt })
     }
+}
+
+// Warps of Photoshop layers: JSON made from the file's warp descriptors, or written by hand.
+
+/// The file's contents.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Warps {
+    All {
+        warps: Vec<LayerWarp>,
+    },
+    /// A file written by hand needs no list.
+    One(LayerWarp),
+}
+
+/// A layer's warp: the fields of its descriptor.
+#[derive(Deserialize)]
+struct LayerWarp {
+    #[serde(default)]
+    layer: String,
+    #[serde(alias = "warpStyle")]
+    style: String,
+    /// Percent.
+    #[serde(default, alias = "warpValue")]
+    value: f64,
+    #[serde(default, alias = "warpPerspective")]
+    perspective: f64,
+    #[serde(default, alias = "warpPerspectiveOther")]
+    perspective_other: f64,
+    #[serde(default)]
+    vertical: bool,
+    /// The control points of a custom warp.
+    mesh: Option<QuiltFile>,
+}
+
+pub(super) enum Found {
+    /// The map of a style.
+    Style(Built),
+    /// A quilt and its layer's name.
+    Quilt(Quilt, String),
+}
+
+/// Reads the warp of a layer, or of the only warped one, over `region`.
+pub(super) fn read_psd(file: &NamedText, layer: Option<&str>, region: Rect) -> Result<Found, Error> {
+    let parsed: Warps = serde_json::from_str(&file.text).map_err(|_| {
+        Error::input(
+            &file.name,
+            "is neither a Photoshop file nor JSON of a warp: {\"style\": \"warpArc\", \"value\": 50}",
+        )
+    })?;
+    let warps = match parsed {
+        Warps::All { warps } => warps,
+        Warps::One(warp) => vec![warp],
+    };
+    let wrong = |what: String| Error::input(&file.name, what);
+    let listed = warps.iter().map(|w| format!("`{}` ({})", w.layer, w.style)).collect::<Vec<_>>().join(", ");
+    let mut fits = warps.into_iter().filter(|w| layer.map_or(w.style != "warpNone", |l| w.layer == l));
+    let warp = match (fits.next(), fits.next()) {
+        (Some(one), None) => one,
+        (None, _) if listed.is_empty() => return Err(wrong("has no layer with a warp".into())),
+        (None, _) => return Err(wrong(format!("has no such warped layer; there are {listed}"))),
+        (Some(_), Some(_)) => {
+            return Err(wrong(format!("has several warped layers; choose one with `layer`: {listed}")));
+        }
+    };
+    if let Some(mesh) = warp.mesh {
+        return Ok(Found::Quilt(mesh.quilt(&file.name, region)?.on(region), warp.layer));
+    }
+    let style = Style::named(&warp.style).ok_or_else(|| {
+        wrong(format!("layer `{}` has the warp {}, which has no known formula", warp.layer, warp.style))
+    })?;
+    let bent = StyleParams {
+        bend: warp.value / 100.0,
+        distortion: [warp.perspective / 100.0, warp.perspective_other / 100.0],
+        vertical: warp.vertical,
+    };
+    let net = style.net(region.width(), region.height(), &bent).map_err(|e| wrong(format!("its style {e}")))?;
+    let mut built = warp::over(region, &net)?;
+    built.note(format!("layer {}: style {}, bend {}%", warp.layer, style.name(), warp.value));
+    Ok(Found::Style(built))
 }

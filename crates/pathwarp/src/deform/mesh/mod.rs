@@ -4,24 +4,18 @@
 //! sides where they meet. Along such a joint the map is C¹ if the control points beside it divide evenly: (p₊ − p)/after =
 //! (p − p₋)/before in every row (G. Farin, *Curves and Surfaces for CAGD*, §15.4).
 
-mod entry;
 #[cfg(feature = "serde")]
 mod file;
-#[cfg(feature = "serde")]
-mod psd;
 mod quilt;
 #[cfg(test)]
 mod tests;
 
-pub(super) use entry::Entry;
-
-use super::built::{Built, Role};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Instead, Law, Role};
 use crate::error::{Error, GeometryError};
-use crate::map::{AffineMap, Class, Map};
-use crate::param::Frame;
+use crate::map::Class;
+use crate::param::{Kind, NamedText, Param, Settings};
 use kurbo::{Point, Rect, Shape};
 use quilt::Quilt;
-use std::sync::Arc;
 
 /// A mesh: a quilt of bicubic Bézier patches in rows and columns, which share the points of their common sides.
 ///
@@ -104,10 +98,7 @@ impl Mesh {
         let r = quilt.region;
         let frame = self.frame.unwrap_or(r);
         let map = quilt.map().ok_or(GeometryError::FlatFrame { width: r.width(), height: r.height() })?;
-        let map: Arc<dyn Map> = match map.class() {
-            Class::Affine(m) => Arc::new(AffineMap(crate::anchors::settled(m, &Frame::new(frame)))),
-            _ => map,
-        };
+        let map = crate::anchors::settled(map, frame);
         let mut built = Built::new(map);
         let joints = if most < VISIBLE_KINK { "smooth" } else { "kinked" };
         built.note(format!("mesh: {columns} by {rows} patches; joints: {joints}"));
@@ -137,4 +128,147 @@ fn with_area(r: Rect) -> Result<Rect, Error> {
         return Ok(r);
     }
     Err(GeometryError::FlatFrame { width: r.width(), height: r.height() }.into())
+}
+
+// The registry's entry: reads a [`Mesh`] from text.
+
+pub(in crate::deform) struct Entry;
+
+static INFO: Info = Info::new("mesh", "bend artwork by a mesh of bicubic patches, or by a Photoshop warp")
+    .group("Lattices and nets")
+    .by_hand(ByHand {
+        labels: &[("mesh", "File of points"), ("psd", "Photoshop file")],
+        fixed: &["net"],
+        neutral: &[(
+            "net",
+            "M0,0 C16.6667,0 33.3333,0 50,0 C66.6667,0 83.3333,0 100,0 \
+             M0,33.3333 C16.6667,33.3333 33.3333,33.3333 50,33.3333 C66.6667,33.3333 83.3333,33.3333 100,33.3333 \
+             M0,66.6667 C16.6667,66.6667 33.3333,66.6667 50,66.6667 C66.6667,66.6667 83.3333,66.6667 100,66.6667 \
+             M0,100 C16.6667,100 33.3333,100 50,100 C66.6667,100 83.3333,100 100,100",
+        )],
+        // A file's own region is in the units of the drawing that it was made for.
+        instead: &[
+            Instead { param: "mesh", others: &["net", "psd"], with: Some(("region", "artwork")) },
+            Instead { param: "psd", others: &["net", "mesh"], with: None },
+        ],
+        ..ByHand::NONE
+    })
+    .guides(&["net"], 1)
+    .about("A quilt of patches, side by side in rows and columns, each with sixteen control points; neighbours share the points of their common \
+sides. Give it as a path with one line of curves per row of control points (--net: a path of 4 lines with one curve each is one \
+patch, of 7 lines with two curves each four), or as a file (--mesh, JSON or TOML): {\"region\": [x,y,w,h], \"points\": [[[x,y], …], \
+…]}, rows from the top, and optionally \"x\" and \"y\", the positions where patches meet, as shares of the region.\n\n--psd takes the warp of a \
+layer of a Photoshop file: a style with its bend and distortions, sixteen points, or a quilt; it is laid onto the artwork's box. JSON of \
+a warp works too: {\"style\": \"warpFlag\", \"value\": 50, \"perspective\": 0, \"perspective_other\": 0, \"vertical\": false} (value \
+and perspectives in percent), or {\"style\": \"warpCustom\", \"mesh\": {\"region\": …, \"points\": …}} with a mesh as above.\n\n\
+--smooth evens out the joints, so that lines cross them without a kink.")
+    .source("Tensor product Bézier patches: G. Farin, Curves and Surfaces for CAGD, chapter 15; Adobe Photoshop File Formats \
+Specification, descriptor structure and placed layer data")
+    .params(&[
+        Param::path("net", "A path with 3·rows+1 subpaths of as many cubics as there are columns of patches."),
+        Param::new("mesh", Kind::File, "A file of control points (JSON or TOML)."),
+        Param::new("psd", Kind::File, "A Photoshop file with a warped layer, or JSON of such a warp."),
+        Param::new("layer", Kind::Text("NAME"), "The layer of the Photoshop file; needed if several are warped."),
+        Param::new(
+            "region",
+            Kind::Text("artwork|X,Y,W,H"),
+            "The box that the mesh is laid onto. Default: the file's region, else the artwork's box.",
+        ),
+        Param::flag("smooth", "Make the joints smooth: points beside them move."),
+    ])
+    .demo(&[("net", DEMO)])
+    .examples(&[
+        Example {
+            what: "Two patches side by side, from a path",
+            command: "mesh samples/logo.svg --net samples/meshes.svg#quilt --smooth -o out.svg",
+        },
+        Example {
+            what: "A file, laid onto the artwork",
+            command: "mesh samples/badge.svg --mesh samples/pinch.json --region artwork -o out.svg",
+        },
+    ])
+    .laws(&[
+        Law::Identity(&[("net", REST)]),
+        Law::Identity(&[("net", REST), ("smooth", "true")]),
+        Law::Same(
+            &[("net", REST), ("region", "0,0,50,50")],
+            &[(
+                "net",
+                "M0,0 C66.66666666666667,0 133.33333333333334,0 200,0 M0,66.66666666666667 C66.66666666666667,66.66666666666667 133.33333333333334,66.66666666666667 200,66.66666666666667 M0,133.33333333333334 C66.66666666666667,133.33333333333334 133.33333333333334,133.33333333333334 200,133.33333333333334 M0,200 C66.66666666666667,200 133.33333333333334,200 200,200",
+            )],
+        ),
+    ])
+    .cases(&[
+        // Joints and corners go to their control points.
+        Case { args: &[("net", DEMO)], at: (0.0, 0.0), to: (0.0, 10.0), tolerance: 1e-12 },
+        Case { args: &[("net", DEMO)], at: (50.0, 0.0), to: (50.0, 0.0), tolerance: 1e-12 },
+        Case { args: &[("net", DEMO)], at: (100.0, 100.0), to: (100.0, 110.0), tolerance: 1e-12 },
+        Case { args: &[("net", DEMO)], at: (25.0, 0.0), to: (25.0, 5.0), tolerance: 1e-12 },
+    ]);
+
+/// Two patches that rise in the middle.
+const DEMO: &str = "M0,10 C20,10 30,0 50,0 C70,0 80,10 100,10 M0,40 C20,40 35,30 50,33 C65,36 80,40 100,40 \
+M5,70 C20,70 30,60 50,66 C70,72 80,70 95,70 M0,100 C20,105 30,95 50,100 C70,105 80,105 100,110";
+const REST: &str = "M0,0 C33.333333333333336,0 66.66666666666667,0 100,0 \
+M0,33.333333333333336 C33.333333333333336,33.333333333333336 66.66666666666667,33.333333333333336 100,33.333333333333336 \
+M0,66.66666666666667 C33.333333333333336,66.66666666666667 66.66666666666667,66.66666666666667 100,66.66666666666667 \
+M0,100 C33.333333333333336,100 66.66666666666667,100 100,100";
+
+impl Deformation for Entry {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let frame = s.frame().rect;
+        let given: Vec<&str> = ["net", "mesh", "psd"].into_iter().filter(|n| s.given(n)).collect();
+        let [source] = given[..] else {
+            return Err(Error::missing(
+                "net",
+                "a path (`net`), a file (`mesh`) or a Photoshop file (`psd`): one of them",
+            ));
+        };
+        let region = with_area(s.rect_if("region")?.unwrap_or(frame))?;
+        let (quilt, layer) = if source == "net" {
+            let path = s.path_if("net")?.ok_or_else(|| Error::missing("net", "a path"))?;
+            (Quilt::from_path(&path, region)?, None)
+        } else {
+            let file = s.file_if(source)?.ok_or_else(|| Error::missing(source, "its file"))?;
+            match from_file(s, source, file, region)? {
+                Contents::Built(built) => return Ok(built),
+                Contents::Quilt(quilt, layer) => (quilt, layer),
+            }
+        };
+        let mut built = Mesh { source: Source::Quilt(quilt), smooth: s.flag("smooth")?, frame: Some(frame) }.build()?;
+        if let Some(layer) = layer {
+            built.explanation.notes.insert(0, format!("layer {layer}"));
+        }
+        Ok(built)
+    }
+}
+
+/// The contents of a file.
+enum Contents {
+    /// A warp style.
+    Built(Built),
+    /// A quilt, and the name of its layer.
+    Quilt(Quilt, Option<String>),
+}
+
+/// Reads a mesh or a Photoshop file.
+#[cfg(feature = "serde")]
+fn from_file(s: &Settings<'_>, param: &str, file: &NamedText, region: Rect) -> Result<Contents, Error> {
+    if param == "psd" {
+        return Ok(match file::read_psd(file, s.texts("layer").last().copied(), region)? {
+            file::Found::Style(built) => Contents::Built(built),
+            file::Found::Quilt(quilt, layer) => Contents::Quilt(quilt, Some(layer)),
+        });
+    }
+    let quilt = file::read(&file.name, &file.text, region)?;
+    Ok(Contents::Quilt(if s.given("region") { quilt.on(region) } else { quilt }, None))
+}
+
+#[cfg(not(feature = "serde"))]
+fn from_file(_: &Settings<'_>, _: &str, file: &NamedText, _: Rect) -> Result<Contents, Error> {
+    Err(crate::error::no_json(&file.name))
 }

@@ -3,8 +3,9 @@
 use super::*;
 use crate::check;
 use crate::deform::Deformation;
+use crate::map::Map;
 use crate::param::{Args, Frame};
-use kurbo::{CubicBez, ParamCurve, Point, Rect};
+use kurbo::{CubicBez, ParamCurve, Point, Rect, Vec2};
 
 #[test]
 fn is_sound() {
@@ -118,7 +119,7 @@ fn photoshops_warps_are_the_styles_and_nets() {
         // The inner point moved a tenth of the width, and counts B1(u)·B1(v) there.
         let (u, v) = ((p.x - 10.0) / 100.0, (p.y - 20.0) / 60.0);
         let b = |t: f64| 3.0 * t * (1.0 - t) * (1.0 - t);
-        assert!(custom.map.point(p).distance(p + kurbo::Vec2::new(10.0 * b(u) * b(v), 0.0)) < 1e-10, "{p:?}");
+        assert!(custom.map.point(p).distance(p + Vec2::new(10.0 * b(u) * b(v), 0.0)) < 1e-10, "{p:?}");
     }
     let fault = |r: Result<Built, Error>| r.map(|_| ()).unwrap_err().to_string();
     assert!(fault(with("psd", &psd("warpCylinder", ""), &[])).contains("warpCylinder"));
@@ -134,7 +135,7 @@ fn warps_written_by_hand() {
     for p in [(25.0, 30.0), (60.0, 70.0)].map(Point::from) {
         let u = (p.x - 10.0) / 100.0;
         let rise = 60.0 * 3.0 * u * (1.0 - u) * (1.0 - 2.0 * u);
-        assert!(flag.map.point(p).distance(p + kurbo::Vec2::new(0.0, rise)) < 1e-10, "{p:?}");
+        assert!(flag.map.point(p).distance(p + Vec2::new(0.0, rise)) < 1e-10, "{p:?}");
     }
     // A mesh on another box is laid onto the artwork.
     let points: Vec<Vec<(f64, f64)>> =
@@ -142,7 +143,7 @@ fn warps_written_by_hand() {
     let mesh = format!("{{ \"style\": \"warpCustom\", \"mesh\": {} }}", json(&points, "\"region\": [0,0,3,3],"));
     let custom = with("psd", &mesh, &[]).unwrap();
     for p in [(10.0, 20.0), (60.0, 70.0)].map(Point::from) {
-        let to = p + kurbo::Vec2::new(0.0, 60.0 * (p.x - 10.0) / 100.0);
+        let to = p + Vec2::new(0.0, 60.0 * (p.x - 10.0) / 100.0);
         assert!(custom.map.point(p).distance(to) < 1e-10, "{p:?}");
     }
     let fault = with("psd", "{ \"value\": 3 }", &[]).map(|_| ()).unwrap_err().to_string();

@@ -5,23 +5,17 @@
 //! by equation 7 ([`complete_net`](crate::map::complete_net)). h₁ brings the base to the standard position, h₂ the shaper's corners
 //! to the target: direct similitudes for two anchors, projective maps for four.
 
-mod entry;
-mod laying;
-mod net;
 #[cfg(test)]
 mod tests;
 
-pub(super) use entry::Entry;
-pub(super) use net::rows_path;
-
-use self::net::Bottom;
-use super::built::{Built, Explanation, Role};
-use crate::anchors::{self, Anchors};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Explanation, Info, Law, Pairs, Role, Variant};
+use crate::anchors;
+use crate::anchors::{Anchors, Arrangement};
 use crate::error::{Error, GeometryError, within};
-use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net};
-use crate::outline::Outline;
-use crate::param::{Frame, NamedPath};
-use kurbo::{Point, Rect};
+use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net, complete_net};
+use crate::outline::{Outline, Seg};
+use crate::param::{Frame, Kind, NamedPath, Param, Settings};
+use kurbo::{BezPath, CubicBez, Point, Rect, Vec2};
 use std::sync::Arc;
 
 /// The 16-point shaper: the artwork's box, or a base, bent into a closed path of four curved sides.
@@ -144,8 +138,8 @@ impl Shaper {
                     Ok(Anchors::Four(corners)) if self.target.is_none() => Some(corners),
                     _ => None,
                 };
-                let net = net::from_cage(path, self.bottom, self.reverse, corners, &mut explanation)?;
-                (net, net::sides_path(&net), &path.name)
+                let net = from_cage(path, self.bottom, self.reverse, corners, &mut explanation)?;
+                (net, sides_path(&net), &path.name)
             }
             Cage::Net(net, name) => (**net, rows_path(net), name),
         };
@@ -170,10 +164,7 @@ impl Shaper {
             }
         };
         let map = compose(&anchors::to_standard("base", &base)?, net, after);
-        let map = match map.class() {
-            Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, &Frame::new(self.extent(&base))))),
-            _ => map,
-        };
+        let map = anchors::settled(map, self.extent(&base));
 
         let mut built = Built::new(map);
         built.explanation.notes = explanation.notes;
@@ -242,4 +233,413 @@ fn wrapper(a: &Anchors) -> &'static str {
 
 fn list(points: &[Point]) -> String {
     points.iter().map(|p| crate::error::show(*p)).collect::<Vec<_>>().join(" ")
+}
+
+// Nets of 16 points: from a closed path of four sides, or given in full.
+//
+// The net is numbered p\[r\]\[s\]: row 0 is the bottom side run left to right, column 0 the left side run upwards.
+
+/// The choice of a cage's bottom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Bottom {
+    /// The way of laying the base's corners on the cage's that distorts least.
+    LeastDistorting,
+    /// The paper's rule.
+    Lowest,
+    /// 1 to 4, as drawn.
+    Side(usize),
+}
+
+/// Makes the net of a closed path with four sides. `base` are the four corners that it is laid onto, if there are four.
+fn from_cage(
+    path: &NamedPath,
+    bottom: Bottom,
+    reverse: bool,
+    base: Option<&[Point; 4]>,
+    explanation: &mut Explanation,
+) -> Result<Net, Error> {
+    const EXPECTED: &str = "exactly four, in one closed path";
+    let sub = anchors::closed_subpath(path, EXPECTED, |lines| lines == 3)?;
+    let drawn = sub.anchors();
+    let corners: [Point; 4] = drawn.try_into().map_err(|drawn: Vec<Point>| GeometryError::AnchorCount {
+        path: path.name.clone(),
+        found: drawn.len(),
+        anchors: drawn.into_iter().take(8).collect(),
+        expected: EXPECTED,
+    })?;
+    anchors::general(&path.name, &corners)?;
+    let sides: [CubicBez; 4] = std::array::from_fn(|i| sub.segs[i].to_cubic());
+
+    // The mean height of a cubic over its parameter is the mean of its control points' heights.
+    let heights = sides.map(|c| (c.p0.y + c.p1.y + c.p2.y + c.p3.y) / 4.0);
+    let lowest = Arrangement::by_rule(&corners, &heights);
+    let (mut arrangement, why) = match (bottom, base) {
+        (Bottom::Side(n), _) => (Arrangement::from_bottom(&corners, n - 1), "as given".to_owned()),
+        (Bottom::LeastDistorting, Some(base)) => least_distorting(&path.name, base, &corners, lowest, explanation),
+        _ => (lowest, "the lowest on the screen".to_owned()),
+    };
+    if reverse {
+        arrangement.reversed = !arrangement.reversed;
+    }
+    explanation.notes.push(format!(
+        "bottom side of {}: side {} as drawn, {}: {why}",
+        path.name,
+        arrangement.bottom + 1,
+        if arrangement.reversed { "run backwards" } else { "run forwards" }
+    ));
+    Ok(complete_net(outer_net(&sides, &arrangement)))
+}
+
+/// Chooses the way of laying `base` on the corners that distorts least, and says why. A way that turns the artwork on its side is
+/// a warning.
+fn least_distorting(
+    name: &str,
+    base: &[Point; 4],
+    corners: &[Point; 4],
+    lowest: Arrangement,
+    explanation: &mut Explanation,
+) -> (Arrangement, String) {
+    /// Turns beyond this, in degrees, leave the artwork on its side.
+    const ON_ITS_SIDE: f64 = 60.0;
+    let percent = |distortion: f64| (100.0 * distortion).round();
+    let by_rule = Way::new(base, corners, lowest);
+    let rule_distortion = percent(by_rule.distortion);
+    let way = Way::least(base, corners, by_rule.arrangement);
+    let chosen = percent(way.distortion);
+    let is_rule = way.arrangement == lowest;
+    if is_rule {
+        return (lowest, format!("the lowest on the screen, and no side distorts the corners much less ({chosen} %)"));
+    }
+    if way.turn.abs() > ON_ITS_SIDE {
+        explanation.warnings.push(format!(
+            "the artwork is turned by {:.0}° to fit {name}, as upright it would be distorted more ({rule_distortion} % instead of \
+             {chosen} %); `bottom lowest` keeps its lowest side at the bottom",
+            way.turn
+        ));
+    }
+    let side = lowest.bottom + 1;
+    (
+        way.arrangement,
+        format!(
+            "it distorts the corners least ({chosen} %; side {side}, the lowest on the screen, {rule_distortion} %)"
+        ),
+    )
+}
+
+/// Arranges the outer twelve points; the inner four are still to be completed.
+fn outer_net(sides: &[CubicBez; 4], a: &Arrangement) -> Net {
+    let backwards = |c: CubicBez| CubicBez::new(c.p3, c.p2, c.p1, c.p0);
+    // Four sides head to tail: bottom, right, top (right to left), left (downwards).
+    let ring: [CubicBez; 4] = std::array::from_fn(|i| {
+        if a.reversed { backwards(sides[(a.bottom + 4 - i) % 4]) } else { sides[(a.bottom + i) % 4] }
+    });
+    let [bottom, right, top, left] = [ring[0], ring[1], backwards(ring[2]), backwards(ring[3])];
+    let inner = Point::ORIGIN;
+    [
+        [bottom.p0, bottom.p1, bottom.p2, bottom.p3],
+        [left.p1, inner, inner, right.p1],
+        [left.p2, inner, inner, right.p2],
+        [top.p0, top.p1, top.p2, top.p3],
+    ]
+}
+
+/// Reads a net given in full: four rows of one cubic each, or 16 points.
+fn from_rows(given: &[NamedPath]) -> Result<Net, Error> {
+    let name = &given[0].name;
+    let subpaths: Vec<_> = given.iter().flat_map(|p| &p.outline.subpaths).collect();
+    let rows: Option<Vec<[Point; 4]>> = if subpaths.len() == 4 && subpaths.iter().all(|s| s.segs.len() == 1) {
+        let row = |s: &Seg| {
+            let c = s.to_cubic();
+            [c.p0, c.p1, c.p2, c.p3]
+        };
+        Some(subpaths.iter().map(|s| row(&s.segs[0])).collect())
+    } else {
+        let points: Vec<Point> = subpaths.iter().flat_map(|s| s.anchors()).collect();
+        (points.len() == 16).then(|| points.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]).collect())
+    };
+    let Some([a, b, c, d]) = rows.as_deref() else {
+        let anchors: Vec<Point> = subpaths.iter().flat_map(|s| s.anchors()).collect();
+        return Err(GeometryError::AnchorCount {
+            path: name.clone(),
+            found: anchors.len(),
+            anchors: anchors.into_iter().take(8).collect(),
+            expected: "16 points, or four paths of one cubic each",
+        }
+        .into());
+    };
+    Ok([*a, *b, *c, *d])
+}
+
+/// Returns the closed path of a net's four sides.
+fn sides_path(n: &Net) -> BezPath {
+    let mut p = BezPath::new();
+    p.move_to(n[0][0]);
+    p.curve_to(n[0][1], n[0][2], n[0][3]);
+    p.curve_to(n[1][3], n[2][3], n[3][3]);
+    p.curve_to(n[3][2], n[3][1], n[3][0]);
+    p.curve_to(n[2][0], n[1][0], n[0][0]);
+    p.close_path();
+    p
+}
+
+/// Returns the eight curves of a net.
+pub(in crate::deform) fn rows_path(n: &Net) -> BezPath {
+    let mut p = BezPath::new();
+    for (i, row) in n.iter().enumerate() {
+        p.move_to(row[0]);
+        p.curve_to(row[1], row[2], row[3]);
+        p.move_to(n[0][i]);
+        p.curve_to(n[1][i], n[2][i], n[3][i]);
+    }
+    p
+}
+
+// The eight ways to lay the corners of a base on those of a cage, and the one that distorts least.
+//
+// A way is judged by the best similitude from the base's corners to the cage's, without reflection: with both sets about their
+// means as complex numbers bᵢ and cᵢ, what the similitude leaves over is √(1 − |Σ b̄ᵢcᵢ|² ÷ (Σ|bᵢ|² Σ|cᵢ|²)) of the cage's size.
+
+/// Ways whose distortions differ by less than this tie: artwork and cages up to about 1.3 times as wide as high, or as high as
+/// wide, are not turned on their sides.
+const TIE: f64 = 0.25;
+
+/// One way to lay base on cage.
+struct Way {
+    arrangement: Arrangement,
+    /// Distance from the best similitude as a share of the cage's size: 0 to 1.
+    distortion: f64,
+    /// Angle by which that similitude turns, −180° to 180°, clockwise on the screen.
+    turn: f64,
+}
+
+impl Way {
+    /// Judges an arrangement of the cage's corners for a base: bottom left, bottom right, then on around.
+    fn new(base: &[Point; 4], cage: &[Point; 4], arrangement: Arrangement) -> Self {
+        let order = arrangement.order();
+        let (b, c) = (centred(*base), centred(order.map(|i| cage[i])));
+        let sum = b.iter().zip(&c).fold(Vec2::ZERO, |s, (b, c)| s + Vec2::new(b.dot(*c), b.cross(*c)));
+        let size = |v: &[Vec2; 4]| v.iter().map(|p| p.hypot2()).sum::<f64>();
+        let kept = sum.hypot2() / (size(&b) * size(&c));
+        Self { arrangement, distortion: (1.0 - kept).max(0.0).sqrt(), turn: sum.angle().to_degrees() }
+    }
+
+    /// The way that distorts least; among ties `lowest`, or else the one that turns least. Ways that mirror the artwork, which
+    /// hardly distorts a narrow box, are left out.
+    fn least(base: &[Point; 4], cage: &[Point; 4], lowest: Arrangement) -> Self {
+        let by_rule = Self::new(base, cage, lowest);
+        let all = (0..8).map(|i| Self::new(base, cage, Arrangement { bottom: i % 4, reversed: i >= 4 }));
+        let mirrors = |w: &Self| area(base) * area(&w.arrangement.order().map(|i| cage[i])) < 0.0;
+        let all: Vec<Self> = all.filter(|w| !mirrors(w)).collect();
+        let least = all.iter().map(|w| w.distortion).fold(by_rule.distortion, f64::min);
+        let ties = |w: &Self| w.distortion < least + TIE;
+        if ties(&by_rule) {
+            return by_rule;
+        }
+        all.into_iter().filter(ties).min_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs())).unwrap_or(by_rule)
+    }
+}
+
+/// The signed area of a quadrilateral.
+fn area(q: &[Point; 4]) -> f64 {
+    0.5 * (q[2] - q[0]).cross(q[3] - q[1])
+}
+
+fn centred(points: [Point; 4]) -> [Vec2; 4] {
+    let mean = points.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2()) / 4.0;
+    points.map(|p| p.to_vec2() - mean)
+}
+
+pub(in crate::deform) struct Entry;
+
+static INFO: Info = Info::new("shaper", "bend artwork into a closed path of four curved sides")
+    .group("Envelopes")
+    .by_hand(ByHand {
+        label: Some("Cage"),
+        fixed: &["shaper", "net", "base", "target"],
+        neutral: &[(
+            "shaper",
+            "M0,100 C33.3333,100 66.6667,100 100,100 C100,66.6667 100,33.3333 100,0 C66.6667,0 33.3333,0 0,0 C0,33.3333 0,66.6667 0,100 Z",
+        )],
+        variants: &[Variant {
+            label: "Cage, 16 points",
+            param: "net",
+            neutral: "M0,100 C33.3333,100 66.6667,100 100,100 M0,66.6667 C33.3333,66.6667 66.6667,66.6667 100,66.6667 \
+                      M0,33.3333 C33.3333,33.3333 66.6667,33.3333 100,33.3333 M0,0 C33.3333,0 66.6667,0 100,0",
+            showing: "M0,100 C33,110 67,90 100,100 M0,67 C10,40 50,110 100,67 M0,33 C50,-10 90,60 100,33 M0,0 C33,10 67,-10 100,0",
+        }],
+        ..ByHand::NONE
+    })
+    .guides(&["shaper", "base", "target"], 1)
+    .about("Draw a closed path with four anchors: that is the shape. The artwork's box (or the base) is laid onto it, side by \
+side, and everything inside follows smoothly. With a target, the shaper's corners are then moved there, so that its \
+size and position do not matter.\n\nThe bottom is the side that lies lowest on the screen, run left to right, unless another \
+way of laying the four corners distorts them much less, as for a wide logo in a tilted shape; --bottom and --reverse-shaper overrule \
+that, and --explain says which was chosen and why. Bases and targets of two anchors are run left to right, \
+those of four start with their lowest side; --base-as-drawn and --target-as-drawn take them as they were drawn.\n\nA base of \
+two anchors fixes only the bottom side: artwork twice as tall as the base is wide reaches past the shaper's top.")
+    .source("Markku Koppinen, A plane transformation from 16 control points, equations (1)-(10)")
+    .params(&[
+        Param::path("shaper", "The closed path of four sides (lines, curves or arcs) to bend the artwork into."),
+        Param::path(
+            "net",
+            "Instead of --shaper, all 16 control points: four paths of one cubic each, or 16 points, row by row, the bottom row \
+first, each left to right.",
+        )
+        .repeated(),
+        Param::path(
+            "base",
+            "Two or four anchors in the source that are laid onto the shaper's bottom side or its four corners. Default: the \
+corners of the artwork's box.",
+        ),
+        Param::path(
+            "target",
+            "Two or four anchors: the images of the shaper's bottom corners, or of all four. Default: those corners themselves.",
+        ),
+        Param::new("bottom", Kind::Text("N or lowest"), "The side that is the bottom: 1 to 4, in the order they were drawn, or the lowest on the screen. Default: the one that distorts the corners least."),
+        Param::flag("reverse-shaper", "Run the bottom side the other way (right to left): the result is mirrored."),
+        Param::flag("base-as-drawn", "Take the base's anchors in the order they were drawn."),
+        Param::flag("target-as-drawn", "Take the target's anchors in the order they were drawn."),
+    ])
+    .demo(&[("shaper", "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z")])
+    .examples(&[
+        Example {
+            what: "Bend a logo into a path of another file",
+            command: "shaper samples/logo.svg --shaper samples/banner.svg -o out.svg",
+        },
+        Example {
+            what: "The paper's example: Base, Target and Shaper are paths of the document itself",
+            command: "shaper samples/paper-two-anchors.svg --base '#Base' --target '#Target' --shaper '#Shaper' -o out.svg --preview out.png",
+        },
+        Example {
+            what: "A cage typed in place, explained",
+            command: "shaper samples/monogram.svg --shaper 'M0,120 Q60,90 120,120 L110,0 Q60,30 10,0 Z' --explain -o out.svg",
+        },
+    ])
+    .laws(&[
+        Law::Identity(&[("shaper", "0,0 100,0 100,100 0,100")]),
+        Law::Identity(&[("shaper", "M0,100 L0,0 L100,0 L100,100 Z")]),
+        Law::Identity(&[("shaper", "0,0 10,0 10,10 0,10"), ("target", "0,100 100,100")]),
+        Law::Area(&[("shaper", "0,0 50,0 50,50 0,50")], 0.25),
+        Law::Same(
+            // With a target, the shaper's size and position do not matter.
+            &[("shaper", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z"), ("base", "0,100 100,100"), ("target", "5,90 70,80")],
+            &[("shaper", "M 30,190 Q 90,230 200,180 L 190,40 20,30 Z"), ("base", "0,100 100,100"), ("target", "5,90 70,80")],
+        ),
+        Law::Same(
+            // Neither does the start of a closed path, nor its direction.
+            &[("shaper", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z")],
+            &[("shaper", "M 90,15 L 95,85 Q 40,110 10,90 L 5,10 Z")],
+        ),
+        Law::KeepsLines(&[("shaper", "0,0 100,0 100,100 0,100"), ("target", "0,100 100,90 80,20 10,0")]),
+    ])
+    .cases(&[
+        // Corners on corners; the bottom side's middle on the bottom arc's middle (a quadratic: (10+2·40+95)/4, ...).
+        Case { args: CASE, at: (0.0, 100.0), to: (10.0, 90.0), tolerance: 1e-12 },
+        Case { args: CASE, at: (100.0, 100.0), to: (95.0, 85.0), tolerance: 1e-12 },
+        Case { args: CASE, at: (100.0, 0.0), to: (90.0, 15.0), tolerance: 1e-12 },
+        Case { args: CASE, at: (50.0, 100.0), to: (46.25, 98.75), tolerance: 1e-12 },
+        // The middle of a Coons patch: half the sum of the sides' middles less the corners' mean.
+        Case { args: CASE, at: (50.0, 50.0), to: (46.875, 55.625), tolerance: 1e-12 },
+    ]);
+
+const CASE: Pairs = &[("shaper", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z")];
+
+impl Deformation for Entry {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let cage = match (s.path_if("shaper")?, s.paths("net")?) {
+            (Some(_), rows) if !rows.is_empty() => {
+                let problem = "cannot go with `shaper`: one of them gives the net";
+                return Err(Error::usage("net", rows[0].name.clone(), problem));
+            }
+            (Some(path), _) => Cage::Path(path),
+            (None, rows) if !rows.is_empty() => {
+                if s.given("bottom") || s.given("reverse-shaper") {
+                    let problem = "is taken as given; `bottom` and `reverse-shaper` go with `shaper`";
+                    return Err(Error::usage("net", rows[0].name.clone(), problem));
+                }
+                Cage::Net(Box::new(from_rows(&rows)?), rows[0].name.clone())
+            }
+            _ => {
+                let hint = "the closed path of four sides to bend the artwork into (or `net` with 16 points)";
+                return Err(Error::missing("shaper", hint));
+            }
+        };
+        let shaper = Shaper {
+            cage,
+            bottom: bottom(s)?,
+            reverse: s.flag("reverse-shaper")?,
+            base: s.path_if("base")?,
+            base_as_drawn: s.flag("base-as-drawn")?,
+            target: s.path_if("target")?,
+            target_as_drawn: s.flag("target-as-drawn")?,
+            frame: Some(s.frame().rect),
+        };
+        shaper.build()
+    }
+}
+
+fn bottom(s: &Settings<'_>) -> Result<Bottom, Error> {
+    match s.texts("bottom").last() {
+        None => Ok(Bottom::LeastDistorting),
+        Some(&"lowest") => Ok(Bottom::Lowest),
+        Some(text) => match text.trim().parse::<i32>() {
+            Ok(side) => within("bottom", f64::from(side), 1.0, 4.0).map(|_| Bottom::Side(side.unsigned_abs() as usize)),
+            Err(_) => Err(Error::usage("bottom", *text, "is neither a side, 1 to 4, nor the word lowest")),
+        },
+    }
+}
+
+#[cfg(test)]
+mod laying_tests {
+    use super::*;
+
+    /// A box of this width and height, turned clockwise: bottom left, bottom right, top right, top left.
+    fn turned(width: f64, height: f64, degrees: f64) -> [Point; 4] {
+        let corners = [(-width, height), (width, height), (width, -height), (-width, -height)];
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        corners.map(|(x, y)| Point::new(7.0 + x * cos - y * sin, -3.0 + x * sin + y * cos))
+    }
+
+    #[test]
+    fn similar_cages_are_not_distorted_however_they_lie() {
+        for (width, degrees) in [4.0, 10.0].iter().flat_map(|w| (-89..=89).map(move |d| (*w, f64::from(d)))) {
+            let (base, cage) = (turned(width, 1.0, 0.0), turned(3.0 * width, 3.0, degrees));
+            // As drawn from any corner, in either direction.
+            for start in 0..8 {
+                let drawn: [Point; 4] =
+                    std::array::from_fn(|i| cage[(if start < 4 { start + i } else { start + 4 - i }) % 4]);
+                let heights = std::array::from_fn(|i| 0.5 * (drawn[i].y + drawn[(i + 1) % 4].y));
+                let way = Way::least(&base, &drawn, Arrangement::by_rule(&drawn, &heights));
+                assert!(way.distortion < 1e-7, "{width}:1 by {degrees}°, from {start}: {}", way.distortion);
+                assert!((way.turn - degrees).abs() < 1e-6, "{width}:1 by {degrees}°, from {start}: {}", way.turn);
+            }
+        }
+    }
+
+    #[test]
+    fn near_squares_follow_the_rule() {
+        for (w, h) in [(1.25, 1.0), (1.0, 1.25), (1.0, 1.0)] {
+            let (base, cage) = (turned(w, h, 0.0), turned(1.0, 1.0, 20.0));
+            let heights = std::array::from_fn(|i| 0.5 * (cage[i].y + cage[(i + 1) % 4].y));
+            let rule = Arrangement::by_rule(&cage, &heights);
+            let (bottom, reversed) = (rule.bottom, rule.reversed);
+            let way = Way::least(&base, &cage, rule);
+            assert_eq!((way.arrangement.bottom, way.arrangement.reversed), (bottom, reversed));
+        }
+    }
+
+    #[test]
+    fn reflections_are_the_worst() {
+        let base = turned(2.0, 1.0, 0.0);
+        let way = |bottom, reversed| Way::new(&base, &base, Arrangement { bottom, reversed }).distortion;
+        assert!(way(0, false) < 1e-7 && way(2, false) < 1e-7);
+        // Σ|b|² = 5, and the mirror image leaves 4 − 1 of it: √(1 − (3/5)²).
+        assert!((way(0, true) - 0.8).abs() < 1e-12, "{}", way(0, true));
+        // On its side: 4 of 5 remain.
+        assert!((way(1, false) - 0.6).abs() < 1e-12, "{}", way(1, false));
+    }
 }

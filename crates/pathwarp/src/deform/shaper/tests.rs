@@ -1,9 +1,9 @@
 //! The shaper against the paper, its rules and its faults.
 
-use super::net::outer_net;
 use super::*;
 use crate::anchors::Arrangement;
 use crate::deform::Deformation;
+use crate::deform::shaper::outer_net;
 use crate::map::complete_net;
 use crate::outline::Seg;
 use crate::param::Args;

@@ -10,18 +10,16 @@
 //! G. Farin, *Triangular Bernstein–Bézier patches*, CAGD 3 (1986); J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form
 //! deformation*, CAGD 46 (2016), where the net is moved along rays (see `anamorph`).
 
-mod entry;
-pub(super) mod net;
 #[cfg(test)]
 mod tests;
 
-pub(super) use entry::Entry;
-
-use super::built::{Built, Role};
-use super::change::Change;
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Role};
+use super::ffd::Change;
 use crate::error::{Error, GeometryError, within};
-use kurbo::{BezPath, Point, Rect, Vec2};
-use net::{TriangleNet, indices};
+use crate::map::{AffineMap, Class, Local, Map, Plane, Quotient};
+use crate::param::{Axis, Kind, Param, Settings};
+use kurbo::{Affine, BezPath, Point, Rect, Vec2};
+use std::sync::Arc;
 
 /// A Bézier triangle: the artwork in it follows a triangular net of control points.
 ///
@@ -189,4 +187,308 @@ fn cage(net: &TriangleNet) -> BezPath {
         path.close_path();
     }
     path
+}
+
+// Bézier triangles as maps of the plane.
+//
+// > F(p) = Σ wᵢⱼₖ Pᵢⱼₖ Bⁿᵢⱼₖ(u) / Σ wᵢⱼₖ Bⁿᵢⱼₖ(u),  Bⁿᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱ u₁ʲ u₂ᵏ,  i + j + k = n
+//
+// u are the barycentric coordinates of p in a reference triangle ABC (G. Farin, *Triangular Bernstein–Bézier patches*, CAGD
+// 3, 1986). With Pᵢⱼₖ = (iA + jB + kC)/n and equal weights nothing moves. A straight line becomes a curve of degree n
+// whatever its direction: a triangle of degree n has total degree n, a rectangle of degree n × n twice that.
+//
+// To evaluate it, the net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓ by running de Casteljau's algorithm on polynomials.
+// That multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, 3ⁿ in a corner: negligible at practical degrees.
+
+/// The control points of a Bézier triangle with their weights.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TriangleNet {
+    corners: [Point; 3],
+    degree: usize,
+    /// By [`index`].
+    moves: Vec<Vec2>,
+    weights: Vec<f64>,
+}
+
+/// Returns the index of control point (i, j, k) in a list ordered by k + j, then by k.
+#[must_use]
+pub(crate) fn index([_, j, k]: [usize; 3]) -> usize {
+    let row = j + k;
+    row * (row + 1) / 2 + k
+}
+
+/// Returns all (i, j, k) with i + j + k = n, in the order of their [`index`].
+#[must_use]
+pub(crate) fn indices(n: usize) -> Vec<[usize; 3]> {
+    (0..=n).flat_map(|row| (0..=row).map(move |k| [n - row, row - k, k])).collect()
+}
+
+/// Returns (i·A + j·B + k·C)/n.
+#[must_use]
+pub(crate) fn regular_point(corners: [Point; 3], [i, j, k]: [usize; 3]) -> Point {
+    let n = (i + j + k).max(1) as f64;
+    let [a, b, c] = corners;
+    a + (b - a) * (j as f64 / n) + (c - a) * (k as f64 / n)
+}
+
+/// Returns the map from a point to (u₁ − ⅓, u₂ − ⅓), the coordinates of [`expanded`].
+pub(crate) fn coordinates([a, b, c]: [Point; 3]) -> Affine {
+    let (u, v) = (b - a, c - a);
+    let middle = a + (u + v) / 3.0;
+    Affine::new([u.x, u.y, v.x, v.y, middle.x, middle.y]).inverse()
+}
+
+/// Returns the polynomial with these Bernstein coefficients (by [`index`]) in powers of u₁ − ⅓ and u₂ − ⅓.
+pub(crate) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
+    const THIRD: f64 = 1.0 / 3.0;
+    let mut net: Vec<Plane> = coefficients.iter().map(|c| Plane::new(vec![vec![*c]])).collect();
+    for level in (0..n).rev() {
+        let next = indices(level).into_iter().map(|[i, j, k]| {
+            net[index([i + 1, j, k])]
+                .times_linear([THIRD, -1.0, -1.0])
+                .plus(1.0, &net[index([i, j + 1, k])].times_linear([THIRD, 1.0, 0.0]))
+                .plus(1.0, &net[index([i, j, k + 1])].times_linear([THIRD, 0.0, 1.0]))
+        });
+        net = next.collect();
+    }
+    net.pop().unwrap_or_default()
+}
+
+/// Returns the values of all Bⁿᵢⱼₖ at `p`, by [`index`].
+#[must_use]
+pub(crate) fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
+    const THIRD: f64 = 1.0 / 3.0;
+    let at = coordinates(corners) * p;
+    let (u1, u2) = (at.x + THIRD, at.y + THIRD);
+    let u0 = 1.0 - u1 - u2;
+    let mut values = vec![1.0];
+    for level in 1..=n {
+        let before = values;
+        let of = |ok: bool, ijk: [usize; 3]| if ok { before[index(ijk)] } else { 0.0 };
+        let value = |[i, j, k]: [usize; 3]| {
+            u0 * of(i > 0, [i.wrapping_sub(1), j, k])
+                + u1 * of(j > 0, [i, j.wrapping_sub(1), k])
+                + u2 * of(k > 0, [i, j, k.wrapping_sub(1)])
+        };
+        values = indices(level).into_iter().map(value).collect();
+    }
+    values
+}
+
+impl TriangleNet {
+    /// Creates the net of the identity; `None` if the corners lie on one line.
+    #[must_use]
+    pub(crate) fn regular(corners: [Point; 3], degree: usize) -> Option<Self> {
+        let [a, b, c] = corners;
+        let area = (b - a).cross(c - a);
+        let size = (b - a).hypot2().max((c - a).hypot2());
+        let count = (degree + 1) * (degree + 2) / 2;
+        (area.is_finite() && area.abs() > 1e-12 * size).then(|| Self {
+            corners,
+            degree,
+            moves: vec![Vec2::ZERO; count],
+            weights: vec![1.0; count],
+        })
+    }
+
+    /// Returns the degree.
+    #[must_use]
+    pub(crate) fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Returns control point (i, j, k).
+    #[must_use]
+    pub(crate) fn point(&self, ijk: [usize; 3]) -> Point {
+        regular_point(self.corners, ijk) + self.moves[index(ijk)]
+    }
+
+    /// Puts control point (i, j, k) at `p`.
+    pub(crate) fn place(&mut self, ijk: [usize; 3], p: Point) {
+        self.moves[index(ijk)] = p - regular_point(self.corners, ijk);
+    }
+
+    /// Moves control point (i, j, k) by `v`.
+    pub(crate) fn shift(&mut self, ijk: [usize; 3], v: Vec2) {
+        self.moves[index(ijk)] += v;
+    }
+
+    /// Sets the weight of control point (i, j, k).
+    pub(crate) fn set_weight(&mut self, ijk: [usize; 3], w: f64) {
+        self.weights[index(ijk)] = w;
+    }
+
+    /// Returns `true` if no control point of side 0 (AB), 1 (BC) or 2 (CA) moves.
+    #[must_use]
+    pub(crate) fn side_is_fixed(&self, side: usize) -> bool {
+        let size = self.corners.iter().fold(0.0, |m, p| f64::max(m, p.x.abs() + p.y.abs()));
+        let on: Vec<usize> =
+            indices(self.degree).into_iter().filter(|ijk| ijk[(side + 2) % 3] == 0).map(index).collect();
+        on.iter().all(|&k| self.moves[k].hypot() <= 1e-12 * size && self.weights[k] == self.weights[on[0]])
+    }
+
+    /// Returns the map. Outside the triangle it is the identity or, if `extended`, the continued polynomials.
+    #[must_use]
+    pub(crate) fn map(&self, extended: bool) -> Arc<dyn Map> {
+        let pre = coordinates(self.corners);
+        let [a, b, c] = self.corners;
+        let bounds = Rect::from_points(a, b).union_pt(c);
+        let plane = |f: &dyn Fn(usize, [usize; 3]) -> f64| {
+            let all: Vec<f64> = indices(self.degree).into_iter().enumerate().map(|(at, ijk)| f(at, ijk)).collect();
+            expanded(self.degree, &all)
+        };
+        let domain = if extended { bounds.inflate(0.5 * bounds.width(), 0.5 * bounds.height()) } else { bounds };
+        let whole = if self.weights.iter().all(|w| *w == self.weights[0]) {
+            let (x, y) = (plane(&|at, _| self.moves[at].x), plane(&|at, _| self.moves[at].y));
+            Quotient::polynomial(pre, x, y, domain)
+        } else {
+            let origin = bounds.center();
+            let x = plane(&|at, ijk| (self.point(ijk).x - origin.x) * self.weights[at]);
+            let y = plane(&|at, ijk| (self.point(ijk).y - origin.y) * self.weights[at]);
+            Quotient::rational(pre, origin, x, y, plane(&|at, _| self.weights[at]), domain)
+        };
+        if extended {
+            return whole.simplest();
+        }
+        let sound = self.weights.iter().all(|w| *w > 0.0);
+        let whole: Arc<dyn Map> = if sound { Arc::new(whole.without_poles()) } else { Arc::new(whole) };
+        if whole.class() == Class::Affine(Affine::IDENTITY) {
+            return Arc::new(AffineMap::IDENTITY);
+        }
+        Arc::new(Local::new(&self.corners, whole))
+    }
+}
+
+pub(in crate::deform) struct Entry;
+
+static INFO: Info = Info::new("triangle", "pull artwork about by a triangular net of control points")
+    .group("Lattices and nets")
+    .by_hand(ByHand {
+        label: Some("Triangle net"),
+        ..ByHand::NONE
+    })
+    .about("Lays a triangle over the artwork, with control points along its sides and inside it, and lets the artwork follow \
+them. Degree 1 has the three corners; degree 2 the middles of the sides too; degree 3 one more in the middle. The higher \
+the degree, the more local each point's pull. A triangle bends less stiffly than a rectangular net of the same degree, and treats \
+all directions alike.\n\nA control point is named by three numbers I,J,K that add up to the degree: how near it lies to the first, \
+second and third corner. 2,0,0 is the first corner of a triangle of degree 2, 0,1,1 the middle of the side opposite.\n\nOutside an \
+explicit triangle (--reference) nothing moves, unless --extend is given. Where a side's control points stay in their places, inside \
+and outside join without a gap; otherwise there is a warning.")
+    .source("G. Farin, Triangular Bernstein-Bézier patches, CAGD 3, 1986; J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form \
+Deformation, CAGD 46, 2016")
+    .params(&[
+        Param::new(
+            "reference",
+            Kind::Text("X,Y X,Y X,Y"),
+            "The triangle's corners; outside it nothing moves. Default: a triangle about the artwork, its first corner at the top, its \
+second at the bottom left, and the map continues outside it.",
+        ),
+        Param::new("degree", Kind::Count, "Degree of the net: control points along a side, less one.")
+            .default("2")
+            .within(1.0, 10.0),
+        Param::new("move", Kind::Text("I,J,K:DX,DY"), "Moves a control point by this much; may be given many times.")
+            .repeated(),
+        Param::new("at", Kind::Text("I,J,K:X,Y"), "Puts a control point here; may be given many times.").repeated(),
+        Param::new(
+            "weight",
+            Kind::Text("I,J,K:W"),
+            "Strength with which a control point pulls the artwork towards itself, 1 by default; may be given many times.",
+        )
+        .repeated(),
+        Param::flag(
+            "extend",
+            "Let the map continue outside the triangle instead of leaving everything there in place.",
+        ),
+    ])
+    .demo(&[("move", "0,1,1:10,15"), ("weight", "1,1,0:2")])
+    .examples(&[
+        Example {
+            what: "Pull the bottom down in the middle",
+            command: "triangle samples/lettering.svg --move 0,1,1:0,60% -o out.svg",
+        },
+        Example {
+            what: "Push out one spot of a badge; its surroundings stay",
+            command: "triangle samples/badge.svg --reference '50%,5% 5%,80% 95%,80%' --degree 3 --move 1,1,1:0,-20% -o out.svg",
+        },
+        Example {
+            what: "Two of the six points moved",
+            command: "triangle samples/grid.svg --move 1,1,0:-30%,30% --move 1,0,1:30%,30% -o out.svg",
+        },
+    ])
+    .laws(&[
+        Law::Identity(&[]),
+        Law::Identity(&[("degree", "7"), ("reference", "0,0 90,10 20,80"), ("extend", "true")]),
+        Law::Identity(&[("weight", "1,0,1:1"), ("move", "1,0,1:0,0")]),
+        Law::KeepsLines(&[("degree", "1"), ("move", "1,0,0:10,-20"), ("weight", "0,1,0:1.5"), ("extend", "true")]),
+        Law::Area(&[("degree", "1"), ("reference", "0,0 100,0 0,100"), ("at", "0,1,0:200,0"), ("extend", "true")], 2.0),
+    ])
+    .cases(&[
+        // The middle of a side: a quarter of its ends and half of its middle point.
+        Case { args: SIX, at: (50.0, 0.0), to: (50.0, 15.0), tolerance: 1e-12 },
+        // u = (½, ¼, ¼): B110 = 2·½·¼ = ¼ of the shift.
+        Case { args: SIX, at: (25.0, 25.0), to: (25.0, 32.5), tolerance: 1e-12 },
+        Case { args: SIX, at: (90.0, 90.0), to: (90.0, 90.0), tolerance: 0.0 },
+        // Beyond the triangle, continued: u = (−½, ¾, ¾), B110 = −¾.
+        Case {
+            args: &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30"), ("extend", "true")],
+            at: (75.0, 75.0),
+            to: (75.0, 52.5),
+            tolerance: 1e-12,
+        },
+        // Below the box of the artwork, about which the triangle lies: u = (−0.05, 0.525, 0.525), B011 = 2·0.525².
+        Case { args: &[("move", "0,1,1:0,10")], at: (50.0, 110.0), to: (50.0, 115.5125), tolerance: 1e-12 },
+        // Weights draw along the sides: (¼·0 + ½·2·50 + ¼·100)/(¼ + 1 + ¼) = 50; at u = (¾, ¼, 0) it is
+        // (2·⅜·50 + 100/16)/(9/16 + ¾ + 1/16) = 43.75/1.375.
+        Case {
+            args: &[("reference", "0,0 100,0 0,100"), ("weight", "1,1,0:2")],
+            at: (25.0, 0.0),
+            to: (43.75 / 1.375, 0.0),
+            tolerance: 1e-12,
+        },
+    ]);
+
+const SIX: Pairs = &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30")];
+
+impl Deformation for Entry {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let over = over(s)?;
+        let extended = over.extended || s.flag("extend")?;
+        Triangle { degree: s.number("degree")? as usize, changes: changes(s)?, extended, ..over }.build()
+    }
+}
+
+/// Reads the reference triangle; the default lies about the artwork's box, twice as wide and twice as high.
+fn over(s: &Settings<'_>) -> Result<Triangle, Error> {
+    let frame = s.frame().rect;
+    let Some(text) = s.texts("reference").pop() else { return Ok(Triangle::around(frame)) };
+    let points = s.points_in("reference", text)?;
+    let corners: [Point; 3] = points.try_into().map_err(|p: Vec<Point>| {
+        Error::usage("reference", text, format!("has {} points; a triangle has three", p.len()))
+    })?;
+    Ok(Triangle { frame: Some(frame), ..Triangle::new(corners) })
+}
+
+/// Reads `at`, `move` and `weight`, in this order.
+fn changes(s: &Settings<'_>) -> Result<Vec<([usize; 3], Change)>, Error> {
+    let mut out = Vec::new();
+    for text in s.texts("at") {
+        let (node, rest) = s.node_in::<3>("at", text)?;
+        out.push((node, Change::Place(s.point_in("at", rest)?)));
+    }
+    for text in s.texts("move") {
+        let (node, rest) = s.node_in::<3>("move", text)?;
+        let wrong = || Error::usage("move", rest, "is not a shift DX,DY");
+        let (dx, dy) = rest.split_once(',').ok_or_else(wrong)?;
+        let shift = Vec2::new(s.length_in("move", dx, Axis::X)?, s.length_in("move", dy, Axis::Y)?);
+        out.push((node, Change::Shift(shift)));
+    }
+    for text in s.texts("weight") {
+        let (node, rest) = s.node_in::<3>("weight", text)?;
+        out.push((node, Change::Weight(s.number_in("weight", rest)?)));
+    }
+    Ok(out)
 }

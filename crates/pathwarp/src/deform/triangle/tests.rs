@@ -1,9 +1,9 @@
 //! Bézier triangles: degrees, sides, rationals.
 
-use super::net::{basis, regular_point};
 use super::*;
 use crate::check;
 use crate::deform::Deformation;
+use crate::deform::triangle::{basis, regular_point};
 use crate::map::{Class, Map, RationalBezier};
 use crate::outline::Seg;
 use crate::param::Args;

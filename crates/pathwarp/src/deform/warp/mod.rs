@@ -5,24 +5,22 @@
 //! (AnatomikPerq, 2026). The arcs are the usual cubics for circular arcs, and the inner points of the families with bent sides
 //! follow equation (7) of M. Koppinen, *A plane transformation from 16 control points*, the bilinear Coons patch.
 
-mod entry;
-mod style;
 #[cfg(test)]
 mod tests;
 
-pub(super) use entry::Entry;
-pub use style::Style;
-pub(super) use style::StyleParams;
-
-use super::built::{Built, Role};
-use super::envelope::{self, Keep, Ring};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Gallery, Info, Law, Role};
+use super::envelope;
+use super::envelope::{Keep, Ring};
 use super::shaper::rows_path;
 use crate::error::{Error, GeometryError, within};
-use crate::map::{AffineMap, BicubicNet, Class, Map, Net};
+use crate::formula::{Calculator, FormulaError};
+use crate::map::{BicubicNet, Net, complete_net};
 use crate::outline::Seg;
-use crate::param::Frame;
-use kurbo::{Affine, CubicBez, Point, Rect};
-use std::sync::Arc;
+use crate::param::{Kind, Param, Settings};
+use kurbo::{Affine, CubicBez, Point, Rect, Vec2};
+use serde::Deserialize;
+use std::sync::{Arc, OnceLock};
+use thiserror::Error;
 
 /// A warp style over the artwork's box: arc, flag, fisheye, …
 ///
@@ -176,12 +174,468 @@ pub(super) fn over(rect: Rect, net: &Net) -> Result<Built, Error> {
         -rect.y0 / rect.height(),
     ]);
     let map = BicubicNet::new(&net, pre);
-    let map: Arc<dyn Map> = match map.class() {
-        Class::Affine(m) => Arc::new(AffineMap(crate::anchors::settled(m, &Frame::new(rect)))),
-        _ => Arc::new(map),
-    };
+    let map = crate::anchors::settled(Arc::new(map), rect);
     let mut built = Built::new(map);
     built.overlay(Role::Base, kurbo::Shape::to_path(&rect, 0.1));
     built.overlay(Role::Cage, rows_path(&net));
     Ok(built)
+}
+
+// Warp styles as data: rules that turn a box and a bend into a net of sixteen points.
+//
+// A style starts from the identity net: point (j, c), row j from the top and column c from the left, lies at u = c/3, v = j/3
+// of the box, which here runs from 0,0 to w,h. Its rules are formulas over
+//
+// - `w`, `h`: the box; `b`: the bend, 1 for 100 %; `a` = |b|
+// - `k` = 4/3·tan(bπ/4), `S` = sin(bπ/2), `C` = cos(bπ/2): the ingredients of a circular arc of angle bπ
+// - `u`, `v`: the point's position in the box, in `moves`
+//
+// evaluated in this order: `let` (named values), `arcs` (rows that are one arc; in the family `boundary` the sides run
+// straight between their ends), `points` (absolute positions), `moves` (displacements).
+// An arc with ends `half` to the left and right of the middle at height `y` has its handles `lift`·half above the ends, and
+// 2/3·half·C/cos²(bπ/4) from them towards the middle: the usual cubic for a circular arc, written so that b = 0 gives the line.
+
+/// A warp style: rules for a net of sixteen points over a box.
+///
+/// ```
+/// use pathwarp::deform::Style;
+///
+/// let arch = Style::named("arch").unwrap();
+/// let own = Style::from_json(r#"{ "name": "roof", "family": "boundary", "moves": [{ "at": "0,1", "y": "-b*h/2" }] }"#);
+/// assert_eq!((arch.name(), own.unwrap().name()), ("arch", "roof"));
+/// ```
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Style {
+    name: String,
+    /// Other spellings.
+    #[serde(default)]
+    also: Vec<String>,
+    /// A description in a few words.
+    #[serde(default)]
+    title: String,
+    family: Family,
+    /// Largest bend, 1 for 100 %; without it, any bend that keeps the numbers finite is accepted.
+    limit: Option<f64>,
+    #[serde(default, rename = "let")]
+    names: Vec<String>,
+    #[serde(default)]
+    arcs: Vec<ArcRow>,
+    #[serde(default)]
+    points: Vec<Rule>,
+    #[serde(default)]
+    moves: Vec<Rule>,
+    /// Added to every point when the axis is vertical.
+    upright: Option<Shift>,
+}
+
+/// The part of a style that a distortion scales.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Family {
+    /// The twelve points of the sides; the bilinear Coons patch completes the inner four, with or without distortion.
+    Boundary,
+    /// All sixteen points.
+    Points,
+    /// The box; the style's displacements are added, scaled by the local factors.
+    Frame,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ArcRow {
+    row: usize,
+    y: String,
+    half: String,
+    lift: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Rule {
+    /// `j,c`; `*` means all four.
+    at: String,
+    x: Option<String>,
+    y: Option<String>,
+}
+
+impl Rule {
+    /// Returns `false` if the formulas are certain to have one value everywhere.
+    fn asks_for_the_place(&self) -> bool {
+        self.x.iter().chain(&self.y).any(|f| f.contains(['u', 'v']))
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Shift {
+    x: Option<String>,
+    y: Option<String>,
+}
+
+/// The parameters of a style.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::deform) struct StyleParams {
+    /// 1 for 100 %.
+    pub(in crate::deform) bend: f64,
+    /// Horizontal and vertical distortion, 1 for 100 %.
+    pub(in crate::deform) distortion: [f64; 2],
+    /// Turns the style sideways.
+    pub(in crate::deform) vertical: bool,
+}
+
+/// An error in a style's rules. Its message continues a sentence about the style.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub(in crate::deform) enum StyleError {
+    #[error(transparent)]
+    Formula(#[from] FormulaError),
+    #[error("has no row {0}: rows go from 0 to 3")]
+    NoRow(usize),
+    #[error("names the point `{0}`: write row,column, each from 0 to 3, or * for all")]
+    BadPoint(String),
+}
+
+fn third(i: usize) -> f64 {
+    i as f64 / 3.0
+}
+
+fn mapped(net: &Net, mut f: impl FnMut(usize, usize, Point) -> Point) -> Net {
+    std::array::from_fn(|j| std::array::from_fn(|c| f(j, c, net[j][c])))
+}
+
+/// Swaps rows with columns and x with y.
+fn transposed(net: &Net) -> Net {
+    std::array::from_fn(|j| std::array::from_fn(|c| Point::new(net[c][j].y, net[c][j].x)))
+}
+
+/// Scales every column about the middle of its ends by 1 + amount·(2u − 1).
+fn widened(net: &Net, amount: f64) -> Net {
+    mapped(net, |_, c, p| {
+        let middle = net[0][c].midpoint(net[3][c]);
+        middle + (p - middle) * (1.0 + amount * (2.0 * third(c) - 1.0))
+    })
+}
+
+/// Scales every row about the middle of its ends by 1 + amount·(2v − 1).
+fn heightened(net: &Net, amount: f64) -> Net {
+    mapped(net, |j, _, p| {
+        let middle = net[j][0].midpoint(net[j][3]);
+        middle + (p - middle) * (1.0 + amount * (2.0 * third(j) - 1.0))
+    })
+}
+
+impl Style {
+    /// Returns the built-in styles.
+    #[must_use]
+    pub fn builtin() -> Vec<Self> {
+        presets().to_vec()
+    }
+
+    /// Returns the built-in style of this name, also as Photoshop spells it (`warpArc`).
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        presets().iter().find(|style| style.is_called(name)).cloned()
+    }
+
+    /// Reads a style from JSON.
+    ///
+    /// # Errors
+    /// [`Error::Input`](Error::Input) if the text is not JSON of a style. Formulas are checked when the style is used.
+    pub fn from_json(text: &str) -> Result<Self, Error> {
+        Self::from_file("the style", text)
+    }
+
+    /// Reads a style from the text of a file.
+    fn from_file(name: &str, text: &str) -> Result<Self, Error> {
+        serde_json::from_str(text).map_err(|e| Error::input(name, format!("is not a warp style: {e}")))
+    }
+
+    /// Returns the style's name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Returns `true` if the style has this name, or an alternative spelling of it.
+    #[must_use]
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.also.iter().any(|a| a == name)
+    }
+
+    /// Returns the largest bend, 1 for 100 %; `None` if there is no limit.
+    #[must_use]
+    pub fn limit(&self) -> Option<f64> {
+        self.limit
+    }
+
+    /// Returns the net over a box `w` wide and `h` high with its top left corner at the origin.
+    pub(in crate::deform) fn net(&self, w: f64, h: f64, with: &StyleParams) -> Result<Net, StyleError> {
+        let [horizontal, vertical] = with.distortion;
+        if !with.vertical {
+            return self
+                .distorted(w, h, with.bend, [horizontal, vertical], |n| heightened(&widened(n, horizontal), vertical));
+        }
+        // Horizontal comes first in both cases; sideways it scales the rows.
+        let net =
+            self.distorted(h, w, with.bend, [vertical, horizontal], |n| widened(&heightened(n, horizontal), vertical))?;
+        let shift = self.shift(h, w, with.bend)?;
+        Ok(transposed(&mapped(&net, |_, _, p| p + shift)))
+    }
+
+    /// Returns the net under `distortion`, which scales columns and rows by these amounts.
+    fn distorted(
+        &self,
+        w: f64,
+        h: f64,
+        b: f64,
+        [columns, rows]: [f64; 2],
+        distortion: impl Fn(&Net) -> Net,
+    ) -> Result<Net, StyleError> {
+        let rest: Net = std::array::from_fn(|j| std::array::from_fn(|c| Point::new(w * third(c), h * third(j))));
+        let net = self.plain(&rest, w, h, b)?;
+        let factor = |amount: f64, i: usize| 1.0 + amount * (2.0 * third(i) - 1.0);
+        Ok(match self.family {
+            Family::Boundary => complete_net(distortion(&net)),
+            Family::Points => distortion(&net),
+            Family::Frame => mapped(&distortion(&rest), |j, c, p| {
+                p + (net[j][c] - rest[j][c]) * (factor(columns, c) * factor(rows, j))
+            }),
+        })
+    }
+
+    /// Applies the rules, without distortion.
+    fn plain(&self, rest: &Net, w: f64, h: f64, b: f64) -> Result<Net, StyleError> {
+        let mut names = self.names(w, h, b)?;
+        let mut net = *rest;
+        for arc in &self.arcs {
+            let [y, half, lift] = [&arc.y, &arc.half, &arc.lift].map(|f| names.value(f));
+            let (y, half, lift) = (y?, half?, lift?);
+            let quarter = b * std::f64::consts::FRAC_PI_4;
+            let along = 2.0 / 3.0 * half * (2.0 * quarter).cos() / quarter.cos().powi(2);
+            let row = net.get_mut(arc.row).ok_or(StyleError::NoRow(arc.row))?;
+            let (left, right, up) = (0.5 * w - half, 0.5 * w + half, y - lift * half);
+            *row = [
+                Point::new(left, y),
+                Point::new(left + along, up),
+                Point::new(right - along, up),
+                Point::new(right, y),
+            ];
+        }
+        if self.family == Family::Boundary {
+            // The left and right sides are straight between the ends of the arcs.
+            for c in [0, 3] {
+                (net[1][c], net[2][c]) = (net[0][c].lerp(net[3][c], third(1)), net[0][c].lerp(net[3][c], third(2)));
+            }
+        }
+        for (rules, absolute) in [(&self.points, true), (&self.moves, false)] {
+            for rule in rules {
+                let mut known = None;
+                for (j, c) in selected(&rule.at)? {
+                    names.set("u", third(c));
+                    names.set("v", third(j));
+                    let of = |f: &Option<String>| f.as_ref().map(|f| names.value(f)).transpose();
+                    let value = || Ok::<_, FormulaError>((of(&rule.x)?, of(&rule.y)?));
+                    let (x, y) = known.map_or_else(value, Ok)?;
+                    known = (!rule.asks_for_the_place()).then_some((x, y));
+                    let p = &mut net[j][c];
+                    *p = if absolute {
+                        Point::new(x.unwrap_or(p.x), y.unwrap_or(p.y))
+                    } else {
+                        *p + Vec2::new(x.unwrap_or(0.0), y.unwrap_or(0.0))
+                    };
+                }
+            }
+        }
+        Ok(net)
+    }
+
+    fn names(&self, w: f64, h: f64, b: f64) -> Result<Calculator, FormulaError> {
+        let half = b * std::f64::consts::FRAC_PI_2;
+        let k = 4.0 / 3.0 * (0.5 * half).tan();
+        let mut names = Calculator::new(&[
+            ("w", w),
+            ("h", h),
+            ("b", b),
+            ("a", b.abs()),
+            ("k", k),
+            ("S", half.sin()),
+            ("C", half.cos()),
+        ]);
+        for text in &self.names {
+            names.define(text)?;
+        }
+        Ok(names)
+    }
+
+    fn shift(&self, w: f64, h: f64, b: f64) -> Result<Vec2, FormulaError> {
+        let Some(shift) = &self.upright else { return Ok(Vec2::ZERO) };
+        let names = self.names(w, h, b)?;
+        let of = |f: &Option<String>| f.as_ref().map_or(Ok(0.0), |f| names.value(f));
+        Ok(Vec2::new(of(&shift.x)?, of(&shift.y)?))
+    }
+}
+
+/// The built-in styles, read once: a batch of small drawings would spend a fifth of its time on them.
+fn presets() -> &'static [Style] {
+    static PRESETS: OnceLock<Vec<Style>> = OnceLock::new();
+    // The text is part of this crate; a test reads every style.
+    PRESETS.get_or_init(|| serde_json::from_str(include_str!("styles.json")).unwrap_or_default())
+}
+
+/// Returns the points that `j,c` selects.
+fn selected(at: &str) -> Result<Vec<(usize, usize)>, StyleError> {
+    let wrong = || StyleError::BadPoint(at.to_owned());
+    let one = |t: &str| match t.trim() {
+        "*" => Ok(0..4),
+        n => n.parse::<usize>().ok().filter(|n| *n < 4).map(|n| n..n + 1).ok_or_else(wrong),
+    };
+    let (j, c) = at.split_once(',').ok_or_else(wrong)?;
+    let (rows, columns) = (one(j)?, one(c)?);
+    Ok(rows.flat_map(|j| columns.clone().map(move |c| (j, c))).collect())
+}
+
+pub(in crate::deform) struct Entry;
+
+/// The built-in styles, in the order of drawing programs' menus.
+const NAMES: &[&str] = &[
+    "arc",
+    "arc-lower",
+    "arc-upper",
+    "arch",
+    "bulge",
+    "shell-lower",
+    "shell-upper",
+    "flag",
+    "wave",
+    "fish",
+    "rise",
+    "fisheye",
+    "inflate",
+    "squeeze",
+    "twist",
+];
+
+static INFO: Info = Info::new("warp", "bend artwork in one of fifteen styles: arc, flag, fisheye, …")
+    .gallery(Gallery { set: "styles", title: "styles", presets: "style", bend: Some("bend"), axis: Some("axis") })
+    .group("Envelopes")
+    .by_hand(ByHand {
+        label: Some("Style"),
+        labels: &[("horizontal", "Distort horizontally"), ("vertical", "Distort vertically")],
+        ..ByHand::NONE
+    })
+    .about("The warp styles that drawing programs share, by the nets measured on the best known of them: arc, arc-lower, arc-upper, arch, bulge, \
+shell-lower, shell-upper, flag, wave, fish, rise, fisheye, inflate, squeeze, twist. --bend sets the amount and the direction; \
+`pathwarp gallery` draws them all. Photoshop's names (warpArc) work too.\n\nBends beyond 100% continue by the same \
+formula; those made of circular arcs end at 190%. --horizontal and --vertical distort the result in addition, as if it leaned away \
+to a side.\n\nA style of your own is a TOML or JSON file: rules that move the sixteen points of a net (row,column; 0,0 is the top left \
+one), with formulas of w and h (the box), b (the bend), u and v (the point's position), and k, S, C for circular arcs:\n\n  \
+name = \"roof\"\n  family = \"boundary\"   # or \"points\", \"frame\": the part that distortions act on\n  \
+moves = [{ at = \"0,1\", y = \"-b*h/2\" }, { at = \"0,2\", y = \"-b*h/2\" }]")
+    .source("Nets measured on Adobe Illustrator 2026, published with the OPuller editor, 2026; completion: K. Koppinen, A plane \
+transformation from 16 control points, equation (7)")
+    .params(&[
+        Param::new("style", Kind::NameOrFile(NAMES), "The style: a name, or a file of your own.").default("arc"),
+        Param::number("bend", "Amount and direction of the bend.").default("50%").within(-10.0, 10.0).slider(-1.0, 1.0),
+        Param::new(
+            "axis",
+            Kind::Choice(&["horizontal", "vertical"]),
+            "The direction of the style.",
+        )
+        .default("horizontal"),
+        Param::number("horizontal", "Distortion: the right side grows by this, the left one shrinks.")
+            .default("0%")
+            .within(-1.0, 1.0),
+        Param::number("vertical", "Distortion: the lower side grows by this, the upper one shrinks.")
+            .default("0%")
+            .within(-1.0, 1.0),
+        Param::new(
+            "keep",
+            Kind::Choice(&["nothing", "verticals", "horizontals", "lines"]),
+            "Lines that stay straight: the artwork is put between the style's sides by a map that keeps them, as `envelope --keep` does.",
+        )
+        .default("nothing"),
+    ])
+    .demo(&[("style", "arc"), ("bend", "40%"), ("horizontal", "15%"), ("vertical", "-20%")])
+    .examples(&[
+        Example { what: "A word on an arc", command: "warp samples/lettering.svg --style arc --bend 50% -o out.svg" },
+        Example { what: "A logo on a flag", command: "warp samples/logo.svg --style flag --bend -30% -o out.svg" },
+        Example {
+            what: "A badge seen through a fisheye, leaning away to the right",
+            command: "warp samples/badge.svg --style fisheye --bend 60% --horizontal -25% -o out.svg",
+        },
+        Example {
+            what: "Lettering in a bulge whose verticals stay vertical",
+            command: "warp samples/lettering.svg --style bulge --bend 40% --keep verticals -o out.svg",
+        },
+        Example {
+            what: "A style from a file",
+            command: "warp samples/lettering.svg --style samples/roof.toml --bend 80% -o out.svg",
+        },
+    ])
+    .laws(&[
+        Law::Identity(&[("style", "arc"), ("bend", "0")]),
+        Law::Identity(&[("style", "shell-upper"), ("bend", "0"), ("axis", "vertical")]),
+        Law::Identity(&[("style", "twist"), ("bend", "0%")]),
+        Law::Same(&[("style", "warpArcUpper")], &[("style", "arc-upper"), ("bend", "0.5")]),
+        // Arch and flag move verticals up and down.
+        Law::KeepsLinesAlong(&[("style", "arch"), ("bend", "-70%")], (0.0, 1.0)),
+        Law::KeepsLinesAlong(&[("style", "flag"), ("bend", "150%")], (0.0, 1.0)),
+        Law::Area(&[("style", "flag"), ("bend", "30%")], 1.0),
+        // On a square the box itself is its transpose.
+        Law::KeepsLinesAlong(&[("style", "arch"), ("axis", "vertical")], (1.0, 0.0)),
+    ])
+    .cases(&[
+        // A half circle: its middle lies the cubic's 3/4·(2/3·diameter) above the ends.
+        Case { args: &[("style", "arch"), ("bend", "100%")], at: (50.0, 0.0), to: (50.0, -50.0), tolerance: 1e-12 },
+        // The wings of a full fan are level.
+        Case { args: &[("style", "arc"), ("bend", "100%")], at: (0.0, 0.0), to: (-100.0, 100.0), tolerance: 1e-12 },
+        Case { args: &[("style", "arc"), ("bend", "100%")], at: (50.0, 100.0), to: (50.0, 50.0), tolerance: 1e-12 },
+        // 3·(1/3)(2/3)²·100 up and down again.
+        Case {
+            args: &[("style", "flag"), ("bend", "50%")],
+            at: (100.0 / 3.0, 50.0),
+            to: (100.0 / 3.0, 50.0 + 200.0 / 9.0),
+            tolerance: 1e-12,
+        },
+        Case {
+            args: &[("style", "rise"), ("bend", "50%"), ("axis", "vertical")],
+            at: (50.0, 0.0),
+            to: (50.0, 0.0),
+            tolerance: 1e-12,
+        },
+    ]);
+
+impl Deformation for Entry {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let warp = Warp {
+            frame: s.frame().rect,
+            style: style(s)?,
+            bend: s.number("bend")?,
+            horizontal: s.number("horizontal")?,
+            vertical: s.number("vertical")?,
+            sideways: s.choice("axis")? == "vertical",
+            keep: Keep::named(s.choice("keep")?),
+        };
+        warp.build()
+    }
+}
+
+/// Reads the style, by name or from a file.
+fn style(s: &Settings<'_>) -> Result<Style, Error> {
+    if let Some(file) = s.file_if("style")? {
+        return Style::from_file(&file.name, &file.text);
+    }
+    let name = s.texts("style").last().copied().unwrap_or_default();
+    Style::named(name).ok_or_else(|| {
+        Error::advised(
+            "style",
+            name,
+            "is not a style",
+            format!("; there are {}, and files (TOML or JSON)", NAMES.join(", ")),
+        )
+    })
 }

@@ -1,9 +1,9 @@
 //! The guides against the standard's formulas, written out here once more for one box.
 
-use super::entry::NAMES;
 use super::*;
 use crate::check;
 use crate::deform::Deformation;
+use crate::deform::wordart::NAMES;
 use crate::param::{Args, Frame};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveArclen, PathSeg, Point, QuadBez};
 

@@ -21,10 +21,687 @@
 //! both sides of every joint agree in the geometric mean over both rows, with all w₀ₙ·w₁ₙ as near 1 as that allows. Rows
 //! keep their tangents across a joint; the map has a crease there.
 
-mod map;
-mod monoid;
 #[cfg(test)]
 mod tests;
-mod weights;
 
-pub use map::{Birational, BirationalInverse, Rows};
+use super::rational_bezier::Scaled;
+use super::{Class, Crease, Creases, Formula, Jet, Level, Map, Patch, RationalBezier, Real, bspline};
+use crate::error::GeometryError;
+use kurbo::{Point, Rect, Vec2};
+use std::sync::Arc;
+
+/// The direction of the rows, which determines how s and t run in the source.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rows {
+    /// The rows are the left and the right side: s from left to right, t from top to bottom. Horizontals stay straight.
+    LeftRight,
+    /// The rows are the top and the bottom: s from top to bottom, t from left to right. Verticals stay straight.
+    TopBottom,
+}
+
+/// A rational map of degree 1×n whose inverse is rational too:
+///
+/// > P(s,t) = (1−s)·P₀(t) + s·P₁(t)
+///
+/// with P₀, P₁ rational Bézier curves of degree n through free control points, the rows. Their weights follow from the points,
+/// such that s and t of a point have closed forms (T. W. Sederberg, J. Zheng, *Birational 2D free-form deformation of degree
+/// 1×n*, CAGD 2016). Lines of constant t stay straight. B-spline rows make one such map for each Bézier piece, with creases
+/// between them.
+///
+/// ```
+/// use pathwarp::kurbo::{Point, Rect};
+/// use pathwarp::map::{Birational, Map, Rows};
+///
+/// let top = [(0.0, 0.0), (50.0, -30.0), (100.0, 0.0)].map(Point::from);
+/// let bottom = [(0.0, 100.0), (50.0, 90.0), (100.0, 100.0)].map(Point::from);
+/// let frame = Rect::new(0.0, 0.0, 100.0, 100.0);
+/// let map = Birational::new(frame, Rows::TopBottom, [&top, &bottom], None, false, ["top", "bottom"])?;
+/// let p = Point::new(30.0, 40.0);
+/// assert!(Map::point(&map.inverted(), map.point(p)).distance(p) < 1e-12);
+/// # Ok::<(), pathwarp::GeometryError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Birational {
+    region: Rect,
+    rows: Rows,
+    pieces: Vec<BirationalPiece>,
+}
+
+/// One Bézier piece: its rows, and the patch they span.
+#[derive(Debug, Clone, PartialEq)]
+struct BirationalPiece {
+    rows: [Monoid; 2],
+    patch: Arc<Patch>,
+}
+
+impl Birational {
+    /// The map of `region` to the lattice with these rows of equally many points, at least two. `spline` is the degree of uniform
+    /// clamped B-spline rows; `None` makes each row one Bézier curve. With `allow_poles`, weights may be negative. `names` are
+    /// the names of the rows in errors.
+    ///
+    /// # Errors
+    /// [`GeometryError::Coincident`] or [`GeometryError::WrongSide`] if the points are not in general position: a row may meet
+    /// the line through the first pair only in its first point, and the line through the last pair only in its last point.
+    pub fn new(
+        region: Rect,
+        rows: Rows,
+        points: [&[Point]; 2],
+        spline: Option<usize>,
+        allow_poles: bool,
+        names: [&str; 2],
+    ) -> Result<Self, GeometryError> {
+        let count = points[0].len().min(points[1].len());
+        let (degree, cells) = match spline {
+            Some(d) => (d.min(count - 1), count - d.min(count - 1)),
+            None => (count - 1, 1),
+        };
+        let mut raw = Vec::with_capacity(cells);
+        for (k, matrix) in bspline::extraction(degree, cells).iter().enumerate() {
+            let bezier = points.map(|row| {
+                let point = |m: &Vec<f64>| {
+                    let local = m.iter().zip(&row[k..]);
+                    local.fold(Vec2::ZERO, |sum, (c, p)| sum + p.to_vec2() * *c).to_point()
+                };
+                matrix.iter().map(point).collect::<Vec<_>>()
+            });
+            let name =
+                |n: &str| if cells == 1 { n.to_owned() } else { format!("{n} (Bézier piece {} of {cells})", k + 1) };
+            raw.push(general_rows(&bezier, allow_poles, &names.map(name))?);
+        }
+        let rows_of = chained(raw).ok_or(GeometryError::NotFinite { shape: names[0].to_owned(), at: points[0][0] })?;
+        Ok(Self::from_monoids(region, rows, rows_of))
+    }
+
+    /// The map with one piece for each pair of rows, whose weights are given.
+    fn from_monoids(region: Rect, rows: Rows, monoids: Vec<[Monoid; 2]>) -> Self {
+        let cells = monoids.len();
+        let share = |a: f64, size: f64, k: usize| a + size * (k as f64 / cells as f64);
+        let piece = |(k, pair): (usize, [Monoid; 2])| {
+            let homogeneous = |r: usize, j: usize| {
+                let (p, w) = (pair[r].points()[j], pair[r].weights()[j]);
+                [p.x * w, p.y * w, w]
+            };
+            let n = pair[0].points().len() - 1;
+            let r = region;
+            let (rect, degree, net): (_, _, Vec<[f64; 3]>) = match rows {
+                Rows::LeftRight => (
+                    Rect::new(r.x0, share(r.y0, r.height(), k), r.x1, share(r.y0, r.height(), k + 1)),
+                    [1, n],
+                    (0..=n).flat_map(|j| [homogeneous(0, j), homogeneous(1, j)]).collect(),
+                ),
+                Rows::TopBottom => (
+                    Rect::new(share(r.x0, r.width(), k), r.y0, share(r.x0, r.width(), k + 1), r.y1),
+                    [n, 1],
+                    [0, 1].iter().flat_map(|&s| (0..=n).map(move |j| (s, j))).map(|(s, j)| homogeneous(s, j)).collect(),
+                ),
+            };
+            BirationalPiece { patch: Arc::new(Patch::rational(rect, degree, &net)), rows: pair }
+        };
+        Self { region, rows, pieces: monoids.into_iter().enumerate().map(piece).collect() }
+    }
+
+    /// The weights of both rows of each Bézier piece.
+    pub fn weights(&self) -> impl Iterator<Item = [&[f64]; 2]> {
+        self.pieces.iter().map(|p| [p.rows[0].weights(), p.rows[1].weights()])
+    }
+
+    /// The inverse map, in closed form.
+    #[must_use]
+    pub fn inverted(&self) -> BirationalInverse {
+        BirationalInverse { forward: self.clone() }
+    }
+
+    /// The piece at a source point.
+    fn piece(&self, p: Point) -> usize {
+        let r = self.region;
+        let t = match self.rows {
+            Rows::LeftRight => (p.y - r.y0) / r.height(),
+            Rows::TopBottom => (p.x - r.x0) / r.width(),
+        };
+        ((t * self.pieces.len() as f64).max(0.0) as usize).min(self.pieces.len() - 1)
+    }
+
+    fn patch(&self, p: Point) -> &Arc<Patch> {
+        &self.pieces[self.piece(p)].patch
+    }
+}
+
+impl Map for Birational {
+    fn jet(&self, p: Point) -> Jet {
+        self.patch(p).jet(p)
+    }
+
+    fn point(&self, p: Point) -> Point {
+        self.patch(p).point(p)
+    }
+
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        if let [one] = self.pieces.as_slice() {
+            one.patch.jets(ps, out);
+        } else {
+            ps.iter().zip(out).for_each(|(p, o)| *o = self.jet(*p));
+        }
+    }
+
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        if let [one] = self.pieces.as_slice() {
+            one.patch.points(ps, out);
+        } else {
+            ps.iter().zip(out).for_each(|(p, o)| *o = self.point(*p));
+        }
+    }
+
+    fn class(&self) -> Class {
+        let first = self.pieces[0].patch.class();
+        if self.pieces.iter().all(|p| p.patch.class() == first) { first } else { Class::Smooth }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let (r, count) = (self.region, self.pieces.len());
+        for k in 1..count {
+            let share = k as f64 / count as f64;
+            out.push(Crease::kink(match self.rows {
+                Rows::LeftRight => Level::Line { a: 0.0, b: 1.0, c: -(r.y0 + share * r.height()) },
+                Rows::TopBottom => Level::Line { a: 1.0, b: 0.0, c: -(r.x0 + share * r.width()) },
+            }));
+        }
+        if self.pieces.iter().any(|p| p.patch.has_edge()) {
+            let own = self.clone();
+            out.push(Crease::edge(Level::Field(Arc::new(move |p| own.patch(p).denominator(p)))));
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        (self.pieces.len() > 1).then(|| Arc::clone(self.patch(inside)) as Arc<dyn Map>)
+    }
+
+    /// A curve of degree d gives one of degree d·(1+n).
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        match self.pieces.as_slice() {
+            [one] => one.patch.image(curve),
+            _ => None,
+        }
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.inverted()))
+    }
+}
+
+/// Cost of a candidate piece for the distance of t outside [0, 1], relative to the distance of s from the middle.
+const OUTSIDE_COST: f64 = 1e6;
+/// Cost of a candidate piece in which the point lies on the far side of A.
+const BEHIND_COST: f64 = 1e12;
+
+/// The inverse of a [`Birational`], in closed form.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BirationalInverse {
+    forward: Birational,
+}
+
+impl BirationalInverse {
+    /// (s, t) of a point by the rows of one piece.
+    fn parameters<S: Real>(rows: &[Monoid; 2], x: S, y: S) -> (S, S) {
+        let [first, last] = rows[0].lines();
+        let (alpha, beta) = (-last.of(x, y), first.of(x, y));
+        // The homogeneous points of the rows at t, times (α+β)ⁿ, relative to (x, y). They lie at opposite ends of a line
+        // through (x, y).
+        let relative = |m: &Monoid| {
+            // Relative to a control point, so that the sums are not differences of large numbers.
+            let o = m.points()[0];
+            let (dx, dy) = (x - o.x, y - o.y);
+            let n = m.points().len() - 1;
+            let term = |i: usize| (m.weights()[i], m.points()[i] - o);
+            let (w, d) = term(n);
+            let (mut sx, mut sy, mut sw) = (S::from(w * d.x), S::from(w * d.y), S::from(w));
+            // Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ for three sets of c, by Horner's scheme in β with running powers of α.
+            let (mut power, mut binomial) = (S::from(1.0), 1.0);
+            for i in (0..n).rev() {
+                power = power * alpha;
+                binomial = binomial * (i + 1) as f64 / (n - i) as f64;
+                let (w, d) = term(i);
+                let share = power * (w * binomial);
+                (sx, sy, sw) = (sx * beta + share * d.x, sy * beta + share * d.y, sw * beta + share);
+            }
+            (sx - sw * dx, sy - sw * dy)
+        };
+        let (a, b) = (relative(&rows[0]), relative(&rows[1]));
+        let (dx, dy) = (a.0 - b.0, a.1 - b.1);
+        ((a.0 * dx + a.1 * dy) / (dx * dx + dy * dy), beta / (alpha + beta))
+    }
+
+    /// The piece whose image contains a point.
+    fn piece(&self, p: Point) -> usize {
+        let pieces = &self.forward.pieces;
+        let last = pieces.len() - 1;
+        if last == 0 {
+            return 0;
+        }
+        let mut best = (f64::INFINITY, 0);
+        for (k, piece) in pieces.iter().enumerate() {
+            let (s, t) = Self::parameters(&piece.rows, p.x, p.y);
+            let outside = if k == 0 { 0.0 } else { -t }.max(if k == last { 0.0 } else { t - 1.0 }).max(0.0);
+            // The denominator is negative on the far side of A.
+            let in_front = self.forward.pieces[k].patch.denominator(self.source(k, s, t).into()) > 0.0;
+            let cost = outside * OUTSIDE_COST + (s - 0.5).abs() + if in_front { 0.0 } else { BEHIND_COST };
+            if cost < best.0 {
+                best = (cost, k);
+            }
+        }
+        best.1
+    }
+
+    /// The source point at (s, t) of a piece.
+    fn source<S: Real>(&self, piece: usize, s: S, t: S) -> (S, S) {
+        let r = self.forward.region;
+        let t = (t + piece as f64) / self.forward.pieces.len() as f64;
+        match self.forward.rows {
+            Rows::LeftRight => (s * r.width() + r.x0, t * r.height() + r.y0),
+            Rows::TopBottom => (t * r.width() + r.x0, s * r.height() + r.y0),
+        }
+    }
+}
+
+impl Formula for BirationalInverse {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let k = self.piece(Point::new(x.value(), y.value()));
+        let (s, t) = Self::parameters(&self.forward.pieces[k].rows, x, y);
+        self.source(k, s, t)
+    }
+
+    fn class(&self) -> Class {
+        match Map::class(&self.forward) {
+            Class::Affine(m) => Class::Affine(m.inverse()),
+            _ => Class::Smooth,
+        }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        if self.forward.pieces.len() > 1 {
+            // The lines between pieces.
+            for p in &self.forward.pieces[1..] {
+                let l = p.rows[0].lines()[0];
+                let c = -l.normal.dot(l.through.to_vec2());
+                out.push(Crease::kink(Level::Line { a: l.normal.x, b: l.normal.y, c }));
+            }
+        }
+        // The forward denominator is infinite where s or t is; its reciprocal changes sign there.
+        let own = self.clone();
+        let level = move |q: Point| {
+            let k = own.piece(q);
+            let (s, t) = Self::parameters(&own.forward.pieces[k].rows, q.x, q.y);
+            1.0 / own.forward.pieces[k].patch.denominator(own.source(k, s, t).into())
+        };
+        if !self.forward.pieces.iter().all(|p| p.patch.is_polynomial()) {
+            out.push(Crease::edge(Level::Field(Arc::new(level))));
+        }
+    }
+
+    /// A curve of degree d gives one of degree d·(1+n): (s, t, 1) ~ (χ·f₀, β·(f₀−f₁), χ·(f₀−f₁)), χ = α + β.
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        let [piece] = self.forward.pieces.as_slice() else { return None };
+        let [first, last] = piece.rows[0].lines();
+        let line = |l: ImplicitLine, k: f64| {
+            let c = l.normal.dot(l.through.to_vec2());
+            Scaled::new(curve.points.iter().map(|p| k * (l.normal.x * p[0] + l.normal.y * p[1] - c * p[2])))
+        };
+        let n = piece.rows[0].points().len() - 1;
+        let (alpha, beta) = (line(last, -1.0).powers(n), line(first, 1.0).powers(n));
+        let w = Scaled::new(curve.points.iter().map(|p| p[2]));
+        let sum = |c: &[f64]| {
+            let n = c.len() - 1;
+            let mut out = Scaled::zero(n * curve.degree());
+            let mut binomial = 1.0;
+            for (i, c) in c.iter().enumerate() {
+                out.add_scaled(c * binomial, &alpha[n - i].times(&beta[i]));
+                binomial = binomial * (n - i) as f64 / (i + 1) as f64;
+            }
+            out
+        };
+        let implicit = |m: &Monoid| {
+            let mut f = sum(m.weights());
+            f.add_scaled(-1.0, &sum(m.h()).times(&w));
+            f
+        };
+        let (f0, f1) = (implicit(&piece.rows[0]), implicit(&piece.rows[1]));
+        let mut difference = f0.clone();
+        difference.add_scaled(-1.0, &f1);
+        let mut chi = alpha[1].clone();
+        chi.add_scaled(1.0, &beta[1]);
+        let terms = [chi.times(&f0), beta[1].times(&difference), chi.times(&difference)];
+        let [s, t, w] = terms.map(|c| c.coefficients());
+        let r = self.forward.region;
+        let point = |((s, t), w): ((f64, f64), f64)| {
+            let (x, y) = if self.forward.rows == Rows::LeftRight { (s, t) } else { (t, s) };
+            [x * r.width() + r.x0 * w, y * r.height() + r.y0 * w, w]
+        };
+        Some(RationalBezier { points: s.into_iter().zip(t).zip(w).map(point).collect() })
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        if self.forward.pieces.len() == 1 {
+            return None;
+        }
+        let k = self.piece(inside);
+        let one = Birational {
+            region: self.forward.pieces[k].patch.rect(),
+            rows: self.forward.rows,
+            pieces: vec![self.forward.pieces[k].clone()],
+        };
+        Some(Arc::new(one.inverted()))
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.forward.clone()))
+    }
+}
+
+// Monoids: rational Bézier curves with free control points whose weights give them a point A of multiplicity n − 1.
+//
+// A line L(t) = (1−t)·ℓ₀ + t·ℓ₁ turns about A, from the line ℓ₀ through A and P₀ to the line ℓ₁ through A and Pₙ. It follows
+// the curve, L(t)·P(t) ≡ 0, if
+//
+// > wᵢ = − i (ℓ₁·Pᵢ₋₁) / ((n+1−i)(ℓ₀·Pᵢ)) · wᵢ₋₁
+//
+// (T. W. Sederberg, J. Zheng, *Birational 2D free-form deformation of degree 1×n*, CAGD 2016, theorem 2.3, where
+// ℓ₀ = A×Q₀, ℓ₁ = A×Q₁). Then t has the closed form ℓ₀·X / (ℓ₀·X − ℓ₁·X), and the curve an implicit equation with the same
+// coefficients (equation 22):
+//
+// > f(X) = ⟨w₀,…,wₙ⟩ₙ\[−ℓ₁·X, ℓ₀·X\] − ⟨h₀,…,hₙ₋₁⟩ₙ₋₁\[−ℓ₁·X, ℓ₀·X\],  hᵢ = n/(i+1)·wᵢ₊₁·(ℓ₀·Pᵢ₊₁)
+//
+// with ⟨c⟩ₙ\[α,β\] = Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ.
+
+/// A line by its equation ℓ·X = normal·(X − through) = 0.
+///
+/// Stored with a point on the line, so that values near the line are not differences of large numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ImplicitLine {
+    /// A point on the line.
+    through: Point,
+    /// A normal, whose length is the scale of ℓ.
+    normal: Vec2,
+}
+
+impl ImplicitLine {
+    /// ℓ·X.
+    #[inline]
+    #[must_use]
+    fn at(&self, p: Point) -> f64 {
+        self.normal.dot(p - self.through)
+    }
+
+    /// ℓ·X, generic over the number type.
+    #[inline]
+    fn of<S: Real>(&self, x: S, y: S) -> S {
+        (x - self.through.x) * self.normal.x + (y - self.through.y) * self.normal.y
+    }
+
+    /// The line through two points, scaled so that ℓ·X = |from, to, X|.
+    #[must_use]
+    fn join(from: Point, to: Point) -> Self {
+        let d = to - from;
+        Self { through: from, normal: Vec2::new(-d.y, d.x) }
+    }
+
+    /// The same line with values scaled by `k`.
+    #[must_use]
+    fn scaled(self, k: f64) -> Self {
+        Self { normal: self.normal * k, ..self }
+    }
+}
+
+/// A planar rational Bézier curve with an (n−1)-fold point.
+#[derive(Debug, Clone, PartialEq)]
+struct Monoid {
+    points: Vec<Point>,
+    weights: Vec<f64>,
+    h: Vec<f64>,
+    first: ImplicitLine,
+    last: ImplicitLine,
+}
+
+impl Monoid {
+    /// The curve with these control points whose line L is `first` at t = 0 and `last` at t = 1, through the first and the last
+    /// control point. The lines meet in the multiple point; their scales determine the speed of t. `None` with fewer than two
+    /// points, or if a weight is zero or not finite because another control point lies on `first` or `last`.
+    #[must_use]
+    fn new(points: &[Point], first: ImplicitLine, last: ImplicitLine) -> Option<Self> {
+        let n = points.len().checked_sub(1).filter(|n| *n > 0)?;
+        let mut weights = vec![1.0];
+        for i in 1..=n {
+            let ratio = -(i as f64) * last.at(points[i - 1]) / ((n + 1 - i) as f64 * first.at(points[i]));
+            weights.push(weights[i - 1] * ratio);
+        }
+        if weights.iter().any(|w| !w.is_finite() || *w == 0.0) {
+            return None;
+        }
+        let h = (0..n).map(|i| n as f64 / (i + 1) as f64 * weights[i + 1] * first.at(points[i + 1])).collect();
+        Some(Self { points: points.to_vec(), weights, h, first, last })
+    }
+
+    /// The control points.
+    #[must_use]
+    fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The weights.
+    #[must_use]
+    fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// The coefficients h₀ … hₙ₋₁ of the implicit equation.
+    #[must_use]
+    fn h(&self) -> &[f64] {
+        &self.h
+    }
+
+    /// The lines at t = 0 and t = 1.
+    #[must_use]
+    fn lines(&self) -> [ImplicitLine; 2] {
+        [self.first, self.last]
+    }
+
+    /// The same curve with weights gⁱ·wᵢ, which changes only the speed of t.
+    #[must_use]
+    fn paced(&self, g: f64) -> Option<Self> {
+        Self::new(&self.points, self.first, self.last.scaled(g))
+    }
+
+    /// The same curve with all weights multiplied by `k`.
+    #[must_use]
+    fn weighted(mut self, k: f64) -> Self {
+        self.weights.iter_mut().chain(&mut self.h).for_each(|w| *w *= k);
+        self
+    }
+}
+
+// The weights of the rows: general position, and the normalisation over all pieces.
+
+/// Points closer to a line than this share of the lattice's size count as on it.
+const ON_LINE: f64 = 1e-9;
+
+/// The two rows as monoids, with the speed of t still arbitrary. Checks that the points are in general position.
+fn general_rows(
+    points: &[Vec<Point>; 2],
+    allow_poles: bool,
+    names: &[String; 2],
+) -> Result<[Monoid; 2], GeometryError> {
+    let n = points[0].len() - 1;
+    let b = points.iter().flatten().fold(Rect::from_points(points[0][0], points[0][0]), |b, p| b.union_pt(*p));
+    let size = b.width().hypot(b.height());
+    let mut lines = [0, n].map(|j| ImplicitLine::join(points[0][j], points[1][j]));
+    for (line, j) in lines.iter_mut().zip([0, n]) {
+        let length = line.normal.hypot();
+        if length <= ON_LINE * size {
+            let path = format!("{} and {}", names[0], names[1]);
+            return Err(GeometryError::Coincident { path, which: [j + 1, j + 1], at: points[0][j] });
+        }
+        // Scale to values near 1 within the lattice, so that n-th powers stay in range.
+        *line = line.scaled(1.0 / (length * size));
+    }
+    let [first, last] = lines;
+    let side = if first.at(points[0][n]) >= 0.0 { 1.0 } else { -1.0 };
+    for (row, name) in points.iter().zip(names) {
+        for (i, p) in row.iter().enumerate() {
+            let off = [(i > 0, side * first.at(*p), "first"), (i < n, -side * last.at(*p), "last")];
+            for (counts, d, end) in off {
+                if counts && (d <= ON_LINE && !allow_poles || d.abs() <= ON_LINE) {
+                    let j = if end == "first" { 0 } else { n };
+                    return Err(GeometryError::WrongSide {
+                        path: name.clone(),
+                        which: i + 1,
+                        at: *p,
+                        end,
+                        line: [points[0][j], points[1][j]],
+                        on: d.abs() <= ON_LINE,
+                    });
+                }
+            }
+        }
+    }
+    let not_finite = || GeometryError::NotFinite { shape: names[0].clone(), at: points[0][0] };
+    let [a, b] = points;
+    let rows = Monoid::new(a, first, last).zip(Monoid::new(b, first, last));
+    rows.map(|(a, b)| [a, b]).ok_or_else(not_finite)
+}
+
+/// Normalises the speeds and the common factors of the rows, piece after piece.
+fn chained(raw: Vec<[Monoid; 2]>) -> Option<Vec<[Monoid; 2]>> {
+    let n = raw[0][0].points().len() - 1;
+    let product = |rows: &[Monoid; 2], over: usize, under: usize| -> f64 {
+        rows.iter().map(|m| (m.weights()[over] / m.weights()[under]).abs().ln()).sum()
+    };
+    // ln g is alternately a + x and a − x; x brings the end weights as close to 1 as possible.
+    let mut a = vec![0.0];
+    for w in raw.windows(2) {
+        let next = 0.5 * (product(&w[0], n - 1, n) - product(&w[1], 1, 0)) - a[a.len() - 1];
+        a.push(next);
+    }
+    let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let ends = raw.iter().zip(&a).enumerate();
+    let sum: f64 = ends.map(|(k, (rows, a))| sign(k) * (product(rows, n, 0) + 2.0 * n as f64 * a)).sum();
+    let x = -sum / (2 * n * raw.len()) as f64;
+    let mut factor = [1.0; 2];
+    let mut out = Vec::with_capacity(raw.len());
+    for (k, (rows, a)) in raw.into_iter().zip(a).enumerate() {
+        let g = (a + sign(k) * x).exp();
+        let [p, q] = rows;
+        let pair = [p.paced(g)?.weighted(factor[0]), q.paced(g)?.weighted(factor[1])];
+        factor = [0, 1].map(|r| pair[r].weights()[n]);
+        out.push(pair);
+    }
+    Some(out)
+}
+
+#[cfg(test)]
+mod monoid_tests {
+    use super::*;
+
+    impl Monoid {
+        /// As [`Monoid::new`], from the multiple point `a` and points `q0`, `q1` on the first and last line, as in the paper. `a` is
+        /// homogeneous, so it may lie at infinity.
+        pub(crate) fn with_axis(points: &[Point], a: [f64; 3], q0: Point, q1: Point) -> Option<Self> {
+            let line = |q: Point| ImplicitLine { through: q, normal: Vec2::new(a[1] - a[2] * q.y, a[2] * q.x - a[0]) };
+            Self::new(points, line(q0), line(q1))
+        }
+
+        /// The parameter whose line contains `p`; infinite on the line t = ∞.
+        pub(crate) fn t(&self, p: Point) -> f64 {
+            let (b, a) = (self.first.at(p), self.last.at(p));
+            b / (b - a)
+        }
+
+        /// The homogeneous point (X·w, Y·w, w) at `t`.
+        pub(crate) fn eval(&self, t: f64) -> [f64; 3] {
+            [0, 1, 2].map(|k| {
+                let c = self.points.iter().zip(&self.weights).map(|(p, w)| w * [p.x, p.y, 1.0][k]);
+                bernstein(c.collect::<Vec<_>>().as_slice(), 1.0 - t, t)
+            })
+        }
+
+        /// The left side of the implicit equation: zero on the curve and at its multiple point.
+        pub(crate) fn implicit(&self, p: Point) -> f64 {
+            let (alpha, beta) = (-self.last.at(p), self.first.at(p));
+            bernstein(&self.weights, alpha, beta) - bernstein(&self.h, alpha, beta)
+        }
+    }
+
+    /// ⟨c⟩ₙ\[α,β\] = Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ, by Horner's scheme in β with running powers of α.
+    fn bernstein<S: Real>(c: &[f64], alpha: S, beta: S) -> S {
+        let n = c.len() - 1;
+        let (mut sum, mut power, mut binomial) = (S::from(c[n]), S::from(1.0), 1.0);
+        // From the last term down, without divisions: sum = Σ_{i≥k} cᵢ C(n,i) αⁿ⁻ⁱ βⁱ⁻ᵏ.
+        for k in (0..n).rev() {
+            power = power * alpha;
+            binomial = binomial * (k + 1) as f64 / (n - k) as f64;
+            sum = sum * beta + power * (c[k] * binomial);
+        }
+        sum
+    }
+
+    fn example() -> Monoid {
+        let p = [(0.0, 2.0), (0.0, 3.0), (2.0, 4.0), (5.0, 3.0), (5.0, 2.0)].map(Point::from);
+        Monoid::with_axis(&p, [3.0, 0.0, 1.0], p[0], p[4]).unwrap()
+    }
+
+    /// The paper's example in section 4.
+    #[test]
+    fn weights_and_equation_are_the_papers() {
+        let m = example();
+        let near =
+            |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 4e-15 * b.abs());
+        assert!(near(m.weights(), &[1.0, 5.0 / 6.0, 2.0 / 3.0, 10.0 / 13.0, 8.0 / 13.0]), "{:?}", m.weights());
+        assert!(near(m.h(), &[-10.0, -40.0 / 3.0, -40.0 / 3.0, -80.0 / 13.0]), "{:?}", m.h());
+        // |Q₁AX| = 2x − 2y − 6 and |AQ₀X| = −2x − 3y + 6.
+        let [first, last] = m.lines();
+        for p in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (7.0, -3.0)] {
+            assert_eq!(-last.at(p.into()), 2.0 * p.0 - 2.0 * p.1 - 6.0);
+            assert_eq!(first.at(p.into()), -2.0 * p.0 - 3.0 * p.1 + 6.0);
+        }
+    }
+
+    #[test]
+    fn the_equation_vanishes_on_the_curve_only() {
+        let m = example();
+        for i in -10..=30 {
+            let t = f64::from(i) / 20.0;
+            let [x, y, w] = m.eval(t);
+            if w.abs() < 0.05 {
+                continue;
+            }
+            let p = Point::new(x / w, y / w);
+            let size = (1.0 + p.to_vec2().hypot()).powi(4) * 100.0;
+            assert!(m.implicit(p).abs() < 1e-13 * size, "{t} {}", m.implicit(p));
+            assert!((m.t(p) - t).abs() < 1e-11, "{t}");
+            assert!(m.implicit(p + Vec2::new(0.3, 0.1)).abs() > 1e-3);
+        }
+        assert!(m.implicit((3.0, 0.0).into()).abs() < 1e-12, "the triple point lies on it");
+    }
+
+    #[test]
+    fn the_sum_is_the_definition() {
+        let c = [2.0, -1.0, 0.5, 3.0];
+        let (a, b) = (0.7, -1.3);
+        let by_hand = c[0] * a * a * a + 3.0 * c[1] * a * a * b + 3.0 * c[2] * a * b * b + c[3] * b * b * b;
+        assert!((bernstein(&c, a, b) - by_hand).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_point_on_an_end_line_has_no_weight() {
+        let p = [(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)].map(Point::from);
+        let lines = [
+            ImplicitLine::join((0.0, 0.0).into(), (1.0, 0.0).into()),
+            ImplicitLine::join((0.0, 1.0).into(), (1.0, 1.0).into()),
+        ];
+        assert!(Monoid::new(&p, lines[0], lines[1]).is_none());
+    }
+
+    #[test]
+    fn a_line_through_two_points() {
+        let l = ImplicitLine::join(Point::new(1.0, 1.0), Point::new(3.0, 1.0));
+        assert_eq!(l.at(Point::new(5.0, 1.0)), 0.0);
+        assert_eq!(l.at(Point::new(1.0, 2.0)), 2.0);
+    }
+}

@@ -1,7 +1,7 @@
 //! The birational map against the exact numbers of the paper, and round trips over many random lattices.
 
-use super::monoid::Monoid;
 use super::*;
+use crate::map::birational::Monoid;
 use crate::map::{Class, Map, RationalBezier};
 use crate::refit::{Options, warp_path};
 use crate::{GeometryError, Outline, Seg};

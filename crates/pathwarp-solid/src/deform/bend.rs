@@ -1,0 +1,709 @@
+//! Bending along a skeleton: the generalised algorithm of de Casteljau in space.
+//!
+//! Each leg of the skeleton's control polygon has two handles, s and t. A step of the algorithm is an affine map of all of space,
+//! p + u·(q − p) + v·s + w·t, instead of a point on a leg, so that F(u, v, w) = C(u) + v·S(u) + w·T(u), with C the Bézier curve
+//! of the control points and S and T those of the handles, one degree lower; handles of deeper levels add curves of still lower
+//! degree. (The paper: *Free-form deformations with a generalized de Casteljau algorithm*, equations 2 and 3.) Pieces of degree 1
+//! to 3, or the pieces of a B-spline, follow each other.
+//!
+//! Barr's twist, taper and bend have the same form with other curves C, S and T (A. H. Barr, *Global and local deformations of
+//! solid primitives*, SIGGRAPH 1984), and are exact here.
+
+use super::entry::{About3, Built3, Case3, Deformation3, Law3};
+use crate::map::{Chart, Creases3, Fraction3, Jet3, Local, Map3, Poly3, Swept, Tensor, for_all};
+use crate::settings::{Box3, Settings3};
+use glam::{DMat3, DQuat, DVec3};
+use pathwarp::Error;
+use pathwarp::deform::{Example, Info};
+use pathwarp::map::bspline;
+use pathwarp::param::{Kind, Param};
+use std::sync::Arc;
+
+/// The curve that a model follows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Spine3 {
+    /// Bézier pieces of this degree, 1 to 3, that share their ends.
+    Bezier(Vec<DVec3>, usize),
+    /// The control points of a uniform clamped B-spline of this degree.
+    Spline(Vec<DVec3>, usize),
+    /// Straight, with the sides turned by this angle (radians) from end to end: Barr's twist.
+    Twist(f64),
+    /// Straight, with the sides growing to this factor: Barr's taper.
+    Taper(f64),
+    /// A circular arc of the model's length that turns by this angle (radians): Barr's bend.
+    Arc(f64),
+}
+
+/// A handle of a leg.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Handle3 {
+    /// Its level, from 1.
+    pub level: usize,
+    /// Its number on that level, over all pieces, from 0.
+    pub index: usize,
+    /// The image of a unit along the first axis after the one that follows the skeleton, if it is set.
+    pub side: Option<DVec3>,
+    /// The image of a unit along the second.
+    pub up: Option<DVec3>,
+}
+
+/// Bends a model along a curve.
+///
+/// ```
+/// use glam::DVec3;
+/// use pathwarp_solid::{Box3, deform::{Bend3, Spine3}, Map3};
+///
+/// let bar = Box3::new(DVec3::new(0.0, -1.0, -1.0), DVec3::new(10.0, 1.0, 1.0));
+/// let twisted = Bend3::new(bar, Spine3::Twist(std::f64::consts::FRAC_PI_2)).build()?;
+/// assert!((twisted.map.point(DVec3::new(10.0, 1.0, 0.0)) - DVec3::new(10.0, 0.0, 1.0)).length() < 1e-15);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bend3 {
+    bounds: Box3,
+    spine: Spine3,
+    axis: usize,
+    through: Option<DVec3>,
+    handles: Vec<Handle3>,
+}
+
+impl Bend3 {
+    /// Bends a model in this box, whose extent along x follows the curve.
+    #[must_use]
+    pub fn new(bounds: Box3, spine: Spine3) -> Self {
+        Self { bounds, spine, axis: 0, through: None, handles: Vec::new() }
+    }
+
+    /// Sets the axis of the model that follows the curve: 0, 1 or 2.
+    #[must_use]
+    pub fn axis(self, axis: usize) -> Self {
+        Self { axis: axis.min(2), ..self }
+    }
+
+    /// Sets a point of the line that becomes the curve. Default: the middle of the box.
+    #[must_use]
+    pub fn through(self, p: DVec3) -> Self {
+        Self { through: Some(p), ..self }
+    }
+
+    /// Sets handles of a skeleton of Bézier pieces. Handles of the first level that are not set are perpendicular to their legs,
+    /// of length 1, and turn as little as possible from leg to leg; others are 0.
+    #[must_use]
+    pub fn handle(mut self, handle: Handle3) -> Self {
+        self.handles.push(handle);
+        self
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a flat box, a wrong number of points, legs without length, and handles that do not exist.
+    pub fn build(&self) -> Result<Built3, Error> {
+        let size = self.bounds.size()[self.axis];
+        if !(size > 0.0 && size.is_finite()) {
+            let name = ["x", "y", "z"][self.axis];
+            return Err(Error::usage("along", name, "has no length: the model is flat along it; choose another axis"));
+        }
+        let through = self.through.unwrap_or(self.bounds.center());
+        let pieces = self.pieces(through)?;
+        let mut skeleton = Vec::new();
+        for piece in &pieces {
+            skeleton.extend((0..=16).map(|i| piece.stand(f64::from(i) / 16.0).at[0]));
+        }
+        let count = pieces.len();
+        let (axis, start) = (self.axis, self.bounds.min[self.axis]);
+        let mut built = Built3::new(Arc::new(BendMap3::new(pieces.into(), axis, start, size, through)));
+        let length: f64 = skeleton.windows(2).map(|w| w[0].distance(w[1])).sum();
+        built.note(format!("skeleton: {count} pieces, {length:.6} long; the model is {size:.6} long along it"));
+        built.guides.push(skeleton);
+        Ok(built)
+    }
+
+    fn pieces(&self, through: DVec3) -> Result<Vec<Strip>, Error> {
+        let straight = matches!(self.spine, Spine3::Twist(_) | Spine3::Taper(_) | Spine3::Arc(_));
+        if let Some(h) = self.handles.first().filter(|_| straight || matches!(self.spine, Spine3::Spline(..))) {
+            let problem = "is a handle, and only a skeleton of Bézier pieces takes handles";
+            return Err(Error::usage(param_of(h), h.index.to_string(), problem));
+        }
+        let mut from = through;
+        from[self.axis] = self.bounds.min[self.axis];
+        let along = DVec3::AXES[self.axis] * self.bounds.size()[self.axis];
+        let sides = [DVec3::AXES[(self.axis + 1) % 3], DVec3::AXES[(self.axis + 2) % 3]];
+        match &self.spine {
+            Spine3::Twist(angle) => Ok(vec![Strip::Twist { from, along, sides, angle: *angle }]),
+            Spine3::Taper(factor) => Ok(vec![Strip::Taper { from, along, sides, factor: *factor }]),
+            // An arc that turns by nothing is straight.
+            Spine3::Arc(angle) if angle.abs() < 1e-12 => Ok(vec![Strip::Twist { from, along, sides, angle: 0.0 }]),
+            Spine3::Arc(angle) => Ok(vec![Strip::Arc { from, along, sides, angle: *angle }]),
+            Spine3::Bezier(points, degree) => self.ribbons(points, *degree),
+            Spine3::Spline(points, degree) => {
+                if points.len() <= *degree || !(1..=3).contains(degree) {
+                    let problem =
+                        format!("has too few points: a spline of degree {degree} needs {} or more", degree + 1);
+                    return Err(Error::usage("skeleton", "", problem));
+                }
+                let cells = bspline::extraction(*degree, points.len() - degree);
+                let bezier = |(cell, rows): (usize, &Vec<Vec<f64>>)| -> Vec<DVec3> {
+                    rows.iter().map(|row| row.iter().zip(&points[cell..]).map(|(k, p)| *p * *k).sum()).collect()
+                };
+                let pieces: Vec<Vec<DVec3>> = cells.iter().enumerate().map(bezier).collect();
+                let mut joined = vec![pieces[0][0]];
+                joined.extend(pieces.iter().flat_map(|p| &p[1..]).copied());
+                self.ribbons(&joined, *degree)
+            }
+        }
+    }
+
+    /// Bézier pieces with handles.
+    fn ribbons(&self, points: &[DVec3], degree: usize) -> Result<Vec<Strip>, Error> {
+        let wrong = |problem: String| Error::usage("skeleton", "", problem);
+        if points.len() < 2 || !(1..=3).contains(&degree) || !(points.len() - 1).is_multiple_of(degree) {
+            let (n, k) = (points.len(), degree);
+            return Err(wrong(format!(
+                "has {n} points; pieces of degree {k} that share their ends need {}, {}, {} …",
+                k + 1,
+                2 * k + 1,
+                3 * k + 1
+            )));
+        }
+        let legs = points.len() - 1;
+        let mut first = self.turning_least(points).map_err(wrong)?;
+        let pieces = legs / degree;
+        let mut deeper: Vec<Vec<[DVec3; 2]>> =
+            (2..=degree).map(|j| vec![[DVec3::ZERO; 2]; pieces * (degree + 1 - j)]).collect();
+        let mut deepest = 1;
+        for h in &self.handles {
+            let level = if h.level == 1 { Some(&mut first) } else { deeper.get_mut(h.level.wrapping_sub(2)) };
+            let Some(pair) = level.and_then(|l| l.get_mut(h.index)) else {
+                let counts: Vec<String> =
+                    (1..=degree).map(|j| format!("0 to {} on level {j}", pieces * (degree + 1 - j) - 1)).collect();
+                let problem = format!("is not a handle: they are {}", counts.join(", "));
+                return Err(Error::usage(param_of(h), format!("{},{}", h.level, h.index), problem));
+            };
+            *pair = [h.side.unwrap_or(pair[0]), h.up.unwrap_or(pair[1])];
+            deepest = deepest.max(h.level);
+        }
+        let piece = |i: usize| {
+            let mut levels = vec![first[i * degree..(i + 1) * degree].to_vec()];
+            for (j, all) in (2..=deepest).zip(&deeper) {
+                let n = degree + 1 - j;
+                levels.push(all[i * n..(i + 1) * n].to_vec());
+            }
+            Strip::Ribbon { points: points[i * degree..=(i + 1) * degree].to_vec(), levels }
+        };
+        Ok((0..pieces).map(piece).collect())
+    }
+
+    /// Handles perpendicular to their legs that turn as little as possible from leg to leg. The error ends a sentence about the
+    /// skeleton.
+    fn turning_least(&self, points: &[DVec3]) -> Result<Vec<[DVec3; 2]>, String> {
+        let mut out: Vec<[DVec3; 2]> = Vec::new();
+        let mut previous = DVec3::AXES[self.axis];
+        let mut side = DVec3::AXES[(self.axis + 1) % 3];
+        for (i, leg) in points.windows(2).enumerate() {
+            let direction = (leg[1] - leg[0]).try_normalize();
+            let direction =
+                direction.ok_or_else(|| format!("has two equal points, {i} and {}; move them apart", i + 1))?;
+            side = (DQuat::from_rotation_arc(previous, direction) * side).reject_from_normalized(direction).normalize();
+            out.push([side, direction.cross(side)]);
+            previous = direction;
+        }
+        Ok(out)
+    }
+}
+
+fn param_of(h: &Handle3) -> &'static str {
+    match (h.level, h.side) {
+        (1, Some(_)) => "side",
+        (1, None) => "up",
+        _ => "shear",
+    }
+}
+
+// The map: pieces one after another along an axis of the model.
+
+/// The model's coordinates on the skeleton: u runs along `axis` from 0 at `start` to the number of pieces at `start` + `length`;
+/// v and w are measured from `through` along the two axes that follow it in cyclic order.
+#[derive(Debug, Clone, PartialEq)]
+struct BendMap3 {
+    pieces: Arc<[Strip]>,
+    axis: usize,
+    start: f64,
+    length: f64,
+    through: DVec3,
+    /// The curves of the only piece, if they are polynomials.
+    swept: Option<Tensor<9>>,
+}
+
+impl BendMap3 {
+    fn new(pieces: Arc<[Strip]>, axis: usize, start: f64, length: f64, through: DVec3) -> Self {
+        let only = if let [only] = &*pieces { only.bernstein() } else { None };
+        let swept = only.map(|c| Tensor::bernstein([c.len(), 1, 1], c));
+        Self { pieces, axis, start, length, through, swept }
+    }
+
+    /// The other two axes.
+    fn sides(&self) -> [usize; 2] {
+        [(self.axis + 1) % 3, (self.axis + 2) % 3]
+    }
+
+    /// The piece for a whole box, if it is one.
+    fn piece_on(&self, on: &Box3) -> Option<usize> {
+        let last = self.pieces.len() - 1;
+        let place = |at: f64| (at - self.start) * self.pieces.len() as f64 / self.length;
+        // Rounding may put a joint on either side of the box's end.
+        let slack = 1e-9 * (1.0 + place(on.max[self.axis]).abs());
+        let from = ((place(on.min[self.axis]) + slack) as usize).min(last);
+        let to = ((place(on.max[self.axis]) - slack) as usize).min(last);
+        // A flat box may lie in a joint, where both pieces agree.
+        (from >= to).then_some(from)
+    }
+
+    /// The curves at a point, v, w, and the pieces per unit along the axis. The first and the last piece continue outside.
+    fn stand(&self, p: DVec3) -> (Stand, f64, f64, f64) {
+        let n = self.pieces.len();
+        let rate = n as f64 / self.length;
+        let s = (p[self.axis] - self.start) * rate;
+        // A cast of a negative number gives 0.
+        let i = (s as usize).min(n - 1);
+        let [b, c] = self.sides();
+        (self.pieces[i].stand(s - i as f64), p[b] - self.through[b], p[c] - self.through[c], rate)
+    }
+}
+
+impl Map3 for BendMap3 {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        let (Stand { at, slope }, v, w, rate) = self.stand(p);
+        let mut columns = [DVec3::ZERO; 3];
+        let [b, c] = self.sides();
+        columns[self.axis] = (slope[0] + slope[1] * v + slope[2] * w) * rate;
+        (columns[b], columns[c]) = (at[1], at[2]);
+        Jet3 { p: at[0] + at[1] * v + at[2] * w, d: DMat3::from_cols(columns[0], columns[1], columns[2]) }
+    }
+
+    fn points(&self, ps: &mut [DVec3]) {
+        let Some(tensor) = &self.swept else {
+            ps.iter_mut().for_each(|p| *p = self.point(*p));
+            return;
+        };
+        // −1 to 1 along the axis; the other coordinates are lengths.
+        let (mut middle, mut scale) = (self.through, DVec3::ONE);
+        middle[self.axis] = self.start + 0.5 * self.length;
+        scale[self.axis] = 2.0 / self.length;
+        for_all(&Swept { axis: self.axis, local: Local { middle, scale }, tensor }, ps);
+    }
+
+    fn point(&self, p: DVec3) -> DVec3 {
+        let (Stand { at, .. }, v, w, _) = self.stand(p);
+        at[0] + at[1] * v + at[2] * w
+    }
+
+    fn fraction(&self, on: &Box3, _most: usize) -> Option<Fraction3> {
+        let (chart, from) = (Chart::on(on), self.piece_on(on)?);
+        let rate = self.pieces.len() as f64 / self.length;
+        let axis = DVec3::AXES[self.axis];
+        let u = chart.linear((axis * rate).extend(-self.start * rate - from as f64));
+        let [v, w] = self.sides().map(|a| chart.linear(DVec3::AXES[a].extend(-self.through[a])));
+        let curves = self.pieces[from].polynomials(&u)?;
+        let part = |k: usize| curves[0][k].plus(1.0, &curves[1][k].times(&v)).plus(1.0, &curves[2][k].times(&w));
+        Some(Fraction3 { chart, parts: [part(0), part(1), part(2), Poly3::constant(1.0)] })
+    }
+
+    fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        let (piece, length) = (self.piece_on(on)?, self.length / self.pieces.len() as f64);
+        let (pieces, start) = ([self.pieces[piece].clone()].into(), self.start + length * piece as f64);
+        Some(Arc::new(Self::new(pieces, self.axis, start, length, self.through)))
+    }
+
+    fn creases(&self, out: &mut Creases3) {
+        for i in 1..self.pieces.len() {
+            let (axis, at) = (self.axis, self.start + self.length * i as f64 / self.pieces.len() as f64);
+            out.kink(move |p| p[axis] - at);
+        }
+    }
+}
+
+// A piece of a bend: F(u, v, w) = C(u) + v·S(u) + w·T(u).
+
+/// The curves C, S and T of a piece, u from 0 to 1.
+#[derive(Debug, Clone, PartialEq)]
+enum Strip {
+    /// The generalised algorithm of de Casteljau: every step an affine map with the handles s and t of its level.
+    Ribbon {
+        /// Control points, two to four.
+        points: Vec<DVec3>,
+        /// Pairs s, t of handles, level by level: n of the first, n − 1 of the second … The last levels may be omitted.
+        levels: Vec<Vec<[DVec3; 2]>>,
+    },
+    /// A straight line `from` + u·`along` whose sides turn by `angle` (radians).
+    Twist { from: DVec3, along: DVec3, sides: [DVec3; 2], angle: f64 },
+    /// A straight line whose sides grow to `factor` times their length.
+    Taper { from: DVec3, along: DVec3, sides: [DVec3; 2], factor: f64 },
+    /// A circular arc of the length of `along` that turns by `angle` (radians) towards the first side.
+    Arc { from: DVec3, along: DVec3, sides: [DVec3; 2], angle: f64 },
+}
+
+/// Three curves at a parameter, with their derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Stand {
+    /// C, S and T.
+    at: [DVec3; 3],
+    /// C', S' and T'.
+    slope: [DVec3; 3],
+}
+
+impl Strip {
+    /// Bernstein coefficients of C, S and T, all of one degree; `None` if they are no polynomials.
+    fn bernstein(&self) -> Option<Vec<[f64; 9]>> {
+        let curves: [Vec<Vec<DVec3>>; 3] = match self {
+            Self::Ribbon { points, levels } => {
+                let side = |k: usize| levels.iter().map(|l| l.iter().map(|h| h[k]).collect()).collect();
+                [vec![points.clone()], side(0), side(1)]
+            }
+            Self::Taper { from, along, sides: [s, t], factor } => {
+                let line = |p: DVec3, q: DVec3| vec![vec![p, q]];
+                [line(*from, *from + *along), line(*s, *s * *factor), line(*t, *t * *factor)]
+            }
+            Self::Twist { .. } | Self::Arc { .. } => return None,
+        };
+        let n = curves[0][0].len();
+        let mut out = vec![[0.0; 9]; n];
+        for (k, all) in curves.into_iter().enumerate() {
+            for curve in all.into_iter().map(|c| elevated(c, n)) {
+                for (o, p) in out.iter_mut().zip(curve) {
+                    (0..3).for_each(|a| o[3 * k + a] += p[a]);
+                }
+            }
+        }
+        Some(out)
+    }
+
+    /// C, S and T as polynomials, with a polynomial for u; `None` if they are none.
+    fn polynomials(&self, u: &Poly3) -> Option<[[Poly3; 3]; 3]> {
+        match self {
+            Self::Ribbon { points, levels } => {
+                let side = |k: usize| {
+                    let mut sum = [(); 3].map(|()| Poly3::default());
+                    for handles in levels {
+                        let part = bezier_polynomial(&handles.iter().map(|h| h[k]).collect::<Vec<_>>(), u);
+                        sum = std::array::from_fn(|a| sum[a].plus(1.0, &part[a]));
+                    }
+                    sum
+                };
+                Some([bezier_polynomial(points, u), side(0), side(1)])
+            }
+            Self::Taper { from, along, sides: [s, t], factor } => {
+                let line = |p: DVec3, q: DVec3| bezier_polynomial(&[p, q], u);
+                Some([line(*from, *from + *along), line(*s, *s * *factor), line(*t, *t * *factor)])
+            }
+            Self::Twist { .. } | Self::Arc { .. } => None,
+        }
+    }
+
+    /// The curves at `u`.
+    fn stand(&self, u: f64) -> Stand {
+        match self {
+            Self::Ribbon { points, levels } => {
+                let (c, dc) = bezier(points.iter().copied(), u);
+                let mut out = Stand { at: [c, DVec3::ZERO, DVec3::ZERO], slope: [dc, DVec3::ZERO, DVec3::ZERO] };
+                for handles in levels {
+                    for k in 0..2 {
+                        let (s, ds) = bezier(handles.iter().map(|h| h[k]), u);
+                        out.at[k + 1] += s;
+                        out.slope[k + 1] += ds;
+                    }
+                }
+                out
+            }
+            Self::Twist { from, along, sides: [s, t], angle } => {
+                let (sin, cos) = (angle * u).sin_cos();
+                let (side, up) = (*s * cos + *t * sin, *t * cos - *s * sin);
+                Stand { at: [*from + *along * u, side, up], slope: [*along, up * *angle, -side * *angle] }
+            }
+            Self::Taper { from, along, sides: [s, t], factor } => {
+                let k = 1.0 + (factor - 1.0) * u;
+                let rate = factor - 1.0;
+                Stand { at: [*from + *along * u, *s * k, *t * k], slope: [*along, *s * rate, *t * rate] }
+            }
+            Self::Arc { from, along, sides: [s, t], angle } => {
+                let (sin, cos) = (angle * u).sin_cos();
+                let (direction, radius) = (along.normalize_or_zero(), along.length() / angle);
+                // 1 − cos without cancellation.
+                let rise = 2.0 * (0.5 * angle * u).sin().powi(2);
+                let center = *from + (direction * sin + *s * rise) * radius;
+                let (tangent, side) = (direction * cos + *s * sin, *s * cos - direction * sin);
+                Stand { at: [center, side, *t], slope: [tangent * along.length(), -tangent * *angle, DVec3::ZERO] }
+            }
+        }
+    }
+}
+
+/// The same curve with `n` control points.
+fn elevated(mut curve: Vec<DVec3>, n: usize) -> Vec<DVec3> {
+    while curve.len() < n {
+        let k = curve.len() as f64;
+        let inner = (1..curve.len()).map(|i| curve[i - 1].lerp(curve[i], (k - i as f64) / k));
+        curve = std::iter::once(curve[0]).chain(inner).chain(curve.last().copied()).collect();
+    }
+    curve
+}
+
+/// A Bézier curve as polynomials, by de Casteljau's algorithm.
+fn bezier_polynomial(points: &[DVec3], u: &Poly3) -> [Poly3; 3] {
+    [0, 1, 2].map(|a| {
+        let mut row: Vec<Poly3> = points.iter().map(|p| Poly3::constant(p[a])).collect();
+        for level in (1..row.len()).rev() {
+            for i in 0..level {
+                row[i] = row[i].plus(1.0, &row[i + 1].plus(-1.0, &row[i]).times(u));
+            }
+        }
+        row.swap_remove(0)
+    })
+}
+
+/// A Bézier curve of degree up to 3 and its derivative, by de Casteljau's algorithm.
+fn bezier(points: impl Iterator<Item = DVec3>, u: f64) -> (DVec3, DVec3) {
+    let mut row = [DVec3::ZERO; 4];
+    let mut n = 0;
+    for (slot, p) in row.iter_mut().zip(points) {
+        *slot = p;
+        n += 1;
+    }
+    let mut slope = DVec3::ZERO;
+    for level in (1..n).rev() {
+        slope = (row[1] - row[0]) * (n - 1) as f64;
+        for i in 0..level {
+            row[i] = row[i] + (row[i + 1] - row[i]) * u;
+        }
+    }
+    (row[0], slope)
+}
+
+// The registry's entry: reads a [`Bend3`] from text.
+
+pub(in crate::deform) struct Entry;
+
+/// The presets: Barr's deformations.
+const PRESETS: &[&str] = &["twist", "taper", "bend"];
+
+static ABOUT: About3 = About3 {
+    info: Info::new("bend", "bend, twist or taper a model along a skeleton")
+        .group("Along a curve")
+        .about("One axis of the model (--along) follows a skeleton of control points (--skeleton), a Bézier curve of degree 1 to 3, \
+several in a row, or a B-spline (--spline). The model keeps its size across: each leg of the skeleton has two handles, the images \
+of a unit along the other two axes, which are perpendicular to it unless they are set (--side, --up). Handles of deeper levels \
+(--shear) shear parts of the model.\n\nOr use a preset of Barr's: twist turns the model about the axis by --angle, taper scales its \
+far end by --factor, bend rolls it up into an arc of --angle.")
+        .source("The generalised de Casteljau algorithm (free-form deformation by iterated affine maps); A. H. Barr, Global and local \
+deformations of solid primitives, SIGGRAPH 1984")
+        .params(&[
+            Param::new("skeleton", Kind::Text("X,Y,Z …"), "Control points of the skeleton, separated by spaces or semicolons."),
+            Param::new("degree", Kind::Count, "Degree of the skeleton's pieces, which share their ends. Default: 3, or less for a \
+skeleton of two or three points.")
+            .within(1.0, 3.0),
+            Param::flag("spline", "The points are those of a uniform clamped B-spline."),
+            Param::new("along", Kind::Choice(&["x", "y", "z"]), "The model's axis that follows the skeleton. Its extent becomes the \
+whole skeleton.")
+            .default("x"),
+            Param::new("through", Kind::Text("X,Y,Z"), "A point of the line in the model that becomes the skeleton. Default: the \
+middle of the model's box."),
+            Param::new("side", Kind::Text("I:DX,DY,DZ"), "The handle of leg I (from 0): the image of a unit along the axis after \
+--along (y after x, z after y, x after z).")
+            .repeated(),
+            Param::new("up", Kind::Text("I:DX,DY,DZ"), "The other handle of leg I: the image of a unit along the third axis.").repeated(),
+            Param::new("shear", Kind::Text("LEVEL,I:DX,DY,DZ:DX,DY,DZ"), "Both handles number I (from 0) of a deeper level, 2 or 3.")
+                .repeated(),
+            Param::new("preset", Kind::Choice(PRESETS), "Barr's twist, taper or bend instead of a skeleton."),
+            Param::angle("angle", "Angle of the twist or bend over the model's length; turns from the axis after --along to the third, \
+and bends towards the axis after --along.")
+            .default("90"),
+            Param::number("factor", "Size of the far end of a taper.").default("50%").within(0.0, 100.0).slider(0.0, 3.0),
+        ])
+        .demo(&[("skeleton", "0,50,50 33,50,50 66,55,45 100,70,40"), ("side", "1:0,1.2,0.1")])
+        .examples(&[
+            Example {
+                what: "Twist a model by a quarter turn about its upright axis",
+                command: "solid bend samples/solid/teapot.obj --preset twist --along y --angle 90 -o out.obj",
+            },
+            Example {
+                what: "Make it narrower at the top",
+                command: "solid bend samples/solid/teapot.obj --preset taper --along y --factor 60% -o out.obj",
+            },
+            Example {
+                what: "Let it lean along a curve",
+                command: "solid bend samples/solid/teapot.obj --along y --skeleton '50%,0%,50% 50%,50%,50% 60%,80%,50% 85%,100%,50%' -o out.obj",
+            },
+        ]),
+    laws: &[
+        Law3::Identity(&[("skeleton", "0,50,50 100,50,50")]),
+        Law3::Identity(&[("skeleton", "50,0,50 50,25,50 50,50,50 50,75,50 50,100,50"), ("along", "y"), ("spline", "true"), ("degree", "1")]),
+        Law3::Identity(&[("preset", "twist"), ("angle", "0")]),
+        Law3::Identity(&[("preset", "taper"), ("factor", "1")]),
+        Law3::Identity(&[("preset", "bend"), ("angle", "0"), ("along", "z")]),
+        Law3::Volume(&[("preset", "twist"), ("angle", "200"), ("along", "z")], 1.0),
+        Law3::KeepsLinesAlong(&[("preset", "twist"), ("angle", "200")], [0.0, 1.0, 0.7]),
+        Law3::KeepsLinesAlong(&[("preset", "taper"), ("factor", "2")], [1.0, 0.0, 0.0]),
+        Law3::KeepsLinesAlong(&[("skeleton", "0,50,50 40,50,50 80,60,40 100,110,30")], [0.0, 1.0, 0.3]),
+        // A straight skeleton of any degree with handles of one size is the same.
+        Law3::Same(
+            &[("skeleton", "0,50,50 100,50,50"), ("side", "0:0,2,0")],
+            &[("skeleton", "0,50,50 50,50,50 100,50,50"), ("side", "0:0,2,0 1:0,2,0")],
+        ),
+        // A taper is a skeleton of degree 2 whose handles differ in length.
+        Law3::Same(
+            &[("preset", "taper"), ("factor", "0.4")],
+            &[("skeleton", "0,50,50 50,50,50 100,50,50"), ("side", "1:0,0.4,0"), ("up", "1:0,0,0.4")],
+        ),
+    ],
+    cases: &[
+        // Halfway through a quarter turn, 10 to the side of the axis: turned by 45°.
+        Case3 {
+            args: &[("preset", "twist"), ("angle", "90")],
+            at: [50.0, 60.0, 50.0],
+            to: [50.0, 57.071_067_811_865_476, 57.071_067_811_865_476],
+            tolerance: 1e-13,
+        },
+        // Barr's linear taper: halfway the sides are three quarters.
+        Case3 { args: &[("preset", "taper"), ("along", "z")], at: [90.0, 10.0, 50.0], to: [80.0, 20.0, 50.0], tolerance: 1e-13 },
+        // A quarter of a circle of circumference 400 has the radius 200/π.
+        Case3 {
+            args: &[("preset", "bend"), ("angle", "90")],
+            at: [100.0, 50.0, 20.0],
+            to: [63.661_977_236_758_13, 113.661_977_236_758_13, 20.0],
+            tolerance: 1e-13,
+        },
+        // C(1/2) = (P0 + 3·P1 + 3·P2 + P3)/8, S(1/2) = (s0 + 2·s1 + s2)/4.
+        Case3 {
+            args: &[("skeleton", "0,0,0 40,0,0 80,0,0 100,40,0"), ("side", "0:0,1,0 1:0,1,0 2:0,3,0"), ("up", "0:0,0,1 1:0,0,1 2:0,0,1")],
+            at: [50.0, 58.0, 53.0],
+            to: [57.5, 17.0, 3.0],
+            tolerance: 1e-13,
+        },
+    ],
+};
+
+impl Deformation3 for Entry {
+    fn about(&self) -> &About3 {
+        &ABOUT
+    }
+
+    fn build(&self, s: &Settings3<'_>) -> Result<Built3, Error> {
+        let axis = ["x", "y", "z"].iter().position(|n| Some(*n) == s.flat().choice("along").ok()).unwrap_or(0);
+        let mut bend = Bend3::new(s.bounds(), spine(s)?).axis(axis);
+        if let Some(p) = s.point_if("through")? {
+            bend = bend.through(p);
+        }
+        for handle in handles(s)? {
+            bend = bend.handle(handle);
+        }
+        bend.build()
+    }
+}
+
+fn spine(s: &Settings3<'_>) -> Result<Spine3, Error> {
+    if s.flat().given("preset") {
+        for name in ["skeleton", "spline", "degree"] {
+            if s.flat().given(name) {
+                return Err(Error::usage(
+                    name,
+                    s.words(name).join(" "),
+                    "cannot go with `preset`, which has its own skeleton",
+                ));
+            }
+        }
+        let angle = s.flat().number("angle")?.to_radians();
+        return Ok(match s.flat().choice("preset")? {
+            "twist" => Spine3::Twist(angle),
+            "taper" => Spine3::Taper(s.flat().number("factor")?),
+            _ => Spine3::Arc(angle),
+        });
+    }
+    for name in ["angle", "factor"] {
+        if s.flat().given(name) {
+            return Err(Error::usage(name, s.words(name).join(" "), "is for a `preset`"));
+        }
+    }
+    let words = s.words("skeleton").into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty());
+    let points: Vec<DVec3> = words.map(|w| s.point_in("skeleton", w)).collect::<Result<_, _>>()?;
+    if points.len() < 2 {
+        return Err(Error::missing("skeleton", "two or more points X,Y,Z, unless there is a `preset`"));
+    }
+    // The range is checked, so that the cast is exact.
+    let degree = s.flat().number_if("degree")?.map_or((points.len() - 1).min(3), |d| d as usize);
+    Ok(if s.flat().flag("spline")? { Spine3::Spline(points, degree) } else { Spine3::Bezier(points, degree) })
+}
+
+/// Reads `side`, `up` and `shear`.
+fn handles(s: &Settings3<'_>) -> Result<Vec<Handle3>, Error> {
+    let mut out = Vec::new();
+    for name in ["side", "up"] {
+        for word in s.words(name) {
+            let ([index], value) = s.flat().node_in::<1>(name, word)?;
+            let v = s.vector_in(name, value)?;
+            let (side, up) = if name == "side" { (Some(v), None) } else { (None, Some(v)) };
+            out.push(Handle3 { level: 1, index, side, up });
+        }
+    }
+    for word in s.words("shear") {
+        let ([level, index], value) = s.flat().node_in::<2>("shear", word)?;
+        let wrong = || Error::usage("shear", word, "is not LEVEL,I:DX,DY,DZ:DX,DY,DZ with a level from 2");
+        let (side, up) = value.split_once(':').filter(|_| level >= 2).ok_or_else(wrong)?;
+        let (side, up) = (s.vector_in("shear", side)?, s.vector_in("shear", up)?);
+        out.push(Handle3 { level, index, side: Some(side), up: Some(up) });
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Tensor;
+    use pathwarp::check::{Counted, operations};
+
+    /// The 9, 27 and 54 products and sums of the paper's table 1, with the legs q − p given as the paper takes them, and those of the
+    /// three curves of one degree that batches evaluate.
+    #[test]
+    fn operations_of_a_skeleton() {
+        for (n, published) in [(1usize, 9), (2, 27), (3, 54)] {
+            let counts = operations(|| {
+                let mut row = vec![[Counted(1.0); 3]; n + 1];
+                let [u, v, w] = [0.3, 0.4, 0.5].map(Counted);
+                for level in 1..=n {
+                    for i in 0..=n - level {
+                        let leg: [Counted; 3] = std::array::from_fn(|k| Counted(row[i + 1][k].0 - row[i][k].0));
+                        row[i] = std::array::from_fn(|k| row[i][k] + u * leg[k] + v * 0.5 + w * 0.25);
+                    }
+                }
+            });
+            assert_eq!(counts, [published, published, 0], "degree {n}");
+            let points = (0..=n).map(|i| DVec3::new(i as f64, 1.0, 0.0)).collect();
+            let ribbon = Strip::Ribbon { points, levels: vec![vec![[DVec3::Y, DVec3::Z]; n]] };
+            let tensor = Tensor::bernstein([n + 1, 1, 1], ribbon.bernstein().unwrap());
+            let ours = operations(|| {
+                let c = tensor.value([0.3, 0.0, 0.0].map(Counted));
+                let _: [Counted; 3] = std::array::from_fn(|k| c[k] + c[k + 3] * 0.4 + c[k + 6] * 0.5);
+            });
+            assert_eq!(ours, [9 * n + 6, 9 * n + 6, 0], "degree {n}");
+        }
+    }
+
+    #[test]
+    fn bezier_curves_have_their_derivatives() {
+        let p = [DVec3::ZERO, DVec3::new(1.0, 2.0, 0.0), DVec3::new(3.0, -1.0, 1.0), DVec3::new(4.0, 0.0, 5.0)];
+        for n in 1..=4 {
+            for u in [-0.2, 0.0, 0.3, 1.0] {
+                let (at, slope) = bezier(p[..n].iter().copied(), u);
+                let truth: DVec3 = (0..n)
+                    .map(|i| {
+                        let binomial = [[1, 0, 0, 0], [1, 1, 0, 0], [1, 2, 1, 0], [1, 3, 3, 1]][n - 1][i];
+                        p[i] * (f64::from(binomial) * f64::powi(u, i as i32) * f64::powi(1.0 - u, (n - 1 - i) as i32))
+                    })
+                    .sum();
+                let h = 1e-6;
+                let difference =
+                    (bezier(p[..n].iter().copied(), u + h).0 - bezier(p[..n].iter().copied(), u - h).0) / (2.0 * h);
+                assert!((at - truth).length() < 1e-14 && (slope - difference).length() < 1e-8, "{n} {u}");
+            }
+        }
+    }
+}

@@ -1,0 +1,450 @@
+//! Lattices of control points in space: free-form deformation.
+//!
+//! > X(s,t,u) = Σₖ Σⱼ Σᵢ Nᵢ(s) Nⱼ(t) Nₖ(u) wᵢⱼₖ (xᵢⱼₖ, yᵢⱼₖ, zᵢⱼₖ, 1)
+//!
+//! with s, t, u from 0 to 1 across a box and Bernstein polynomials or uniform clamped B-splines N (T. W. Sederberg, S. R. Parry,
+//! *Free-form deformation of solid geometric models*, SIGGRAPH 1986; with weights: P. Kalra et al., 1992). i counts from the
+//! left, j from the bottom, k from the back.
+//!
+//! Nothing moves outside the box unless the map is extended, so its faces are creases. If the k + 1 outermost layers along a face
+//! are in their regular positions with weights 1, the map is Cᵏ across that face.
+
+use crate::map::{
+    Chart, Collineation, Creases3, Displaced, Fraction3, Jet3, Local, Map3, NewtonInverse3, Poly3, Quotient, Tensor,
+    for_all,
+};
+use crate::settings::Box3;
+use glam::{DMat3, DVec3};
+use pathwarp::budget::Budget;
+use pathwarp::map::bspline;
+use std::sync::Arc;
+
+// The lattice as data: control points and weights over a box.
+
+/// A grid of weighted control points over a box: the data of a [`LatticeMap3`](LatticeMap3).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lattice3 {
+    region: Box3,
+    degree: [usize; 3],
+    cells: [usize; 3],
+    /// Regular positions along x, y and z, from 0 to 1.
+    places: [Vec<f64>; 3],
+    /// Displacements from the regular positions; x runs fastest.
+    moves: Vec<DVec3>,
+    weights: Vec<f64>,
+}
+
+/// The polynomials of one cell.
+#[derive(Debug, Clone, PartialEq)]
+enum Piece {
+    /// Displacements.
+    Displacement(Tensor<3>),
+    /// Weighted points and weights.
+    Quotient(Tensor<4>),
+}
+
+impl Lattice3 {
+    /// The lattice that is the identity: `degree` along each axis (at least 1), `cells` Bézier pieces along each (1 for a Bézier
+    /// lattice).
+    #[must_use]
+    pub fn regular(region: Box3, degree: [usize; 3], cells: [usize; 3]) -> Self {
+        let (degree, cells) = (degree.map(|d| d.max(1)), cells.map(|c| c.max(1)));
+        let places = [0, 1, 2].map(|a| bspline::regular(degree[a], cells[a]));
+        let count = places.iter().map(Vec::len).product();
+        Self { region, degree, cells, places, moves: vec![DVec3::ZERO; count], weights: vec![1.0; count] }
+    }
+
+    /// Degrees along the axes.
+    #[must_use]
+    pub fn degree(&self) -> [usize; 3] {
+        self.degree
+    }
+
+    /// Bézier pieces along the axes.
+    #[must_use]
+    pub fn cells(&self) -> [usize; 3] {
+        self.cells
+    }
+
+    /// The box that the lattice deforms.
+    #[must_use]
+    pub fn region(&self) -> Box3 {
+        self.region
+    }
+
+    /// Numbers of control points along the axes.
+    #[must_use]
+    pub fn size(&self) -> [usize; 3] {
+        [0, 1, 2].map(|a| self.places[a].len())
+    }
+
+    /// All control points' numbers; the first runs fastest.
+    pub fn nodes(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let [nx, ny, nz] = self.size();
+        (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
+    }
+
+    /// Returns `true` if there is such a control point.
+    #[must_use]
+    pub fn has(&self, node: [usize; 3]) -> bool {
+        node.iter().zip(self.size()).all(|(n, size)| *n < size)
+    }
+
+    /// The position of a control point in the order of [`nodes`](Self::nodes).
+    #[must_use]
+    pub fn index(&self, [i, j, k]: [usize; 3]) -> usize {
+        (k * self.places[1].len() + j) * self.places[0].len() + i
+    }
+
+    /// A control point's place in the identity.
+    #[must_use]
+    pub fn regular_point(&self, node: [usize; 3]) -> DVec3 {
+        let at = |a: usize| self.places[a][node[a]];
+        self.region.min + DVec3::new(at(0), at(1), at(2)) * self.region.size()
+    }
+
+    /// A control point.
+    #[must_use]
+    pub fn point(&self, node: [usize; 3]) -> DVec3 {
+        self.regular_point(node) + self.moves[self.index(node)]
+    }
+
+    /// Puts a control point at `p`.
+    pub fn place(&mut self, node: [usize; 3], p: DVec3) {
+        let n = self.index(node);
+        self.moves[n] = p - self.regular_point(node);
+    }
+
+    /// Moves a control point by `v`.
+    pub fn shift(&mut self, node: [usize; 3], v: DVec3) {
+        let n = self.index(node);
+        self.moves[n] += v;
+    }
+
+    /// The weight of a control point.
+    #[must_use]
+    pub fn weight(&self, node: [usize; 3]) -> f64 {
+        self.weights[self.index(node)]
+    }
+
+    /// Sets the weight of a control point.
+    pub fn set_weight(&mut self, node: [usize; 3], w: f64) {
+        let n = self.index(node);
+        self.weights[n] = w;
+    }
+
+    /// Returns `true` if a control point differs from its regular position by more than rounding, or its weight from 1.
+    #[must_use]
+    pub fn is_changed(&self, node: [usize; 3]) -> bool {
+        let size = self.region.diagonal() + self.region.min.length();
+        let n = self.index(node);
+        self.moves[n].length() > 1e-12 * size || self.weights[n] != 1.0
+    }
+
+    /// The same lattice scaled to another box.
+    #[must_use]
+    pub fn on(&self, region: Box3) -> Self {
+        let scale = region.size() / self.region.size();
+        Self { region, moves: self.moves.iter().map(|v| *v * scale).collect(), ..self.clone() }
+    }
+
+    /// The influence of the control points at `p`: their numbers and Nᵢ·Nⱼ·Nₖ·wᵢⱼₖ / Σ, which add up to 1.
+    #[must_use]
+    pub fn influence(&self, p: DVec3) -> Vec<([usize; 3], f64)> {
+        let at = ((p - self.region.min) / self.region.size()).to_array();
+        let along = [0, 1, 2].map(|a| bspline::basis(self.degree[a], self.cells[a], at[a]));
+        let [(i0, across), (j0, up), (k0, front)] = &along;
+        let mut out = Vec::with_capacity(across.len() * up.len() * front.len());
+        for (k, c) in front.iter().enumerate() {
+            for (j, b) in up.iter().enumerate() {
+                for (i, a) in across.iter().enumerate() {
+                    let node = [i0 + i, j0 + j, k0 + k];
+                    out.push((node, a * b * c * self.weight(node)));
+                }
+            }
+        }
+        let sum: f64 = out.iter().map(|v| v.1).sum();
+        out.iter_mut().for_each(|v| v.1 /= sum);
+        out
+    }
+
+    /// The coordinates of one cell, −1 to 1.
+    fn local(&self, cell: [usize; 3]) -> Local {
+        let cells = DVec3::from_array(self.cells.map(|c| c as f64));
+        let middle = (DVec3::from_array(cell.map(|c| c as f64)) + 0.5) / cells;
+        let size = self.region.size();
+        Local { middle: self.region.min + middle * size, scale: 2.0 * cells / size }
+    }
+
+    /// The polynomials of one cell.
+    fn piece(&self, cell: [usize; 3]) -> Piece {
+        let matrices = [0, 1, 2].map(|a| bspline::extraction(self.degree[a], self.cells[a]).swap_remove(cell[a]));
+        let size = self.degree.map(|d| d + 1);
+        if self.weights.iter().all(|w| *w == self.weights[0]) {
+            let moves: Vec<[f64; 3]> = self.moves.iter().map(DVec3::to_array).collect();
+            Piece::Displacement(Tensor::bernstein(size, self.bezier(cell, &matrices, &moves)))
+        } else {
+            let weighted =
+                |node: [usize; 3]| (self.point(node) * self.weight(node)).extend(self.weight(node)).to_array();
+            let all: Vec<[f64; 4]> = self.nodes().map(weighted).collect();
+            Piece::Quotient(Tensor::bernstein(size, self.bezier(cell, &matrices, &all)))
+        }
+    }
+
+    /// The Bézier coefficients of one cell of a spline with these coefficients.
+    fn bezier<const C: usize>(&self, cell: [usize; 3], matrices: &[Vec<Vec<f64>>; 3], c: &[[f64; C]]) -> Vec<[f64; C]> {
+        let [a, b, d] = matrices;
+        let mut out = Vec::with_capacity(a.len() * b.len() * d.len());
+        for front in d {
+            for up in b {
+                for across in a {
+                    let mut sum = [0.0; C];
+                    for (k, kc) in front.iter().enumerate() {
+                        for (j, kb) in up.iter().enumerate() {
+                            for (i, ka) in across.iter().enumerate() {
+                                let from = &c[self.index([cell[0] + i, cell[1] + j, cell[2] + k])];
+                                sum.iter_mut().zip(from).for_each(|(s, v)| *s += ka * kb * kc * v);
+                            }
+                        }
+                    }
+                    out.push(sum);
+                }
+            }
+        }
+        out
+    }
+}
+
+// The lattice as a map, and its inverse.
+
+/// Distance from the faces, relative to the coordinates, within which outside points count as inside.
+const ROUNDING: f64 = 1e-12;
+
+/// Free-form deformation of space by a [`Lattice3`] of control points.
+///
+/// ```
+/// use glam::DVec3;
+/// use pathwarp_solid::{Box3, Lattice3, LatticeMap3, map::Map3};
+///
+/// let mut lattice = Lattice3::regular(Box3::new(DVec3::ZERO, DVec3::splat(90.0)), [2, 2, 2], [1, 1, 1]);
+/// lattice.shift([1, 1, 1], DVec3::new(0.0, 16.0, 0.0));
+/// let map = LatticeMap3::new(&lattice, false);
+/// assert_eq!(map.point(DVec3::splat(45.0)), DVec3::new(45.0, 47.0, 45.0));
+/// assert_eq!(map.point(DVec3::splat(100.0)), DVec3::splat(100.0)); // outside the box
+/// ```
+#[derive(Debug, Clone)]
+pub struct LatticeMap3 {
+    region: Box3,
+    /// The region, enlarged by rounding.
+    inside: Box3,
+    cells: [usize; 3],
+    /// x runs fastest.
+    pieces: Arc<[(Local, Piece)]>,
+    /// The outermost pieces continue beyond the region.
+    extended: bool,
+}
+
+impl LatticeMap3 {
+    /// The map of `lattice`. Outside its box it is the identity or, if `extended`, continues the outermost pieces.
+    #[must_use]
+    pub fn new(lattice: &Lattice3, extended: bool) -> Self {
+        let region = lattice.region();
+        let reach = ROUNDING * (region.min.abs().max_element() + region.max.abs().max_element());
+        let [nx, ny, nz] = lattice.cells();
+        let cells = (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])));
+        Self {
+            region,
+            inside: region.inflate(DVec3::splat(reach)),
+            cells: lattice.cells(),
+            pieces: cells.map(|c| (lattice.local(c), lattice.piece(c))).collect(),
+            extended,
+        }
+    }
+
+    /// The piece at `p`; `None` outside the region, where nothing moves.
+    fn piece(&self, p: DVec3) -> Option<&(Local, Piece)> {
+        if !self.extended && !self.inside.contains(p) {
+            return None;
+        }
+        if self.pieces.len() == 1 {
+            return self.pieces.first();
+        }
+        let t = (p - self.region.min) / self.region.size();
+        // A cast of a negative number gives 0.
+        let at = |a: usize| ((t[a] * self.cells[a] as f64) as usize).min(self.cells[a] - 1);
+        self.pieces.get((at(2) * self.cells[1] + at(1)) * self.cells[0] + at(0))
+    }
+
+    /// The piece for a whole box, or `Some(None)` where nothing moves; `None` if a crease may cross the box.
+    fn piece_on(&self, on: &Box3) -> Option<Option<&(Local, Piece)>> {
+        let slack = 4.0 * (self.inside.max - self.region.max);
+        let within = self.extended || self.inside.contains(on.min) && self.inside.contains(on.max);
+        if !within {
+            let beside = on.max.cmple(self.region.min + slack).any() || on.min.cmpge(self.region.max - slack).any();
+            return beside.then_some(None);
+        }
+        // Between the same knots along every axis. A flat box may lie in a crease.
+        let middle = on.center();
+        let cell = |p: DVec3| self.piece(p).map(std::ptr::from_ref);
+        let same = cell((on.min + slack).min(middle))? == cell((on.max - slack).max(middle))?;
+        same.then(|| self.piece(middle))
+    }
+
+    /// The common denominator at `p`, positive where the map is defined.
+    fn denominator(&self, p: DVec3) -> f64 {
+        match self.piece(p) {
+            Some((local, Piece::Quotient(t))) => t.at((p - local.middle) * local.scale)[3],
+            _ => 1.0,
+        }
+    }
+
+    fn is_rational(&self) -> bool {
+        self.pieces.iter().any(|(_, p)| matches!(p, Piece::Quotient(_)))
+    }
+}
+
+impl Map3 for LatticeMap3 {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        match self.piece(p) {
+            None => Jet3::identity(p),
+            Some((local, Piece::Displacement(tensor))) => {
+                let d = tensor.jet((p - local.middle) * local.scale);
+                let column = |a: usize| DVec3::new(d[0][a + 1], d[1][a + 1], d[2][a + 1]) * local.scale[a];
+                let jacobian = DMat3::from_cols(column(0), column(1), column(2));
+                Jet3 { p: p + DVec3::new(d[0][0], d[1][0], d[2][0]), d: DMat3::IDENTITY + jacobian }
+            }
+            Some((local, Piece::Quotient(tensor))) => {
+                let d = tensor.jet((p - local.middle) * local.scale);
+                let w = d[3][0];
+                let image = DVec3::new(d[0][0], d[1][0], d[2][0]) / w;
+                // d(N/W) = (dN − image·dW)/W.
+                let column = |a: usize| {
+                    (DVec3::new(d[0][a + 1], d[1][a + 1], d[2][a + 1]) - image * d[3][a + 1]) * (local.scale[a] / w)
+                };
+                Jet3 { p: image, d: DMat3::from_cols(column(0), column(1), column(2)) }
+            }
+        }
+    }
+
+    fn point(&self, p: DVec3) -> DVec3 {
+        match self.piece(p) {
+            None => p,
+            Some((local, Piece::Displacement(tensor))) => {
+                p + DVec3::from_array(tensor.at((p - local.middle) * local.scale))
+            }
+            Some((local, Piece::Quotient(tensor))) => {
+                let [x, y, z, w] = tensor.at((p - local.middle) * local.scale);
+                DVec3::new(x, y, z) / w
+            }
+        }
+    }
+
+    fn points(&self, ps: &mut [DVec3]) {
+        let single = self.pieces.len() == 1 && (self.extended || ps.iter().all(|p| self.inside.contains(*p)));
+        match self.pieces.first() {
+            Some((local, Piece::Displacement(tensor))) if single => for_all(&Displaced { local: *local, tensor }, ps),
+            Some((local, Piece::Quotient(tensor))) if single => for_all(&Quotient { local: *local, tensor }, ps),
+            _ => ps.iter_mut().for_each(|p| *p = self.point(*p)),
+        }
+    }
+
+    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
+        let chart = Chart::on(on);
+        let Some((local, piece)) = self.piece_on(on)? else {
+            return Some(Fraction3::identity(chart));
+        };
+        let t = chart.local(local);
+        let degree = match piece {
+            Piece::Displacement(tensor) => tensor.total_degree(),
+            Piece::Quotient(tensor) => tensor.total_degree(),
+        };
+        if degree > most {
+            return None;
+        }
+        let parts = match piece {
+            Piece::Displacement(tensor) => {
+                let ([x, y, z], [dx, dy, dz]) = (chart.place(), tensor.in_terms_of(&t));
+                [x.plus(1.0, &dx), y.plus(1.0, &dy), z.plus(1.0, &dz), Poly3::constant(1.0)]
+            }
+            Piece::Quotient(tensor) => tensor.in_terms_of(&t),
+        };
+        Some(Fraction3 { chart, parts })
+    }
+
+    fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        Some(match self.piece_on(on)? {
+            None => Arc::new(Collineation::IDENTITY),
+            Some(piece) => {
+                Arc::new(Self { cells: [1; 3], pieces: [piece.clone()].into(), extended: true, ..self.clone() })
+            }
+        })
+    }
+
+    fn creases(&self, out: &mut Creases3) {
+        for a in 0..3 {
+            let mut plane = |at: f64| out.kink(move |p| p[a] - at);
+            if !self.extended {
+                plane(self.inside.min[a]);
+                plane(self.inside.max[a]);
+            }
+            for c in 1..self.cells[a] {
+                plane(self.region.min[a] + self.region.size()[a] * (c as f64 / self.cells[a] as f64));
+            }
+        }
+        if self.is_rational() {
+            let map = self.clone();
+            out.edge(move |p| map.denominator(p));
+        }
+    }
+
+    /// By Newton's method over the region, or up to half its size outside if the map is extended. Outside points to which no
+    /// point of the region is taken stay where they are.
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        let beyond = if self.extended { 0.5 } else { 0.0 };
+        let domain = self.region.inflate(beyond * self.region.size());
+        // Newton steps may leave the region on their way and must not meet the identity there.
+        let smooth = Self { extended: true, ..self.clone() };
+        let reach = 1e3 * (self.inside.max - self.region.max).max_element();
+        let inner = NewtonInverse3::with_core(Arc::new(smooth), self.region, domain, reach, self.cells);
+        Some(Arc::new(LatticeInverse { map: self.clone(), inner }))
+    }
+
+    /// By the control points of a piece, all of which a point depends on, besides what is done once.
+    fn work(&self) -> f64 {
+        const EACH: f64 = 1.0 / 16.0;
+        let degrees = |piece: &Piece| match piece {
+            Piece::Displacement(t) => t.degrees(),
+            Piece::Quotient(t) => t.degrees(),
+        };
+        let points = |(_, piece): &(Local, Piece)| degrees(piece).iter().map(|d| d + 1).product::<usize>() as f64;
+        self.pieces.first().map_or(1.0, |piece| 1.0 + EACH * points(piece))
+    }
+}
+
+/// The inverse of a [`LatticeMap3`].
+struct LatticeInverse {
+    map: LatticeMap3,
+    inner: NewtonInverse3,
+}
+
+impl Map3 for LatticeInverse {
+    fn jet(&self, q: DVec3) -> Jet3 {
+        match self.inner.solve(q) {
+            Some(found) => found,
+            None if self.map.piece(q).is_none() => Jet3::identity(q),
+            None => Jet3::UNDEFINED,
+        }
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(self.map.clone()))
+    }
+
+    fn work(&self) -> f64 {
+        self.inner.work()
+    }
+
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(Self { map: self.map.clone(), inner: self.inner.spending(budget) }))
+    }
+}

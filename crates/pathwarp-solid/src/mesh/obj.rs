@@ -1,0 +1,498 @@
+//! Wavefront OBJ: polygons with groups, materials, texture coordinates and normals.
+//!
+//! Read and written here rather than by a crate: the crates that read OBJ give triangles by material, without groups, polylines
+//! or the order of objects, and a deformed file should differ from its source in the coordinates alone. Long files are read and
+//! written by all threads; the result does not depend on their number.
+
+use super::{Corner, Mark, Mesh, MeshError, NONE, Polygon, PolygonKind};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+// Reads OBJ: the text is cut at line ends, the parts are read by all threads, and joined.
+
+/// Bytes of a part.
+const PART: usize = 1 << 20;
+
+/// Reads a mesh. Statements that are not polygons (free-form curves and surfaces, display settings) are counted in
+/// [`Mesh::left_out`].
+///
+/// # Errors
+/// A line that is damaged, or an index that is out of range.
+pub fn read(text: &[u8]) -> Result<Mesh, MeshError> {
+    let joined;
+    let text = if has_continuation(text) {
+        joined = join_lines(text);
+        &joined[..]
+    } else {
+        text
+    };
+    if text.iter().take(1024).any(|b| *b == 0) {
+        return Err(MeshError::whole("is not an OBJ file: it holds bytes that are not text"));
+    }
+    let parts: Vec<&[u8]> = split(text);
+    let read: Vec<Result<Part, (usize, String)>> = parts.par_iter().map(|p| part(p)).collect();
+    let mut mesh = Mesh::default();
+    let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
+    let mut lines = 0;
+    for (part, text) in read.into_iter().zip(&parts) {
+        let part = part.map_err(|(line, problem)| MeshError::at(lines + line, problem))?;
+        join(&mut mesh, part, &mut skipped);
+        lines += text.iter().filter(|b| **b == b'\n').count();
+    }
+    check(&mesh, text)?;
+    if mesh.positions.is_empty() {
+        return Err(MeshError::whole("holds no vertices (lines `v x y z`)"));
+    }
+    mesh.left_out = skipped.into_iter().map(|(what, n)| format!("{n} lines of `{what}`")).collect();
+    Ok(mesh)
+}
+
+/// Returns `true` if a line ends with a backslash.
+fn has_continuation(text: &[u8]) -> bool {
+    // Files rarely hold a backslash at all, and looking for one byte is fast.
+    text.contains(&b'\\') && text.split(|b| *b == b'\n').any(|line| line.trim_ascii_end().ends_with(b"\\"))
+}
+
+/// Joins lines that end with a backslash.
+fn join_lines(text: &[u8]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(text.len());
+    for line in text.split_inclusive(|b| *b == b'\n') {
+        let bare = line.trim_ascii_end();
+        match bare.strip_suffix(b"\\") {
+            Some(rest) => {
+                out.extend_from_slice(rest);
+                out.push(b' ');
+            }
+            None => out.extend_from_slice(line),
+        }
+    }
+    out
+}
+
+fn split(mut text: &[u8]) -> Vec<&[u8]> {
+    let mut out = Vec::new();
+    while text.len() > PART {
+        let end = text[PART..].iter().position(|b| *b == b'\n').map_or(text.len(), |i| PART + i + 1);
+        let (head, tail) = text.split_at(end);
+        out.push(head);
+        text = tail;
+    }
+    out.push(text);
+    out
+}
+
+/// The statements of one part of the text.
+#[derive(Default)]
+struct Part {
+    mesh: Mesh,
+    /// Indices that count back from the end: field of the corner (vertex, uv, normal), corner, index relative to the part's own
+    /// first vertex, uv or normal.
+    relative: Vec<(usize, usize, i64)>,
+    skipped: BTreeMap<String, usize>,
+}
+
+/// Reads a part. An error has the line within it, from 1.
+fn part(text: &[u8]) -> Result<Part, (usize, String)> {
+    let mut out = Part::default();
+    for (n, line) in text.split(|b| *b == b'\n').enumerate() {
+        statement(line, &mut out).map_err(|problem| (n + 1, problem))?;
+    }
+    Ok(out)
+}
+
+fn statement(line: &[u8], out: &mut Part) -> Result<(), String> {
+    let mut rest = words(line);
+    let Some(keyword) = rest.next() else { return Ok(()) };
+    let damaged = |what: &str| format!("`{}` is not {what}", shown(line));
+    let mesh = &mut out.mesh;
+    match keyword {
+        b"v" => {
+            mesh.positions.push(vector(&mut rest).ok_or_else(|| damaged("a vertex `v x y z` with finite numbers"))?);
+            if let Some(color) = vector(&mut rest) {
+                // Vertices before the first colour are white.
+                mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
+                mesh.colors.push(color.extend(1.0).to_array());
+            }
+        }
+        b"vn" => mesh.normals.push(vector(rest).ok_or_else(|| damaged("a normal `vn x y z`"))?),
+        b"vt" => {
+            let uv: Option<Vec<f64>> = rest.take(3).map(number).collect();
+            let uv = uv.filter(|uv| !uv.is_empty()).ok_or_else(|| damaged("texture coordinates `vt u v`"))?;
+            mesh.uvs.push(std::array::from_fn(|k| uv.get(k).copied().unwrap_or(0.0)));
+        }
+        b"f" => polygon(PolygonKind::Face, 3, rest, out).map_err(|what| damaged(&what))?,
+        b"l" => polygon(PolygonKind::Line, 2, rest, out).map_err(|what| damaged(&what))?,
+        b"p" => polygon(PolygonKind::Points, 1, rest, out).map_err(|what| damaged(&what))?,
+        b"o" => add_mark(mesh, Mark::Object(text_after(line, keyword))),
+        b"g" => add_mark(mesh, Mark::Group(text_after(line, keyword))),
+        b"usemtl" => add_mark(mesh, Mark::Material(text_after(line, keyword))),
+        b"s" => add_mark(mesh, Mark::Smoothing(text_after(line, keyword))),
+        b"mtllib" => add_mark(mesh, Mark::Library(text_after(line, keyword))),
+        _ => *out.skipped.entry(shown(keyword)).or_default() += 1,
+    }
+    Ok(())
+}
+
+fn add_mark(mesh: &mut Mesh, mark: Mark) {
+    mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), mark));
+}
+
+fn text_after(line: &[u8], keyword: &[u8]) -> String {
+    String::from_utf8_lossy(&line.trim_ascii()[keyword.len()..]).trim().to_owned()
+}
+
+/// Reads the corners `v`, `v/uv`, `v//n` or `v/uv/n`. The error says what the line should be.
+fn polygon<'a>(
+    kind: PolygonKind,
+    fewest: usize,
+    words: impl Iterator<Item = &'a [u8]>,
+    out: &mut Part,
+) -> Result<(), String> {
+    let first = out.mesh.corners.len();
+    let counts = [out.mesh.positions.len(), out.mesh.uvs.len(), out.mesh.normals.len()];
+    for word in words {
+        let mut corner = [NONE; 3];
+        for (field, text) in word.split(|b| *b == b'/').enumerate() {
+            if text.is_empty() && field > 0 {
+                continue;
+            }
+            let i = index(text).filter(|_| field < 3).ok_or("a polygon of corners v, v/vt, v//vn or v/vt/vn")?;
+            if i > 0 {
+                corner[field] = u32::try_from(i - 1).unwrap_or(NONE);
+            } else {
+                let here = i64::try_from(counts[field]).unwrap_or(i64::MAX);
+                out.relative.push((field, out.mesh.corners.len(), here + i));
+            }
+        }
+        let [vertex, uv, normal] = corner;
+        out.mesh.corners.push(Corner { vertex, uv, normal });
+    }
+    if out.mesh.corners.len() - first < fewest {
+        return Err(format!("a polygon of at least {fewest} corners"));
+    }
+    out.mesh.polygons.push(Polygon { end: u32::try_from(out.mesh.corners.len()).unwrap_or(NONE), kind });
+    Ok(())
+}
+
+/// Appends a part to the mesh.
+fn join(mesh: &mut Mesh, part: Part, skipped: &mut BTreeMap<String, usize>) {
+    let base = [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()];
+    let (corners, polygons) = (mesh.corners.len(), mesh.polygons.len());
+    let mut own = part.mesh;
+    for (field, corner, i) in part.relative {
+        let i = i64::try_from(base[field]).unwrap_or(i64::MAX) + i;
+        let c = &mut own.corners[corner];
+        let slot = [&mut c.vertex, &mut c.uv, &mut c.normal];
+        if let Some(slot) = slot.into_iter().nth(field) {
+            // One before the last index is out of range, and not the missing one.
+            *slot = u32::try_from(i).unwrap_or(NONE - 1);
+        }
+    }
+    if !own.colors.is_empty() || !mesh.colors.is_empty() {
+        mesh.colors.resize(base[0], [1.0; 4]);
+        own.colors.resize(own.positions.len(), [1.0; 4]);
+        mesh.colors.append(&mut own.colors);
+    }
+    mesh.positions.append(&mut own.positions);
+    mesh.uvs.append(&mut own.uvs);
+    mesh.normals.append(&mut own.normals);
+    mesh.corners.append(&mut own.corners);
+    let shift = u32::try_from(corners).unwrap_or(NONE);
+    mesh.polygons.extend(own.polygons.iter().map(|p| Polygon { end: p.end.saturating_add(shift), ..*p }));
+    let shift = u32::try_from(polygons).unwrap_or(NONE);
+    mesh.marks.extend(own.marks.into_iter().map(|(first, m)| (first.saturating_add(shift), m)));
+    for (what, n) in part.skipped {
+        *skipped.entry(what).or_default() += n;
+    }
+}
+
+/// Checks that every index is in range.
+fn check(mesh: &Mesh, text: &[u8]) -> Result<(), MeshError> {
+    let counts = [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()];
+    let bad = |c: &Corner| {
+        let optional = |i: u32, n: usize| i == NONE || (i as usize) < n;
+        (c.vertex as usize) >= counts[0] || !optional(c.uv, counts[1]) || !optional(c.normal, counts[2])
+    };
+    let Some(at) = mesh.corners.par_iter().position_first(bad) else { return Ok(()) };
+    let polygon = mesh.polygons.partition_point(|p| p.end as usize <= at);
+    let problem = format!(
+        "an index is out of range: there are {} vertices, {} texture coordinates and {} normals",
+        counts[0], counts[1], counts[2]
+    );
+    Err(match line_of(text, polygon) {
+        Some(line) => MeshError::at(line, problem),
+        None => MeshError::whole(problem),
+    })
+}
+
+/// The line of a polygon.
+fn line_of(text: &[u8], polygon: usize) -> Option<usize> {
+    let is_polygon = |line: &[u8]| matches!(words(line).next(), Some(b"f" | b"l" | b"p"));
+    let mut lines = text.split(|b| *b == b'\n').enumerate().filter(|(_, line)| is_polygon(line));
+    lines.nth(polygon).map(|(n, _)| n + 1)
+}
+
+// Words and numbers of an OBJ file's lines.
+
+/// The words of a line, without a comment.
+fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let end = line.iter().position(|b| *b == b'#').unwrap_or(line.len());
+    line[..end].split(u8::is_ascii_whitespace).filter(|w| !w.is_empty())
+}
+
+/// A finite number, and not so large that its square overflows.
+fn number(word: &[u8]) -> Option<f64> {
+    let v: f64 = std::str::from_utf8(word).ok()?.parse().ok()?;
+    (v.abs() < 1e100).then_some(v)
+}
+
+/// Three numbers and the words after them.
+fn vector<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<DVec3> {
+    let mut next = || number(words.next()?);
+    Some(DVec3::new(next()?, next()?, next()?))
+}
+
+/// An index: from 1, or negative from the end.
+fn index(word: &[u8]) -> Option<i64> {
+    let (sign, digits) = match word.strip_prefix(b"-") {
+        Some(rest) => (-1, rest),
+        None => (1, word),
+    };
+    if digits.is_empty() || digits.len() > 10 {
+        return None;
+    }
+    let mut n: i64 = 0;
+    for d in digits {
+        if !d.is_ascii_digit() {
+            return None;
+        }
+        n = 10 * n + i64::from(d - b'0');
+    }
+    (n != 0).then_some(sign * n)
+}
+
+/// Text for messages, cut where it is long.
+fn shown(text: &[u8]) -> String {
+    /// A longer quotation would not be read.
+    const SHOWN: usize = 40;
+    String::from_utf8_lossy(text).trim().chars().take(SHOWN).collect()
+}
+
+// Writes OBJ: parts of the text by all threads, joined in order.
+
+/// Lines of a part.
+const LINES: usize = 1 << 14;
+/// The largest whole number up to which every one is a floating-point number.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// Writes a mesh with this many decimals.
+#[must_use]
+pub fn write(mesh: &Mesh, decimals: u8) -> Vec<u8> {
+    let scale = 10f64.powi(i32::from(decimals));
+    let mut out = b"# pathwarp: x right, y up, z towards the viewer\n".to_vec();
+    let libraries = mesh.marks.iter().filter(|(_, m)| matches!(m, Mark::Library(_)));
+    libraries.for_each(|(_, m)| mark_line(&mut out, m));
+    let colored = mesh.colors.len() == mesh.positions.len();
+    lines(&mut out, mesh.positions.len(), |i, out| {
+        out.push(b'v');
+        numbers(out, &mesh.positions[i].to_array(), scale);
+        if colored {
+            numbers(out, &mesh.colors[i][..3], COLORS);
+        }
+    });
+    lines(&mut out, mesh.uvs.len(), |i, out| {
+        out.extend_from_slice(b"vt");
+        let uv = &mesh.uvs[i];
+        numbers(out, if uv[2] == 0.0 { &uv[..2] } else { uv }, DIRECTIONS);
+    });
+    lines(&mut out, mesh.normals.len(), |i, out| {
+        out.extend_from_slice(b"vn");
+        numbers(out, &mesh.normals[i].to_array(), DIRECTIONS);
+    });
+    let mut from = 0;
+    for (first, m) in mesh.marks.iter().filter(|(_, m)| !matches!(m, Mark::Library(_))) {
+        let first = (*first as usize).min(mesh.polygons.len());
+        polygons(&mut out, mesh, from..first);
+        from = first;
+        mark_line(&mut out, m);
+    }
+    polygons(&mut out, mesh, from..mesh.polygons.len());
+    out
+}
+
+/// Colours to eight decimals, and texture coordinates and normals to nine: files in single precision hold seven figures.
+const COLORS: f64 = 1e8;
+const DIRECTIONS: f64 = 1e9;
+
+/// Appends `n` lines.
+fn lines(out: &mut Vec<u8>, n: usize, line: impl Fn(usize, &mut Vec<u8>) + Sync) {
+    let part = |k: usize| {
+        let mut text = Vec::with_capacity(LINES * 40);
+        for i in k * LINES..((k + 1) * LINES).min(n) {
+            line(i, &mut text);
+            text.push(b'\n');
+        }
+        text
+    };
+    let parts: Vec<Vec<u8>> = (0..n.div_ceil(LINES)).into_par_iter().map(part).collect();
+    out.reserve(parts.iter().map(Vec::len).sum());
+    parts.iter().for_each(|p| out.extend_from_slice(p));
+}
+
+fn polygons(out: &mut Vec<u8>, mesh: &Mesh, range: std::ops::Range<usize>) {
+    lines(out, range.len(), |i, out| {
+        let i = range.start + i;
+        let start = if i == 0 { 0 } else { mesh.polygons[i - 1].end as usize };
+        let polygon = mesh.polygons[i];
+        out.push(match polygon.kind {
+            PolygonKind::Face => b'f',
+            PolygonKind::Line => b'l',
+            PolygonKind::Points => b'p',
+        });
+        for c in &mesh.corners[start..polygon.end as usize] {
+            corner(out, c);
+        }
+    });
+}
+
+fn corner(out: &mut Vec<u8>, c: &Corner) {
+    out.push(b' ');
+    whole(out, u64::from(c.vertex) + 1);
+    if c.uv == NONE && c.normal == NONE {
+        return;
+    }
+    out.push(b'/');
+    if c.uv != NONE {
+        whole(out, u64::from(c.uv) + 1);
+    }
+    if c.normal != NONE {
+        out.push(b'/');
+        whole(out, u64::from(c.normal) + 1);
+    }
+}
+
+fn mark_line(out: &mut Vec<u8>, mark: &Mark) {
+    let (keyword, text) = match mark {
+        Mark::Object(t) => ("o", t),
+        Mark::Group(t) => ("g", t),
+        Mark::Material(t) => ("usemtl", t),
+        Mark::Smoothing(t) => ("s", t),
+        Mark::Library(t) => ("mtllib", t),
+    };
+    // A line break within a name would begin another statement.
+    let text: String = text.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
+    out.extend_from_slice(format!("{keyword} {text}").trim_end().as_bytes());
+    out.push(b'\n');
+}
+
+/// Appends numbers in steps of 1/`scale`.
+fn numbers(out: &mut Vec<u8>, values: &[f64], scale: f64) {
+    for v in values {
+        out.push(b' ');
+        let steps = (v * scale).round();
+        if steps.abs() < EXACT {
+            decimal(out, steps as i64, scale as u64);
+        } else {
+            out.extend_from_slice(ryu::Buffer::new().format(*v).as_bytes());
+        }
+    }
+}
+
+/// Appends `steps`/`scale` without trailing zeros; `scale` is a power of ten.
+fn decimal(out: &mut Vec<u8>, steps: i64, scale: u64) {
+    if steps < 0 {
+        out.push(b'-');
+    }
+    let (integer, mut rest) = (steps.unsigned_abs() / scale, steps.unsigned_abs() % scale);
+    whole(out, integer);
+    if rest > 0 {
+        out.push(b'.');
+        let mut unit = scale / 10;
+        while rest > 0 {
+            out.push(b'0' + u8::try_from(rest / unit).unwrap_or(0));
+            rest %= unit;
+            unit /= 10;
+        }
+    }
+}
+
+fn whole(out: &mut Vec<u8>, mut v: u64) {
+    let mut digits = [0u8; 20];
+    let mut at = digits.len();
+    loop {
+        at -= 1;
+        digits[at] = b'0' + u8::try_from(v % 10).unwrap_or(0);
+        v /= 10;
+        if v == 0 {
+            break;
+        }
+    }
+    out.extend_from_slice(&digits[at..]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "# a comment\nmtllib paint.mtl\no box one\nv 0 0 0\nv 1 0 0\nv 1.5 1 -0.25\nv 0 1 1e-3\nvt 0 0.5\nvn 0 0 1\n\
+                        g side left\nusemtl red\ns 1\nf 1/1/1 2/1/1 3/1/1 -1//-1\nl 1 2 \\\n 3\np 4\n";
+
+    #[test]
+    fn quads_names_materials_lines_and_relative_indices_survive() {
+        let mesh = read(TEXT.as_bytes()).unwrap();
+        let text = String::from_utf8(write(&mesh, 6)).unwrap();
+        for line in [
+            "mtllib paint.mtl",
+            "o box one",
+            "v 1.5 1 -0.25",
+            "v 0 1 0.001",
+            "vt 0 0.5",
+            "vn 0 0 1",
+            "g side left",
+            "usemtl red",
+            "s 1",
+            "f 1/1/1 2/1/1 3/1/1 4//1",
+            "l 1 2 3",
+            "p 4",
+        ] {
+            assert!(text.lines().any(|l| l == line), "{line} not in\n{text}");
+        }
+        assert_eq!(read(text.as_bytes()).unwrap(), mesh);
+        assert_eq!(mesh.name_of(0), "side left");
+    }
+
+    #[test]
+    fn long_files_are_joined_in_order() {
+        let mut text = String::from("o all\n");
+        for i in 0..200_000 {
+            text += &format!("v {i} {} 0.5\n", -i);
+            if i >= 3 {
+                text += "f -1 -2 -3\n";
+            }
+        }
+        let mesh = read(text.as_bytes()).unwrap();
+        assert_eq!((mesh.positions.len(), mesh.polygons.len()), (200_000, 199_997));
+        let last = mesh.faces().last().unwrap();
+        assert_eq!(last.iter().map(|c| c.vertex).collect::<Vec<_>>(), [199_999, 199_998, 199_997]);
+        assert_eq!(read(&write(&mesh, 3)).unwrap(), mesh);
+    }
+
+    #[test]
+    fn damage_is_named_with_its_line() {
+        for (text, part) in [
+            ("v 0 0\n", "line 1"),
+            ("v 0 0 0\nv nan 0 0\n", "line 2"),
+            ("v 0 0 0\n\nf 1 1 2\n", "line 3: an index is out of range"),
+            ("v 0 0 0\nf 1 1 -2\n", "out of range"),
+            ("v 0 0 0\nf 1 1\n", "at least 3"),
+            ("v 0 0 0\nf 1 1 99999999999999\n", "line 2"),
+            ("v 0 0 0\nf 1/x 1 1\n", "corners"),
+            ("hello\n", "no vertices"),
+            ("solid \0\0\0", "not text"),
+        ] {
+            let e = read(text.as_bytes()).unwrap_err().to_string();
+            assert!(e.contains(part), "{text}: {e}");
+        }
+    }
+}

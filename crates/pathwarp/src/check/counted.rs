@@ -1,0 +1,89 @@
+//! A number that counts the operations on it: what a formula costs.
+
+use crate::map::Real;
+use std::cell::Cell;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+thread_local! {
+    static COUNT: Cell<[usize; 3]> = const { Cell::new([0; 3]) };
+}
+
+/// Products (with quotients), sums and differences of `work`.
+pub fn operations(work: impl FnOnce()) -> [usize; 3] {
+    COUNT.with(|c| c.set([0; 3]));
+    work();
+    COUNT.with(Cell::get)
+}
+
+/// A number.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Counted(pub f64);
+
+fn count(kind: usize) {
+    COUNT.with(|c| {
+        let mut n = c.get();
+        n[kind] += 1;
+        c.set(n);
+    });
+}
+
+macro_rules! counted {
+    ($($trait:ident $method:ident $op:tt $kind:expr;)*) => {$(
+        impl $trait for Counted {
+            type Output = Self;
+            fn $method(self, o: Self) -> Self { count($kind); Self(self.0 $op o.0) }
+        }
+        impl $trait<f64> for Counted {
+            type Output = Self;
+            fn $method(self, o: f64) -> Self { count($kind); Self(self.0 $op o) }
+        }
+    )*};
+}
+counted! { Mul mul * 0; Div div / 0; Add add + 1; Sub sub - 2; }
+
+impl Neg for Counted {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl From<f64> for Counted {
+    fn from(v: f64) -> Self {
+        Self(v)
+    }
+}
+
+/// Polynomials need none of these.
+impl Real for Counted {
+    fn value(self) -> f64 {
+        self.0
+    }
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+    fn sin(self) -> Self {
+        Self(self.0.sin())
+    }
+    fn cos(self) -> Self {
+        Self(self.0.cos())
+    }
+    fn exp(self) -> Self {
+        Self(self.0.exp())
+    }
+    fn ln(self) -> Self {
+        Self(self.0.ln())
+    }
+    fn atan2(self, x: Self) -> Self {
+        Self(self.0.atan2(x.0))
+    }
+    fn powi(self, n: i32) -> Self {
+        Self(self.0.powi(n))
+    }
+    fn powf(self, n: f64) -> Self {
+        Self(self.0.powf(n))
+    }
+    fn hypot(self, y: Self) -> Self {
+        Self(self.0.hypot(y.0))
+    }
+}

@@ -1,0 +1,697 @@
+//! Formulas as text: `expr` maps the plane by them, warp styles and text shapes compute their numbers with them.
+
+use crate::decimal::trimmed;
+use crate::map::{Dual, Real};
+use std::array::from_fn;
+use thiserror::Error;
+
+// Text to a program: a Pratt parser (V. Pratt, *Top down operator precedence*, POPL 1973) that emits as it reads.
+
+/// Length limit, far above any real formula.
+const MAX_BYTES: usize = 10_000;
+/// Nesting limit for brackets, signs and powers, so that the recursion cannot exhaust the stack.
+const MAX_DEPTH: usize = 100;
+
+/// The names that a formula may use, each with the index of its value in the program.
+pub(crate) struct Names<'a>(Vec<(&'a str, u32)>);
+
+impl<'a> Names<'a> {
+    pub(crate) fn new() -> Self {
+        Self(Vec::with_capacity(16))
+    }
+
+    pub(crate) fn set(&mut self, name: &'a str, value: u32) {
+        self.0.push((name, value));
+    }
+
+    pub(crate) fn get(&self, name: &str) -> Option<u32> {
+        self.0.iter().find(|(n, _)| *n == name).map(|(_, v)| *v)
+    }
+}
+
+/// Returns `true` if `name` has the form of a name.
+pub(crate) fn is_name(name: &str) -> bool {
+    let mut c = name.chars();
+    c.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_') && c.all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// Returns `true` if there is a function called `name`.
+pub(crate) fn is_function(name: &str) -> bool {
+    function(name).is_some()
+}
+
+enum Function {
+    One(Unary),
+    Two(Binary),
+}
+
+const FUNCTIONS: &str = "sin cos tan asin acos atan atan2 sqrt exp ln abs min max pow hypot";
+
+fn function(name: &str) -> Option<Function> {
+    use Function::{One, Two};
+    Some(match name {
+        "sin" => One(Unary::Sin),
+        "cos" => One(Unary::Cos),
+        "tan" => One(Unary::Tan),
+        "asin" => One(Unary::Asin),
+        "acos" => One(Unary::Acos),
+        "atan" => One(Unary::Atan),
+        "sqrt" => One(Unary::Sqrt),
+        "exp" => One(Unary::Exp),
+        "ln" => One(Unary::Ln),
+        "abs" => One(Unary::Abs),
+        "atan2" => Two(Binary::Atan2),
+        "min" => Two(Binary::Min),
+        "max" => Two(Binary::Max),
+        "pow" => Two(Binary::Pow),
+        "hypot" => Two(Binary::Hypot),
+        _ => return None,
+    })
+}
+
+/// Appends the formula `text` to `program` and returns the index of its value.
+pub(crate) fn parse(text: &str, names: &Names<'_>, program: &mut Program) -> Result<u32, SyntaxError> {
+    if text.len() > MAX_BYTES {
+        return Err(SyntaxError::new(0, Problem::TooLong(MAX_BYTES)));
+    }
+    let mut p = Parser { text, at: 0, names, program, depth: 0 };
+    let value = p.expression(0)?;
+    match p.peek() {
+        None => Ok(value),
+        Some(')') => Err(SyntaxError::new(p.at, Problem::NeverOpened)),
+        Some(c) if c.is_alphanumeric() || c == '_' || c == '(' || c == '.' => {
+            Err(SyntaxError::new(p.at, Problem::MissingOperator))
+        }
+        Some(c) => Err(SyntaxError::new(p.at, Problem::Meaningless(c))),
+    }
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    at: usize,
+    names: &'a Names<'a>,
+    program: &'a mut Program,
+    depth: usize,
+}
+
+/// Binding powers: sums, products, signs, powers.
+const SUM: u8 = 1;
+const PRODUCT: u8 = 3;
+const SIGN: u8 = 5;
+const POWER: u8 = 7;
+
+impl Parser<'_> {
+    fn rest(&self) -> &str {
+        self.text.get(self.at..).unwrap_or("")
+    }
+
+    /// Skips whitespace and returns the next character.
+    fn peek(&mut self) -> Option<char> {
+        let skipped = self.rest().len() - self.rest().trim_start().len();
+        self.at += skipped;
+        self.rest().chars().next()
+    }
+
+    fn eat(&mut self, token: &str) -> bool {
+        self.peek();
+        let there = self.rest().starts_with(token);
+        if there {
+            self.at += token.len();
+        }
+        there
+    }
+
+    /// An expression whose operators bind at least as tightly as `least`.
+    fn expression(&mut self, least: u8) -> Result<u32, SyntaxError> {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            return Err(SyntaxError::new(self.at, Problem::TooDeep(MAX_DEPTH)));
+        }
+        let mut left = self.operand()?;
+        while let Some(c) = self.peek() {
+            let power = c == '^' || self.rest().starts_with("**");
+            let (binds, right, op) = match c {
+                _ if power => (POWER, POWER, Binary::Pow), // right-associative: 2^3^2 = 2^(3^2)
+                '+' => (SUM, SUM + 1, Binary::Add),
+                '-' => (SUM, SUM + 1, Binary::Sub),
+                '*' => (PRODUCT, PRODUCT + 1, Binary::Mul),
+                '/' => (PRODUCT, PRODUCT + 1, Binary::Div),
+                _ => break,
+            };
+            if binds < least {
+                break;
+            }
+            let at = self.at;
+            self.at += if power && c == '*' { 2 } else { 1 };
+            let r = self.expression(right)?;
+            left = self.emit(at, |p| p.binary(op, left, r))?;
+        }
+        self.depth -= 1;
+        Ok(left)
+    }
+
+    fn operand(&mut self) -> Result<u32, SyntaxError> {
+        let at = match self.peek() {
+            None => return Err(SyntaxError::new(self.at, Problem::EndsEarly)),
+            Some(_) => self.at,
+        };
+        let c = self.peek().unwrap_or(' ');
+        match c {
+            '+' => {
+                self.at += 1;
+                self.expression(SIGN)
+            }
+            '-' => {
+                self.at += 1;
+                let v = self.expression(SIGN)?;
+                self.emit(at, |p| p.unary(Unary::Neg, v))
+            }
+            '(' => {
+                self.at += 1;
+                let v = self.expression(0)?;
+                self.close(at)?;
+                Ok(v)
+            }
+            '0'..='9' | '.' => self.number(),
+            c if c.is_ascii_alphabetic() || c == '_' => self.word(),
+            c => Err(SyntaxError::new(at, Problem::NoValue(c))),
+        }
+    }
+
+    fn close(&mut self, opened: usize) -> Result<(), SyntaxError> {
+        if self.eat(")") {
+            return Ok(());
+        }
+        Err(match self.peek() {
+            None => SyntaxError::new(opened, Problem::NeverClosed),
+            Some(',') => SyntaxError::new(self.at, Problem::StrayComma),
+            Some(_) => SyntaxError::new(self.at, Problem::MissingOperatorOrBracket),
+        })
+    }
+
+    fn number(&mut self) -> Result<u32, SyntaxError> {
+        let (at, b) = (self.at, self.rest().as_bytes());
+        let digits = |mut i: usize| {
+            while b.get(i).is_some_and(u8::is_ascii_digit) {
+                i += 1;
+            }
+            i
+        };
+        let mut end = digits(0);
+        if b.get(end) == Some(&b'.') {
+            end = digits(end + 1);
+        }
+        // Without digits after it, `e` is the constant, and an operator is missing.
+        if matches!(b.get(end), Some(b'e' | b'E')) {
+            let sign = usize::from(matches!(b.get(end + 1), Some(b'+' | b'-')));
+            let all = digits(end + 1 + sign);
+            if all > end + 1 + sign {
+                end = all;
+            }
+        }
+        let value: f64 = self.rest()[..end].parse().map_err(|_| SyntaxError::new(at, Problem::NotANumber))?;
+        if !value.is_finite() {
+            return Err(SyntaxError::new(at, Problem::TooLarge));
+        }
+        self.at += end;
+        self.emit(at, |p| p.constant(value))
+    }
+
+    fn word(&mut self) -> Result<u32, SyntaxError> {
+        let at = self.at;
+        let len = self.rest().chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').count();
+        let word = &self.rest()[..len];
+        if let Some(v) = self.names.get(word) {
+            self.at += len;
+            return Ok(v);
+        }
+        let word = word.to_owned();
+        self.at += len;
+        let Some(f) = function(&word) else {
+            let known: Vec<&str> = self.names.0.iter().map(|(n, _)| *n).collect();
+            let problem = Problem::Unknown { word, names: known.join(" "), functions: FUNCTIONS };
+            return Err(SyntaxError::new(at, problem));
+        };
+        let opened = self.at;
+        if !self.eat("(") {
+            return Err(SyntaxError::new(self.at, Problem::NoArguments(word)));
+        }
+        let first = self.expression(0)?;
+        match f {
+            Function::One(op) => {
+                self.close(opened)?;
+                self.emit(at, |p| p.unary(op, first))
+            }
+            Function::Two(op) => {
+                if !self.eat(",") {
+                    return Err(SyntaxError::new(self.at, Problem::OneArgument(word)));
+                }
+                let second = self.expression(0)?;
+                self.close(opened)?;
+                self.emit(at, |p| p.binary(op, first, second))
+            }
+        }
+    }
+
+    fn emit(&mut self, at: usize, f: impl FnOnce(&mut Program) -> Option<u32>) -> Result<u32, SyntaxError> {
+        f(self.program).ok_or_else(|| SyntaxError::new(at, Problem::TooManyOperations))
+    }
+}
+
+// A formula as a list of operations on earlier values. Several points are evaluated at a time, so that decoding the list
+// costs little.
+//
+// Equal operations are stored once, constants are folded.
+
+/// Size limit, so that no formula makes a single point expensive.
+const MAX_OPS: usize = 2000;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Unary {
+    Neg,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sqrt,
+    Exp,
+    Ln,
+    Abs,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Binary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Pow,
+    Atan2,
+    Hypot,
+    Min,
+    Max,
+}
+
+/// One operation; operands are indices of earlier values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Op {
+    Const(f64),
+    X,
+    Y,
+    One(Unary, u32),
+    Two(Binary, u32, u32),
+    Powi(u32, i32),
+    Powf(u32, f64),
+    /// An earlier value unchanged: |a|, min or max on a branch where the side is known.
+    Same(u32),
+}
+
+/// A list of operations.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Program {
+    ops: Vec<Op>,
+}
+
+impl Program {
+    /// Returns the index of the value of `op`; `None` at the size limit.
+    fn push(&mut self, op: Op) -> Option<u32> {
+        if let Some(i) = self.ops.iter().position(|o| *o == op) {
+            return u32::try_from(i).ok();
+        }
+        if self.ops.len() >= MAX_OPS {
+            return None;
+        }
+        self.ops.push(op);
+        u32::try_from(self.ops.len() - 1).ok()
+    }
+
+    fn value_of(&self, i: u32) -> Option<f64> {
+        if let Some(Op::Const(c)) = self.ops.get(i as usize) { Some(*c) } else { None }
+    }
+
+    /// The number of operations.
+    pub(crate) fn len(&self) -> usize {
+        self.ops.len()
+    }
+
+    pub(crate) fn constant(&mut self, c: f64) -> Option<u32> {
+        self.push(Op::Const(c))
+    }
+
+    pub(crate) fn x(&mut self) -> Option<u32> {
+        self.push(Op::X)
+    }
+
+    pub(crate) fn y(&mut self) -> Option<u32> {
+        self.push(Op::Y)
+    }
+
+    pub(crate) fn unary(&mut self, op: Unary, a: u32) -> Option<u32> {
+        match self.value_of(a) {
+            Some(v) => self.constant(one(op, v)),
+            None => self.push(Op::One(op, a)),
+        }
+    }
+
+    pub(crate) fn binary(&mut self, op: Binary, a: u32, b: u32) -> Option<u32> {
+        /// Integer powers below this are accurate enough by repeated squaring.
+        const WHOLE: f64 = 1e4;
+        match (self.value_of(a), self.value_of(b)) {
+            (Some(u), Some(v)) if op == Binary::Pow => self.constant(u.powf(v)),
+            (Some(u), Some(v)) => self.constant(two(op, u, v)),
+            (None, Some(n)) if op == Binary::Pow && n.fract() == 0.0 && n.abs() < WHOLE => {
+                self.push(Op::Powi(a, n as i32))
+            }
+            (None, Some(n)) if op == Binary::Pow => self.push(Op::Powf(a, n)),
+            _ => self.push(Op::Two(op, a, b)),
+        }
+    }
+
+    /// Evaluates all values at N points.
+    pub(crate) fn run<S: Real, const N: usize>(&self, x: [S; N], y: [S; N]) -> Vec<[S; N]> {
+        let mut out: Vec<[S; N]> = Vec::with_capacity(self.ops.len());
+        for op in &self.ops {
+            let at = |i: u32| &out[i as usize];
+            let value = match *op {
+                Op::Const(c) => [S::from(c); N],
+                Op::X => x,
+                Op::Y => y,
+                // The most frequent operations, with the dispatch outside the loop.
+                Op::Two(Binary::Add, a, b) => from_fn(|i| at(a)[i] + at(b)[i]),
+                Op::Two(Binary::Sub, a, b) => from_fn(|i| at(a)[i] - at(b)[i]),
+                Op::Two(Binary::Mul, a, b) => from_fn(|i| at(a)[i] * at(b)[i]),
+                Op::Two(f, a, b) => from_fn(|i| two(f, at(a)[i], at(b)[i])),
+                Op::One(f, a) => at(a).map(|v| one(f, v)),
+                Op::Powi(a, n) => at(a).map(|v| v.powi(n)),
+                Op::Powf(a, n) => at(a).map(|v| v.powf(n)),
+                Op::Same(a) => *at(a),
+            };
+            out.push(value);
+        }
+        out
+    }
+
+    /// Describes the first operation that has no finite value at a point, or no derivative: `sqrt(-300)`.
+    pub(crate) fn undefined_at(&self, x: f64, y: f64) -> Option<String> {
+        let values = self.run([Dual { v: x, x: 1.0, y: 0.0 }], [Dual { v: y, x: 0.0, y: 1.0 }]);
+        let i = values.iter().position(|[d]| !(d.v.is_finite() && d.x.is_finite() && d.y.is_finite()))?;
+        let at = |i: u32| trimmed(values[i as usize][0].v, 6);
+        let operation = match self.ops[i] {
+            Op::One(f, a) => format!("{}({})", format!("{f:?}").to_lowercase(), at(a)),
+            Op::Two(Binary::Div, a, b) => format!("{} / {}", at(a), at(b)),
+            Op::Two(f, a, b) => format!("{}({}, {})", format!("{f:?}").to_lowercase(), at(a), at(b)),
+            Op::Powi(a, n) => format!("({})^{n}", at(a)),
+            Op::Powf(a, n) => format!("({})^{n}", at(a)),
+            Op::Const(_) | Op::X | Op::Y | Op::Same(_) => return None,
+        };
+        let what = if values[i][0].v.is_finite() { "has no finite derivative" } else { "has no finite value" };
+        Some(format!("{operation} {what}"))
+    }
+
+    /// Returns the kinks of the values `of` and of everything they depend on.
+    pub(crate) fn kinks(&self, of: [u32; 2]) -> Vec<Kink> {
+        let needed = self.needed(of);
+        let ops = self.ops.iter().enumerate().filter(|(i, _)| needed[*i]);
+        ops.filter_map(|(_, op)| match *op {
+            Op::One(Unary::Abs, a) => Some(Kink(a, None)),
+            Op::Two(Binary::Min | Binary::Max, a, b) => Some(Kink(a, Some(b))),
+            _ => None,
+        })
+        .collect()
+    }
+
+    fn needed(&self, of: [u32; 2]) -> Vec<bool> {
+        let mut needed = vec![false; self.ops.len()];
+        for i in of {
+            needed[i as usize] = true;
+        }
+        // Operands precede their users, so one pass from the end reaches everything.
+        for i in (0..self.ops.len()).rev() {
+            if needed[i] {
+                self.mark(i, &mut needed);
+            }
+        }
+        needed
+    }
+
+    fn mark(&self, i: usize, needed: &mut [bool]) {
+        match self.ops[i] {
+            Op::One(_, a) | Op::Powi(a, _) | Op::Powf(a, _) | Op::Same(a) => needed[a as usize] = true,
+            Op::Two(_, a, b) => {
+                needed[a as usize] = true;
+                needed[b as usize] = true;
+            }
+            Op::Const(_) | Op::X | Op::Y => {}
+        }
+    }
+
+    /// Replaces every |a|, min and max by the side it takes at (x, y).
+    pub(crate) fn branch(&self, x: f64, y: f64) -> Self {
+        let v: Vec<f64> = self.run([x], [y]).into_iter().map(|[v]| v).collect();
+        let ops = self.ops.iter().map(|op| match *op {
+            Op::One(Unary::Abs, a) if v[a as usize] < 0.0 => Op::One(Unary::Neg, a),
+            Op::One(Unary::Abs, a) => Op::Same(a),
+            Op::Two(f @ (Binary::Min | Binary::Max), a, b) => {
+                let first = (v[a as usize] <= v[b as usize]) == (f == Binary::Min);
+                Op::Same(if first { a } else { b })
+            }
+            other => other,
+        });
+        Self { ops: ops.collect() }
+    }
+
+    /// Returns the coefficients of x, y and 1 if value `i` is an affine expression.
+    pub(crate) fn affine(&self, i: u32) -> Option<[f64; 3]> {
+        let mut forms: Vec<Option<[f64; 3]>> = Vec::with_capacity(self.ops.len());
+        for op in &self.ops {
+            let at = |i: u32| forms[i as usize];
+            let constant = |i: u32| at(i).filter(|f| f[0] == 0.0 && f[1] == 0.0).map(|f| f[2]);
+            let scaled = |i: u32, k: f64| at(i).map(|f| f.map(|c| c * k));
+            forms.push(match *op {
+                Op::Const(c) => Some([0.0, 0.0, c]),
+                Op::X => Some([1.0, 0.0, 0.0]),
+                Op::Y => Some([0.0, 1.0, 0.0]),
+                Op::Same(a) => at(a),
+                Op::One(Unary::Neg, a) => scaled(a, -1.0),
+                Op::Two(Binary::Add, a, b) => at(a).zip(at(b)).map(|(a, b)| from_fn(|i| a[i] + b[i])),
+                Op::Two(Binary::Sub, a, b) => at(a).zip(at(b)).map(|(a, b)| from_fn(|i| a[i] - b[i])),
+                Op::Two(Binary::Mul, a, b) => match (constant(a), constant(b)) {
+                    (_, Some(k)) => scaled(a, k),
+                    (Some(k), _) => scaled(b, k),
+                    _ => None,
+                },
+                Op::Two(Binary::Div, a, b) => constant(b).and_then(|k| at(a).map(|f| f.map(|c| c / k))),
+                _ => None,
+            });
+        }
+        forms[i as usize].filter(|f| f.iter().all(|c| c.is_finite()))
+    }
+}
+
+/// The set where two values are equal, or one is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Kink(u32, Option<u32>);
+
+impl Kink {
+    /// Evaluates a function that is zero at the kink.
+    pub(crate) fn level(self, values: &[[f64; 1]]) -> f64 {
+        values[self.0 as usize][0] - self.1.map_or(0.0, |b| values[b as usize][0])
+    }
+}
+
+fn one<S: Real>(op: Unary, a: S) -> S {
+    let rest = |a: S| (-(a * a) + 1.0).sqrt();
+    match op {
+        Unary::Neg => -a,
+        Unary::Sin => a.sin(),
+        Unary::Cos => a.cos(),
+        Unary::Tan => a.sin() / a.cos(),
+        Unary::Asin => a.atan2(rest(a)),
+        Unary::Acos => rest(a).atan2(a),
+        Unary::Atan => a.atan2(S::from(1.0)),
+        Unary::Sqrt => a.sqrt(),
+        Unary::Exp => a.exp(),
+        Unary::Ln => a.ln(),
+        Unary::Abs => a.abs(),
+    }
+}
+
+fn two<S: Real>(op: Binary, a: S, b: S) -> S {
+    match op {
+        Binary::Add => a + b,
+        Binary::Sub => a - b,
+        Binary::Mul => a * b,
+        Binary::Div => a / b,
+        Binary::Pow => (a.ln() * b).exp(),
+        Binary::Atan2 => a.atan2(b),
+        Binary::Hypot => a.hypot(b),
+        Binary::Min => {
+            if a.value() <= b.value() {
+                a
+            } else {
+                b
+            }
+        }
+        Binary::Max => {
+            if a.value() <= b.value() {
+                b
+            } else {
+                a
+            }
+        }
+    }
+}
+
+// Formulas for single numbers, as presets keep them.
+
+/// Named values, and formulas over them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Calculator {
+    values: Vec<(String, f64)>,
+}
+
+impl Calculator {
+    /// Creates a calculator with these names.
+    pub(crate) fn new(values: &[(&str, f64)]) -> Self {
+        Self { values: values.iter().map(|(n, v)| ((*n).to_owned(), *v)).collect() }
+    }
+
+    /// Sets the value of `name`.
+    pub(crate) fn set(&mut self, name: &str, value: f64) {
+        match self.values.iter_mut().find(|(n, _)| n == name) {
+            Some((_, v)) => *v = value,
+            None => self.values.push((name.to_owned(), value)),
+        }
+    }
+
+    /// Defines a name by `NAME = FORMULA` or `NAME = TEST ? FORMULA : FORMULA`, which takes the first formula if the test is
+    /// positive.
+    pub(crate) fn define(&mut self, text: &str) -> Result<(), FormulaError> {
+        let (name, formula) = text.split_once('=').ok_or(FormulaError::NoDefinition)?;
+        let name = name.trim();
+        if !is_name(name) || is_function(name) {
+            return Err(FormulaError::BadName(name.to_owned()));
+        }
+        let value = match formula.split_once('?').map(|(test, rest)| (test, rest.split_once(':'))) {
+            None => self.value(formula)?,
+            Some((test, Some((yes, no)))) => self.value(if self.value(test)? > 0.0 { yes } else { no })?,
+            Some((_, None)) => return Err(FormulaError::OneOutcome),
+        };
+        self.set(name, value);
+        Ok(())
+    }
+
+    /// Evaluates a formula. The result is finite.
+    pub(crate) fn value(&self, formula: &str) -> Result<f64, FormulaError> {
+        let mut program = Program::default();
+        let mut names = Names::new();
+        for (name, v) in self.values.iter().map(|(n, v)| (n.as_str(), *v)).chain([("pi", std::f64::consts::PI)]) {
+            names.set(name, program.constant(v).ok_or(FormulaError::TooLong)?);
+        }
+        let at = parse(formula, &names, &mut program).map_err(|e| FormulaError::Syntax(formula.to_owned(), e))?;
+        let value = program.run([0.0], [0.0]).get(at as usize).map_or(f64::NAN, |v| v[0]);
+        if value.is_finite() { Ok(value) } else { Err(FormulaError::NotFinite(formula.to_owned())) }
+    }
+}
+
+// Errors in formulas. Their messages continue a sentence about the formula or the file it is in.
+
+/// A definition or formula of a [`Calculator`] that has no value.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub(crate) enum FormulaError {
+    #[error("is not NAME = FORMULA")]
+    NoDefinition,
+    #[error("defines `{0}`, which is not a valid name: use letters, digits and _, starting with a letter")]
+    BadName(String),
+    #[error("has a test with only one outcome: write TEST ? FORMULA : FORMULA")]
+    OneOutcome,
+    #[error("has too many operations")]
+    TooLong,
+    #[error("has a formula that is not finite here: `{0}`")]
+    NotFinite(String),
+    #[error("{}", .1.show(.0))]
+    Syntax(String, SyntaxError),
+}
+
+/// A syntax error, at a byte of the formula.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SyntaxError {
+    pub(crate) at: usize,
+    pub(crate) problem: Problem,
+}
+
+impl SyntaxError {
+    fn new(at: usize, problem: Problem) -> Self {
+        Self { at, problem }
+    }
+
+    /// Returns the message, the formula and a caret below the error.
+    pub(crate) fn show(&self, text: &str) -> String {
+        let column = text.get(..self.at).unwrap_or(text).chars().count();
+        // Tabs would misalign the caret.
+        let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        format!("is not a valid formula: {}\n  {line}\n  {}^", self.problem, " ".repeat(column))
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Error)]
+pub(crate) enum Problem {
+    #[error("it is longer than {0} bytes")]
+    TooLong(usize),
+    #[error("it is nested more than {0} deep")]
+    TooDeep(usize),
+    #[error("it has too many operations")]
+    TooManyOperations,
+    #[error("this bracket was never opened")]
+    NeverOpened,
+    #[error("this bracket is never closed")]
+    NeverClosed,
+    #[error("an operator is missing here (write products with *)")]
+    MissingOperator,
+    #[error("an operator or a closing bracket is missing here")]
+    MissingOperatorOrBracket,
+    #[error("`{0}` has no meaning here")]
+    Meaningless(char),
+    #[error("a value is missing at the end")]
+    EndsEarly,
+    #[error("expected a value, found `{0}`")]
+    NoValue(char),
+    #[error("this comma is outside a function's arguments, or one argument too many precedes it")]
+    StrayComma,
+    #[error("this is not a number")]
+    NotANumber,
+    #[error("this number is too large")]
+    TooLarge,
+    #[error("there is no `{word}`; names are {names}; functions are {functions}")]
+    Unknown { word: String, names: String, functions: &'static str },
+    #[error("`{0}` is a function: put its argument in brackets")]
+    NoArguments(String),
+    #[error("`{0}` takes two arguments, separated by a comma")]
+    OneArgument(String),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_defined_one_after_another() {
+        let mut c = Calculator::new(&[("w", 40.0), ("h", 8.0)]);
+        c.define("d = w/h").unwrap();
+        c.define("e = max(d, 2)^2 - pi/pi").unwrap();
+        c.define("f = -d ? 1 : e").unwrap();
+        assert_eq!(c.value("f"), c.value("e"));
+        assert_eq!((c.value("e"), c.value("e + 1")), (Ok(24.0), Ok(25.0)));
+        for (text, part) in [
+            ("x", "NAME = FORMULA"),
+            ("sin = 2", "not a valid name"),
+            ("a = 1/0", "finite"),
+            ("a = q", "q"),
+            ("a = 1 ? 2", "only one outcome"),
+        ] {
+            assert!(c.define(text).unwrap_err().to_string().contains(part), "{text}");
+        }
+    }
+}

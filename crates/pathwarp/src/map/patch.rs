@@ -1,0 +1,427 @@
+//! A rational tensor-product Bézier patch as a map of the plane.
+//!
+//! > F(s,t) = Σⱼ Σᵢ Bᵐᵢ(s) Bⁿⱼ(t) wᵢⱼ Pᵢⱼ / Σⱼ Σᵢ Bᵐᵢ(s) Bⁿⱼ(t) wᵢⱼ
+//!
+//! with s, t running from 0 to 1 across a box. Evaluated in powers of u = 2s − 1 and v = 2t − 1: about the center of the box the
+//! change of basis amplifies rounding errors by at most 2ᵐ·2ⁿ (3ᵐ·3ⁿ, with cancellation, in powers of s and t), and its
+//! coefficients are exact. A polynomial patch is stored as the displacement F(p) − p, so that points that do not move are not
+//! rounded. Horner's scheme runs on a whole batch of points.
+
+use super::rational_bezier::Scaled;
+use super::{Class, Cost, Crease, Creases, Jet, Level, Map, RationalBezier};
+use kurbo::{Affine, Point, Rect, Vec2};
+use std::sync::Arc;
+
+/// Points in a batch: two AVX registers of four, or four SSE2 registers of two.
+const WIDTH: usize = 8;
+
+/// Jets evaluated together: with three results for each coordinate, half as many as points fit the registers.
+const JET_WIDTH: usize = WIDTH / 2;
+/// A coefficient this much smaller than the largest is rounding noise.
+const NOISE: f64 = 1e-15;
+
+/// A rational tensor-product map of the plane.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Patch {
+    rect: Rect,
+    /// u = (x − center.x)·k.x, v = (y − center.y)·k.y.
+    center: Point,
+    k: Vec2,
+    /// Terms in a row: powers of u.
+    width: usize,
+    /// Rows: powers of v.
+    height: usize,
+    /// Coefficients, row by row: of the displacement for a polynomial patch, else of X relative to the center.
+    x: Vec<f64>,
+    /// As `x`, of the other coordinate.
+    y: Vec<f64>,
+    /// Coefficients of W; empty for a polynomial patch.
+    w: Vec<f64>,
+    /// The denominator may vanish inside the box.
+    may_vanish: bool,
+    /// The patch is used only inside its box.
+    bounded: bool,
+}
+
+impl Patch {
+    /// The polynomial patch over `rect` whose control points are displaced by `moves` from their regular positions: (n+1) rows of
+    /// (m+1), s across, t down.
+    #[must_use]
+    pub(crate) fn polynomial(rect: Rect, degree: [usize; 2], moves: &[Vec2]) -> Self {
+        let plane = |f: fn(&Vec2) -> f64| powers(degree, &moves.iter().map(f).collect::<Vec<_>>());
+        Self::from_planes(rect, degree, plane(|v| v.x), plane(|v| v.y), Vec::new())
+    }
+
+    /// The rational patch over `rect` with homogeneous control points (x·w, y·w, w): (n+1) rows of (m+1), s across, t down. Equal
+    /// weights give a polynomial patch.
+    #[must_use]
+    pub(crate) fn rational(rect: Rect, degree: [usize; 2], points: &[[f64; 3]]) -> Self {
+        let (max, min) = points.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), p| (a.max(p[2]), b.min(p[2])));
+        if max - min <= 4.0 * NOISE * max {
+            let moves: Vec<Vec2> = points
+                .iter()
+                .enumerate()
+                .map(|(k, p)| {
+                    let (i, j) = (k % (degree[0] + 1), k / (degree[0] + 1));
+                    Point::new(p[0] / p[2], p[1] / p[2]) - regular_point(rect, degree, i, j)
+                })
+                .collect();
+            return Self::polynomial(rect, degree, &moves);
+        }
+        let c = rect.center();
+        let plane = |f: &dyn Fn(&[f64; 3]) -> f64| powers(degree, &points.iter().map(f).collect::<Vec<_>>());
+        let (x, y) = (plane(&|p| p[0] - c.x * p[2]), plane(&|p| p[1] - c.y * p[2]));
+        let mut out = Self::from_planes(rect, degree, x, y, plane(&|p| p[2]));
+        out.may_vanish = min <= 0.0;
+        out
+    }
+
+    fn from_planes(rect: Rect, degree: [usize; 2], mut x: Vec<f64>, mut y: Vec<f64>, mut w: Vec<f64>) -> Self {
+        let (m, n) = (degree[0] + 1, degree[1] + 1);
+        let size = x.iter().chain(&y).fold(0.0, |a: f64, v| a.max(v.abs()));
+        for v in x.iter_mut().chain(&mut y) {
+            if v.abs() <= NOISE * size {
+                *v = 0.0;
+            }
+        }
+        let size = w.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+        for v in &mut w {
+            if v.abs() <= NOISE * size {
+                *v = 0.0;
+            }
+        }
+        let used = |i: usize, j: usize| [&x, &y, &w].iter().any(|p| p.get(j * m + i).is_some_and(|v| *v != 0.0));
+        let width = (1..m).rev().find(|&i| (0..n).any(|j| used(i, j))).unwrap_or(0) + 1;
+        let height = (1..n).rev().find(|&j| (0..m).any(|i| used(i, j))).unwrap_or(0) + 1;
+        let cut =
+            |p: &[f64]| -> Vec<f64> { p.chunks(m).take(height).flat_map(|row| row[..width].iter().copied()).collect() };
+        Self {
+            rect,
+            center: rect.center(),
+            k: Vec2::new(2.0 / rect.width(), 2.0 / rect.height()),
+            width,
+            height,
+            x: cut(&x),
+            y: cut(&y),
+            w: cut(&w),
+            may_vanish: false,
+            bounded: false,
+        }
+    }
+
+    /// Marks the patch as used only inside its box.
+    #[must_use]
+    pub(crate) fn bounded(self) -> Self {
+        Self { bounded: true, ..self }
+    }
+
+    /// The box over which s and t run from 0 to 1.
+    #[must_use]
+    pub(crate) fn rect(&self) -> Rect {
+        self.rect
+    }
+
+    /// Returns `true` if the denominator is constant.
+    #[must_use]
+    pub(crate) fn is_polynomial(&self) -> bool {
+        self.w.is_empty()
+    }
+
+    /// Returns `true` if the denominator may vanish where the patch is used: with a weight that is not positive, or outside the
+    /// box.
+    pub(crate) fn has_edge(&self) -> bool {
+        !self.is_polynomial() && (self.may_vanish || !self.bounded)
+    }
+
+    /// (u, v) of L points.
+    #[inline(always)]
+    fn local<const L: usize>(&self, p: [Point; L]) -> [[f64; L]; 2] {
+        let mut out = [[0.0; L]; 2];
+        for i in 0..L {
+            out[0][i] = (p[i].x - self.center.x) * self.k.x;
+            out[1][i] = (p[i].y - self.center.y) * self.k.y;
+        }
+        out
+    }
+
+    /// The polynomial `plane` at L points. `W` is its width, or 0 for any width; the compiler unrolls known widths.
+    #[inline(always)]
+    fn values<const L: usize, const W: usize>(&self, plane: &[f64], [u, v]: &[[f64; L]; 2]) -> [f64; L] {
+        let width = if W == 0 { self.width } else { W };
+        let across = |row: &[f64]| {
+            let mut r = [row[width - 1]; L];
+            for k in (0..width - 1).rev() {
+                for i in 0..L {
+                    r[i] = r[i] * u[i] + row[k];
+                }
+            }
+            r
+        };
+        let mut rows = plane.chunks_exact(width).rev();
+        let mut out = rows.next().map_or([0.0; L], across);
+        for row in rows {
+            let r = across(row);
+            for i in 0..L {
+                out[i] = out[i] * v[i] + r[i];
+            }
+        }
+        out
+    }
+
+    /// Value, ∂/∂u and ∂/∂v of `plane` at L points.
+    #[inline(always)]
+    fn slopes<const L: usize, const W: usize>(&self, plane: &[f64], [u, v]: &[[f64; L]; 2]) -> [[f64; L]; 3] {
+        let width = if W == 0 { self.width } else { W };
+        let across = |row: &[f64]| {
+            let (mut r, mut d) = ([row[width - 1]; L], [0.0; L]);
+            for k in (0..width - 1).rev() {
+                for i in 0..L {
+                    d[i] = if k + 2 == width { r[i] } else { d[i] * u[i] + r[i] };
+                    r[i] = r[i] * u[i] + row[k];
+                }
+            }
+            (r, d)
+        };
+        let mut rows = plane.chunks_exact(width).rev();
+        let (mut out, mut du) = rows.next().map_or(([0.0; L], [0.0; L]), across);
+        let mut dv = [0.0; L];
+        for row in rows {
+            let (r, d) = across(row);
+            for i in 0..L {
+                dv[i] = dv[i] * v[i] + out[i];
+                out[i] = out[i] * v[i] + r[i];
+                du[i] = du[i] * v[i] + d[i];
+            }
+        }
+        [out, du, dv]
+    }
+
+    #[inline(always)]
+    fn points_at<const L: usize, const W: usize>(&self, p: [Point; L]) -> [Point; L] {
+        let at = self.local(p);
+        let (x, y) = (self.values::<L, W>(&self.x, &at), self.values::<L, W>(&self.y, &at));
+        let mut out = p;
+        if self.w.is_empty() {
+            for i in 0..L {
+                out[i] += Vec2::new(x[i], y[i]);
+            }
+        } else {
+            let w = self.values::<L, W>(&self.w, &at);
+            for i in 0..L {
+                let r = 1.0 / w[i];
+                out[i] = Point::new(self.center.x + x[i] * r, self.center.y + y[i] * r);
+            }
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn jets_at<const L: usize, const W: usize>(&self, p: [Point; L]) -> [Jet; L] {
+        let at = self.local(p);
+        let (x, y) = (self.slopes::<L, W>(&self.x, &at), self.slopes::<L, W>(&self.y, &at));
+        let Vec2 { x: kx, y: ky } = self.k;
+        let mut out = [Jet::default(); L];
+        if self.w.is_empty() {
+            for i in 0..L {
+                out[i] = Jet {
+                    p: p[i] + Vec2::new(x[0][i], y[0][i]),
+                    dx: Vec2::new(1.0 + x[1][i] * kx, y[1][i] * kx),
+                    dy: Vec2::new(x[2][i] * ky, 1.0 + y[2][i] * ky),
+                };
+            }
+        } else {
+            let w = self.slopes::<L, W>(&self.w, &at);
+            for i in 0..L {
+                let r = 1.0 / w[0][i];
+                let (a, b) = (x[0][i] * r, y[0][i] * r);
+                out[i] = Jet {
+                    p: Point::new(self.center.x + a, self.center.y + b),
+                    dx: Vec2::new(x[1][i] - a * w[1][i], y[1][i] - b * w[1][i]) * (r * kx),
+                    dy: Vec2::new(x[2][i] - a * w[2][i], y[2][i] - b * w[2][i]) * (r * ky),
+                };
+            }
+        }
+        out
+    }
+
+    fn points_in<const W: usize>(&self, ps: &[Point], out: &mut [Point]) {
+        let (from, rest) = ps.as_chunks::<WIDTH>();
+        let (to, rest_out) = out.as_chunks_mut::<WIDTH>();
+        for (p, o) in from.iter().zip(to) {
+            *o = self.points_at::<WIDTH, W>(*p);
+        }
+        for (p, o) in rest.iter().zip(rest_out) {
+            [*o] = self.points_at::<1, W>([*p]);
+        }
+    }
+
+    fn jets_in<const W: usize>(&self, ps: &[Point], out: &mut [Jet]) {
+        let (from, rest) = ps.as_chunks::<JET_WIDTH>();
+        let (to, rest_out) = out.as_chunks_mut::<JET_WIDTH>();
+        for (p, o) in from.iter().zip(to) {
+            *o = self.jets_at::<JET_WIDTH, W>(*p);
+        }
+        for (p, o) in rest.iter().zip(rest_out) {
+            [*o] = self.jets_at::<1, W>([*p]);
+        }
+    }
+
+    /// The nonzero coefficients of uⁱvʲ as (i, j, [X, Y, W]), with X and Y relative to the origin.
+    fn terms(&self) -> Vec<(usize, usize, [f64; 3])> {
+        let mut all: Vec<[f64; 3]> = (0..self.width.max(2) * self.height.max(2)).map(|_| [0.0; 3]).collect();
+        let width = self.width.max(2);
+        for j in 0..self.height {
+            for i in 0..self.width {
+                let k = j * self.width + i;
+                let w = self.w.get(k).copied().unwrap_or(0.0);
+                let c = if self.w.is_empty() { Vec2::ZERO } else { self.center.to_vec2() * w };
+                all[j * width + i] = [self.x[k] + c.x, self.y[k] + c.y, w];
+            }
+        }
+        if self.w.is_empty() {
+            // Add the point itself to the displacement.
+            let base = [(0, [self.center.x, self.center.y, 1.0]), (1, [1.0 / self.k.x, 0.0, 0.0])];
+            for (k, add) in base.into_iter().chain([(width, [0.0, 1.0 / self.k.y, 0.0])]) {
+                for (a, b) in all[k].iter_mut().zip(add) {
+                    *a += b;
+                }
+            }
+        }
+        let numbered = all.into_iter().enumerate().map(|(k, c)| (k % width, k / width, c));
+        numbered.filter(|t| t.2 != [0.0; 3]).collect()
+    }
+}
+
+/// The control point (i, j) of the identity.
+fn regular_point(rect: Rect, degree: [usize; 2], i: usize, j: usize) -> Point {
+    let at = |a: f64, size: f64, i: usize, n: usize| a + size * (i as f64 / n as f64);
+    Point::new(at(rect.x0, rect.width(), i, degree[0]), at(rect.y0, rect.height(), j, degree[1]))
+}
+
+impl Map for Patch {
+    /// By the number of terms; a bicubic net has sixteen.
+    fn cost(&self) -> Cost<'_> {
+        Cost::new((self.width * self.height) as f64 / 16.0)
+    }
+
+    fn jet(&self, p: Point) -> Jet {
+        match self.width {
+            4 => self.jets_at::<1, 4>([p])[0],
+            _ => self.jets_at::<1, 0>([p])[0],
+        }
+    }
+
+    fn point(&self, p: Point) -> Point {
+        match self.width {
+            4 => self.points_at::<1, 4>([p])[0],
+            _ => self.points_at::<1, 0>([p])[0],
+        }
+    }
+
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        match self.width {
+            2 => self.points_in::<2>(ps, out),
+            3 => self.points_in::<3>(ps, out),
+            4 => self.points_in::<4>(ps, out),
+            _ => self.points_in::<0>(ps, out),
+        }
+    }
+
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        match self.width {
+            2 => self.jets_in::<2>(ps, out),
+            3 => self.jets_in::<3>(ps, out),
+            4 => self.jets_in::<4>(ps, out),
+            _ => self.jets_in::<0>(ps, out),
+        }
+    }
+
+    /// Positive where the map is defined.
+    fn denominator(&self, p: Point) -> f64 {
+        if self.w.is_empty() { 1.0 } else { self.values::<1, 0>(&self.w, &self.local([p]))[0] }
+    }
+
+    fn class(&self) -> Class {
+        let terms = self.terms();
+        if !self.is_polynomial() || terms.iter().any(|(i, j, _)| i + j > 1) {
+            return Class::Smooth;
+        }
+        if self.x.iter().chain(&self.y).all(|v| *v == 0.0) {
+            return Class::Affine(Affine::IDENTITY);
+        }
+        let of = |a: usize, b: usize| terms.iter().find(|(i, j, _)| (*i, *j) == (a, b)).map_or([0.0; 3], |t| t.2);
+        let (u, v) = (of(1, 0), of(0, 1));
+        let linear = Affine::new([u[0] * self.k.x, u[1] * self.k.x, v[0] * self.k.y, v[1] * self.k.y, 0.0, 0.0]);
+        let shift = self.point(self.center) - linear * self.center;
+        Class::Affine(linear.then_translate(shift))
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        if self.has_edge() {
+            let own = Arc::new(self.clone());
+            out.push(Crease::edge(Level::Field(Arc::new(move |p| own.denominator(p)))));
+        }
+    }
+
+    /// Substituting a curve of degree d gives one of degree d·(m+n), or less if the highest terms vanish.
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        let (c, k) = (self.center, self.k);
+        let local = |f: &dyn Fn(&[f64; 3]) -> f64| Scaled::new(curve.points.iter().map(f));
+        let terms = self.terms();
+        let total = terms.iter().map(|t| t.0 + t.1).max().unwrap_or(0);
+        let u = local(&|p| (p[0] - c.x * p[2]) * k.x).powers(self.width.max(2) - 1);
+        let v = local(&|p| (p[1] - c.y * p[2]) * k.y).powers(self.height.max(2) - 1);
+        let w = local(&|p| p[2]).powers(total);
+        let mut sums = [0, 1, 2].map(|_| Scaled::zero(curve.degree() * total));
+        for (i, j, coefficient) in terms {
+            let term = u[i].times(&v[j]).times(&w[total - i - j]);
+            for (sum, c) in sums.iter_mut().zip(coefficient) {
+                sum.add_scaled(c, &term);
+            }
+        }
+        let polynomial = self.is_polynomial() && curve.is_polynomial();
+        let [x, y, w] = sums.map(|s| s.coefficients());
+        let points = x.into_iter().zip(y).zip(w).map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]);
+        Some(RationalBezier { points: points.collect() })
+    }
+}
+
+// The change of basis from Bernstein polynomials to powers about the center of the parameter square.
+
+/// Converts Bernstein coefficients over (s, t), row by row, to coefficients of powers of u = 2s − 1 and v = 2t − 1.
+pub(crate) fn powers(degree: [usize; 2], b: &[f64]) -> Vec<f64> {
+    let (m, n) = (degree[0] + 1, degree[1] + 1);
+    let (across, down) = (centered(degree[0]), centered(degree[1]));
+    let mut rows = vec![0.0; m * n];
+    for (to, from) in rows.chunks_mut(m).zip(b.chunks(m)) {
+        for (k, v) in to.iter_mut().enumerate() {
+            *v = from.iter().enumerate().map(|(i, c)| across[i][k] * c).sum();
+        }
+    }
+    let mut out = vec![0.0; m * n];
+    for (l, to) in out.chunks_mut(m).enumerate() {
+        for (k, v) in to.iter_mut().enumerate() {
+            *v = (0..n).map(|j| down[j][l] * rows[j * m + k]).sum();
+        }
+    }
+    out
+}
+
+/// The coefficients of uᵏ in each Bⁿᵢ((1+u)/2) = C(n,i)·(1+u)ⁱ(1−u)ⁿ⁻ⁱ/2ⁿ, which are exact binary fractions.
+fn centered(n: usize) -> Vec<Vec<f64>> {
+    let mut binomial = 1.0;
+    (0..=n)
+        .map(|i| {
+            let mut c = vec![0.0; n + 1];
+            c[0] = binomial * 0.5f64.powi(n as i32);
+            binomial = binomial * (n - i) as f64 / (i + 1) as f64;
+            for step in 0..n {
+                let sign = if step < i { 1.0 } else { -1.0 };
+                for k in (1..=step + 1).rev() {
+                    c[k] += sign * c[k - 1];
+                }
+            }
+            c
+        })
+        .collect()
+}

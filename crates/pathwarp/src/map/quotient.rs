@@ -1,0 +1,317 @@
+//! Quotients of polynomials of any total degree: the maps of Bézier triangles and of anamorphoses.
+//!
+//! > F(x, y) = (X, Y)/W,  X = Σ cᵢⱼ aⁱ bʲ, similarly Y and W,  (a, b) an affine function of (x, y)
+//!
+//! Evaluated by Horner's scheme. A polynomial map is stored as the displacement F(p) − p, so that points that do not move are
+//! not rounded. A curve of degree d has an image of degree d·n, n being the total degree, by substitution in Bernstein form. A
+//! map of degree one reports itself as affine or projective ([`Map::class`]).
+
+use super::rational_bezier::Scaled;
+use super::{
+    AffineMap, Class, Cost, Crease, Creases, Formula, Homography, Level, Map, NewtonInverse, RationalBezier,
+    RationalDegree, Real,
+};
+use kurbo::{Affine, Point, Rect};
+use std::sync::Arc;
+
+/// A map of the plane whose coordinates are quotients of polynomials with one denominator.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Quotient {
+    /// (a, b) from the source point.
+    pre: Affine,
+    /// Added to (X, Y)/W; unused by a polynomial map.
+    origin: Point,
+    /// X and Y; the displacement for a polynomial map.
+    x: Plane,
+    y: Plane,
+    /// W; empty for a polynomial map.
+    w: Plane,
+    /// A second condition on the domain besides W > 0: positive where the map is defined.
+    guard: Option<Plane>,
+    degree: usize,
+    /// Known to have no pole in its domain of use.
+    without_poles: bool,
+    /// The box over which the inverse is sought.
+    domain: Rect,
+}
+
+impl Quotient {
+    /// The map p ↦ p + (x, y). `pre` takes the source point to (a, b); the inverse is sought over `domain`.
+    pub(crate) fn polynomial(pre: Affine, x: Plane, y: Plane, domain: Rect) -> Self {
+        let size = x.largest().max(y.largest());
+        let (x, y) = (x.tidied(size), y.tidied(size));
+        let degree = x.degree().max(y.degree()).max(1);
+        Self { pre, origin: Point::ORIGIN, x, y, w: Plane::default(), guard: None, degree, without_poles: true, domain }
+    }
+
+    /// The map p ↦ `origin` + (x, y)/w.
+    pub(crate) fn rational(pre: Affine, origin: Point, x: Plane, y: Plane, w: Plane, domain: Rect) -> Self {
+        let size = x.largest().max(y.largest());
+        let (x, y) = (x.tidied(size), y.tidied(size));
+        let below = w.largest();
+        let w = w.tidied(below);
+        if w.degree() == 0 {
+            let k = 1.0 / w.coefficient(0, 0);
+            let [sx, sy] = source_coordinates(pre);
+            let shift = |p: &Plane, o: f64, s: [f64; 3]| {
+                p.scaled(k).plus(-1.0, &Plane::linear(s)).plus(o, &Plane::linear([1.0, 0.0, 0.0]))
+            };
+            return Self::polynomial(pre, shift(&x, origin.x, sx), shift(&y, origin.y, sy), domain);
+        }
+        let degree = x.degree().max(y.degree()).max(w.degree());
+        Self { pre, origin, x, y, w, guard: None, degree, without_poles: false, domain }
+    }
+
+    /// Marks the map as having no pole in its domain of use.
+    pub(crate) fn without_poles(self) -> Self {
+        Self { without_poles: true, ..self }
+    }
+
+    /// Restricts the domain to where `guard` is positive.
+    pub(crate) fn guarded(self, guard: Plane) -> Self {
+        Self { guard: Some(guard), ..self }
+    }
+
+    /// Returns `true` if there is no denominator.
+    #[must_use]
+    pub(crate) fn is_polynomial(&self) -> bool {
+        self.w.is_zero()
+    }
+
+    /// The matrix of a map of degree one on (x, y, 1).
+    fn matrix(&self) -> Option<Homography> {
+        if self.degree > 1 {
+            return None;
+        }
+        let [a, b, c, d, e, f] = self.pre.as_coeffs();
+        let row = |p: &Plane| {
+            let (c0, ca, cb) = (p.coefficient(0, 0), p.coefficient(1, 0), p.coefficient(0, 1));
+            [ca * a + cb * b, ca * c + cb * d, ca * e + cb * f + c0]
+        };
+        let (x, y) = (row(&self.x), row(&self.y));
+        if self.is_polynomial() {
+            let plus = |r: [f64; 3], k: usize| std::array::from_fn(|i| r[i] + if i == k { 1.0 } else { 0.0 });
+            return Some(Homography::new([plus(x, 0), plus(y, 1), [0.0, 0.0, 1.0]]));
+        }
+        let w = row(&self.w);
+        let from = |r: [f64; 3], o: f64| std::array::from_fn(|i| r[i] + o * w[i]);
+        Some(Homography::new([from(x, self.origin.x), from(y, self.origin.y), w]))
+    }
+
+    /// The same map in its simplest form.
+    #[must_use]
+    pub(crate) fn simplest(self) -> Arc<dyn Map> {
+        match Formula::class(&self) {
+            Class::Affine(m) => Arc::new(AffineMap(m)),
+            Class::Projective(h) => Arc::new(h),
+            _ => Arc::new(self),
+        }
+    }
+}
+
+/// The source coordinates x and y as linear functions of (a, b): constant, coefficients of a and of b.
+pub(crate) fn source_coordinates(pre: Affine) -> [[f64; 3]; 2] {
+    let [a, b, c, d, e, f] = pre.inverse().as_coeffs();
+    [[e, a, c], [f, b, d]]
+}
+
+impl Formula for Quotient {
+    /// By the number of terms of a polynomial.
+    fn cost(&self) -> Cost<'_> {
+        const TERMS: f64 = 32.0;
+        let terms = (self.degree + 1) * (self.degree + 2) / 2;
+        Cost::new((terms as f64 / TERMS).max(1.0))
+    }
+
+    #[inline]
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let [k0, k1, k2, k3, k4, k5] = self.pre.as_coeffs();
+        let (a, b) = (x * k0 + y * k2 + k4, x * k1 + y * k3 + k5);
+        let (u, v) = (self.x.at(a, b), self.y.at(a, b));
+        if self.is_polynomial() {
+            return (x + u, y + v);
+        }
+        let w = self.w.at(a, b);
+        (u / w + self.origin.x, v / w + self.origin.y)
+    }
+
+    fn class(&self) -> Class {
+        match self.matrix() {
+            _ if self.is_polynomial() && self.x.is_zero() && self.y.is_zero() => Class::Affine(Affine::IDENTITY),
+            Some(h) => h.as_affine().map_or(Class::Projective(h), Class::Affine),
+            None => Class::Rational(RationalDegree { degree: self.degree, rational: !self.is_polynomial() }),
+        }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let own = Arc::new(self.clone());
+        if !self.without_poles {
+            let own = Arc::clone(&own);
+            out.push(Crease::edge(Level::Field(Arc::new(move |p| Formula::denominator(&*own, p)))));
+        }
+        if self.guard.is_some() {
+            out.push(Crease::edge(Level::Field(Arc::new(move |p| {
+                let q = own.pre * p;
+                own.guard.as_ref().map_or(1.0, |g| g.at(q.x, q.y))
+            }))));
+        }
+    }
+
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        if let Some(h) = self.matrix() {
+            return match Formula::class(self) {
+                Class::Affine(m) => AffineMap(m).image(curve),
+                _ => h.image(curve),
+            };
+        }
+        let total = self.degree;
+        let local = AffineMap(self.pre).image(curve)?;
+        let of = |c: &RationalBezier, k: usize| Scaled::new(c.points.iter().map(|p| p[k]));
+        let (a, b, w) = (of(&local, 0).powers(total), of(&local, 1).powers(total), of(&local, 2).powers(total));
+        let degree = curve.degree() * total;
+        let on = |p: &Plane| p.on(&a, &b, &w, total, degree);
+        let (mut x, mut y) = (on(&self.x), on(&self.y));
+        let below = if self.is_polynomial() {
+            // Add the point itself to the displacement.
+            x.add_scaled(1.0, &of(curve, 0).times(&w[total - 1]));
+            y.add_scaled(1.0, &of(curve, 1).times(&w[total - 1]));
+            w[total].clone()
+        } else {
+            let below = on(&self.w);
+            x.add_scaled(self.origin.x, &below);
+            y.add_scaled(self.origin.y, &below);
+            below
+        };
+        let polynomial = self.is_polynomial() && curve.is_polynomial();
+        let points = x.coefficients().into_iter().zip(y.coefficients()).zip(below.coefficients());
+        Some(RationalBezier { points: points.map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]).collect() })
+    }
+
+    fn denominator(&self, p: Point) -> f64 {
+        if self.is_polynomial() {
+            return 1.0;
+        }
+        let q = self.pre * p;
+        self.w.at(q.x, q.y)
+    }
+
+    /// By the matrix for degree one, by Newton's method over the domain otherwise.
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        match Formula::class(self) {
+            Class::Affine(m) => AffineMap(m).inverse(),
+            Class::Projective(h) => h.inverse(),
+            _ => {
+                let reach = 1e-9 * (self.domain.width() + self.domain.height());
+                Some(Arc::new(NewtonInverse::new(Arc::new(self.clone()), self.domain, reach, [1, 1])))
+            }
+        }
+    }
+}
+
+// Polynomials in two variables, as rows of power coefficients.
+
+/// A coefficient this much smaller than the largest is rounding noise.
+const NOISE: f64 = 4e-15;
+
+/// A polynomial in two variables a and b.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Plane(Vec<Vec<f64>>);
+
+impl Plane {
+    /// The polynomial with coefficients `rows[j][i]` of aⁱbʲ.
+    pub(crate) fn new(rows: Vec<Vec<f64>>) -> Self {
+        Self(rows)
+    }
+
+    /// c + ca·a + cb·b.
+    pub(crate) fn linear([c, ca, cb]: [f64; 3]) -> Self {
+        Self(vec![vec![c, ca], vec![cb]])
+    }
+
+    /// The value at (a, b), by Horner's scheme.
+    pub(crate) fn at<S: Real>(&self, a: S, b: S) -> S {
+        let row = |r: &[f64]| r.iter().rev().fold(S::from(0.0), |v, c| v * a + *c);
+        self.0.iter().rev().fold(S::from(0.0), |v, r| v * b + row(r))
+    }
+
+    /// Returns self + k·other.
+    pub(crate) fn plus(mut self, k: f64, other: &Self) -> Self {
+        for (j, from) in other.0.iter().enumerate() {
+            if self.0.len() <= j {
+                self.0.push(Vec::new());
+            }
+            let to = &mut self.0[j];
+            to.resize(to.len().max(from.len()), 0.0);
+            for (t, f) in to.iter_mut().zip(from) {
+                *t += k * f;
+            }
+        }
+        self
+    }
+
+    /// k·self.
+    pub(crate) fn scaled(&self, k: f64) -> Self {
+        Self(self.0.iter().map(|r| r.iter().map(|c| c * k).collect()).collect())
+    }
+
+    /// The product with c + ca·a + cb·b.
+    pub(crate) fn times_linear(&self, [c, ca, cb]: [f64; 3]) -> Self {
+        let shifted = |di: usize, dj: usize| {
+            let rows = self.0.iter().map(|r| std::iter::repeat_n(0.0, di).chain(r.iter().copied()).collect());
+            Self(std::iter::repeat_n(Vec::new(), dj).chain(rows).collect())
+        };
+        self.scaled(c).plus(ca, &shifted(1, 0)).plus(cb, &shifted(0, 1))
+    }
+
+    /// The nonzero terms as (i, j, coefficient).
+    fn terms(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let all = self.0.iter().enumerate().flat_map(|(j, r)| r.iter().enumerate().map(move |(i, c)| (i, j, *c)));
+        all.filter(|t| t.2 != 0.0)
+    }
+
+    /// The total degree.
+    pub(crate) fn degree(&self) -> usize {
+        self.terms().map(|(i, j, _)| i + j).max().unwrap_or(0)
+    }
+
+    /// The coefficient of aⁱbʲ.
+    pub(crate) fn coefficient(&self, i: usize, j: usize) -> f64 {
+        self.0.get(j).and_then(|r| r.get(i)).copied().unwrap_or(0.0)
+    }
+
+    /// The largest magnitude of a coefficient.
+    pub(super) fn largest(&self) -> f64 {
+        self.0.iter().flatten().fold(0.0, |m, c| f64::max(m, c.abs()))
+    }
+
+    /// Sets coefficients below [`NOISE`] times `size` to zero and drops trailing zeros.
+    pub(super) fn tidied(mut self, size: f64) -> Self {
+        for row in &mut self.0 {
+            for c in row.iter_mut().filter(|c| c.abs() <= NOISE * size) {
+                *c = 0.0;
+            }
+            let used = row.iter().rposition(|c| *c != 0.0).map_or(0, |k| k + 1);
+            row.truncate(used);
+        }
+        let used = self.0.iter().rposition(|r| !r.is_empty()).map_or(0, |k| k + 1);
+        self.0.truncate(used);
+        self
+    }
+
+    /// The polynomial along a curve (a/w, b/w), multiplied by the curve's denominator to the power `total`. The slices hold powers
+    /// of a, b and w.
+    pub(super) fn on(&self, a: &[Scaled], b: &[Scaled], w: &[Scaled], total: usize, degree: usize) -> Scaled {
+        let mut sum = Scaled::zero(degree);
+        for (i, j, c) in self.terms() {
+            sum.add_scaled(c, &a[i].times(&b[j]).times(&w[total - i - j]));
+        }
+        sum
+    }
+}
+
+impl Plane {
+    /// Returns `true` if every coefficient vanishes. Exact only after [`Plane::tidied`].
+    pub(super) fn is_zero(&self) -> bool {
+        self.0.is_empty()
+    }
+}
