@@ -1,6 +1,6 @@
 //! A DXF's text: group codes, colours, layers, and the parts of a file around its entities.
 
-use crate::{Options, Shape};
+use crate::model::{Options, Shape};
 use pathwarp::decimal::push_trimmed;
 use pathwarp::kurbo::Point;
 use std::collections::HashMap;

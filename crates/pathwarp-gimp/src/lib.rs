@@ -22,6 +22,7 @@ mod old_strokes;
 mod open;
 mod path;
 mod point_list;
+mod source;
 mod svg;
 mod text;
 mod xcf;

@@ -1,10 +1,11 @@
 //! Detects the format of a file, decompresses it if needed, and reads its paths.
 
-use crate::error::{Error, ErrorKind as FormatError};
+use crate::error::{Error, ErrorKind};
 use crate::path::{FileKind, PathFile, Salvaged};
+use crate::source::{ByteSource, ReadSeek, length};
 use crate::{point_list, svg, text, xcf};
-use pathwarp::budget::{Limit, Limits};
-use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+use pathwarp::budget::Limits;
+use std::io::{Read, Seek};
 
 /// Reads the paths of a file, seeking past everything else, within the default limits.
 ///
@@ -76,7 +77,7 @@ fn dispatch(file: &mut dyn ReadSeek, limits: &Limits) -> Result<Salvaged, Error>
     let mut input = unpacked(file, packing, limits)?;
     let head = input.peek(HEAD)?;
     if head.is_empty() {
-        return Err(Error::new(FormatError::UnknownFormat, 0, "the file is empty"));
+        return Err(Error::new(ErrorKind::UnknownFormat, 0, "the file is empty"));
     }
     if head.starts_with(xcf::MAGIC) {
         let mut xcf = xcf::Xcf::default();
@@ -99,9 +100,7 @@ fn dispatch(file: &mut dyn ReadSeek, limits: &Limits) -> Result<Salvaged, Error>
             let damage = text::read(&input.text()?, &mut file.paths).err();
             Ok(Salvaged { file, damage })
         }
-        _ => {
-            Err(Error::new(FormatError::UnknownFormat, 0, "not a file of GIMP: neither XCF, SVG, JSON nor GIMP 1 text"))
-        }
+        _ => Err(Error::new(ErrorKind::UnknownFormat, 0, "not a file of GIMP: neither XCF, SVG, JSON nor GIMP 1 text")),
     }
 }
 
@@ -140,198 +139,5 @@ pub fn sniff(mut file: impl Read + Seek) -> bool {
         Some(b'<') => svg::may_be_export(&head) && input.text().is_ok_and(|t| svg::is_export(&t)),
         Some(b'{') => input.text().is_ok_and(|t| point_list::read(&t).is_ok()),
         _ => false,
-    }
-}
-
-/// A seekable reader, as a trait object.
-pub(crate) trait ReadSeek: Read + Seek {}
-impl<T: Read + Seek> ReadSeek for T {}
-
-/// Bytes read into memory at a time.
-const CHUNK: usize = 1 << 16;
-
-enum Backend<'a> {
-    File(BufReader<&'a mut dyn ReadSeek>),
-    Stream(BufReader<Box<dyn Read + 'a>>),
-}
-
-/// The length of a file, from whose start it is read afterwards.
-pub(crate) fn length(file: &mut dyn ReadSeek) -> Result<u64, Error> {
-    let end = file.seek(SeekFrom::End(0)).and_then(|end| file.seek(SeekFrom::Start(0)).map(|_| end));
-    end.map_err(|e| Error::io(0, &e))
-}
-
-/// A source of big-endian numbers that knows its offset.
-pub(crate) struct ByteSource<'a> {
-    backend: Backend<'a>,
-    at: u64,
-    /// Upper bound for the end of the data.
-    pub(crate) end: u64,
-    limits: Limits,
-    /// Number of bytes read, not skipped, from compressed data, of which a few kilobytes can unpack to any amount.
-    unpacked: u64,
-}
-
-impl<'a> ByteSource<'a> {
-    /// Reads a file from its start.
-    pub(crate) fn file(file: &'a mut dyn ReadSeek, limits: Limits) -> Result<Self, Error> {
-        let end = length(file)?;
-        // Most reads are a word followed by a seek, so keep the buffer small.
-        Ok(Self { backend: Backend::File(BufReader::with_capacity(1 << 12, file)), at: 0, end, limits, unpacked: 0 })
-    }
-
-    /// Reads the output of a decoder, up to the limit on bytes.
-    pub(crate) fn stream(decoder: impl Read + 'a, limits: Limits) -> Self {
-        let backend = Backend::Stream(BufReader::with_capacity(CHUNK, Box::new(decoder)));
-        Self { backend, at: 0, end: limits.of(Limit::Bytes) as u64, limits, unpacked: 0 }
-    }
-
-    /// Checks that `count` bytes are left; if not, the error at byte `place` says what `needed` them. The end of a stream is the limit,
-    /// unless a length word set another.
-    pub(crate) fn need(&self, count: u64, place: u64, needed: impl FnOnce() -> String) -> Result<(), Error> {
-        if count <= self.left() {
-            return Ok(());
-        }
-        let known = Error::truncated(place, &needed(), self.left());
-        let of_limit = self.end == self.limits.of(Limit::Bytes) as u64;
-        Err(if of_limit { self.beyond(self.at.saturating_add(count), known) } else { known })
-    }
-
-    /// The error about byte `to`, which is beyond the end: that of a file is `known`, that of a stream is a limit.
-    pub(crate) fn beyond(&self, to: u64, known: Error) -> Error {
-        match (&self.backend, self.limits.check(Limit::Bytes, to as f64)) {
-            (Backend::Stream(_), Err(e)) => Error::too_large(known.offset, "unpacked, the file takes", e.cut_short()),
-            _ => known,
-        }
-    }
-
-    pub(crate) fn at(&self) -> u64 {
-        self.at
-    }
-
-    pub(crate) fn left(&self) -> u64 {
-        self.end.saturating_sub(self.at)
-    }
-
-    /// Fills `buffer`; an error at the end of the data names `what`.
-    pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Error> {
-        self.need(buffer.len() as u64, self.at, || format!("{what} needs {} more bytes", buffer.len()))?;
-        let read = match &mut self.backend {
-            Backend::File(f) => f.read_exact(buffer),
-            Backend::Stream(s) => {
-                self.unpacked += buffer.len() as u64;
-                self.limits
-                    .check(Limit::Bytes, self.unpacked as f64)
-                    .map_err(|e| Error::too_large(self.at, "unpacked, its paths take", e.cut_short()))?;
-                s.read_exact(buffer)
-            }
-        };
-        read.map_err(|e| match e.kind() {
-            ErrorKind::UnexpectedEof => {
-                Error::new(FormatError::Truncated, self.at, format!("the file ends inside {what}"))
-            }
-            _ => Error::io(self.at, &e),
-        })?;
-        self.at += buffer.len() as u64;
-        Ok(())
-    }
-
-    /// Reads `count` bytes, bounded by those left. Allocates as they arrive.
-    pub(crate) fn vec(&mut self, count: u64, what: &str) -> Result<Vec<u8>, Error> {
-        self.need(count, self.at, || format!("{what} needs {count} bytes"))?;
-        let mut out = Vec::new();
-        let mut left = usize::try_from(count).unwrap_or(usize::MAX);
-        while left > 0 {
-            let from = out.len();
-            out.resize(from + left.min(CHUNK), 0);
-            self.bytes(&mut out[from..], what)?;
-            left -= out.len() - from;
-        }
-        Ok(out)
-    }
-
-    /// Reads everything up to the end as UTF-8.
-    pub(crate) fn text(&mut self) -> Result<String, Error> {
-        let mut out = Vec::new();
-        let most = (self.limits.of(Limit::Bytes) as u64).saturating_add(1);
-        let read = match &mut self.backend {
-            Backend::File(f) => f.take(most).read_to_end(&mut out),
-            Backend::Stream(s) => s.take(most).read_to_end(&mut out),
-        };
-        read.map_err(|e| Error::io(self.at, &e))?;
-        self.limits
-            .check(Limit::Bytes, out.len() as f64)
-            .map_err(|e| Error::too_large(self.at, "its text takes", e.cut_short()))?;
-        self.at += out.len() as u64;
-        String::from_utf8(out).map_err(|e| {
-            let at = e.utf8_error().valid_up_to() as u64;
-            Error::new(FormatError::UnknownFormat, at, "neither an XCF file nor UTF-8 text")
-        })
-    }
-
-    /// Returns the next `count` bytes, or fewer at the end of the data, without consuming them.
-    pub(crate) fn peek(&mut self, count: usize) -> Result<Vec<u8>, Error> {
-        let buffer = match &mut self.backend {
-            Backend::File(f) => std::io::BufRead::fill_buf(f),
-            Backend::Stream(s) => std::io::BufRead::fill_buf(s),
-        };
-        let buffer = buffer.map_err(|e| Error::io(self.at, &e))?;
-        Ok(buffer[..buffer.len().min(count)].to_vec())
-    }
-
-    /// Moves to byte `to`; a stream only moves forwards.
-    pub(crate) fn seek(&mut self, to: u64, what: &str) -> Result<(), Error> {
-        if to > self.end {
-            let problem = format!("{what} points to byte {to}, but the file ends at {}", self.end);
-            return Err(self.beyond(to, Error::damaged(self.at, problem)));
-        }
-        match &mut self.backend {
-            Backend::File(f) => {
-                let offset = i64::try_from(to).unwrap_or(i64::MAX) - i64::try_from(self.at).unwrap_or(i64::MAX);
-                f.seek_relative(offset).map_err(|e| Error::io(self.at, &e))?;
-            }
-            Backend::Stream(s) => {
-                let Some(count) = to.checked_sub(self.at) else {
-                    return Err(Error::damaged(self.at, format!("{what} points backwards to byte {to}")));
-                };
-                let skipped = std::io::copy(&mut s.take(count), &mut std::io::sink());
-                let skipped = skipped.map_err(|e| Error::io(self.at, &e))?;
-                if skipped < count {
-                    let end = self.at + skipped;
-                    return Err(Error::damaged(
-                        self.at,
-                        format!("{what} points to byte {to}, but the data ends at {end}"),
-                    ));
-                }
-            }
-        }
-        self.at = to;
-        Ok(())
-    }
-
-    pub(crate) fn skip(&mut self, count: u64, what: &str) -> Result<(), Error> {
-        if count > self.left() {
-            let known = Error::truncated(self.at, &format!("{what} needs {count} bytes"), self.left());
-            return Err(self.beyond(self.at.saturating_add(count), known));
-        }
-        self.seek(self.at + count, what)
-    }
-
-    pub(crate) fn u8(&mut self, what: &str) -> Result<u8, Error> {
-        let mut b = [0; 1];
-        self.bytes(&mut b, what)?;
-        Ok(b[0])
-    }
-
-    pub(crate) fn u32(&mut self, what: &str) -> Result<u32, Error> {
-        let mut b = [0; 4];
-        self.bytes(&mut b, what)?;
-        Ok(u32::from_be_bytes(b))
-    }
-
-    pub(crate) fn u64(&mut self, what: &str) -> Result<u64, Error> {
-        let mut b = [0; 8];
-        self.bytes(&mut b, what)?;
-        Ok(u64::from_be_bytes(b))
     }
 }

@@ -1,6 +1,6 @@
 //! The file under construction: its objects, and the function that draws groups.
 
-use crate::Options;
+use crate::options::Options;
 use crate::stream::{Stream, pdf_rect};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;

@@ -1,8 +1,9 @@
 //! Draws groups: clip paths, masks, opacity, blend modes, and what is in them. A group with a filter becomes a picture.
 
 use crate::file::{File, MaskKind, State};
+use crate::options::PRINT;
 use crate::stream::{Stream, affine, from_usvg, rect, roomy};
-use crate::{PRINT, image, paint};
+use crate::{image, paint};
 use kurbo::{Affine, BezPath, Rect, Shape as _, Vec2};
 use pathwarp_raster::{Error, Pixmap, render_group};
 use pdf_writer::Ref;

@@ -18,15 +18,16 @@ mod file;
 mod gradient;
 mod group;
 mod image;
+mod options;
 mod paint;
 mod stream;
 
-use file::File;
-use kurbo::{Affine, BezPath};
-use pathwarp::budget::Limits;
+pub use options::{ExactOutline, Options};
 pub use pathwarp_raster::Error;
+
+use file::File;
+use kurbo::Affine;
 use pdf_writer::{Name, Rect, TextStr};
-use std::fmt;
 use stream::Stream;
 
 /// Points per px: 72 points and 96 px are an inch.
@@ -79,36 +80,5 @@ pub fn write(tree: &usvg::Tree, options: &Options<'_>) -> Result<Written, Error>
     match file.failed.take() {
         Some(e) => Err(e),
         None => Ok(Written { pictures: file.pictures, coarser: file.coarser, bytes: file.pdf.finish() }),
-    }
-}
-
-/// Resolution of the pictures that stand for filters, in pixels per inch, if none is given: the usual one for print.
-pub(crate) const PRINT: f64 = 300.0;
-
-/// Gives the exact outline of a path in its own coordinates, if usvg's is an approximation.
-pub type ExactOutline<'a> = dyn Fn(&usvg::Path) -> Option<BezPath> + 'a;
-
-/// Options for writing a PDF.
-pub struct Options<'a> {
-    /// Outlines that replace usvg's, which approximates arcs.
-    pub exact: &'a ExactOutline<'a>,
-    /// Pixels per inch of the pictures that stand for filters; `None`: 300.
-    pub picture_dpi: Option<f64>,
-    /// Limits on the pictures, embedded ones and those that stand for filters.
-    pub limits: Limits,
-}
-
-impl fmt::Debug for Options<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Options")
-            .field("picture_dpi", &self.picture_dpi)
-            .field("limits", &self.limits)
-            .finish_non_exhaustive()
-    }
-}
-
-impl Default for Options<'_> {
-    fn default() -> Self {
-        Self { exact: &|_| None, picture_dpi: None, limits: Limits::default() }
     }
 }

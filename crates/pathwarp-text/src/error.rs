@@ -1,6 +1,6 @@
 //! Errors of fonts and lettering.
 
-use crate::font::FontAxis;
+use crate::metrics::FontAxis;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;

@@ -1,13 +1,7 @@
-//! Text as outlines: lines of clusters of glyphs, and how they are drawn.
+//! Text as outlines: lines of clusters of glyphs.
 
-use crate::error::Error;
-use crate::font::{Font, FontMetrics};
-use crate::limits::TextLimits;
-use crate::shape::ShapedCluster;
-use kurbo::{Affine, BezPath, Point, Rect};
-use skrifa::GlyphId;
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use crate::metrics::FontMetrics;
+use kurbo::{BezPath, Point, Rect};
 
 /// A glyph and its place in its cluster, in user units, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,71 +98,5 @@ impl OutlinedText {
     pub fn page(&self) -> Rect {
         let lines = self.line_box();
         self.ink().map_or(lines, |ink| ink.union(lines))
-    }
-}
-
-/// A cluster and the space after it.
-pub(crate) struct SpacedCluster {
-    pub(crate) cluster: ShapedCluster,
-    pub(crate) gap: f64,
-}
-
-/// Draws glyphs, keeping outlines that were drawn before.
-pub(crate) struct GlyphPainter<'s, 'f> {
-    pub(crate) fonts: &'s [Font<'f>],
-    pub(crate) size: f64,
-    /// Outlines by font and glyph.
-    pub(crate) drawn: HashMap<(usize, u32), BezPath>,
-    pub(crate) limits: &'s TextLimits,
-    /// Number of path elements so far.
-    pub(crate) painted: usize,
-}
-
-impl GlyphPainter<'_, '_> {
-    /// Draws a line with its baseline at `y`.
-    pub(crate) fn line(&mut self, text: &str, spaced: Vec<SpacedCluster>, y: f64) -> Result<LetteringLine, Error> {
-        let mut x = 0.0;
-        let mut clusters = Vec::with_capacity(spaced.len());
-        for SpacedCluster { cluster, gap } in spaced {
-            let origin = Point::new(x, y);
-            let mut outline = BezPath::new();
-            for g in &cluster.glyphs {
-                self.draw(g, origin, &mut outline)?;
-            }
-            x += cluster.advance + gap;
-            clusters.push(Cluster {
-                text: text[cluster.range].to_owned(),
-                origin,
-                advance: cluster.advance,
-                outline,
-                glyphs: cluster.glyphs,
-            });
-        }
-        Ok(LetteringLine {
-            text: text.to_owned(),
-            start: Point::new(0.0, y),
-            end: Point::new(x, y),
-            scale: 1.0,
-            clusters,
-        })
-    }
-
-    /// Appends a glyph to an outline.
-    fn draw(&mut self, g: &PlacedGlyph, origin: Point, out: &mut BezPath) -> Result<(), Error> {
-        let Some(font) = self.fonts.get(g.font) else { return Ok(()) };
-        let key = (g.font, g.id);
-        let glyph = match self.drawn.entry(key) {
-            Entry::Occupied(e) => e.into_mut(),
-            Entry::Vacant(e) => {
-                let outline = font.outlines.draw(GlyphId::new(g.id), font.location())?;
-                e.insert(font.synthesis.apply(outline, font.units_per_em()))
-            }
-        };
-        self.painted += glyph.elements().len();
-        self.limits.segments(self.painted)?;
-        let place =
-            Affine::translate((origin.x + g.dx, origin.y + g.dy)) * Affine::scale(self.size / font.units_per_em());
-        out.extend(glyph.elements().iter().map(|el| place * *el));
-        Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::font::Font;
-use crate::layout::{Run, for_shaper};
+use crate::itemize::{Run, for_shaper};
 use crate::lettering::PlacedGlyph;
 use crate::limits::TextLimits;
 use crate::style::Feature;

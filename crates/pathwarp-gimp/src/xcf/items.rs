@@ -3,8 +3,8 @@
 use super::read::{MOST_PROPERTIES, PROP_END, PathLayout, PathRecord, Xcf, count, string};
 use super::vectors;
 use crate::error::Error;
-use crate::open::ByteSource;
 use crate::path::GimpPath;
+use crate::source::ByteSource;
 use std::collections::HashMap;
 
 const PROP_VISIBLE: u32 = 8;

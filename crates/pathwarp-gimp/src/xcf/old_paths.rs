@@ -3,8 +3,8 @@
 use super::read::{PathLayout, PathRecord, Xcf, coordinate, count, string};
 use crate::error::Error;
 use crate::old_strokes::{ANCHOR, NEW_STROKE, TypedPoint, listed, strokes};
-use crate::open::ByteSource;
 use crate::path::{GimpPath, Stroke};
+use crate::source::ByteSource;
 
 /// Size of a path of format 1 without a name and points.
 const LEAST_PATH: u64 = 21;

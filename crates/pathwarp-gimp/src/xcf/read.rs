@@ -1,8 +1,8 @@
 //! Reads the header and the property list of an XCF, and from there its paths.
 
 use crate::error::Error;
-use crate::open::ByteSource;
 use crate::path::GimpPath;
+use crate::source::ByteSource;
 use crate::xcf::{items, old_paths, vectors};
 use std::ops::Range;
 

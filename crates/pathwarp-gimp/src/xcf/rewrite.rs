@@ -2,8 +2,8 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::old_strokes;
-use crate::open::{ByteSource, ReadSeek};
 use crate::path::{GimpPath, Stroke};
+use crate::source::{ByteSource, ReadSeek};
 use crate::xcf::read::{
     MAGIC, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, PathLayout, PathRecord, Xcf, read,
 };

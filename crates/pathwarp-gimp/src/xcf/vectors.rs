@@ -2,8 +2,8 @@
 
 use super::read::{PathLayout, PathRecord, Xcf, coordinate, count, string, word};
 use crate::error::Error;
-use crate::open::ByteSource;
 use crate::path::{GimpPath, Stroke};
+use crate::source::ByteSource;
 
 /// The only version.
 const VERSION: u32 = 1;

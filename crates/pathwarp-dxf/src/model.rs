@@ -1,0 +1,47 @@
+//! The outlines to write, and the options.
+
+use pathwarp::Outline;
+use pathwarp::budget::Limits;
+
+/// An outline with its layer and colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape<'a> {
+    /// Name of the layer. Characters that DXF forbids become underscores; names that differ only in case are one layer.
+    pub layer: &'a str,
+    /// Red, green and blue; `None`: the colour of the layer, black or white by the background.
+    pub color: Option<[u8; 3]>,
+    /// The outline in millimetres, x to the right and y up.
+    pub outline: &'a Outline,
+}
+
+/// The form of Bézier curves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Curves {
+    /// Exact splines of degree 3.
+    #[default]
+    Splines,
+    /// Polylines, one for every subpath.
+    Polylines,
+}
+
+/// Options for writing a DXF.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// The form of Bézier curves.
+    pub curves: Curves,
+    /// Largest distance of polylines from curves, in mm. Arcs that are this close to circular ones, within a tenth, are written as
+    /// such.
+    pub tolerance: f64,
+    /// Width and height of the page in mm.
+    pub page: [f64; 2],
+    /// Limits on the number of segments.
+    pub limits: Limits,
+}
+
+impl Default for Options {
+    /// Splines on an A4 page, with a tolerance of 0.01 mm.
+    fn default() -> Self {
+        Self { curves: Curves::Splines, tolerance: 0.01, page: [210.0, 297.0], limits: Limits::default() }
+    }
+}
