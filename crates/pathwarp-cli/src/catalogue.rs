@@ -1,7 +1,6 @@
 //! Descriptions of deformations, of the plane or of space: all that reading a command line or a recipe needs of a registry.
 
 use pathwarp::deform::{Info, Registry};
-use pathwarp_solid::deform::Registry3;
 
 /// A registry, as its deformations' descriptions.
 pub(crate) trait Catalogue {
@@ -26,19 +25,5 @@ impl Catalogue for Registry {
 
     fn is_solid(&self) -> bool {
         false
-    }
-}
-
-impl Catalogue for Registry3 {
-    fn infos(&self) -> Vec<&Info> {
-        self.entries().iter().map(|e| &e.about().info).collect()
-    }
-
-    fn info(&self, name: &str) -> Option<&Info> {
-        self.get(name).map(|e| &e.about().info)
-    }
-
-    fn is_solid(&self) -> bool {
-        true
     }
 }

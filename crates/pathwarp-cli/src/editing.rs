@@ -9,7 +9,7 @@ use crate::options::{CommonOptions, Given};
 use crate::output::PendingFile;
 use crate::pipeline::{Framed, Ready, Session};
 use crate::report::ReportedShape;
-use crate::{coming_from, export, plugins, recipe_file, references};
+use crate::{coming_from, export, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
@@ -27,8 +27,8 @@ struct EditedArtwork {
     given: Given,
     options: CommonOptions,
     flags: Arc<Flags>,
-    /// The files of plug-ins that a command line has to name.
-    plugins: Vec<String>,
+    /// The options that name plug-ins.
+    plugins: Vec<(String, String)>,
     /// The folder of the drawing, where its results go.
     folder: PathBuf,
     /// The frame for the guides and the baseline of the last picture.
@@ -55,8 +55,8 @@ impl EditedArtwork {
         }
     }
 
-    fn with_plugins(self, files: &[String]) -> Self {
-        Self { plugins: files.to_vec(), ..self }
+    fn with_plugins(self, options: &[(String, String)]) -> Self {
+        Self { plugins: options.to_vec(), ..self }
     }
 
     fn in_folder(self, folder: &Path) -> Self {
@@ -167,7 +167,7 @@ impl Artwork for EditedArtwork {
     fn options(&self) -> Vec<(String, String)> {
         let all = self.given.stored();
         let stored = all.flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v)));
-        stored.chain(self.plugins.iter().map(|file| (plugins::OPTION.to_owned(), file.clone()))).collect()
+        stored.chain(self.plugins.iter().cloned()).collect()
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
@@ -182,8 +182,8 @@ pub(crate) struct EditorHost {
     usual: Given,
     /// The options as given.
     given: Given,
-    /// The files of plug-ins that a command line has to name.
-    plugins: Vec<String>,
+    /// The options that name plug-ins.
+    plugins: Vec<(String, String)>,
     flags: Arc<Flags>,
 }
 
@@ -193,9 +193,9 @@ impl EditorHost {
         Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags }
     }
 
-    /// Names the files of plug-ins in command lines.
-    pub(crate) fn with_plugins(self, files: &[PathBuf]) -> Self {
-        Self { plugins: files.iter().map(|f| f.display().to_string()).collect(), ..self }
+    /// Names plug-ins in command lines by these options.
+    pub(crate) fn with_plugins(self, options: Vec<(String, String)>) -> Self {
+        Self { plugins: options, ..self }
     }
 
     fn open_drawing(&self, file: &Path, bytes: &[u8]) -> Result<Opened, Failure> {

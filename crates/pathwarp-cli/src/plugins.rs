@@ -5,13 +5,19 @@ use crate::format::Format;
 use crate::options::OPTIONS;
 use crate::steps::INVERSE;
 use crate::{temporaries, terminal};
+use clap::Arg;
 use pathwarp::deform::{Deformation, Registry};
 use pathwarp_plugin::{Broken, Plugin, Reserved};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 /// The option that names a plug-in's file.
-pub(crate) const OPTION: &str = "plugin";
+const OPTION: &str = "plugin";
+
+pub(crate) fn option() -> Option<Arg> {
+    let option = Arg::new(OPTION).long(OPTION).value_name("FILE").global(true).hide_short_help(true);
+    Some(option.help("Use the plug-in in this file, too (docs/plugin-protocol.md)"))
+}
 
 /// Commands for which no plug-in of the folder matters.
 const WITHOUT: [&str; 8] = ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "new-plugin"];
@@ -24,8 +30,8 @@ const ARGUMENTS: [&str; 7] = [INVERSE, OPTION, "help", "version", "points", "jac
 pub(crate) struct Plugins {
     plugins: Vec<Plugin>,
     /// The files named on the command line.
-    pub(crate) given: Vec<PathBuf>,
-    pub(crate) broken: Vec<Broken>,
+    given: Vec<PathBuf>,
+    broken: Vec<Broken>,
 }
 
 impl Plugins {
@@ -56,6 +62,21 @@ impl Plugins {
     /// The file of the plug-in called `name`.
     pub(crate) fn file(&self, name: &str) -> Option<String> {
         self.get(name).map(|p| p.path().display().to_string())
+    }
+
+    /// The options that name the files again.
+    pub(crate) fn options(&self) -> Vec<(String, String)> {
+        self.given.iter().map(|file| (OPTION.to_owned(), file.display().to_string())).collect()
+    }
+
+    /// Name, file and fault of each plug-in that is broken.
+    pub(crate) fn broken(&self) -> impl Iterator<Item = [String; 3]> {
+        self.broken.iter().map(|b| [b.name.clone(), b.path.display().to_string(), b.fault.to_string()])
+    }
+
+    /// The failure of the plug-in called `name`, if it is broken.
+    pub(crate) fn failure(&self, name: &str) -> Option<Failure> {
+        self.broken.iter().find(|b| b.name == name).map(|b| b.fault.of(&b.path).into())
     }
 }
 

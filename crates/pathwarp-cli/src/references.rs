@@ -2,7 +2,7 @@
 
 use crate::catalogue::Catalogue;
 use crate::failure::Failure;
-use crate::input::{GimpFile, described, read_data_file, split_reference, unreadable};
+use crate::input::{described, outline, read_data_file, split_reference, unreadable};
 use crate::options::Reading;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Affine, Point};
@@ -89,11 +89,7 @@ pub(crate) fn in_px(reference: &str, reading: &Reading) -> Result<Outline, Error
 /// The outline of a reference, and the map from its user units to px.
 fn found(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error> {
     let (file, name) = split_reference(reference);
-    if let Some(gimp) = GimpFile::read(&file, false, &reading.limits)? {
-        let outline = match name {
-            Some(name) => gimp.path_named(name)?.outline(),
-            None => gimp.only_path()?.outline(),
-        };
+    if let Some(outline) = outline(&file, name, &reading.limits)? {
         return Ok((outline, Affine::IDENTITY));
     }
     let shown = file.display();

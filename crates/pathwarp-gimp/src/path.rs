@@ -71,33 +71,10 @@ impl Stroke {
         self.points.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|[x, y]| Point::new(x, y)))
     }
 
-    /// Converts a curve to GIMP's form: the handles of lines coincide with their anchors, and arcs become cubics.
+    /// Converts a curve to GIMP's form; see [`Subpath::with_handles`].
     #[must_use]
     pub fn from_subpath(s: &Subpath) -> Self {
-        let cubics: Vec<CubicBez> = s
-            .segs
-            .iter()
-            .flat_map(|g| match g {
-                Seg::Line(l) => vec![CubicBez::new(l.p0, l.p0, l.p1, l.p1)],
-                Seg::Arc(a) => a.to_cubics(a.a.hypot().max(a.b.hypot()) * 1e-3).collect(),
-                other => vec![other.to_cubic()],
-            })
-            .collect();
-        let mut points: Vec<Point> = Vec::with_capacity(3 * cubics.len() + 3);
-        for (i, c) in cubics.iter().enumerate() {
-            let incoming = match i.checked_sub(1) {
-                Some(before) => cubics[before].p2,
-                None if s.closed => cubics.last().map_or(c.p0, |l| l.p2),
-                None => c.p0,
-            };
-            points.extend([incoming, c.p0, c.p1]);
-        }
-        match cubics.last() {
-            None => points.extend([s.start; 3]),
-            Some(l) if !s.closed => points.extend([l.p2, l.p3, l.p3]),
-            Some(_) => {}
-        }
-        Self { closed: s.closed, points: points.iter().map(|p| [p.x, p.y]).collect() }
+        Self { closed: s.closed, points: s.with_handles().as_flattened().iter().map(|p| [p.x, p.y]).collect() }
     }
 }
 

@@ -57,11 +57,8 @@ fn listed(registry: &Registry, plugins: &Plugins) -> Value {
             "parameters": params, "examples": examples, "plug-in": plugins.file(i.name),
         })
     };
-    let broken: Vec<Value> = plugins
-        .broken
-        .iter()
-        .map(|b| json!({ "name": b.name, "file": b.path.display().to_string(), "problem": b.fault.to_string() }))
-        .collect();
+    let broken = plugins.broken().map(|[name, file, fault]| json!({ "name": name, "file": file, "problem": fault }));
+    let broken: Vec<Value> = broken.collect();
     let deformations: Vec<Value> = registry.entries().iter().map(|e| deformation(e.info())).collect();
     json!({ "deformations": deformations, "broken-plug-ins": broken })
 }
@@ -89,10 +86,11 @@ pub(super) fn list(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Re
         }
         out.push('\n');
     }
-    if !plugins.broken.is_empty() {
+    let mut broken = plugins.broken().peekable();
+    if broken.peek().is_some() {
         let _ = writeln!(out, "{heading}Broken plug-ins{heading:#}");
-        for b in &plugins.broken {
-            let _ = writeln!(out, "  {:width$}  {} {}", b.name, b.path.display(), b.fault);
+        for [name, file, fault] in broken {
+            let _ = writeln!(out, "  {name:width$}  {file} {fault}");
         }
         out.push_str("  `pathwarp check NAME` tries one again.\n\n");
     }

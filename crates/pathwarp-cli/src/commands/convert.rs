@@ -2,22 +2,25 @@
 //! `unwarp` restores the source of a drawing that was written with `--embed-recipe`.
 
 use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
+use crate::commands::gimp_paths;
 use crate::export::{self, Exported};
 use crate::failure::{Failure, Status};
 use crate::format::{Choice, Format};
-use crate::input::{self, GimpFile};
-use crate::options::{CommonOptions, Given, Reading, reading_args, some_options};
-use crate::output::{self, PendingFile};
-use crate::sources::Files;
+use crate::input;
+#[cfg(feature = "gimp")]
+use crate::input::GimpFile;
+use crate::options::{CommonOptions, Given, reading_args, some_options};
+use crate::output;
 use crate::{advice, readable, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::decimal::trimmed;
-use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
-use pathwarp_svg::{Origin, ReadOptions};
+use pathwarp::kurbo::Point;
+#[cfg(feature = "gimp")]
+use pathwarp_gimp::GimpPath;
+use pathwarp_svg::Origin;
 use serde::Serialize;
-use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 pub(super) fn convert_command() -> Command {
     Command::new("convert")
@@ -37,7 +40,7 @@ pub(super) fn convert_command() -> Command {
                 .help("Write every path to its own file, named after OUT and the path: out-NAME.svg"),
         )
         .arg(
-            switch("salvage", "Copy the paths before the damage in a damaged file"),
+            switch("salvage", "Copy the paths before the damage in a damaged file").hide(!cfg!(feature = "gimp")),
         )
         .args(reading_args())
         .after_help(
@@ -67,45 +70,10 @@ pub(crate) fn convert_file(
 ) -> Result<Status, Failure> {
     let choice = Choice { what: "paths are", among: FORMATS };
     let format = choice.format(target, options.format)?;
-    let gimp = GimpFile::open(file, salvage, &options.reading.limits)?;
-    if gimp.is_none() && !split && matches!(format, Format::Pdf | Format::Dxf) {
-        return whole(file, target, format, options);
+    match gimp_paths::copy(file, target, format, options, split, salvage)? {
+        Some(status) => Ok(status),
+        None => whole(file, target, format, options),
     }
-    let damage = gimp.as_ref().and_then(|g| g.damage.clone());
-    let (size, paths) = match &gimp {
-        Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
-        None => drawing(file, &options.reading)?,
-    };
-    if let Some(d) = damage.as_ref().filter(|_| !options.quiet) {
-        terminal::warning(&format!("{}: {d}", input::display(file)));
-    }
-    match target {
-        Some(out) if split => {
-            let names = names(out, format, &paths);
-            let mut files = Files::default();
-            files.read(file);
-            names.iter().try_for_each(|to| files.write(to, ""))?;
-            let single = |(to, p): (&PathBuf, &GimpPath)| {
-                PendingFile::new(to, &bytes(format, size, std::slice::from_ref(p), options)?)
-            };
-            let files: Result<Vec<PendingFile>, Failure> = names.iter().zip(&paths).map(single).collect();
-            PendingFile::commit_all(files?)?;
-        }
-        _ => output::write(target, &bytes(format, size, &paths, options)?)?,
-    }
-    Ok(Status::partial_if(damage.is_some()))
-}
-
-/// The size of an SVG's viewBox and its paths as GIMP would store them, in units of the viewBox.
-fn drawing(file: &Path, reading: &Reading) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
-    let doc = input::document(file, reading)?;
-    let page = doc.view_box();
-    let to_page = pathwarp::kurbo::Affine::translate(-page.origin().to_vec2());
-    let path = |p: pathwarp_svg::NamedPath| {
-        let strokes = p.outline.transformed(to_page).subpaths.iter().map(Stroke::from_subpath).collect();
-        GimpPath { name: p.label.or(p.title).unwrap_or(p.id), visible: true, strokes }
-    };
-    Ok(([page.width(), page.height()], doc.paths().into_iter().map(path).collect()))
 }
 
 /// Writes the drawing in an SVG as a PDF or DXF.
@@ -127,39 +95,6 @@ fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOpt
 /// The formats that this command writes.
 const FORMATS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Dxf, Format::PointList, Format::Xcf];
 
-/// The bytes of a file with these paths.
-fn bytes(format: Format, size: [f64; 2], paths: &[GimpPath], options: &CommonOptions) -> Result<Vec<u8>, Failure> {
-    match format {
-        Format::PointList => Ok(to_json(Some(size), paths).into_bytes()),
-        Format::Xcf => Ok(new_xcf(size.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), paths)),
-        drawing => {
-            let svg = to_svg(size, paths, None);
-            Ok(export::drawing(svg, drawing, &ReadOptions::default(), options, None)?.bytes)
-        }
-    }
-}
-
-/// A file name for every path, distinct even on file systems that ignore case.
-fn names(out: &Path, format: Format, paths: &[GimpPath]) -> Vec<PathBuf> {
-    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = out.extension().map_or_else(|| format.extension().into(), |e| e.to_string_lossy());
-    let mut taken = HashSet::new();
-    // The next number of each name, so that many paths of one name do not try all numbers.
-    let mut next: HashMap<String, usize> = HashMap::new();
-    let mut unique = |p: &GimpPath| {
-        let name = input::file_name(&p.name);
-        let number = next.entry(name.to_lowercase()).or_insert(1);
-        loop {
-            let numbered = if *number == 1 { name.clone() } else { format!("{name}-{number}") };
-            *number += 1;
-            if !numbered.is_empty() && taken.insert(numbered.to_lowercase()) {
-                return numbered;
-            }
-        }
-    };
-    paths.iter().map(|p| out.with_file_name(format!("{stem}-{}.{extension}", unique(p)))).collect()
-}
-
 pub(super) fn paths_command() -> Command {
     Command::new("paths")
         .about("List the paths of a file: name, closed, anchors, points")
@@ -169,7 +104,7 @@ pub(super) fn paths_command() -> Command {
         ))
         .arg(switch("json", "Print JSON with every point"))
         .arg(
-            switch("salvage", "List the paths before the damage in a damaged GIMP file"),
+            switch("salvage", "List the paths before the damage in a damaged GIMP file").hide(!cfg!(feature = "gimp")),
         )
         .args(reading_args())
         .after_help(
@@ -210,26 +145,30 @@ struct ListedStroke {
 pub(super) fn list_paths(m: &ArgMatches) -> Result<Status, Failure> {
     let file = given_file(m, "FILE")?;
     let reading = Given::reading(m)?;
-    let gimp = GimpFile::open(file, m.get_flag("salvage"), &reading.limits)?;
-    let mut paths = match &gimp {
-        Some(gimp) => gimp.paths().map(of_gimp).collect(),
-        None => of_drawing(&input::document(file, &reading)?),
-    };
-    let text = if m.get_flag("json") {
-        if gimp.is_some() {
-            // For GIMP files the JSON holds only stored data.
-            paths.iter_mut().for_each(|p| p.bounds = None);
-        }
+    let is_json = m.get_flag("json");
+    #[cfg(feature = "gimp")]
+    if let Some(gimp) = GimpFile::open(file, m.get_flag("salvage"), &reading.limits)? {
+        // For GIMP files the JSON holds only stored data.
+        let path = |p| if is_json { ListedPath { bounds: None, ..of_gimp(p) } } else { of_gimp(p) };
+        print(file, gimp.paths().map(path).collect(), is_json)?;
+        let Some(damage) = gimp.damage else { return Ok(Status::Complete) };
+        terminal::warning(&format!("{}: {damage}", input::display(file)));
+        return Ok(Status::Partial);
+    }
+    print(file, of_drawing(&input::document(file, &reading)?), is_json)?;
+    Ok(Status::Complete)
+}
+
+fn print(file: &Path, paths: Vec<ListedPath>, is_json: bool) -> Result<(), Failure> {
+    let text = if is_json {
         readable::json(&PathList { paths }).map_err(|e| Failure::file(file, e))? + "\n"
     } else {
         table(&paths)
     };
-    output::to_stdout(text.as_bytes())?;
-    let Some(damage) = gimp.and_then(|g| g.damage) else { return Ok(Status::Complete) };
-    terminal::warning(&format!("{}: {damage}", input::display(file)));
-    Ok(Status::Partial)
+    output::to_stdout(text.as_bytes())
 }
 
+#[cfg(feature = "gimp")]
 fn of_gimp(p: &GimpPath) -> ListedPath {
     ListedPath {
         name: p.name.clone(),
@@ -238,7 +177,7 @@ fn of_gimp(p: &GimpPath) -> ListedPath {
         element: None,
         visible: Some(p.visible),
         bounds: p.bounds().map(|[x0, y0, x1, y1]| [x0, y0, x1 - x0, y1 - y0]),
-        strokes: p.strokes.iter().map(stroke).collect(),
+        strokes: p.strokes.iter().map(|s| stroke(s.closed, s.triples())).collect(),
     }
 }
 
@@ -252,13 +191,14 @@ fn of_drawing(doc: &pathwarp_svg::Document) -> Vec<ListedPath> {
             element: Some(p.element),
             visible: None,
             bounds: p.outline.bounding_box().map(|b| [b.x0, b.y0, b.width(), b.height()]),
-            strokes: p.outline.subpaths.iter().map(|s| stroke(&Stroke::from_subpath(s))).collect(),
+            strokes: p.outline.subpaths.iter().map(|s| stroke(s.closed, s.with_handles().into_iter())).collect(),
         })
         .collect()
 }
 
-fn stroke(s: &Stroke) -> ListedStroke {
-    ListedStroke { closed: s.closed, anchors: s.anchors(), points: s.points.clone() }
+fn stroke(closed: bool, with_handles: impl Iterator<Item = [Point; 3]>) -> ListedStroke {
+    let points: Vec<[f64; 2]> = with_handles.flatten().map(|p| [p.x, p.y]).collect();
+    ListedStroke { closed, anchors: points.len() / 3, points }
 }
 
 fn table(paths: &[ListedPath]) -> String {

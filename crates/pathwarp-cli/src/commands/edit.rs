@@ -49,8 +49,9 @@ pub(super) fn edit(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Re
     };
     // Ctrl-C is the usual end of this command.
     temporaries::on_interruption_end_quietly();
-    let host =
-        Arc::new(EditorHost::new(registry.clone(), Given::default(), Given::options(m)).with_plugins(&plugins.given));
+    let host = Arc::new(
+        EditorHost::new(registry.clone(), Given::default(), Given::options(m)).with_plugins(plugins.options()),
+    );
     let announce = |news: &News<'_>| match news {
         News::Address(address) => drop(output::to_stdout(format!("{address}\n").as_bytes())),
         News::NoBrowser(e) => terminal::warning(&format!("no browser can be started ({e}); open the address in one")),

@@ -37,12 +37,8 @@ pub(super) fn check(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> R
     let named = registry.get(what).map(|e| &**e as &dyn Deformation);
     let entry = if is_file_name(Path::new(what)) { by_file() } else { named };
     let Some(entry) = entry else {
-        return Err(match plugins.broken.iter().find(|b| b.name == what) {
-            Some(b) => b.fault.of(&b.path).into(),
-            None => {
-                Failure::usage(advice::unknown("deformation", what, registry.entries().iter().map(|e| e.info().name)))
-            }
-        });
+        let unknown = || advice::unknown("deformation", what, registry.entries().iter().map(|e| e.info().name));
+        return Err(plugins.failure(what).unwrap_or_else(|| Failure::usage(unknown())));
     };
     let name = entry.info().name;
     let mut out = match plugins.get(name) {

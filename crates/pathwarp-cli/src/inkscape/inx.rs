@@ -138,15 +138,16 @@ fn help(info: &Info) -> String {
     out
 }
 
-/// File name and content of each.
-fn others(program: &Program) -> [(String, String); 5] {
-    [
-        ("pathwarp-bend-by-hand.inx".into(), by_hand(program)),
-        ("pathwarp-edit-again.inx".into(), edit_again(program)),
-        ("pathwarp-release.inx".into(), release(program)),
-        ("pathwarp-xcf-input.inx".into(), xcf(program)),
-        ("pathwarp-dxf-output.inx".into(), dxf(program)),
-    ]
+/// File name and content of each that this program can do.
+fn others(program: &Program) -> impl Iterator<Item = (String, String)> {
+    let all = [
+        ("bend-by-hand", by_hand(program), cfg!(feature = "editor")),
+        ("edit-again", edit_again(program), true),
+        ("release", release(program), true),
+        ("xcf-input", xcf(program), cfg!(feature = "gimp")),
+        ("dxf-output", dxf(program), cfg!(feature = "dxf")),
+    ];
+    all.into_iter().filter(|o| o.2).map(|(name, text, _)| (format!("pathwarp-{name}.inx"), text))
 }
 
 fn action(value: &str) -> String {

@@ -9,40 +9,7 @@ use crate::options::{CommonOption, OPTIONS};
 use crate::steps::INVERSE;
 use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param, is_inline};
-use pathwarp::recipe::Recipe;
-use pathwarp_editor::selectors;
 use pathwarp_svg::objects::Object;
-
-/// The words of a recipe's steps.
-pub(super) fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {
-    let mut line = Vec::new();
-    for step in &recipe.steps {
-        if !line.is_empty() {
-            line.push(CHAIN.to_owned());
-        }
-        line.push(step.deformation.clone());
-        let params = stage.registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
-        let word = |(name, value): (&str, Option<&str>)| match value {
-            Some(value) => format!("--{name}={value}"),
-            None => format!("--{name}"),
-        };
-        line.extend(step.options(params).map(word));
-        if step.inverse {
-            line.push(format!("--{INVERSE}"));
-        }
-        line.extend(selectors(recipe, step).map(|(name, selector)| format!("--{name}={selector}")));
-    }
-    line
-}
-
-/// The common options among the words of a recipe.
-pub(super) fn options_of(line: &[String]) -> Vec<String> {
-    let is_option = |word: &&String| {
-        let own = word.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(name, _)| name));
-        own.is_some_and(|name| OPTIONS.iter().any(|o| o.name == name))
-    };
-    line.iter().filter(is_option).cloned().collect()
-}
 
 /// Words that leave out what is locked.
 pub(super) fn exclusions(all: &[Object]) -> impl Iterator<Item = String> {

@@ -4,6 +4,8 @@
 //!
 //! A call is turned into the words of an ordinary command line (`line.rs`), which are applied to the drawing in memory (`stage.rs`).
 
+#[cfg(feature = "editor")]
+mod by_hand;
 mod guides;
 pub(crate) mod inx;
 mod line;
@@ -12,26 +14,17 @@ mod restoring;
 mod stage;
 
 use crate::advice::{self, Flags};
-use crate::editing::EditorHost;
 use crate::failure::{Failure, Status};
-use crate::options::Given;
-use crate::{output, plugins, readable, watch};
+use crate::{output, plugins, readable};
 use guides::sorted;
-use line::{
-    allowed, by_id, changed, exclusions, existing, options_of, referred, settled, words_of, words_of_deformation,
-    words_of_options,
-};
+use line::{allowed, by_id, changed, exclusions, existing, referred, settled, words_of_deformation, words_of_options};
 use names::{ADD, AGAIN, CHAIN, CHANGES, DISCARD, REPLACE, SHOW, is_job, joined, split};
 use pathwarp::deform::Registry;
-use pathwarp::recipe::Recipe;
-use pathwarp_editor::{Options, Purpose};
 use pathwarp_svg::objects::{self, Guides, Object, objects};
 use restoring::{Restoration, Returned, as_by_hand, remembering, restored};
-use stage::{Call, Convert, GuidePaths, Job, Scope, Stage, folder, temporary};
+use stage::{Call, Convert, GuidePaths, Job, Scope, Stage};
 use std::collections::{BTreeMap, HashSet};
 use std::ffi::OsString;
-use std::path::Path;
-use std::sync::Arc;
 
 /// Returns `true` if Inkscape started the program.
 pub(crate) fn is_call(args: &[OsString]) -> bool {
@@ -53,7 +46,10 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> R
         Job::Deformation(name) => warp(&stage, name),
         Job::Edit => edit_again(&stage),
         Job::Release => release(&stage),
-        Job::Hand => by_hand(&stage),
+        #[cfg(feature = "editor")]
+        Job::Hand => by_hand::by_hand(&stage),
+        #[cfg(not(feature = "editor"))]
+        Job::Hand => Err(Failure::Usage(crate::left_out::missing("edit").unwrap_or_default())),
         Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, &f)),
     };
     let svg = done.map_err(|f| in_a_window(&stage, &f))?;
@@ -197,88 +193,4 @@ fn settings(all: &[Object], ids: &[String]) -> String {
         format!("{} ({name}):{}\n", o.label.as_ref().unwrap_or(&o.id), values.collect::<String>())
     };
     all.iter().filter(|o| ids.contains(&o.id)).map(one).collect::<Vec<_>>().join("\n")
-}
-
-/// The options of a warp that had none before, as in the dialogs.
-const USUAL: &str = "--clones=follow";
-
-/// Opens the page, and warps the selected objects by the steps that the user keeps. Returns the drawing, or nothing if no steps are
-/// kept.
-fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
-    let drawing = stage.drawing()?;
-    let all = objects(&drawing, &stage.limits())?;
-    let whole = stage.call.ids.is_empty();
-    let chosen = |o: &&Object| if whole { o.is_top && !o.is_locked } else { stage.call.ids.contains(&o.id) };
-    let artwork: Vec<String> = all.iter().filter(chosen).map(|o| o.id.clone()).collect();
-    if artwork.is_empty() {
-        return Err(Failure::usage("there is nothing to bend in the drawing"));
-    }
-    let again = warped_together(&all, &artwork);
-    // Objects whose nodes were moved since are bent as they are: starting again would undo that.
-    let (Restoration { svg, objects: returned }, again) =
-        match restored(stage, &drawing, if again.is_some() { &artwork } else { &[] }, false) {
-            Ok(restoration) => (restoration, again),
-            Err(_) => (restored(stage, &drawing, &[], false)?, None),
-        };
-
-    let mut options = again.as_ref().map_or_else(|| vec![USUAL.to_owned()], |line| options_of(line));
-    if whole && again.is_none() {
-        options.extend(exclusions(&all));
-    }
-    let scope = Scope { ids: if whole { &[] } else { &artwork } };
-    let opened = match &again {
-        // A result with its source and recipe in it opens with its steps.
-        Some(line) => stage.warp(&svg, &[&line[..], &["--embed-recipe".to_owned()]].concat(), &scope, None)?.svg,
-        None => svg.clone(),
-    };
-    let Some(recipe) = edited(stage, &opened, &options, &scope)? else { return Ok(String::new()) };
-    if recipe.steps.is_empty() {
-        return Ok(svg);
-    }
-    let line = [words_of(stage, &recipe), options].concat();
-    let outcome = stage.warp(&svg, &line, &scope, None)?;
-    stage.check(&svg, &outcome)?;
-    let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
-    let recipe = joined(&settled(stage, line, &outcome));
-    let result = remembering(stage, &svg, &outcome.svg, &artwork, &recipe, &guides)?;
-    as_by_hand(stage, &drawing, result, &returned)
-}
-
-/// The recipe by which all of these objects were warped, if they were warped by one whose guides are still there.
-fn warped_together(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
-    let mut recipes = all.iter().filter(|o| ids.contains(&o.id)).map(|o| o.recipe.as_ref());
-    let first = recipes.next()??;
-    let line = split(first);
-    let is_there = |id: &String| all.iter().any(|o| o.id == *id);
-    (recipes.all(|r| r == Some(first)) && referred(&line).iter().all(is_there)).then_some(line)
-}
-
-/// Opens the page on a drawing. Returns the steps that the user keeps.
-fn edited(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -> Result<Option<Recipe>, Failure> {
-    let mut given = Given::default();
-    let mut set = |name: &str, value: &str| given.set(name, value).map_err(Failure::Usage);
-    for word in options {
-        let own = word.trim_start_matches("--");
-        let (name, value) = own.split_once('=').unwrap_or((own, "true"));
-        set(name, value)?;
-    }
-    for id in scope.ids {
-        set("select", &format!("[id={id}]"))?;
-    }
-    if let Some(folder) = folder() {
-        set("base-dir", &folder.display().to_string())?;
-    }
-    let file = temporary(svg.as_bytes())?;
-    let document = std::env::var_os("DOCUMENT_PATH").filter(|p| !p.is_empty());
-    let name = document.and_then(|p| Some(Path::new(&p).file_name()?.to_string_lossy().into_owned()));
-    let drawing = name.unwrap_or_else(|| "Drawing".into());
-    let options = Options {
-        file: file.path().to_owned(),
-        purpose: Purpose::Program { name: "Inkscape".into(), drawing },
-        port: None,
-        open: true,
-    };
-    let host = Arc::new(EditorHost::new(stage.registry.clone(), Given::default().keeping_pages(), given));
-    watch::rest();
-    pathwarp_editor::serve(host, &options, |_| ()).map_err(Failure::Input)
 }

@@ -6,7 +6,6 @@ use crate::advice::Flags;
 use crate::failure::{Failure, Status};
 use crate::options::{CommonOptions, Given, options_without_inputs};
 use crate::report::FileReport;
-use crate::temporaries::Temporary;
 use crate::{input, pipeline, references, steps, terminal, watch};
 use pathwarp::Error;
 use pathwarp::budget::Limits;
@@ -16,7 +15,6 @@ use pathwarp_svg::objects::Guides;
 use pathwarp_svg::{Document, ReadOptions};
 use std::cell::LazyCell;
 use std::ffi::OsString;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Converts a file with these options; without a target to standard output.
@@ -165,15 +163,6 @@ impl GuidePaths<'_> {
         }
         Ok(())
     }
-}
-
-/// A temporary file with this content.
-pub(super) fn temporary(content: &[u8]) -> Result<Temporary, Failure> {
-    let folder = std::env::temp_dir();
-    let failed = |e: std::io::Error| Failure::output(&folder, format!("a temporary file cannot be written: {e}"));
-    let (temporary, mut file) = Temporary::create_in(&folder).map_err(failed)?;
-    file.write_all(content).map_err(failed)?;
-    Ok(temporary)
 }
 
 /// The folder of the drawing on the screen, which linked pictures are relative to.

@@ -1,8 +1,9 @@
 //! Input files: read, and named in references; what is said of those that are no drawings.
 
+use super::gimp;
 use crate::failure::Failure;
 use crate::options::Reading;
-use crate::watch;
+use crate::{left_out, watch};
 use pathwarp::Error;
 use pathwarp_svg::{Document, ReadOptions};
 use std::fmt::Display;
@@ -59,8 +60,8 @@ pub(crate) fn ordinary_bytes(input: &Path) -> Result<Option<Vec<u8>>, Failure> {
     bytes.try_reserve_exact(room).map_err(|e| unreadable(&e))?;
     // A pipe is not probed: it can be read only once.
     if size.is_some() {
-        let head = file.by_ref().take(pathwarp_gimp::HEAD as u64).read_to_end(&mut bytes);
-        if head.is_err() || pathwarp_gimp::may_begin(&bytes) {
+        let head = file.by_ref().take(gimp::HEAD as u64).read_to_end(&mut bytes);
+        if head.is_err() || gimp::may_begin(&bytes) {
             return Ok(None);
         }
     }
@@ -80,7 +81,7 @@ pub(crate) fn document_of(bytes: &[u8], input: &Path, reading: &Reading) -> Resu
     if bytes.starts_with(XCF_MAGIC) {
         let advice =
             "an XCF holds paths, not a drawing; `pathwarp paths` lists them, `pathwarp convert` copies them to an SVG";
-        return Err(Failure::file(input, advice));
+        return Err(Failure::file(input, left_out::missing("xcf").as_deref().unwrap_or(advice)));
     }
     let read = Document::read(bytes, &display(input), &read_options(input, reading));
     read.map_err(|e| not_a_drawing(bytes, input, e.into()))
@@ -163,6 +164,10 @@ pub(crate) fn described(bytes: &[u8], name: &Path) -> Option<String> {
     let extension = name.extension().map(|e| e.to_ascii_lowercase().to_string_lossy().into_owned());
     let extension = extension.as_deref().unwrap_or_default();
     let starts = |at: usize, magic: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
+    let is_gimps = bytes.starts_with(XCF_MAGIC) || is_named_xcf(name) || extension == "json";
+    if let Some(said) = left_out::missing("xcf").filter(|_| is_gimps) {
+        return Some(said);
+    }
     // Documents of drawing programs are PDF or archives inside.
     let known =
         MAGIC.iter().find(|(at, magic, ..)| starts(*at, magic)).map(|(_, magic, what, advice)| match extension {

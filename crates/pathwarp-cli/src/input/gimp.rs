@@ -11,7 +11,7 @@ use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::page::PageNews;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
-use pathwarp::budget::Budget;
+use pathwarp::budget::{Budget, Limits};
 use pathwarp::edit::{self, Offset};
 use pathwarp::fold::{Orientation, Survey};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
@@ -29,8 +29,26 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+pub(super) use pathwarp_gimp::{HEAD, may_begin};
+
+/// Opens an input for its paths; `None` if it is no GIMP file.
+pub(super) fn open(
+    input: &Path,
+    options: &CommonOptions,
+    target: Option<&Path>,
+) -> Result<Option<Box<dyn FileArtwork>>, Failure> {
+    let Some(file) = GimpFile::open(input, options.salvage, &options.reading.limits)? else { return Ok(None) };
+    Ok(Some(Box::new(GimpArtwork::new(file, options, target)?)))
+}
+
+/// The path called `name`, or the only one, of a file; `None` if it is no GIMP file.
+pub(crate) fn outline(file: &Path, name: Option<&str>, limits: &Limits) -> Result<Option<Outline>, Error> {
+    let Some(file) = GimpFile::read(file, false, limits)? else { return Ok(None) };
+    Ok(Some(name.map_or_else(|| file.only_path(), |name| file.path_named(name))?.outline()))
+}
+
 /// The paths of a GIMP file. Their plane is the canvas, in pixels.
-pub(crate) struct GimpArtwork {
+struct GimpArtwork {
     file: GimpFile,
     format: GimpFormat,
     select: Vec<String>,
@@ -48,7 +66,7 @@ pub(crate) struct GimpArtwork {
 
 impl GimpArtwork {
     /// The paths of `file` that the options select.
-    pub(super) fn new(file: GimpFile, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
+    fn new(file: GimpFile, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
         let format = format(options, &file, target)?;
         let (select, exclude) = (options.select.clone(), options.exclude.clone());
         check_names(&file, select.iter().chain(&exclude))?;

@@ -3,7 +3,9 @@
 mod artwork;
 mod beside;
 mod files;
+#[cfg_attr(not(feature = "gimp"), path = "no_gimp.rs")]
 mod gimp;
+#[cfg(feature = "gimp")]
 mod gimp_file;
 mod picture;
 mod svg;
@@ -14,23 +16,21 @@ pub(crate) use files::{
     bytes, described, display, document, document_of, no_document, not_a_drawing, read_data_file, read_options,
     split_reference, unreadable,
 };
-pub(crate) use gimp::{file_name, svg_name};
+#[cfg(feature = "gimp")]
+pub(crate) use gimp::file_name;
+pub(crate) use gimp::{outline, svg_name};
+#[cfg(feature = "gimp")]
 pub(crate) use gimp_file::GimpFile;
 pub(crate) use svg::SvgArtwork;
 
 use crate::failure::Failure;
 use crate::options::CommonOptions;
-use gimp::GimpArtwork;
 use pathwarp_raster::Picture;
 use picture::PictureArtwork;
 use std::path::Path;
 
 /// An input file.
-pub(crate) enum Input {
-    Svg(Box<SvgArtwork>),
-    Gimp(GimpArtwork),
-    Picture(PictureArtwork),
-}
+pub(crate) struct Input(Box<dyn FileArtwork>);
 
 impl Input {
     /// Opens an input and checks that the options and the target suit its kind.
@@ -38,8 +38,8 @@ impl Input {
         if let (None, Some(bytes)) = (&options.into, files::ordinary_bytes(input)?) {
             return Self::of_bytes(&bytes, input, options, target);
         }
-        if let Some(file) = GimpFile::open(input, options.salvage, &options.reading.limits)? {
-            return Ok(Self::Gimp(GimpArtwork::new(file, options, target)?));
+        if let Some(paths) = gimp::open(input, options, target)? {
+            return Ok(Self(paths));
         }
         if options.into.is_some() {
             let file = display(input);
@@ -56,16 +56,12 @@ impl Input {
         target: Option<&Path>,
     ) -> Result<Self, Failure> {
         if Picture::sniff(bytes) {
-            return Ok(Self::Picture(PictureArtwork::read(bytes, input, options, target)?));
+            return Ok(Self(Box::new(PictureArtwork::read(bytes, input, options, target)?)));
         }
-        Ok(Self::Svg(Box::new(SvgArtwork::read(bytes, input, options, target)?)))
+        Ok(Self(Box::new(SvgArtwork::read(bytes, input, options, target)?)))
     }
 
     pub(crate) fn artwork(&mut self) -> &mut dyn FileArtwork {
-        match self {
-            Self::Svg(a) => &mut **a,
-            Self::Gimp(a) => a,
-            Self::Picture(a) => a,
-        }
+        &mut *self.0
     }
 }

@@ -7,7 +7,6 @@ use pathwarp::budget::{Limit, Limits};
 use pathwarp::kurbo::{Point, Rect, Size};
 use pathwarp::param::{Axis, Frame, Length, LengthUnit};
 use pathwarp::refit::RESOLUTION;
-use pathwarp_dxf::Curves;
 use pathwarp_svg::{
     Clones, GenericFamilies, LetteringFrame, OnError, PageFit, Patterns, ReadOptions, Strokes, Structure, TextMode,
     check_fonts,
@@ -104,7 +103,7 @@ pub(crate) struct CommonOptions {
     /// Width, and height if given, of a warped picture in pixels.
     pub(crate) image_size: Option<(u32, Option<u32>)>,
     /// Form of Bézier curves in a DXF.
-    pub(crate) dxf_curves: Curves,
+    pub(crate) dxf_polylines: bool,
     /// Quality of a JPEG, from 1 to 100.
     pub(crate) quality: Option<u8>,
     pub(crate) on_failure: OnFailure,

@@ -4,6 +4,7 @@ use super::common::{CommonOptions, Reading};
 use super::table::{CommonOption, LeadingMinus, OPTIONS, OptionValue};
 use crate::edits::EditChoice;
 use crate::failure::Failure;
+use crate::left_out;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use std::ffi::{OsStr, OsString};
@@ -222,6 +223,9 @@ fn apply(option: &CommonOption, value: &OsStr, options: &mut CommonOptions) -> R
 }
 
 fn unknown(name: &str) -> String {
+    if let Some(said) = left_out::missing(name) {
+        return said;
+    }
     crate::advice::unknown("option", name, OPTIONS.iter().map(|o| o.name))
 }
 
@@ -244,7 +248,11 @@ pub(crate) fn inputs_arg() -> Arg {
 
 /// The common options, without the inputs.
 pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
-    OPTIONS.iter().map(|o| arg(o).help_heading("Common options").conflicts_with_all(o.conflicts.iter().copied()))
+    let is_there = |name: &&str| OPTIONS.iter().any(|o| o.name == *name);
+    OPTIONS.iter().map(move |o| {
+        let conflicts = o.conflicts.iter().copied().filter(is_there);
+        arg(o).help_heading("Common options").conflicts_with_all(conflicts)
+    })
 }
 
 /// Those of the common options that a command shares, with these names.

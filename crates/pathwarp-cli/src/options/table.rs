@@ -4,7 +4,7 @@ use super::common::{
     CommonOptions, GradientChoice, OnFailure, family_name, frame, image_size, limit, positive, positive_length,
 };
 use crate::format::Format;
-use pathwarp_dxf::Curves;
+use crate::left_out;
 use pathwarp_svg::{Clones, PageFit, Patterns, Strokes, Structure, TextMode};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -61,11 +61,14 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("auto", |o| o.format = None),
                 ("svg", |o| o.format = Some(Format::Svg)),
                 ("svgz", |o| o.format = Some(Format::Svgz)),
+                #[cfg(feature = "pdf")]
                 ("pdf", |o| o.format = Some(Format::Pdf)),
+                #[cfg(feature = "dxf")]
                 ("dxf", |o| o.format = Some(Format::Dxf)),
                 ("png", |o| o.format = Some(Format::Png)),
                 ("jpg", |o| o.format = Some(Format::Jpeg)),
                 ("webp", |o| o.format = Some(Format::WebP)),
+                #[cfg(feature = "gimp")]
                 ("json", |o| o.format = Some(Format::PointList)),
             ]),
             "Format of the result: of a drawing svg, svgz, pdf or dxf (outlines in mm), of a picture png, jpg or webp \
@@ -103,6 +106,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         OptionValue::Switch(|o| o.dry_run = true),
         "Print which file would be written for each input, and write none",
     ),
+    #[cfg(feature = "gimp")]
     CommonOption {
         conflicts: &["out", "out-dir"],
         ..of_the_run(
@@ -111,6 +115,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "For an XCF: write a copy of it with its paths warped and every other byte kept",
         )
     },
+    #[cfg(feature = "gimp")]
     stored(
         "salvage",
         OptionValue::Switch(|o| o.salvage = true),
@@ -350,14 +355,12 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "Size in pixels of a warped PNG, JPEG or WebP",
         )
     },
+    #[cfg(feature = "dxf")]
     CommonOption {
         default: Some("spline"),
         ..stored(
             "dxf-curves",
-            OptionValue::Choice(&[
-                ("spline", |o| o.dxf_curves = Curves::Splines),
-                ("polyline", |o| o.dxf_curves = Curves::Polylines),
-            ]),
+            OptionValue::Choice(&[("spline", |o| o.dxf_polylines = false), ("polyline", |o| o.dxf_polylines = true)]),
             "Curves in a DXF: exact splines, or for programs that know none, one polyline per contour within the \
              tolerance. Lines, arcs and circles are exact in both",
         )
@@ -522,7 +525,8 @@ impl CommonOption {
         match &self.value {
             OptionValue::Switch(_) if value != "true" => Err(format!("`{value}` is neither true nor false")),
             OptionValue::Choice(words) if !words.iter().any(|(word, _)| *word == value) => {
-                Err(format!("`{value}` is not one of {}", self.words().join(", ")))
+                let unknown = || format!("`{value}` is not one of {}", self.words().join(", "));
+                Err(left_out::missing(value).unwrap_or_else(unknown))
             }
             OptionValue::Whole { range, .. } if !value.parse().is_ok_and(|n| range.contains(&n)) => {
                 Err(format!("`{value}` is not a whole number from {} to {}", range.start(), range.end()))

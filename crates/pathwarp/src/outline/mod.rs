@@ -44,6 +44,32 @@ impl Subpath {
         out
     }
 
+    /// The anchors as drawing programs store them: incoming handle, anchor, outgoing handle. The handles of lines coincide with their
+    /// anchors, and arcs become cubics.
+    #[must_use]
+    pub fn with_handles(&self) -> Vec<[Point; 3]> {
+        let cubics: Vec<CubicBez> = self
+            .segs
+            .iter()
+            .flat_map(|g| match g {
+                Seg::Line(l) => vec![CubicBez::new(l.p0, l.p0, l.p1, l.p1)],
+                Seg::Arc(a) => a.to_cubics(a.a.hypot().max(a.b.hypot()) * 1e-3).collect(),
+                other => vec![other.to_cubic()],
+            })
+            .collect();
+        let Some(last) = cubics.last() else { return vec![[self.start; 3]] };
+        let mut incoming = if self.closed { last.p2 } else { cubics[0].p0 };
+        let mut out = Vec::with_capacity(cubics.len() + 1);
+        for c in &cubics {
+            out.push([incoming, c.p0, c.p1]);
+            incoming = c.p2;
+        }
+        if !self.closed {
+            out.push([last.p2, last.p3, last.p3]);
+        }
+        out
+    }
+
     /// The last point.
     #[must_use]
     pub fn end(&self) -> Point {

@@ -6,6 +6,7 @@ mod model;
 mod report;
 mod warp;
 
+use crate::catalogue::Catalogue;
 use crate::commands::args::{file_arg, given_file, switch};
 use crate::commands::map::{points_args, print_images, read_points};
 use crate::failure::{Failure, Status};
@@ -16,6 +17,7 @@ use args::{Own, frame_arg, given_frame, model_args, options};
 use clap::{ArgMatches, Command};
 use pathwarp::GeometryError;
 use pathwarp::budget::Budget;
+use pathwarp::deform::Info;
 use pathwarp::recipe::Recipe;
 use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
@@ -24,6 +26,20 @@ use pathwarp_solid::{Box3, Frame3, recipe};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::sync::Arc;
+
+impl Catalogue for Registry3 {
+    fn infos(&self) -> Vec<&Info> {
+        self.entries().iter().map(|e| &e.about().info).collect()
+    }
+
+    fn info(&self, name: &str) -> Option<&Info> {
+        self.get(name).map(|e| &e.about().info)
+    }
+
+    fn is_solid(&self) -> bool {
+        true
+    }
+}
 
 const ABOUT: &str = "Deform solids: meshes, curved surfaces and points in space";
 
@@ -88,7 +104,7 @@ fn list(registry: &Registry3) -> Result<Status, Failure> {
 }
 
 fn map_command(registry: &Registry3) -> Command {
-    let deformation = |info: &pathwarp::deform::Info| {
+    let deformation = |info: &Info| {
         let command = Command::new(info.name).about(info.title).args(steps::args(info));
         command.args(points_args()).arg(frame_arg())
     };

@@ -1,0 +1,99 @@
+//! Paths copied from one file into another, as GIMP stores them.
+
+use crate::export;
+use crate::failure::{Failure, Status};
+use crate::format::Format;
+use crate::input::{self, GimpFile};
+use crate::options::{CommonOptions, Reading};
+use crate::output::{self, PendingFile};
+use crate::sources::Files;
+use crate::terminal;
+use pathwarp::kurbo::Affine;
+use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
+use pathwarp_svg::{NamedPath, ReadOptions};
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+/// Copies the paths of a file into another format, with `split` each to its own file. `None` if `format` shows more of the drawing than
+/// its paths.
+pub(super) fn copy(
+    file: &Path,
+    target: Option<&Path>,
+    format: Format,
+    options: &CommonOptions,
+    split: bool,
+    salvage: bool,
+) -> Result<Option<Status>, Failure> {
+    let gimp = GimpFile::open(file, salvage, &options.reading.limits)?;
+    if gimp.is_none() && !split && matches!(format, Format::Pdf | Format::Dxf) {
+        return Ok(None);
+    }
+    let damage = gimp.as_ref().and_then(|g| g.damage.clone());
+    let (size, paths) = match &gimp {
+        Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
+        None => drawing(file, &options.reading)?,
+    };
+    if let Some(d) = damage.as_ref().filter(|_| !options.quiet) {
+        terminal::warning(&format!("{}: {d}", input::display(file)));
+    }
+    match target {
+        Some(out) if split => {
+            let names = names(out, format, &paths);
+            let mut files = Files::default();
+            files.read(file);
+            names.iter().try_for_each(|to| files.write(to, ""))?;
+            let single = |(to, p): (&PathBuf, &GimpPath)| {
+                PendingFile::new(to, &bytes(format, size, std::slice::from_ref(p), options)?)
+            };
+            let files: Result<Vec<PendingFile>, Failure> = names.iter().zip(&paths).map(single).collect();
+            PendingFile::commit_all(files?)?;
+        }
+        _ => output::write(target, &bytes(format, size, &paths, options)?)?,
+    }
+    Ok(Some(Status::partial_if(damage.is_some())))
+}
+
+/// The size of an SVG's viewBox and its paths as GIMP would store them, in units of the viewBox.
+fn drawing(file: &Path, reading: &Reading) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
+    let doc = input::document(file, reading)?;
+    let page = doc.view_box();
+    let to_page = Affine::translate(-page.origin().to_vec2());
+    let path = |p: NamedPath| {
+        let strokes = p.outline.transformed(to_page).subpaths.iter().map(Stroke::from_subpath).collect();
+        GimpPath { name: p.label.or(p.title).unwrap_or(p.id), visible: true, strokes }
+    };
+    Ok(([page.width(), page.height()], doc.paths().into_iter().map(path).collect()))
+}
+
+/// The bytes of a file with these paths.
+fn bytes(format: Format, size: [f64; 2], paths: &[GimpPath], options: &CommonOptions) -> Result<Vec<u8>, Failure> {
+    match format {
+        Format::PointList => Ok(to_json(Some(size), paths).into_bytes()),
+        Format::Xcf => Ok(new_xcf(size.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), paths)),
+        drawing => {
+            let svg = to_svg(size, paths, None);
+            Ok(export::drawing(svg, drawing, &ReadOptions::default(), options, None)?.bytes)
+        }
+    }
+}
+
+/// A file name for every path, distinct even on file systems that ignore case.
+fn names(out: &Path, format: Format, paths: &[GimpPath]) -> Vec<PathBuf> {
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = out.extension().map_or_else(|| format.extension().into(), |e| e.to_string_lossy());
+    let mut taken = HashSet::new();
+    // The next number of each name, so that many paths of one name do not try all numbers.
+    let mut next: HashMap<String, usize> = HashMap::new();
+    let mut unique = |p: &GimpPath| {
+        let name = input::file_name(&p.name);
+        let number = next.entry(name.to_lowercase()).or_insert(1);
+        loop {
+            let numbered = if *number == 1 { name.clone() } else { format!("{name}-{number}") };
+            *number += 1;
+            if !numbered.is_empty() && taken.insert(numbered.to_lowercase()) {
+                return numbered;
+            }
+        }
+    };
+    paths.iter().map(|p| out.with_file_name(format!("{stem}-{}.{extension}", unique(p)))).collect()
+}

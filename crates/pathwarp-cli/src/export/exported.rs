@@ -1,0 +1,19 @@
+//! What an export gives.
+
+/// A drawing in some format.
+pub(crate) struct Exported {
+    pub(crate) bytes: Vec<u8>,
+    /// Messages about content that the format cannot express.
+    pub(crate) warnings: Vec<String>,
+}
+
+impl From<Vec<u8>> for Exported {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self { bytes, warnings: Vec::new() }
+    }
+}
+
+/// A number with the noun in the singular or plural.
+pub(super) fn counted(n: usize, one: &str, more: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { more })
+}

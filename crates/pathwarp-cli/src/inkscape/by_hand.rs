@@ -1,0 +1,142 @@
+//! Objects bent by hand: the editor is opened on them, and its steps become words of a command line.
+
+use super::line::{exclusions, referred, settled};
+use super::names::{CHAIN, joined, split};
+use super::restoring::{Restoration, as_by_hand, remembering, restored};
+use super::stage::{Scope, Stage, folder};
+use crate::editing::EditorHost;
+use crate::failure::Failure;
+use crate::options::{Given, OPTIONS};
+use crate::steps::INVERSE;
+use crate::temporaries::Temporary;
+use crate::watch;
+use pathwarp::recipe::Recipe;
+use pathwarp_editor::{Options, Purpose, selectors};
+use pathwarp_svg::objects::{Guides, Object, objects};
+use std::io::Write as _;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The options of a warp that had none before, as in the dialogs.
+const USUAL: &str = "--clones=follow";
+
+/// Opens the page, and warps the selected objects by the steps that the user keeps. Returns the drawing, or nothing if no steps are
+/// kept.
+pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
+    let drawing = stage.drawing()?;
+    let all = objects(&drawing, &stage.limits())?;
+    let whole = stage.call.ids.is_empty();
+    let chosen = |o: &&Object| if whole { o.is_top && !o.is_locked } else { stage.call.ids.contains(&o.id) };
+    let artwork: Vec<String> = all.iter().filter(chosen).map(|o| o.id.clone()).collect();
+    if artwork.is_empty() {
+        return Err(Failure::usage("there is nothing to bend in the drawing"));
+    }
+    let again = warped_together(&all, &artwork);
+    // Objects whose nodes were moved since are bent as they are: starting again would undo that.
+    let (Restoration { svg, objects: returned }, again) =
+        match restored(stage, &drawing, if again.is_some() { &artwork } else { &[] }, false) {
+            Ok(restoration) => (restoration, again),
+            Err(_) => (restored(stage, &drawing, &[], false)?, None),
+        };
+
+    let mut options = again.as_ref().map_or_else(|| vec![USUAL.to_owned()], |line| options_of(line));
+    if whole && again.is_none() {
+        options.extend(exclusions(&all));
+    }
+    let scope = Scope { ids: if whole { &[] } else { &artwork } };
+    let opened = match &again {
+        // A result with its source and recipe in it opens with its steps.
+        Some(line) => stage.warp(&svg, &[&line[..], &["--embed-recipe".to_owned()]].concat(), &scope, None)?.svg,
+        None => svg.clone(),
+    };
+    let Some(recipe) = edited(stage, &opened, &options, &scope)? else { return Ok(String::new()) };
+    if recipe.steps.is_empty() {
+        return Ok(svg);
+    }
+    let line = [words_of(stage, &recipe), options].concat();
+    let outcome = stage.warp(&svg, &line, &scope, None)?;
+    stage.check(&svg, &outcome)?;
+    let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
+    let recipe = joined(&settled(stage, line, &outcome));
+    let result = remembering(stage, &svg, &outcome.svg, &artwork, &recipe, &guides)?;
+    as_by_hand(stage, &drawing, result, &returned)
+}
+
+/// The recipe by which all of these objects were warped, if they were warped by one whose guides are still there.
+fn warped_together(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
+    let mut recipes = all.iter().filter(|o| ids.contains(&o.id)).map(|o| o.recipe.as_ref());
+    let first = recipes.next()??;
+    let line = split(first);
+    let is_there = |id: &String| all.iter().any(|o| o.id == *id);
+    (recipes.all(|r| r == Some(first)) && referred(&line).iter().all(is_there)).then_some(line)
+}
+
+/// Opens the page on a drawing. Returns the steps that the user keeps.
+fn edited(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -> Result<Option<Recipe>, Failure> {
+    let mut given = Given::default();
+    let mut set = |name: &str, value: &str| given.set(name, value).map_err(Failure::Usage);
+    for word in options {
+        let own = word.trim_start_matches("--");
+        let (name, value) = own.split_once('=').unwrap_or((own, "true"));
+        set(name, value)?;
+    }
+    for id in scope.ids {
+        set("select", &format!("[id={id}]"))?;
+    }
+    if let Some(folder) = folder() {
+        set("base-dir", &folder.display().to_string())?;
+    }
+    let file = temporary(svg.as_bytes())?;
+    let document = std::env::var_os("DOCUMENT_PATH").filter(|p| !p.is_empty());
+    let name = document.and_then(|p| Some(Path::new(&p).file_name()?.to_string_lossy().into_owned()));
+    let drawing = name.unwrap_or_else(|| "Drawing".into());
+    let options = Options {
+        file: file.path().to_owned(),
+        purpose: Purpose::Program { name: "Inkscape".into(), drawing },
+        port: None,
+        open: true,
+    };
+    let host = Arc::new(EditorHost::new(stage.registry.clone(), Given::default().keeping_pages(), given));
+    watch::rest();
+    pathwarp_editor::serve(host, &options, |_| ()).map_err(Failure::Input)
+}
+
+/// The words of a recipe's steps.
+fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {
+    let mut line = Vec::new();
+    for step in &recipe.steps {
+        if !line.is_empty() {
+            line.push(CHAIN.to_owned());
+        }
+        line.push(step.deformation.clone());
+        let params = stage.registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+        let word = |(name, value): (&str, Option<&str>)| match value {
+            Some(value) => format!("--{name}={value}"),
+            None => format!("--{name}"),
+        };
+        line.extend(step.options(params).map(word));
+        if step.inverse {
+            line.push(format!("--{INVERSE}"));
+        }
+        line.extend(selectors(recipe, step).map(|(name, selector)| format!("--{name}={selector}")));
+    }
+    line
+}
+
+/// The common options among the words of a recipe.
+fn options_of(line: &[String]) -> Vec<String> {
+    let is_option = |word: &&String| {
+        let own = word.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(name, _)| name));
+        own.is_some_and(|name| OPTIONS.iter().any(|o| o.name == name))
+    };
+    line.iter().filter(is_option).cloned().collect()
+}
+
+/// A temporary file with this content.
+fn temporary(content: &[u8]) -> Result<Temporary, Failure> {
+    let folder = std::env::temp_dir();
+    let failed = |e: std::io::Error| Failure::output(&folder, format!("a temporary file cannot be written: {e}"));
+    let (temporary, mut file) = Temporary::create_in(&folder).map_err(failed)?;
+    file.write_all(content).map_err(failed)?;
+    Ok(temporary)
+}
