@@ -62,6 +62,12 @@ fn edges(r: &mut Random, source: &[Vec<Curve>], width: f64) -> Vec<Point> {
     out
 }
 
+/// The smaller singular value of a Jacobian.
+fn least_stretch([dx, dy]: &[Vec2; 2]) -> f64 {
+    let (sum, det) = (dx.hypot2() + dy.hypot2(), dx.cross(*dy));
+    (0.5 * (sum - (sum * sum - 4.0 * det * det).max(0.0).sqrt())).sqrt()
+}
+
 /// How many probes were decided, and where one is on the wrong side.
 struct Probed {
     decided: usize,
@@ -103,22 +109,19 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
     let mut jacobians = vec![[Vec2::ZERO; 2]; edges.len()];
     points.jacobians(&edges, &mut jacobians);
     let mut all = Probed { decided: 0, wrong: Vec::new() };
-    let chosen = edges.iter().zip(&jacobians).filter_map(|(edge, [dx, dy])| {
-        // The least stretch: a disc of a tolerance in the image has a preimage no longer than this.
-        let (sum, det) = (dx.hypot2() + dy.hypot2(), dx.cross(*dy));
-        let least = (0.5 * (sum - (sum * sum - 4.0 * det * det).max(0.0).sqrt())).sqrt();
-        let room = 1.5 * tolerance / least;
-        (room < 0.05 * width).then_some((*edge, room, det))
-    });
-    let chosen: Vec<(Point, f64, f64)> = chosen.collect();
     // Where the map turns areas over, windings of the image say nothing.
-    let turned = chosen.iter().any(|c| c.2 < 0.0) && chosen.iter().any(|c| c.2 > 0.0);
-    if turned || chosen.is_empty() {
+    let turns: Vec<f64> = jacobians.iter().map(|[dx, dy]| dx.cross(*dy)).collect();
+    if turns.iter().any(|t| *t < 0.0) && turns.iter().any(|t| *t > 0.0) {
         return Some(all);
     }
+    let chosen = edges.iter().zip(&jacobians).filter_map(|(edge, jacobian)| {
+        // A disc of a tolerance in the image has a preimage no longer than this.
+        let room = 1.5 * tolerance / least_stretch(jacobian);
+        (room < 0.05 * width).then_some((*edge, room))
+    });
     // A bend may lay one part of the plane on another.
     let overlaps = map.name.contains("bend ");
-    for (edge, room, _) in chosen {
+    for (edge, room) in chosen {
         let middle = lines.0.iter().min_by(|a, b| from_line(&[**a], edge).total_cmp(&from_line(&[**b], edge))).unwrap();
         let out = edge - middle[0].midpoint(middle[1]);
         for (by, inside) in [(-room, true), (room, false)] {
@@ -127,9 +130,12 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
             if (off < 0.0) != inside || off.abs() < 0.8 * room || (overlaps && !inside) {
                 continue;
             }
-            let mut image = [Point::ORIGIN];
+            let (mut image, mut jacobian) = ([Point::ORIGIN], [[Vec2::ZERO; 2]]);
             points.points(&[q], &mut image);
-            if !image[0].is_finite() {
+            points.jacobians(&[q], &mut jacobian);
+            // Where the map changes fast, the stretch at the edge says little about the disc.
+            let changes = !(0.7..1.4).contains(&(least_stretch(&jacobian[0]) * room / (1.5 * tolerance)));
+            if changes || !image[0].is_finite() {
                 continue;
             }
             all.decided += 1;

@@ -1,6 +1,7 @@
 //! Paths as items (version 18 and later, GIMP 3): each behind a pointer, with its own property list.
 
-use super::read::{MOST_PROPERTIES, PROP_END, PathLayout, PathRecord, Xcf, count, string};
+use super::model::{MOST_PROPERTIES, PROP_END, PathLayout, PathRecord, Xcf};
+use super::primitives::{count, string};
 use super::vectors;
 use crate::error::Error;
 use crate::path::GimpPath;

@@ -5,12 +5,14 @@
 //! and files written by GIMP 2.10 and 3.0, whose point types (1, 2, 3) differ from that text.
 
 mod items;
+mod model;
 mod old_paths;
+mod primitives;
 mod read;
 mod rewrite;
 mod vectors;
 
+pub(crate) use model::{MAGIC, Xcf};
 pub(crate) use read::read;
-pub(crate) use read::{MAGIC, Xcf};
 pub use rewrite::new_xcf;
 pub use rewrite::rewrite;

@@ -1,6 +1,7 @@
 //! `PROP_PATHS`, the paths of GIMP 1.
 
-use super::read::{PathLayout, PathRecord, Xcf, coordinate, count, string};
+use super::model::{PathLayout, PathRecord, Xcf};
+use super::primitives::{coordinate, count, string};
 use crate::error::Error;
 use crate::old_strokes::{ANCHOR, NEW_STROKE, TypedPoint, listed, strokes};
 use crate::path::{GimpPath, Stroke};

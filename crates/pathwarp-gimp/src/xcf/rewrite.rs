@@ -4,9 +4,10 @@ use crate::error::{Error, ErrorKind};
 use crate::old_strokes;
 use crate::path::{GimpPath, Stroke};
 use crate::source::{ByteSource, ReadSeek};
-use crate::xcf::read::{
-    MAGIC, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, PathLayout, PathRecord, Xcf, read,
+use crate::xcf::model::{
+    MAGIC, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, PathLayout, PathRecord, Xcf,
 };
+use crate::xcf::read::read;
 use crate::xcf::{old_paths, vectors};
 use pathwarp::budget::Limits;
 use std::collections::{BTreeMap, HashSet};

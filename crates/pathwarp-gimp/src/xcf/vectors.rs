@@ -1,6 +1,7 @@
 //! `PROP_VECTORS`, the paths of GIMP 2, and the encoding of strokes that it shares with path items.
 
-use super::read::{PathLayout, PathRecord, Xcf, coordinate, count, string, word};
+use super::model::{PathLayout, PathRecord, Xcf};
+use super::primitives::{coordinate, count, string, word};
 use crate::error::Error;
 use crate::path::{GimpPath, Stroke};
 use crate::source::ByteSource;

@@ -1,0 +1,51 @@
+//! Strings, counts and coordinates.
+
+use crate::error::Error;
+use crate::source::ByteSource;
+
+/// Longest accepted name in bytes; anything longer is damage.
+const LONGEST_NAME: u64 = 1 << 20;
+
+/// Reads a string: its length including a final NUL, then its bytes. GIMP writes an empty string as length 0.
+pub(super) fn string(input: &mut ByteSource<'_>, what: &str) -> Result<String, Error> {
+    let at = input.at();
+    let length = u64::from(input.u32(what)?);
+    input.need(length, at, || format!("{what} needs {length} bytes"))?;
+    if length > LONGEST_NAME {
+        return Err(Error::damaged(at, format!("{what} of {length} bytes is longer than any name")));
+    }
+    let mut bytes = input.vec(length, what)?;
+    if let Some(last) = bytes.pop()
+        && last != 0
+    {
+        return Err(Error::damaged(at + 3 + length, format!("{what} does not end with a zero byte")));
+    }
+    let text = String::from_utf8(bytes);
+    text.map_err(|e| Error::damaged(at + 4 + e.utf8_error().valid_up_to() as u64, format!("{what} is not UTF-8")))
+}
+
+/// Reads the number of things that take at least `least` bytes each.
+pub(super) fn count(input: &mut ByteSource<'_>, least: u64, what: &str) -> Result<u32, Error> {
+    let at = input.at();
+    let n = input.u32(what)?;
+    let size = u64::from(n) * least;
+    input.need(size, at, || format!("{n} {what} need {size} bytes or more"))?;
+    Ok(n)
+}
+
+/// Decodes a coordinate; NaN and infinities are errors.
+pub(super) fn coordinate(bytes: [u8; 4], at: u64) -> Result<f64, Error> {
+    let v = f32::from_be_bytes(bytes);
+    if v.is_finite() {
+        Ok(f64::from(v))
+    } else {
+        Err(Error::damaged(at, format!("a coordinate is {v}, not a finite number")))
+    }
+}
+
+/// Returns the four bytes at `i`; the caller has checked the length.
+pub(super) fn word(bytes: &[u8], i: usize) -> [u8; 4] {
+    let mut w = [0; 4];
+    w.copy_from_slice(&bytes[i..i + 4]);
+    w
+}
