@@ -2499,9 +2499,7 @@
       if (!handles) return;
       const reach = REACH * this.camera.pixel;
       const key = await this.app.addPoint(at, this.modes.reflections(handles, at, reach), reach);
-      if (!key) return;
-      this.focus(key);
-      this.elements.get(key)?.focus({ preventScroll: true });
+      if (key) this.select([key]);
     }
     /** Arrow keys move a handle by a px of the screen, with Shift by ten. */
     key(e) {

@@ -437,9 +437,8 @@ export class Stage {
     if (!handles) return;
     const reach = REACH * this.camera.pixel;
     const key = await this.app.addPoint(at, this.modes.reflections(handles, at, reach), reach);
-    if (!key) return;
-    this.focus(key);
-    this.elements.get(key)?.focus({ preventScroll: true });
+    // The clicks may have selected the ends of the line.
+    if (key) this.select([key]);
   }
 
   /** Arrow keys move a handle by a px of the screen, with Shift by ten. */
