@@ -51,7 +51,7 @@ pub struct Handle3 {
 ///
 /// ```
 /// use glam::DVec3;
-/// use pathwarp_solid::{Box3, deform::{Bend3, Spine3}, Map3};
+/// use pathwarp_solid::{Box3, deform::{Bend3, Spine3}, map::Map3};
 ///
 /// let bar = Box3::new(DVec3::new(0.0, -1.0, -1.0), DVec3::new(10.0, 1.0, 1.0));
 /// let twisted = Bend3::new(bar, Spine3::Twist(std::f64::consts::FRAC_PI_2)).build()?;

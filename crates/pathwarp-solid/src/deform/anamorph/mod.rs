@@ -62,7 +62,7 @@ impl Push3 {
 ///
 /// ```
 /// use glam::DVec3;
-/// use pathwarp_solid::{deform::{Anamorph3, Push3, Reference3}, Map3};
+/// use pathwarp_solid::{deform::{Anamorph3, Push3, Reference3}, map::Map3};
 ///
 /// let eye = DVec3::new(0.0, 0.0, 100.0);
 /// let corners = [DVec3::ZERO, DVec3::new(50.0, 0.0, 0.0), DVec3::new(0.0, 50.0, 0.0), DVec3::new(0.0, 0.0, 50.0)];
