@@ -2,7 +2,7 @@
 
 use crate::file::{File, MaskKind, State};
 use crate::options::PRINT;
-use crate::stream::{Stream, affine, from_usvg, rect, roomy};
+use crate::stream::{Stream, affine, rect, roomy};
 use crate::{image, paint};
 use kurbo::{Affine, BezPath, Rect, Shape as _, Vec2};
 use pathwarp_raster::{Error, Pixmap, render_group};
@@ -177,17 +177,13 @@ fn collect(file: &File<'_>, g: &Group, to_user: Affine, out: &mut Vec<(BezPath, 
             Node::Text(t) => collect(file, t.flattened(), to_user * affine(t.flattened().transform()), out)?,
             Node::Path(p) => {
                 if let Some(fill) = p.fill().filter(|_| p.is_visible()) {
-                    out.push((to_user * outline(file, p), Fill::rule(fill)));
+                    out.push((to_user * paint::outline(file, p), Fill::rule(fill)));
                 }
             }
             Node::Image(_) => {}
         }
     }
     Some(())
-}
-
-fn outline(file: &File<'_>, p: &usvg::Path) -> BezPath {
-    (file.options.exact)(p).unwrap_or_else(|| from_usvg(p.data()))
 }
 
 /// Fills the content of a clip path with the current colour.
@@ -198,7 +194,7 @@ fn silhouette(file: &mut File<'_>, stream: &mut Stream, g: &Group, bounds: Rect)
             Node::Text(t) => t.flattened(),
             Node::Path(p) => {
                 if let Some(fill) = p.fill().filter(|_| p.is_visible()) {
-                    stream.outline(&outline(file, p));
+                    stream.outline(&paint::outline(file, p));
                     match fill.rule() {
                         FillRule::NonZero => stream.content.fill_nonzero(),
                         FillRule::EvenOdd => stream.content.fill_even_odd(),

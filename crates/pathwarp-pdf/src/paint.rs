@@ -67,12 +67,17 @@ pub(crate) fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use
     }
 }
 
+/// The exact outline of a path, if there is one, or else usvg's.
+pub(crate) fn outline(file: &File<'_>, p: &Path) -> BezPath {
+    (file.options.exact)(p).unwrap_or_else(|| from_usvg(p.data()))
+}
+
 /// Draws a path.
 pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, path: &Path) {
     if !path.is_visible() {
         return;
     }
-    let outline = (file.options.exact)(path).unwrap_or_else(|| from_usvg(path.data()));
+    let outline = outline(file, path);
     match path.paint_order() {
         PaintOrder::FillAndStroke => {
             fill(file, stream, path, &outline);

@@ -4,7 +4,7 @@ use crate::sheet::declarations;
 use crate::text::{Letters, Rewritten, joined, rewritten};
 use crate::tree::{Styled, Tree, styled};
 use crate::value::{percent_decoded, safe_id};
-use crate::xml::{self, escape};
+use crate::xml::{self, escape, name_end};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use memchr::memmem;
@@ -373,9 +373,7 @@ fn place(text: &str, node: Node<'_, '_>, attribute: Option<roxmltree::Attribute<
         let range = a.range();
         return text[..range.start].trim_end().len()..range.end;
     }
-    let start = node.range().start + 1;
-    let end =
-        text[start..].find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).map_or(start, |i| start + i);
+    let end = name_end(text, node);
     end..end
 }
 

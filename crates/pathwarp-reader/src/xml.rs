@@ -3,6 +3,7 @@
 use memchr::{memchr, memchr_iter, memchr2_iter, memchr3, memmem};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Exceeded, Limit, cost};
+use roxmltree::Node;
 use std::collections::{HashMap, HashSet};
 
 /// Parses XML that is known to be within the budget.
@@ -73,6 +74,13 @@ fn reference(text: &str) -> Option<(&str, &str, &str)> {
     let (before, rest) = text.split_once('&')?;
     let (name, after) = rest.split_once(';')?;
     Some((before, name, after))
+}
+
+/// The place after the name of an element, where attributes can be inserted.
+#[must_use]
+pub fn name_end(text: &str, node: Node<'_, '_>) -> usize {
+    let start = node.range().start + 1;
+    text[start..].find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).map_or(text.len(), |i| start + i)
 }
 
 /// Escapes text for an attribute value in double quotes. The result is valid as element content, too.

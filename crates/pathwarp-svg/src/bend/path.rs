@@ -129,12 +129,15 @@ pub(super) fn with_arcs(
         if all.iter().flatten().all(Option::is_none) {
             return Ok(None);
         }
-        let mut first = 0;
-        let subpaths = outline.subpaths.iter().zip(&all).map(|(s, arcs)| {
-            let image = subpath((s, first), arcs, map, options, &mut report);
-            first += s.segs.len();
-            image
-        });
+        let ends = |end: &mut usize, n: usize| {
+            *end += n;
+            Some(*end)
+        };
+        let spans: Vec<usize> = options.spans.iter().map(|s| s.segments).scan(0, ends).collect();
+        let subpaths = outline.subpaths.iter().zip(&all);
+        let subpaths = subpaths
+            .zip(outline.subpaths.iter().map(|s| s.segs.len()).scan(0, ends))
+            .map(|((s, arcs), end)| subpath((s, end - s.segs.len()), arcs, map, (options, &spans), &mut report));
         Outline { subpaths: subpaths.collect::<Result<_, _>>()? }
     };
     let image = Outline { subpaths: image.subpaths.into_iter().map(short_arcs).collect() };
@@ -194,12 +197,12 @@ fn center(p: Point, q: Point, r: Point) -> Option<Point> {
 }
 
 /// The image of a subpath with the images of its arcs. What lies between them is refitted. `first` is the index of its first segment in
-/// the outline.
+/// the outline, `ends` are the ends of the spans.
 fn subpath(
     (s, first): (&Subpath, usize),
     arcs: &[Option<EllipticArc>],
     map: &dyn Map,
-    options: &refit::Options,
+    (options, ends): (&refit::Options, &[usize]),
     report: &mut PathReport,
 ) -> Result<Subpath, GeometryError> {
     let mut out = Subpath { start: map.point(s.start), segs: Vec::with_capacity(s.segs.len()), closed: s.closed };
@@ -216,7 +219,7 @@ fn subpath(
         while let Some(((g, _), _)) = rest.next_if(|((_, arc), _)| arc.is_none()) {
             run.segs.push(*g);
         }
-        let options = options.clone().with_spans(within(&options.spans, from..from + run.segs.len()));
+        let options = options.clone().with_spans(within(&options.spans, ends, from..from + run.segs.len()));
         let refitted = refit::warp_path(&Outline { subpaths: vec![run] }, map, &options)?;
         report.add(refitted.report);
         out.segs.extend(Outline::from(&refitted.path).subpaths.into_iter().flat_map(|s| s.segs));
@@ -224,15 +227,15 @@ fn subpath(
     Ok(out)
 }
 
-/// The spans of some of the segments.
-fn within(spans: &[Span], segments: Range<usize>) -> Vec<Span> {
-    let mut end = 0;
-    let each = spans.iter().map(|s| {
-        let start = end;
-        end += s.segments;
-        Span { segments: end.min(segments.end).saturating_sub(start.max(segments.start)), ..*s }
-    });
-    each.filter(|s| s.segments > 0).collect()
+/// The spans of some of the segments. `ends` are the ends of all spans.
+fn within(spans: &[Span], ends: &[usize], segments: Range<usize>) -> Vec<Span> {
+    let first = ends.partition_point(|end| *end <= segments.start);
+    let own = spans[first..].iter().zip(&ends[first..]).take_while(|(s, end)| **end - s.segments < segments.end);
+    let cut = |(s, &end): (&Span, &usize)| {
+        let start = (end - s.segments).max(segments.start);
+        Span { segments: end.min(segments.end) - start, ..*s }
+    };
+    own.map(cut).collect()
 }
 
 /// Divides long arcs.

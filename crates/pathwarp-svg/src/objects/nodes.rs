@@ -76,13 +76,6 @@ pub(super) fn by_id<'a, 'i>(doc: &'a Document<'i>) -> HashMap<&'a str, Node<'a, 
     out
 }
 
-/// The place after the name of an element, where attributes can be inserted.
-pub(super) fn name_end(text: &str, n: Node<'_, '_>) -> usize {
-    let start = n.range().start;
-    let rest = &text[start..];
-    start + rest.find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).unwrap_or(rest.len())
-}
-
 /// Returns `true` for elements that are only drawn where something refers to them.
 pub(super) fn is_definition(tag: &str) -> bool {
     matches!(

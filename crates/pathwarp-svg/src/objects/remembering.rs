@@ -1,13 +1,12 @@
 //! Adds to the objects of a result what they were.
 
-use super::nodes::{
-    Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, is_definition, name_end, parse, referred,
-};
+use super::nodes::{Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, is_definition, parse, referred};
 use crate::source::elements::SVG;
 use crate::source::read::{packed, unpacked_text};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
 use pathwarp_reader::xml::escape;
+use pathwarp_reader::xml::name_end;
 use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write as _;
 use std::ops::Range;

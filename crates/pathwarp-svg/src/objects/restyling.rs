@@ -1,7 +1,7 @@
 //! Appearance that was changed by hand: what differs between an object as the warp left it and as it is now goes into the object
 //! warped again.
 
-use super::nodes::{apply, by_id, name_end, parse};
+use super::nodes::{apply, by_id, parse};
 use crate::scene::geometry::transform;
 use crate::source::elements::INKSCAPE;
 use crate::source::elements::{declarations, with_declaration};
@@ -10,6 +10,7 @@ use pathwarp::Error;
 use pathwarp::budget::Limits;
 use pathwarp::kurbo::Affine;
 use pathwarp_reader::xml::escape;
+use pathwarp_reader::xml::name_end;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use usvg::roxmltree::Node;

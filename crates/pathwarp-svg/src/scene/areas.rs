@@ -1,6 +1,6 @@
 //! The areas that parts of a drawing cover: what is seen, strokes, filters.
 
-use super::geometry::stretch;
+use super::geometry::{rect, stretch};
 use super::model::{Bitmap, Group, Node, Part, PartRole, Scene};
 use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::kurbo::{self, Affine, Cap, Join, Point, Rect, Vec2};
@@ -157,7 +157,7 @@ pub(crate) fn stroke_outlines(
     stroke: &Stroke,
     fine: impl Fn(usize) -> [f64; 2],
 ) -> Vec<(usize, Outline)> {
-    let style = style(stroke);
+    let style = style(stroke, drawn_dashes(local, stroke) > 0.0);
     let clipped = stroke.linejoin() == LineJoin::MiterClip;
     let outline = |(i, s): (usize, &Subpath)| {
         let one = Outline { subpaths: vec![s.clone()] };
@@ -168,7 +168,7 @@ pub(crate) fn stroke_outlines(
 }
 
 /// A stroke's style as kurbo's.
-fn style(stroke: &Stroke) -> kurbo::Stroke {
+fn style(stroke: &Stroke, is_dashed: bool) -> kurbo::Stroke {
     let cap = match stroke.linecap() {
         LineCap::Butt => Cap::Butt,
         LineCap::Round => Cap::Round,
@@ -183,7 +183,7 @@ fn style(stroke: &Stroke) -> kurbo::Stroke {
         .with_caps(cap)
         .with_join(join)
         .with_miter_limit(f64::from(stroke.miterlimit().get()));
-    match stroke.dasharray() {
+    match stroke.dasharray().filter(|_| is_dashed) {
         Some(dashes) => style.with_dashes(f64::from(stroke.dashoffset()), dashes.iter().copied().map(f64::from)),
         None => style,
     }
@@ -322,9 +322,5 @@ fn keeps_transparent(alpha: &TransferFunction) -> bool {
 
 /// The region of a primitive, which is the filter's unless it has one itself, if the filter's is `region`.
 pub(crate) fn part(filter: &Filter, p: &Primitive, region: Rect) -> Rect {
-    if p.rect() == filter.rect() { region } else { rect(p.rect()) }
-}
-
-pub(crate) fn rect(r: usvg::NonZeroRect) -> Rect {
-    Rect::new(r.left().into(), r.top().into(), r.right().into(), r.bottom().into())
+    if p.rect() == filter.rect() { region } else { rect(p.rect().to_rect()) }
 }

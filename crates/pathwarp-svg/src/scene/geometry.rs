@@ -14,6 +14,11 @@ use std::str::FromStr;
 use svgtypes::{Align, AspectRatio, Length, LengthUnit};
 use usvg::tiny_skia_path as ts;
 
+/// usvg's rectangle in f64.
+pub(crate) fn rect(r: usvg::Rect) -> Rect {
+    Rect::new(r.left().into(), r.top().into(), r.right().into(), r.bottom().into())
+}
+
 pub(super) const MM_PER_INCH: f64 = 25.4;
 
 /// The dimension of the viewport that a percentage refers to.

@@ -39,6 +39,7 @@ impl Tag {
 
     /// The element around content that is written already.
     pub(crate) fn around(mut self, content: &str) -> String {
+        self.out.reserve(content.len() + self.name.len() + "></>".len());
         let _ = write!(self.out, ">{content}</{}>", self.name);
         self.out
     }

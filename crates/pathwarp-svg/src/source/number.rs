@@ -357,7 +357,7 @@ fn subpath_with_arcs(
 ) {
     // Of an arc: its radii and turn, two flags, and its end.
     let of_arc = |i: usize| match i {
-        0..3 => decimals.saturating_add(2).min(MAX_DECIMALS),
+        0..3 => finer(decimals),
         3..5 => 0,
         _ => decimals,
     };
@@ -381,6 +381,11 @@ fn subpath_with_arcs(
     commands(s, &mut add, arc, |_| 0.1 * nominal);
 }
 
+/// Decimals of an arc's radii and turn.
+fn finer(decimals: u8) -> u8 {
+    decimals.saturating_add(2).min(MAX_DECIMALS)
+}
+
 /// What is written for an arc.
 struct ArcText {
     radii: [f64; 2],
@@ -395,7 +400,7 @@ struct ArcText {
 
 impl ArcText {
     fn new(a: &EllipticArc, decimals: u8) -> Self {
-        let finer = decimals.saturating_add(2).min(MAX_DECIMALS);
+        let finer = finer(decimals);
         let (radii, turn) = axes(a);
         let (large, sweep) = (a.sweep.abs() > std::f64::consts::PI, a.sweep * a.a.cross(a.b) > 0.0);
         Self { radii, turn, large, sweep, to: rounded(a.p1, decimals), finer }

@@ -4,11 +4,11 @@ use super::input::WriteInput;
 use super::markup::{part_box, stroke_scale};
 use crate::bend::bends::Bend;
 use crate::bend::outcome::{StrokeOutcome, WarpedPart};
-use crate::scene::areas::{self, is_seen, overlap, stroke_outline};
+use crate::scene::areas::{is_seen, overlap, stroke_outline};
+use crate::scene::geometry::rect;
 use crate::scene::model::{Group, Part, PartRole};
 use crate::source::number::{path_data, short};
 use pathwarp::kurbo::{Affine, BezPath, Insets, Point, Rect, Shape as _};
-use pathwarp::outline::Builder;
 use pathwarp::{Outline, Seg, refit};
 use std::borrow::Cow;
 use usvg::FillRule;
@@ -106,7 +106,7 @@ pub(super) fn growth(input: &WriteInput<'_>, g: &Group) -> Insets {
     let to = input.written(g.slot, slot.frame).inverse();
     let painted = slot.parts.clone().filter(|&i| {
         let p = input.part(i);
-        p.role == PartRole::Paint && is_seen(p)
+        p.role == PartRole::Paint && is_seen(p) && input.warped(i).is_none_or(WarpedPart::draws)
     });
     let boxes = painted.map(|i| {
         let p = input.part(i);
@@ -123,7 +123,7 @@ pub(super) fn growth(input: &WriteInput<'_>, g: &Group) -> Insets {
 
 /// The region of a filter in user space, grown.
 pub(super) fn grown(f: &Filter, growth: Insets) -> Rect {
-    areas::rect(f.rect()) + growth
+    rect(f.rect().to_rect()) + growth
 }
 
 /// Decimals of a region's warped border.
@@ -185,19 +185,11 @@ pub(super) fn edge(input: &WriteInput<'_>, i: usize) -> Option<String> {
         return None;
     }
     let Bend { map, options } = input.bend(m.parts.clone())?;
-    let border = border(m.rect).finish().transformed(m.frame).repeated(&options.copies);
+    let r = m.rect;
+    let corners = [(r.x0, r.y0), (r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)].map(Point::from);
+    let border = Outline::from_points(&corners, true).transformed(m.frame).repeated(&options.copies);
     let warped = refit::warp_path(&border, *map, &options.refit).ok()?;
     let mut path = warped.path;
     path.apply_affine(input.written(m.slot, m.frame).inverse());
     Some(path_data(&path, DECIMALS))
-}
-
-fn border(r: Rect) -> Builder {
-    let mut out = Builder::default();
-    out.move_to((r.x0, r.y0).into());
-    for p in [(r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)] {
-        out.line_to(p.into());
-    }
-    out.close();
-    out
 }

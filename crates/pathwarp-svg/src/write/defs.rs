@@ -1,6 +1,6 @@
 //! Definitions written so far, with their ids.
 
-use crate::scene::areas;
+use crate::scene::geometry::rect;
 use crate::scene::model::Scene;
 use crate::source::elements::ElementId;
 use crate::source::text::SourceText;
@@ -97,7 +97,7 @@ impl Definitions {
 
     /// Lets the region of a filter of the source grow to hold `region`.
     pub(super) fn grow(&mut self, f: &Filter, region: Rect) {
-        let own = areas::rect(f.rect());
+        let own = rect(f.rect().to_rect());
         if region != own {
             let all = self.regions.entry(f.id().to_owned()).or_insert(own);
             *all = all.union(region);

@@ -22,10 +22,7 @@ pub(super) fn element(markup: &Markup<'_>, f: &Filter, all: Rect, id: &str, pict
             let tag = markup.element(tag).with_all(region(areas::part(f, p, all)));
             tag.with("color-interpolation-filters", space)
         };
-        let (tag, content) = match p.kind() {
-            Kind::Image(_) => (begin("feImage").raw(&pictures.next().unwrap_or_default()), String::new()),
-            kind => primitive(markup, &begin, kind),
-        };
+        let (tag, content) = primitive(markup, &begin, p.kind(), &mut pictures);
         let tag = tag.with("result", p.result());
         if content.is_empty() { tag.empty() } else { tag.around(&content) }
     });
@@ -39,8 +36,13 @@ pub(super) fn region(r: Rect) -> [(&'static str, String); 4] {
     [("x", short(r.x0)), ("y", short(r.y0)), ("width", short(r.width())), ("height", short(r.height()))]
 }
 
-/// A primitive other than a picture with its content; `begin` begins its element.
-fn primitive(markup: &Markup<'_>, begin: &dyn Fn(&str) -> Tag, kind: &Kind) -> (Tag, String) {
+/// A primitive with its content; `begin` begins its element. A picture is the next of `pictures`.
+fn primitive(
+    markup: &Markup<'_>,
+    begin: &dyn Fn(&str) -> Tag,
+    kind: &Kind,
+    pictures: &mut dyn Iterator<Item = String>,
+) -> (Tag, String) {
     let tag = match kind {
         Kind::DropShadow(s) => begin("feDropShadow")
             .input("in", s.input())
@@ -65,7 +67,7 @@ fn primitive(markup: &Markup<'_>, begin: &dyn Fn(&str) -> Tag, kind: &Kind) -> (
             return (begin("feMerge"), m.inputs().iter().map(node).collect());
         }
         Kind::Tile(t) => begin("feTile").input("in", t.input()),
-        Kind::Image(_) => begin("feImage"),
+        Kind::Image(_) => begin("feImage").raw(&pictures.next().unwrap_or_default()),
         Kind::ComponentTransfer(t) => {
             let all =
                 [("feFuncR", t.func_r()), ("feFuncG", t.func_g()), ("feFuncB", t.func_b()), ("feFuncA", t.func_a())];

@@ -534,7 +534,7 @@ impl<'a> Writer<'a> {
 /// Writes a bent bitmap.
 pub(super) fn bent(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String {
     let tag = markup.element("image").with_all(bent_attributes(bent, to));
-    tag.with(markup.link(), &bent_url(bent)).empty()
+    tag.raw(&format!(" {}=\"{}\"", markup.link(), bent_url(bent))).empty()
 }
 
 /// Writes bitmap `i`, bent or not.
@@ -573,5 +573,5 @@ pub(super) fn image(input: &WriteInput<'_>, markup: &Markup<'_>, skipped: &mut V
     let tag = markup.element("image").with("width", &short(image.size().width().into()));
     let tag = tag.with("height", &short(image.size().height().into()));
     let style = rendering.map(|how| ("style", format!("image-rendering:{how}")));
-    tag.with_all(style).with(markup.link(), &url).empty()
+    tag.with_all(style).raw(&format!(" {}=\"{url}\"", markup.link())).empty()
 }

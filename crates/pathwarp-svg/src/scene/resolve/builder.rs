@@ -1,6 +1,6 @@
 //! State of the walk over usvg's tree, with lookups of source elements and exact transforms.
 
-use crate::scene::geometry::{GeometryReader, affine, f32_bits, from_usvg, is_near, same_path};
+use crate::scene::geometry::{GeometryReader, affine, f32_bits, from_usvg, is_near, rect, same_path};
 use crate::scene::lettering::Owners;
 use crate::scene::model::{Clip, LazyOutline, PartRole, Referrer, Scene, SceneNote, Slot};
 use crate::source::elements::{ElementId, Unpatchable, is_shape};
@@ -336,8 +336,7 @@ pub(super) fn slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Context)
     }
     // The group of an image holds its placing, which is not the element's transform.
     let before = image.is_some() && at.source == image || image.is_none() && raster;
-    let r = g.bounding_box();
-    let corners = Rect::new(f64::from(r.left()), f64::from(r.top()), f64::from(r.right()), f64::from(r.bottom()));
+    let corners = rect(g.bounding_box());
     let (frame, area) =
         if before { (at.parent, affine(g.transform()).transform_rect_bbox(corners)) } else { (at.frame, corners) };
     let parts = b.scene.parts.len()..b.scene.parts.len();

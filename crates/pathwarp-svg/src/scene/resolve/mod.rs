@@ -5,7 +5,7 @@ mod builder;
 mod markers;
 mod tiles;
 
-use super::geometry::{GeometryReader, affine, bits, f32_bits, is_near, linear_part};
+use super::geometry::{GeometryReader, affine, bits, f32_bits, is_near, linear_part, rect};
 use super::lettering::Owners;
 use super::model::{Bitmap, Clip, Group, Mask, Node, Part, PartRole, PatternTile, PlacedText, Referrer, Scene};
 use super::resolve::builder::{Context, GroupAt, SceneBuilder, holds_drawing, slot, trace};
@@ -153,8 +153,7 @@ fn sliced_viewport(g: &usvg::Group) -> Option<Rect> {
     let [usvg::Node::Group(inner)] = g.children() else { return None };
     let [usvg::Node::Image(_)] = inner.children() else { return None };
     g.clip_path()?;
-    let v = g.bounding_box();
-    Some(Rect::new(v.left().into(), v.top().into(), v.right().into(), v.bottom().into()))
+    Some(rect(g.bounding_box()))
 }
 
 fn address(g: &usvg::Group) -> usize {
@@ -348,11 +347,9 @@ fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Refer
     let chained = Referrer { element: b.definition(m.id(), "mask"), owner: None };
     let mask = m.mask().map(|m| mask(b, m, frame, chained, outside));
     let root = definition(b, m.root(), frame, Context { slot, bend, ..Context::top(PartRole::Mask) });
-    let (r, c) = (m.rect(), m.root().stroke_bounding_box());
-    let rect = |l, t, r, b| Rect::new(f64::from(l), f64::from(t), f64::from(r), f64::from(b));
     b.scene.masks.push(Mask {
         id: m.id().to_owned(),
-        rect: rect(r.left(), r.top(), r.right(), r.bottom()),
+        rect: rect(m.rect().to_rect()),
         kind: m.kind(),
         mask,
         root,
@@ -362,7 +359,7 @@ fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Refer
         bend,
         parts: first..b.scene.parts.len(),
         foreign: b.foreign_depth > 0,
-        content: rect(c.left(), c.top(), c.right(), c.bottom()),
+        content: rect(m.root().stroke_bounding_box()),
     });
     let i = b.scene.masks.len() - 1;
     b.mask_index.insert(key, i);

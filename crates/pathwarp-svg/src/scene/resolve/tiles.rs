@@ -5,7 +5,7 @@
 
 use super::builder::{Context, Painted, SceneBuilder, known_outline};
 use crate::scene::areas::stroke_outline;
-use crate::scene::geometry::{affine, is_invertible, stretch};
+use crate::scene::geometry::{affine, is_invertible, rect, stretch};
 use crate::scene::model::{Clip, Group, LazyOutline, Node, Part, PartRole, SceneNote, Tiles};
 use crate::source::elements::ElementId;
 use pathwarp::Outline;
@@ -84,7 +84,7 @@ pub(super) fn tiles(
     {
         return None;
     }
-    let area = Rect::new(f64::from(r.left()), f64::from(r.top()), f64::from(r.right()), f64::from(r.bottom()));
+    let area = rect(r);
     let margin = MARGIN * area.width().max(area.height());
     let area = area.inflate(margin, margin);
     let is_mask = context.role == PartRole::Mask;
