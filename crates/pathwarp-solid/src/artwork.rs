@@ -20,6 +20,7 @@
 //! # Ok::<(), pathwarp_solid::artwork::Error>(())
 //! ```
 
+use crate::mesh::{Edge, edge, from_chord, sides};
 use lyon_tessellation::geom::euclid::default::Point2D;
 use lyon_tessellation::path::Path;
 use lyon_tessellation::{BuffersBuilder, FillOptions, FillRule, FillTessellator, FillVertex, VertexBuffers};
@@ -183,10 +184,10 @@ fn flatten(
         stack = vec![(0.0, 1.0, 0)];
     }
     while let Some((a, b, depth)) = stack.pop() {
-        let (from, to) = (place(seg.eval(a))?, place(seg.eval(b))?);
+        let (from, to) = (place(seg.eval(a))?.into(), place(seg.eval(b))?.into());
         let mut off: f64 = 0.0;
         for k in [0.25, 0.5, 0.75] {
-            off = off.max(chord_distance(from, to, place(seg.eval(a + k * (b - a)))?));
+            off = off.max(from_chord(from, to, place(seg.eval(a + k * (b - a)))?.into()));
         }
         if off <= tolerance || depth >= MOST_HALVINGS {
             out.push(seg.eval(b));
@@ -197,17 +198,6 @@ fn flatten(
         }
     }
     Ok(())
-}
-
-/// Distance of `q` from the chord between two points.
-fn chord_distance(a: Point3, b: Point3, q: Point3) -> f64 {
-    let minus = |p: Point3, o: Point3| [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
-    let dot = |p: Point3, o: Point3| p[0] * o[0] + p[1] * o[1] + p[2] * o[2];
-    let (c, v) = (minus(b, a), minus(q, a));
-    let n = dot(c, c);
-    let t = if n > 0.0 { (dot(v, c) / n).clamp(0.0, 1.0) } else { 0.0 };
-    let r = [v[0] - t * c[0], v[1] - t * c[1], v[2] - t * c[2]];
-    dot(r, r).sqrt()
 }
 
 /// Triangles in the plane of the drawing.
@@ -268,13 +258,6 @@ struct TriangleMesh {
     triangles: Vec<[u32; 3]>,
 }
 
-/// An edge in either direction: the smaller index first.
-type Edge = (u32, u32);
-
-fn edge(a: u32, b: u32) -> Edge {
-    (a.min(b), a.max(b))
-}
-
 /// Maps a flat mesh to the surface and subdivides it until it follows the surface.
 fn to_surface(
     name: &str,
@@ -294,21 +277,20 @@ fn to_surface(
     let mut close: HashSet<Edge> = HashSet::new();
     for _ in 0..MOST_ROUNDS {
         let mut middles: HashMap<Edge, u32> = HashMap::new();
-        for t in &triangles {
-            for e in [edge(t[0], t[1]), edge(t[1], t[2]), edge(t[2], t[0])] {
-                if close.contains(&e) || middles.contains_key(&e) {
-                    continue;
-                }
-                let (a, b) = (e.0 as usize, e.1 as usize);
-                let m = plane[a].midpoint(plane[b]);
-                let q = place(m)?;
-                if chord_distance(points[a], points[b], q) <= tolerance {
-                    close.insert(e);
-                } else {
-                    middles.insert(e, points.len() as u32);
-                    plane.push(m);
-                    points.push(q);
-                }
+        for (a, b) in sides(&triangles) {
+            let e = edge(a, b);
+            if close.contains(&e) || middles.contains_key(&e) {
+                continue;
+            }
+            let (a, b) = (e.0 as usize, e.1 as usize);
+            let m = plane[a].midpoint(plane[b]);
+            let q = place(m)?;
+            if from_chord(points[a].into(), points[b].into(), q.into()) <= tolerance {
+                close.insert(e);
+            } else {
+                middles.insert(e, points.len() as u32);
+                plane.push(m);
+                points.push(q);
             }
         }
         if middles.is_empty() {

@@ -210,9 +210,10 @@ fn halved(mesh: &Mesh, split: &HashSet<Edge>) -> u64 {
     mesh.polygons().map(|(_, corners)| of(corners) as u64).sum()
 }
 
-type Edge = (u32, u32);
+/// An edge in either direction: the smaller index first.
+pub(crate) type Edge = (u32, u32);
 
-fn edge(a: u32, b: u32) -> Edge {
+pub(crate) fn edge(a: u32, b: u32) -> Edge {
     (a.min(b), a.max(b))
 }
 
@@ -425,7 +426,7 @@ fn triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], marked: [bool;
 }
 
 /// Distance of `q` from the segment between two points.
-fn from_chord(a: DVec3, b: DVec3, q: DVec3) -> f64 {
+pub(crate) fn from_chord(a: DVec3, b: DVec3, q: DVec3) -> f64 {
     let chord = b - a;
     let n = chord.length_squared();
     let t = if n > 0.0 { ((q - a).dot(chord) / n).clamp(0.0, 1.0) } else { 0.0 };

@@ -131,7 +131,7 @@ impl FlatShape {
 }
 
 /// The sides of triangles.
-pub(super) fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
+pub(crate) fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
     triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
 }
 

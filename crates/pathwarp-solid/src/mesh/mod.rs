@@ -19,6 +19,9 @@ use thiserror::Error;
 pub use deform::{Deformed, Undefined3, deform, refine};
 pub use flat::{FlatShape, extrude};
 
+pub(crate) use deform::{Edge, edge, from_chord};
+pub(crate) use flat::sides;
+
 // The mesh as data.
 
 /// An index that is not there.

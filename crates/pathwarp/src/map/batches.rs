@@ -298,9 +298,8 @@ pub(super) fn approach(map: &dyn Map, targets: &[Option<Target>], enough: f64) -
     let mut found = vec![None; targets.len()];
     let search = |(index, target): (usize, &Option<Target>)| {
         let Target { q, start, jet } = (*target)?;
-        let det = jet.det();
-        let inverse = [Vec2::new(jet.dy.y, -jet.dx.y) / det, Vec2::new(-jet.dy.x, jet.dx.x) / det];
-        Some(Approach { index, q, at: start, residual: q - jet.p, inverse })
+        let back = jet.inverted(start);
+        Some(Approach { index, q, at: start, residual: q - jet.p, inverse: [back.dx, back.dy] })
     };
     let mut active: Vec<Approach> = targets.iter().enumerate().filter_map(search).collect();
     for _ in 0..MOST_STEPS {

@@ -28,6 +28,8 @@ pub(crate) struct Tiled {
     /// The increasing ordinates between rows.
     cuts: Vec<f64>,
     rows: Vec<TileRow>,
+    /// The work of the map that takes most.
+    work: f64,
 }
 
 /// Extent of the creases beyond the region, as a multiple of its size. Artwork extends past its frame by less.
@@ -51,7 +53,10 @@ impl Tiled {
         }
         match &rows[..] {
             [TileRow { maps, .. }] if maps.len() == 1 => maps.first().cloned(),
-            _ => Some(Arc::new(Self { region, cuts, rows })),
+            _ => {
+                let work = rows.iter().flat_map(|r| &r.maps).map(|m| m.work()).fold(1.0, f64::max);
+                Some(Arc::new(Self { region, cuts, rows, work }))
+            }
         }
     }
 
@@ -96,7 +101,7 @@ impl Tiled {
 
 impl Map for Tiled {
     fn cost(&self) -> Cost<'_> {
-        Cost::new(self.rows.iter().flat_map(|r| &r.maps).map(|m| m.work()).fold(1.0, f64::max))
+        Cost::new(self.work)
     }
 
     fn jet(&self, p: Point) -> Jet {

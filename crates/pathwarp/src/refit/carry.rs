@@ -74,13 +74,8 @@ impl<'a> Site<'a> {
 
     /// Images at eight places, given as segments and their parameters.
     fn images(&self, at: &[(usize, f64); 8]) -> Lanes {
-        let mut g = Lanes::default();
-        for (i, (segment, t)) in at.iter().enumerate() {
-            let p = self.parts.get(*segment).map_or(Point::ORIGIN, |s| s.seg.eval(*t));
-            (g.x[i], g.y[i]) = (p.x, p.y);
-        }
-        images(self.fitter.map, &mut g);
-        g
+        let point = |(segment, t): (usize, f64)| self.parts.get(segment).map_or(Point::ORIGIN, |s| s.seg.eval(t));
+        images(self.fitter.map, &at.map(point))
     }
 }
 

@@ -9,7 +9,7 @@ use crate::map::{Class, CreaseKind, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use bezierfit::parts::StretchFitter;
 use bezierfit::{NotFinite, Piece, Report};
-use kurbo::{Affine, CubicBez, Line, Point};
+use kurbo::{CubicBez, Line, Point};
 use std::sync::Arc;
 
 /// Creases of one segment that are found by comparing branches with the map.
@@ -291,14 +291,7 @@ impl Part {
         let certify = fitter.options.certify;
         match self.cut.as_ref().and_then(|c| c.branch.as_ref()) {
             None => SourceCurve::for_proof(seg, fitter.map, fitter.degree, certify),
-            Some(b) => {
-                // An affine branch is sampled as densely as the curved ones beside it.
-                let degree = match b.class() {
-                    Class::Affine(m) if m != Affine::IDENTITY => None,
-                    class => class.degree(),
-                };
-                SourceCurve::for_proof(seg, b, degree, certify)
-            }
+            Some(b) => SourceCurve::for_proof(seg, b, b.class().degree(), certify),
         }
     }
 

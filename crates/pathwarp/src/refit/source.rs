@@ -221,14 +221,12 @@ impl<'a> SourceCurve<'a> {
     }
 }
 
-/// Maps eight points in place.
+/// The images of eight points.
 #[inline(always)]
-pub(super) fn images(map: &dyn Map, g: &mut Lanes) {
+pub(super) fn images(map: &dyn Map, points: &[Point; 8]) -> Lanes {
     let mut images = [Point::ORIGIN; 8];
-    map.points(&std::array::from_fn::<_, 8, _>(|i| Point::new(g.x[i], g.y[i])), &mut images);
-    for (i, p) in images.iter().enumerate() {
-        (g.x[i], g.y[i]) = (p.x, p.y);
-    }
+    map.points(points, &mut images);
+    Lanes { x: images.map(|p| p.x), y: images.map(|p| p.y) }
 }
 
 impl Source for SourceCurve<'_> {
@@ -239,8 +237,7 @@ impl Source for SourceCurve<'_> {
 
     #[inline(always)]
     fn points(&self, t: &Lane, g: &mut Lanes) {
-        *g = self.seg_points(t);
-        images(self.map, g);
+        *g = images(self.map, &self.sampled(t));
     }
 
     #[inline(always)]
@@ -268,8 +265,7 @@ impl Source for SourceCurve<'_> {
 
     /// The map's denominators, times the segment's to the power of the map's degree.
     fn denominators(&self, t: &Lane) -> Lane {
-        let points = self.seg_points(t);
-        let mut out: Lane = std::array::from_fn(|i| self.map.denominator(Point::new(points.x[i], points.y[i])));
+        let mut out: Lane = self.sampled(t).map(|p| self.map.denominator(p));
         if let Some([w0, w1, w2]) = self.w {
             let power = self.degree.map_or(1, |d| d.degree as i32);
             for (w, t) in out.iter_mut().zip(t) {
