@@ -5,6 +5,7 @@
 use crate::nets::{self, Net, Space};
 use pathwarp::deform::{Info, Registry, TextShape};
 use pathwarp::kurbo::{Point, Rect};
+use pathwarp::map::Lattice;
 use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::{Outline, Seg};
@@ -222,16 +223,13 @@ fn grid(s: &Settings<'_>, has: &dyn Fn(&str) -> bool) -> Option<Net> {
     }
     let region = if has("region") { s.rect_if("region").ok()?.unwrap_or(s.frame().rect) } else { s.frame().rect };
     let all = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
-    let place = |(i, j)| {
-        let (u, v) = (at_rest(i, degree[0], cells[0]), at_rest(j, degree[1], cells[1]));
-        Point::new(region.x0 + u * region.width(), region.y0 + v * region.height())
-    };
+    let rest = Lattice::regular(region, degree, cells);
     let across = (0..rows).map(|j| (0..columns).map(|i| j * columns + i).collect());
     let down = (0..columns).map(|i| (0..rows).map(|j| j * columns + i).collect());
     Some(Net {
         space: Space::Grid { degree, cells },
         names: all.clone().map(|(i, j)| format!("{i},{j}")).collect(),
-        points: all.map(place).collect(),
+        points: all.map(|(i, j)| rest.regular_point(i, j)).collect(),
         weights: vec![1.0; columns * rows],
         lines: across.chain(down).collect(),
     })
@@ -271,12 +269,6 @@ fn triangle(s: &Settings<'_>) -> Option<Net> {
         points: all.iter().map(place).collect(),
         lines: lines.collect(),
     })
-}
-
-/// The place of control point `i` of an undistorted net, 0 to 1: the mean of its knots, which are uniform and clamped.
-fn at_rest(i: usize, degree: usize, cells: usize) -> f64 {
-    let knot = |k: usize| k.saturating_sub(degree).min(cells) as f64 / cells as f64;
-    (i + 1..=i + degree).map(knot).sum::<f64>() / degree as f64
 }
 
 #[cfg(test)]
@@ -321,7 +313,8 @@ mod tests {
             (&json!([0.0, 0.0]), &json!([45.0, 30.0]), &json!([40.0, -9.0]))
         );
         // A clamped quadratic B-spline of two cells: knots 0 0 0 ½ 1 1 1.
-        let places: Vec<f64> = (0..4).map(|i| at_rest(i, 2, 2)).collect();
+        let net = &of("ffd", &[("degree", "2x1"), ("spline", "true"), ("cells", "2x1")])["at"]["net"];
+        let places: Vec<f64> = (0..4).map(|i| net["points"][i][0].as_f64().unwrap() / 90.0).collect();
         assert_eq!(places, [0.0, 0.25, 0.75, 1.0]);
     }
 

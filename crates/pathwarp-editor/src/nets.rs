@@ -62,9 +62,7 @@ fn matrix(old: &Space, new: &Space) -> Option<Matrix> {
         (Space::Grid { degree: n, cells: c }, Space::Grid { degree: m, cells: d }) => {
             let [across, down] = [0, 1].map(|k| {
                 let count = SAMPLES * (n[k] + c[k]).max(m[k] + d[k]);
-                let rows =
-                    |degree, cells| (0..=count).map(|i| splines(degree, cells, i as f64 / count as f64)).collect();
-                nearest(rows(m[k], d[k]), rows(n[k], c[k]))
+                nearest(splines(m[k], d[k], count), splines(n[k], c[k], count))
             });
             let product = |y: &[f64], x: &[f64]| y.iter().flat_map(|y| x.iter().map(move |x| y * x)).collect();
             Some(down.iter().flat_map(|y| across.iter().map(|x| product(y, x)).collect::<Matrix>()).collect())
@@ -79,14 +77,17 @@ fn matrix(old: &Space, new: &Space) -> Option<Matrix> {
     }
 }
 
-/// The B-splines of a uniform, clamped net along one axis at `t`, 0 to 1.
-fn splines(degree: usize, cells: usize, t: f64) -> Vec<f64> {
+/// The B-splines of a uniform, clamped net along one axis, at `count` + 1 places from 0 to 1.
+fn splines(degree: usize, cells: usize, count: usize) -> Matrix {
     let line = Lattice::regular(Rect::new(0.0, 0.0, 1.0, 1.0), [degree, 1], [cells, 1]);
-    let mut out = vec![0.0; degree + cells];
-    for ((i, _), share) in line.influence(Point::new(t, 0.0)) {
-        out[i] += share;
-    }
-    out
+    let at = |i: usize| {
+        let mut out = vec![0.0; degree + cells];
+        for ((k, _), share) in line.influence(Point::new(i as f64 / count as f64, 0.0)) {
+            out[k] += share;
+        }
+        out
+    };
+    (0..=count).map(at).collect()
 }
 
 /// The indices of a triangular net, in the order of its control points.

@@ -10,9 +10,14 @@ const MOST_NAMES: usize = 1000;
 /// The usual name of the result of `source`: a free one beside it.
 pub(crate) fn usual(source: &Path) -> PathBuf {
     let stem = source.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    free(source, &(stem + SUFFIX))
+}
+
+/// A name beside a file that no file has, with a number if need be.
+fn free(beside: &Path, stem: &str) -> PathBuf {
     let name = |n: usize| match n {
-        1 => source.with_file_name(format!("{stem}{SUFFIX}.svg")),
-        n => source.with_file_name(format!("{stem}{SUFFIX}-{n}.svg")),
+        1 => beside.with_file_name(format!("{stem}.svg")),
+        n => beside.with_file_name(format!("{stem}-{n}.svg")),
     };
     (1..MOST_NAMES).map(name).find(|p| !p.exists()).unwrap_or_else(|| name(MOST_NAMES))
 }
@@ -27,10 +32,7 @@ pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)>
     if let Some(found) = found {
         return Some((found.clone(), true));
     }
-    let name = |n: usize| {
-        result.with_file_name(format!("{stem}-source{}.svg", if n > 1 { format!("-{n}") } else { String::new() }))
-    };
-    (1..MOST_NAMES).map(name).find(|p| !p.exists()).map(|p| (p, false))
+    Some((free(result, &format!("{stem}-source")), false))
 }
 
 /// The file called `name` in the folder of `beside`. Pages name files, not folders.

@@ -14,7 +14,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::deform::{Info, Variant};
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::{Chain, Map as _};
+use pathwarp::map::{Map as _, inverse_over};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -261,8 +261,7 @@ impl Session {
     pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Option<Point>, String> {
         let (_, built) = self.opened.artwork.settle(&recipe(given))?;
         let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else { return Ok(Some(at)) };
-        let back = Chain::new([Arc::clone(&step.map)]).inverse_over(frame.rect);
-        let from = back.point(at);
+        let from = inverse_over(&step.map, frame.rect).point(at);
         let near = PREIMAGE * (frame.rect.width() + frame.rect.height());
         Ok((step.map.point(from).distance(at) <= near).then_some(from))
     }
@@ -298,14 +297,8 @@ impl Session {
         variant: Option<&str>,
         given: &[PageStep],
     ) -> Result<PageStep, String> {
-        let host = Arc::clone(&self.host);
-        let entry = host.registry().get(deformation).ok_or_else(|| format!("there is no deformation {deformation}"))?;
         let frame = self.frame_after(given)?;
-        let args = match variant_of(entry.info(), variant)? {
-            Some(variant) => of_variant(variant, frame, false),
-            None => opening(entry.info(), frame),
-        };
-        Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args, ..PageStep::default() })
+        self.begun(deformation, variant, frame, false)
     }
 
     /// The frame of a step after these.
@@ -355,14 +348,19 @@ impl Session {
 
     /// A deformation with the values of its examples.
     pub(crate) fn example(&self, deformation: &str, variant: Option<&str>) -> Result<PageStep, String> {
+        self.begun(deformation, variant, self.opened.artwork.frame(), true)
+    }
+
+    /// A deformation with the first values for artwork in this frame, or with those that show what it does.
+    fn begun(&self, deformation: &str, variant: Option<&str>, frame: Rect, shows: bool) -> Result<PageStep, String> {
         let entry = self.host.registry().get(deformation);
-        let entry = entry.ok_or_else(|| format!("there is no deformation {deformation}"))?;
-        let frame = self.opened.artwork.frame();
-        let args = match variant_of(entry.info(), variant)? {
-            Some(variant) => of_variant(variant, frame, true),
-            None => example(entry.info(), frame),
+        let info = entry.ok_or_else(|| format!("there is no deformation {deformation}"))?.info();
+        let args = match variant_of(info, variant)? {
+            Some(variant) => of_variant(variant, frame, shows),
+            None if shows => example(info, frame),
+            None => opening(info, frame),
         };
-        Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args, ..PageStep::default() })
+        Ok(PageStep { deformation: deformation.to_owned(), args, ..PageStep::default() })
     }
 
     /// The file that *Save* writes unless another is named.
@@ -448,8 +446,8 @@ impl Session {
         let to = name.map_or_else(|| Ok(self.target()), |name| saving::named(name, &self.file))?;
         let given = recipe(&self.kept.steps);
         let document = self.opened.artwork.document();
-        let (source, before) = match saving::source_of(&self.file, document.source()).filter(|_| self.opened.is_result)
-        {
+        let is_result = self.opened.is_result;
+        let (source, before) = match is_result.then(|| saving::source_of(&self.file, document.source())).flatten() {
             Some((source, true)) => (source, String::new()),
             Some((source, false)) => {
                 let [result, source_name] = [&self.file, &source].map(|p| quoted(&p.display().to_string()));
