@@ -27,10 +27,11 @@ fn command() -> Command {
 
 fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let root = workspace();
-    let packages = CRATES.iter().flat_map(|name| ["--package", name]);
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut doc = std::process::Command::new(cargo);
-    doc.args(["doc", "--quiet", "--no-deps", "--locked"]).args(packages).current_dir(&root);
+    doc.args(["doc", "--quiet", "--workspace", "--no-deps", "--locked"])
+        .env("RUSTDOCFLAGS", "-D warnings")
+        .current_dir(&root);
     if !doc.status().map_err(|e| format!("cargo doc: {e}"))?.success() {
         return Err("cargo doc failed".into());
     }
