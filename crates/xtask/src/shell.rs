@@ -10,16 +10,21 @@ use std::{fs, thread};
 
 /// The program named by `--program`, or else one built in release mode.
 pub(crate) fn program(root: &Path, arguments: &ArgMatches) -> Result<PathBuf, ChoreError> {
+    built(root, arguments, "release")
+}
+
+/// The program named by `--program`, or else one built with this profile.
+pub(crate) fn built(root: &Path, arguments: &ArgMatches, profile: &str) -> Result<PathBuf, ChoreError> {
     if let Some(program) = arguments.get_one::<PathBuf>("program") {
         return program.canonicalize().map_err(at(program));
     }
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--quiet", "--release", "--package", "pathwarp-cli", "--target-dir"]).arg(root.join("target"));
+    cargo.args(["build", "--quiet", "--profile", profile, "--package", "pathwarp-cli", "--target-dir"]).arg(root.join("target"));
     let status = cargo.current_dir(root).status().map_err(|e| e.to_string())?;
     if !status.success() {
         return Err("the program does not build".into());
     }
-    Ok(root.join("target/release/pathwarp").with_extension(std::env::consts::EXE_EXTENSION))
+    Ok(root.join("target").join(profile).join("pathwarp").with_extension(std::env::consts::EXE_EXTENSION))
 }
 
 /// Splits a shell command line with single quotes into words.

@@ -54,7 +54,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     check(&usvg)?;
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let bench = Bench {
-        program: shell::program(&workspace(), arguments)?,
+        program: shell::built(&workspace(), arguments, "dist")?,
         usvg,
         drawings,
         rounds: number("rounds").max(1),
