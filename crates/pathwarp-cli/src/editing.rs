@@ -12,7 +12,7 @@ use crate::report::ReportedShape;
 use crate::{coming_from, export, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
-use pathwarp::kurbo::{Point, Rect};
+use pathwarp::kurbo::Rect;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PICTURE_WIDTH, Summary};
 use pathwarp_raster::{RenderOptions, Size};
@@ -124,11 +124,11 @@ fn bent(
     let svg = String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?;
     let Ready { recipe: resolved, built, .. } = ready;
     let shapes = &warped.shapes;
-    let fold = |s: &ReportedShape| s.folded_at.map(|[x, y]| (s.id.clone(), Point::new(x, y)));
+    let fold = |s: &ReportedShape| s.fold.at.map(|at| (s.shape.id.clone(), at));
     let summary = Summary {
-        segments_in: shapes.iter().map(|s| s.segments_in).sum(),
-        segments_out: shapes.iter().map(|s| s.segments_out).sum(),
-        max_error: shapes.iter().map(|s| s.max_error).fold(0.0, f64::max),
+        segments_in: shapes.iter().map(|s| s.shape.path.segments_in).sum(),
+        segments_out: shapes.iter().map(|s| s.shape.path.segments_out).sum(),
+        max_error: shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max),
         tolerance,
         folds: shapes.iter().filter_map(fold).collect(),
     };

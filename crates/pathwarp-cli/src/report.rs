@@ -5,9 +5,13 @@ use crate::failure::Failure;
 use crate::options::CommonOptions;
 use crate::output::{Draft, PendingFile};
 use crate::readable;
+use pathwarp::fold::Orientation;
+use pathwarp::kurbo::Point;
 use pathwarp::recipe::Recipe;
 use pathwarp::refit::Assurance;
-use serde::Serialize;
+use pathwarp_svg::ShapeReport;
+use serde::ser::SerializeMap as _;
+use serde::{Serialize, Serializer};
 use std::time::Instant;
 
 /// One input file.
@@ -57,7 +61,7 @@ impl FileReport {
 
     /// Returns `true` if a shape was skipped or missed the tolerance.
     pub(crate) fn is_partial(&self) -> bool {
-        !self.skipped.is_empty() || self.shapes.iter().any(|s| !s.over_budget.is_empty())
+        !self.skipped.is_empty() || self.shapes.iter().any(|s| !s.shape.path.over_budget.is_empty())
     }
 }
 
@@ -73,51 +77,77 @@ pub(crate) struct StepSelection {
     pub(crate) frame: [f64; 4],
 }
 
-/// One shape.
-#[derive(Debug, Clone, Serialize)]
+/// One shape: what became of its curves and paint, and what the run knows of it.
+#[derive(Debug, Clone)]
 pub(crate) struct ReportedShape {
-    pub(crate) id: String,
-    /// The steps that hold for the shape, counted from 1; omitted if all do.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) shape: ShapeReport,
+    /// The steps that hold for the shape, counted from 1, unless all do.
     pub(crate) steps: Option<Vec<usize>>,
-    /// Number of copies of the shape in the result; omitted if one.
-    #[serde(skip_serializing_if = "is_one")]
-    pub(crate) copies: usize,
-    pub(crate) segments_in: usize,
-    pub(crate) segments_out: usize,
-    /// User units.
-    pub(crate) max_error: f64,
-    /// The largest distance as a share of the tolerance that holds for its contour: at most 1 if all are kept.
-    pub(crate) share: f64,
-    /// `max_error` is proven: the assurance is `certified` or `exact`.
-    pub(crate) certified: bool,
-    /// `exact`, `certified` or `checked`.
-    pub(crate) assurance: &'static str,
-    /// Number of orientation changes along a shape that folds, at least 1; 0 if it does not fold.
-    pub(crate) folds: usize,
-    /// The first place where the shape folds.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) folded_at: Option<[f64; 2]>,
-    /// Places where the tolerance was not met.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) over_budget: Vec<[f64; 2]>,
-    /// Resolution of the coordinates, in user units, if the tolerance is below it; omitted otherwise.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) unresolved: Option<f64>,
-    /// Largest distance between the map and the affine fit that gradients and patterns follow, in user units; null if no fit is
-    /// close, omitted if there is nothing to follow.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) paint_residual: Option<f64>,
-    /// Number of gradients that became pictures; omitted if none.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub(crate) pictures: usize,
-    /// Largest distance between a stroke that is still a stroke and the exact one, in user units, an estimate for dashes;
-    /// null if unknown, omitted if there is no such stroke or its width was to be kept.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) stroke_error: Option<f64>,
-    /// Number of strokes that became outlines; omitted if none.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub(crate) outlined_strokes: usize,
+    pub(crate) fold: Fold,
+}
+
+/// A fold of one shape.
+#[derive(Debug, Clone)]
+pub(crate) struct Fold {
+    /// Number of orientation changes along the shape, at least 1; 0 if it does not fold.
+    pub(crate) count: usize,
+    /// The first place where it folds.
+    pub(crate) at: Option<Point>,
+}
+
+impl Fold {
+    /// Compares the orientation of one shape with that of all artwork.
+    pub(crate) fn of(shape: &Orientation, all: &Orientation) -> Self {
+        let at = shape.folded_against(all);
+        Self { count: if at.is_some() { shape.changes.max(1) } else { 0 }, at }
+    }
+}
+
+/// Numbers that are usual, and texts that have nothing to say, are omitted. Unknown numbers are infinite here and null in JSON.
+impl Serialize for ReportedShape {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let ShapeReport { id, copies, path, paint_residual, pictures, stroke_error, outlined_strokes, .. } =
+            &self.shape;
+        let place = |p: &Point| [p.x, p.y];
+        let mut map = to.serialize_map(None)?;
+        map.serialize_entry("id", id)?;
+        if let Some(steps) = &self.steps {
+            map.serialize_entry("steps", steps)?;
+        }
+        if *copies != 1 {
+            map.serialize_entry("copies", copies)?;
+        }
+        map.serialize_entry("segments_in", &path.segments_in)?;
+        map.serialize_entry("segments_out", &path.segments_out)?;
+        map.serialize_entry("max_error", &path.max_error)?;
+        map.serialize_entry("share", &path.share)?;
+        // Proven, by interval arithmetic or because the map is exact on the curve.
+        map.serialize_entry("certified", &(path.assurance != Assurance::Checked))?;
+        map.serialize_entry("assurance", assurance_word(path.assurance))?;
+        map.serialize_entry("folds", &self.fold.count)?;
+        if let Some(at) = &self.fold.at {
+            map.serialize_entry("folded_at", &place(at))?;
+        }
+        if !path.over_budget.is_empty() {
+            map.serialize_entry("over_budget", &path.over_budget.iter().map(place).collect::<Vec<_>>())?;
+        }
+        if let Some(resolution) = path.unresolved {
+            map.serialize_entry("unresolved", &resolution)?;
+        }
+        if let Some(distance) = paint_residual {
+            map.serialize_entry("paint_residual", distance)?;
+        }
+        if *pictures > 0 {
+            map.serialize_entry("pictures", pictures)?;
+        }
+        if let Some(distance) = stroke_error {
+            map.serialize_entry("stroke_error", distance)?;
+        }
+        if *outlined_strokes > 0 {
+            map.serialize_entry("outlined_strokes", outlined_strokes)?;
+        }
+        map.end()
+    }
 }
 
 /// A shape that was left unchanged.
@@ -142,18 +172,8 @@ pub(crate) struct Totals {
     pub(crate) seconds: f64,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_one(copies: &usize) -> bool {
-    *copies == 1
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_zero(count: &usize) -> bool {
-    *count == 0
-}
-
 /// The report's word for an assurance.
-pub(crate) fn assurance_word(a: Assurance) -> &'static str {
+fn assurance_word(a: Assurance) -> &'static str {
     match a {
         Assurance::Exact => "exact",
         Assurance::Certified => "certified",
@@ -169,10 +189,10 @@ impl Totals {
         self.skipped += input.skipped.len();
         for s in &input.shapes {
             self.shapes += 1;
-            self.segments_in += s.segments_in;
-            self.segments_out += s.segments_out;
-            self.max_error = self.max_error.max(s.max_error);
-            self.folds += s.folds;
+            self.segments_in += s.shape.path.segments_in;
+            self.segments_out += s.shape.path.segments_out;
+            self.max_error = self.max_error.max(s.shape.path.max_error);
+            self.folds += s.fold.count;
         }
     }
 }

@@ -33,7 +33,7 @@
 //! let swirl = Swirl::new(Point::new(10.0, 25.0), 60.0).build()?;
 //!
 //! let warped = document.warp(&swirl.map, &WarpOptions::new(refit::Options::new(0.01)))?;
-//! assert!(warped.shapes.iter().all(|shape| shape.max_error <= 0.01));
+//! assert!(warped.shapes.iter().all(|shape| shape.path.max_error <= 0.01));
 //! assert!(warped.skipped.is_empty());
 //! assert_eq!(warped.warnings, [Warning::MissingFonts(vec!["Nowhere".into()])]);
 //! # Ok::<(), pathwarp::Error>(())

@@ -19,7 +19,9 @@ pub(crate) fn built(root: &Path, arguments: &ArgMatches, profile: &str) -> Resul
         return program.canonicalize().map_err(at(program));
     }
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--quiet", "--profile", profile, "--package", "pathwarp-cli", "--target-dir"]).arg(root.join("target"));
+    cargo
+        .args(["build", "--quiet", "--profile", profile, "--package", "pathwarp-cli", "--target-dir"])
+        .arg(root.join("target"));
     let status = cargo.current_dir(root).status().map_err(|e| e.to_string())?;
     if !status.success() {
         return Err("the program does not build".into());

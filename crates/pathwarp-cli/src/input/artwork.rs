@@ -186,27 +186,6 @@ pub(crate) enum WarpedResult {
     File(PendingFile),
 }
 
-/// A fold of one shape.
-pub(crate) struct Fold {
-    /// Number of orientation changes along the shape, at least 1; 0 if it does not fold.
-    pub(crate) count: usize,
-    /// The first place where it folds.
-    pub(crate) at: Option<Point>,
-}
-
-impl Fold {
-    /// Compares the orientation of one shape with that of all artwork.
-    pub(crate) fn of(shape: &Orientation, all: &Orientation) -> Self {
-        let at = shape.folded_against(all);
-        Self { count: if at.is_some() { shape.changes.max(1) } else { 0 }, at }
-    }
-
-    /// The place as the report has it.
-    pub(super) fn place(&self) -> Option<[f64; 2]> {
-        self.at.map(|p| [p.x, p.y])
-    }
-}
-
 /// The warning that the shape `id` folds at `at`, with its letters that fold.
 pub(super) fn fold_warning(id: &str, letters: &[String], at: Point) -> String {
     const NAMED: usize = 8;

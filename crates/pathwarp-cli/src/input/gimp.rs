@@ -1,6 +1,6 @@
 //! GIMP paths as artwork: warped, and written in a format that GIMP reads.
 
-use super::artwork::{self, Artwork, Baseline, FileArtwork, Fold, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::beside;
 use super::files::{display, split_reference};
 use super::gimp_file::GimpFile;
@@ -10,7 +10,7 @@ use crate::format::{Choice, Format};
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::page::PageNews;
-use crate::report::{ReportedShape, SkippedShape, assurance_word};
+use crate::report::{Fold, ReportedShape, SkippedShape};
 use pathwarp::budget::{Budget, Limits};
 use pathwarp::edit::{self, Offset};
 use pathwarp::fold::{Orientation, Survey};
@@ -18,10 +18,10 @@ use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Class, Map, Undeclared};
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe, Step};
-use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
+use pathwarp::refit::{self, PathReport, SharedEdges};
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_gimp::{FileKind, GimpPath, Stroke, to_json, to_svg};
-use pathwarp_svg::{Document, Edit, OnError, ReadOptions};
+use pathwarp_svg::{Document, Edit, OnError, ReadOptions, ShapeReport};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -337,13 +337,9 @@ impl GimpArtwork {
                         warped.report.max_error +=
                             warped.strokes.iter().map(single_precision_error).fold(0.0, f64::max);
                     }
-                    out.shapes.push(shape_report(
-                        &path.name,
-                        self.steps.get(place),
-                        bends[part].places.len(),
-                        &warped.report,
-                        &fold,
-                    ));
+                    let steps = self.steps.get(place).map(|all| all.iter().map(|i| i + 1).collect());
+                    let shape = ShapeReport::new(&path.name, bends[part].places.len(), warped.report);
+                    out.shapes.push(ReportedShape { shape, steps, fold });
                     out.strokes.push((i, warped.strokes));
                 }
                 Err(e) => {
@@ -368,34 +364,6 @@ fn holds_for(select: &[String], exclude: &[String], path: &str) -> bool {
 
 fn check_names<'a>(file: &GimpFile, mut names: impl Iterator<Item = &'a String>) -> Result<(), Error> {
     names.try_for_each(|name| file.path_named(name.strip_prefix('#').unwrap_or(name)).map(|_| ()))
-}
-
-fn shape_report(
-    name: &str,
-    steps: Option<&Vec<usize>>,
-    copies: usize,
-    warped: &PathReport,
-    fold: &Fold,
-) -> ReportedShape {
-    ReportedShape {
-        id: name.to_owned(),
-        steps: steps.map(|all| all.iter().map(|i| i + 1).collect()),
-        copies,
-        segments_in: warped.segments_in,
-        segments_out: warped.segments_out,
-        max_error: warped.max_error,
-        share: warped.share,
-        certified: warped.assurance != Assurance::Checked,
-        assurance: assurance_word(warped.assurance),
-        folds: fold.count,
-        folded_at: fold.place(),
-        over_budget: warped.over_budget.iter().map(|p| [p.x, p.y]).collect(),
-        unresolved: warped.unresolved,
-        paint_residual: None,
-        pictures: 0,
-        stroke_error: None,
-        outlined_strokes: 0,
-    }
 }
 
 /// Number of decimals that keeps rounding below a hundredth of the tolerance.

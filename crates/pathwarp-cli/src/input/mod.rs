@@ -10,7 +10,7 @@ mod gimp_file;
 mod picture;
 mod svg;
 
-pub(crate) use artwork::{Artwork, Baseline, FileArtwork, Fold, PlainArtwork, WarpRequest, WarpedResult, Which};
+pub(crate) use artwork::{Artwork, Baseline, FileArtwork, PlainArtwork, WarpRequest, WarpedResult, Which};
 pub(crate) use beside::PREVIEW;
 pub(crate) use files::{
     bytes, described, display, document, document_of, no_document, not_a_drawing, read_data_file, read_options,

@@ -1,6 +1,6 @@
 //! SVG drawings as artwork.
 
-use super::artwork::{self, Artwork, Baseline, FileArtwork, Fold, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use crate::bitmap::Bender;
@@ -9,7 +9,7 @@ use crate::format::{Choice, DRAWINGS, Format};
 use crate::options::{CommonOptions, FrameChoice, GradientChoice};
 use crate::output::PendingFile;
 use crate::page::{self, PageNews};
-use crate::report::{ReportedShape, SkippedShape, assurance_word};
+use crate::report::{Fold, ReportedShape, SkippedShape};
 use crate::units::units_per_px;
 use crate::{advice, export, watch};
 use pathwarp::budget::{Budget, Limit};
@@ -20,8 +20,8 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
-    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, WarpOptions,
-    WarpedDocument,
+    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, ShapeReport,
+    WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -265,11 +265,12 @@ impl SvgArtwork {
             folds.push(of_part);
             warnings.extend(warned);
         }
-        let report = |s: &pathwarp_svg::ShapeReport| {
+        let report = |s: &ShapeReport| {
             let own = folds.iter().enumerate().find_map(|(k, folds)| Some((k, folds.get(s.id.as_str())?)));
             let steps =
                 own.filter(|_| !self.parts.is_empty()).map(|(k, _)| parts[k].indices.iter().map(|i| i + 1).collect());
-            shape_report(s, own.map(|(_, fold)| fold), steps)
+            let fold = own.map_or(Fold { count: 0, at: None }, |(_, fold)| fold.clone());
+            ReportedShape { shape: s.clone(), steps, fold }
         };
         Ok((warped.shapes.iter().map(report).collect(), warnings))
     }
@@ -290,28 +291,6 @@ fn format(options: &CommonOptions, input: &Path, target: Option<&Path>) -> Resul
         return Err(Failure::usage(format!("--embed-recipe is for SVG files; a .{word} has no place for the source")));
     }
     Ok(format)
-}
-
-fn shape_report(s: &pathwarp_svg::ShapeReport, fold: Option<&Fold>, steps: Option<Vec<usize>>) -> ReportedShape {
-    ReportedShape {
-        id: s.id.clone(),
-        copies: s.copies,
-        segments_in: s.segments_in,
-        segments_out: s.segments_out,
-        max_error: s.max_error,
-        share: s.share,
-        certified: s.assurance != refit::Assurance::Checked,
-        assurance: assurance_word(s.assurance),
-        steps,
-        folds: fold.map_or(0, |f| f.count),
-        folded_at: fold.and_then(Fold::place),
-        over_budget: s.over_budget.iter().map(|p| [p.x, p.y]).collect(),
-        unresolved: s.unresolved,
-        paint_residual: s.paint_residual,
-        pictures: s.pictures,
-        stroke_error: s.stroke_error,
-        outlined_strokes: s.outlined_strokes,
-    }
 }
 
 impl Artwork for SvgArtwork {

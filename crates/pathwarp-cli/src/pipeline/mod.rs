@@ -18,6 +18,7 @@ use crate::report::{FileReport, ReportFile};
 use crate::{readable, recipe_file, references, temporaries, terminal, watch};
 use indicatif::{ProgressBar, ProgressStyle};
 use pathwarp::deform::Registry;
+use pathwarp::kurbo::Point;
 use pathwarp::recipe::Recipe;
 use pathwarp_svg::PageFit;
 use rayon::prelude::*;
@@ -300,11 +301,11 @@ fn warn(r: &FileReport, count: usize) {
     for s in r.skipped.iter().take(SHOWN) {
         terminal::warning(&of_file(&format!("{} is not warped: {}", s.id, s.why)));
     }
-    for s in r.shapes.iter().filter(|s| !s.over_budget.is_empty()).take(SHOWN) {
-        let [x, y] = s.over_budget[0];
-        let why = match s.unresolved {
+    for s in r.shapes.iter().map(|s| &s.shape).filter(|s| !s.path.over_budget.is_empty()).take(SHOWN) {
+        let Point { x, y } = s.path.over_budget[0];
+        let why = match s.path.unresolved {
             Some(resolution) => format!("it is below the resolution of these coordinates, {resolution:.0e}"),
-            None => format!("the error there is up to {:.3e}", s.max_error),
+            None => format!("the error there is up to {:.3e}", s.path.max_error),
         };
         terminal::warning(&of_file(&format!("{} misses the tolerance near {x:.4},{y:.4}: {why}", s.id)));
     }

@@ -211,8 +211,8 @@ impl Session<'_> {
     fn simplified(&self, shapes: &[ReportedShape]) -> Option<String> {
         let asked = self.options.edit.as_ref().is_some_and(|e| e.info == &SIMPLIFY) && !self.options.quiet;
         let sum = |of: fn(&ReportedShape) -> usize| shapes.iter().map(of).sum::<usize>();
-        let (before, after) = (sum(|s| s.segments_in), sum(|s| s.segments_out));
-        let error = shapes.iter().map(|s| s.max_error).fold(0.0, f64::max);
+        let (before, after) = (sum(|s| s.shape.path.segments_in), sum(|s| s.shape.path.segments_out));
+        let error = shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max);
         let error =
             if (1e-3..1e4).contains(&error) || error == 0.0 { format!("{error:.3}") } else { format!("{error:.2e}") };
         asked.then(|| format!("{before} nodes became {after}, within {error} units of the original"))
@@ -222,8 +222,11 @@ impl Session<'_> {
     fn vanished(&self, shapes: &[ReportedShape]) -> Option<String> {
         const NAMED: usize = 5;
         self.options.edit.as_ref()?;
-        let gone: Vec<&str> =
-            shapes.iter().filter(|s| s.segments_in > 0 && s.segments_out == 0).map(|s| s.id.as_str()).collect();
+        let gone: Vec<&str> = shapes
+            .iter()
+            .filter(|s| s.shape.path.segments_in > 0 && s.shape.path.segments_out == 0)
+            .map(|s| s.shape.id.as_str())
+            .collect();
         (!gone.is_empty()).then(|| format!("nothing is left of {}: narrower than the distance", listed(&gone, NAMED)))
     }
 }
@@ -287,8 +290,8 @@ fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
 
 /// Counts the strokes that stayed strokes, with their error, and those that became outlines.
 fn strokes(shapes: &[ReportedShape]) -> Option<String> {
-    let outlined: usize = shapes.iter().map(|s| s.outlined_strokes).sum();
-    let scaled = || shapes.iter().filter_map(|s| Some((s.stroke_error?, &s.id)));
+    let outlined: usize = shapes.iter().map(|s| s.shape.outlined_strokes).sum();
+    let scaled = || shapes.iter().filter_map(|s| Some((s.shape.stroke_error?, &s.shape.id)));
     let worst = scaled().reduce(|a, b| if b.0 > a.0 { b } else { a });
     let outlined = (outlined > 0).then(|| format!("{outlined} became outlines (--strokes scale|keep prevents that)"));
     let scaled = worst.map(|(error, id)| {
@@ -358,7 +361,7 @@ fn baseline(registry: &Registry, step: &Step) -> Baseline {
 
 /// Warns of decimals that are too few for the tolerance.
 fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape]) -> Option<String> {
-    let worst = shapes.iter().max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let worst = shapes.iter().map(|s| &s.shape.path).max_by(|a, b| a.share.total_cmp(&b.share))?;
     let (n, off, tolerance) = (precision?, worst.max_error, worst.max_error / worst.share);
     (worst.share > 1.001).then(|| {
         format!(

@@ -3,7 +3,7 @@
 use super::fits::PaintFit;
 use super::pictures::{BentImage, PictureError};
 use crate::source::number::path_data_by;
-use pathwarp::kurbo::{BezPath, Point, Rect};
+use pathwarp::kurbo::{BezPath, Rect};
 use pathwarp::refit::{Assurance, PathReport};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{self, Display};
@@ -38,20 +38,9 @@ pub struct ShapeReport {
     pub id: String,
     /// Number of copies in the result.
     pub copies: usize,
-    /// Number of segments before, with closing lines and copies.
-    pub segments_in: usize,
-    /// Number of segments written, with those of outlined strokes, tiles and letters.
-    pub segments_out: usize,
-    /// Largest distance between exact image and output, rounding included, in root user units.
-    pub max_error: f64,
-    /// The largest distance as a share of the tolerance that holds where it is: that of the contour, if contours have their own.
-    pub share: f64,
-    /// Assurance of `max_error`.
-    pub assurance: Assurance,
-    /// Points of the source where the tolerance was not met.
-    pub over_budget: Vec<Point>,
-    /// Resolution of the coordinates if the tolerance is below it; see [`PathReport::unresolved`].
-    pub unresolved: Option<f64>,
+    /// The curves: segments before, with copies, and after, with those of outlined strokes, tiles and letters; errors with the
+    /// rounding of the text.
+    pub path: PathReport,
     /// Largest distance between the map and the affine fit of the shape's gradients or patterns, in root user units; infinite
     /// if no affine map comes near. `None` if there are no such paints, or they were kept or replaced.
     pub paint_residual: Option<f64>,
@@ -63,6 +52,27 @@ pub struct ShapeReport {
     pub stroke_error: Option<f64>,
     /// Number of strokes that became outlines.
     pub outlined_strokes: usize,
+}
+
+impl ShapeReport {
+    /// The report of a shape without paints and strokes that need one.
+    #[must_use]
+    pub fn new(id: &str, copies: usize, path: PathReport) -> Self {
+        let (paint_residual, stroke_error) = (None, None);
+        Self { id: id.to_owned(), copies, path, paint_residual, pictures: 0, stroke_error, outlined_strokes: 0 }
+    }
+
+    /// Adds another part of the same shape.
+    fn add(&mut self, part: Self) {
+        let most = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::max);
+        self.path.segments_in += part.path.segments_in;
+        self.path.segments_out += part.path.segments_out;
+        self.path.add(part.path);
+        self.pictures += part.pictures;
+        self.paint_residual = most(self.paint_residual, part.paint_residual);
+        self.stroke_error = most(self.stroke_error, part.stroke_error);
+        self.outlined_strokes += part.outlined_strokes;
+    }
 }
 
 /// An element that was not warped. It is unchanged, or left out of flattened output if it cannot be included.
@@ -87,42 +97,22 @@ pub struct Overhang {
 impl WarpedDocument {
     /// Adds a part's report to that of its shape, `known` if the shape has one. Returns the index of the report.
     pub(super) fn report(&mut self, id: String, part: &WarpedPart, copies: usize, known: Option<usize>) -> usize {
-        let r = &part.report;
-        let error = r.max_error + part.rounding;
-        let pictures = usize::from(part.fill_image.is_some()) + usize::from(part.stroke_image.is_some());
-        let outlined = usize::from(part.stroke.outline().is_some());
-        let most = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::max);
-        match known.and_then(|i| Some((i, self.shapes.get_mut(i)?))) {
-            Some((i, last)) => {
-                last.segments_in += r.segments_in;
-                last.segments_out += r.segments_out;
-                last.max_error = last.max_error.max(error);
-                last.share = last.share.max(r.share);
-                last.assurance = last.assurance.min(r.assurance);
-                last.over_budget.extend(&r.over_budget);
-                last.unresolved = most(last.unresolved, r.unresolved);
-                last.pictures += pictures;
-                last.paint_residual = most(last.paint_residual, part.residual);
-                last.stroke_error = most(last.stroke_error, part.stroke_error);
-                last.outlined_strokes += outlined;
-                return i;
-            }
-            None => self.shapes.push(ShapeReport {
-                id,
-                copies,
-                segments_in: r.segments_in,
-                segments_out: r.segments_out,
-                max_error: error,
-                share: r.share,
-                assurance: r.assurance,
-                over_budget: r.over_budget.clone(),
-                unresolved: r.unresolved,
-                paint_residual: part.residual,
-                pictures,
-                stroke_error: part.stroke_error,
-                outlined_strokes: outlined,
-            }),
+        let mut path = part.report.clone();
+        path.max_error += part.rounding;
+        let of_part = ShapeReport {
+            id,
+            copies,
+            path,
+            paint_residual: part.residual,
+            pictures: usize::from(part.fill_image.is_some()) + usize::from(part.stroke_image.is_some()),
+            stroke_error: part.stroke_error,
+            outlined_strokes: usize::from(part.stroke.outline().is_some()),
+        };
+        if let Some((i, shape)) = known.and_then(|i| Some((i, self.shapes.get_mut(i)?))) {
+            shape.add(of_part);
+            return i;
         }
+        self.shapes.push(of_part);
         self.shapes.len() - 1
     }
 }

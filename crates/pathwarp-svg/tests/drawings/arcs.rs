@@ -41,11 +41,11 @@ fn check(body: &str, map: &dyn Map, arcs: impl Fn(usize) -> bool) {
             let d = data(&w.svg);
             let placed = read(&w.svg).shapes()[0].outline.clone();
             let distance = off(&document.shapes()[0].outline, map, &placed);
-            let stated = w.shapes[0].max_error;
+            let stated = w.shapes[0].path.max_error;
             assert!(distance <= stated + 1e-9, "{body}: {distance} of {stated}\n{d}");
             assert!(decimals.is_some() || stated <= 1e-4, "{body}: {stated}");
             assert!(arcs(d.matches('A').count()), "{body}: {d}");
-            assert_eq!(w.shapes[0].segments_out, Outline::from_svg(&d).unwrap().segs().count(), "{body}: {d}");
+            assert_eq!(w.shapes[0].path.segments_out, Outline::from_svg(&d).unwrap().segs().count(), "{body}: {d}");
         }
     }
 }

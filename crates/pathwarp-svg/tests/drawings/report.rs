@@ -63,7 +63,7 @@ fn tiles_count() {
                 fill='red'/></pattern><rect id='p' x='5' y='5' width='80' height='70' fill='url(#t)'/>";
     let options = warp_options().with_structure(Structure::Flatten).with_patterns(Patterns::Instantiate);
     let w = read(&drawing(body)).warp(&Bend, &options).unwrap();
-    let counted: usize = w.shapes.iter().map(|s| s.segments_out).sum();
+    let counted: usize = w.shapes.iter().map(|s| s.path.segments_out).sum();
     assert!(w.shapes.iter().any(|s| s.id == "p"), "{:?}", w.shapes);
     assert_eq!(counted, segments(&w.svg), "{:?}\n{}", w.shapes, w.svg);
 }
@@ -71,7 +71,7 @@ fn tiles_count() {
 #[track_caller]
 fn check(name: &str, body: &str, options: &WarpOptions) {
     let w = read(&drawing(body)).warp(&Bend, options).unwrap();
-    let counted: usize = w.shapes.iter().map(|s| s.segments_out).sum();
+    let counted: usize = w.shapes.iter().map(|s| s.path.segments_out).sum();
     assert_eq!(counted, segments(&w.svg), "{name}: {:?}\n{}", w.shapes, w.svg);
     // Markers have no element of their own.
     let ids: Vec<&str> = w.shapes.iter().map(|s| s.id.as_str()).filter(|id| *id != "path").collect();

@@ -105,7 +105,7 @@ fn check_all(map: &dyn Map, styles: &[&str], least: [usize; 2]) {
         counts[usize::from(outlined)] += 1;
         assert_eq!(is_stroke(&b.svg), !outlined, "{what}: {}", b.svg);
         assert_eq!(b.report.outlined_strokes, usize::from(outlined), "{what}");
-        let stated = b.report.stroke_error.unwrap_or(b.report.max_error);
+        let stated = b.report.stroke_error.unwrap_or(b.report.path.max_error);
         // The renderer's dashes are a fiftieth off where the path turns, those of outlines less than rounding.
         let slack = if style.contains("dash") { 0.02 } else { SLACK };
         assert!(b.apart <= stated + slack, "{what}: {} off, {stated} stated\n{}", b.apart, b.svg);

@@ -97,10 +97,10 @@ fn what_cannot_be_patched_is_flattened_or_refused() {
 fn precision_follows_the_tolerance_and_the_transform() {
     let svg = drawing("<g transform='scale(1000)'><path d='M0 0L.1 0L.1 .1z'/></g><path d='M0 0L90 0L90 90z'/>");
     let w = read(&svg).warp(&Hidden(oblique()), &warp_options()).unwrap();
-    assert!(w.shapes.iter().all(|s| s.max_error < 1.01e-4), "{:?}", w.shapes);
+    assert!(w.shapes.iter().all(|s| s.path.max_error < 1.01e-4), "{:?}", w.shapes);
     let coarse = warp_options().with_precision(Some(1));
     let w = read(&svg).warp(&Hidden(oblique()), &coarse).unwrap();
-    assert!(w.shapes[0].max_error > 1.0, "{:?}", w.shapes);
+    assert!(w.shapes[0].path.max_error > 1.0, "{:?}", w.shapes);
 }
 
 #[test]
