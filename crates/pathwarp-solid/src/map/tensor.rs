@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3};
 use pathwarp::map::Real;
 use pulp::{Arch, Simd, WithSimd};
 
-/// C polynomials of the same degrees: Σ c[i,j,k]·xⁱyʲzᵏ.
+/// C polynomials of the same degrees: Σ cᵢⱼₖ·xⁱyʲzᵏ.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tensor<const C: usize> {
     /// Numbers of powers along x, y and z.

@@ -23,7 +23,7 @@ pub(super) struct SegmentFitter<'a> {
     /// The map's degree, if it is a quotient of polynomials.
     pub(super) degree: Option<RationalDegree>,
     pub(super) creases: &'a Creases,
-    /// The map's [`work`](Map::work).
+    /// The map's work per evaluation.
     pub(super) work: f64,
     pub(super) options: &'a Options,
 }

@@ -4,7 +4,7 @@
 //!
 //! - the eye lies in the plane of the drawing, and control points are pushed along rays ([`dilation`]);
 //! - the eye is in front of it, and the drawing is projected onto a surface ([`surface`]): unrolled true to size, or seen by
-//!   another camera ([`camera`]);
+//!   another camera ([`Camera`](surface::Camera));
 //! - the eye is in front, and control points are pushed along rays in space: at degree 1 of a triangle they span a plane, at
 //!   degree 2 a quadric through O, on which straight lines become conics.
 //!
@@ -17,7 +17,6 @@
 //!
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016); D. Hansford, D. Collins, *Anamorphic 3D
 //! geometry*, Computing 79 (2007).
-//!
 
 mod dilation;
 mod net;

@@ -3,16 +3,15 @@
 //! The artwork's horizontals run along the skeleton curve C, its verticals stand on it: F(x, y) = C(u) + v·S(u), u growing with x and v
 //! with the height above the baseline. Two kinds of sides S:
 //!
-//! - **unit normals** ([`piece`]): with u by arc length s, ∂F/∂s = (1 + κd)·T and ∂F/∂d = N, exactly; the strip is as high as
+//! - **unit normals** ([`map`]): with u by arc length s, ∂F/∂s = (1 + κd)·T and ∂F/∂d = N, exactly; the strip is as high as
 //!   the artwork everywhere and folds beyond the centre of curvature, 1 + κd = 0. At corners S is blended into the mitre,
 //!   linearly along both neighbours, so that offsets of a polygon are exact;
-//! - **handles** ([`casteljau`]): the generalised algorithm of de Casteljau, one handle per leg of the control polygon, deeper
+//! - **handles** ([`map`]): the generalised algorithm of de Casteljau, one handle per leg of the control polygon, deeper
 //!   levels on request. F is polynomial in u and v, and the image of a Bézier curve is one again, exactly. By default a handle is
 //!   the leg's unit normal, as long as the artwork is high.
 //!
 //! Source: *A generalized de Casteljau approach to 3D free-form deformation* (Chang & Rockwood, SIGGRAPH 1994), here in the plane;
-//! its joint
-//! conditions (4) and (5) are checked and reported. A skeleton may be given as a B-spline ([`spline`]). Joints of the skeleton are
+//! its joint conditions (4) and (5) are checked and reported. A skeleton may be given as a B-spline. Joints of the skeleton are
 //! creases: verticals in the artwork.
 
 #[cfg(feature = "serde")]

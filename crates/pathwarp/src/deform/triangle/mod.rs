@@ -1,7 +1,7 @@
 //! Bézier triangles: the artwork in a triangle follows a net of control points.
 //!
 //! F(u) = Σ wᵢⱼₖ Pᵢⱼₖ Bᵢⱼₖ(u) / Σ wᵢⱼₖ Bᵢⱼₖ(u), with Bᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱu₁ʲu₂ᵏ and u the barycentric coordinates in
-//! the reference triangle ABC (see [`net`]). Pᵢⱼₖ starts at (iA + jB + kC)/n. At degree 1 the
+//! the reference triangle ABC. Pᵢⱼₖ starts at (iA + jB + kC)/n. At degree 1 the
 //! map is affine, with weights projective; at degree 2 six points are free and lines become conics' projections: parabolas, or
 //! conics with weights. Outside a triangle that was asked for nothing moves; the restriction of the map to a side depends on that
 //! side's points alone, so a side whose points stay put is joined without a gap. Outside the triangle about the artwork's box the map

@@ -2,7 +2,7 @@
 //!
 //! Each is two guide curves, or several pairs, between which the artwork is spanned (`map::tiled`), or guides
 //! that it stands on. The curves and their adjust values are those of ECMA-376, Part 1, *presetTextWarpDefinitions* (the preset
-//! text warps of DrawingML, `prstTxWarp`), written anew as data in `presets.json` ([`preset`]).
+//! text warps of DrawingML, `prstTxWarp`), written anew as data in `presets.json`.
 
 mod shape;
 #[cfg(test)]
