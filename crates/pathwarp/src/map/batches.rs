@@ -1,6 +1,6 @@
-//! Maps of which each call costs much, such as those of another program: a memory in front of them, and ways to invert them in few calls.
+//! Maps whose calls are expensive, such as those of another program: a cache in front of them, and ways to invert them in few calls.
 
-use super::{Batches, Class, Cost, Creases, Images, Jet, Map, RationalBezier};
+use super::{Batches, Class, Cost, Creases, Jet, Map, RationalBezier};
 use kurbo::{Point, Vec2};
 use std::collections::HashMap;
 use std::fmt;
@@ -8,16 +8,16 @@ use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Values remembered before they are forgotten again: some 40 MB.
-const MOST_REMEMBERED: usize = 1 << 19;
+/// Results kept before the cache is cleared: about 40 MB.
+const MAX_CACHED: usize = 1 << 19;
 
-/// A map with a memory of its values and jets, for maps that [prefer batches](Batches).
+/// A map with a cache of its values and jets, for maps that [prefer batches](Batches).
 ///
-/// What is announced to it ([`Batches::prepare`]), it asks for in one call. Its values are those of the map behind it.
+/// Announced points ([`Batches::prepare`]) are computed in one call. Results are those of the map behind the cache.
 pub struct Gathered<'a> {
     map: &'a dyn Map,
-    points: Mutex<Memory<Point>>,
-    jets: Mutex<Memory<Jet>>,
+    points: Mutex<Cache<Point>>,
+    jets: Mutex<Cache<Jet>>,
 }
 
 impl fmt::Debug for Gathered<'_> {
@@ -26,8 +26,8 @@ impl fmt::Debug for Gathered<'_> {
     }
 }
 
-/// Answers by the bits of their point.
-type Memory<T> = HashMap<Key, T, BuildHasherDefault<Mixer>>;
+/// Results by the bits of their points.
+type Cache<T> = HashMap<Key, T, BuildHasherDefault<Mixer>>;
 
 /// The key of a point: the bits of its coordinates.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -61,32 +61,32 @@ impl Hasher for Mixer {
 }
 
 impl<'a> Gathered<'a> {
-    /// Puts an empty memory in front of `map`.
+    /// Puts an empty cache in front of `map`.
     #[must_use]
     pub fn new(map: &'a dyn Map) -> Self {
         Self { map, points: Mutex::default(), jets: Mutex::default() }
     }
 }
 
-/// The points of `ps` that are not remembered.
-fn unknown<T>(memory: &Mutex<Memory<T>>, ps: &[Point]) -> Vec<Point> {
-    let known = memory.lock().unwrap_or_else(PoisonError::into_inner);
+/// The points of `ps` that are not in the cache.
+fn unknown<T>(cache: &Mutex<Cache<T>>, ps: &[Point]) -> Vec<Point> {
+    let known = cache.lock().unwrap_or_else(PoisonError::into_inner);
     ps.iter().filter(|p| !known.contains_key(&key(**p))).copied().collect()
 }
 
-/// Remembers the answers for `ps`.
-fn remember<T: Copy>(memory: &Mutex<Memory<T>>, ps: &[Point], answers: &[T]) {
-    let mut known = memory.lock().unwrap_or_else(PoisonError::into_inner);
-    if known.len() > MOST_REMEMBERED {
+/// Stores the answers for `ps`.
+fn remember<T: Copy>(cache: &Mutex<Cache<T>>, ps: &[Point], answers: &[T]) {
+    let mut known = cache.lock().unwrap_or_else(PoisonError::into_inner);
+    if known.len() > MAX_CACHED {
         known.clear();
     }
     known.extend(ps.iter().map(|p| key(*p)).zip(answers.iter().copied()));
 }
 
-/// Copies the answers for `ps` to `out`; those that are not known are asked for in one call and remembered.
-fn recall<T: Copy + Default>(memory: &Mutex<Memory<T>>, ps: &[Point], out: &mut [T], ask: impl Fn(&[Point], &mut [T])) {
+/// Copies the answers for `ps` to `out`, asking for the missing ones in one call.
+fn recall<T: Copy + Default>(cache: &Mutex<Cache<T>>, ps: &[Point], out: &mut [T], ask: impl Fn(&[Point], &mut [T])) {
     let (mut missing, mut places) = (Vec::new(), Vec::new());
-    let known = memory.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = cache.lock().unwrap_or_else(PoisonError::into_inner);
     for (p, o) in ps.iter().zip(out.iter_mut()) {
         match known.get(&key(*p)) {
             Some(answer) => *o = *answer,
@@ -103,7 +103,7 @@ fn recall<T: Copy + Default>(memory: &Mutex<Memory<T>>, ps: &[Point], out: &mut 
     }
     let mut answers = vec![T::default(); missing.len()];
     ask(&missing, &mut answers);
-    remember(memory, &missing, &answers);
+    remember(cache, &missing, &answers);
     for (o, answer) in places.into_iter().zip(answers) {
         *o = answer;
     }
@@ -170,15 +170,15 @@ impl Batches for Gathered<'_> {
 
     fn prepare(&self, points: &[Point], jets: &[Point]) {
         let (ps, qs) = (unknown(&self.points, points), unknown(&self.jets, jets));
+        if ps.is_empty() && qs.is_empty() {
+            return;
+        }
         let (mut images, mut jets) = (vec![Point::ORIGIN; ps.len()], vec![Jet::default(); qs.len()]);
-        if !(ps.is_empty() && qs.is_empty()) {
-            let (points, jets): (Images<'_, Point>, Images<'_, Jet>) = ((&ps, &mut images), (&qs, &mut jets));
-            match self.map.cost().batches {
-                Some(batches) => batches.points_and_jets(points, jets),
-                None => {
-                    self.map.points(points.0, points.1);
-                    self.map.jets(jets.0, jets.1);
-                }
+        match self.map.cost().batches {
+            Some(batches) => batches.points_and_jets((&ps, &mut images), (&qs, &mut jets)),
+            None => {
+                self.map.points(&ps, &mut images);
+                self.map.jets(&qs, &mut jets);
             }
         }
         remember(&self.points, &ps, &images);
@@ -186,19 +186,19 @@ impl Batches for Gathered<'_> {
     }
 }
 
-// Many computations at once, each of which asks a map for one jet after the other. They proceed in rounds: each runs every computation
-// anew, with the jets known so far, until it asks for one that is not known. One call asks for all that are lacking. Repeating costs
-// little beside a call, and gives the same results as asking singly.
+// Many computations at once, each of which asks a map for one jet after another. Every round restarts the unfinished ones with the jets
+// known so far and stops each at the first unknown jet; then one call fetches all the missing jets. Repeating the work costs little beside
+// a call, and the results are the same as when each computation asks by itself.
 
-/// Rounds before the computations that are left ask singly: they are few, or endless.
-const MOST_ROUNDS: usize = 100;
+/// Rounds after which the remaining computations ask by themselves: they are few, or endless.
+const MAX_ROUNDS: usize = 100;
 
-/// The jets known so far, and those that were asked for in this round.
+/// The jets known so far, and the unknown ones asked for in this round.
 #[derive(Default)]
 struct Replay {
-    known: Memory<Jet>,
-    lacking: Mutex<Vec<Point>>,
-    /// The present computation has asked for a jet that is not known. Its result, and what else it asks, mean nothing.
+    known: Cache<Jet>,
+    missing: Mutex<Vec<Point>>,
+    /// The current computation has asked for an unknown jet. Its result and its further questions mean nothing.
     stopped: AtomicBool,
 }
 
@@ -208,17 +208,17 @@ impl Map for Replay {
             return *jet;
         }
         if !self.stopped.swap(true, Ordering::Relaxed) {
-            self.lacking.lock().unwrap_or_else(PoisonError::into_inner).push(p);
+            self.missing.lock().unwrap_or_else(PoisonError::into_inner).push(p);
         }
         Jet::UNDEFINED
     }
 }
 
-/// The results of `f` for all items under `map`. `f` ends soon when it gets an undefined jet, and asks for jets only.
+/// Computes `f` of every item under `map`. `f` must ask for jets only, and end soon after an undefined one.
 pub(super) fn by_rounds<T, R>(map: &dyn Map, items: &[T], f: impl Fn(&dyn Map, &T) -> R) -> Vec<R> {
     let mut replay = Replay::default();
     let mut results: Vec<Option<R>> = items.iter().map(|_| None).collect();
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         for (item, result) in items.iter().zip(&mut results).filter(|(_, r)| r.is_none()) {
             replay.stopped.store(false, Ordering::Relaxed);
             let found = f(&replay, item);
@@ -226,27 +226,27 @@ pub(super) fn by_rounds<T, R>(map: &dyn Map, items: &[T], f: impl Fn(&dyn Map, &
                 *result = Some(found);
             }
         }
-        let lacking = std::mem::take(replay.lacking.get_mut().unwrap_or_else(PoisonError::into_inner));
-        if lacking.is_empty() {
+        let missing = std::mem::take(replay.missing.get_mut().unwrap_or_else(PoisonError::into_inner));
+        if missing.is_empty() {
             break;
         }
-        let mut jets = vec![Jet::default(); lacking.len()];
-        map.jets(&lacking, &mut jets);
-        replay.known.extend(lacking.iter().map(|p| key(*p)).zip(jets));
+        let mut jets = vec![Jet::default(); missing.len()];
+        map.jets(&missing, &mut jets);
+        replay.known.extend(missing.iter().map(|p| key(*p)).zip(jets));
     }
     items.iter().zip(results).map(|(item, result)| result.unwrap_or_else(|| f(map, item))).collect()
 }
 
-// First answers for the inverse of a map whose derivatives cost several values: Broyden's method for many points at a time. From the
+// Broyden's method for many points at a time: first answers for the inverse of a map whose derivatives take several values each. From the
 // derivatives at a starting point, each step x ← x + H·r, with the residual r = q − F(x), needs one value. H begins as J⁻¹ and is
 // corrected so that it explains the step before: H ← H + (s − H·y)·(sᵀH)/(sᵀ·H·y) for the step s and the change y of F (C. G. Broyden
 // 1965). One call asks for the values of all points.
 
 /// Steps before a point is left to Newton's method.
-const MOST_STEPS: usize = 12;
+const MAX_STEPS: usize = 12;
 
 /// A step must shrink the residual to less than this share.
-const SHRINKS: f64 = 0.7;
+const SHRINKAGE: f64 = 0.7;
 
 /// A point to be inverted, with a place near its preimage and the map's jet there.
 #[derive(Debug, Clone, Copy)]
@@ -256,6 +256,7 @@ pub(super) struct Target {
     pub(super) jet: Jet,
 }
 
+/// The search for one target's preimage.
 struct Approach {
     index: usize,
     q: Point,
@@ -271,11 +272,11 @@ impl Approach {
         self.inverse[0] * v.x + self.inverse[1] * v.y
     }
 
-    /// Takes a step whose value is known. Returns `false` if it leads away.
+    /// Steps to a place whose image is known. Returns `false`, and stays, if the residual does not shrink enough.
     fn step(&mut self, to: Point, image: Point) -> bool {
         let residual = self.q - image;
-        // Not a number where the map is undefined.
-        let shrinks = residual.hypot() < SHRINKS * self.residual.hypot();
+        // Also false where the map is undefined and the residual NaN.
+        let shrinks = residual.hypot() < SHRINKAGE * self.residual.hypot();
         if !shrinks {
             return false;
         }
@@ -293,7 +294,7 @@ impl Approach {
     }
 }
 
-/// Places whose images are within `enough` of the targets' points, as far as they are found.
+/// For each target, a place whose image is within `enough` of its point, if one is found.
 pub(super) fn approach(map: &dyn Map, targets: &[Option<Target>], enough: f64) -> Vec<Option<Point>> {
     let mut found = vec![None; targets.len()];
     let search = |(index, target): (usize, &Option<Target>)| {
@@ -302,7 +303,7 @@ pub(super) fn approach(map: &dyn Map, targets: &[Option<Target>], enough: f64) -
         Some(Approach { index, q, at: start, residual: q - jet.p, inverse: [back.dx, back.dy] })
     };
     let mut active: Vec<Approach> = targets.iter().enumerate().filter_map(search).collect();
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         active.retain(|s| {
             let near = s.residual.hypot() <= enough;
             if near {
@@ -461,7 +462,6 @@ mod tests {
                 let off = a.p.distance(b.p).max((a.dx - b.dx).hypot()).max((a.dy - b.dy).hypot());
                 assert!(a.p.is_nan() || off < 1e-13, "{a:?} {b:?}");
             }
-            println!("{all} and {few} values");
             assert!((few as f64) < most * all as f64, "{all} {few}");
         }
     }

@@ -170,7 +170,7 @@ mod tests {
     use crate::outline::{EllipticArc, Seg};
     use kurbo::{CubicBez, ParamCurve};
 
-    pub(crate) const BENT: Net = {
+    const BENT: Net = {
         const fn p(x: f64, y: f64) -> Point {
             Point::new(x, y)
         }

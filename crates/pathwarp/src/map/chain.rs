@@ -1,10 +1,10 @@
 //! Composition of maps.
 
 use super::{
-    AffineMap, Batches, Class, Crease, Creases, Images, Jet, Level, Map, RationalBezier, RationalDegree, inverse_over,
+    AffineMap, Batches, Class, Cost, Crease, Creases, Images, Jet, Level, Map, RationalBezier, RationalDegree,
+    Searches, inverse_over,
 };
 use crate::budget::Budget;
-use crate::map::{Cost, Searches};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -58,7 +58,7 @@ impl Chain {
         }
     }
 
-    /// The same chain with a step more.
+    /// The same chain with one more step.
     ///
     /// ```
     /// use pathwarp::kurbo::{Affine, Point};
@@ -102,13 +102,13 @@ impl Chain {
         &self.steps
     }
 
-    /// The same chain, whose searches spend from a budget.
+    /// The same chain with its searches charged to `budget`.
     pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
         Self { steps: self.steps.iter().map(|s| s.within(budget).unwrap_or_else(|| Arc::clone(s))).collect() }
     }
 }
 
-/// The box of the image of a grid on `area`, as far as it is defined.
+/// The bounding box of the image of a grid over `area`, without undefined points.
 fn image_box(map: &dyn Map, area: Rect) -> Option<Rect> {
     const SIDE: u32 = 33;
     let share = |i: u32| f64::from(i) / f64::from(SIDE - 1);
@@ -120,7 +120,7 @@ fn image_box(map: &dyn Map, area: Rect) -> Option<Rect> {
     images.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))
 }
 
-/// Points passed from step to step at a time: few enough for the stack.
+/// Points passed from step to step at a time, few enough for the stack.
 const BATCH: usize = 16;
 
 /// The level set of a later step, pulled back through the steps `before` it.
@@ -202,7 +202,7 @@ impl Map for Chain {
     /// With F₁ = (X₁, Y₁)/W₁ and a second map of degree d₂, the denominator of the chain is W₁^d₂ · (W₂ ∘ F₁).
     fn denominator(&self, p: Point) -> f64 {
         let step = |(p, w): (Point, f64), m: &Arc<dyn Map>| {
-            // Only a denominator needs the degree.
+            // 1 has no need for a power, and finding the degree takes time.
             let power = if w == 1.0 { 1 } else { m.rational_degree().map_or(1, |d| d.degree) as i32 };
             (m.point(p), w.powi(power) * m.denominator(p))
         };
@@ -294,7 +294,7 @@ impl Searches for Chain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Formula, Homography, Real};
+    use crate::map::{BicubicNet, Formula, Homography, Real};
     use crate::outline::Seg;
     use kurbo::Line;
 
@@ -347,7 +347,7 @@ mod tests {
 
     #[test]
     fn denominators_are_the_product_of_the_steps() {
-        let net = crate::map::BicubicNet::new(
+        let net = BicubicNet::new(
             &std::array::from_fn(|r| {
                 std::array::from_fn(|s| {
                     Point::new(0.1 * s as f64 + 0.02 * (r * r) as f64, 0.1 * r as f64 - 0.01 * (s * r) as f64)

@@ -151,9 +151,9 @@ impl Coons {
         [a, b, c, d]
     }
 
-    /// The axis along which both curves of a pair run at even steps between the same ends: verticals stay vertical (`true`) or
-    /// horizontals horizontal, and the inverse has a closed form.
-    fn kept(&self) -> Option<bool> {
+    /// Whether both curves of a pair run at even steps along an axis between the same ends, so that the inverse has a closed form:
+    /// `Some(true)` if verticals stay vertical, `Some(false)` if horizontals stay horizontal.
+    fn kept_lines(&self) -> Option<bool> {
         let s = self.sides();
         [(true, Pace::Width, &s.bottom, &s.top), (false, Pace::Height, &s.left, &s.right)].into_iter().find_map(
             |(upright, pace, a, b)| {
@@ -238,21 +238,21 @@ impl Map for Coons {
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let upright = self.kept()?;
-        Some(Arc::new(Back { whole: self.clone(), upright, cell: None }))
+        let upright = self.kept_lines()?;
+        Some(Arc::new(AxisInverse { whole: self.clone(), upright, cell: None }))
     }
 }
 
 /// The inverse where verticals (or horizontals) are kept: (x, y) ↦ (u, (y − b(u)) / (t(u) − b(u))).
-struct Back {
+struct AxisInverse {
     whole: Coons,
     upright: bool,
-    /// The only cell, of a branch.
+    /// The cell of a branch; `None` for the whole inverse.
     cell: Option<Cell>,
 }
 
-impl Back {
-    /// The even parameter of a point.
+impl AxisInverse {
+    /// The parameter of a point along the even axis.
     fn share(&self, q: Point) -> f64 {
         let (s, Point { x, y }) = (self.whole.sides(), q);
         let [a, b] = if self.upright { s.bottom.ends().map(|p| p.x) } else { s.left.ends().map(|p| p.y) };
@@ -267,7 +267,7 @@ impl Back {
     }
 }
 
-impl Map for Back {
+impl Map for AxisInverse {
     fn jet(&self, q: Point) -> Jet {
         let k = self.share(q);
         let cell = self.cell(k);

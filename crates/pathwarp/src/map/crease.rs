@@ -89,8 +89,8 @@ impl Level {
         }
     }
 
-    /// Parameters from 0 to 1, with the function there, between which it has one zero at most; and the size of its rounding errors.
-    /// Nothing if it has no zero on the segment.
+    /// Parameters from 0 to 1 with the function's values, at most one zero between neighbours; and the size of its rounding errors. Empty
+    /// if it has no zero on the segment.
     fn knots(&self, seg: &Seg) -> (Vec<(f64, f64)>, f64) {
         let f = |t: f64| (t, self.at(seg.eval(t)));
         match self {
@@ -104,7 +104,7 @@ impl Level {
     }
 }
 
-/// The parameters between which an affine function with gradient `(a, b)` is monotonous on a segment, its ends included. None if it has
+/// The parameters between which an affine function with gradient `(a, b)` is monotonic on a segment, its ends included. Empty if it has
 /// no zero there.
 fn straight_extremes(level: impl Fn(Point) -> f64, (a, b): (f64, f64), seg: &Seg) -> Vec<f64> {
     let one_side = |ps: &[Point]| {
@@ -148,24 +148,24 @@ fn sampled(seg: &Seg, f: impl Fn(f64) -> (f64, f64)) -> (Vec<(f64, f64)>, f64) {
         }
     }
     knots.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let most = knots.iter().map(|k| k.1.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let largest = knots.iter().map(|k| k.1.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
     let size = seg.bounding_box().size();
     let ulps = seg.extent() / size.width.max(size.height).max(f64::MIN_POSITIVE);
-    (knots, most * (1e-14 + 4.0 * f64::EPSILON * ulps).min(1e-3))
+    (knots, largest * (1e-14 + 4.0 * f64::EPSILON * ulps).min(1e-3))
 }
 
-/// The place between two others where a function that is least at a sample, or beyond zero already, comes nearest to zero. `None` if
-/// its rise to the neighbouring samples tells that it stays away.
+/// The place between `from` and `to` where a function that is smallest at the sample `least` comes nearest to zero, or crosses it. `None`
+/// if its rise to the neighbouring samples shows that it stays away.
 fn dip(f: impl Fn(f64) -> (f64, f64), least: (f64, f64), [from, to]: [f64; 2], rise: f64) -> Option<(f64, f64)> {
     const GOLDEN: f64 = 0.381_966_011_250_105;
-    /// A function falls no further between two samples than it rises to the next, or twice that.
+    /// Largest fall between samples, as a multiple of the rise to the neighbouring ones.
     const FALL: f64 = 2.0;
     const STEPS: usize = 40;
     let sign = if least.1 < 0.0 { -1.0 } else { 1.0 };
     if sign * least.1 > FALL * rise {
         return None;
     }
-    // Away from an end of the segment, the function rises at once, or falls.
+    // At an end of the segment there is a dip only if the function falls from there.
     if least.0 == from || least.0 == to {
         let beside = least.0 + 1e-6 * (from + to - 2.0 * least.0);
         if sign * f(beside).1 >= sign * least.1 {
@@ -225,7 +225,7 @@ pub struct Creases {
     items: Vec<Crease>,
 }
 
-/// Evaluations of a map that take as long as the crossings of a segment with a straight crease.
+/// Work of finding the crossings of a segment with a straight crease, in evaluations of a net.
 const STRAIGHT_WORK: f64 = 1.0;
 
 impl Creases {

@@ -448,7 +448,7 @@ impl SidePiece {
         (self.seg.eval(u) + v * (t - inside), v)
     }
 
-    /// The direction in which a curve at a pace along an axis runs on.
+    /// The derivative with which a curve at a pace along an axis continues beyond its ends.
     fn flattened(&self, v: Vec2) -> Vec2 {
         let most = STEEPEST * self.along(v).abs();
         let limited = |x: f64| x.clamp(-most, most);
@@ -468,26 +468,19 @@ impl SidePiece {
         match (self.pace, self.seg) {
             (Pace::Parameter, _) | (_, Seg::Line(_)) => None,
             (Pace::Length, _) => Some(self.table.parameter(t * self.table.length())),
+            (Pace::Width | Pace::Height, _) if t <= 0.0 || t >= 1.0 => Some(t),
             (Pace::Width | Pace::Height, _) => {
                 let (from, extent) = (self.seg.start(), self.along(self.seg.end() - self.seg.start()));
                 let share = |u: f64| self.along(self.seg.eval(u) - from) / extent;
-                Some(Self::inverse(t, share, |u| self.along(self.seg.deriv(u)) / extent))
+                let excess = |u: f64| (share(u) - t, self.along(self.seg.deriv(u)) / extent);
+                Some(increasing_root((0.0, 1.0), t, excess, |u, _, step: f64| step.abs() <= f64::EPSILON * u))
             }
         }
     }
 
-    /// The part of a vector along the axis of a pace along an axis.
+    /// The component of a vector along the axis of the pace.
     fn along(&self, v: Vec2) -> f64 {
         if self.pace == Pace::Width { v.x } else { v.y }
-    }
-
-    /// Solves f(u) = `t` for u in [0, 1], for an increasing `f` from 0 to 1.
-    fn inverse(t: f64, f: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
-        if t <= 0.0 || t >= 1.0 {
-            return t;
-        }
-        let excess = |u: f64| (f(u) - t, slope(u));
-        increasing_root((0.0, 1.0), t, excess, |u, _, step: f64| step.abs() <= f64::EPSILON * u)
     }
 }
 
@@ -617,7 +610,7 @@ impl GuidePiece {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv};
+    use kurbo::{ParamCurveArclen, ParamCurveDeriv};
 
     fn of(c: CubicBez) -> ArcLength {
         ArcLength::of(&Seg::Cubic(c))

@@ -103,7 +103,7 @@ impl<F: Formula> Map for F {
     }
 }
 
-// The number types that a [`Formula`](super::Formula) runs on: `f64`, and dual numbers that carry both partial derivatives.
+// The number types that a `Formula` runs on: `f64`, and dual numbers that carry both partial derivatives.
 //
 // A dual number is v + x·ε₁ + y·ε₂ with εᵢεⱼ = 0. Arithmetic on dual numbers computes values and applies the chain rule at
 // the same time (forward-mode automatic differentiation), exact to rounding.
@@ -356,7 +356,7 @@ impl Real for Dual {
 
 /// A map from a closure that gives the image of a point. Its derivatives are differences of values, good to nine digits or so where the map
 /// varies over lengths of a hundredth of a drawing and more, and they cost eight calls each; [`from_fn_with`] takes exact ones, and a
-/// [`Formula`](crate::map::Formula) has them by itself. A point without image maps to NaN.
+/// [`Formula`] has them by itself. A point without an image maps to NaN.
 ///
 /// ```
 /// use pathwarp::{Outline, kurbo::Point, map, refit};
@@ -414,17 +414,18 @@ impl<F, J> fmt::Debug for FromFnWith<F, J> {
     }
 }
 
-/// Step of the differences at the origin. It grows with the root of the coordinates, so that neither their rounding nor the map's bends
-/// count for much.
+/// Step of the differences at the origin. It grows with the square root of the coordinates, a compromise between their rounding and the
+/// map's bends.
 const STEP: f64 = 1.0 / 4096.0;
 
 impl<F: Fn(Point) -> Point + Send + Sync> FromFn<F> {
-    /// The derivative along `way`: of fourth order from both sides, or of second order from one where the map has no value on the other.
-    fn slope(&self, p: Point, image: Point, way: Vec2) -> Vec2 {
+    /// The derivative along the unit vector `axis`: fourth-order central differences, or second-order ones to one side where the map has no
+    /// value on the other.
+    fn slope(&self, p: Point, image: Point, axis: Vec2) -> Vec2 {
         let size = p.x.abs().max(p.y.abs()).max(1.0).sqrt();
         // A power of two, so that the steps are exact.
         let h = STEP * 2f64.powi(size.log2().ceil() as i32);
-        let at = |k: f64| (self.0)(p + way * (k * h)) - image;
+        let at = |k: f64| (self.0)(p + axis * (k * h)) - image;
         let (before, after) = (at(-1.0), at(1.0));
         let both = (8.0 * (after - before) - (at(2.0) - at(-2.0))) / (12.0 * h);
         if both.is_finite() {
@@ -441,7 +442,7 @@ impl<F: Fn(Point) -> Point + Send + Sync> Map for FromFn<F> {
         if !image.is_finite() {
             return Jet::UNDEFINED;
         }
-        let [dx, dy] = [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)].map(|way| self.slope(p, image, way));
+        let [dx, dy] = [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)].map(|axis| self.slope(p, image, axis));
         Jet { p: image, dx, dy }
     }
 

@@ -341,21 +341,17 @@ impl Map for LatticeMap {
         if self.affine.is_some() {
             return;
         }
-        let b = self.inside;
+        let within = self.inside;
         let mut line = |vertical: bool, at: f64| {
-            let (a, b_) = if vertical { (1.0, 0.0) } else { (0.0, 1.0) };
-            let level = if self.extended {
-                Level::Line { a, b: b_, c: -at }
-            } else {
-                Level::Stretch { a, b: b_, c: -at, within: b }
-            };
+            let (a, b, c) = if vertical { (1.0, 0.0, -at) } else { (0.0, 1.0, -at) };
+            let level = if self.extended { Level::Line { a, b, c } } else { Level::Stretch { a, b, c, within } };
             out.push(Crease::kink(level));
         };
         if !self.extended {
-            line(true, b.x0);
-            line(true, b.x1);
-            line(false, b.y0);
-            line(false, b.y1);
+            line(true, within.x0);
+            line(true, within.x1);
+            line(false, within.y0);
+            line(false, within.y1);
         }
         let r = self.region;
         for i in 1..self.cells[0] {

@@ -46,6 +46,11 @@ impl Local {
         self.sides.iter().map(|s| s.1).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
     }
 
+    /// A margin for parts that end on the sides.
+    fn margin(&self) -> f64 {
+        1e-3 * (self.bounds().width() + self.bounds().height())
+    }
+
     /// Returns `true` if `p` is inside, up to rounding.
     fn contains(&self, p: Point) -> bool {
         self.depth(p) >= -self.reach
@@ -104,7 +109,7 @@ impl Map for Local {
             Class::Rational(_) | Class::Smooth => InnerInverse::Newton(Arc::new(NewtonInverse::new(
                 self.inside.clone(),
                 self.bounds(),
-                1e-3 * (self.bounds().width() + self.bounds().height()),
+                self.margin(),
                 [1, 1],
             ))),
             _ => InnerInverse::Closed(self.inside.inverse()?),
@@ -144,12 +149,6 @@ impl LocalInverse {
         };
         Self { of: self.of.clone(), back }
     }
-
-    /// A margin for parts that end on the sides of the polygon.
-    fn margin(&self) -> f64 {
-        let b = self.of.bounds();
-        1e-3 * (b.width() + b.height())
-    }
 }
 
 impl Map for LocalInverse {
@@ -172,7 +171,7 @@ impl Map for LocalInverse {
     fn creases(&self, out: &mut Creases) {
         let own = self.clone();
         out.push(Crease::kink(Level::Field(Arc::new(move |q| {
-            let margin = own.margin();
+            let margin = own.of.margin();
             own.preimage(q, margin).map_or(-margin, |found| own.of.depth(found.p))
         }))));
     }
@@ -207,7 +206,7 @@ impl Map for Inside {
     }
 
     fn jet(&self, q: Point) -> Jet {
-        self.0.preimage(q, self.0.margin()).unwrap_or(Jet::UNDEFINED)
+        self.0.preimage(q, self.0.of.margin()).unwrap_or(Jet::UNDEFINED)
     }
 }
 

@@ -5,13 +5,13 @@
 //!
 //! # Writing a map
 //!
-//! [`from_fn`] makes one of a closure.
+//! [`from_fn`] makes a map from a closure.
 //!
 //! Implement [`Formula`]: one function from (x, y) to (x, y), generic over the number type ([`Real`]). Run on `f64` it gives
 //! values, run on [`Dual`] numbers it gives derivatives. Implement [`Map`] itself if derivatives have a cheaper closed form; only
 //! [`Map::jet`], the value and both partial derivatives at a point, is required.
 //!
-//! Everything else is optional knowledge that makes results better:
+//! Everything else is optional and makes results better:
 //!
 //! - [`Map::class`] reports affine and projective maps, which are applied to control points or keep lines straight.
 //! - [`Map::creases`] lists the lines along which the derivative jumps and the boundary of the domain. Paths are split there, and
@@ -24,7 +24,7 @@
 //! [`Chain`] applies maps one after another. Compose first and refit once: every refit adds to the error and to the number of
 //! nodes.
 //!
-//! # Maps that are here
+//! # Maps in this module
 //!
 //! [`AffineMap`] and [`Homography`]; [`BicubicNet`], given by 16 control points; [`LatticeMap`], free-form deformation by a
 //! [`Lattice`] of any size; [`Birational`], a lattice of two rows with a closed-form inverse; and [`Coons`], given by four curved
@@ -138,28 +138,28 @@ pub trait Map: Send + Sync {
         None
     }
 
-    /// What an evaluation costs, for [`budget`](crate::budget). A map that takes longer the more parts it has says so here.
+    /// The cost of an evaluation, for [`budget`](crate::budget). A map whose work grows with its number of parts says so here.
     fn cost(&self) -> Cost<'_> {
         Cost::NET
     }
 }
 
-/// What evaluating a map takes.
+/// The cost of evaluating a map.
 #[derive(Clone, Copy)]
 pub struct Cost<'a> {
     /// The cost of one evaluation, relative to that of a bicubic net: 1 or more.
     pub work: f64,
-    /// The cost of a jet alone, as Newton's method asks for it. A map of many parts takes longer alone than in a batch.
+    /// The cost of a single jet, as Newton's method asks for it. With many parts, a jet takes longer alone than in a batch.
     pub jet: f64,
-    /// Set if a call costs much and a point little, as where another program is asked.
+    /// Set if each call is expensive and each point cheap, as when another program is asked.
     pub batches: Option<&'a dyn Batches>,
-    /// Set if the map searches, as inverses do, and may take more than `work`.
+    /// Set if the map searches for its values, as inverses do, and may take more than `work`.
     pub searches: Option<&'a dyn Searches>,
 }
 
 /// A map that searches for its values.
 pub trait Searches {
-    /// The same map, which spends from a budget what its searches take beyond [`Cost::work`], and finds nothing once the budget is used up.
+    /// The same map, which charges to `budget` what its searches take beyond [`Cost::work`], and finds nothing once that is used up.
     fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map>;
 }
 
@@ -167,20 +167,20 @@ impl<'a> Cost<'a> {
     /// The cost of a bicubic net.
     pub const NET: Self = Self::new(1.0);
 
-    /// The cost of a map of which an evaluation takes `work`.
+    /// The cost of a map whose evaluation takes `work`.
     #[must_use]
     pub const fn new(work: f64) -> Self {
         const SINGLY: f64 = 3.0;
         Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
     }
 
-    /// The same for a map that is asked in batches.
+    /// The same cost for a map that should be asked in batches.
     #[must_use]
     pub fn batched(self, by: &'a dyn Batches) -> Self {
         Self { batches: Some(by), ..self }
     }
 
-    /// The same for a map that searches.
+    /// The same cost for a map that searches.
     #[must_use]
     pub fn searching(self, by: &'a dyn Searches) -> Self {
         Self { searches: Some(by), ..self }
@@ -193,32 +193,33 @@ impl fmt::Debug for Cost<'_> {
     }
 }
 
-/// Points, and room for what belongs to each.
+/// Points, and a slot for the result at each.
 pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
 
-/// A map of which a call costs much and a point little. It says so in its [`cost`](Map::cost); callers then collect the points they need.
+/// A map whose calls are expensive and whose points are cheap. Its [`cost`](Map::cost) says so, and callers then collect the points they
+/// need.
 pub trait Batches: Map {
-    /// Maps a batch of points, and gives the jets at others: in one call where possible.
+    /// Maps some points and computes the jets at others, in one call where possible.
     fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
         self.points(ps, images);
         self.jets(qs, jets);
     }
 
-    /// Returns `true` if derivatives are computed from several values each, by differences. Callers then use values where they can.
+    /// Returns `true` if each derivative is a difference of several values. Callers then use values where they can.
     fn differentiates(&self) -> bool {
         false
     }
 
-    /// Returns `true` for a memory, which takes notice of announcements.
+    /// Returns `true` if the map caches results, so that announcing points to [`prepare`](Self::prepare) pays.
     fn remembers(&self) -> bool {
         false
     }
 
-    /// Announces points whose values and points whose jets are asked for next.
+    /// Announces the points whose values, and those whose jets, will be asked for next.
     fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
 }
 
-/// What the cost and the class of a map tell, in short.
+/// Shorthands for parts of the cost and the class.
 impl dyn Map + '_ {
     /// See [`Cost::work`].
     #[must_use]
@@ -226,19 +227,19 @@ impl dyn Map + '_ {
         self.cost().work
     }
 
-    /// The same map, whose searches spend from a budget. `None`: it searches nothing.
+    /// The same map with its searches charged to `budget`; `None` if it does not search.
     #[must_use]
     pub fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
         self.cost().searches.map(|s| s.within(budget))
     }
 
-    /// Returns `true` if a call costs much and a point little; see [`Batches`].
+    /// Returns `true` if calls are expensive and points cheap; see [`Batches`].
     #[must_use]
     pub fn prefers_batches(&self) -> bool {
         self.cost().batches.is_some()
     }
 
-    /// Announces points whose values and points whose jets are asked for next. Only a memory of a map takes notice.
+    /// Announces the points whose values, and those whose jets, will be asked for next. Only maps that cache results listen.
     pub fn prepare(&self, points: &[Point], jets: &[Point]) {
         if let Some(batches) = self.cost().batches {
             batches.prepare(points, jets);
@@ -295,8 +296,8 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     forward!();
 }
 
-/// Of pointers that are not shared, those to `dyn Map` are maps, as every [`Formula`] is one, and any crate may write a
-/// formula for a reference or a box of its own type.
+/// Other pointers are maps only if they point to `dyn Map`: every [`Formula`] is a map, and any crate may implement `Formula` for a
+/// reference or a box of its own type.
 impl Map for &(dyn Map + '_) {
     forward!();
 }

@@ -33,7 +33,7 @@ const MAX_STEPS: usize = 40;
 const MIN_DAMPING: f64 = 1e-4;
 /// Starting points tried for one point.
 const MAX_TRIES: usize = 16;
-/// Looks at a starting point that comparing it with those tried takes.
+/// Cost of comparing a starting point with those already tried, as a multiple of looking at it.
 const COMPARED: usize = 6;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
@@ -58,10 +58,10 @@ pub struct NewtonInverse {
     lipschitz: f64,
     /// Rounding error of an image coordinate.
     rounding: f64,
-    /// The work of the map, and of one of its jets in a search.
     map_work: f64,
+    /// The work of one of the map's jets in a search.
     pub(crate) jet_work: f64,
-    /// What searches spend.
+    /// Charged for searches.
     budget: Option<Arc<Budget>>,
 }
 
@@ -168,7 +168,7 @@ impl NewtonInverse {
         out
     }
 
-    /// The same inverse, whose searches spend from a budget.
+    /// The same inverse with its searches charged to `budget`.
     #[must_use]
     pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
         // The map may be an inverse itself.
@@ -188,19 +188,19 @@ impl NewtonInverse {
         self.solve_where(q, |_| true)
     }
 
-    /// As [`NewtonInverse::solve`], among the preimages that `accept` accepts.
+    /// As [`NewtonInverse::solve`], but considers only preimages that `accept` accepts.
     #[must_use]
     pub(crate) fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
         self.counted(self.search(q, accept))
     }
 
-    /// As [`NewtonInverse::solve_where`], with what it took, for callers that count it themselves.
+    /// As [`NewtonInverse::solve_where`], with the work done, for callers that charge it themselves.
     #[must_use]
     pub(crate) fn search(&self, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Search) {
         self.search_by(&*self.map, q, accept)
     }
 
-    /// Counts the work of a search.
+    /// Charges the work of a search.
     pub(super) fn counted(&self, (found, search): (Option<Jet>, Search)) -> Option<Jet> {
         search.spend(self.budget.as_ref(), 1, self.jet_work);
         found
@@ -220,7 +220,7 @@ impl NewtonInverse {
         })
     }
 
-    /// The same with the jets of `map`, which is this inverse's map or a memory of it.
+    /// As [`NewtonInverse::search`], with the jets of `map`: this inverse's map, or a cache of it.
     fn search_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Search) {
         let mut search = Search::default();
         let found = self.solve_by(map, q, accept, &mut search);
@@ -259,8 +259,8 @@ impl NewtonInverse {
         best.map(|b| b.1)
     }
 
-    /// For each point the place near its first starting point to which values alone lead, if it is in the core: what Newton's method
-    /// finds from there, up to rounding.
+    /// For each point, a place in the core near its first starting point, found from values alone: where Newton's method ends too, up to
+    /// rounding.
     fn approached(&self, qs: &[Point]) -> Vec<Option<Point>> {
         let target = |q: &Point| {
             let start = self.starts.get(self.next_start(*q, &[])? as usize).filter(|_| q.is_finite())?;
@@ -278,7 +278,7 @@ impl NewtonInverse {
         found
     }
 
-    /// The jets of the inverse at `qs` by the places to which values lead; by Newton's method where there is none.
+    /// The jets of the inverse at `qs` from places found by values alone, or by Newton's method where there is none.
     fn jets_by_values(&self, qs: &[Point]) -> Vec<Jet> {
         let places = self.approached(qs);
         let known: Vec<Point> = places.iter().flatten().copied().collect();
@@ -299,7 +299,7 @@ impl NewtonInverse {
 
     /// The jets of the inverse at `qs` by Newton's method for all of them at once.
     fn jets_by_rounds(&self, qs: &[Point]) -> Vec<Jet> {
-        // Of what is done again in each round, the last time counts.
+        // Each round repeats a search from its start; only the last time is charged.
         let found = by_rounds(&*self.map, qs, |map, q| self.search_by(map, *q, |_| true));
         found.into_iter().map(|f| self.counted(f).unwrap_or(Jet::UNDEFINED)).collect()
     }
@@ -371,8 +371,8 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
     out.is_finite().then_some(out)
 }
 
-/// Work of a point of the inverse, as a multiple of the map's: a dozen jets with the steps around them, where there is a source. What a
-/// search takes beyond this it spends itself.
+/// Work of one point of the inverse, as a multiple of the map's: a dozen jets with the steps around them, where there is a preimage.
+/// Searches charge what they take beyond this.
 pub(crate) const INVERSE_WORK: f64 = 5.0;
 
 impl Map for NewtonInverse {
@@ -412,7 +412,7 @@ impl Searches for NewtonInverse {
     }
 }
 
-// The inverse of a map with creases: it has creases where those of the map go, and a smooth branch on either side.
+// The inverse of a map with creases: its creases are the images of the map's, with a smooth branch on either side.
 
 /// The inverse of a map over `area`, a box in its source: in closed form if there is one ([`Map::inverse`]), or else by Newton's method,
 /// whose answers may lie a quarter of the box's diagonal outside, as strokes and handles do. It has the creases of the map.
@@ -432,14 +432,15 @@ pub(crate) struct CreasedInverse {
 }
 
 impl CreasedInverse {
-    /// Declares the creases of `map` in its inverse; that alone if there are none, or so many that looking for each takes too long.
+    /// Declares the creases of `map` in its inverse. Returns the plain inverse if there are none, or so many that searching for each takes
+    /// too long.
     pub(crate) fn of(map: &Arc<dyn Map>, whole: NewtonInverse) -> Arc<dyn Map> {
-        const MOST: usize = 32;
+        const MAX_KINKS: usize = 32;
         let (whole, mut all) = (Arc::new(whole), Creases::default());
         map.creases(&mut all);
         let kinks = all.items().iter().filter(|c| c.kind == CreaseKind::Kink).map(|c| c.level.clone());
         let kinks: Vec<Level> = kinks.collect();
-        if kinks.is_empty() || kinks.len() > MOST || map.prefers_batches() {
+        if kinks.is_empty() || kinks.len() > MAX_KINKS || map.prefers_batches() {
             return whole;
         }
         Arc::new(Self { whole, map: Arc::clone(map), kinks })
@@ -481,7 +482,7 @@ impl Searches for CreasedInverse {
     }
 }
 
-/// The inverse of a branch of the map, found from the place to which the whole map leads.
+/// The inverse of one branch of the map, searched from where the inverse of the whole map leads.
 struct OnBranch {
     whole: Arc<NewtonInverse>,
     map: Arc<dyn Map>,
@@ -504,7 +505,7 @@ impl Map for OnBranch {
     }
 
     fn jet(&self, q: Point) -> Jet {
-        // Where the ends of a closed strip meet, a point comes from both.
+        // Where the ends of a closed strip meet, a point has preimages at both.
         let near = self.whole.solve(q).filter(|near| self.holds(near.p));
         let near = near.or_else(|| self.whole.solve_where(q, |p| self.holds(p))).or_else(|| self.whole.solve(q));
         let Some(near) = near else { return Jet::UNDEFINED };
@@ -522,7 +523,6 @@ impl Map for OnBranch {
 mod tests {
     use super::*;
     use crate::map::{Formula, Real};
-    use kurbo::Rect;
     use std::sync::atomic::{AtomicU64, Ordering};
 
     struct Fold;

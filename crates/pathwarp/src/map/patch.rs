@@ -33,7 +33,7 @@ pub(crate) struct Patch {
     height: usize,
     /// Coefficients, row by row: of the displacement for a polynomial patch, else of X relative to the center.
     x: Vec<f64>,
-    /// As `x`, of the other coordinate.
+    /// The same for the other coordinate.
     y: Vec<f64>,
     /// Coefficients of W; empty for a polynomial patch.
     w: Vec<f64>,
@@ -78,15 +78,9 @@ impl Patch {
 
     fn from_planes(rect: Rect, degree: [usize; 2], mut x: Vec<f64>, mut y: Vec<f64>, mut w: Vec<f64>) -> Self {
         let (m, n) = (degree[0] + 1, degree[1] + 1);
-        let size = x.iter().chain(&y).fold(0.0, |a: f64, v| a.max(v.abs()));
-        for v in x.iter_mut().chain(&mut y) {
-            if v.abs() <= NOISE * size {
-                *v = 0.0;
-            }
-        }
-        let size = w.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
-        for v in &mut w {
-            if v.abs() <= NOISE * size {
+        for planes in [&mut [&mut x, &mut y][..], &mut [&mut w]] {
+            let size = planes.iter().flat_map(|p| p.iter()).fold(0.0, |a: f64, v| a.max(v.abs()));
+            for v in planes.iter_mut().flat_map(|p| p.iter_mut()).filter(|v| v.abs() <= NOISE * size) {
                 *v = 0.0;
             }
         }
@@ -268,8 +262,8 @@ impl Patch {
 
     /// The nonzero coefficients of uⁱvʲ as (i, j, [X, Y, W]), with X and Y relative to the origin.
     fn terms(&self) -> Vec<(usize, usize, [f64; 3])> {
-        let mut all: Vec<[f64; 3]> = (0..self.width.max(2) * self.height.max(2)).map(|_| [0.0; 3]).collect();
         let width = self.width.max(2);
+        let mut all = vec![[0.0; 3]; width * self.height.max(2)];
         for j in 0..self.height {
             for i in 0..self.width {
                 let k = j * self.width + i;
@@ -299,7 +293,7 @@ fn regular_point(rect: Rect, degree: [usize; 2], i: usize, j: usize) -> Point {
 }
 
 impl Map for Patch {
-    /// By the number of terms; a bicubic net has sixteen.
+    /// Proportional to the number of terms; a bicubic net has sixteen.
     fn cost(&self) -> Cost<'_> {
         Cost::new((self.width * self.height) as f64 / 16.0)
     }
@@ -336,7 +330,6 @@ impl Map for Patch {
         }
     }
 
-    /// Positive where the map is defined.
     fn denominator(&self, p: Point) -> f64 {
         if self.w.is_empty() { 1.0 } else { self.values::<1, 0>(&self.w, &self.local([p]))[0] }
     }

@@ -92,8 +92,8 @@ impl Map for Homography {
     }
 }
 
-/// The identity, which does not say that it is one: what it is asked to bend is fitted, so that
-/// [`warp_path`](crate::refit::warp_path) with [`merge`](crate::refit::Options::merge) gives a path the fewest nodes.
+/// The identity without [declaring](Map::class) that it is one, so that [`warp_path`](crate::refit::warp_path) refits paths instead of
+/// copying them: with [`merge`](crate::refit::Options::merge), a path gets the fewest nodes.
 ///
 /// ```
 /// use pathwarp::{Outline, map::Undeclared, refit};

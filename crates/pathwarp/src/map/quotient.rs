@@ -116,7 +116,7 @@ pub(crate) fn source_coordinates(pre: Affine) -> [[f64; 3]; 2] {
 }
 
 impl Formula for Quotient {
-    /// By the number of terms of a polynomial.
+    /// Proportional to the number of terms of a polynomial.
     fn cost(&self) -> Cost<'_> {
         const TERMS: f64 = 32.0;
         let terms = (self.degree + 1) * (self.degree + 2) / 2;
@@ -280,12 +280,12 @@ impl Plane {
     }
 
     /// The largest magnitude of a coefficient.
-    pub(super) fn largest(&self) -> f64 {
+    fn largest(&self) -> f64 {
         self.0.iter().flatten().fold(0.0, |m, c| f64::max(m, c.abs()))
     }
 
     /// Sets coefficients below [`NOISE`] times `size` to zero and drops trailing zeros.
-    pub(super) fn tidied(mut self, size: f64) -> Self {
+    fn tidied(mut self, size: f64) -> Self {
         for row in &mut self.0 {
             for c in row.iter_mut().filter(|c| c.abs() <= NOISE * size) {
                 *c = 0.0;
@@ -300,18 +300,16 @@ impl Plane {
 
     /// The polynomial along a curve (a/w, b/w), multiplied by the curve's denominator to the power `total`. The slices hold powers
     /// of a, b and w.
-    pub(super) fn on(&self, a: &[Scaled], b: &[Scaled], w: &[Scaled], total: usize, degree: usize) -> Scaled {
+    fn on(&self, a: &[Scaled], b: &[Scaled], w: &[Scaled], total: usize, degree: usize) -> Scaled {
         let mut sum = Scaled::zero(degree);
         for (i, j, c) in self.terms() {
             sum.add_scaled(c, &a[i].times(&b[j]).times(&w[total - i - j]));
         }
         sum
     }
-}
 
-impl Plane {
     /// Returns `true` if every coefficient vanishes. Exact only after [`Plane::tidied`].
-    pub(super) fn is_zero(&self) -> bool {
+    fn is_zero(&self) -> bool {
         self.0.is_empty()
     }
 }

@@ -28,7 +28,7 @@ pub(crate) struct Tiled {
     /// The increasing ordinates between rows.
     cuts: Vec<f64>,
     rows: Vec<TileRow>,
-    /// The work of the map that takes most.
+    /// The largest work of a tile's map.
     work: f64,
 }
 
@@ -37,8 +37,8 @@ const REACH: f64 = 1e3;
 /// Margin, as a share of a tile's rectangle, within which answers of its inverse count: for the ends of parts on the border, and
 /// their rounding.
 const MARGIN: f64 = 1e-9;
-/// Tiles that are searched for a point, most often.
-const FORESEEN: usize = 2;
+/// Tiles usually searched for a point.
+const USUAL_TILES: usize = 2;
 /// Distance beyond the region over which the inverse searches, as a multiple of its size.
 const INVERSE_REACH: f64 = 0.5;
 
@@ -213,14 +213,14 @@ impl TiledInverse {
                 None => {}
             }
         }
-        search.spend(self.budget.as_ref(), FORESEEN, self.jet_work);
+        search.spend(self.budget.as_ref(), USUAL_TILES, self.jet_work);
         best
     }
 }
 
 impl Map for TiledInverse {
     fn cost(&self) -> Cost<'_> {
-        Cost::new(FORESEEN as f64 * INVERSE_WORK * self.of.cost().work).searching(self)
+        Cost::new(USUAL_TILES as f64 * INVERSE_WORK * self.of.cost().work).searching(self)
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -271,7 +271,7 @@ impl Searches for TiledInverse {
 /// The ruled map that takes the upper side of `frame` to `top` and its lower side to `bottom`, as a row of tiles between creases.
 /// `None` if the frame has no area.
 #[must_use]
-pub(crate) fn row(frame: Rect, top: &Guide, bottom: &Guide) -> Option<TileRow> {
+pub(crate) fn ruled_row(frame: Rect, top: &Guide, bottom: &Guide) -> Option<TileRow> {
     /// Joints closer than this coincide up to rounding, as in guides of equal proportions.
     const MIN_DISTANCE: f64 = 1e-12;
     if !(frame.width() > 0.0 && frame.height() > 0.0) {
@@ -333,8 +333,7 @@ impl Map for Strip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::curves::Along;
-    use crate::map::{Creases, RationalDegree, Tiled};
+    use crate::map::{Along, RationalDegree};
     use crate::outline::{EllipticArc, Outline, Seg};
     use kurbo::{ParamCurve, ParamCurveArclen, Vec2};
 
@@ -346,7 +345,7 @@ mod tests {
     const FRAME: Rect = Rect::new(10.0, 20.0, 110.0, 70.0);
 
     fn ruled(top: &Guide, bottom: &Guide) -> Arc<dyn Map> {
-        Tiled::over(FRAME, Vec::new(), vec![row(FRAME, top, bottom).unwrap()]).unwrap()
+        Tiled::over(FRAME, Vec::new(), vec![ruled_row(FRAME, top, bottom).unwrap()]).unwrap()
     }
 
     fn source(u: f64, v: f64) -> Point {

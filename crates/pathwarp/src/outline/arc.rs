@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 /// An arc of an ellipse, parametrised over `t` in [0, 1] at constant angular speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EllipticArc {
-    /// The first point, stored besides the ellipse so that neighbours meet to the last bit.
+    /// The first point, stored beside the ellipse so that neighbours meet to the last bit.
     pub p0: Point,
     /// The last point.
     pub p1: Point,
@@ -180,7 +180,7 @@ impl EllipticArc {
     /// quarter turn.
     #[must_use]
     pub fn to_cubic(&self) -> CubicBez {
-        // Clamped because the tangent has a pole at two half turns. `to_cubics` cuts such arcs.
+        // Clamped because the tangent has a pole at a full turn. `to_cubics` cuts such arcs.
         let k = 4.0 / 3.0 * (self.sweep.clamp(-PI, PI) / 4.0).tan() / self.sweep;
         let (d0, d1) = (self.deriv(0.0), self.deriv(1.0));
         CubicBez::new(self.p0, self.p0 + d0 * k, self.p1 - d1 * k, self.p1)

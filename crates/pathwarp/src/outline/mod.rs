@@ -340,7 +340,7 @@ impl Seg {
         }
     }
 
-    /// The largest magnitude of the coordinates that the segment is computed with: of its control points; of an arc, a bound.
+    /// The largest magnitude of a control point's coordinates; for an arc, an upper bound of its coordinates.
     #[must_use]
     pub fn extent(&self) -> f64 {
         let all = |points: &[Point]| points.iter().fold(0.0, |most: f64, p| most.max(p.x.abs()).max(p.y.abs()));
@@ -366,8 +366,8 @@ impl Seg {
     }
 }
 
-/// Calls `line` with the ends of every line of a path that is flattened within `tolerance`, in order. Open subpaths are closed by a
-/// line, as SVG fills them. Lines without length may be among them.
+/// Flattens a path within `tolerance` and calls `line` with the ends of every line, in order. Open subpaths are closed by a line, as
+/// they are when SVG fills them. Some lines may have no length.
 pub fn boundary(path: impl IntoIterator<Item = PathEl>, tolerance: f64, mut line: impl FnMut(Point, Point)) {
     let (mut start, mut at) = (Point::ORIGIN, Point::ORIGIN);
     kurbo::flatten(path, tolerance, |element| match element {
@@ -383,7 +383,7 @@ pub fn boundary(path: impl IntoIterator<Item = PathEl>, tolerance: f64, mut line
             line(at, start);
             at = start;
         }
-        // Flattened paths have no curves.
+        // `flatten` leaves no curves.
         PathEl::QuadTo(..) | PathEl::CurveTo(..) => {}
     });
     line(at, start);
@@ -392,9 +392,8 @@ pub fn boundary(path: impl IntoIterator<Item = PathEl>, tolerance: f64, mut line
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kurbo::BezPath;
 
-    /// The area within the lines is that of the path, closed.
+    /// The lines enclose the area of the closed path.
     #[test]
     fn subpaths_are_closed() {
         let path = BezPath::from_svg("M0,0 H10 V10 H0 M20,0 Q40,0 40,20 V0 Z").unwrap();

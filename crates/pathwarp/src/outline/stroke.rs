@@ -5,15 +5,15 @@ use bezierfit::parts::{Edge, EdgeCurve, contours, drawn_dashes};
 use bezierfit::{NotFinite, Piece};
 use kurbo::{Stroke, Vec2};
 
-/// Share of the tolerance for arcs as cubics. Their error falls with the sixth power of their number.
+/// Share of the tolerance spent on turning arcs into cubics, whose error falls with the sixth power of their number.
 const ARCS: f64 = 0.05;
 
-/// The same of a dashed path: cubics beside an arc by this much all around are longer by as much for each radian, and dashes move on.
+/// The same for dashed paths. Cubics that run beside an arc at this distance are longer by as much per radian, which shifts the dashes.
 const DASHED_ARCS: f64 = 0.01;
 
 impl Outline {
-    /// The area that a stroke along this path covers, to be filled by the nonzero rule, within `tolerance`; at joints whose sides are less
-    /// than `gap` apart, half of that more, since they have no join. If `clipped`, miters beyond their limit are cut off there.
+    /// The area that a stroke along this path covers, within `tolerance`, to be filled by the nonzero rule. Joints whose sides are less
+    /// than `gap` apart get no join, which adds up to half of `gap` to the error. If `clipped`, miters beyond their limit are cut off there.
     ///
     /// # Errors
     /// The path is not finite.
@@ -30,7 +30,8 @@ impl Outline {
         Ok(Self { subpaths: contours.iter().map(subpath).collect::<Result<_, NotFinite>>()? })
     }
 
-    /// A bound for the number of dashes that [`stroked`](Self::stroked) draws; 0 if there are none, or so many that a line is drawn instead.
+    /// An upper bound for the number of dashes that [`stroked`](Self::stroked) draws; 0 if there are none, or so many that it draws a solid
+    /// line instead.
     #[must_use]
     pub fn drawn_dashes(&self, pattern: &[f64]) -> f64 {
         drawn_dashes(self.segs().map(Seg::to_cubic), pattern)

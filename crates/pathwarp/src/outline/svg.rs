@@ -1,4 +1,5 @@
-//! SVG path data to an outline: svgtypes reads the commands, and this module makes them absolute.
+//! Builds outlines from drawing commands, SVG path data and kurbo's shapes. svgtypes parses path data; this module makes its commands
+//! absolute.
 
 use super::{EllipticArc, Outline, Seg, Subpath};
 use crate::error::Error;
@@ -11,7 +12,7 @@ use svgtypes::{PathParser, PathSegment};
 #[error(transparent)]
 pub struct PathDataError(svgtypes::Error);
 
-/// Path data without a name, as in a program: [`Error::Input`] with `path data` for its place.
+/// Becomes [`Error::Input`] with `path data` as its place.
 impl From<PathDataError> for Error {
     fn from(e: PathDataError) -> Self {
         Self::input("path data", e.to_string())
@@ -185,7 +186,7 @@ impl From<Ellipse> for Outline {
     fn from(e: Ellipse) -> Self {
         let (radii, turn) = e.radii_and_rotation();
         let (a, b) = (Vec2::from_angle(turn) * radii.x, Vec2::from_angle(turn + FRAC_PI_2) * radii.y);
-        // Quarters, as for a circle of SVG.
+        // Quarters, as SVG draws a circle.
         let quarter = |i: i32| EllipticArc::new(e.center(), a, b, f64::from(i) * FRAC_PI_2, FRAC_PI_2);
         let mut arcs = [0, 1, 2, 3].map(quarter);
         for i in 0..4 {
@@ -235,7 +236,6 @@ impl From<&BezPath> for Outline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outline::Seg;
 
     /// An independent reference: the simplifier of svgtypes, which makes everything absolute and converts arcs to curves.
     #[test]

@@ -192,7 +192,7 @@ impl WordArt {
                     let (top, bottom) = (moved(top), moved(bottom));
                     built.overlay(Role::Cage, drawn(&top));
                     built.overlay(Role::Cage, drawn(&bottom));
-                    tiled::row(self.band(cuts, k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
+                    tiled::ruled_row(self.band(cuts, k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
                 };
                 Ok(pairs.iter().enumerate().map(one).collect())
             }

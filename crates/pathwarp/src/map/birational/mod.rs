@@ -118,10 +118,10 @@ impl Birational {
         let share = |a: f64, size: f64, k: usize| a + size * (k as f64 / cells as f64);
         let piece = |(k, pair): (usize, [Monoid; 2])| {
             let homogeneous = |r: usize, j: usize| {
-                let (p, w) = (pair[r].points()[j], pair[r].weights()[j]);
+                let (p, w) = (pair[r].points[j], pair[r].weights[j]);
                 [p.x * w, p.y * w, w]
             };
-            let n = pair[0].points().len() - 1;
+            let n = pair[0].points.len() - 1;
             let r = region;
             let (rect, degree, net): (_, _, Vec<[f64; 3]>) = match rows {
                 Rows::LeftRight => (
@@ -142,7 +142,7 @@ impl Birational {
 
     /// The weights of both rows of each Bézier piece.
     pub fn weights(&self) -> impl Iterator<Item = [&[f64]; 2]> {
-        self.pieces.iter().map(|p| [p.rows[0].weights(), p.rows[1].weights()])
+        self.pieces.iter().map(|p| [p.rows[0].weights.as_slice(), &p.rows[1].weights])
     }
 
     /// The inverse map, in closed form.
@@ -242,16 +242,15 @@ pub struct BirationalInverse {
 impl BirationalInverse {
     /// (s, t) of a point by the rows of one piece.
     fn parameters<S: Real>(rows: &[Monoid; 2], x: S, y: S) -> (S, S) {
-        let [first, last] = rows[0].lines();
-        let (alpha, beta) = (-last.of(x, y), first.of(x, y));
+        let (alpha, beta) = (-rows[0].last.of(x, y), rows[0].first.of(x, y));
         // The homogeneous points of the rows at t, times (α+β)ⁿ, relative to (x, y). They lie at opposite ends of a line
         // through (x, y).
         let relative = |m: &Monoid| {
             // Relative to a control point, so that the sums are not differences of large numbers.
-            let o = m.points()[0];
+            let o = m.points[0];
             let (dx, dy) = (x - o.x, y - o.y);
-            let n = m.points().len() - 1;
-            let term = |i: usize| (m.weights()[i], m.points()[i] - o);
+            let n = m.points.len() - 1;
+            let term = |i: usize| (m.weights[i], m.points[i] - o);
             let (w, d) = term(n);
             let (mut sx, mut sy, mut sw) = (S::from(w * d.x), S::from(w * d.y), S::from(w));
             // Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ for three sets of c, by Horner's scheme in β with running powers of α.
@@ -282,7 +281,7 @@ impl BirationalInverse {
             let (s, t) = Self::parameters(&piece.rows, p.x, p.y);
             let outside = if k == 0 { 0.0 } else { -t }.max(if k == last { 0.0 } else { t - 1.0 }).max(0.0);
             // The denominator is negative on the far side of A.
-            let in_front = self.forward.pieces[k].patch.denominator(self.source(k, s, t).into()) > 0.0;
+            let in_front = piece.patch.denominator(self.source(k, s, t).into()) > 0.0;
             let cost = outside * OUTSIDE_COST + (s - 0.5).abs() + if in_front { 0.0 } else { BEHIND_COST };
             if cost < best.0 {
                 best = (cost, k);
@@ -317,13 +316,11 @@ impl Formula for BirationalInverse {
     }
 
     fn creases(&self, out: &mut Creases) {
-        if self.forward.pieces.len() > 1 {
-            // The lines between pieces.
-            for p in &self.forward.pieces[1..] {
-                let l = p.rows[0].lines()[0];
-                let c = -l.normal.dot(l.through.to_vec2());
-                out.push(Crease::kink(Level::Line { a: l.normal.x, b: l.normal.y, c }));
-            }
+        // The lines between pieces.
+        for p in &self.forward.pieces[1..] {
+            let l = p.rows[0].first;
+            let c = -l.normal.dot(l.through.to_vec2());
+            out.push(Crease::kink(Level::Line { a: l.normal.x, b: l.normal.y, c }));
         }
         // The forward denominator is infinite where s or t is; its reciprocal changes sign there.
         let own = self.clone();
@@ -340,13 +337,12 @@ impl Formula for BirationalInverse {
     /// A curve of degree d gives one of degree d·(1+n): (s, t, 1) ~ (χ·f₀, β·(f₀−f₁), χ·(f₀−f₁)), χ = α + β.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [piece] = self.forward.pieces.as_slice() else { return None };
-        let [first, last] = piece.rows[0].lines();
         let line = |l: ImplicitLine, k: f64| {
             let c = l.normal.dot(l.through.to_vec2());
             Scaled::new(curve.points.iter().map(|p| k * (l.normal.x * p[0] + l.normal.y * p[1] - c * p[2])))
         };
-        let n = piece.rows[0].points().len() - 1;
-        let (alpha, beta) = (line(last, -1.0).powers(n), line(first, 1.0).powers(n));
+        let n = piece.rows[0].points.len() - 1;
+        let (alpha, beta) = (line(piece.rows[0].last, -1.0).powers(n), line(piece.rows[0].first, 1.0).powers(n));
         let w = Scaled::new(curve.points.iter().map(|p| p[2]));
         let sum = |c: &[f64]| {
             let n = c.len() - 1;
@@ -359,8 +355,8 @@ impl Formula for BirationalInverse {
             out
         };
         let implicit = |m: &Monoid| {
-            let mut f = sum(m.weights());
-            f.add_scaled(-1.0, &sum(m.h()).times(&w));
+            let mut f = sum(&m.weights);
+            f.add_scaled(-1.0, &sum(&m.h).times(&w));
             f
         };
         let (f0, f1) = (implicit(&piece.rows[0]), implicit(&piece.rows[1]));
@@ -455,8 +451,11 @@ impl ImplicitLine {
 struct Monoid {
     points: Vec<Point>,
     weights: Vec<f64>,
+    /// The coefficients h₀ … hₙ₋₁ of the implicit equation.
     h: Vec<f64>,
+    /// L at t = 0.
     first: ImplicitLine,
+    /// L at t = 1.
     last: ImplicitLine,
 }
 
@@ -477,30 +476,6 @@ impl Monoid {
         }
         let h = (0..n).map(|i| n as f64 / (i + 1) as f64 * weights[i + 1] * first.at(points[i + 1])).collect();
         Some(Self { points: points.to_vec(), weights, h, first, last })
-    }
-
-    /// The control points.
-    #[must_use]
-    fn points(&self) -> &[Point] {
-        &self.points
-    }
-
-    /// The weights.
-    #[must_use]
-    fn weights(&self) -> &[f64] {
-        &self.weights
-    }
-
-    /// The coefficients h₀ … hₙ₋₁ of the implicit equation.
-    #[must_use]
-    fn h(&self) -> &[f64] {
-        &self.h
-    }
-
-    /// The lines at t = 0 and t = 1.
-    #[must_use]
-    fn lines(&self) -> [ImplicitLine; 2] {
-        [self.first, self.last]
     }
 
     /// The same curve with weights gⁱ·wᵢ, which changes only the speed of t.
@@ -569,9 +544,9 @@ fn general_rows(
 
 /// Normalises the speeds and the common factors of the rows, piece after piece.
 fn chained(raw: Vec<[Monoid; 2]>) -> Option<Vec<[Monoid; 2]>> {
-    let n = raw[0][0].points().len() - 1;
+    let n = raw[0][0].points.len() - 1;
     let product = |rows: &[Monoid; 2], over: usize, under: usize| -> f64 {
-        rows.iter().map(|m| (m.weights()[over] / m.weights()[under]).abs().ln()).sum()
+        rows.iter().map(|m| (m.weights[over] / m.weights[under]).abs().ln()).sum()
     };
     // ln g is alternately a + x and a − x; x brings the end weights as close to 1 as possible.
     let mut a = vec![0.0];
@@ -589,7 +564,7 @@ fn chained(raw: Vec<[Monoid; 2]>) -> Option<Vec<[Monoid; 2]>> {
         let g = (a + sign(k) * x).exp();
         let [p, q] = rows;
         let pair = [p.paced(g)?.weighted(factor[0]), q.paced(g)?.weighted(factor[1])];
-        factor = [0, 1].map(|r| pair[r].weights()[n]);
+        factor = [0, 1].map(|r| pair[r].weights[n]);
         out.push(pair);
     }
     Some(out)
@@ -652,13 +627,12 @@ mod monoid_tests {
         let m = example();
         let near =
             |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 4e-15 * b.abs());
-        assert!(near(m.weights(), &[1.0, 5.0 / 6.0, 2.0 / 3.0, 10.0 / 13.0, 8.0 / 13.0]), "{:?}", m.weights());
-        assert!(near(m.h(), &[-10.0, -40.0 / 3.0, -40.0 / 3.0, -80.0 / 13.0]), "{:?}", m.h());
+        assert!(near(&m.weights, &[1.0, 5.0 / 6.0, 2.0 / 3.0, 10.0 / 13.0, 8.0 / 13.0]), "{:?}", m.weights);
+        assert!(near(&m.h, &[-10.0, -40.0 / 3.0, -40.0 / 3.0, -80.0 / 13.0]), "{:?}", m.h);
         // |Q₁AX| = 2x − 2y − 6 and |AQ₀X| = −2x − 3y + 6.
-        let [first, last] = m.lines();
         for p in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (7.0, -3.0)] {
-            assert_eq!(-last.at(p.into()), 2.0 * p.0 - 2.0 * p.1 - 6.0);
-            assert_eq!(first.at(p.into()), -2.0 * p.0 - 3.0 * p.1 + 6.0);
+            assert_eq!(-m.last.at(p.into()), 2.0 * p.0 - 2.0 * p.1 - 6.0);
+            assert_eq!(m.first.at(p.into()), -2.0 * p.0 - 3.0 * p.1 + 6.0);
         }
     }
 
