@@ -2,8 +2,7 @@
 //!
 //! x' = a·x + c·y + e, y' = b·x + d·y + f. By parts, about a fixed point O: first scale, then skew, then rotate, then move.
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
-use crate::deform::entry::Built;
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::AffineMap;
 use crate::param::{Axis, Kind, Param, Settings};
@@ -29,7 +28,7 @@ pub struct Affine {
     about: Point,
 }
 
-/// Determinants below this part of their two products are zero.
+/// Determinants below this share of their two products count as zero.
 const FLAT: f64 = 1e-14;
 
 impl Default for Affine {
@@ -89,7 +88,7 @@ impl Affine {
         Self { about: point.into(), ..self }
     }
 
-    /// The error that the matrix leaves no area: by the parameter that is to blame.
+    /// The error for a matrix that leaves no area, naming the parameter to blame.
     fn flat(&self, m: Matrix) -> Error {
         let scales = [("scale-x", self.scale.x, "width"), ("scale-y", self.scale.y, "height")];
         let zero = scales.into_iter().find(|(_, scale, _)| self.matrix.is_none() && *scale == 0.0);

@@ -8,12 +8,11 @@
 //! twice the leading coefficient times u plus the middle one is −det F', so the root is chosen by the side of the fold that the
 //! corners lie on. G. Wolberg, *Digital Image Warping* (1990), §3.6.
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs};
 use crate::anchors::{self, Anchors, FourToFour};
-use crate::deform::entry::Built;
 use crate::error::Error;
 use crate::map::rational_bezier::Scaled;
-use crate::map::{AffineMap, Chain, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
+use crate::map::{AffineMap, Chain, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
 use crate::param::{Param, Settings};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
@@ -104,7 +103,7 @@ with the side that lies lowest on the screen, left to right, unless --base-as-dr
         Case { args: FOUR, at: (25.0, 100.0), to: (23.75, 97.5), tolerance: 1e-12 },
     ]);
 
-const FOUR: super::entry::Pairs = &[("target", "0,100 95,90 75,20 15,5")];
+const FOUR: Pairs = &[("target", "0,100 95,90 75,20 15,5")];
 
 /// The registry's entry: reads the typed deformation from text.
 pub(super) struct Entry;
@@ -129,7 +128,7 @@ struct BilinearMap {
 }
 
 impl BilinearMap {
-    /// From the images of (0,0), (1,0), (1,1), (0,1).
+    /// The map that takes (0,0), (1,0), (1,1), (0,1) to these points.
     fn new(q: [Point; 4]) -> Self {
         Self { p: q[0].to_vec2(), a: q[1] - q[0], b: q[3] - q[0], c: (q[0] - q[1]) + (q[2] - q[3]) }
     }
@@ -138,7 +137,7 @@ impl BilinearMap {
         (self.a + self.c * v).cross(self.b + self.c * u)
     }
 
-    /// A parallelogram is an affine map.
+    /// An affine map if the corners are those of a parallelogram, or else this map.
     fn or_affine(self) -> Arc<dyn Map> {
         if self.c.hypot() > 1e-14 * (self.p.hypot() + self.a.hypot() + self.b.hypot()) {
             return Arc::new(self);
@@ -221,10 +220,6 @@ impl Formula for Inverse {
             let [k2, k1, k0] = own.quadratic(q.x, q.y);
             k1 * k1 - 4.0 * k2 * k0
         }))));
-    }
-
-    fn class(&self) -> Class {
-        Class::Smooth
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

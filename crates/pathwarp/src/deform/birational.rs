@@ -5,9 +5,8 @@
 //! 2016, equations 11-13 and 26): see [`map::Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
 //! CAGD 2015.
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Explanation, Info, Law, Pairs, Role};
 use super::ffd::{MAX_CELLS, MAX_DEGREE};
-use crate::deform::entry::{Built, Explanation, Role};
 use crate::error::{Error, GeometryError, within};
 use crate::map::{self, AffineMap, Class, Map, Rows};
 use crate::outline::Seg;
@@ -108,12 +107,12 @@ impl Birational {
         if let Some(degree) = *spline {
             within("spline", degree as f64, 1.0, MAX_DEGREE as f64)?;
         }
-        let (least, most) = spline.map_or((2, MAX_DEGREE + 1), |d| (d + 1, d + MAX_CELLS));
+        let (min, max) = spline.map_or((2, MAX_DEGREE + 1), |d| (d + 1, d + MAX_CELLS));
         let expected = if first.len() != second.len() {
             "as many as the facing row"
-        } else if second.len() < least {
+        } else if second.len() < min {
             if spline.is_some() { "at least one more than the degree" } else { "at least 2" }
-        } else if second.len() > most {
+        } else if second.len() > max {
             if spline.is_some() { "at most 64 more than the degree" } else { "at most 11; take `spline 3` for more" }
         } else {
             return Ok(());
@@ -216,7 +215,7 @@ keeps clear of the points where the map is infinite. With --spline, rows of many
         },
     ]);
 
-const BENT: super::entry::Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,100 60,70 95,110")];
+const BENT: Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,100 60,70 95,110")];
 
 /// The registry's entry: reads the typed deformation from text.
 pub(super) struct Entry;

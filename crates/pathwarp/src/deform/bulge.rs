@@ -9,11 +9,11 @@
 //!
 //! Both are smooth at the centre, being smooth in r². Elementary.
 
-use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::deform::entry::Built;
+use super::entry::{Built, Case, Deformation, Example, Info, Law};
 use crate::error::{Error, within};
-use crate::map::Cost;
-use crate::map::{AffineMap, Class, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real};
+use crate::map::{
+    AffineMap, Class, Cost, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real, increasing_root,
+};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, Point, Vec2};
 use std::f64::consts::LN_2;
@@ -216,24 +216,9 @@ impl SoftInverse {
             return p;
         }
         // g(q) = ln q + 2·ln m·(1 − q)² − ln q' grows from −∞ to above 0 over (0, 1].
-        let (mut lo, mut hi) = (0.0, 1.0);
-        let mut q = (target * (-2.0 * ln_m * (1.0 - target).powi(2)).exp()).clamp(f64::MIN_POSITIVE, 1.0);
-        /// Newton doubles the digits each time; bisection steps need a few more.
-        const ROUNDS: usize = 60;
-        for _ in 0..ROUNDS {
-            let g = (q / target).ln() + 2.0 * ln_m * (1.0 - q).powi(2);
-            if g > 0.0 {
-                hi = q;
-            } else {
-                lo = q;
-            }
-            let next = q - g / (1.0 / q - 4.0 * ln_m * (1.0 - q));
-            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-            if (next - q).abs() <= 2.0 * f64::EPSILON * q {
-                break;
-            }
-            q = next;
-        }
+        let g = |q: f64| ((q / target).ln() + 2.0 * ln_m * (1.0 - q).powi(2), 1.0 / q - 4.0 * ln_m * (1.0 - q));
+        let start = (target * (-2.0 * ln_m * (1.0 - target).powi(2)).exp()).clamp(f64::MIN_POSITIVE, 1.0);
+        let q = increasing_root((0.0, 1.0), start, g, |q, _, step: f64| step.abs() <= 2.0 * f64::EPSILON * q);
         center + d * (q / target).sqrt()
     }
 }

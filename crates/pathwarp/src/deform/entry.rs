@@ -77,7 +77,7 @@ pub struct Info {
     pub gallery: Option<Gallery>,
     /// The paths that selected ones stand for where a user selects guides and artwork together.
     pub guides: Guides,
-    /// What else a page needs where people bend by hand.
+    /// What else a page for bending by hand needs.
     pub by_hand: ByHand,
 }
 
@@ -170,7 +170,7 @@ impl Info {
         Self { guides: Guides { params, usual }, ..self }
     }
 
-    /// Sets what a page needs where people bend by hand.
+    /// Sets what a page for bending by hand needs.
     #[must_use]
     pub const fn by_hand(self, by_hand: ByHand) -> Self {
         Self { by_hand, ..self }
@@ -192,22 +192,22 @@ pub struct Guides {
     pub usual: usize,
 }
 
-/// What a page needs where people bend by hand, as far as it does not follow from the parameters.
+/// What a page for bending by hand needs and the parameters do not tell.
 ///
-/// Coordinates of points in values are percentages of the frame; path data is laid from the box 0,0,100,100 onto it.
+/// In values, coordinates of points are percentages of the frame; path data is laid from the box 0,0,100,100 onto it.
 #[derive(Debug, Clone, Copy)]
 pub struct ByHand {
-    /// A name for people; `None` if the deformation's own will do.
+    /// A label; `None` if the deformation's name will do.
     pub label: Option<&'static str>,
-    /// Names for people of parameters whose own could be taken for something else.
+    /// Labels of parameters whose names could be misunderstood.
     pub labels: Pairs,
     /// Path parameters with a fixed number of points; others may have any number.
     pub fixed: &'static [&'static str],
     /// The path parameters are rows of equally many points, the control points of one curve each.
     pub rows: bool,
-    /// First values, which move nothing yet and give every handle its place. If there are none, the defaults or [`Info::demo`] serve.
+    /// Initial values, which move nothing and give every handle its place. If there are none, the defaults or [`Info::demo`] serve.
     pub neutral: Pairs,
-    /// Values that show the effect, where [`Info::demo`] suits its own drawing only.
+    /// Values that show the effect, if [`Info::demo`] suits only its own drawing.
     pub showing: Pairs,
     /// Other ways to begin.
     pub variants: &'static [Variant],
@@ -232,7 +232,7 @@ impl ByHand {
 /// Another way to begin with a deformation.
 #[derive(Debug, Clone, Copy)]
 pub struct Variant {
-    /// Its name for people.
+    /// Its label.
     pub label: &'static str,
     /// The parameter that takes the place of the usual ones.
     pub param: &'static str,
@@ -247,9 +247,9 @@ pub struct Variant {
 pub struct Instead {
     /// Its name.
     pub param: &'static str,
-    /// Those that cannot go with it.
+    /// The parameters that cannot go with it.
     pub others: &'static [&'static str],
-    /// The value of another one that goes with it, unless the user gives one.
+    /// Another parameter that goes with it, and its value unless the user gives one.
     pub with: Option<(&'static str, &'static str)>,
 }
 
@@ -331,9 +331,9 @@ pub struct Built {
     pub saves: Vec<SavedFile>,
     /// The surface in space that the artwork lies on, for deformations onto surfaces.
     pub space: Option<InSpace>,
-    /// Says why the map is undefined at a point, where it can.
+    /// Explains why the map is undefined at a point, where it can.
     pub undefined: Option<Undefined>,
-    /// Says how the map failed after it was built, for maps that can.
+    /// Explains how the map failed after it was built, for maps that can fail.
     pub failure: Option<Failure>,
 }
 
@@ -374,7 +374,7 @@ impl Built {
         self.explanation.overlays.push(Overlay { role, path });
     }
 
-    /// Returns the same with this explanation.
+    /// Sets the explanation.
     #[must_use]
     pub fn explained(self, explanation: Explanation) -> Self {
         Self { explanation, ..self }
@@ -457,8 +457,7 @@ pub struct SavedFile {
 /// The surface in space that the artwork lies on.
 #[derive(Clone)]
 pub struct InSpace {
-    /// Takes a point of the source to the surface: x right, y down, z away, user units. `None` where the ray misses the
-    /// surface.
+    /// Takes a point of the source to the surface: x right, y down, z away, user units. `None` if the ray misses the surface.
     pub place: Arc<dyn Fn(Point) -> Option<[f64; 3]> + Send + Sync>,
     /// Files requested by the parameters.
     pub files: Vec<SpaceFile>,

@@ -4,12 +4,10 @@
 //! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each. A branch is the list with
 //! every side resolved.
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
-use crate::deform::entry::Built;
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
-use crate::map::Cost;
-use crate::map::{Class, Crease, Creases, Dual, Jet, Level, Map};
+use crate::map::{Class, Cost, Crease, Creases, Dual, Jet, Level, Map};
 use crate::param::{Kind, Param, Settings};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
@@ -100,7 +98,7 @@ impl Expr {
         let mut built = Built::new(Arc::new(map.clone()));
         let texts =
             [("x", &self.x), ("y", &self.y)].map(|(name, text)| text.clone().unwrap_or_else(|| name.to_owned()));
-        // Constants are computed when a formula is read, and no operation is left to blame.
+        // Constants are folded when a formula is read, which may leave no operation to blame.
         let whole = move |p: Point| {
             let image = map.point(p);
             let blamed = if image.x.is_finite() { &texts[1] } else { &texts[0] };
@@ -252,7 +250,7 @@ impl ExprMap {
     }
 }
 
-/// Operations of a formula that take as long as a net.
+/// Operations of a formula that take as long as a bicubic net.
 const OPERATIONS: f64 = 8.0;
 
 impl Map for ExprMap {

@@ -14,8 +14,7 @@
 //! Kannala & Brandt, *A generic camera model and calibration method for conventional, wide-angle, and fish-eye lenses*, IEEE
 //! PAMI 28 (2006), equations (1)–(5).
 
-use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::deform::entry::Built;
+use super::entry::{Built, Case, Deformation, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Kind, Param, Settings};
@@ -95,9 +94,9 @@ impl Lens {
         let half = within("field", self.field, 0.01, 359.0)?.to_radians() / 2.0;
         let shown = || format!("{:.6}", 2.0 * half.to_degrees());
         for (name, lens) in [("from", from), ("to", to)] {
-            if half >= lens.most() {
-                let most = 2.0 * lens.most().to_degrees();
-                let problem = format!("is more than the lens of `{name}` can see: it must be below {most} degrees");
+            if half >= lens.max_angle() {
+                let limit = 2.0 * lens.max_angle().to_degrees();
+                let problem = format!("is more than the lens of `{name}` can see: it must be below {limit} degrees");
                 return Err(Error::usage("field", shown(), problem));
             }
         }
@@ -221,7 +220,7 @@ impl LensModel {
     }
 
     /// Returns the largest angle θ that the lens can see.
-    fn most(self) -> f64 {
+    fn max_angle(self) -> f64 {
         if matches!(self, Self::Rectilinear | Self::Orthographic) { PI / 2.0 } else { PI }
     }
 
@@ -265,13 +264,13 @@ struct LensMap {
 impl LensMap {
     /// Returns the distance from the centre at which either lens ends; infinite if neither does.
     fn reach(&self) -> f64 {
-        let most = self.from.most().min(self.to.most());
+        let limit = self.from.max_angle().min(self.to.max_angle());
         let ends = match self.from {
             LensModel::Rectilinear => false,
-            LensModel::Stereographic => most < PI,
+            LensModel::Stereographic => limit < PI,
             _ => true,
         };
-        if ends { self.f * self.from.radius(most) } else { f64::INFINITY }
+        if ends { self.f * self.from.radius(limit) } else { f64::INFINITY }
     }
 }
 

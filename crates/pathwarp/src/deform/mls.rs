@@ -12,13 +12,11 @@
 //! nearest handle k, held fixed; and means are counted from pₖ, so that nothing cancels near it. *At* pₖ, M is made from the
 //! other handles alone, since p̂ₖ there is of second order: F(pₖ) = qₖ with that M for derivative (for α ≥ 1).
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Role};
 use crate::anchors;
-use crate::deform::entry::{Built, Role};
 use crate::error::{Error, GeometryError, within};
-use crate::map::Cost;
-use crate::map::{AffineMap, Formula, Real};
-use crate::param::{Axis, Kind, Param, Settings};
+use crate::map::{AffineMap, Cost, Formula, Real};
+use crate::param::{Axis, Kind, NamedPath, Param, Settings};
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -181,7 +179,7 @@ it can, similar also lets them grow and shrink, affine lets them shear as well (
         },
     ]);
 
-const THREE: super::entry::Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")];
+const THREE: Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")];
 
 /// Limit on handles: every point of the artwork visits all of them.
 const MAX_HANDLES: usize = 1000;
@@ -219,9 +217,8 @@ fn handles(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
     }
     match (s.path_if("from")?, s.path_if("to")?) {
         (Some(from), Some(to)) => {
-            let anchors = |p: &crate::param::NamedPath| -> Vec<Point> {
-                p.outline.subpaths.iter().flat_map(crate::Subpath::anchors).collect()
-            };
+            let anchors =
+                |p: &NamedPath| -> Vec<Point> { p.outline.subpaths.iter().flat_map(crate::Subpath::anchors).collect() };
             let (a, b) = (anchors(&from), anchors(&to));
             if a.len() != b.len() {
                 let problem = format!("has {} anchors, {} has {}", b.len(), from.name, a.len());
@@ -356,7 +353,7 @@ impl MlsMap {
     }
 }
 
-/// Handles that take as long as a net.
+/// Handles that take as long as a bicubic net.
 const HANDLES: f64 = 4.0;
 
 impl Formula for MlsMap {

@@ -11,12 +11,11 @@
 //! rational of degree 2n, exactly. The inverse is (d·w − b)/(a − c·w). Ahlfors, *Complex Analysis* (3rd ed. 1979), §3.3;
 //! Needham, *Visual Complex Analysis* (1997), chapter 3.
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Explanation, Info, Law, Overlay, Role};
 use crate::anchors;
-use crate::deform::entry::{Built, Explanation, Overlay, Role};
 use crate::error::{Error, GeometryError, show};
 use crate::map::rational_bezier::Scaled;
-use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
+use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
 use crate::outline::Outline;
 use crate::param::{Kind, NamedPath, Param, Settings};
 use kurbo::{Affine, Point, Rect, Vec2};
@@ -34,7 +33,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mobius {
     frame: Rect,
-    /// a, b, c, d, of points seen from `from` and images from `to`.
+    /// a, b, c, d, for points relative to `from` and images relative to `to`.
     m: [Vec2; 4],
     from: Point,
     to: Point,
@@ -167,7 +166,7 @@ points and their images (--from, --to), or give the coefficients of w = (a·z + 
 const CLEAR: f64 = 0.02;
 /// Default distance of the pole, in diagonals of the frame.
 const DEFAULT_DISTANCE: f64 = 1.6;
-/// A pole farther away than this many diagonals is rounding: the map is a similitude.
+/// A pole farther away than this many diagonals counts as none: the map is a similitude.
 const FAR: f64 = 1e12;
 
 /// The registry's entry: reads the typed deformation from text.
@@ -235,7 +234,7 @@ fn div(a: Vec2, b: Vec2) -> Vec2 {
 
 const ONE: Vec2 = Vec2::new(1.0, 0.0);
 
-/// z/(1 − z/P), multiplied out, of points seen from the middle.
+/// z/(1 − z/P), multiplied out, for points relative to the middle.
 fn by_pole(pole: Vec2) -> [Vec2; 4] {
     [pole, Vec2::ZERO, -ONE, pole]
 }
@@ -251,7 +250,7 @@ fn by_points(p: [Vec2; 3], q: [Vec2; 3]) -> [Vec2; 4] {
 /// The map, with c ≠ 0.
 #[derive(Debug, Clone, Copy)]
 struct MobiusMap {
-    /// a, b, c, d, of points seen from `from` and images from `to`.
+    /// a, b, c, d, for points relative to `from` and images relative to `to`.
     m: [Vec2; 4],
     from: Point,
     to: Point,
@@ -267,10 +266,6 @@ impl Formula for MobiusMap {
         let (dx, dy) = (x * c.x - y * c.y + d.x, x * c.y + y * c.x + d.y);
         let n = dx * dx + dy * dy;
         ((nx * dx + ny * dy) / n + self.to.x, (ny * dx - nx * dy) / n + self.to.y)
-    }
-
-    fn class(&self) -> Class {
-        Class::Smooth
     }
 
     fn creases(&self, out: &mut Creases) {

@@ -36,16 +36,16 @@ mod wave;
 #[cfg(feature = "serde")]
 mod wordart;
 
-pub use crate::deform::entry::{
-    Built, Explanation, Failure, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile, Undefined,
-};
 pub use affine::Affine;
 pub use anamorph::{Anamorph, Onto};
 pub use bend::{Align, Bend, LetterSetting, Stretch};
 pub use bilinear::Bilinear;
 pub use birational::Birational;
 pub use bulge::Bulge;
-pub use entry::{ByHand, Case, Deformation, Example, Gallery, Guides, Info, Instead, Law, Pairs, Variant};
+pub use entry::{
+    Built, ByHand, Case, Deformation, Example, Explanation, Failure, Gallery, Guides, InSpace, Info, Instead, Law,
+    Overlay, Pairs, Placement, Role, SavedFile, Seam, SpaceFile, Undefined, Variant,
+};
 pub use envelope::{Envelope, Keep, Spread};
 pub use expr::Expr;
 pub use ffd::Ffd;

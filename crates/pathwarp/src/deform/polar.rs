@@ -12,9 +12,8 @@
 //! direction, exact up to the ray opposite the middle. A whole turn meets itself there; artwork that crosses it is cut and joined
 //! by a straight line, and the recipe warns of it. Elementary.
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
-use crate::deform::entry::{Built, Seam};
-use crate::error::{Error, within};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Seam};
+use crate::error::{Error, show, within};
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings, word_space};
 use kurbo::{Point, Rect, Vec2};
@@ -146,7 +145,7 @@ impl Polar {
         if left < 1.0 {
             built.note(format!("a gap of {gap:.6} between the ends leaves a sweep of {:.6}°", sweep.to_degrees()));
         }
-        built.note(format!("centre {}, radii {near:.6} and {far:.6}", crate::error::show(map.centre())));
+        built.note(format!("centre {}, radii {near:.6} and {far:.6}", show(map.centre())));
         Ok(built)
     }
 
@@ -240,9 +239,9 @@ lettering, none for other artwork.")
         Case { args: SMILE_AT_0, at: (100.0, 0.0), to: (10.0, 0.0), tolerance: 1e-12 },
     ]);
 
-const RING: super::entry::Pairs = &[("sweep", "360"), ("inner", "10"), ("outer", "60"), ("center", "0,0")];
-const SMILE: super::entry::Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("center", "50,15")];
-const SMILE_AT_0: super::entry::Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
+const RING: Pairs = &[("sweep", "360"), ("inner", "10"), ("outer", "60"), ("center", "0,0")];
+const SMILE: Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("center", "50,15")];
+const SMILE_AT_0: Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
 
 /// The registry's entry: reads the typed deformation from text.
 pub(super) struct Entry;
@@ -267,7 +266,7 @@ impl Deformation for Entry {
     }
 }
 
-/// A turn is whole up to this share.
+/// A turn is whole if it lacks less than this share.
 const WHOLE: f64 = 1e-9;
 
 /// The map.
@@ -342,7 +341,7 @@ impl Formula for PolarMap {
 #[derive(Debug, Clone, Copy)]
 struct Unrolled {
     ring: PolarMap,
-    /// Of a whole turn: the sign of the angles in this half, edges included.
+    /// In a branch of a whole turn, the sign of the angles in this half, edges included.
     half: Option<f64>,
 }
 
@@ -381,8 +380,8 @@ impl Formula for Unrolled {
             out.push(Crease::kink(Level::Line { a: t.x, b: t.y, c: -c.dot(t) }));
             return;
         }
-        let most = 0.5 * (0.5 * own.ring.sweep + PI) * (1.0 - 1e-9);
-        out.push(Crease::edge(Level::Field(Arc::new(move |p| most - own.polar(p.x, p.y).1.abs()))));
+        let limit = 0.5 * (0.5 * own.ring.sweep + PI) * (1.0 - 1e-9);
+        out.push(Crease::edge(Level::Field(Arc::new(move |p| limit - own.polar(p.x, p.y).1.abs()))));
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
@@ -402,7 +401,7 @@ mod tests {
     use crate::param::{Args, Frame};
     use crate::recipe::{Recipe, Step};
     use crate::{Outline, check, refit};
-    use kurbo::{ParamCurveNearest as _, Rect};
+    use kurbo::ParamCurveNearest as _;
 
     #[test]
     fn is_sound() {

@@ -3,9 +3,8 @@
 //! (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs (Heckbert, *Fundamentals of Texture Mapping and
 //! Image Warping*, 1989, §2.2). Straight lines stay straight.
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, FourToFour};
-use crate::deform::entry::Built;
 use crate::error::Error;
 use crate::param::{Param, Settings};
 use kurbo::Point;

@@ -2,9 +2,8 @@
 //!
 //! In complex numbers z ↦ P + (z − A)·(Q − P)/(B − A).
 
-use super::entry::{ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Role};
 use crate::anchors::{self, Anchors};
-use crate::deform::entry::{Built, Role};
 use crate::error::{Error, GeometryError};
 use crate::map::AffineMap;
 use crate::param::{Param, Settings};

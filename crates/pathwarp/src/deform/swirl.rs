@@ -9,8 +9,7 @@
 //! r is kept, so areas are kept (the map is a shear in r²/2 and θ) and the inverse is the same swirl with −α. Elementary; the
 //! twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius for the axis.
 
-use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::deform::entry::Built;
+use super::entry::{Built, Case, Deformation, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};

@@ -9,8 +9,7 @@
 //! The shear leaves s alone: its determinant is 1, and its inverse is the same wave with −h. Both are elementary; waves of this
 //! kind are in A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, as profiles of offsets along an axis.
 
-use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::deform::entry::Built;
+use super::entry::{Built, Case, Deformation, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{Class, Formula, Map, Real};
 use crate::param::{Axis, Frame, Kind, Param, Settings};
@@ -106,7 +105,7 @@ impl Wave {
             height,
             // Artwork without extent leaves no room for the wave to grow.
             grow: if extent > 0.0 { grow / extent } else { 0.0 },
-            least: 1.0 - grow,
+            initial: 1.0 - grow,
         };
         let mut built = Built::new(Arc::new(map));
         if push && (height / length).abs() * TAU > 1.0 {
@@ -206,14 +205,14 @@ struct WaveMap {
     phase: f64,
     height: f64,
     /// Height at the start, and its gain per unit, as shares of `height`.
-    least: f64,
+    initial: f64,
     grow: f64,
 }
 
 impl Formula for WaveMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let s = x * self.d.x + y * self.d.y - self.origin;
-        let a = (s * self.grow + self.least) * self.height;
+        let a = (s * self.grow + self.initial) * self.height;
         let off = a * (s * self.wave + self.phase).sin();
         (x + off * self.to.x, y + off * self.to.y)
     }

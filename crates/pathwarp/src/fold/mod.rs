@@ -24,8 +24,8 @@ pub fn orientation(outline: &Outline, filled: bool, map: &dyn Map) -> Orientatio
 const PER_SEGMENT: usize = 16;
 /// Samples in each direction over the bounding box of a filled shape.
 const GRID: usize = 24;
-/// Samples that a proof may always take: those of two filled shapes.
-const FOR_ANY_PROOF: usize = 2 * GRID * GRID;
+/// Samples that a proof may always take: as many as two filled shapes.
+const MIN_PROOF_SAMPLES: usize = 2 * GRID * GRID;
 
 /// Examines the shapes of a drawing for folds of one map.
 #[derive(Debug)]
@@ -51,7 +51,7 @@ impl<'a> Survey<'a> {
     #[must_use]
     pub fn new(map: &'a dyn Map, bounds: Option<Rect>, segments: usize) -> Self {
         let mut creases = Creases::default();
-        let proven = |b: Rect| sign::proven(map, b, FOR_ANY_PROOF.max(segments.saturating_mul(PER_SEGMENT)));
+        let proven = |b: Rect| sign::proven(map, b, MIN_PROOF_SAMPLES.max(segments.saturating_mul(PER_SEGMENT)));
         let knowledge = match (map.class(), bounds) {
             (Class::Affine(_), _) => Knowledge::Affine,
             (_, Some(b)) if b.is_finite() => proven(b).map_or(Knowledge::Nothing, Knowledge::Sign),
@@ -69,22 +69,22 @@ impl<'a> Survey<'a> {
         matches!(self.knowledge, Knowledge::Nothing)
     }
 
-    /// Counts the work of sampling `shapes` outlines with `segments` together, in as many copies.
+    /// Charges the work of sampling `copies` copies of `shapes` outlines with `segments` segments in all.
     ///
     /// # Errors
-    /// It exceeds the limit.
+    /// The work exceeds the limit.
     pub fn spend(&self, shapes: usize, segments: usize, copies: usize, budget: &Budget) -> Result<(), GeometryError> {
-        /// A sample is taken in a batch.
+        /// Work of a sample, which is taken in a batch.
         const SAMPLE: f64 = 0.25;
-        /// Share of a grid over a box that is inside of the shape, and the work to find out.
+        /// Share of the grid over a shape's box that lies inside the shape, with the work of finding that out.
         const FILLED: f64 = 0.5;
         let samples = segments as f64 * (PER_SEGMENT + 1) as f64 + shapes as f64 * FILLED * (GRID * GRID) as f64;
         let work = if self.samples() { SAMPLE * self.map.work() * samples * copies.max(1) as f64 } else { 0.0 };
         budget.spend(work).map_err(GeometryError::Limit)
     }
 
-    /// Returns the orientation of a shape of the artwork. Unless the survey has a proof, the determinant is sampled along `outline`, and
-    /// inside it if `filled`; of an affine map no samples are taken.
+    /// Returns the orientation of a shape of the artwork. Unless the map is affine or the survey has a proof, the determinant is sampled
+    /// along `outline`, and inside it if `filled`.
     ///
     /// Folds narrower than the spacing of the samples (a sixteenth of a segment, a twenty-fourth of the bounding box) can go
     /// unnoticed.
@@ -143,7 +143,7 @@ impl<'a> Survey<'a> {
         out
     }
 
-    /// The same with one call of the map for all samples.
+    /// As [`Self::sampled`], with one call of the map for all samples.
     fn sampled_at_once(&self, outline: &Outline, filled: bool) -> Orientation {
         let mut points: Vec<Point> = outline.segs().flat_map(along).collect();
         let mut rows = vec![PER_SEGMENT + 1; points.len() / (PER_SEGMENT + 1)];
@@ -222,7 +222,7 @@ impl Orientation {
         }
     }
 
-    /// The samples of both.
+    /// The samples of both orientations together.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         Self {

@@ -53,8 +53,8 @@ impl<'a> std::ops::Deref for Piece<'a> {
     }
 }
 
-/// Divides `bounds` along the creases. `None` if a crease is not parallel to an axis, or if there would be more than `most` pieces.
-fn pieces(map: &dyn Map, bounds: Rect, most: usize) -> Option<Vec<(Rect, Piece<'_>)>> {
+/// Divides `bounds` along the creases. `None` if a crease is not parallel to an axis, or if there would be more than `max` pieces.
+fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<(Rect, Piece<'_>)>> {
     if map.branch(bounds.center()).is_none() {
         return Some(vec![(bounds, Piece::Whole(map))]);
     }
@@ -78,7 +78,7 @@ fn pieces(map: &dyn Map, bounds: Rect, most: usize) -> Option<Vec<(Rect, Piece<'
         at
     };
     let (xs, ys) = (cut(xs, bounds.x0, bounds.x1), cut(ys, bounds.y0, bounds.y1));
-    if xs.len() * ys.len() > most {
+    if xs.len() * ys.len() > max {
         return None;
     }
     let mut out = Vec::with_capacity(xs.len() * ys.len());

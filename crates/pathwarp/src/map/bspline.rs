@@ -60,19 +60,24 @@ pub fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
 pub fn basis(degree: usize, cells: usize, s: f64) -> (usize, Vec<f64>) {
     let cell = ((s * cells as f64).max(0.0) as usize).min(cells - 1);
     let local = s * cells as f64 - cell as f64;
-    // Bernstein polynomials by their recursion, then B-splines by the extraction matrix.
+    let b = bernstein(degree, local);
+    let rows = &extraction(degree, cells)[cell];
+    let through = |l: usize| rows.iter().zip(&b).map(|(row, b)| row[l] * b).sum();
+    (cell, (0..=degree).map(through).collect())
+}
+
+/// The Bernstein polynomials of this degree at `t`, by their recursion.
+pub(crate) fn bernstein(degree: usize, t: f64) -> Vec<f64> {
     let mut b = vec![1.0];
     for _ in 0..degree {
         let mut next = vec![0.0; b.len() + 1];
         for (i, v) in b.iter().enumerate() {
-            next[i] += v * (1.0 - local);
-            next[i + 1] += v * local;
+            next[i] += v * (1.0 - t);
+            next[i + 1] += v * t;
         }
         b = next;
     }
-    let rows = &extraction(degree, cells)[cell];
-    let through = |l: usize| rows.iter().zip(&b).map(|(row, b)| row[l] * b).sum();
-    (cell, (0..=degree).map(through).collect())
+    b
 }
 
 #[cfg(test)]

@@ -11,13 +11,13 @@
 //! perspective collineation with the matrix [I 0; d d₀] about O, whose axis is the line δ = 1.
 
 use crate::deform::triangle;
-use crate::map::powers;
-use crate::map::{Plane, Quotient, source_coordinates};
+use crate::map::bspline::bernstein;
+use crate::map::{Plane, Quotient, powers, source_coordinates};
 use kurbo::{Affine, BezPath, Point, Rect, Shape, Vec2};
 
 /// A regular net of control points in the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Reference {
+pub(super) enum Reference {
     /// Points (i·A + j·B + k·C)/n with i + j + k = n.
     Triangle([Point; 3], usize),
     /// Points (i, j), i from the left, j from the top, degrees along x and y.
@@ -26,8 +26,7 @@ pub(crate) enum Reference {
 
 impl Reference {
     /// Returns the control points' numbers, in the order of [`Dilation`]'s values. A rectangle's third number is 0.
-    #[must_use]
-    pub(crate) fn nodes(&self) -> Vec<[usize; 3]> {
+    pub(super) fn nodes(&self) -> Vec<[usize; 3]> {
         match *self {
             Self::Triangle(_, n) => triangle::indices(n),
             Self::Rectangle(_, [m, n]) => (0..=n).flat_map(|j| (0..=m).map(move |i| [i, j, 0])).collect(),
@@ -35,8 +34,7 @@ impl Reference {
     }
 
     /// Returns `true` if there is such a control point.
-    #[must_use]
-    pub(crate) fn has(&self, node: [usize; 3]) -> bool {
+    pub(super) fn has(&self, node: [usize; 3]) -> bool {
         match *self {
             Self::Triangle(_, n) => node.iter().try_fold(0usize, |s, v| s.checked_add(*v)) == Some(n),
             Self::Rectangle(_, [m, n]) => node[0] <= m && node[1] <= n && node[2] == 0,
@@ -51,8 +49,7 @@ impl Reference {
     }
 
     /// Returns the position of a control point before it is moved.
-    #[must_use]
-    pub(crate) fn point(&self, node: [usize; 3]) -> Point {
+    pub(super) fn point(&self, node: [usize; 3]) -> Point {
         match *self {
             Self::Triangle(corners, _) => triangle::regular_point(corners, node),
             Self::Rectangle(r, [m, n]) => {
@@ -63,8 +60,7 @@ impl Reference {
     }
 
     /// Returns the corners, in order around the edge.
-    #[must_use]
-    pub(crate) fn corners(&self) -> Vec<Point> {
+    pub(super) fn corners(&self) -> Vec<Point> {
         match *self {
             Self::Triangle(c, _) => c.to_vec(),
             Self::Rectangle(r, _) => {
@@ -74,8 +70,7 @@ impl Reference {
     }
 
     /// Returns `true` if a control point lies on side `side`, from corner `side` to the next.
-    #[must_use]
-    pub(crate) fn on_side(&self, [i, j, k]: [usize; 3], side: usize) -> bool {
+    pub(super) fn on_side(&self, [i, j, k]: [usize; 3], side: usize) -> bool {
         match *self {
             Self::Triangle(..) => [k, i, j][side % 3] == 0,
             Self::Rectangle(_, [m, n]) => [j == 0, i == m, j == n, i == 0][side % 4],
@@ -83,8 +78,7 @@ impl Reference {
     }
 
     /// Returns the bounding box.
-    #[must_use]
-    pub(crate) fn bounds(&self) -> Rect {
+    pub(super) fn bounds(&self) -> Rect {
         match *self {
             Self::Triangle([a, b, c], _) => Rect::from_points(a, b).union_pt(c),
             Self::Rectangle(r, _) => r,
@@ -92,8 +86,7 @@ impl Reference {
     }
 
     /// Returns the values of the basis functions at `p`, in the order of [`Self::nodes`].
-    #[must_use]
-    pub(crate) fn basis(&self, p: Point) -> Vec<f64> {
+    pub(super) fn basis(&self, p: Point) -> Vec<f64> {
         match *self {
             Self::Triangle(corners, n) => triangle::basis(corners, n, p),
             Self::Rectangle(r, [m, n]) => {
@@ -126,81 +119,61 @@ impl Reference {
     }
 }
 
-/// Returns the Bernstein polynomials of degree n at t.
-fn bernstein(n: usize, t: f64) -> Vec<f64> {
-    let mut b = vec![1.0];
-    for _ in 0..n {
-        let mut next = vec![0.0; b.len() + 1];
-        for (i, v) in b.iter().enumerate() {
-            next[i] += v * (1.0 - t);
-            next[i + 1] += v * t;
-        }
-        b = next;
-    }
-    b
-}
-
 /// δ over a reference: the factor by which each control point comes closer to the eye.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Dilation {
+pub(super) struct Dilation {
     reference: Reference,
     values: Vec<f64>,
 }
 
 impl Dilation {
     /// Creates δ = 1: nothing moves.
-    #[must_use]
-    pub(crate) fn none(reference: Reference) -> Self {
+    pub(super) fn none(reference: Reference) -> Self {
         Self { reference, values: vec![1.0; reference.nodes().len()] }
     }
 
     /// Returns the net.
-    #[must_use]
-    pub(crate) fn reference(&self) -> &Reference {
+    pub(super) fn reference(&self) -> &Reference {
         &self.reference
     }
 
     /// Returns δ of a control point.
-    #[must_use]
-    pub(crate) fn of(&self, node: [usize; 3]) -> f64 {
+    pub(super) fn of(&self, node: [usize; 3]) -> f64 {
         self.values[self.reference.index(node)]
     }
 
     /// Moves a control point to 1/`delta` times its distance from the eye.
-    pub(crate) fn set(&mut self, node: [usize; 3], delta: f64) {
+    pub(super) fn set(&mut self, node: [usize; 3], delta: f64) {
         let k = self.reference.index(node);
         self.values[k] = delta;
     }
 
     /// Returns δ at a point.
-    #[must_use]
-    pub(crate) fn at(&self, p: Point) -> f64 {
+    pub(super) fn at(&self, p: Point) -> f64 {
         self.reference.basis(p).iter().zip(&self.values).map(|(b, d)| b * d).sum()
     }
 
     /// Moves one control point so that the point `p` goes to 1/`delta` times its distance: δᵢ = δᵢ + (δ − δ(p))/Bᵢ(p), which is
     /// 1 + (δ − 1)/Bᵢ from rest. Among those that are not `held`, the one with the largest Bᵢ(p) moves. `None`: all of them vanish
     /// there.
-    pub(crate) fn prescribe(&mut self, p: Point, delta: f64, held: impl Fn([usize; 3]) -> bool) -> Option<[usize; 3]> {
+    pub(super) fn prescribe(&mut self, p: Point, delta: f64, held: impl Fn([usize; 3]) -> bool) -> Option<[usize; 3]> {
         /// With a smaller basis function a control point would have to move further than its numbers can express.
-        const LEAST: f64 = 1e-6;
+        const MIN_BASIS: f64 = 1e-6;
         let all = self.reference.nodes().into_iter().zip(self.reference.basis(p));
         let free = all.filter(|(node, _)| !held(*node));
-        let (node, b) = free.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, b)| *b > LEAST)?;
+        let (node, b) = free.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, b)| *b > MIN_BASIS)?;
         self.set(node, self.of(node) + (delta - self.at(p)) / b);
         Some(node)
     }
 
     /// Returns `true` if no control point of a side moves.
-    #[must_use]
-    pub(crate) fn side_is_fixed(&self, side: usize) -> bool {
+    pub(super) fn side_is_fixed(&self, side: usize) -> bool {
         let on = self.reference.nodes().into_iter().filter(|node| self.reference.on_side(*node, side));
         on.into_iter().all(|node| (self.of(node) - 1.0).abs() <= 1e-12)
     }
 
     /// Returns `true` if all δ are positive, so that there is no pole inside the reference.
-    #[must_use]
-    pub(crate) fn is_positive(&self) -> bool {
+    pub(super) fn is_positive(&self) -> bool {
         self.values.iter().all(|d| *d > 0.0)
     }
 
@@ -216,8 +189,7 @@ impl Dilation {
     }
 
     /// Returns the map of the plane for an eye in it. If `bounded`, it is used inside the reference only.
-    #[must_use]
-    pub(crate) fn about(&self, eye: Point, bounded: bool) -> Quotient {
+    pub(super) fn about(&self, eye: Point, bounded: bool) -> Quotient {
         let (pre, delta) = self.plane();
         let [x, y] = source_coordinates(pre).map(Plane::linear);
         let less = |p: Plane, o: f64| p.plus(-o, &Plane::linear([1.0, 0.0, 0.0]));
@@ -228,8 +200,7 @@ impl Dilation {
 
     /// Returns (d, d₀) of the collineation δ(p) = d·(p − O) + d₀, the rows of its matrix [I 0; d d₀] about the eye: for triangles of
     /// degree 1.
-    #[must_use]
-    pub(crate) fn collineation(&self, eye: Point) -> Option<(Vec2, f64)> {
+    pub(super) fn collineation(&self, eye: Point) -> Option<(Vec2, f64)> {
         let Reference::Triangle(_, 1) = self.reference else { return None };
         let d0 = self.at(eye);
         let along = |e: Vec2| self.at(eye + e) - d0;
@@ -237,8 +208,7 @@ impl Dilation {
     }
 
     /// Draws the net's lines, with `place` applied to every control point and its δ.
-    #[must_use]
-    pub(crate) fn lines(&self, place: impl Fn(Point, f64) -> Point) -> BezPath {
+    pub(super) fn lines(&self, place: impl Fn(Point, f64) -> Point) -> BezPath {
         let at = |node: [usize; 3]| place(self.reference.point(node), self.of(node));
         let mut path = BezPath::new();
         for [i, j, k] in self.reference.nodes() {
@@ -263,18 +233,10 @@ impl Dilation {
     }
 
     /// Draws the reference.
-    #[must_use]
-    pub(crate) fn outline(&self) -> BezPath {
+    pub(super) fn outline(&self) -> BezPath {
         match self.reference {
             Reference::Rectangle(r, _) => r.to_path(0.1),
-            Reference::Triangle([a, b, c], _) => {
-                let mut path = BezPath::new();
-                path.move_to(a);
-                path.line_to(b);
-                path.line_to(c);
-                path.close_path();
-                path
-            }
+            Reference::Triangle(corners, _) => triangle::outline(corners),
         }
     }
 }

@@ -25,7 +25,7 @@ impl Scene {
         refit::warp_path(&outline, map, &refit::Options::new(tolerance)).ok().map(|w| w.path)
     }
 
-    /// Describes the sizes of artwork and result.
+    /// Describes the sizes of the artwork and the result.
     pub(super) fn size(&self, map: &dyn Map) -> String {
         const METRE: f64 = 96.0 / 0.0254;
         let r = self.frame;

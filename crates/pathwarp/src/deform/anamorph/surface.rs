@@ -132,7 +132,7 @@ impl Onto {
         };
         let through = [at.x, at.y, 0.0];
         let eye = [scene.eye.x, scene.eye.y, -distance];
-        let gap: f64 = (0..3).map(|i| normal[i] * (through[i] - eye[i])).sum();
+        let gap = dot(normal, minus(through, eye));
         if gap <= 1e-9 * distance {
             return Err(self.wrong(format!(
                 "is seen from behind or edge-on by an eye at {}, {distance} in front; move the eye to its front side, for a floor above it",
@@ -143,7 +143,7 @@ impl Onto {
     }
 }
 
-/// The cosine of a right angle is zero.
+/// Rounds the cosine of a right angle to zero.
 fn exact(v: f64) -> f64 {
     if v.abs() < 1e-15 { 0.0 } else { v }
 }
@@ -199,7 +199,7 @@ pub(super) fn check_met(onto: Option<Onto>, cast: &Anamorphosis, frame: Rect) ->
 
 /// Refuses a camera that has part of the image behind it.
 pub(super) fn check_in_view(text: &str, cast: &Anamorphosis, camera: &Camera, frame: Rect) -> Result<(), Error> {
-    match samples(frame).find(|p| camera.depth_of(cast.point(*p)) <= 0.0) {
+    match samples(frame).find(|p| camera.depth(cast.point(*p)) <= 0.0) {
         Some(p) => {
             let problem = format!("is too near: the image of {} lies behind it; go further away", show(p));
             Err(Error::usage("view", text, problem))
@@ -222,7 +222,7 @@ pub(super) fn check_in_view(text: &str, cast: &Anamorphosis, camera: &Camera, fr
 // J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3, for the polynomial ones.
 
 /// A vector or point in space.
-pub(crate) type Space = [f64; 3];
+pub(super) type Space = [f64; 3];
 
 pub(super) fn dot(a: Space, b: Space) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -256,21 +256,20 @@ pub(super) fn picture_axes(forward: Space) -> [Space; 2] {
 
 /// A plane in space with coordinates in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SpacePlane {
+pub(super) struct SpacePlane {
     /// A point of the plane.
-    pub(crate) through: Space,
+    pub(super) through: Space,
     /// Its unit normal, away from the eye.
-    pub(crate) normal: Space,
+    pub(super) normal: Space,
     /// Unit vectors: rightwards and down the page, as seen from the eye's side.
-    pub(crate) axes: [Space; 2],
+    pub(super) axes: [Space; 2],
     /// The coordinates of `through` in the plane.
-    pub(crate) at: Point,
+    pub(super) at: Point,
 }
 
 impl SpacePlane {
     /// Creates the plane through a point; `normal` points away from the eye.
-    #[must_use]
-    pub(crate) fn new(through: Space, normal: Space, at: Point) -> Self {
+    pub(super) fn new(through: Space, normal: Space, at: Point) -> Self {
         let normal = unit(normal);
         Self { through, normal, axes: picture_axes(normal), at }
     }
@@ -278,33 +277,33 @@ impl SpacePlane {
 
 /// A cylinder or cone with a vertical (or horizontal) axis that touches the plane of the drawing along a line or at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Round {
+pub(super) struct Round {
     /// The point of contact, `radius` away from the axis.
-    pub(crate) middle: Point,
+    pub(super) middle: Point,
     /// The radius there.
-    pub(crate) radius: f64,
+    pub(super) radius: f64,
     /// Growth of the radius per unit downwards (rightwards for a horizontal axis); 0 for a cylinder.
-    pub(crate) slope: f64,
+    pub(super) slope: f64,
     /// The axis is horizontal.
-    pub(crate) level: bool,
+    pub(super) level: bool,
     /// It is seen from inside.
-    pub(crate) inside: bool,
+    pub(super) inside: bool,
 }
 
 /// A sphere that touches the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sphere {
+pub(super) struct Sphere {
     /// The point of contact.
-    pub(crate) middle: Point,
+    pub(super) middle: Point,
     /// Its radius.
-    pub(crate) radius: f64,
+    pub(super) radius: f64,
     /// It is seen from inside.
-    pub(crate) inside: bool,
+    pub(super) inside: bool,
 }
 
 /// A surface given by a polynomial δ.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Radial {
+pub(super) struct Radial {
     pub(super) pre: Affine,
     pub(super) delta: Plane,
     pub(super) domain: Rect,
@@ -312,7 +311,7 @@ pub(crate) struct Radial {
 
 /// The surface that the drawing is projected onto.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Surface {
+pub(super) enum Surface {
     /// A plane.
     Plane(SpacePlane),
     /// A cylinder or cone.
@@ -325,13 +324,13 @@ pub(crate) enum Surface {
 
 /// An eye and a surface: takes points of the drawing to the points in space on the same ray.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Anamorphosis {
+pub(super) struct Anamorphosis {
     /// The foot of the perpendicular from the eye to the drawing.
-    pub(crate) foot: Point,
+    pub(super) foot: Point,
     /// The eye's distance in front of the drawing; positive.
-    pub(crate) distance: f64,
+    pub(super) distance: f64,
     /// The surface that the drawing is projected onto.
-    pub(crate) surface: Surface,
+    pub(super) surface: Surface,
 }
 
 /// aλ² + 2bλ + c = 0 along a ray.
@@ -404,23 +403,20 @@ impl Sphere {
     }
 
     /// Returns the centre.
-    #[must_use]
-    pub(crate) fn centre(&self) -> Space {
+    pub(super) fn centre(&self) -> Space {
         [self.middle.x, self.middle.y, if self.inside { -self.radius } else { self.radius }]
     }
 }
 
 impl Radial {
     /// Returns the surface of a net whose control points are moved along rays.
-    #[must_use]
-    pub(crate) fn net(dilation: &Dilation) -> Self {
+    pub(super) fn net(dilation: &Dilation) -> Self {
         let (pre, delta) = dilation.plane();
         Self { pre, delta, domain: dilation.domain() }
     }
 
     /// Returns the sphere that has the eye on its near pole and touches the drawing with its far pole: δ = 1 + |p − foot|²/distance².
-    #[must_use]
-    pub(crate) fn stereographic(foot: Point, distance: f64, domain: Rect) -> Self {
+    pub(super) fn stereographic(foot: Point, distance: f64, domain: Rect) -> Self {
         let pre = Affine::scale(1.0 / distance) * Affine::translate(-foot.to_vec2());
         Self { pre, delta: Plane::new(vec![vec![1.0, 0.0, 1.0], vec![], vec![1.0]]), domain }
     }
@@ -433,8 +429,7 @@ impl Radial {
 
 impl Anamorphosis {
     /// Returns the eye.
-    #[must_use]
-    pub(crate) fn eye(&self) -> Space {
+    pub(super) fn eye(&self) -> Space {
         [self.foot.x, self.foot.y, -self.distance]
     }
 
@@ -459,14 +454,12 @@ impl Anamorphosis {
     }
 
     /// Returns the point of the surface that the eye sees at the drawing's point `p`.
-    #[must_use]
-    pub(crate) fn point(&self, p: Point) -> Space {
+    pub(super) fn point(&self, p: Point) -> Space {
         self.at(p.x, p.y)
     }
 
     /// Positive where the ray through `p` meets the surface.
-    #[must_use]
-    pub(crate) fn defined(&self, p: Point) -> f64 {
+    pub(super) fn defined(&self, p: Point) -> f64 {
         match &self.surface {
             Surface::Round(r) => {
                 let d = r.ray(self.foot, self.distance, p.x, p.y).defined();
@@ -496,9 +489,9 @@ impl Anamorphosis {
 
 /// A pinhole camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Camera {
+pub(super) struct Camera {
     /// Its position.
-    pub(crate) at: Space,
+    pub(super) at: Space,
     forward: Space,
     axes: [Space; 2],
     reach: f64,
@@ -507,8 +500,7 @@ pub(crate) struct Camera {
 
 impl Camera {
     /// Creates a camera at `at` that looks towards `target`, which appears at `centre`, true to size. `None` if the two coincide.
-    #[must_use]
-    pub(crate) fn new(at: Space, target: Space, centre: Point) -> Option<Self> {
+    pub(super) fn new(at: Space, target: Space, centre: Point) -> Option<Self> {
         let along = minus(target, at);
         let reach = length(along);
         let forward = along.map(|v| v / reach);
@@ -516,11 +508,6 @@ impl Camera {
     }
 
     /// Returns the distance of a point in front of the camera.
-    #[must_use]
-    pub(crate) fn depth_of(&self, q: Space) -> f64 {
-        self.depth(q)
-    }
-
     fn depth<S: Real>(&self, q: [S; 3]) -> S {
         project(self.forward, self.at, q)
     }
@@ -574,8 +561,7 @@ impl Anamorphosis {
     }
 
     /// Returns the surface laid flat, true to size; `None` for surfaces that cannot be.
-    #[must_use]
-    pub(crate) fn unrolled(&self) -> Option<Arc<dyn Map>> {
+    pub(super) fn unrolled(&self) -> Option<Arc<dyn Map>> {
         match &self.surface {
             Surface::Plane(p) => Some(self.flattened(p.through, p.axes, 1.0, None, p.at)?.simplest()),
             Surface::Round(r) => Some(Arc::new(Unrolled { of: self.clone(), round: *r })),
@@ -584,14 +570,12 @@ impl Anamorphosis {
     }
 
     /// Returns the eye's view: the drawing itself, computed through space.
-    #[must_use]
-    pub(crate) fn seen(&self) -> Arc<dyn Map> {
+    pub(super) fn seen(&self) -> Arc<dyn Map> {
         Arc::new(Seen(self.clone()))
     }
 
     /// Returns a camera's view. The inverse is searched over `domain`.
-    #[must_use]
-    pub(crate) fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
+    pub(super) fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
         match self.flattened(camera.at, camera.axes, camera.reach, Some(camera.forward), camera.centre) {
             Some(q) => q.simplest(),
             None => Arc::new(Viewed { of: self.clone(), camera: *camera, domain }),
@@ -610,6 +594,7 @@ impl Anamorphosis {
     }
 }
 
+/// The eye's view.
 struct Seen(Anamorphosis);
 
 impl Formula for Seen {
@@ -626,6 +611,8 @@ impl Formula for Seen {
     }
 }
 
+/// A camera's view.
+#[derive(Clone)]
 struct Viewed {
     of: Anamorphosis,
     camera: Camera,
@@ -650,9 +637,8 @@ impl Formula for Viewed {
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let own = Self { of: self.of.clone(), camera: self.camera, domain: self.domain };
         let reach = 1e-9 * (self.domain.width() + self.domain.height());
-        Some(Arc::new(NewtonInverse::new(Arc::new(own), self.domain, reach, [1, 1])))
+        Some(Arc::new(NewtonInverse::new(Arc::new(self.clone()), self.domain, reach, [1, 1])))
     }
 }
 
@@ -721,9 +707,6 @@ impl Formula for Rolled {
         let (x, y) = (radius * angle.sin() + m.x, dy + m.y);
         self.0.of.back(if r.level { [y, x, z] } else { [x, y, z] })
     }
-
-    /// Behind the eye nothing is seen.
-    fn creases(&self, _: &mut Creases) {}
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(self.0.clone()))

@@ -16,7 +16,7 @@ struct PieceHandles {
     levels: Vec<Vec<[f64; 2]>>,
 }
 
-/// Reads for every piece its levels of handles.
+/// Reads the levels of handles of every piece.
 pub(super) fn read(name: &str, text: &str) -> Result<Vec<Vec<Vec<Vec2>>>, Error> {
     let file: HandlesFile =
         serde_json::from_str(text).map_err(|e| Error::input(name, format!("is not a file of handles: {e}")))?;

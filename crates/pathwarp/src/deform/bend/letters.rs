@@ -12,13 +12,11 @@
 //!
 //! These are the type-on-a-path effects Rainbow, Skew, 3D Ribbon and Stair Step of Adobe Illustrator's manual.
 
-use super::listed::listed;
-use super::map::{BendMap, ToStrip};
-use crate::deform::bend::map::normal;
+use super::map::{BendMap, ToStrip, listed, normal};
 use crate::error::show;
-use crate::outline::{Outline, Seg};
+use crate::outline::{Outline, Seg, boundary};
 use crate::param::Letter;
-use kurbo::{Affine, Line, PathEl, Point, Rect, Shape as _, Vec2};
+use kurbo::{Affine, Line, Point, Rect, Shape as _, Vec2};
 
 /// The way a letter is set on a skeleton, instead of being bent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,7 +108,7 @@ impl LetterSetting {
     }
 }
 
-/// Artwork without copies stays in place.
+/// The copies, or the identity for artwork without copies.
 fn or_identity(copies: &[Affine]) -> &[Affine] {
     if copies.is_empty() { &[Affine::IDENTITY] } else { copies }
 }
@@ -204,7 +202,7 @@ pub(super) fn points<'a>(
     letters: &'a [Letter],
     copies: &'a [Affine],
 ) -> impl Iterator<Item = (Point, Option<&'a Letter>)> {
-    /// Points a segment.
+    /// Points per segment.
     const SAMPLES: u32 = 8;
     let copies = or_identity(copies);
     let each = letters.iter().flat_map(move |l| copies.iter().map(move |c| (l, *c)));
@@ -236,19 +234,7 @@ impl Chords {
         let rect = outline.bounding_box()?;
         let fine = (FINE * rect.width().max(rect.height())).max(f64::MIN_POSITIVE);
         let mut lines = Vec::new();
-        let mut at = Point::ORIGIN;
-        let mut start = at;
-        kurbo::flatten(outline.to_bez_path(fine), fine, |e| match e {
-            PathEl::MoveTo(p) => (start, at) = (p, p),
-            PathEl::LineTo(p) => {
-                lines.push(Line::new(at, p));
-                at = p;
-            }
-            _ => {
-                lines.push(Line::new(at, start));
-                at = start;
-            }
-        });
+        boundary(outline.to_bez_path(fine), fine, |a, b| lines.push(Line::new(a, b)));
         Some(Self { lines, rect })
     }
 

@@ -1,6 +1,5 @@
 //! The map: pieces of the skeleton side by side, and the artwork's position on them.
 
-use super::listed::listed;
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::map::curves::ArcLength;
@@ -112,6 +111,13 @@ curvature; a smaller `width`, another `baseline` or a gentler bend avoids that",
     }
 }
 
+/// Lists names for a message, as many as a line holds.
+pub(super) fn listed(names: &[&str]) -> String {
+    const SHOWN: usize = 8;
+    let shown = names.iter().take(SHOWN).map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
+    if names.len() > SHOWN { format!("{shown} and {} more", names.len() - SHOWN) } else { shown }
+}
+
 /// Samples the top and the bottom of a box.
 pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
     const SAMPLES: u32 = 1024;
@@ -124,7 +130,7 @@ pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
 impl Map for BendMap {
     /// A jet on a curve takes less than half as long as one of a net: 7 ns on the hairpin of `tests/cli/report.rs`.
     fn cost(&self) -> Cost<'_> {
-        /// The first pieces stand for all.
+        /// Pieces looked at, which stand for all.
         const FIRST: usize = 16;
         const CURVE: f64 = 0.4;
         const SINGLY: f64 = 3.0;
@@ -152,7 +158,7 @@ impl Map for BendMap {
         if first > last || (first - last).is_nan() {
             return;
         }
-        // Far out, a turn more is the same number.
+        // Far out, adding one to a turn may not change it, so the turns are counted.
         for turn in (0..=(last - first).min(MAX_TURNS) as usize).map(|n| first + n as f64) {
             for s in self.pieces.iter().map(|p| p.from).filter(|s| s.is_finite()) {
                 let c = self.to_strip.origin - s - turn * self.length;
@@ -243,7 +249,7 @@ pub(super) struct SkeletonPiece {
 }
 
 impl SkeletonPiece {
-    /// The work of a point: one on an arc takes several sines and cosines, and the de Casteljau steps of a ribbon take twice as long as a net.
+    /// The work of a point: an arc takes several sines and cosines, and the de Casteljau steps of a ribbon twice as long as a net.
     pub(super) fn work(&self) -> f64 {
         match &self.strip {
             Strip::Normals { spine, .. } if matches!(spine.seg, Seg::Arc(_)) => 2.0,
@@ -338,7 +344,7 @@ impl Spine {
         Moving { p: self.seg.eval(u), t: v / speed, bend: v.cross(second(&self.seg, at)) / speed.powi(3) }
     }
 
-    /// Returns the derivative and its length at a parameter, which comes first. Where the curve stands still, that is a little further in.
+    /// Returns a parameter with the derivative and its length there: `u` itself, or one a little further in where the curve stands still.
     fn velocity(&self, u: f64) -> (f64, Vec2, f64) {
         /// How much further in.
         const ASIDE: f64 = 1e-5;
@@ -495,9 +501,9 @@ fn binomial(n: usize, k: usize) -> f64 {
 pub(super) fn through(path: &NamedPath, degree: usize) -> Result<NamedPath, Error> {
     let sub = anchors::only_subpath(path, "a single connected run of them")?;
     let points = sub.anchors();
-    let fewest = if sub.closed { 3 } else { degree + 1 };
-    if points.len() < fewest {
-        let problem = format!("needs at least {fewest} anchors; the skeleton has {}", points.len());
+    let min = if sub.closed { 3 } else { degree + 1 };
+    if points.len() < min {
+        let problem = format!("needs at least {min} anchors; the skeleton has {}", points.len());
         return Err(Error::usage("spline", degree.to_string(), problem));
     }
     let mut pieces: Vec<Vec<Point>> = if sub.closed {

@@ -17,7 +17,6 @@
 #[cfg(feature = "serde")]
 mod file;
 mod letters;
-mod listed;
 mod map;
 mod skeleton;
 #[cfg(test)]
@@ -522,7 +521,7 @@ impl Deformation for Entry {
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let missing = || Error::missing("along", "the path to bend the artwork along");
         let frame = s.frame();
-        let handles = s.file_if("handles")?.map(handles).transpose()?;
+        let (handles, handles_name) = s.file_if("handles")?.map(handles).transpose()?.unzip();
         let bend = Bend {
             frame: frame.rect,
             along: s.path_if("along")?.ok_or_else(missing)?,
@@ -548,8 +547,8 @@ impl Deformation for Entry {
             },
             width: s.number("width")?,
             by_parameter: s.choice("by")? == "parameter",
-            handles: handles.as_ref().map(|(levels, _)| levels.clone()),
-            handles_name: handles.map_or_else(|| "handles".into(), |(_, name)| name),
+            handles,
+            handles_name: handles_name.unwrap_or_else(|| "handles".into()),
             even: s.choice("spacing")? == "even",
             setting: setting(s)?,
             letters: Arc::clone(&frame.letters),
@@ -559,7 +558,7 @@ impl Deformation for Entry {
     }
 }
 
-/// For every piece its levels of handles, and the file's name.
+/// The levels of handles of every piece, and the file's name.
 type Handles = (Vec<Vec<Vec<Vec2>>>, String);
 
 #[cfg(feature = "serde")]
@@ -604,8 +603,8 @@ impl Repeats {
     /// Returns as many copies of `width` as fit on `length` with at least `gap` between them, spread evenly: on an open skeleton
     /// from its start to its end, on a closed one all the way around.
     fn new(width: f64, gap: f64, length: f64, closed: bool) -> Result<Self, Error> {
-        /// More copies on one skeleton are a slip of the unit.
-        const MAX: f64 = 10_000.0;
+        /// More copies on one skeleton are a mistake in the unit.
+        const MAX_COPIES: f64 = 10_000.0;
         let period = width + gap;
         if period <= 0.0 {
             return Err(Error::usage(
@@ -616,8 +615,8 @@ impl Repeats {
         }
         // Rounding must not exclude a copy that just fits.
         let room = ((if closed { length } else { length + gap }) / period * (1.0 + 1e-9)).floor().max(1.0);
-        if room > MAX {
-            let problem = format!("would take {room} copies of artwork {width:.6} wide; the limit is {MAX}");
+        if room > MAX_COPIES {
+            let problem = format!("would take {room} copies of artwork {width:.6} wide; the limit is {MAX_COPIES}");
             return Err(Error::usage("stretch", "repeat", problem));
         }
         let spacing = match (closed, room > 1.0) {

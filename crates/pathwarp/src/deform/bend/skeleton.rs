@@ -1,8 +1,7 @@
 //! The skeleton: a path's pieces in a row, measured, oriented, and joined.
 
+use super::map::{Moving, Ribbon, SkeletonPiece, Spine, Strip, normal};
 use crate::anchors;
-use crate::deform::bend::map::Ribbon;
-use crate::deform::bend::map::{Moving, SkeletonPiece, Spine, Strip, normal};
 use crate::error::{Error, show};
 use crate::map::curves::ArcLength;
 use crate::outline::{Seg, Subpath};

@@ -2,10 +2,8 @@
 
 use super::*;
 use crate::check;
-use crate::deform::Deformation;
-use crate::deform::bend::INFO;
 use crate::map::{Creases, Level, Map as _, RationalBezier};
-use crate::outline::{Outline, Seg};
+use crate::outline::Seg;
 use crate::param::Args;
 use kurbo::Point;
 
@@ -234,7 +232,6 @@ fn even_spacing_keeps_widths_at_half_the_height() {
 /// On a circle of radius 100 about 0,0 a letter whose middle is at distance s from the top is turned by s/100.
 #[test]
 fn letters_stand_on_a_circle() {
-    use crate::param::Letter;
     let outline = Outline { subpaths: Vec::new() };
     let letter =
         |x: f64| Letter { name: "n".into(), origin: Point::new(x, 90.0), advance: 10.0, outline: outline.clone() };

@@ -4,12 +4,10 @@
 //!
 //! Every vertical line meets the inside in intervals; the columns are those that follow one another from left to right with the largest
 //! area, without short thin ends beyond a jump. Where the outline jumps from one height to another, the columns go on level, or a slope
-//! leads into the higher part. Rows are the columns of the path with
-//! x and y exchanged.
+//! leads into the higher part. Rows are the columns of the path with x and y exchanged.
 
-use super::fit::to_unit;
+use super::fit::{SAMPLES, bounds, part, reversed, shown, to_unit};
 use crate::deform::entry::{Built, Role};
-use crate::deform::envelope::fit::{SAMPLES, bounds, part, shown};
 use crate::error::{Error, show};
 use crate::map::{AffineMap, Coons, Pace, Side, Sides, increasing_root};
 use crate::outline::{Outline, Seg, Subpath};
@@ -17,11 +15,11 @@ use kurbo::{Affine, Line, Point, Rect, StrokeOpts, common::solve_quadratic};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Columns that are looked at, at least.
+/// Minimum number of columns to look at.
 const COLUMNS: f64 = 600.0;
 /// The slope into the higher part after a jump, in heights of the shape per width.
 const RAMP: f64 = 2.0;
-/// Curves go on level after a jump, where letters stand better, if that leaves at least this part of what slopes would.
+/// Curves go on level after a jump, where letters stand better, if that leaves at least this share of the area that slopes would.
 const LEVEL: f64 = 0.75;
 /// Jumps below this share of the height are rounding.
 const JUMP: f64 = 1e-6;
@@ -45,7 +43,7 @@ pub(super) struct Columns {
     pub(super) range: [f64; 2],
     /// Places where the outline jumps, in the order found.
     pub(super) jumps: Vec<Point>,
-    /// The part of the shape's area that the columns hold.
+    /// The share of the shape's area that the columns hold.
     pub(super) coverage: f64,
 }
 
@@ -115,24 +113,24 @@ impl Columns {
         let best = level.unwrap_or(sloping);
         let Smooth { curves: [low, high], jumps, heights, area: held } = &best;
         let (from, to) = (low.first()?.from, low.last()?.to);
-        let most = heights.iter().map(|h| h.1).fold(0.0, f64::max);
-        let height = |x: f64| all.at(high, x) - all.at(low, x) - ends * most;
+        let lowest = ends * heights.iter().map(|h| h.1).fold(0.0, f64::max);
+        let height = |x: f64| all.at(high, x) - all.at(low, x) - lowest;
         let step = (to - from) / heights.len() as f64;
-        // From an end of a run to where it is as high, on the way outwards.
+        // From an end of a run outwards to where the shape is just high enough.
         let inner = |end: f64, by: f64| {
             let beyond = (end + by).clamp(from, to);
             if height(beyond) >= 0.0 { beyond } else { bisected(beyond, end, height) }
         };
         // Lettering does not run through a waist.
-        let runs = heights.chunk_by(|a, b| (a.1 >= ends * most) == (b.1 >= ends * most));
+        let runs = heights.chunk_by(|a, b| (a.1 >= lowest) == (b.1 >= lowest));
         let size = |run: &[(f64, f64)]| run.iter().map(|h| h.1).sum::<f64>();
-        let run = runs.filter(|r| r[0].1 >= ends * most).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let run = runs.filter(|r| r[0].1 >= lowest).max_by(|a, b| size(a).total_cmp(&size(b)))?;
         let (first, last) = (run[0].0, run[run.len() - 1].0);
         let range = [inner(first, -step), inner(last, step)].map(|x| (x - from) / (to - from));
         let back = |c: &[Span]| -> Vec<Seg> { all.cut(c).iter().map(|s| s.transformed(turn)).collect() };
         let (low, high) = (back(low), back(high));
         Some(Self {
-            curves: if upright { [high, low] } else { [low, high].map(|c| crate::deform::envelope::fit::reversed(&c)) },
+            curves: if upright { [high, low] } else { [low, high].map(|c| reversed(&c)) },
             range: if upright { range } else { [1.0 - range[1], 1.0 - range[0]] },
             jumps: jumps.iter().map(|p| turn * *p).collect(),
             coverage: held / area,
@@ -248,7 +246,7 @@ impl Region {
         if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
     }
 
-    /// Cuts off what is beyond a jump or a steep step at the ends of two curves, if it is short and thin.
+    /// Cuts off the ends of two curves beyond a jump or a steep step, if they are short and thin.
     fn trim(&self, curves: &mut [Vec<Span>; 2]) {
         /// Longest, as a share of the range.
         const SHORT: f64 = 0.25;
@@ -305,8 +303,8 @@ impl Region {
     /// Leads slopes over jumps of a curve; `out` is −1 for the low and 1 for the high one.
     fn smooth(&mut self, curve: &mut Vec<Span>, out: f64, ramp: f64, jumps: &mut Vec<Point>) {
         /// A slope may meet another jump.
-        const MOST: usize = 100;
-        for _ in 0..MOST {
+        const MAX_JUMPS: usize = 100;
+        for _ in 0..MAX_JUMPS {
             let g = |me: &Self, s: &Span, x: f64| out * me.pieces[s.piece].y(x);
             let jump = curve.windows(2).enumerate().find_map(|(i, w)| {
                 let (a, b) = (g(self, &w[0], w[0].to), g(self, &w[1], w[1].from));
@@ -407,7 +405,7 @@ impl Piece {
 
 /// Returns the intervals from left to right, each meeting the next, with the largest area.
 fn largest(lines: &[Upright]) -> Option<Vec<(&Upright, Interval)>> {
-    // Of every interval: the largest area from it on, and the next interval.
+    // For every interval, the largest area from it on, and the next interval.
     let mut best: Vec<Vec<(f64, Option<usize>)>> = vec![Vec::new(); lines.len()];
     for k in (0..lines.len()).rev() {
         let follow = |v: &Interval| {
@@ -419,8 +417,7 @@ fn largest(lines: &[Upright]) -> Option<Vec<(&Upright, Interval)>> {
             let next = follow(v);
             (lines[k].width * v.height() + next.map_or(0.0, |n| n.0), next.map(|n| n.1))
         });
-        let here = here.collect();
-        best[k] = here;
+        best[k] = here.collect();
     }
     let starts = best.iter().enumerate().flat_map(|(k, b)| b.iter().enumerate().map(move |(i, v)| (v.0, k, i)));
     let (_, mut k, i) = starts.max_by(|a, b| a.0.total_cmp(&b.0))?;

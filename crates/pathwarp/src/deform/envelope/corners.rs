@@ -13,15 +13,15 @@ use kurbo::{Affine, CubicBez, Line, Point, Rect, Vec2};
 const CORNER: f64 = 20.0;
 /// The cost of a corner on a smooth curve, in units of [`distortion`].
 const SMOOTH: f64 = 0.1;
-/// The further cost where a sharp node is near.
+/// The additional cost if a sharp node is near.
 const NEAR_SHARP: f64 = 0.2;
 /// How near that is, as a share of the box.
 const AROUND: f64 = 0.15;
-/// Sharp nodes that are considered as corners.
-const MOST_SHARP: usize = 14;
-/// Corners that are worse by less than this are hardly worse.
-const CLOSE: f64 = 0.03;
-/// Corners farther apart than this, as a share of the box, are different ones.
+/// Limit on sharp nodes considered as corners.
+const MAX_SHARP: usize = 14;
+/// Corners that cost less than this more than the best are rivals.
+const RIVAL_MARGIN: f64 = 0.03;
+/// Corners farther apart than this, as a share of the box, are different.
 const DIFFERENT: f64 = 0.1;
 /// Limit on a path's pieces: every joint is a crease of the map.
 const MAX_PIECES: usize = 2000;
@@ -146,9 +146,9 @@ fn given(sub: &Subpath, corners: &Corners, bounds: Rect) -> Result<[Location; 4]
     let (mut locations, text) = match corners {
         Corners::Nodes(nodes) => {
             let text = nodes.map(|n| n.to_string()).join(",");
-            let most = sub.segs.len();
-            if let Some(bad) = nodes.iter().find(|n| !(1..=most).contains(n)) {
-                let problem = format!("has node {bad}, which is not there: the path has nodes 1 to {most}");
+            let count = sub.segs.len();
+            if let Some(bad) = nodes.iter().find(|n| !(1..=count).contains(n)) {
+                let problem = format!("has node {bad}, which is not there: the path has nodes 1 to {count}");
                 return Err(Error::usage("corners", text, problem));
             }
             (nodes.map(|n| (n - 1, 0.0)), text)
@@ -179,7 +179,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
         return Ok(Found { corners: [0, 1, 2, 3].map(|i| (i, 0.0)), how: "its four nodes", rival: None });
     }
     sharp.sort_by(|a, b| turn(sub, *b).abs().total_cmp(&turn(sub, *a).abs()).then(a.cmp(b)));
-    sharp.truncate(MOST_SHARP);
+    sharp.truncate(MAX_SHARP);
     // A lone tip between two empty quarters, as of a heart, is the middle of a side, unless there are four, as of a diamond.
     let held: Vec<_> = sharp.iter().filter_map(|i| quarter(sub.segs[*i].start(), bounds)).collect();
     let beside = |p: Point| {
@@ -235,7 +235,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     let place = |i: usize| sub.segs[candidates[i].0.0].eval(candidates[i].0.1);
     let differs =
         |four: &[usize; 4]| four.iter().any(|i| best.iter().all(|j| share(place(*i) - place(*j)).hypot() > DIFFERENT));
-    let rival = scored.iter().skip(1).find(|s| differs(&s.1)).filter(|s| s.0 <= score + CLOSE);
+    let rival = scored.iter().skip(1).find(|s| differs(&s.1)).filter(|s| s.0 <= score + RIVAL_MARGIN);
     Ok(Found {
         corners: best.map(|i| candidates[i].0),
         how: match smooth {
@@ -251,7 +251,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
 struct Found {
     corners: [Location; 4],
     how: &'static str,
-    /// Others that are hardly worse.
+    /// Others that are hardly worse, for a message.
     rival: Option<String>,
 }
 
@@ -261,7 +261,7 @@ struct Flat {
     lengths: Vec<f64>,
 }
 
-/// Lines of a piece.
+/// Lines per piece.
 const LINES: u32 = 16;
 
 impl Flat {
@@ -443,7 +443,7 @@ pub(super) struct Curves<'a> {
     pub(super) drawn: &'a [Option<NamedPath>; 4],
     /// Distance of the facing side, if one curve is drawn.
     pub(super) height: Option<f64>,
-    /// The default for that.
+    /// The default for `height`.
     pub(super) frame_height: f64,
     /// Joins two curves at right angles.
     pub(super) square: bool,
@@ -534,7 +534,7 @@ impl Curves<'_> {
             match (&bottom, &top) {
                 (Some(b), None) => top = Some(moved(b, -height)),
                 (None, Some(t)) => bottom = Some(moved(t, height)),
-                _ => return Err(facing(if left.is_some() { "right" } else { "left" })),
+                _ => return Err(needs_facing(if left.is_some() { "right" } else { "left" })),
             }
             notes.push(format!("the facing side: the same curve, {height:.6} away"));
         } else if let Some(height) = self.height {
@@ -551,8 +551,8 @@ impl Curves<'_> {
                 run(&mut a, &mut b, |v| -v.y);
                 Ok(Facing { lying: false, first: a, second: b, between: [bottom, top] })
             }
-            (Some(_), ..) => Err(facing("top")),
-            _ => Err(facing("bottom")),
+            (Some(_), ..) => Err(needs_facing("top")),
+            _ => Err(needs_facing("bottom")),
         }
     }
 
@@ -569,7 +569,7 @@ impl Curves<'_> {
     }
 }
 
-fn facing(name: &str) -> Error {
+fn needs_facing(name: &str) -> Error {
     Error::missing(name, "the curve that faces the given one (or `bottom` or `top` alone, with `height`)")
 }
 
@@ -625,11 +625,11 @@ fn joined(name: &str, c: Vec<Seg>, from: Point, to: Point, size: f64) -> Result<
 
 /// Returns the cubic that leaves one curve and reaches the other at right angles.
 fn at_right_angles(from: Point, to: Point, [a, b]: [Vec2; 2]) -> Seg {
-    let way = to - from;
+    let chord = to - from;
     let handle = |along: Vec2| {
         let n = along.turn_90();
-        let n = if n.dot(way) < 0.0 { -n } else { n };
-        if n.hypot() > 0.0 { n * (way.hypot() / (3.0 * n.hypot())) } else { way / 3.0 }
+        let n = if n.dot(chord) < 0.0 { -n } else { n };
+        if n.hypot() > 0.0 { n * (chord.hypot() / (3.0 * n.hypot())) } else { chord / 3.0 }
     };
     Seg::Cubic(CubicBez::new(from, from + handle(a), to - handle(b), to))
 }

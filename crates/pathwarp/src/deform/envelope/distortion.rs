@@ -1,28 +1,26 @@
-//! How much a map distorts: its stretches at places of the artwork.
+//! Measures how much a map distorts: its stretches at places of the artwork.
 
 use crate::map::Jet;
 use kurbo::{Point, Vec2};
 
-/// Returns places of the unit square.
+/// Returns `n` × `n` places of the unit square.
 pub(super) fn grid(n: u32) -> impl Iterator<Item = Point> {
     let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
     (0..n * n).map(move |k| Point::new(at(k % n), at(k / n)))
 }
 
-/// Returns the mean of how far a map stretches and squeezes, beside its mean stretches to the right and upwards: the squares of the
-/// logarithms of both stretches.
+/// Returns the mean over all places of the squared logarithms of both [`stretches`].
 pub(super) fn distortion(jets: &[Jet]) -> f64 {
-    /// For a place that is folded over or squeezed to nothing.
-    const MOST: f64 = 100.0;
+    /// The limit at a place, which folds and places squeezed to nothing reach.
+    const MAX: f64 = 100.0;
     let one = |[a, b]: [f64; 2]| {
         let d = a.ln().powi(2) + b.ln().powi(2);
-        if b > 0.0 && d < MOST { d } else { MOST }
+        if b > 0.0 && d < MAX { d } else { MAX }
     };
     stretches(jets).into_iter().map(one).sum::<f64>() / jets.len() as f64
 }
 
-/// Returns the cost of turning a box: by the directions between its corners (bottom left, bottom right, top right, top left), with y
-/// downwards.
+/// Returns the cost of turning a box, from the images of its corners (bottom left, bottom right, top right, top left) with y downwards.
 pub(super) fn turned([a, b, c, d]: [Point; 4]) -> f64 {
     /// The cost of a radian.
     const RADIAN: f64 = 2.0;
@@ -30,7 +28,7 @@ pub(super) fn turned([a, b, c, d]: [Point; 4]) -> f64 {
     RADIAN * (right.y.atan2(right.x).powi(2) + down.x.atan2(down.y).powi(2))
 }
 
-/// Returns the largest and the smallest stretch at every place, beside the mean stretches along both axes; the smallest is negative
+/// Returns the largest and the smallest stretch at every place, relative to the mean stretches along both axes; the smallest is negative
 /// where the map mirrors.
 pub(super) fn stretches(jets: &[Jet]) -> Vec<[f64; 2]> {
     let mean = |v: fn(&Jet) -> Vec2| jets.iter().map(|j| v(j).hypot()).sum::<f64>() / jets.len() as f64;

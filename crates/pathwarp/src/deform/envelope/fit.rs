@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// A side that strays from the line between its ends by no more than this share of its length is straight.
 const STRAIGHT: f64 = 1e-9;
 
-/// Least lean that is worth a warning, in degrees.
+/// Smallest lean that is worth a warning, in degrees.
 const VISIBLE_LEAN: f64 = 0.05;
 
 /// The lines of the artwork that stay straight in an envelope.
@@ -217,9 +217,9 @@ fn no_pace(name: &str, pace: Pace, spread: Spread) -> Error {
 
 // Warnings about an envelope: sides that cross, and folds of the map.
 
-/// Chords of a side.
+/// Chords per side.
 const CHORDS: u32 = 400;
-/// Chords that are looked at only if their common box is met.
+/// Chords in a block, which are looked at only if the block's box is met.
 const BLOCK: usize = 20;
 /// Overshoot, in lengths of a chord, that still counts as its end.
 const ROUNDING: f64 = 1e-9;
@@ -227,7 +227,7 @@ const ROUNDING: f64 = 1e-9;
 const GRID: u32 = 64;
 
 /// Returns the warnings. `inverse` takes the unit square to the source.
-pub(super) fn warnings(map: &Coons, inverse: Affine) -> Vec<String> {
+fn warnings(map: &Coons, inverse: Affine) -> Vec<String> {
     let s = map.sides();
     let sides = [&s.bottom, &s.right, &s.top, &s.left];
     let mut out = crossings(sides);
@@ -267,7 +267,7 @@ fn crossings(sides: [&Side; 4]) -> Vec<String> {
 /// The chords of a side.
 struct Chords {
     all: Vec<Line>,
-    /// The box of every [`BLOCK`] of them.
+    /// The box of every block of [`BLOCK`] chords.
     boxes: Vec<Rect>,
 }
 
@@ -335,7 +335,7 @@ bends too sharply for its neighbours; straighten it, or move the corners",
 
 /// The sides' names, in the order of [`Ring::sides`].
 pub(super) const SIDES: [&str; 4] = ["bottom", "right", "top", "left"];
-/// Samples of a piece.
+/// Samples per piece.
 pub(super) const SAMPLES: u32 = 64;
 
 /// Four sides, head to tail.

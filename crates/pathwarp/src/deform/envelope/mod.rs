@@ -461,12 +461,12 @@ fn corners(s: &Settings<'_>) -> Result<Option<Corners>, Error> {
 
 // The map that suits the shape and the artwork: the patch of four sides, columns or rows.
 
-/// Columns that hold at least this part of a shape's area fill it.
+/// Columns that hold at least this share of a shape's area fill it.
 const FILLS: f64 = 0.8;
-/// Samples along an axis of the box, where the artwork is not known.
+/// Samples along each axis of the box if the artwork is unknown.
 const GRID: u32 = 24;
 
-/// What a map is chosen by.
+/// The settings and the artwork that decide which map suits.
 #[derive(Clone, Copy)]
 struct Choice<'a> {
     frame: Rect,
@@ -512,16 +512,16 @@ impl Choice<'_> {
 
     /// Builds what suits the shape and the artwork.
     fn suited(&self, shape: &Subpath, ring: Option<Ring>) -> Result<Built, Error> {
-        let is_honest = ring.as_ref().is_some_and(|ring| honest(shape, ring));
+        let has_corners = ring.as_ref().is_some_and(|ring| has_own_corners(shape, ring));
         let (ring, frame) = match ring {
-            Some(ring) if is_honest && self.lettering => {
+            Some(ring) if has_corners && self.lettering => {
                 let (ring, frame) = between_notches(ring, shape, self.frame);
                 (Some(ring), frame)
             }
             ring => (ring, self.frame),
         };
         let patch = || Choice { frame, ..*self }.patched(ring.as_ref()?, Keep::Nothing).ok();
-        if is_honest && let Some(built) = patch() {
+        if has_corners && let Some(built) = patch() {
             return Ok(built);
         }
         if self.lettering {
@@ -537,8 +537,8 @@ impl Choice<'_> {
         for upright in [true, false].into_iter().filter(|u| fills(*u) >= FILLS) {
             all.extend(filled(self.frame, shape, upright, &self.room).map(scored).ok());
         }
-        let least = all.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a });
-        least.map(|b| b.0).ok_or_else(|| nothing(shape))
+        let best = all.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a });
+        best.map(|b| b.0).ok_or_else(|| nothing(shape))
     }
 
     /// Returns the distortion of the artwork.
@@ -553,10 +553,10 @@ impl Choice<'_> {
 
 /// Returns `true` if a shape has four corners of its own: no other sharp node points outwards, its bottom runs to the right and its
 /// sides upwards, and nothing folds or is stretched much more one way than the other.
-fn honest(shape: &Subpath, ring: &Ring) -> bool {
+fn has_own_corners(shape: &Subpath, ring: &Ring) -> bool {
     /// The largest angle of the bottom and of the sides with the screen's axes, as a tangent.
     const TURNED: f64 = 0.9;
-    /// The largest ratio of both stretches, beside their means, but for a tenth of the places.
+    /// The largest ratio of both stretches, relative to their means, in nine tenths of the places.
     const UNEVEN: f64 = 2.2;
     let around: f64 = shape.segs.iter().map(area).sum();
     let pointed: Vec<Point> = corners::sharp(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
@@ -586,8 +586,8 @@ fn honest(shape: &Subpath, ring: &Ring) -> bool {
     level && ratios[ratios.len() - 1] < f64::INFINITY && ratios[ratios.len() * 9 / 10] <= UNEVEN
 }
 
-/// Ends lettering between the notches of a swallow-tailed banner: a side with one becomes straight, and the box is widened, so that its
-/// own upright through the notch ends the letters.
+/// Ends lettering between the notches of a swallow-tailed banner: a side with a notch becomes straight, and the box is widened so that
+/// the letters end at the upright through the notch.
 fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect) {
     let around: f64 = shape.segs.iter().map(area).sum();
     let notches: Vec<Point> = corners::sharp(shape, -around.signum()).map(|i| shape.segs[i].start()).collect();
@@ -596,7 +596,7 @@ fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect)
     else {
         return (ring, frame);
     };
-    // The share of the width, from its side on, whose upright has the notch on it.
+    // The share of the width between a side and the upright through its notch.
     let share = |notch: Point, right: bool| {
         let outside = |t: f64| {
             let u = if right { 1.0 - t } else { t };
@@ -619,7 +619,7 @@ fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect)
     (ring, Rect::new(frame.x0 - left * width, frame.y0, frame.x1 + right * width, frame.y1))
 }
 
-/// Returns a box wider than `frame`, whose map into the sides keeps the frame `padding` off them.
+/// Returns a box around `frame`, such that mapping that box into the sides keeps `frame` a distance of `padding` away from them.
 fn padded(frame: Rect, ring: &Ring, padding: f64) -> Result<Rect, Error> {
     if padding == 0.0 {
         return Ok(frame);

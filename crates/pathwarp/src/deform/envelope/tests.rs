@@ -2,18 +2,12 @@
 
 use super::fit::paced;
 use super::*;
-use crate::deform::Deformation;
 use crate::deform::Registry;
-use crate::deform::envelope::INFO;
-use crate::error::show;
-use crate::map::Creases;
-use crate::map::{AffineMap, Class, Coons, Map};
-use crate::outline::Seg;
+use crate::map::{AffineMap, Class, Creases};
 use crate::param::{Args, Frame};
 use crate::refit;
-use kurbo::{Affine, ParamCurve, ParamCurveArclen, PathSeg, Rect, Vec2};
+use kurbo::{ParamCurve, ParamCurveArclen, PathSeg};
 use std::f64::consts::FRAC_1_SQRT_2;
-use std::sync::Arc;
 
 const SQUARE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
 

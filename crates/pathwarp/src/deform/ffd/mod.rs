@@ -4,7 +4,7 @@
 //! *Free-form deformation of solid geometric models*, SIGGRAPH 1986; T. W. Sederberg, *Computer Aided Geometric Design*,
 //! chapter 14, equations 14.1-14.3): see [`Lattice`]. Control points are counted from the left (i) and from the top (j),
 //! from 0. Pins are solved for as in W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of free-form deformations*,
-//! SIGGRAPH 1992: see [`pins`].
+//! SIGGRAPH 1992: see [`pull`].
 //!
 //! A region that is the artwork's own box has no outside: the pieces continue there, so that strokes and everything else that
 //! extends past the outlines' box follow smoothly. Any other region ends in a border, beyond which nothing moves, unless the
@@ -160,8 +160,8 @@ impl Ffd {
                 lattice.set_weight(i, j, 1.0);
             }
         }
-        self.change(&mut lattice)?;
-        self.pull(&mut lattice, &mut warnings)?;
+        self.apply_changes(&mut lattice)?;
+        self.apply_pins(&mut lattice, &mut warnings)?;
         if !self.extended {
             warnings.extend(tears(&lattice));
         }
@@ -197,9 +197,9 @@ impl Ffd {
         let lattice = match &self.grid {
             Grid::Given(lattice) => lattice.clone(),
             Grid::Regular { region, degree, cells } => {
-                for (name, pair, most) in [("degree", degree, MAX_DEGREE), ("cells", cells, MAX_CELLS)] {
+                for (name, pair, max) in [("degree", degree, MAX_DEGREE), ("cells", cells, MAX_CELLS)] {
                     for n in pair {
-                        within(name, *n as f64, 1.0, most as f64)?;
+                        within(name, *n as f64, 1.0, max as f64)?;
                     }
                 }
                 Lattice::regular(*region, *degree, *cells)
@@ -223,7 +223,7 @@ impl Ffd {
         i < left || i + right >= columns || j < top || j + bottom >= rows
     }
 
-    fn change(&self, l: &mut Lattice) -> Result<(), Error> {
+    fn apply_changes(&self, l: &mut Lattice) -> Result<(), Error> {
         for &([i, j], change) in &self.changes {
             let wrong = |problem: String| Error::usage(change.param(), format!("{i},{j}"), problem);
             if i >= l.columns() || j >= l.rows() {
@@ -242,7 +242,7 @@ impl Ffd {
         Ok(())
     }
 
-    fn pull(&self, l: &mut Lattice, warnings: &mut Vec<String>) -> Result<(), Error> {
+    fn apply_pins(&self, l: &mut Lattice, warnings: &mut Vec<String>) -> Result<(), Error> {
         let shown = |(p, q): &(Point, Point)| format!("{}:{}", show(*p), show(*q));
         if let Some(extra) = self.pins.get(MAX_PINS) {
             return Err(Error::usage("pin", shown(extra), format!("is one too many: {MAX_PINS} pins at most")));
@@ -324,11 +324,11 @@ fn net(l: &Lattice) -> BezPath {
 // H. Kaufman, *Direct manipulation of free-form deformations*, SIGGRAPH 1992).
 
 /// Limit on pins: the work grows with the cube of their number.
-pub(crate) const MAX_PINS: usize = 256;
+const MAX_PINS: usize = 256;
 
 /// Moves the control points that are `free` so that the lattice takes the first point of each pin to the second. Returns the
 /// distance by which each pin is missed: rounding, unless the pins ask for more than the lattice can do.
-pub(crate) fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Point, Point)]) -> Vec<f64> {
+fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Point, Point)]) -> Vec<f64> {
     let n = pins.len();
     let columns = lattice.columns();
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);
@@ -505,13 +505,13 @@ fn read(file: &NamedText, _: Rect) -> Result<(Lattice, bool), Error> {
 }
 
 /// Reads `3x2`, or `3` for both.
-fn pair(s: &Settings<'_>, name: &str, most: usize) -> Result<Option<[usize; 2]>, Error> {
+fn pair(s: &Settings<'_>, name: &str, max: usize) -> Result<Option<[usize; 2]>, Error> {
     let Some(text) = s.texts(name).last().copied() else { return Ok(None) };
-    let number = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=most).contains(n));
+    let number = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=max).contains(n));
     let (a, b) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
     match (number(a), number(b)) {
         (Some(a), Some(b)) => Ok(Some([a, b])),
-        _ => Err(Error::usage(name, text, format!("is not two numbers from 1 to {most}, such as 3x2"))),
+        _ => Err(Error::usage(name, text, format!("is not two numbers from 1 to {max}, such as 3x2"))),
     }
 }
 
@@ -570,9 +570,7 @@ fn frozen(s: &Settings<'_>) -> Result<[usize; 4], Error> {
     Ok(counts)
 }
 
-// A change of one control point of a net, as the free-form grid and the Bézier triangle take it.
-
-/// A change of one control point.
+/// A change of one control point, of a grid or of a Bézier triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Change {
     /// Put it here.
@@ -597,9 +595,6 @@ impl Change {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{LatticeMap, Map};
-    use kurbo::Rect;
-
     fn lattice() -> Lattice {
         Lattice::regular(Rect::new(10.0, 20.0, 110.0, 80.0), [3, 2], [1, 1])
     }

@@ -13,10 +13,8 @@
 //! positions where patches meet, as shares of its width and height; by default it is divided evenly. With `fit` true the quilt is
 //! laid onto the artwork's box.
 
-use super::quilt::Quilt;
-use crate::deform::entry::Built;
-use crate::deform::warp;
-use crate::deform::warp::{Style, StyleParams};
+use super::quilt::{Contents, Quilt};
+use crate::deform::warp::{self, Style, StyleParams};
 use crate::error::Error;
 use crate::param::NamedText;
 use kurbo::{Point, Rect};
@@ -91,15 +89,8 @@ struct LayerWarp {
     mesh: Option<QuiltFile>,
 }
 
-pub(super) enum Found {
-    /// The map of a style.
-    Style(Built),
-    /// A quilt and its layer's name.
-    Quilt(Quilt, String),
-}
-
 /// Reads the warp of a layer, or of the only warped one, over `region`.
-pub(super) fn read_psd(file: &NamedText, layer: Option<&str>, region: Rect) -> Result<Found, Error> {
+pub(super) fn read_psd(file: &NamedText, layer: Option<&str>, region: Rect) -> Result<Contents, Error> {
     let parsed: Warps = serde_json::from_str(&file.text).map_err(|_| {
         Error::input(
             &file.name,
@@ -122,7 +113,7 @@ pub(super) fn read_psd(file: &NamedText, layer: Option<&str>, region: Rect) -> R
         }
     };
     if let Some(mesh) = warp.mesh {
-        return Ok(Found::Quilt(mesh.quilt(&file.name, region)?.on(region), warp.layer));
+        return Ok(Contents::Quilt(mesh.quilt(&file.name, region)?.on(region), Some(warp.layer)));
     }
     let style = Style::named(&warp.style).ok_or_else(|| {
         wrong(format!("layer `{}` has the warp {}, which has no known formula", warp.layer, warp.style))
@@ -135,5 +126,5 @@ pub(super) fn read_psd(file: &NamedText, layer: Option<&str>, region: Rect) -> R
     let net = style.net(region.width(), region.height(), &bent).map_err(|e| wrong(format!("its style {e}")))?;
     let mut built = warp::over(region, &net)?;
     built.note(format!("layer {}: style {}, bend {}%", warp.layer, style.name(), warp.value));
-    Ok(Found::Style(built))
+    Ok(Contents::Style(built))
 }

@@ -15,7 +15,7 @@ use crate::error::{Error, GeometryError};
 use crate::map::Class;
 use crate::param::{Kind, NamedText, Param, Settings};
 use kurbo::{Point, Rect, Shape};
-use quilt::Quilt;
+use quilt::{Contents, Quilt};
 
 /// A mesh: a quilt of bicubic Bézier patches in rows and columns, which share the points of their common sides.
 ///
@@ -44,10 +44,10 @@ enum Source {
     Quilt(Quilt),
 }
 
-/// Least jump of the slope at a joint that is worth a warning, as a share of it.
+/// Smallest jump of the slope at a joint that is worth a warning, as a share of the slope.
 const VISIBLE_KINK: f64 = 0.005;
 
-/// Distance by which artwork may extend past the mesh's box, in shares of it, without a warning.
+/// Distance by which artwork may extend past the mesh's box without a warning, as a share of the box.
 const BEYOND: f64 = 0.5;
 
 impl Mesh {
@@ -94,13 +94,13 @@ impl Mesh {
             quilt.smooth();
         }
         let [columns, rows] = quilt.size();
-        let (kinks, most) = quilt.kinks();
+        let (kinks, worst) = quilt.kinks();
         let r = quilt.region;
         let frame = self.frame.unwrap_or(r);
         let map = quilt.map().ok_or(GeometryError::FlatFrame { width: r.width(), height: r.height() })?;
         let map = crate::anchors::settled(map, frame);
         let mut built = Built::new(map);
-        let joints = if most < VISIBLE_KINK { "smooth" } else { "kinked" };
+        let joints = if worst < VISIBLE_KINK { "smooth" } else { "kinked" };
         built.note(format!("mesh: {columns} by {rows} patches; joints: {joints}"));
         let beyond = r.inflate(BEYOND * r.width(), BEYOND * r.height());
         if !matches!(built.map.class(), Class::Affine(_)) && frame.union(beyond) != beyond {
@@ -110,10 +110,10 @@ lays it onto the artwork",
                 r.x0, r.y0, r.x1, r.y1
             ));
         }
-        if most >= VISIBLE_KINK {
+        if worst >= VISIBLE_KINK {
             built.warn(format!(
                 "mesh: {kinks} pairs of control points beside joints make kinks (by up to {:.0} % of the slope); `smooth` evens them out",
-                100.0 * most
+                100.0 * worst
             ));
         }
         built.overlay(Role::Base, r.to_path(0.1));
@@ -235,7 +235,7 @@ impl Deformation for Entry {
         } else {
             let file = s.file_if(source)?.ok_or_else(|| Error::missing(source, "its file"))?;
             match from_file(s, source, file, region)? {
-                Contents::Built(built) => return Ok(built),
+                Contents::Style(built) => return Ok(built),
                 Contents::Quilt(quilt, layer) => (quilt, layer),
             }
         };
@@ -247,22 +247,11 @@ impl Deformation for Entry {
     }
 }
 
-/// The contents of a file.
-enum Contents {
-    /// A warp style.
-    Built(Built),
-    /// A quilt, and the name of its layer.
-    Quilt(Quilt, Option<String>),
-}
-
 /// Reads a mesh or a Photoshop file.
 #[cfg(feature = "serde")]
 fn from_file(s: &Settings<'_>, param: &str, file: &NamedText, region: Rect) -> Result<Contents, Error> {
     if param == "psd" {
-        return Ok(match file::read_psd(file, s.texts("layer").last().copied(), region)? {
-            file::Found::Style(built) => Contents::Built(built),
-            file::Found::Quilt(quilt, layer) => Contents::Quilt(quilt, Some(layer)),
-        });
+        return file::read_psd(file, s.texts("layer").last().copied(), region);
     }
     let quilt = file::read(&file.name, &file.text, region)?;
     Ok(Contents::Quilt(if s.given("region") { quilt.on(region) } else { quilt }, None))

@@ -1,5 +1,6 @@
 //! Quilts: rows and columns of bicubic patches.
 
+use crate::deform::entry::Built;
 use crate::error::Error;
 use crate::map::{BicubicNet, Map, Net, TileRow, Tiled};
 use crate::param::NamedPath;
@@ -19,6 +20,14 @@ pub(super) struct Quilt {
     pub(super) y: Vec<f64>,
     /// Rows of control points.
     points: Vec<Vec<Point>>,
+}
+
+/// The contents of a file.
+pub(super) enum Contents {
+    /// The map of a warp style.
+    Style(Built),
+    /// A quilt, and its layer's name.
+    Quilt(Quilt, Option<String>),
 }
 
 /// Returns the number of patches that `points` make; `None` unless it is a whole number from 1 to [`MAX_PATCHES`].
@@ -126,13 +135,13 @@ impl Quilt {
     pub(super) fn kinks(&self) -> (usize, f64) {
         /// Files keep about seven digits.
         const ROUNDING: f64 = 1e-6;
-        let (mut count, mut most) = (0, 0.0_f64);
+        let (mut count, mut worst) = (0, 0.0_f64);
         let mut joint = |a: Point, b: Point, c: Point, before: f64, after: f64| {
             let (l, r): (Vec2, Vec2) = ((b - a) / before, (c - b) / after);
             let jump = (r - l).hypot() / l.hypot().max(r.hypot()).max(f64::MIN_POSITIVE);
             if jump > ROUNDING {
                 count += 1;
-                most = most.max(jump);
+                worst = worst.max(jump);
             }
         };
         for row in &self.points {
@@ -147,7 +156,7 @@ impl Quilt {
                 joint(a, b, d, self.y[j] - self.y[j - 1], self.y[j + 1] - self.y[j]);
             }
         }
-        (count, most)
+        (count, worst)
     }
 
     /// Returns the map; `None` if the region has no area.

@@ -2,10 +2,9 @@
 
 use super::*;
 use crate::check;
-use crate::deform::Deformation;
 use crate::map::Map;
 use crate::param::{Args, Frame};
-use kurbo::{CubicBez, ParamCurve, Point, Rect, Vec2};
+use kurbo::{CubicBez, ParamCurve, Vec2};
 
 #[test]
 fn is_sound() {

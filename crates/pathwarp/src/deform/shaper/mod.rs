@@ -9,9 +9,8 @@
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Deformation, Example, Explanation, Info, Law, Pairs, Role, Variant};
-use crate::anchors;
-use crate::anchors::{Anchors, Arrangement};
-use crate::error::{Error, GeometryError, within};
+use crate::anchors::{self, Anchors, Arrangement};
+use crate::error::{Error, GeometryError, show, within};
 use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net, complete_net};
 use crate::outline::{Outline, Seg};
 use crate::param::{Frame, Kind, NamedPath, Param, Settings};
@@ -232,7 +231,7 @@ fn wrapper(a: &Anchors) -> &'static str {
 }
 
 fn list(points: &[Point]) -> String {
-    points.iter().map(|p| crate::error::show(*p)).collect::<Vec<_>>().join(" ")
+    points.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" ")
 }
 
 // Nets of 16 points: from a closed path of four sides, or given in full.
@@ -290,8 +289,7 @@ fn from_cage(
     Ok(complete_net(outer_net(&sides, &arrangement)))
 }
 
-/// Chooses the way of laying `base` on the corners that distorts least, and says why. A way that turns the artwork on its side is
-/// a warning.
+/// Chooses the way of laying `base` on the corners that distorts least, and says why. Warns if that turns the artwork on its side.
 fn least_distorting(
     name: &str,
     base: &[Point; 4],
@@ -302,24 +300,23 @@ fn least_distorting(
     /// Turns beyond this, in degrees, leave the artwork on its side.
     const ON_ITS_SIDE: f64 = 60.0;
     let percent = |distortion: f64| (100.0 * distortion).round();
-    let by_rule = Way::new(base, corners, lowest);
+    let by_rule = CornerMatch::new(base, corners, lowest);
     let rule_distortion = percent(by_rule.distortion);
-    let way = Way::least(base, corners, by_rule.arrangement);
-    let chosen = percent(way.distortion);
-    let is_rule = way.arrangement == lowest;
-    if is_rule {
+    let best = CornerMatch::best(base, corners, lowest);
+    let chosen = percent(best.distortion);
+    if best.arrangement == lowest {
         return (lowest, format!("the lowest on the screen, and no side distorts the corners much less ({chosen} %)"));
     }
-    if way.turn.abs() > ON_ITS_SIDE {
+    if best.turn.abs() > ON_ITS_SIDE {
         explanation.warnings.push(format!(
             "the artwork is turned by {:.0}° to fit {name}, as upright it would be distorted more ({rule_distortion} % instead of \
              {chosen} %); `bottom lowest` keeps its lowest side at the bottom",
-            way.turn
+            best.turn
         ));
     }
     let side = lowest.bottom + 1;
     (
-        way.arrangement,
+        best.arrangement,
         format!(
             "it distorts the corners least ({chosen} %; side {side}, the lowest on the screen, {rule_distortion} %)"
         ),
@@ -403,8 +400,8 @@ pub(in crate::deform) fn rows_path(n: &Net) -> BezPath {
 /// wide, are not turned on their sides.
 const TIE: f64 = 0.25;
 
-/// One way to lay base on cage.
-struct Way {
+/// One way to lay the corners of the base on those of the cage.
+struct CornerMatch {
     arrangement: Arrangement,
     /// Distance from the best similitude as a share of the cage's size: 0 to 1.
     distortion: f64,
@@ -412,7 +409,7 @@ struct Way {
     turn: f64,
 }
 
-impl Way {
+impl CornerMatch {
     /// Judges an arrangement of the cage's corners for a base: bottom left, bottom right, then on around.
     fn new(base: &[Point; 4], cage: &[Point; 4], arrangement: Arrangement) -> Self {
         let order = arrangement.order();
@@ -425,7 +422,7 @@ impl Way {
 
     /// The way that distorts least; among ties `lowest`, or else the one that turns least. Ways that mirror the artwork, which
     /// hardly distorts a narrow box, are left out.
-    fn least(base: &[Point; 4], cage: &[Point; 4], lowest: Arrangement) -> Self {
+    fn best(base: &[Point; 4], cage: &[Point; 4], lowest: Arrangement) -> Self {
         let by_rule = Self::new(base, cage, lowest);
         let all = (0..8).map(|i| Self::new(base, cage, Arrangement { bottom: i % 4, reversed: i >= 4 }));
         let mirrors = |w: &Self| area(base) * area(&w.arrangement.order().map(|i| cage[i])) < 0.0;
@@ -613,7 +610,7 @@ mod laying_tests {
                 let drawn: [Point; 4] =
                     std::array::from_fn(|i| cage[(if start < 4 { start + i } else { start + 4 - i }) % 4]);
                 let heights = std::array::from_fn(|i| 0.5 * (drawn[i].y + drawn[(i + 1) % 4].y));
-                let way = Way::least(&base, &drawn, Arrangement::by_rule(&drawn, &heights));
+                let way = CornerMatch::best(&base, &drawn, Arrangement::by_rule(&drawn, &heights));
                 assert!(way.distortion < 1e-7, "{width}:1 by {degrees}°, from {start}: {}", way.distortion);
                 assert!((way.turn - degrees).abs() < 1e-6, "{width}:1 by {degrees}°, from {start}: {}", way.turn);
             }
@@ -627,7 +624,7 @@ mod laying_tests {
             let heights = std::array::from_fn(|i| 0.5 * (cage[i].y + cage[(i + 1) % 4].y));
             let rule = Arrangement::by_rule(&cage, &heights);
             let (bottom, reversed) = (rule.bottom, rule.reversed);
-            let way = Way::least(&base, &cage, rule);
+            let way = CornerMatch::best(&base, &cage, rule);
             assert_eq!((way.arrangement.bottom, way.arrangement.reversed), (bottom, reversed));
         }
     }
@@ -635,7 +632,7 @@ mod laying_tests {
     #[test]
     fn reflections_are_the_worst() {
         let base = turned(2.0, 1.0, 0.0);
-        let way = |bottom, reversed| Way::new(&base, &base, Arrangement { bottom, reversed }).distortion;
+        let way = |bottom, reversed| CornerMatch::new(&base, &base, Arrangement { bottom, reversed }).distortion;
         assert!(way(0, false) < 1e-7 && way(2, false) < 1e-7);
         // Σ|b|² = 5, and the mirror image leaves 4 − 1 of it: √(1 − (3/5)²).
         assert!((way(0, true) - 0.8).abs() < 1e-12, "{}", way(0, true));

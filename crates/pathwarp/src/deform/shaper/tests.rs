@@ -1,13 +1,8 @@
 //! The shaper against the paper, its rules and its faults.
 
 use super::*;
-use crate::anchors::Arrangement;
-use crate::deform::Deformation;
-use crate::deform::shaper::outer_net;
-use crate::map::complete_net;
-use crate::outline::Seg;
 use crate::param::Args;
-use kurbo::{CubicBez, ParamCurve};
+use kurbo::ParamCurve;
 
 const CAGE: &str = "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z";
 

@@ -1,11 +1,10 @@
 //! Bézier triangles: the artwork in a triangle follows a net of control points.
 //!
 //! F(u) = Σ wᵢⱼₖ Pᵢⱼₖ Bᵢⱼₖ(u) / Σ wᵢⱼₖ Bᵢⱼₖ(u), with Bᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱu₁ʲu₂ᵏ and u the barycentric coordinates in
-//! the reference triangle ABC. Pᵢⱼₖ starts at (iA + jB + kC)/n. At degree 1 the
-//! map is affine, with weights projective; at degree 2 six points are free and lines become conics' projections: parabolas, or
-//! conics with weights. Outside a triangle that was asked for nothing moves; the restriction of the map to a side depends on that
-//! side's points alone, so a side whose points stay put is joined without a gap. Outside the triangle about the artwork's box the map
-//! continues: strokes reach past the box.
+//! the reference triangle ABC. Pᵢⱼₖ starts at (iA + jB + kC)/n. At degree 1 the map is affine, with weights projective; at degree 2
+//! six points are free and lines become conics' projections: parabolas, or conics with weights. Outside a triangle that was asked for
+//! nothing moves; the restriction of the map to a side depends on that side's points alone, so a side whose points stay put is joined
+//! without a gap. Outside the triangle about the artwork's box the map continues: strokes reach past the box.
 //!
 //! G. Farin, *Triangular Bernstein–Bézier patches*, CAGD 3 (1986); J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form
 //! deformation*, CAGD 46 (2016), where the net is moved along rays (see `anamorph`).
@@ -146,8 +145,8 @@ is torn apart; keep that side's points in place, choose a larger `reference`, or
     }
 }
 
-/// Draws the reference triangle.
-fn outline(corners: [Point; 3]) -> BezPath {
+/// Draws a reference triangle.
+pub(super) fn outline(corners: [Point; 3]) -> BezPath {
     let mut path = BezPath::new();
     path.move_to(corners[0]);
     path.line_to(corners[1]);
@@ -179,7 +178,7 @@ fn meets(r: Rect, a: Point, b: Point) -> bool {
 /// Draws the net's lines in three directions.
 fn cage(net: &TriangleNet) -> BezPath {
     let mut path = BezPath::new();
-    for [i, j, k] in indices(net.degree()).into_iter().filter(|ijk| ijk[0] > 0) {
+    for [i, j, k] in indices(net.degree).into_iter().filter(|ijk| ijk[0] > 0) {
         let (left, right) = (net.point([i - 1, j + 1, k]), net.point([i - 1, j, k + 1]));
         path.move_to(net.point([i, j, k]));
         path.line_to(left);
@@ -202,7 +201,7 @@ fn cage(net: &TriangleNet) -> BezPath {
 
 /// The control points of a Bézier triangle with their weights.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct TriangleNet {
+struct TriangleNet {
     corners: [Point; 3],
     degree: usize,
     /// By [`index`].
@@ -211,35 +210,32 @@ pub(crate) struct TriangleNet {
 }
 
 /// Returns the index of control point (i, j, k) in a list ordered by k + j, then by k.
-#[must_use]
-pub(crate) fn index([_, j, k]: [usize; 3]) -> usize {
+pub(super) fn index([_, j, k]: [usize; 3]) -> usize {
     let row = j + k;
     row * (row + 1) / 2 + k
 }
 
 /// Returns all (i, j, k) with i + j + k = n, in the order of their [`index`].
-#[must_use]
-pub(crate) fn indices(n: usize) -> Vec<[usize; 3]> {
+pub(super) fn indices(n: usize) -> Vec<[usize; 3]> {
     (0..=n).flat_map(|row| (0..=row).map(move |k| [n - row, row - k, k])).collect()
 }
 
 /// Returns (i·A + j·B + k·C)/n.
-#[must_use]
-pub(crate) fn regular_point(corners: [Point; 3], [i, j, k]: [usize; 3]) -> Point {
+pub(super) fn regular_point(corners: [Point; 3], [i, j, k]: [usize; 3]) -> Point {
     let n = (i + j + k).max(1) as f64;
     let [a, b, c] = corners;
     a + (b - a) * (j as f64 / n) + (c - a) * (k as f64 / n)
 }
 
 /// Returns the map from a point to (u₁ − ⅓, u₂ − ⅓), the coordinates of [`expanded`].
-pub(crate) fn coordinates([a, b, c]: [Point; 3]) -> Affine {
+pub(super) fn coordinates([a, b, c]: [Point; 3]) -> Affine {
     let (u, v) = (b - a, c - a);
     let middle = a + (u + v) / 3.0;
     Affine::new([u.x, u.y, v.x, v.y, middle.x, middle.y]).inverse()
 }
 
 /// Returns the polynomial with these Bernstein coefficients (by [`index`]) in powers of u₁ − ⅓ and u₂ − ⅓.
-pub(crate) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
+pub(super) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
     const THIRD: f64 = 1.0 / 3.0;
     let mut net: Vec<Plane> = coefficients.iter().map(|c| Plane::new(vec![vec![*c]])).collect();
     for level in (0..n).rev() {
@@ -255,8 +251,7 @@ pub(crate) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
 }
 
 /// Returns the values of all Bⁿᵢⱼₖ at `p`, by [`index`].
-#[must_use]
-pub(crate) fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
+pub(super) fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
     const THIRD: f64 = 1.0 / 3.0;
     let at = coordinates(corners) * p;
     let (u1, u2) = (at.x + THIRD, at.y + THIRD);
@@ -277,8 +272,7 @@ pub(crate) fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
 
 impl TriangleNet {
     /// Creates the net of the identity; `None` if the corners lie on one line.
-    #[must_use]
-    pub(crate) fn regular(corners: [Point; 3], degree: usize) -> Option<Self> {
+    fn regular(corners: [Point; 3], degree: usize) -> Option<Self> {
         let [a, b, c] = corners;
         let area = (b - a).cross(c - a);
         let size = (b - a).hypot2().max((c - a).hypot2());
@@ -291,36 +285,28 @@ impl TriangleNet {
         })
     }
 
-    /// Returns the degree.
-    #[must_use]
-    pub(crate) fn degree(&self) -> usize {
-        self.degree
-    }
-
     /// Returns control point (i, j, k).
-    #[must_use]
-    pub(crate) fn point(&self, ijk: [usize; 3]) -> Point {
+    fn point(&self, ijk: [usize; 3]) -> Point {
         regular_point(self.corners, ijk) + self.moves[index(ijk)]
     }
 
     /// Puts control point (i, j, k) at `p`.
-    pub(crate) fn place(&mut self, ijk: [usize; 3], p: Point) {
+    fn place(&mut self, ijk: [usize; 3], p: Point) {
         self.moves[index(ijk)] = p - regular_point(self.corners, ijk);
     }
 
     /// Moves control point (i, j, k) by `v`.
-    pub(crate) fn shift(&mut self, ijk: [usize; 3], v: Vec2) {
+    fn shift(&mut self, ijk: [usize; 3], v: Vec2) {
         self.moves[index(ijk)] += v;
     }
 
     /// Sets the weight of control point (i, j, k).
-    pub(crate) fn set_weight(&mut self, ijk: [usize; 3], w: f64) {
+    fn set_weight(&mut self, ijk: [usize; 3], w: f64) {
         self.weights[index(ijk)] = w;
     }
 
     /// Returns `true` if no control point of side 0 (AB), 1 (BC) or 2 (CA) moves.
-    #[must_use]
-    pub(crate) fn side_is_fixed(&self, side: usize) -> bool {
+    fn side_is_fixed(&self, side: usize) -> bool {
         let size = self.corners.iter().fold(0.0, |m, p| f64::max(m, p.x.abs() + p.y.abs()));
         let on: Vec<usize> =
             indices(self.degree).into_iter().filter(|ijk| ijk[(side + 2) % 3] == 0).map(index).collect();
@@ -328,8 +314,7 @@ impl TriangleNet {
     }
 
     /// Returns the map. Outside the triangle it is the identity or, if `extended`, the continued polynomials.
-    #[must_use]
-    pub(crate) fn map(&self, extended: bool) -> Arc<dyn Map> {
+    fn map(&self, extended: bool) -> Arc<dyn Map> {
         let pre = coordinates(self.corners);
         let [a, b, c] = self.corners;
         let bounds = Rect::from_points(a, b).union_pt(c);

@@ -2,9 +2,7 @@
 
 use super::*;
 use crate::check;
-use crate::deform::Deformation;
-use crate::deform::triangle::{basis, regular_point};
-use crate::map::{Class, Map, RationalBezier};
+use crate::map::RationalBezier;
 use crate::outline::Seg;
 use crate::param::Args;
 

@@ -9,8 +9,7 @@
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Deformation, Example, Gallery, Info, Law, Role};
-use super::envelope;
-use super::envelope::{Keep, Ring};
+use super::envelope::{self, Keep, Ring};
 use super::shaper::rows_path;
 use crate::error::{Error, GeometryError, within};
 use crate::formula::{Calculator, FormulaError};
@@ -134,7 +133,7 @@ impl Warp {
                 format!("it can with {}", names.join(", "))
             };
             let Error::Usage { problem, .. } = e else { return e };
-            // The envelope's advice is for drawn curves.
+            // The envelope's advice is for drawn curves and does not apply here.
             Error::usage("keep", self.keep.name(), format!("is impossible with this style ({problem}); {others}"))
         })
     }
@@ -261,7 +260,7 @@ struct Rule {
 
 impl Rule {
     /// Returns `false` if the formulas are certain to have one value everywhere.
-    fn asks_for_the_place(&self) -> bool {
+    fn depends_on_place(&self) -> bool {
         self.x.iter().chain(&self.y).any(|f| f.contains(['u', 'v']))
     }
 }
@@ -436,7 +435,7 @@ impl Style {
                     let of = |f: &Option<String>| f.as_ref().map(|f| names.value(f)).transpose();
                     let value = || Ok::<_, FormulaError>((of(&rule.x)?, of(&rule.y)?));
                     let (x, y) = known.map_or_else(value, Ok)?;
-                    known = (!rule.asks_for_the_place()).then_some((x, y));
+                    known = (!rule.depends_on_place()).then_some((x, y));
                     let p = &mut net[j][c];
                     *p = if absolute {
                         Point::new(x.unwrap_or(p.x), y.unwrap_or(p.y))
@@ -475,7 +474,7 @@ impl Style {
     }
 }
 
-/// The built-in styles, read once: a batch of small drawings would spend a fifth of its time on them.
+/// The built-in styles, parsed once: a batch of small drawings would spend a fifth of its time on that.
 fn presets() -> &'static [Style] {
     static PRESETS: OnceLock<Vec<Style>> = OnceLock::new();
     // The text is part of this crate; a test reads every style.

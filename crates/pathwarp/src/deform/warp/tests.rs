@@ -1,13 +1,10 @@
 //! The nets against the measured table, written out here once more with plain numbers and circles.
 
 use super::*;
-use crate::check;
-use crate::deform::Deformation;
-use crate::deform::warp::NAMES;
 use crate::outline::Outline;
 use crate::param::{Args, Frame};
-use crate::refit;
-use kurbo::{CubicBez, ParamCurve, Point};
+use crate::{check, refit};
+use kurbo::ParamCurve;
 use std::f64::consts::PI;
 
 #[test]
@@ -397,7 +394,6 @@ fn files_of_ones_own_and_their_faults() {
 /// `keep verticals`: vertical within 0.1° where the style's sides allow it, for styles whose own map does not keep them.
 #[test]
 fn kept_verticals_are_upright() {
-    use crate::param::{Args, Frame};
     let build = |pairs: &[(&str, &str)]| {
         Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 200.0, 100.0)))
     };

@@ -44,7 +44,7 @@ pub struct WordArt {
     letters: Arc<[Letter]>,
 }
 
-/// A point on a guide's curve is drawn within this share of the box's width and height.
+/// Guides are drawn within this share of the box's width and height.
 const GUIDE_TOLERANCE: f64 = 1e-4;
 
 impl WordArt {
@@ -239,9 +239,9 @@ impl WordArt {
         if split.len() + 1 == bands && inside {
             return Ok(split.clone());
         }
-        let most = bands - 1;
+        let count = bands - 1;
         let text = split.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-        let problem = format!("must be {most} height(s) between {} and {}, rising, for this shape", rect.y0, rect.y1);
+        let problem = format!("must be {count} height(s) between {} and {}, rising, for this shape", rect.y0, rect.y1);
         Err(Error::usage("split", text, problem))
     }
 }

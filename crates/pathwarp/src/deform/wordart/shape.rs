@@ -13,6 +13,7 @@ use crate::param::Letter;
 use kurbo::{CubicBez, Line, Point, QuadBez, Rect, Size, Vec2};
 use serde::Deserialize;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// A text shape: guides over a box, with adjust values.
@@ -231,7 +232,7 @@ const WIDEST: f64 = 1.0;
 /// Letters inside a guide become at most 1 − this times as wide at the top as at the foot.
 const NARROWEST: f64 = 0.5;
 
-/// The box is larger by this, so that rounding makes no artwork longer than its guide.
+/// Factor by which the box is enlarged, so that rounding makes no artwork longer than its guide.
 const SLACK: f64 = 1.0 + 1e-6;
 
 /// Returns `true` if a guide ends where it starts.
@@ -244,8 +245,8 @@ pub(super) fn is_closed(guide: &[Seg]) -> bool {
 /// square.
 pub(super) fn side(guide: &[Seg], width: f64, height: f64) -> f64 {
     let turn = turn(guide);
-    let least = if turn > 0.0 { turn * height / WIDEST } else { -turn * height / NARROWEST };
-    (width - 0.5 * turn * height).max(least) * SLACK / length(guide)
+    let min = if turn > 0.0 { turn * height / WIDEST } else { -turn * height / NARROWEST };
+    (width - 0.5 * turn * height).max(min) * SLACK / length(guide)
 }
 
 /// Returns the distance along a guide of its highest point on the screen, as a share of its length.
@@ -296,11 +297,11 @@ fn turn(guide: &[Seg]) -> f64 {
 /// for a box; `None` if a guide has no length there.
 pub(super) fn least_distorting<E>(
     rect: Rect,
-    map: impl Fn(Rect) -> Result<Option<std::sync::Arc<dyn Map>>, E>,
+    map: impl Fn(Rect) -> Result<Option<Arc<dyn Map>>, E>,
 ) -> Result<Rect, E> {
     /// Logarithms of the proportions tried: between 1:20 and 20:1.
     const RANGE: f64 = 3.0;
-    /// Steps of golden section: the proportion is found to a millionth, since where rounding ends a search it must not show.
+    /// Steps of golden section, which find the proportion to a millionth, so that differences in rounding do not show.
     const STEPS: usize = 32;
     let of = |log: f64| {
         let area = (rect.width() * rect.height()).sqrt();

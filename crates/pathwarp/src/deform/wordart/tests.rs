@@ -2,8 +2,6 @@
 
 use super::*;
 use crate::check;
-use crate::deform::Deformation;
-use crate::deform::wordart::NAMES;
 use crate::param::{Args, Frame};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveArclen, PathSeg, Point, QuadBez};
 

@@ -1,8 +1,9 @@
 //! Proven signs against a dense, independent check of det J.
 
 use super::*;
-use crate::map::{BicubicNet, Chain, Formula, Homography, Lattice, LatticeMap, Net, Real, complete_net};
-use crate::map::{Plane, Quotient};
+use crate::map::{
+    BicubicNet, Chain, Formula, Homography, Lattice, LatticeMap, Net, Plane, Quotient, Real, complete_net,
+};
 use kurbo::{Affine, Vec2};
 
 /// Enough samples for any proof here.
