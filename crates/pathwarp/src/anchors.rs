@@ -40,14 +40,9 @@ impl Anchors {
 
 /// Returns the only connected run of a path, without a stray closing line.
 pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<Subpath, Error> {
-    let count = |anchors: Vec<Point>| GeometryError::AnchorCount {
-        path: path.name.clone(),
-        found: anchors.len(),
-        anchors: anchors.into_iter().take(8).collect(),
-        expected,
-    };
     let [sub] = path.outline.subpaths.as_slice() else {
-        return Err(count(path.outline.subpaths.iter().flat_map(Subpath::anchors).collect()).into());
+        let anchors: Vec<Point> = path.outline.subpaths.iter().flat_map(Subpath::anchors).collect();
+        return Err(GeometryError::anchor_count(&path.name, &anchors, expected).into());
     };
     let mut sub = sub.clone();
     let size = path.outline.bounding_box().map_or(0.0, |b| b.width().hypot(b.height()));
@@ -117,13 +112,7 @@ pub(crate) fn two_or_four(path: &NamedPath) -> Result<Anchors, Error> {
             general(&path.name, &a)?;
             Ok(Anchors::Four([p, q, r, s]))
         }
-        _ => Err(GeometryError::AnchorCount {
-            path: path.name.clone(),
-            found: a.len(),
-            anchors: a.into_iter().take(8).collect(),
-            expected: "two or four",
-        }
-        .into()),
+        _ => Err(GeometryError::anchor_count(&path.name, &a, "two or four").into()),
     }
 }
 
@@ -271,13 +260,7 @@ pub(crate) fn four_to_four(s: &Settings<'_>) -> Result<FourToFour, Error> {
 fn four(name: &str, a: &Anchors) -> Result<[Point; 4], Error> {
     match a {
         Anchors::Four(q) => Ok(*q),
-        Anchors::Two(p) => Err(GeometryError::AnchorCount {
-            path: name.into(),
-            found: 2,
-            anchors: p.to_vec(),
-            expected: "four (for two, use similitude)",
-        }
-        .into()),
+        Anchors::Two(p) => Err(GeometryError::anchor_count(name, p, "four (for two, use similitude)").into()),
     }
 }
 
@@ -300,7 +283,7 @@ pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error
     }
 }
 
-/// The map in its simplest form: an affine one by its matrix, which is the identity if rounding alone moves the corners of `frame`.
+/// Reduces an affine map to its matrix, or to the identity if only rounding moves the corners of `frame`; leaves other maps alone.
 pub(crate) fn settled(map: Arc<dyn Map>, frame: Rect) -> Arc<dyn Map> {
     /// A few dozen operations on numbers of the corners' size.
     const ROUNDING: f64 = 1e-14;

@@ -19,7 +19,7 @@ pub enum Limit {
     Elements,
     /// Pixels of pictures that are read or made.
     Pixels,
-    /// Work of all kinds, in evaluations of a bicubic net with what is done about each: about 50 nanoseconds.
+    /// Work of all kinds, in evaluations of a bicubic net with the work around them: about 50 nanoseconds each.
     Work,
     /// Seconds of processor time. Counted by the program around this library.
     Seconds,
@@ -27,7 +27,7 @@ pub enum Limit {
     Memory,
 }
 
-/// The work that things take.
+/// The work that common operations take.
 pub mod cost {
     /// A comparison of names, of places or of a selector with an element.
     pub const COMPARISON: f64 = 2.0;
@@ -67,7 +67,7 @@ impl Limit {
         Self::ALL.into_iter().find(|l| l.name() == name)
     }
 
-    /// The counted things, in the plural.
+    /// The unit in messages, in the plural.
     fn things(self) -> &'static str {
         match self {
             Self::Bytes => "bytes",
@@ -91,8 +91,8 @@ impl Limit {
         }
     }
 
-    /// What a pixel of a picture adds. Half of them are the source's, half the result's: ten million of each are allowed a second, and 60 MB
-    /// beside the decoded picture.
+    /// What a pixel of a picture adds. Half of the pixels are the source's, half the result's: ten million of each are allowed a second, and
+    /// 60 MB beyond the decoded picture.
     fn per_pixel(self) -> f64 {
         match self {
             Self::Work => 4.0,
@@ -248,8 +248,8 @@ fn rounded(v: f64) -> String {
     if v < 1e6 { format!("{}", (v * 100.0).round() / 100.0) } else { format!("{v:.2e}") }
 }
 
-/// The most that is added at once, so that sums stay in range.
-const MOST: f64 = (1_u64 << 52) as f64;
+/// The largest amount added at once, so that sums stay in range.
+const MAX_AMOUNT: f64 = (1_u64 << 52) as f64;
 
 /// The limits of one input with what is used of them. Threads share it.
 #[derive(Debug, Default)]
@@ -279,9 +279,9 @@ impl Budget {
     /// # Errors
     /// The sum exceeds the limit.
     pub fn spend(&self, work: f64) -> Result<(), Exceeded> {
-        let sixteenths = (16.0 * work).ceil().min(MOST);
+        let sixteenths = (16.0 * work).ceil().min(MAX_AMOUNT);
         let before = self.work.fetch_add(sixteenths as u64, Ordering::Relaxed) as f64;
-        // How far beyond the limit threads went is not told.
+        // How far beyond the limit the sum is depends on the threads, so the error does not say it.
         self.limits().check(Limit::Work, (before + sixteenths) / 16.0).map_err(|e| Exceeded {
             needed: e.most,
             cut: true,
@@ -304,12 +304,12 @@ impl Budget {
         self.spend(0.0).err()
     }
 
-    /// Adds to a size: bytes, elements, or pixels.
+    /// Adds to a size: bytes, elements or pixels.
     ///
     /// # Errors
     /// The sum exceeds the limit.
     pub fn take(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
-        let amount = amount.min(MOST);
+        let amount = amount.min(MAX_AMOUNT);
         let before = self.sizes.get(limit as usize).map_or(0, |n| n.fetch_add(amount as u64, Ordering::Relaxed));
         self.limits.check(limit, before as f64 + amount)
     }
@@ -346,15 +346,15 @@ impl PartialEq for Budget {
 const JET: f64 = 0.4;
 /// Work of looking at a starting point.
 const START: f64 = 0.01;
-/// Jets that find a source where there is one, which the work of an inverse stands for.
-const FORESEEN: usize = 12;
+/// Jets that usually find a preimage; the work of an inverse includes them.
+const USUAL_JETS: usize = 12;
 
-/// What a search has taken so far.
+/// The work of a search so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Search {
-    /// Jets of the map that is inverted.
+    /// Jets of the inverted map.
     pub jets: usize,
-    /// Starting points that were looked at once.
+    /// Looks at starting points.
     pub starts: usize,
 }
 
@@ -365,11 +365,11 @@ impl Search {
         self.starts += other.starts;
     }
 
-    /// Spends what exceeds the work of `points` points with a source, which callers count. `work` is that of a jet.
+    /// Charges what exceeds the usual work of `points` points, which callers charge themselves. `work` is that of a jet.
     pub fn spend(self, budget: Option<&Arc<Budget>>, points: usize, work: f64) {
-        let beyond = JET * work * self.jets.saturating_sub(FORESEEN * points) as f64 + START * self.starts as f64;
+        let beyond = JET * work * self.jets.saturating_sub(USUAL_JETS * points) as f64 + START * self.starts as f64;
         if let Some(budget) = budget.filter(|_| beyond >= 1.0) {
-            // The next search finds nothing left.
+            // The next search will find nothing left.
             let _ = budget.spend(beyond);
         }
     }

@@ -19,18 +19,18 @@ use kurbo::{Point, Rect, Vec2};
 const PER_SEGMENT: usize = 64;
 /// Starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
-/// Where the curve turns by more than 45° within a stretch, the stretch is halved for further starting points,
+/// Cosine of 45°. Stretches in which the curve turns by more are halved for further starting points.
 const COS_TURN: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// so many times at most.
-const HALVINGS: u32 = 12;
-/// Most steps of a search.
-const STEPS: usize = 24;
-/// A search ends with a step that brings less than this part of the distance,
+/// Limit on these halvings, one within the other.
+const MAX_HALVINGS: u32 = 12;
+/// Limit on the steps of a search.
+const MAX_STEPS: usize = 24;
+/// A search ends with a step that gains no more than this share of the distance.
 const SETTLED: f64 = 1e-9;
-/// or where a step of this part of Gauss and Newton's brings nothing.
-const SHORTEST: f64 = 1e-3;
+/// A search ends if a step of this share of the Gauss–Newton step gains nothing.
+const MIN_SHARE: f64 = 1e-3;
 
-/// Work of looking at a box, at a line, and at a place of a Bézier curve and of an arc, in comparisons of the budget.
+/// Work of looking at a box, at a line, and at a place on a Bézier curve or on an arc, in comparisons of the budget.
 const BOX: f64 = 0.08;
 const LINE: f64 = 0.3;
 const CURVE: f64 = 0.2;
@@ -48,18 +48,18 @@ pub fn symmetric(a: &Outline, b: &Outline) -> Option<f64> {
     symmetric_within(a, b, &Budget::new(Limits::none())).ok().flatten()
 }
 
-/// The same as [`symmetric`], counted as comparisons: paths of very many segments that are everywhere about equally far apart take
-/// time in proportion to the product of their numbers.
+/// As [`symmetric`], with its comparisons charged to `budget`: paths of very many segments that are everywhere about equally far apart
+/// take time in proportion to the product of their numbers.
 ///
 /// # Errors
-/// It takes more comparisons than `budget` has.
+/// `budget` does not allow so many comparisons.
 pub fn symmetric_within(a: &Outline, b: &Outline, budget: &Budget) -> Result<Option<f64>, Exceeded> {
     let Some(there) = one_way(a, b, 0.0, budget)? else { return Ok(None) };
     one_way(b, a, there, budget)
 }
 
-/// The largest distance from a point of `from` to `to`, or `least` if that is larger.
-fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<Option<f64>, Exceeded> {
+/// The largest distance from a point of `from` to `to`, or `min` if that is larger.
+fn one_way(from: &Outline, to: &Outline, min: f64, budget: &Budget) -> Result<Option<f64>, Exceeded> {
     let segs = to.segs().map(Target::of);
     let dots = to.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
     let mut targets = Targets::new(segs.chain(dots).collect());
@@ -68,17 +68,17 @@ fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<
     }
     let samples = from.segs().map(|s| Target::Seg(s, Vec::new()));
     let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
-    let mut most = None;
+    let mut largest = None;
     for sampled in samples.chain(alone) {
         let mut work = 0.0;
         for i in 0..=sampled.intervals() {
             let p = sampled.eval(i as f64 / PER_SEGMENT as f64);
-            let d = targets.distance(p, most.unwrap_or(least), &mut work);
-            most = Some(d.max(most.unwrap_or(least)));
+            let known = largest.unwrap_or(min);
+            largest = Some(targets.distance(p, known, &mut work).max(known));
         }
         budget.spend(cost::COMPARISON * work)?;
     }
-    Ok(most)
+    Ok(largest)
 }
 
 /// A part of a path: a segment with the further starting points of a search, or a subpath that is a point.
@@ -94,7 +94,7 @@ impl<'a> Target<'a> {
             let ends: [_; STRETCHES + 1] =
                 std::array::from_fn(|i| i as f64 / STRETCHES as f64).map(|t| (t, seg.deriv(t)));
             for w in ends.windows(2) {
-                turns(seg, w[0], w[1], HALVINGS, &mut starts);
+                turns(seg, w[0], w[1], MAX_HALVINGS, &mut starts);
             }
         }
         Self::Seg(seg, starts)
@@ -157,7 +157,7 @@ impl<'a> Targets<'a> {
         Self { all, boxes, last: 0, pending: Vec::new() }
     }
 
-    /// The distance from `p`. The search ends where it is known to be at most `enough`. Adds to `work`.
+    /// The distance from `p`. The search ends once the distance is known to be at most `enough`. Adds to `work`.
     fn distance(&mut self, p: Point, enough: f64, work: &mut f64) -> f64 {
         let leaves = self.boxes.len() / 2;
         let mut best = self.all[self.last].distance(p, f64::INFINITY, work);
@@ -167,7 +167,7 @@ impl<'a> Targets<'a> {
             && best > enough
         {
             *work += BOX;
-            // A box with coordinates that are not finite is looked into.
+            // False for NaN, so that boxes that are not finite are searched.
             if box_distance(&self.boxes[node], p) >= best {
                 continue;
             }
@@ -203,7 +203,7 @@ fn turns(seg: &Seg, a: (f64, Vec2), b: (f64, Vec2), halvings: u32, starts: &mut 
     let control = 2.0 * mid.1 - 0.5 * (a.1 + b.1);
     let is_sharp = |u: Vec2, v: Vec2| u.dot(v) < COS_TURN * u.hypot() * v.hypot();
     let halves = halvings > 0 && (is_sharp(a.1, control) || is_sharp(control, b.1) || is_sharp(a.1, b.1));
-    // No search gets away from where the derivative is zero.
+    // A search cannot leave a place where the derivative is zero.
     if halves || (a.1 == Vec2::ZERO) != (b.1 == Vec2::ZERO) {
         starts.push(t);
     }
@@ -228,7 +228,7 @@ fn to_segment(seg: &Seg, starts: &[f64], p: Point, known: f64, work: &mut f64) -
     let at: [f64; STRETCHES + 1] = std::array::from_fn(|i| seg.eval(i as f64 / STRETCHES as f64).distance(p));
     let mut best = at.iter().copied().fold(known, f64::min);
     // No point is farther than this from the nearest of those.
-    let reach = most_speed(seg) * 0.5 / STRETCHES as f64;
+    let reach = max_speed(seg) * 0.5 / STRETCHES as f64;
     *work += each * starts.len() as f64;
     let regular = at.into_iter().enumerate().map(|(i, d)| (i as f64 / STRETCHES as f64, d));
     for (mut t, mut d) in regular.chain(starts.iter().map(|&t| (t, seg.eval(t).distance(p)))) {
@@ -237,7 +237,7 @@ fn to_segment(seg: &Seg, starts: &[f64], p: Point, known: f64, work: &mut f64) -
         }
         // Gauss–Newton for the foot point, with shorter steps where the curve turns too sharply for it.
         let mut share = 1.0;
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             *work += STEP * each;
             let v = seg.deriv(t);
             let n = v.hypot2();
@@ -252,7 +252,7 @@ fn to_segment(seg: &Seg, starts: &[f64], p: Point, known: f64, work: &mut f64) -
                 if settled {
                     break;
                 }
-            } else if share > SHORTEST {
+            } else if share > MIN_SHARE {
                 share *= 0.25;
             } else {
                 break;
@@ -264,7 +264,7 @@ fn to_segment(seg: &Seg, starts: &[f64], p: Point, known: f64, work: &mut f64) -
 }
 
 /// A bound for the length of the derivative.
-fn most_speed(seg: &Seg) -> f64 {
+fn max_speed(seg: &Seg) -> f64 {
     match seg {
         Seg::Line(l) => l.p0.distance(l.p1),
         Seg::Quad(q) => 2.0 * q.p0.distance(q.p1).max(q.p1.distance(q.p2)),

@@ -1,4 +1,4 @@
-//! Curves from outlines in ways that are no maps.
+//! Edits of outlines that are not maps: curves through vertices, offsets and unions.
 
 use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
@@ -6,15 +6,15 @@ use crate::refit::{Options, PathReport, RefittedPath};
 use bezierfit::{Fitted, fit_points, union_even_odd};
 use kurbo::{BezPath, Join, Point, Shape};
 
-/// Share of the tolerance for cubics in place of arcs.
+/// Share of the tolerance spent on turning arcs into cubics.
 const ARCS: f64 = 0.05;
 
-/// Edges of a contour that is a polygon on purpose rather than a curve in small steps.
-const FEW_EDGES: usize = 4;
+/// A contour with so few edges is meant as a polygon, not as a curve in small steps.
+const MAX_POLYGON_EDGES: usize = 4;
 
-/// Smooth curves through the vertices of contours of straight lines, within a contour's tolerance of each vertex: that of `contours`, or
-/// `options.tolerance` for those beyond its end. Corners are vertices at which a contour turns by more than [`corner`](Options::corner).
-/// `None` if a contour has something else than lines, has no more than four, or shares an edge with another, which would come apart.
+/// Fits smooth curves to contours of straight lines, within a tolerance of each vertex. `contours` holds the tolerances; contours beyond
+/// its end have `options.tolerance`. Corners are vertices at which a contour turns by more than [`corner`](Options::corner). Returns `None`
+/// if a contour has other segments than lines, has at most four, or shares an edge with another, which would come apart.
 ///
 /// # Errors
 /// A vertex is not finite.
@@ -34,8 +34,9 @@ pub fn through_vertices(
     contours: &[f64],
 ) -> Result<Option<RefittedPath>, GeometryError> {
     let is_line = |s: &Seg| matches!(s, Seg::Line(_));
-    let stays =
-        |s: &Subpath| s.segs.len() <= FEW_EDGES || !s.segs.iter().all(is_line) || options.shared.holds_any(&s.segs);
+    let stays = |s: &Subpath| {
+        s.segs.len() <= MAX_POLYGON_EDGES || !s.segs.iter().all(is_line) || options.shared.holds_any(&s.segs)
+    };
     if outline.subpaths.iter().any(stays) {
         return Ok(None);
     }
@@ -56,20 +57,20 @@ pub fn through_vertices(
 /// The side to which [`moved`] moves outlines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
-    /// Areas grow; open paths run to their right, as one walks along them.
+    /// Areas grow; open paths move to their right, seen along them.
     Outside,
-    /// Areas shrink; open paths run to their left.
+    /// Areas shrink; open paths move to their left.
     Inside,
     /// Both at once.
     Both,
 }
 
-/// How far [`moved`] moves outlines, and where to.
+/// How far [`moved`] moves outlines, and in which direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offset {
     /// Distance in user units, above zero.
     pub by: f64,
-    /// What becomes of corners that open; miters reach up to four times the distance.
+    /// The join at corners that open; miters reach up to four times the distance.
     pub join: Join,
     /// The side.
     pub side: Side,
@@ -77,7 +78,7 @@ pub struct Offset {
     pub even_odd: bool,
 }
 
-/// The outlines at a distance from an outline: each point has that distance from it, within `options.tolerance`. Closed subpaths are an area,
+/// Offsets an outline: each point of the result has the given distance from it, within `options.tolerance`. Closed subpaths enclose an area,
 /// which grows or shrinks, and vanishes where it is too narrow; loops are removed.
 ///
 /// # Errors
@@ -118,7 +119,7 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options) -> Result<Re
     Ok(RefittedPath { path, spans: Vec::new(), report })
 }
 
-/// The area of a fill as outlines that meet neither themselves nor each other, within `tolerance`. `None` if they do not as it is.
+/// Returns the area of a fill as outlines that meet neither themselves nor each other, within `tolerance`; `None` if that holds already.
 ///
 /// # Errors
 /// A coordinate is not finite.

@@ -45,7 +45,7 @@ pub enum Error {
     /// The geometry forbids the deformation.
     #[error(transparent)]
     Geometry(GeometryError),
-    /// A tolerance that no curve can keep, or every curve does.
+    /// A tolerance that is not positive or not finite.
     #[error("{}", GeometryError::Tolerance(*.0))]
     Tolerance(f64),
 }
@@ -176,10 +176,10 @@ pub enum GeometryError {
     /// Warping takes more work than a limit allows.
     #[error("warping takes {0}")]
     Limit(Exceeded),
-    /// A tolerance that no curve can keep, or every curve does: [`Error::Tolerance`].
+    /// A tolerance that is not positive or not finite; becomes [`Error::Tolerance`].
     #[error("the tolerance {0} is not a positive, finite number; give the largest distance that is allowed")]
     Tolerance(f64),
-    /// How the edges of an area cross was not found.
+    /// The crossings of an area's edges could not be determined.
     #[error("how the edges of {shape} cross was not found; another tolerance may help, or leave this shape out")]
     Crossings {
         /// The shape's id.
@@ -207,6 +207,12 @@ impl From<bezierfit::Error> for GeometryError {
 }
 
 impl GeometryError {
+    /// Creates a [`GeometryError::AnchorCount`].
+    pub(crate) fn anchor_count(path: &str, anchors: &[Point], expected: &'static str) -> Self {
+        let (found, shown) = (anchors.len(), anchors.iter().take(8).copied().collect());
+        Self::AnchorCount { path: path.to_owned(), found, anchors: shown, expected }
+    }
+
     /// The point that the error is about, if it is about one.
     #[must_use]
     pub fn place(&self) -> Option<Point> {
@@ -271,11 +277,11 @@ pub(crate) fn no_json(place: &str) -> Error {
 }
 
 /// Returns `value` if it is within the range, ends included.
-pub(crate) fn within(param: &str, value: f64, least: f64, most: f64) -> Result<f64, Error> {
-    if (least..=most).contains(&value) {
+pub(crate) fn within(param: &str, value: f64, min: f64, max: f64) -> Result<f64, Error> {
+    if (min..=max).contains(&value) {
         return Ok(value);
     }
-    Err(Error::usage(param, value.to_string(), format!("is out of range: {least} to {most}")))
+    Err(Error::usage(param, value.to_string(), format!("is out of range: {min} to {max}")))
 }
 
 /// The value of an [`Error::Usage`] in backticks, after the parameter.

@@ -121,8 +121,8 @@ impl Parser<'_> {
         there
     }
 
-    /// An expression whose operators bind at least as tightly as `least`.
-    fn expression(&mut self, least: u8) -> Result<u32, SyntaxError> {
+    /// An expression whose operators bind at least as tightly as `min`.
+    fn expression(&mut self, min: u8) -> Result<u32, SyntaxError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
             return Err(SyntaxError::new(self.at, Problem::TooDeep(MAX_DEPTH)));
@@ -138,7 +138,7 @@ impl Parser<'_> {
                 '/' => (PRODUCT, PRODUCT + 1, Binary::Div),
                 _ => break,
             };
-            if binds < least {
+            if binds < min {
                 break;
             }
             let at = self.at;
@@ -151,11 +151,8 @@ impl Parser<'_> {
     }
 
     fn operand(&mut self) -> Result<u32, SyntaxError> {
-        let at = match self.peek() {
-            None => return Err(SyntaxError::new(self.at, Problem::EndsEarly)),
-            Some(_) => self.at,
-        };
-        let c = self.peek().unwrap_or(' ');
+        let Some(c) = self.peek() else { return Err(SyntaxError::new(self.at, Problem::EndsEarly)) };
+        let at = self.at;
         match c {
             '+' => {
                 self.at += 1;
@@ -220,13 +217,11 @@ impl Parser<'_> {
     fn word(&mut self) -> Result<u32, SyntaxError> {
         let at = self.at;
         let len = self.rest().chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').count();
-        let word = &self.rest()[..len];
-        if let Some(v) = self.names.get(word) {
-            self.at += len;
+        let word = self.rest()[..len].to_owned();
+        self.at += len;
+        if let Some(v) = self.names.get(&word) {
             return Ok(v);
         }
-        let word = word.to_owned();
-        self.at += len;
         let Some(f) = function(&word) else {
             let known: Vec<&str> = self.names.0.iter().map(|(n, _)| *n).collect();
             let problem = Problem::Unknown { word, names: known.join(" "), functions: FUNCTIONS };
@@ -429,22 +424,17 @@ impl Program {
         }
         // Operands precede their users, so one pass from the end reaches everything.
         for i in (0..self.ops.len()).rev() {
-            if needed[i] {
-                self.mark(i, &mut needed);
+            match self.ops[i] {
+                _ if !needed[i] => {}
+                Op::One(_, a) | Op::Powi(a, _) | Op::Powf(a, _) | Op::Same(a) => needed[a as usize] = true,
+                Op::Two(_, a, b) => {
+                    needed[a as usize] = true;
+                    needed[b as usize] = true;
+                }
+                Op::Const(_) | Op::X | Op::Y => {}
             }
         }
         needed
-    }
-
-    fn mark(&self, i: usize, needed: &mut [bool]) {
-        match self.ops[i] {
-            Op::One(_, a) | Op::Powi(a, _) | Op::Powf(a, _) | Op::Same(a) => needed[a as usize] = true,
-            Op::Two(_, a, b) => {
-                needed[a as usize] = true;
-                needed[b as usize] = true;
-            }
-            Op::Const(_) | Op::X | Op::Y => {}
-        }
     }
 
     /// Replaces every |a|, min and max by the side it takes at (x, y).

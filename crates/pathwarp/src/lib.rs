@@ -32,7 +32,7 @@
 // Without the presets, the parts that only they use have no caller.
 #![cfg_attr(not(feature = "serde"), allow(dead_code, unused_imports))]
 
-pub(crate) mod anchors;
+mod anchors;
 pub mod budget;
 pub mod check;
 pub mod decimal;
@@ -41,7 +41,7 @@ pub mod distance;
 pub mod edit;
 mod error;
 pub mod fold;
-pub(crate) mod formula;
+mod formula;
 pub mod map;
 pub mod outline;
 pub mod param;

@@ -93,7 +93,7 @@ pub struct BuiltRecipe {
     pub frames: Vec<Frame>,
     /// For every step, its index in the recipe.
     pub indices: Vec<usize>,
-    /// What searches of inverses spend.
+    /// Charged for the searches of inverses.
     budget: Arc<Budget>,
 }
 
@@ -116,13 +116,13 @@ pub struct BuiltParts {
 }
 
 impl Recipe {
-    /// Builds every step within a budget, which counts the segments of the paths that control the steps, and the
-    /// evaluations that find out where the artwork is after each step. Inverses that search spend from it what each search takes beyond
+    /// Builds every step within a budget, which is charged for the segments of the paths that control the steps, and for the evaluations
+    /// that locate the artwork after each step. Inverses that search charge to it what each search takes beyond
     /// [`Cost::work`](crate::map::Cost::work), for as long as they are used: once nothing is left they are undefined everywhere, and
     /// [`BuiltRecipe::failure`] says so. See [`Recipe::build`].
     ///
     /// # Errors
-    /// As for [`Recipe::build`], and [`GeometryError::Limit`] if the budget does not allow so many.
+    /// As for [`Recipe::build`], and [`GeometryError::Limit`] if the budget is exceeded.
     pub fn build_within<'a>(
         &self,
         registry: &Registry,
@@ -147,11 +147,11 @@ impl Recipe {
         budget: &Arc<Budget>,
     ) -> Result<BuiltParts, Error> {
         let paths: usize = self.steps.iter().map(|s| s.args.path_segments()).sum();
-        budget.spend(MEASURED * paths as f64).map_err(GeometryError::Limit)?;
+        budget.spend(PATH_SEGMENT_WORK * paths as f64).map_err(GeometryError::Limit)?;
         let count = |out: &BuiltRecipe, portion: &Portion<'_>| {
             let samples = portion.outlines.iter().flat_map(|o| o.segs()).count() * (PER_SEGMENT + 1);
             let places = out.placement.copies.len().max(1) as f64;
-            let work = SAMPLE * places * samples as f64 * out.map.cost().work;
+            let work = SAMPLE_WORK * places * samples as f64 * out.map.cost().work;
             budget.spend(work).map_err(GeometryError::Limit)
         };
         self.counted(registry, start, portions, (&count, budget))
@@ -252,7 +252,7 @@ impl Recipe {
         let mut frames: Vec<Frame> = there.frames.into_iter().rev().collect();
         let (count, budget) = counting;
         let mut off = f64::INFINITY;
-        for _ in 0..TURNS {
+        for _ in 0..MAX_TURNS {
             let mut back: Vec<BuiltRecipe> = portions.iter().map(|_| BuiltRecipe::new(frames.len(), budget)).collect();
             off = 0.0;
             for (i, step) in self.steps.iter().enumerate() {
@@ -394,14 +394,14 @@ impl BuiltRecipe {
     }
 
     /// Returns the failure of a step's map, if one has failed, or the limit that searches for an inverse have exceeded. Results computed
-    /// with it are not to be used.
+    /// so far must not be used then.
     #[must_use]
     pub fn failure(&self) -> Option<Error> {
         let failed = self.steps.iter().find_map(|s| s.failure.as_ref().and_then(|failed| failed()));
         failed.or_else(|| self.budget.exceeded().map(|e| GeometryError::Limit(e).into()))
     }
 
-    /// Returns the map without a limit on what inverses search: for maps that are used on and on.
+    /// Returns the map without a limit on the searches of inverses, for long-lived maps.
     #[must_use]
     pub fn unlimited(&self) -> Chain {
         self.map.spending(&Arc::new(Budget::new(Limits::none())))
@@ -443,7 +443,7 @@ impl BuiltRecipe {
     }
 }
 
-/// What is called before the artwork's image under the steps so far is sampled, and what inverses spend.
+/// A function called before the artwork's image under the steps so far is sampled, and the budget of inverses.
 type Counting<'a> = (&'a dyn Fn(&BuiltRecipe, &Portion<'_>) -> Result<(), GeometryError>, &'a Arc<Budget>);
 
 /// The inverse of a map: its closed form, or Newton's method over the frame.
@@ -455,7 +455,7 @@ fn inverse(built: &Built, frame: &Frame, budget: &Arc<Budget>) -> Arc<dyn Map> {
 /// Inverts a deformation, with a warning if it folds.
 fn inverted(mut built: Built, frame: &Frame, deformation: &str, budget: &Arc<Budget>) -> Result<Built, GeometryError> {
     let map = inverse(&built, frame, budget);
-    let work = INVERTED * built.map.work() + SAMPLES as f64 * map.work();
+    let work = INVERTING_WORK * built.map.work() + SAMPLES as f64 * map.work();
     budget.spend(work).map_err(GeometryError::Limit)?;
     if let Some(a) = ambiguity(&*built.map, &*map, frame.rect) {
         built.warn(format!(
@@ -480,22 +480,22 @@ fn inverted(mut built: Built, frame: &Frame, deformation: &str, budget: &Arc<Bud
 /// Intervals between the samples of a segment.
 const PER_SEGMENT: usize = 16;
 
-/// Frames on the way back that move by less than this share of their size are found.
+/// Frames on the way back that move by no more than this share of their size have settled.
 const SETTLED: f64 = 1e-9;
 
-/// Turns in which they are looked for; what takes more is taken not to settle.
-const TURNS: usize = 64;
+/// Turns after which frames count as not settling.
+const MAX_TURNS: usize = 64;
 
 /// The work of building a map with a segment of a path that controls it, in evaluations of the budget: most maps measure its length.
-const MEASURED: f64 = 4000.0;
+const PATH_SEGMENT_WORK: f64 = 4000.0;
 
 /// The work of building an inverse, in evaluations of the map: its starting points.
-const INVERTED: f64 = 150.0;
+const INVERTING_WORK: f64 = 150.0;
 
 /// The work of a sample, which is taken in a batch, in evaluations of the budget.
-const SAMPLE: f64 = 0.25;
+const SAMPLE_WORK: f64 = 0.25;
 
-/// Every segment of the artwork with every place where it has a copy.
+/// Every segment of the artwork with the place of each of its copies.
 fn placed<'a>(
     artwork: impl Iterator<Item = &'a Outline>,
     copies: &[Affine],
@@ -512,9 +512,9 @@ fn image_of(seg: &Seg, place: Affine, map: &dyn Map) -> [Point; PER_SEGMENT + 1]
     image
 }
 
-/// Returns points of the artwork's image, evenly from the artwork.
+/// Returns points of the artwork's image, evenly spaced along the artwork.
 fn ink<'a>(artwork: impl Iterator<Item = &'a Outline> + Clone, map: &dyn Map) -> Vec<Point> {
-    /// Their number, about.
+    /// Their approximate number.
     const POINTS: f64 = 1000.0;
     let length = |s: &Seg| {
         let ps = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| s.eval(t));
@@ -537,31 +537,32 @@ fn ink<'a>(artwork: impl Iterator<Item = &'a Outline> + Clone, map: &dyn Map) ->
 /// Returns the bounding box of the artwork's image.
 fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], map: &dyn Map) -> Option<Rect> {
     /// Right, left, down, up.
-    const WAYS: [Vec2; 4] = [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)];
+    const DIRECTIONS: [Vec2; 4] =
+        [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)];
     if let Class::Affine(m) = map.class() {
         let images = placed(artwork, copies).map(|(seg, place)| seg.transformed(m * place).bounding_box());
         return images.filter(Rect::is_finite).reduce(|a, b| a.union(b));
     }
-    let mut most = [f64::NEG_INFINITY; 4];
+    let mut extremes = [f64::NEG_INFINITY; 4];
     for (seg, place) in placed(artwork, copies) {
         let samples = image_of(seg, place, map);
-        for (way, most) in WAYS.iter().zip(&mut most) {
-            let reach = samples.map(|p| if p.is_finite() { way.dot(p.to_vec2()) } else { f64::NEG_INFINITY });
-            *most = reach.iter().copied().fold(*most, f64::max);
+        for (direction, extreme) in DIRECTIONS.iter().zip(&mut extremes) {
+            let reach = samples.map(|p| if p.is_finite() { direction.dot(p.to_vec2()) } else { f64::NEG_INFINITY });
+            *extreme = reach.iter().copied().fold(*extreme, f64::max);
             for i in 0..=PER_SEGMENT {
                 let (before, after) = (i.saturating_sub(1), (i + 1).min(PER_SEGMENT));
                 // Twice what a parabola through three samples rises above them.
                 let k = i.clamp(1, PER_SEGMENT - 1);
                 let rise = 0.25 * (2.0 * reach[k] - reach[k - 1] - reach[k + 1]).abs();
-                if reach[i] >= reach[before] && reach[i] >= reach[after] && reach[i] + rise > *most {
-                    let f = |t: f64| way.dot(map.point(place * seg.eval(t)).to_vec2());
+                if reach[i] >= reach[before] && reach[i] >= reach[after] && reach[i] + rise > *extreme {
+                    let f = |t: f64| direction.dot(map.point(place * seg.eval(t)).to_vec2());
                     let top = highest(f, [before, after].map(|k| k as f64 / PER_SEGMENT as f64));
-                    *most = if top.is_finite() { most.max(top) } else { *most };
+                    *extreme = if top.is_finite() { extreme.max(top) } else { *extreme };
                 }
             }
         }
     }
-    let [x1, x0, y1, y0] = most;
+    let [x1, x0, y1, y0] = extremes;
     x1.is_finite().then(|| Rect::new(-x0, -y0, x1, y1))
 }
 
@@ -594,28 +595,28 @@ fn first_across<'a>(
     images.find_map(|ps| ps.windows(2).find_map(|w| cross(w[0], w[1])))
 }
 
-// Finds places where undoing a map cannot be right: two points of the source have the same image, so that its inverse can return
-// only one of them.
+// Finds places where undoing a map must go wrong: two points of the source have the same image, so that the inverse can return only one
+// of them.
 
 /// Samples in each direction over the box. Places smaller than the spacing can go unnoticed.
 const GRID: usize = 32;
 /// All samples.
-pub(crate) const SAMPLES: usize = GRID * GRID;
-/// Distance between a point and what the inverse makes of its image, as a share of the box's diagonal, beyond which they are two
-/// points: far above the error of an inverse by Newton's method.
+const SAMPLES: usize = GRID * GRID;
+/// A point and what the inverse makes of its image are two points if they are farther apart than this share of the box's diagonal, far
+/// above the error of Newton's method.
 const APART: f64 = 1e-6;
 
 /// A point of the source whose image comes back as another point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Ambiguity {
-    pub(crate) source: Point,
-    pub(crate) returned: Point,
-    pub(crate) image: Point,
+struct Ambiguity {
+    source: Point,
+    returned: Point,
+    image: Point,
 }
 
 /// Returns the first point inside `frame` that `inverse` does not bring back from its image under `map`. Points without an image
 /// or without a preimage are passed over: they are errors or warnings of their own.
-pub(crate) fn ambiguity(map: &dyn Map, inverse: &dyn Map, frame: Rect) -> Option<Ambiguity> {
+fn ambiguity(map: &dyn Map, inverse: &dyn Map, frame: Rect) -> Option<Ambiguity> {
     let mut creases = Creases::default();
     map.creases(&mut creases);
     // The middles of cells: the two ends of a seam along the box's edge share their image by design.
@@ -642,8 +643,6 @@ mod tests {
     use super::*;
     use crate::map::{AffineMap, Formula, NewtonInverse, Real};
     use crate::refit::{Options, warp_path};
-    use kurbo::Affine;
-    use std::sync::Arc;
 
     #[test]
     fn later_percentages_mean_the_box_at_that_step() {

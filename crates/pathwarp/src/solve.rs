@@ -19,10 +19,10 @@ pub fn smallest_change<const D: usize>(rows: &[Vec<f64>], want: &[[f64; D]]) -> 
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let gram: Vec<Vec<f64>> = rows.iter().map(|a| rows.iter().map(|b| dot(a, b)).collect()).collect();
     let (values, vectors) = eigen(gram);
-    let least = RANK * values.iter().fold(0.0, |a: f64, b| a.max(*b));
+    let min = RANK * values.iter().fold(0.0, |a: f64, b| a.max(*b));
     // (R·Rᵀ)⁺·Δ, then back through Rᵀ.
     let mut y = vec![[0.0; D]; n];
-    for (k, value) in values.iter().enumerate().filter(|(_, v)| **v > least) {
+    for (k, value) in values.iter().enumerate().filter(|(_, v)| **v > min) {
         let part: [f64; D] =
             std::array::from_fn(|d| want.iter().zip(&vectors).map(|(w, v)| w[d] * v[k]).sum::<f64>() / value);
         for (y, v) in y.iter_mut().zip(&vectors) {
@@ -58,11 +58,11 @@ fn add<const D: usize>(a: &mut [f64; D], b: &[f64; D], k: f64) {
 
 /// Eigenvalues and eigenvectors (in columns) of a symmetric matrix, by Jacobi's rotations.
 fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
-    /// Convergence is quadratic, so ten sweeps suffice.
-    const SWEEPS: usize = 30;
+    /// Limit on sweeps. Convergence is quadratic, so ten usually suffice.
+    const MAX_SWEEPS: usize = 30;
     let n = a.len();
     let mut v: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
-    for _ in 0..SWEEPS {
+    for _ in 0..MAX_SWEEPS {
         let mut done = true;
         for p in 0..n {
             for q in p + 1..n {

@@ -1,4 +1,4 @@
-//! A number that counts the operations on it: what a formula costs.
+//! Counts the operations of a formula.
 
 use crate::map::Real;
 use std::cell::Cell;
@@ -8,14 +8,14 @@ thread_local! {
     static COUNT: Cell<[usize; 3]> = const { Cell::new([0; 3]) };
 }
 
-/// Products (with quotients), sums and differences of `work`.
+/// Counts the products (with quotients), sums and differences of `work`.
 pub fn operations(work: impl FnOnce()) -> [usize; 3] {
     COUNT.with(|c| c.set([0; 3]));
     work();
     COUNT.with(Cell::get)
 }
 
-/// A number.
+/// A number that counts the operations on it.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Counted(pub f64);
 
@@ -54,7 +54,7 @@ impl From<f64> for Counted {
     }
 }
 
-/// Polynomials need none of these.
+/// Polynomials need none of these, so they are not counted.
 impl Real for Counted {
     fn value(self) -> f64 {
         self.0

@@ -55,7 +55,7 @@ pub fn report(entry: &dyn Deformation) -> Vec<Check> {
     checks
 }
 
-/// Why a map that asks another program has failed, if it has: its values after that mean nothing.
+/// The failure of a map that asks another program, if it has failed: values after that mean nothing.
 fn failure(built: &Built) -> Option<Error> {
     built.failure.as_ref().and_then(|f| f())
 }
@@ -72,7 +72,7 @@ pub struct Check {
     pub faults: Vec<String>,
 }
 
-/// Faults of one kind that are listed. A wrong formula is wrong at every sample.
+/// Limit on listed faults of one kind: a wrong formula is wrong at every sample.
 const LISTED: usize = 3;
 
 impl Check {
@@ -117,43 +117,43 @@ pub fn table(info: &Info) -> [Check; 2] {
 
 /// The texts for people.
 fn help(info: &Info) -> Check {
-    let mut faults = Check::new("help");
-    faults.detail = format!("title, group, about, source, {} examples", info.examples.len());
+    let mut check = Check::new("help");
+    check.detail = format!("title, group, about, source, {} examples", info.examples.len());
     if !is_kebab(info.name) {
-        faults.fault("its name is not kebab-case");
+        check.fault("its name is not kebab-case");
     }
     if info.title.is_empty() || info.about.is_empty() || info.source.is_empty() || info.group.is_empty() {
-        faults.fault("has an empty title, group, about or source");
+        check.fault("has an empty title, group, about or source");
     }
     if info.examples.len() < 2 {
-        faults.fault("has fewer than two examples");
+        check.fault("has fewer than two examples");
     }
     let is_path = |name: &&'static str| info.params.iter().any(|p| p.name == *name && p.kind == Kind::Path);
     if !info.guides.params.iter().all(is_path) || info.guides.usual > info.guides.params.len() {
-        faults.fault("its guides are not path parameters, or fewer than is usual");
+        check.fault("its guides are not path parameters, or fewer than is usual");
     }
-    faults
+    check
 }
 
 /// The parameters and their defaults.
 fn parameters(info: &Info) -> Check {
-    let mut faults = Check::new("parameters");
-    faults.detail = info.params.iter().map(|p| p.name).collect::<Vec<_>>().join(", ");
+    let mut check = Check::new("parameters");
+    check.detail = info.params.iter().map(|p| p.name).collect::<Vec<_>>().join(", ");
     let mut names = Vec::new();
     for p in info.params {
         if !is_kebab(p.name) || names.contains(&p.name) {
-            faults.fault(format!("{} is not a new kebab-case name", p.name));
+            check.fault(format!("{} is not a new kebab-case name", p.name));
         }
         names.push(p.name);
         if !p.help.ends_with('.') {
-            faults.fault(format!("{}: its help does not end with a full stop", p.name));
+            check.fault(format!("{}: its help does not end with a full stop", p.name));
         }
         if p.needed && p.default.is_some() {
-            faults.fault(format!("{} is needed and has a default", p.name));
+            check.fault(format!("{} is needed and has a default", p.name));
         }
-        let (least, most) = p.range;
-        if p.ui.0 < least || p.ui.1 > most || p.ui.0 >= p.ui.1 {
-            faults.fault(format!("{}: its slider is outside its range", p.name));
+        let (min, max) = p.range;
+        if p.ui.0 < min || p.ui.1 > max || p.ui.0 >= p.ui.1 {
+            check.fault(format!("{}: its slider is outside its range", p.name));
         }
         if p.default.is_some() {
             let (args, frame) = (Args::new(), frame());
@@ -170,22 +170,22 @@ fn parameters(info: &Info) -> Check {
                 Kind::Number | Kind::Length(_) | Kind::Angle | Kind::Count => s.number(p.name).map(|_| ()),
             });
             if let Err(e) = got {
-                faults.fault(format!("{}: its default is not valid: {e}", p.name));
+                check.fault(format!("{}: its default is not valid: {e}", p.name));
             }
         }
     }
-    faults
+    check
 }
 
 // The map of a deformation: derivatives, batches, exact images, inverse, and a refit.
 
-/// All checks of a map; only the first if it gives two answers for one point, since nothing else means anything then.
+/// Runs all checks of a map; only the first if it gives two answers for one point, which makes the others meaningless.
 fn all(built: &Built) -> Vec<Check> {
     let domain = Domain::of(built);
     if let Some(fault) = two_answers(&*built.map, &domain) {
-        let mut faults = Check::new("values");
-        faults.fault(fault);
-        return vec![faults.unless_failed(built)];
+        let mut check = Check::new("values");
+        check.fault(fault);
+        return vec![check.unless_failed(built)];
     }
     [derivatives, exact_images, inverse, refitting].map(|check| check(&*built.map, &domain).unless_failed(built)).into()
 }
@@ -203,7 +203,7 @@ impl<'a> Domain<'a> {
         Self { creases, built }
     }
 
-    /// The map may be undefined somewhere, so that a value there is no fault if it is not a number.
+    /// Returns `true` if the map may be undefined somewhere, so that NaN is no fault.
     fn is_partial(&self) -> bool {
         self.built.undefined.is_some() || self.creases.items().iter().any(|c| c.kind == CreaseKind::Edge)
     }
@@ -226,7 +226,7 @@ fn skipped(count: usize) -> String {
     if count == 0 { String::new() } else { format!("; {count} outside of the domain are skipped") }
 }
 
-/// A point for which the map gives two answers: in a batch, in another batch, and alone.
+/// Looks for a point for which the map gives two answers: in one batch, in another, or alone.
 fn two_answers(map: &dyn Map, domain: &Domain<'_>) -> Option<String> {
     let (ps, _) = domain.samples();
     let mut answers = [ps.clone(), ps.clone()];
@@ -236,7 +236,7 @@ fn two_answers(map: &dyn Map, domain: &Domain<'_>) -> Option<String> {
     let [first, second] = answers;
     let differ = |p: &Point, a: Point, b: Point| {
         let size = 1.0 + a.to_vec2().hypot();
-        // One is a number and the other is none, or they are apart.
+        // Only one is a number, or they are apart.
         let apart = a.is_finite() != b.is_finite() || a.is_finite() && a.distance(b) > 1e-12 * size;
         apart.then(|| {
             format!("gives two answers for the point {},{}: {},{} and then {},{}", p.x, p.y, a.x, a.y, b.x, b.y)
@@ -247,7 +247,7 @@ fn two_answers(map: &dyn Map, domain: &Domain<'_>) -> Option<String> {
 }
 
 fn derivatives(map: &dyn Map, domain: &Domain<'_>) -> Check {
-    let mut faults = Check::new("values");
+    let mut check = Check::new("values");
     let mut largest: f64 = 0.0;
     let (ps, mut outside) = domain.samples();
     let (mut jets, mut points) = (vec![Jet::default(); ps.len()], vec![Point::ORIGIN; ps.len()]);
@@ -255,12 +255,12 @@ fn derivatives(map: &dyn Map, domain: &Domain<'_>) -> Check {
     map.points(&ps, &mut points);
     for ((p, j), q) in ps.iter().zip(&jets).zip(&points) {
         if !j.is_finite() {
-            faults.fault(format!("is not finite at {p:?}"));
+            check.fault(format!("is not finite at {p:?}"));
             continue;
         }
         let size = 1.0 + j.p.to_vec2().hypot();
         if map.jet(*p).p.distance(j.p) > 1e-12 * size || q.distance(j.p) > 1e-12 * size {
-            faults.fault(format!("single and batched values differ at {p:?}"));
+            check.fault(format!("single and batched values differ at {p:?}"));
         }
         // Central differences: truncation h², rounding ε/h; both near 1e-8 here.
         const H: f64 = 1e-4;
@@ -274,20 +274,20 @@ fn derivatives(map: &dyn Map, domain: &Domain<'_>) -> Check {
         largest = largest.max((dx - j.dx).hypot() / steep).max((dy - j.dy).hypot() / steep);
         let off = |d: Vec2, own: Vec2| (d - own).hypot() > 1e-5 * steep || (d - own).is_nan();
         if off(dx, j.dx) || off(dy, j.dy) {
-            faults.fault(format!("derivatives at {p:?}: {j:?}, differences give {dx:?} {dy:?}"));
+            check.fault(format!("derivatives at {p:?}: {j:?}, differences give {dx:?} {dy:?}"));
         }
     }
-    faults.detail = format!(
+    check.detail = format!(
         "{} points are finite, alone and in batches; derivatives differ from differences by {largest:.0e}{}",
         ps.len(),
         skipped(outside)
     );
-    faults
+    check
 }
 
 fn exact_images(map: &dyn Map, domain: &Domain<'_>) -> Check {
-    let mut faults = Check::new("images");
-    faults.detail = "it gives no exact images of curves".into();
+    let mut check = Check::new("images");
+    check.detail = "it gives no exact images of curves".into();
     let segs = [
         Seg::Line(Line::new((5.0, 10.0), (60.0, 40.0))),
         Seg::Cubic(CubicBez::new((10.0, 20.0), (40.0, 0.0), (70.0, 80.0), (30.0, 90.0))),
@@ -295,25 +295,25 @@ fn exact_images(map: &dyn Map, domain: &Domain<'_>) -> Check {
     ];
     for source in segs.iter().filter_map(RationalBezier::from_seg) {
         if let Some(image) = map.image(&source) {
-            faults.detail = "exact images of a line, a cubic and an arc".into();
+            check.detail = "exact images of a line, a cubic and an arc".into();
             for i in 0..=12 {
                 let t = f64::from(i) / 12.0;
                 let (a, b) = (image.eval(t), map.point(source.eval(t)));
                 let off = a.distance(b);
                 if off > 1e-9 * (1.0 + b.to_vec2().hypot()) || off.is_nan() && !domain.is_partial() {
-                    faults.fault(format!("the exact image at {t} is {a:?}, the map says {b:?}"));
+                    check.fault(format!("the exact image at {t} is {a:?}, the map says {b:?}"));
                 }
             }
         }
     }
-    faults
+    check
 }
 
 fn inverse(map: &dyn Map, domain: &Domain<'_>) -> Check {
-    let mut faults = Check::new("inverse");
+    let mut check = Check::new("inverse");
     let Some(back) = map.inverse() else {
-        faults.detail = "it gives none; Newton's method finds it".into();
-        return faults;
+        check.detail = "it gives none; Newton's method finds it".into();
+        return check;
     };
     let mut largest: f64 = 0.0;
     let (ps, outside) = domain.samples();
@@ -321,29 +321,29 @@ fn inverse(map: &dyn Map, domain: &Domain<'_>) -> Check {
         let q = back.point(map.point(p));
         largest = largest.max(q.distance(p));
         if q.distance(p).is_nan() || q.distance(p) > 1e-8 * (1.0 + p.to_vec2().hypot()) {
-            faults.fault(format!("the inverse takes the image of {p:?} to {q:?}"));
+            check.fault(format!("the inverse takes the image of {p:?} to {q:?}"));
         }
     }
-    faults.detail = format!("it leads back, within {largest:.0e}{}", skipped(outside));
-    faults
+    check.detail = format!("it leads back, within {largest:.0e}{}", skipped(outside));
+    check
 }
 
 /// Compares a refitted circle and line with dense samples of the true image.
 fn refitting(map: &dyn Map, domain: &Domain<'_>) -> Check {
-    let mut faults = Check::new("refitting");
+    let mut check = Check::new("refitting");
     const TOLERANCE: f64 = 0.01;
     let mut art = Outline::from_svg("M20,50 A30,30 0 1 1 80,50 A30,30 0 1 1 20,50 Z M10,10 L90,85").unwrap_or_default();
     let all = art.subpaths.len();
     art.subpaths.retain(|s| s.segs.iter().all(|g| (0..=100).all(|i| domain.contains(g.eval(f64::from(i) / 100.0)))));
     if art.subpaths.is_empty() {
-        faults.detail = "a circle and a line leave the domain and are skipped".into();
-        return faults;
+        check.detail = "a circle and a line leave the domain and are skipped".into();
+        return check;
     }
     let outside = if art.subpaths.len() < all { "; what leaves the domain is skipped" } else { "" };
     match refit::warp_path(&art, map, &refit::Options::new(TOLERANCE)) {
         Ok(w) => {
             let segs: Vec<_> = w.path.segments().collect();
-            faults.detail = format!("a circle and a line become {} curves within {TOLERANCE}{outside}", segs.len());
+            check.detail = format!("a circle and a line become {} curves within {TOLERANCE}{outside}", segs.len());
             for seg in art.segs() {
                 for i in 0..=100 {
                     let p = map.point(seg.eval(f64::from(i) / 100.0));
@@ -353,18 +353,18 @@ fn refitting(map: &dyn Map, domain: &Domain<'_>) -> Check {
                         .fold(f64::INFINITY, f64::min)
                         .sqrt();
                     if off.is_nan() || off > TOLERANCE * (1.0 + 1e-6) {
-                        faults.fault(format!("refitted within {TOLERANCE}, a sample at {p:?} is {off} away"));
-                        return faults;
+                        check.fault(format!("refitted within {TOLERANCE}, a sample at {p:?} is {off} away"));
+                        return check;
                     }
                 }
             }
             if !w.path.bounding_box().is_finite() {
-                faults.fault("refitting gives numbers that are not finite");
+                check.fault("refitting gives numbers that are not finite");
             }
         }
-        Err(e) => faults.fault(format!("refitting its demo fails: {e}")),
+        Err(e) => check.fault(format!("refitting its demo fails: {e}")),
     }
-    faults
+    check
 }
 
 // The laws that a deformation states about itself, and values known from elsewhere.
@@ -374,35 +374,35 @@ const NEAR: f64 = 1e-9;
 
 /// The laws.
 fn laws(entry: &dyn Deformation) -> Check {
-    let mut faults = Check::new("laws");
-    faults.detail = format!("{} of them", entry.info().laws.len());
-    let outside: usize = entry.info().laws.iter().map(|law| check_law(entry, law, &mut faults)).sum();
-    faults.detail += &skipped(outside);
-    faults
+    let mut check = Check::new("laws");
+    check.detail = format!("{} of them", entry.info().laws.len());
+    let outside: usize = entry.info().laws.iter().map(|law| check_law(entry, law, &mut check)).sum();
+    check.detail += &skipped(outside);
+    check
 }
 
 /// The known values.
 fn cases(entry: &dyn Deformation) -> Check {
-    let mut faults = Check::new("cases");
-    faults.detail = format!("{} known values", entry.info().cases.len());
+    let mut check = Check::new("cases");
+    check.detail = format!("{} known values", entry.info().cases.len());
     for case in entry.info().cases {
         match build(entry, case.args) {
             Ok(built) => {
                 let got = built.map.point(case.at.into());
                 let off = got.distance(case.to.into());
                 if let Some(failure) = failure(&built) {
-                    faults.fault(format!("{:?}: {failure}", case.args));
+                    check.fault(format!("{:?}: {failure}", case.args));
                 } else if off.is_nan() || off > case.tolerance {
-                    faults.fault(format!(
+                    check.fault(format!(
                         "{:?} takes {:?} to {got:?}, {off:e} away from {:?}",
                         case.args, case.at, case.to
                     ));
                 }
             }
-            Err(e) => faults.fault(format!("{:?} does not build: {e}", case.args)),
+            Err(e) => check.fault(format!("{:?} does not build: {e}", case.args)),
         }
     }
-    faults
+    check
 }
 
 fn build(entry: &dyn Deformation, pairs: Pairs) -> Result<Built, Error> {
@@ -417,7 +417,7 @@ fn bent(m: &dyn Map, p: Point, q: Point) -> f64 {
 }
 
 /// Checks a law, and returns the number of samples that were skipped.
-fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
+fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
     let values = match *law {
         Law::Same(a, b) | Law::Undoes(a, b) => vec![a, b],
         Law::Identity(a)
@@ -431,7 +431,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
     for pairs in &values {
         match build(entry, pairs) {
             Ok(b) => built.push(b),
-            Err(e) => faults.fault(format!("{pairs:?} does not build: {e}")),
+            Err(e) => check.fault(format!("{pairs:?} does not build: {e}")),
         }
     }
     let (Some(first), Some(last)) = (built.first(), built.last().filter(|_| built.len() == values.len())) else {
@@ -445,25 +445,25 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
     let place = Cell::new(None);
     let worst = |f: &dyn Fn(Point) -> f64| {
         place.set(None);
-        let mut most = 0.0_f64;
+        let mut largest = 0.0_f64;
         for &p in &samples {
             let off = f(p);
             if off.is_nan() && is_partial {
                 skips.set(skips.get() + 1);
-            } else if off > most || off.is_nan() {
+            } else if off > largest || off.is_nan() {
                 place.set(Some(p));
-                most = if off.is_nan() { f64::INFINITY } else { off };
+                largest = if off.is_nan() { f64::INFINITY } else { off };
             }
         }
-        most
+        largest
     };
     let fault = broken(law, values[0], [&*first.map, &*last.map], &worst);
     // Values after a failure mean nothing.
     if let Some((pairs, e)) = values.iter().zip(&built).find_map(|(pairs, b)| Some((pairs, failure(b)?))) {
-        faults.fault(format!("{pairs:?}: {e}"));
+        check.fault(format!("{pairs:?}: {e}"));
     } else if let Some(fault) = fault {
         let place = place.get().map(|p: Point| format!(", worst at {},{}", p.x, p.y)).unwrap_or_default();
-        faults.fault(fault + &place);
+        check.fault(fault + &place);
     }
     skips.get()
 }
@@ -471,7 +471,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) -> usize {
 /// The largest value of a function at the samples.
 type Worst<'a> = &'a dyn Fn(&dyn Fn(Point) -> f64) -> f64;
 
-/// What of a law does not hold for its maps `f` and `g`, which are one for most.
+/// Says how `f` and `g` break a law, if they do. A law about one map gets it twice.
 fn broken(law: &Law, pairs: Pairs, [f, g]: [&dyn Map; 2], worst: Worst<'_>) -> Option<String> {
     let by = |off: f64| if off.is_finite() { format!("{off:e}") } else { "what is no number".to_owned() };
     match *law {

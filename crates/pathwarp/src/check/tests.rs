@@ -36,11 +36,11 @@ fn degenerate_frames_are_survived() {
 /// A deformation with a fault of every kind that `entry` looks for.
 struct Bad;
 struct BadMap;
-/// Its batches are other than its single values.
+/// Its batches differ from its single values.
 struct Fickle;
 impl Map for BadMap {
     fn jet(&self, p: Point) -> Jet {
-        Jet { p: (p.x + 0.001 * p.y * p.y).into_point(p.y), dx: Vec2::new(1.0, 0.0), dy: Vec2::new(0.5, 1.0) }
+        Jet { p: Point::new(p.x + 0.001 * p.y * p.y, p.y), dx: Vec2::new(1.0, 0.0), dy: Vec2::new(0.5, 1.0) }
     }
     fn point(&self, p: Point) -> Point {
         Point::new(p.x + 0.002 * p.y * p.y, p.y)
@@ -58,14 +58,6 @@ impl Map for Fickle {
     }
     fn points(&self, ps: &[Point], out: &mut [Point]) {
         out.copy_from_slice(ps);
-    }
-}
-trait IntoPoint {
-    fn into_point(self, y: f64) -> Point;
-}
-impl IntoPoint for f64 {
-    fn into_point(self, y: f64) -> Point {
-        Point::new(self, y)
     }
 }
 struct Shift;

@@ -117,8 +117,7 @@ impl Birational {
         } else {
             return Ok(());
         };
-        let (found, anchors) = (second.len(), second.iter().copied().take(8).collect());
-        Err(GeometryError::AnchorCount { path: name.into(), found, anchors, expected }.into())
+        Err(GeometryError::anchor_count(name, second, expected).into())
     }
 }
 

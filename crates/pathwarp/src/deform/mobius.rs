@@ -212,13 +212,7 @@ impl Deformation for Entry {
 fn three(path: &NamedPath) -> Result<[Point; 3], Error> {
     let a = anchors::only_subpath(path, "three")?.anchors();
     let [p, q, r] = a[..] else {
-        return Err(GeometryError::AnchorCount {
-            path: path.name.clone(),
-            found: a.len(),
-            anchors: a.into_iter().take(8).collect(),
-            expected: "three",
-        }
-        .into());
+        return Err(GeometryError::anchor_count(&path.name, &a, "three").into());
     };
     anchors::distinct(&path.name, &a)?;
     Ok([p, q, r])

@@ -106,13 +106,9 @@ impl Deformation for Entry {
             let path = s.path_if(name)?.ok_or_else(|| Error::missing(name, "a path with two anchors"))?;
             match anchors::two_or_four(&path)? {
                 Anchors::Two(p) => Ok(p),
-                Anchors::Four(q) => Err(GeometryError::AnchorCount {
-                    path: path.name,
-                    found: 4,
-                    anchors: q.to_vec(),
-                    expected: "two (for four, use projective)",
+                Anchors::Four(q) => {
+                    Err(GeometryError::anchor_count(&path.name, &q, "two (for four, use projective)").into())
                 }
-                .into()),
             }
         };
         Similitude { from: two("base")?, to: two("target")? }.build()

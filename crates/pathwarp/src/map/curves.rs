@@ -450,8 +450,8 @@ impl SidePiece {
 
     /// The derivative with which a curve at a pace along an axis continues beyond its ends.
     fn flattened(&self, v: Vec2) -> Vec2 {
-        let most = STEEPEST * self.along(v).abs();
-        let limited = |x: f64| x.clamp(-most, most);
+        let limit = STEEPEST * self.along(v).abs();
+        let limited = |x: f64| x.clamp(-limit, limit);
         if self.pace == Pace::Width { Vec2::new(v.x, limited(v.y)) } else { Vec2::new(limited(v.x), v.y) }
     }
 

@@ -343,7 +343,7 @@ impl Seg {
     /// The largest magnitude of a control point's coordinates; for an arc, an upper bound of its coordinates.
     #[must_use]
     pub fn extent(&self) -> f64 {
-        let all = |points: &[Point]| points.iter().fold(0.0, |most: f64, p| most.max(p.x.abs()).max(p.y.abs()));
+        let all = |points: &[Point]| points.iter().fold(0.0, |max: f64, p| max.max(p.x.abs()).max(p.y.abs()));
         match self {
             Self::Line(s) => all(&[s.p0, s.p1]),
             Self::Quad(s) => all(&[s.p0, s.p1, s.p2]),

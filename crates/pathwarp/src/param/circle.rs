@@ -9,17 +9,17 @@
 //! inner radius, and runs outwards, clockwise (`cw`) or counter-clockwise (`ccw`). Its cubics are within
 //! [`SPIRAL_WITHIN`]·outer of it.
 
-use super::{Axis, Frame, value};
+use super::value::{self, ValueError};
+use super::{Axis, Frame};
 use crate::outline::{EllipticArc, Outline, Seg, Subpath};
-use crate::param::value::ValueError;
 use kurbo::{BezPath, CurveFitSample, ParamCurveFit, Point, Vec2};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 /// Distance of a spiral's cubics from the true curve, relative to its outer radius.
 const SPIRAL_WITHIN: f64 = 1e-7;
-/// Most turns of a spiral: the work grows with them, and letters on more could not be read.
-const MOST_TURNS: f64 = 100.0;
+/// Limit on the turns of a spiral: the work grows with them, and letters on more would be illegible.
+const MAX_TURNS: f64 = 100.0;
 /// The angle at which a spiral begins: lettering there begins at the left and goes over the top.
 const LEFT: f64 = 180.0;
 
@@ -28,7 +28,7 @@ pub(super) fn is_circle(text: &str) -> bool {
     split(text).is_some()
 }
 
-/// Returns `true` if a path reference is a spiral, which says by itself which way it runs.
+/// Returns `true` if a path reference is a spiral, whose direction is part of the reference.
 pub(crate) fn is_spiral(text: &str) -> bool {
     split(text).is_some_and(|(word, _)| word == "spiral")
 }
@@ -39,7 +39,7 @@ fn split(text: &str) -> Option<(&str, &str)> {
     Some(split).filter(|(word, _)| matches!(*word, "circle" | "arc" | "spiral"))
 }
 
-/// What a word needs.
+/// A complete reference that begins with this word.
 fn example(word: &str) -> &'static str {
     match word {
         "arc" => "arc:r=60mm,from=180,to=360",
@@ -64,7 +64,7 @@ struct Typed<'a> {
 impl<'a> Typed<'a> {
     fn new(word: &'a str, values: &'a str, frame: &'a Frame) -> Result<Self, String> {
         /// The name under which a direction is kept.
-        const WAY: &str = "direction";
+        const DIRECTION: &str = "direction";
         let names: &[&str] = match word {
             "arc" => &["r", "from", "to", "cx", "cy"],
             "spiral" => &["turns", "inner", "outer", "from", "cx", "cy"],
@@ -74,13 +74,13 @@ impl<'a> Typed<'a> {
         for part in values.split(',').map(str::trim).filter(|p| !p.is_empty()) {
             let (name, value) = match part.split_once('=').map(|(n, v)| (n.trim(), v.trim())) {
                 Some(pair) => pair,
-                None if word == "spiral" && matches!(part, "cw" | "ccw") => (WAY, part),
+                None if word == "spiral" && matches!(part, "cw" | "ccw") => (DIRECTION, part),
                 None => {
                     let or = if word == "spiral" { ", cw or ccw" } else { "" };
                     return Err(format!("contains `{part}`, which is not NAME=VALUE{or}: write {}", example(word)));
                 }
             };
-            if !names.contains(&name) && (name != WAY || part.contains('=')) {
+            if !names.contains(&name) && (name != DIRECTION || part.contains('=')) {
                 return Err(format!("has a value for `{name}`; {word} takes {}", names.join(", ")));
             }
             if given.iter().any(|(n, _)| *n == name) {
@@ -95,7 +95,7 @@ impl<'a> Typed<'a> {
         self.given.iter().find(|(n, _)| *n == name).map(|(_, v)| *v)
     }
 
-    /// Reads a value that may not be missing.
+    /// Reads a value that must be given.
     fn needed(&self, name: &str, read: impl Fn(&str) -> Result<f64, ValueError>) -> Result<f64, String> {
         let text = self.text(name).ok_or_else(|| format!("has no {name}: write {}", example(self.word)))?;
         read(text).map_err(|e| format!("has a wrong {name}: `{text}` {e}"))
@@ -140,8 +140,8 @@ impl<'a> Typed<'a> {
 
     fn spiral(&self) -> Result<Outline, String> {
         let turns = self.needed("turns", value::number)?;
-        if !(turns > 0.0 && turns <= MOST_TURNS) {
-            return Err(format!("has {turns} turns; it takes more than 0 and at most {MOST_TURNS}"));
+        if !(turns > 0.0 && turns <= MAX_TURNS) {
+            return Err(format!("has {turns} turns; it takes more than 0 and at most {MAX_TURNS}"));
         }
         let (inner, outer) = (self.radius("inner")?, self.radius("outer")?);
         if !(inner >= 0.0 && outer > inner && outer.is_finite()) {
@@ -151,7 +151,7 @@ impl<'a> Typed<'a> {
         let sweep = if self.text("direction") == Some("ccw") { -turns * TAU } else { turns * TAU };
         let spiral = Spiral { centre: self.centre()?, inner, growth: outer - inner, from: from.to_radians(), sweep };
         let mut path = BezPath::new();
-        // Fits of a whole turn or more would only be tried in vain.
+        // Fits of a whole turn or more would fail anyway.
         let parts = (QUARTERS * turns).ceil() as u32;
         for i in 0..parts {
             let at = |i: u32| f64::from(i) / f64::from(parts);
@@ -162,10 +162,10 @@ impl<'a> Typed<'a> {
     }
 }
 
-/// Parts of a turn that are fitted on their own.
+/// Parts of a turn that are fitted separately.
 const QUARTERS: f64 = 4.0;
 
-/// An Archimedean spiral, evenly from t = 0 to 1.
+/// An Archimedean spiral, at constant angular speed from t = 0 to 1.
 struct Spiral {
     centre: Point,
     inner: f64,

@@ -146,8 +146,8 @@ impl Param {
 
     /// Sets the legal range, both ends included, and the slider's range with it.
     #[must_use]
-    pub const fn within(self, least: f64, most: f64) -> Self {
-        Self { range: (least, most), ui: (least, most), ..self }
+    pub const fn within(self, min: f64, max: f64) -> Self {
+        Self { range: (min, max), ui: (min, max), ..self }
     }
 
     /// Sets the range of an editor's slider.

@@ -28,15 +28,15 @@ impl Letter {
 /// word only. `None` if there are no letters.
 #[must_use]
 pub(crate) fn word_space(letters: &[Letter]) -> Option<f64> {
-    /// A gap is a word space from this share of the mean advance on; kerning and letter spacing leave less.
-    const LEAST: f64 = 0.25;
-    /// A word space against the mean advance, in most fonts.
+    /// Gaps of more than this share of the mean advance are word spaces; kerning and letter spacing leave less.
+    const MIN_SPACE: f64 = 0.25;
+    /// The word space of most fonts, as a share of the mean advance.
     const USUAL: f64 = 0.5;
     let mut seen: Vec<&Letter> = letters.iter().filter(|l| !l.outline.subpaths.is_empty()).collect();
     seen.sort_by(|a, b| a.origin.y.total_cmp(&b.origin.y).then(a.origin.x.total_cmp(&b.origin.x)));
     let mean = seen.iter().map(|l| l.advance).sum::<f64>() / seen.len() as f64;
     let gap = |w: &[&Letter]| w[1].origin.x - w[0].origin.x - w[0].advance;
     let gaps = seen.windows(2).filter(|w| w[0].origin.y == w[1].origin.y).map(gap);
-    let least = gaps.filter(|g| *g > LEAST * mean).min_by(f64::total_cmp);
-    (!seen.is_empty()).then(|| least.unwrap_or(USUAL * mean))
+    let smallest = gaps.filter(|g| *g > MIN_SPACE * mean).min_by(f64::total_cmp);
+    (!seen.is_empty()).then(|| smallest.unwrap_or(USUAL * mean))
 }

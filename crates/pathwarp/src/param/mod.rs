@@ -131,7 +131,7 @@ impl Args {
         Ok(())
     }
 
-    /// Number of segments of all paths, those that were looked up and those that were typed.
+    /// The number of segments of all paths, looked up or typed.
     pub(crate) fn path_segments(&self) -> usize {
         /// Shorter texts hold few segments.
         const LONG: usize = 2000;
@@ -181,5 +181,3 @@ fn is_path_data(text: &str) -> bool {
     let rest = text.trim_start().strip_prefix(['M', 'm']);
     rest.is_some_and(|r| r.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)))
 }
-
-// Letters of the artwork, for deformations that place lettering letter by letter.

@@ -1,11 +1,9 @@
 //! Typed and range-checked access to the values of parameters.
 
-use super::value;
-use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, circle};
-use crate::error::Error;
+use super::value::{self, ValueError};
+use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, circle, is_path_data};
+use crate::error::{Error, GeometryError};
 use crate::outline::Outline;
-use crate::param;
-use crate::param::value::ValueError;
 use kurbo::{Point, Rect};
 
 /// A number out of range that is at least this large may be meant as a percentage.
@@ -91,12 +89,12 @@ impl<'a> Settings<'a> {
             _ => value::number(text),
         };
         let value = value.map_err(|e| usage(name, text, &e))?;
-        let (least, most) = param.range;
-        if value < least || value > most {
+        let (min, max) = param.range;
+        if value < min || value > max {
             let percent = param.kind == Kind::Number && !text.contains('%') && value.abs() >= LIKELY_PERCENT;
-            let meant = percent && (least..=most).contains(&(value / 100.0));
+            let meant = percent && (min..=max).contains(&(value / 100.0));
             let advice = if meant { format!("; for {text} per cent write {text}%") } else { String::new() };
-            return Err(Error::usage(name, text, format!("is out of range: {least} to {most}{advice}")));
+            return Err(Error::usage(name, text, format!("is out of range: {min} to {max}{advice}")));
         }
         Ok(Some(value))
     }
@@ -244,7 +242,7 @@ impl<'a> Settings<'a> {
         }
         let outline = if let Some(circle) = circle::circle(text, self.frame) {
             circle.map_err(|e| Error::usage(name, text, e))?
-        } else if param::is_path_data(text) {
+        } else if is_path_data(text) {
             Outline::from_svg(text).map_err(|e| Error::usage(name, text, format!("is not valid path data: {e}")))?
         } else {
             let points = value::points(text, self.frame)
@@ -252,7 +250,7 @@ impl<'a> Settings<'a> {
             Outline::from_points(&points, false)
         };
         if let Some(bad) = outline.segs().find(|s| !s.is_finite()) {
-            return Err(crate::error::GeometryError::NotFinite { shape: name.to_owned(), at: bad.start() }.into());
+            return Err(GeometryError::NotFinite { shape: name.to_owned(), at: bad.start() }.into());
         }
         Ok(NamedPath { name: name.to_owned(), outline })
     }

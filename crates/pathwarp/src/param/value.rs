@@ -127,7 +127,7 @@ pub enum LengthUnit {
 const PX_PER_INCH: f64 = 96.0;
 
 impl LengthUnit {
-    /// The px that an absolute unit is long; `None` for user units and percentages.
+    /// The length of an absolute unit in px; `None` for user units and percentages.
     #[must_use]
     pub fn px(self) -> Option<f64> {
         Some(match self {
@@ -232,7 +232,6 @@ pub(super) fn split(text: &str) -> Option<(f64, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kurbo::Rect;
 
     #[test]
     fn units() {

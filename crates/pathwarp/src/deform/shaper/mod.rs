@@ -260,12 +260,8 @@ fn from_cage(
     const EXPECTED: &str = "exactly four, in one closed path";
     let sub = anchors::closed_subpath(path, EXPECTED, |lines| lines == 3)?;
     let drawn = sub.anchors();
-    let corners: [Point; 4] = drawn.try_into().map_err(|drawn: Vec<Point>| GeometryError::AnchorCount {
-        path: path.name.clone(),
-        found: drawn.len(),
-        anchors: drawn.into_iter().take(8).collect(),
-        expected: EXPECTED,
-    })?;
+    let wrong_count = |drawn: Vec<Point>| GeometryError::anchor_count(&path.name, &drawn, EXPECTED);
+    let corners: [Point; 4] = drawn.try_into().map_err(wrong_count)?;
     anchors::general(&path.name, &corners)?;
     let sides: [CubicBez; 4] = std::array::from_fn(|i| sub.segs[i].to_cubic());
 
@@ -356,13 +352,8 @@ fn from_rows(given: &[NamedPath]) -> Result<Net, Error> {
     };
     let Some([a, b, c, d]) = rows.as_deref() else {
         let anchors: Vec<Point> = subpaths.iter().flat_map(|s| s.anchors()).collect();
-        return Err(GeometryError::AnchorCount {
-            path: name.clone(),
-            found: anchors.len(),
-            anchors: anchors.into_iter().take(8).collect(),
-            expected: "16 points, or four paths of one cubic each",
-        }
-        .into());
+        let expected = "16 points, or four paths of one cubic each";
+        return Err(GeometryError::anchor_count(name, &anchors, expected).into());
     };
     Ok([*a, *b, *c, *d])
 }

@@ -84,8 +84,8 @@ impl Warp {
     pub fn build(&self) -> Result<Built, Error> {
         let Self { frame, style, bend, .. } = self;
         if let Some(limit) = style.limit().filter(|l| bend.abs() > *l) {
-            let most = limit * 100.0;
-            let problem = format!("is out of range: {} bends from -{most}% to {most}%", style.name);
+            let percent = limit * 100.0;
+            let problem = format!("is out of range: {} bends from -{percent}% to {percent}%", style.name);
             return Err(Error::usage("bend", bend.to_string(), problem));
         }
         let params = StyleParams {
