@@ -1,8 +1,8 @@
 //! Limits on what one input may ask for: three sizes, checked when it is read, and one counter of work.
 //!
 //! A few bytes can ask for any amount of work: references to references, packed text, pictures that announce a size, formulas
-//! that oscillate. What is known beforehand is compared with a limit on a size. Everything else is work: stages count what they have done or
-//! are about to do, long loops ask in between, and an error names the limit.
+//! that oscillate. Sizes that are known beforehand are compared with a limit. Everything else is work: stages count what they have done or
+//! are about to do, long loops check the budget as they go, and an error names the limit.
 
 use std::fmt;
 use std::sync::Arc;
@@ -251,7 +251,7 @@ fn rounded(v: f64) -> String {
 /// The largest amount added at once, so that sums stay in range.
 const MAX_AMOUNT: f64 = (1_u64 << 52) as f64;
 
-/// The limits of one input with what is used of them. Threads share it.
+/// The limits of one input and how much of them is used, shared by all threads.
 #[derive(Debug, Default)]
 pub struct Budget {
     limits: Limits,
@@ -262,13 +262,13 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// A budget of which nothing is used.
+    /// An unused budget.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         Self { limits, ..Self::default() }
     }
 
-    /// The limits, with what the pictures so far add.
+    /// The limits, raised for the pictures so far.
     #[must_use]
     pub fn limits(&self) -> Limits {
         self.limits.for_pixels(self.taken(Limit::Pixels))
@@ -314,13 +314,13 @@ impl Budget {
         self.limits.check(limit, before as f64 + amount)
     }
 
-    /// What is taken of a size.
+    /// The amount of a size taken so far.
     #[must_use]
     pub fn taken(&self, limit: Limit) -> f64 {
         self.sizes.get(limit as usize).map_or(0.0, |n| n.load(Ordering::Relaxed) as f64)
     }
 
-    /// What is left of a size.
+    /// The amount of a size that is left.
     #[must_use]
     pub fn room(&self, limit: Limit) -> f64 {
         (self.limits.of(limit) - self.taken(limit)).max(0.0)
@@ -419,7 +419,7 @@ mod tests {
         assert!(budget.exceeded().is_some() && budget.left() == 0.0 && budget.take(Limit::Bytes, 1.0).is_err());
     }
 
-    /// A second and 60 MB beside the decoded picture for each ten megapixels.
+    /// A second and 60 MB beyond the decoded picture for each ten megapixels.
     #[test]
     fn limits_grow_with_the_pixels() {
         let budget = Budget::default();

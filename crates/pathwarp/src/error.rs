@@ -21,7 +21,7 @@ pub enum Error {
         value: String,
         /// The problem, and legal values: the end of a sentence that begins with the value.
         problem: String,
-        /// What to do instead, with the sign that joins it to the problem; empty if the problem says so.
+        /// What to do instead, with the punctuation that joins it to the problem; empty if the problem says so already.
         advice: String,
     },
     /// A required parameter was not given.

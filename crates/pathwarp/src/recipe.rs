@@ -41,7 +41,7 @@ pub struct Step {
     pub args: Args,
     /// Applies the inverse map.
     pub inverse: bool,
-    /// Selectors of the artwork that the step holds for, as whoever reads the artwork understands them. Empty: all of it.
+    /// Selectors of the artwork that the step holds for, in the syntax of whatever reads the artwork. Empty: all of it.
     pub select: Vec<String>,
     /// Selectors of the artwork that the step leaves out.
     pub exclude: Vec<String>,
@@ -109,7 +109,7 @@ pub struct Portion<'a> {
 /// A recipe whose steps hold for parts of the artwork, with every parameter settled.
 #[derive(Debug, Clone)]
 pub struct BuiltParts {
-    /// All steps in order, as for artwork that all of them hold for.
+    /// All steps in order, for artwork that all of them hold for.
     pub whole: BuiltRecipe,
     /// For every portion, its own steps.
     pub parts: Vec<BuiltRecipe>,
@@ -180,7 +180,7 @@ impl Recipe {
     ///
     /// A recipe of inverse steps alone undoes its reverse ([`Recipe::inverted`]): `artwork` is a result, `frame` that of its source, and
     /// the frames of the other steps are the boxes of the artwork on its way back. Those depend on the inverses, and these on them: they
-    /// are found by turns. A warning says so if they do not settle.
+    /// are found by iteration. A warning says so if they do not settle.
     ///
     /// # Errors
     /// An unknown deformation, a step that only the first can be, or any error from building a step.
@@ -195,7 +195,7 @@ impl Recipe {
         self.counted(registry, &self.alone(frame), &[self.all_of(artwork)], counting).map(|b| b.whole)
     }
 
-    /// The frames of a recipe whose steps hold for all artwork, as far as they are known: that of the source.
+    /// The known frames of a recipe whose steps hold for all artwork: only that of the source.
     fn alone(&self, source: Frame) -> Vec<Option<Frame>> {
         let known = if self.undoes() { self.steps.len() - 1 } else { 0 };
         let mut source = Some(source);

@@ -66,7 +66,7 @@ fn failure(built: &Built) -> Option<Error> {
 pub struct Check {
     /// A word for what is checked.
     pub name: &'static str,
-    /// What was looked at, and the largest error.
+    /// What was checked, and the largest error.
     pub detail: String,
     /// What is wrong; empty if nothing is.
     pub faults: Vec<String>,

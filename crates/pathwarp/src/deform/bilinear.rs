@@ -155,21 +155,18 @@ impl Formula for BilinearMap {
     }
 
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
-        let (u, v, w) = (coordinate(0), coordinate(1), coordinate(2));
+        let [u, v, w] = [0, 1, 2].map(|k| curve.coordinate(k));
         let (uv, uw, vw, ww) = (u.times(&v), u.times(&w), v.times(&w), w.times(&w));
         let sum = |p: f64, a: f64, b: f64, c: f64| {
             let mut out = Scaled::zero(2 * curve.degree());
             for (k, term) in [(p, &ww), (a, &uw), (b, &vw), (c, &uv)] {
                 out.add_scaled(k, term);
             }
-            out.coefficients()
+            out
         };
         let Self { p, a, b, c } = *self;
         let (x, y) = (sum(p.x, a.x, b.x, c.x), sum(p.y, a.y, b.y, c.y));
-        let polynomial = curve.is_polynomial();
-        let points = x.into_iter().zip(y).zip(ww.coefficients());
-        Some(RationalBezier { points: points.map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]).collect() })
+        Some(RationalBezier::from_coordinates([&x, &y, &ww], curve.is_polynomial()))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -283,6 +283,16 @@ mod tests {
         }
     }
 
+    /// A pinch to half the size at the centre is undone by doubling, however near the centre.
+    #[test]
+    fn the_soft_inverse_is_right_beside_the_centre() {
+        let back = build(&[("amount", "-1"), ("center", "0,0"), ("radius", "40")]).inverse().unwrap();
+        for x in [1e-8, 3e-8, 1e-5] {
+            let scale = back.point(Point::new(x, 0.0)).x / x;
+            assert!((scale - 2.0).abs() < 1e-9, "{x}: {scale}");
+        }
+    }
+
     #[test]
     fn the_soft_inverse_has_the_right_derivatives() {
         let back = build(&[("amount", "-1")]).inverse().unwrap();

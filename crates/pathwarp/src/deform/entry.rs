@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// An entry of the registry: turns [`Args`] in a [`Frame`] into a map.
 ///
-/// This is the textual road, taken by the command line and by recipes. Rust code that wants one particular deformation
+/// The command line and recipes build deformations this way, from text. Rust code that needs one particular deformation
 /// uses its typed constructor instead, such as [`Shaper`](crate::deform::Shaper).
 pub trait Deformation: Send + Sync {
     /// Returns the deformation's description, for people and programs.
@@ -192,7 +192,7 @@ pub struct Guides {
     pub usual: usize,
 }
 
-/// What a page for bending by hand needs and the parameters do not tell.
+/// What a page for bending by hand needs beyond the parameters.
 ///
 /// In values, coordinates of points are percentages of the frame; path data is laid from the box 0,0,100,100 onto it.
 #[derive(Debug, Clone, Copy)]

@@ -276,13 +276,12 @@ impl Formula for MobiusMap {
         let sum = |p: &Scaled, q: &Scaled, k: f64, r: &Scaled, s: &Scaled| {
             let mut out = p.times(q);
             out.add_scaled(k, &r.times(s));
-            out.coefficients()
+            out
         };
         let (x, y) = (sum(&nx, &dx, 1.0, &ny, &dy), sum(&ny, &dx, -1.0, &nx, &dy));
         let w = sum(&dx, &dx, 1.0, &dy, &dy);
-        Some(RationalBezier {
-            points: x.into_iter().zip(y).zip(w).map(|((x, y), w)| [x + self.to.x * w, y + self.to.y * w, w]).collect(),
-        })
+        let image = RationalBezier::from_coordinates([&x, &y, &w], false);
+        Some(image.mapped(|[x, y, w]| [x + self.to.x * w, y + self.to.y * w, w]))
     }
 
     /// |F − a/c|·|z − pole| is the same everywhere: points far out in the source are those near the inverse's pole.

@@ -187,8 +187,8 @@ impl Batches for Gathered<'_> {
 }
 
 // Many computations at once, each of which asks a map for one jet after another. Every round restarts the unfinished ones with the jets
-// known so far and stops each at the first unknown jet; then one call fetches all the missing jets. Repeating the work costs little beside
-// a call, and the results are the same as when each computation asks by itself.
+// known so far and stops each at the first unknown jet; then one call fetches all the missing jets. Repeating the work is cheap next to a
+// call, and the results are the same as when each computation asks by itself.
 
 /// Rounds after which the remaining computations ask by themselves: they are few, or endless.
 const MAX_ROUNDS: usize = 100;

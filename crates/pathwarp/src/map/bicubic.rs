@@ -143,13 +143,13 @@ impl Map for BicubicNet {
     /// other) and 6n for a general net, or less if terms vanish.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let curve = AffineMap(self.pre).image(curve)?;
-        let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
         let terms = || {
             let rows = self.c.iter().enumerate();
             rows.flat_map(|(j, row)| row.iter().enumerate().map(move |(i, v)| (i, j, *v))).filter(|t| t.2 != Vec2::ZERO)
         };
         let total = terms().map(|(i, j, _)| i + j).max().unwrap_or(0);
-        let (u, v, w) = (coordinate(0).powers(3), coordinate(1).powers(3), coordinate(2).powers(total));
+        let (u, v, w) =
+            (curve.coordinate(0).powers(3), curve.coordinate(1).powers(3), curve.coordinate(2).powers(total));
         let degree = curve.degree() * total;
         let (mut x, mut y) = (Scaled::zero(degree), Scaled::zero(degree));
         for (i, j, c) in terms() {
@@ -157,10 +157,7 @@ impl Map for BicubicNet {
             x.add_scaled(c.x, &term);
             y.add_scaled(c.y, &term);
         }
-        let (x, y, w) = (x.coefficients(), y.coefficients(), w[total].coefficients());
-        let polynomial = curve.is_polynomial();
-        let points = x.into_iter().zip(y).zip(w).map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]);
-        Some(RationalBezier { points: points.collect() })
+        Some(RationalBezier::from_coordinates([&x, &y, &w[total]], curve.is_polynomial()))
     }
 }
 

@@ -10,9 +10,9 @@
 //! regular positions (with weights 1), the map is Cᵏ across that side. The Bézier pieces of a B-spline lattice of degree d agree
 //! in d − 1 derivatives; the lines between them are creases too.
 
+use super::newton::kinks_through;
 use super::{
-    AffineMap, Class, Cost, Crease, CreaseKind, Creases, Jet, Level, Map, NewtonInverse, Patch, RationalBezier,
-    Searches, bspline,
+    AffineMap, Class, Cost, Crease, Creases, Jet, Level, Map, NewtonInverse, Patch, RationalBezier, Searches, bspline,
 };
 use crate::budget::Budget;
 use kurbo::{Affine, Point, Rect, Vec2};
@@ -383,15 +383,8 @@ impl Map for LatticeMap {
         if self.extended && self.patches.len() == 1 {
             return self.patches[0].image(curve);
         }
-        let mut hull: Option<Rect> = None;
-        for p in &curve.points {
-            if p[2] <= 0.0 {
-                return None;
-            }
-            let p = Point::new(p[0] / p[2], p[1] / p[2]);
-            hull = Some(hull.map_or(Rect::from_points(p, p), |h| h.union_pt(p)));
-        }
-        let (h, b) = (hull?, self.inside);
+        let points = curve.hull()?.into_iter().map(|p| Rect::from_points(p, p));
+        let (h, b) = (points.reduce(|a, b| a.union(b))?, self.inside);
         if !self.extended && (h.x1 < b.x0 || h.x0 > b.x1 || h.y1 < b.y0 || h.y0 > b.y1) {
             return Some(curve.clone());
         }
@@ -452,13 +445,7 @@ impl Map for LatticeInverse {
     }
 
     fn creases(&self, out: &mut Creases) {
-        // The creases of the forward map, pulled back through the inverse.
-        let mut own = Creases::default();
-        self.map.creases(&mut own);
-        for c in own.items().iter().filter(|c| c.kind == CreaseKind::Kink) {
-            let (level, back) = (c.level.clone(), self.clone());
-            out.push(Crease::kink(Level::Field(Arc::new(move |q| level.at(back.point(q))))));
-        }
+        kinks_through(self, &self.map, out);
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {

@@ -93,9 +93,7 @@ impl Map for Local {
 
     /// For a curve whose control points, and therefore the whole curve, lie inside, or beyond one side.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        let points: Option<Vec<Point>> =
-            curve.points.iter().map(|p| (p[2] > 0.0).then(|| Point::new(p[0] / p[2], p[1] / p[2]))).collect();
-        let points = points?;
+        let points = curve.hull()?;
         if points.iter().all(|p| self.contains(*p)) {
             return self.inside.image(curve);
         }

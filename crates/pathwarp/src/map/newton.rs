@@ -423,6 +423,16 @@ pub fn inverse_over(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
     map.inverse().unwrap_or_else(by_newton)
 }
 
+/// Adds the kinks of `map`, pulled back through its inverse.
+pub(super) fn kinks_through<M: Map + Clone + 'static>(inverse: &M, map: &dyn Map, out: &mut Creases) {
+    let mut own = Creases::default();
+    map.creases(&mut own);
+    for c in own.items().iter().filter(|c| c.kind == CreaseKind::Kink) {
+        let (level, back) = (c.level.clone(), inverse.clone());
+        out.push(Crease::kink(Level::Field(Arc::new(move |q| level.at(back.point(q))))));
+    }
+}
+
 /// Newton's inverse of a map in smooth pieces.
 pub(crate) struct CreasedInverse {
     whole: Arc<NewtonInverse>,

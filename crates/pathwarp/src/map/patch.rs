@@ -17,7 +17,7 @@ const WIDTH: usize = 8;
 
 /// Jets evaluated together: with three results for each coordinate, half as many as points fit the registers.
 const JET_WIDTH: usize = WIDTH / 2;
-/// A coefficient this much smaller than the largest is rounding noise.
+/// Coefficients below this share of the largest are rounding noise.
 const NOISE: f64 = 1e-15;
 
 /// A rational tensor-product map of the plane.
@@ -373,9 +373,7 @@ impl Map for Patch {
             }
         }
         let polynomial = self.is_polynomial() && curve.is_polynomial();
-        let [x, y, w] = sums.map(|s| s.coefficients());
-        let points = x.into_iter().zip(y).zip(w).map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]);
-        Some(RationalBezier { points: points.collect() })
+        Some(RationalBezier::from_coordinates(sums.each_ref(), polynomial))
     }
 }
 

@@ -166,15 +166,14 @@ impl Formula for Quotient {
         }
         let total = self.degree;
         let local = AffineMap(self.pre).image(curve)?;
-        let of = |c: &RationalBezier, k: usize| Scaled::new(c.points.iter().map(|p| p[k]));
-        let (a, b, w) = (of(&local, 0).powers(total), of(&local, 1).powers(total), of(&local, 2).powers(total));
+        let [a, b, w] = [0, 1, 2].map(|k| local.coordinate(k).powers(total));
         let degree = curve.degree() * total;
         let on = |p: &Plane| p.on(&a, &b, &w, total, degree);
         let (mut x, mut y) = (on(&self.x), on(&self.y));
         let below = if self.is_polynomial() {
             // Add the point itself to the displacement.
-            x.add_scaled(1.0, &of(curve, 0).times(&w[total - 1]));
-            y.add_scaled(1.0, &of(curve, 1).times(&w[total - 1]));
+            x.add_scaled(1.0, &curve.coordinate(0).times(&w[total - 1]));
+            y.add_scaled(1.0, &curve.coordinate(1).times(&w[total - 1]));
             w[total].clone()
         } else {
             let below = on(&self.w);
@@ -183,8 +182,7 @@ impl Formula for Quotient {
             below
         };
         let polynomial = self.is_polynomial() && curve.is_polynomial();
-        let points = x.coefficients().into_iter().zip(y.coefficients()).zip(below.coefficients());
-        Some(RationalBezier { points: points.map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]).collect() })
+        Some(RationalBezier::from_coordinates([&x, &y, &below], polynomial))
     }
 
     fn denominator(&self, p: Point) -> f64 {
@@ -210,7 +208,7 @@ impl Formula for Quotient {
 
 // Polynomials in two variables, as rows of power coefficients.
 
-/// A coefficient this much smaller than the largest is rounding noise.
+/// Coefficients below this share of the largest are rounding noise.
 const NOISE: f64 = 4e-15;
 
 /// A polynomial in two variables a and b.

@@ -44,6 +44,22 @@ impl RationalBezier {
         Some(Self { points: vec![[arc.p0.x, arc.p0.y, 1.0], [m.x, m.y, w], [arc.p1.x, arc.p1.y, 1.0]] })
     }
 
+    /// The curve with these homogeneous coordinates. If it is `polynomial`, its weights are 1 but for rounding, and are set to 1.
+    pub(crate) fn from_coordinates([x, y, w]: [&Scaled; 3], polynomial: bool) -> Self {
+        let points = x.coefficients().into_iter().zip(y.coefficients()).zip(w.coefficients());
+        Self { points: points.map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]).collect() }
+    }
+
+    /// A homogeneous coordinate: 0 for x·w, 1 for y·w, 2 for w.
+    pub(crate) fn coordinate(&self, k: usize) -> Scaled {
+        Scaled::new(self.points.iter().map(|p| p[k]))
+    }
+
+    /// The control points, whose convex hull holds the curve; `None` if a weight is not positive.
+    pub(crate) fn hull(&self) -> Option<Vec<Point>> {
+        self.points.iter().map(|[x, y, w]| (*w > 0.0).then(|| Point::new(x / w, y / w))).collect()
+    }
+
     /// The degree.
     #[must_use]
     pub fn degree(&self) -> usize {

@@ -4,9 +4,9 @@
 //! vertical stretches within a row. Neighbours need not agree there; a path across a gap is connected by a straight line.
 
 use super::curves::{Guide, GuidePiece};
+use super::newton::kinks_through;
 use super::{
-    BicubicNet, Cost, Crease, CreaseKind, Creases, INVERSE_WORK, Jet, Level, Map, Net, NewtonInverse, RationalBezier,
-    Searches,
+    BicubicNet, Cost, Crease, Creases, INVERSE_WORK, Jet, Level, Map, Net, NewtonInverse, RationalBezier, Searches,
 };
 use crate::budget::{Budget, Search, is_over};
 use kurbo::{Affine, CubicBez, Point, Rect};
@@ -150,18 +150,9 @@ impl Map for Tiled {
 
     /// For a curve whose control points, and therefore the whole curve, lie in one tile.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        let mut tile = None;
-        for p in &curve.points {
-            if p[2] <= 0.0 {
-                return None;
-            }
-            let here = self.index(Point::new(p[0] / p[2], p[1] / p[2]));
-            if tile.replace(here).is_some_and(|previous| previous != here) {
-                return None;
-            }
-        }
-        let (j, i) = tile?;
-        self.rows[j].maps[i].image(curve)
+        let points = curve.hull()?;
+        let (j, i) = self.index(*points.first()?);
+        points.iter().all(|p| self.index(*p) == (j, i)).then(|| self.rows[j].maps[i].image(curve))?
     }
 
     /// By Newton's method in every tile, up to half the size of the region beyond it.
@@ -228,13 +219,7 @@ impl Map for TiledInverse {
     }
 
     fn creases(&self, out: &mut Creases) {
-        // The creases of the forward map, pulled back through the inverse.
-        let mut own = Creases::default();
-        self.of.creases(&mut own);
-        for c in own.items().iter().filter(|c| c.kind == CreaseKind::Kink) {
-            let (level, back) = (c.level.clone(), self.clone());
-            out.push(Crease::kink(Level::Field(Arc::new(move |q| level.at(back.point(q))))));
-        }
+        kinks_through(self, &self.of, out);
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {

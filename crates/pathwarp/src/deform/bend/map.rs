@@ -130,7 +130,7 @@ pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
 impl Map for BendMap {
     /// A jet on a curve takes less than half as long as one of a net: 7 ns on the hairpin of `tests/cli/report.rs`.
     fn cost(&self) -> Cost<'_> {
-        /// Pieces looked at, which stand for all.
+        /// Pieces to look at, which stand for all.
         const FIRST: usize = 16;
         const CURVE: f64 = 0.4;
         const SINGLY: f64 = 3.0;
@@ -456,8 +456,7 @@ impl Ribbon {
     /// Returns the exact image of a curve in (u, v), of n times its degree.
     pub(super) fn image(&self, curve: &RationalBezier) -> RationalBezier {
         let n = self.degree();
-        let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
-        let (u, v, w) = (coordinate(0), coordinate(1), coordinate(2));
+        let [u, v, w] = [0, 1, 2].map(|k| curve.coordinate(k));
         let rest = {
             let mut r = w.clone();
             r.add_scaled(-1.0, &u);
@@ -481,9 +480,7 @@ impl Ribbon {
                 add(Vec2::new(h[0], h[1]), k, i, &term(k, i).times(&v).times(&wp[j]));
             }
         }
-        let polynomial = curve.is_polynomial();
-        let points = x.coefficients().into_iter().zip(y.coefficients()).zip(wp[n].coefficients());
-        RationalBezier { points: points.map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]).collect() }
+        RationalBezier::from_coordinates([&x, &y, &wp[n]], curve.is_polynomial())
     }
 }
 

@@ -175,7 +175,7 @@ impl Region {
         }
     }
 
-    /// The vertical lines that are looked at, from left to right: some between any two ends of pieces.
+    /// Vertical lines from left to right, some between any two neighbouring ends of pieces.
     fn lines(&self) -> Vec<Upright> {
         let mut events: Vec<f64> = self.pieces.iter().flat_map(|p| [p.from, p.to]).collect();
         events.sort_by(f64::total_cmp);
@@ -240,7 +240,7 @@ impl Region {
         out
     }
 
-    /// Where an outermost interval ends: at the event beside it, or before that if its ends cross.
+    /// The x at which an outermost interval ends: the event next to it, or where its ends cross before that.
     fn outer_end(&self, (line, v): &(&Upright, Interval), event: f64) -> f64 {
         let height = |x: f64| self.pieces[v.ends[1]].y(x) - self.pieces[v.ends[0]].y(x);
         if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
@@ -253,7 +253,7 @@ impl Region {
         /// Highest, as a share of the height on the other side of the jump, and of the step.
         const THIN: f64 = 0.55;
         const LOW: f64 = 0.85;
-        /// A step is looked at this share of its distance from the end on both sides.
+        /// Heights at a step are compared at this share of its distance from the end, on both sides.
         const BESIDE: f64 = 0.25;
         let (start, stop) = (curves[0][0].from, curves[0][curves[0].len() - 1].to);
         for right in [false, true] {

@@ -383,7 +383,7 @@ pub(super) fn sharp(sub: &Subpath, around: f64) -> impl Iterator<Item = usize> {
 fn turn(sub: &Subpath, node: usize) -> f64 {
     let n = sub.segs.len();
     let (a, b) = (&sub.segs[(node + n - 1) % n], &sub.segs[node]);
-    /// The direction is taken this much further in where a piece has no speed.
+    /// Distance of the point further in whose direction counts where a piece has no speed.
     const ASIDE: f64 = 1e-4;
     let direction = |s: &Seg, t: f64, aside: f64| {
         let v = s.deriv(t);

@@ -343,7 +343,7 @@ impl Formula for BirationalInverse {
         };
         let n = piece.rows[0].points.len() - 1;
         let (alpha, beta) = (line(piece.rows[0].last, -1.0).powers(n), line(piece.rows[0].first, 1.0).powers(n));
-        let w = Scaled::new(curve.points.iter().map(|p| p[2]));
+        let w = curve.coordinate(2);
         let sum = |c: &[f64]| {
             let n = c.len() - 1;
             let mut out = Scaled::zero(n * curve.degree());
@@ -365,13 +365,11 @@ impl Formula for BirationalInverse {
         let mut chi = alpha[1].clone();
         chi.add_scaled(1.0, &beta[1]);
         let terms = [chi.times(&f0), beta[1].times(&difference), chi.times(&difference)];
-        let [s, t, w] = terms.map(|c| c.coefficients());
         let r = self.forward.region;
-        let point = |((s, t), w): ((f64, f64), f64)| {
+        Some(RationalBezier::from_coordinates(terms.each_ref(), false).mapped(|[s, t, w]| {
             let (x, y) = if self.forward.rows == Rows::LeftRight { (s, t) } else { (t, s) };
             [x * r.width() + r.x0 * w, y * r.height() + r.y0 * w, w]
-        };
-        Some(RationalBezier { points: s.into_iter().zip(t).zip(w).map(point).collect() })
+        }))
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
