@@ -93,7 +93,7 @@ pub struct BuiltRecipe {
     pub frames: Vec<Frame>,
     /// For every step, its index in the recipe.
     pub indices: Vec<usize>,
-    /// Charged for the searches of inverses.
+    /// The budget that searches of inverses are charged to.
     budget: Arc<Budget>,
 }
 

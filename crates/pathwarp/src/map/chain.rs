@@ -202,7 +202,7 @@ impl Map for Chain {
     /// With F₁ = (X₁, Y₁)/W₁ and a second map of degree d₂, the denominator of the chain is W₁^d₂ · (W₂ ∘ F₁).
     fn denominator(&self, p: Point) -> f64 {
         let step = |(p, w): (Point, f64), m: &Arc<dyn Map>| {
-            // 1 has no need for a power, and finding the degree takes time.
+            // 1 needs no power, and finding the degree takes time.
             let power = if w == 1.0 { 1 } else { m.rational_degree().map_or(1, |d| d.degree) as i32 };
             (m.point(p), w.powi(power) * m.denominator(p))
         };

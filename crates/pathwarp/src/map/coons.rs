@@ -151,8 +151,8 @@ impl Coons {
         [a, b, c, d]
     }
 
-    /// Whether both curves of a pair run at even steps along an axis between the same ends, so that the inverse has a closed form:
-    /// `Some(true)` if verticals stay vertical, `Some(false)` if horizontals stay horizontal.
+    /// Returns `Some(true)` if verticals stay vertical, `Some(false)` if horizontals stay horizontal, because both curves of a pair run at
+    /// even steps along an axis between the same ends. The inverse then has a closed form.
     fn kept_lines(&self) -> Option<bool> {
         let s = self.sides();
         [(true, Pace::Width, &s.bottom, &s.top), (false, Pace::Height, &s.left, &s.right)].into_iter().find_map(

@@ -61,7 +61,7 @@ pub struct NewtonInverse {
     map_work: f64,
     /// The work of one of the map's jets in a search.
     pub(crate) jet_work: f64,
-    /// Charged for searches.
+    /// The budget that searches are charged to.
     budget: Option<Arc<Budget>>,
 }
 

@@ -603,7 +603,7 @@ impl Repeats {
     /// Returns as many copies of `width` as fit on `length` with at least `gap` between them, spread evenly: on an open skeleton
     /// from its start to its end, on a closed one all the way around.
     fn new(width: f64, gap: f64, length: f64, closed: bool) -> Result<Self, Error> {
-        /// More copies on one skeleton are a mistake in the unit.
+        /// More copies on one skeleton are probably a mistake in the unit.
         const MAX_COPIES: f64 = 10_000.0;
         let period = width + gap;
         if period <= 0.0 {
