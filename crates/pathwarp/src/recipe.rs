@@ -26,7 +26,7 @@ use crate::budget::{Budget, Limits};
 use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Class, Creases, Map, inverse_over};
-use crate::outline::{Outline, Seg};
+use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Args, Frame, Kind, Param};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::collections::HashSet;
@@ -130,7 +130,7 @@ impl Recipe {
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
         budget: &Arc<Budget>,
     ) -> Result<BuiltRecipe, Error> {
-        self.build_parts(registry, &self.alone(frame), &[self.all_of(artwork)], budget).map(|b| b.whole)
+        self.build_parts(registry, &self.source_frame(frame), &[self.all_of(artwork)], budget).map(|b| b.whole)
     }
 
     /// Builds steps that hold for parts of the artwork, within a budget as [`Recipe::build_within`]. `start` has the frame of every step
@@ -154,7 +154,7 @@ impl Recipe {
             let work = SAMPLE_WORK * places * samples as f64 * out.map.cost().work;
             budget.spend(work).map_err(GeometryError::Limit)
         };
-        self.counted(registry, start, portions, (&count, budget))
+        self.build_counted(registry, start, portions, (&count, budget))
     }
 
     /// Returns `true` if no part of the artwork that step `i` holds for has been moved by an earlier step; for a recipe of inverse steps
@@ -192,18 +192,18 @@ impl Recipe {
     ) -> Result<BuiltRecipe, Error> {
         let unlimited = Arc::new(Budget::new(Limits::none()));
         let counting: Counting<'_> = (&|_, _| Ok(()), &unlimited);
-        self.counted(registry, &self.alone(frame), &[self.all_of(artwork)], counting).map(|b| b.whole)
+        self.build_counted(registry, &self.source_frame(frame), &[self.all_of(artwork)], counting).map(|b| b.whole)
     }
 
     /// The known frames of a recipe whose steps hold for all artwork: only that of the source.
-    fn alone(&self, source: Frame) -> Vec<Option<Frame>> {
+    fn source_frame(&self, source: Frame) -> Vec<Option<Frame>> {
         let known = if self.undoes() { self.steps.len() - 1 } else { 0 };
         let mut source = Some(source);
         (0..self.steps.len()).map(|i| if i == known { source.take() } else { None }).collect()
     }
 
-    /// Builds every step.
-    fn counted(
+    /// Builds every step; inverse steps alone in the frames on the way back.
+    fn build_counted(
         &self,
         registry: &Registry,
         start: &[Option<Frame>],
@@ -211,10 +211,10 @@ impl Recipe {
         counting: Counting<'_>,
     ) -> Result<BuiltParts, Error> {
         if !self.undoes() {
-            return self.built(registry, start, portions, counting);
+            return self.build_in(registry, start, portions, counting);
         }
         let (frames, off) = self.frames_on_the_way_back(registry, start, portions, counting)?;
-        let mut out = self.built(registry, &frames, portions, counting)?;
+        let mut out = self.build_in(registry, &frames, portions, counting)?;
         if let Some(step) = out.whole.steps.last_mut().filter(|_| off > SETTLED) {
             step.warn(format!(
                 "the boxes that percentages of the later steps refer to were not found again, and differ by {off:.1e} of their size: \
@@ -248,7 +248,7 @@ impl Recipe {
             })
             .collect();
         let sources: Vec<Option<Frame>> = start.iter().rev().cloned().collect();
-        let there = self.inverted().built(registry, &sources, &there, counting)?.whole;
+        let there = self.inverted().build_in(registry, &sources, &there, counting)?.whole;
         let mut frames: Vec<Frame> = there.frames.into_iter().rev().collect();
         let (count, budget) = counting;
         let mut off = f64::INFINITY;
@@ -282,8 +282,8 @@ impl Recipe {
         Ok((frames.into_iter().map(Some).collect(), off))
     }
 
-    /// Builds every step in its frame, or else that of the artwork on its way.
-    fn built(
+    /// Builds every step in its frame from `start`, or else in that of the artwork after the earlier steps.
+    fn build_in(
         &self,
         registry: &Registry,
         start: &[Option<Frame>],
@@ -415,11 +415,10 @@ impl BuiltRecipe {
             return image_box(artwork, &self.placement.copies, &self.map);
         };
         // The letters of the frame are those of all that the first step holds for.
-        let start = |o: &Outline| o.subpaths.first().map(|s| [s.start.x.to_bits(), s.start.y.to_bits()]);
-        let own: HashSet<[u64; 2]> =
-            artwork.flat_map(|o| &o.subpaths).map(|s| [s.start.x.to_bits(), s.start.y.to_bits()]).collect();
+        let key = |s: &Subpath| [s.start.x.to_bits(), s.start.y.to_bits()];
+        let own: HashSet<[u64; 2]> = artwork.flat_map(|o| &o.subpaths).map(key).collect();
         let placed = first.letters.iter().zip(&self.placement.letters);
-        let placed = placed.filter(|(l, _)| start(&l.outline).is_some_and(|s| own.contains(&s)));
+        let placed = placed.filter(|(l, _)| l.outline.subpaths.first().is_some_and(|s| own.contains(&key(s))));
         let boxes = placed.filter_map(|(l, p)| image_box(std::iter::once(&l.outline), p, &self.after));
         boxes.reduce(|a, b| a.union(b))
     }

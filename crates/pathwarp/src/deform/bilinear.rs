@@ -171,18 +171,19 @@ impl Formula for BilinearMap {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let det = self.det(0.5, 0.5);
-        (det != 0.0 && det.is_finite()).then(|| Arc::new(Inverse { of: *self, side: det.signum() }) as Arc<dyn Map>)
+        (det != 0.0 && det.is_finite())
+            .then(|| Arc::new(BilinearInverse { of: *self, side: det.signum() }) as Arc<dyn Map>)
     }
 }
 
 /// The inverse on the side of the fold where the determinant has the sign `side`.
 #[derive(Debug, Clone, Copy)]
-struct Inverse {
+struct BilinearInverse {
     of: BilinearMap,
     side: f64,
 }
 
-impl Inverse {
+impl BilinearInverse {
     /// The quadratic's coefficients, highest first.
     fn quadratic<S: Real>(&self, qx: S, qy: S) -> [S; 3] {
         let BilinearMap { a, b, c, .. } = self.of;
@@ -191,7 +192,7 @@ impl Inverse {
     }
 }
 
-impl Formula for Inverse {
+impl Formula for BilinearInverse {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let BilinearMap { p, a, b, c } = self.of;
         let (qx, qy) = (x - p.x, y - p.y);

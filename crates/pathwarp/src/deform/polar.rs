@@ -333,19 +333,19 @@ impl Formula for PolarMap {
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(Unrolled { ring: *self, half: None }))
+        Some(Arc::new(PolarInverse { ring: *self, half: None }))
     }
 }
 
 /// The inverse: the ring unrolled.
 #[derive(Debug, Clone, Copy)]
-struct Unrolled {
+struct PolarInverse {
     ring: PolarMap,
     /// In a branch of a whole turn, the sign of the angles in this half, edges included.
     half: Option<f64>,
 }
 
-impl Unrolled {
+impl PolarInverse {
     /// Returns the distance from the centre and the angle from the middle.
     fn polar<S: Real>(&self, x: S, y: S) -> (S, S) {
         let m = &self.ring;
@@ -362,7 +362,7 @@ impl Unrolled {
     }
 }
 
-impl Formula for Unrolled {
+impl Formula for PolarInverse {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let m = &self.ring;
         let (r, angle) = self.polar(x, y);

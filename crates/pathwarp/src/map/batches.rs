@@ -257,7 +257,7 @@ pub(super) struct Target {
 }
 
 /// The search for one target's preimage.
-struct Approach {
+struct BroydenSearch {
     index: usize,
     q: Point,
     at: Point,
@@ -266,7 +266,7 @@ struct Approach {
     inverse: [Vec2; 2],
 }
 
-impl Approach {
+impl BroydenSearch {
     /// H·v.
     fn times(&self, v: Vec2) -> Vec2 {
         self.inverse[0] * v.x + self.inverse[1] * v.y
@@ -295,14 +295,14 @@ impl Approach {
 }
 
 /// For each target, a place whose image is within `enough` of its point, if one is found.
-pub(super) fn approach(map: &dyn Map, targets: &[Option<Target>], enough: f64) -> Vec<Option<Point>> {
+pub(super) fn broyden(map: &dyn Map, targets: &[Option<Target>], enough: f64) -> Vec<Option<Point>> {
     let mut found = vec![None; targets.len()];
     let search = |(index, target): (usize, &Option<Target>)| {
         let Target { q, start, jet } = (*target)?;
         let back = jet.inverted(start);
-        Some(Approach { index, q, at: start, residual: q - jet.p, inverse: [back.dx, back.dy] })
+        Some(BroydenSearch { index, q, at: start, residual: q - jet.p, inverse: [back.dx, back.dy] })
     };
-    let mut active: Vec<Approach> = targets.iter().enumerate().filter_map(search).collect();
+    let mut active: Vec<BroydenSearch> = targets.iter().enumerate().filter_map(search).collect();
     for _ in 0..MAX_STEPS {
         active.retain(|s| {
             let near = s.residual.hypot() <= enough;

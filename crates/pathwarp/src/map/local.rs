@@ -180,7 +180,7 @@ impl Map for LocalInverse {
         }
         Some(match &self.back {
             InnerInverse::Closed(m) => m.clone(),
-            InnerInverse::Newton(_) => Arc::new(Inside(self.clone())),
+            InnerInverse::Newton(_) => Arc::new(InsideInverse(self.clone())),
         })
     }
 
@@ -196,9 +196,9 @@ impl Searches for LocalInverse {
 }
 
 /// The branch of a [`LocalInverse`] that leads inside.
-struct Inside(LocalInverse);
+struct InsideInverse(LocalInverse);
 
-impl Map for Inside {
+impl Map for InsideInverse {
     fn cost(&self) -> Cost<'_> {
         self.0.cost().searching(self)
     }
@@ -208,7 +208,7 @@ impl Map for Inside {
     }
 }
 
-impl Searches for Inside {
+impl Searches for InsideInverse {
     fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
         Arc::new(Self(self.0.spending(budget)))
     }

@@ -14,7 +14,7 @@
 //! (the part of the box that the map is designed for) take precedence; outside the core, only sheets with the orientation of the
 //! core's center count, and of those the preimage nearest to the core is chosen.
 
-use super::batches::{Target, approach, by_rounds};
+use super::batches::{Target, broyden, by_rounds};
 use super::{Batches, Cost, Crease, CreaseKind, Creases, Jet, Level, Map, Searches};
 use crate::budget::{Budget, Search, is_over};
 use kurbo::{Point, Rect, Vec2};
@@ -48,7 +48,7 @@ pub struct NewtonInverse {
     /// The sign of the determinant at the center of the core.
     orientation: f64,
     reach: f64,
-    starts: Arc<[Start]>,
+    starts: Arc<[StartingPoint]>,
     /// Size of a starting point's cell.
     cell: Vec2,
     /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`.
@@ -72,7 +72,7 @@ impl fmt::Debug for NewtonInverse {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Start {
+struct StartingPoint {
     at: Point,
     jet: Jet,
     in_core: bool,
@@ -129,7 +129,7 @@ impl NewtonInverse {
                 0.75 * (j.dx.x.abs() * cell.x + j.dy.x.abs() * cell.y),
                 0.75 * (j.dx.y.abs() * cell.x + j.dy.y.abs() * cell.y),
             );
-            starts.push(Start { at: *at, jet: *j, in_core: core.contains(*at) });
+            starts.push(StartingPoint { at: *at, jet: *j, in_core: core.contains(*at) });
             boxes.push(Rect::from_points(j.p - half, j.p + half));
         }
         let bounds = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
@@ -191,7 +191,7 @@ impl NewtonInverse {
     /// As [`NewtonInverse::solve`], but considers only preimages that `accept` accepts.
     #[must_use]
     pub(crate) fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
-        self.counted(self.search(q, accept))
+        self.charged(self.search(q, accept))
     }
 
     /// As [`NewtonInverse::solve_where`], with the work done, for callers that charge it themselves.
@@ -201,7 +201,7 @@ impl NewtonInverse {
     }
 
     /// Charges the work of a search.
-    pub(super) fn counted(&self, (found, search): (Option<Jet>, Search)) -> Option<Jet> {
+    fn charged(&self, (found, search): (Option<Jet>, Search)) -> Option<Jet> {
         search.spend(self.budget.as_ref(), 1, self.jet_work);
         found
     }
@@ -235,9 +235,9 @@ impl NewtonInverse {
         let near = self.buckets[j * self.side + i].len();
         if near == 0 {
             search.starts += self.starts.len();
-            let off = |s: &Start| (s.jet.p - q).hypot2();
+            let off = |s: &StartingPoint| (s.jet.p - q).hypot2();
             let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            return self.newton(map, start.at, q, search).filter(|found| self.counts(found) && accept(found.p));
+            return self.newton(map, start.at, q, search).filter(|found| self.is_eligible(found) && accept(found.p));
         }
         let mut tried = [u32::MAX; MAX_TRIES];
         let mut best: Option<(f64, Jet)> = None;
@@ -252,7 +252,7 @@ impl NewtonInverse {
             if distance <= self.reach {
                 return Some(found);
             }
-            if self.counts(&found) && best.is_none_or(|(least, _)| distance < least) {
+            if self.is_eligible(&found) && best.is_none_or(|(least, _)| distance < least) {
                 best = Some((distance, found));
             }
         }
@@ -261,13 +261,13 @@ impl NewtonInverse {
 
     /// For each point, a place in the core near its first starting point, found from values alone: where Newton's method ends too, up to
     /// rounding.
-    fn approached(&self, qs: &[Point]) -> Vec<Option<Point>> {
+    fn places_by_values(&self, qs: &[Point]) -> Vec<Option<Point>> {
         let target = |q: &Point| {
             let start = self.starts.get(self.next_start(*q, &[])? as usize).filter(|_| q.is_finite())?;
             Some(Target { q: *q, start: start.at, jet: start.jet })
         };
         let targets: Vec<Option<Target>> = qs.iter().map(target).collect();
-        let mut found = approach(&*self.map, &targets, self.rounding);
+        let mut found = broyden(&*self.map, &targets, self.rounding);
         for (place, target) in found.iter_mut().zip(&targets) {
             let near = |p: &Point, start: Point| {
                 let off = *p - start;
@@ -280,7 +280,7 @@ impl NewtonInverse {
 
     /// The jets of the inverse at `qs` from places found by values alone, or by Newton's method where there is none.
     fn jets_by_values(&self, qs: &[Point]) -> Vec<Jet> {
-        let places = self.approached(qs);
+        let places = self.places_by_values(qs);
         let known: Vec<Point> = places.iter().flatten().copied().collect();
         let mut jets = vec![Jet::default(); known.len()];
         self.map.jets(&known, &mut jets);
@@ -301,7 +301,7 @@ impl NewtonInverse {
     fn jets_by_rounds(&self, qs: &[Point]) -> Vec<Jet> {
         // Each round repeats a search from its start; only the last time is charged.
         let found = by_rounds(&*self.map, qs, |map, q| self.search_by(map, *q, |_| true));
-        found.into_iter().map(|f| self.counted(f).unwrap_or(Jet::UNDEFINED)).collect()
+        found.into_iter().map(|f| self.charged(f).unwrap_or(Jet::UNDEFINED)).collect()
     }
 
     /// Distance from the core along the axis where it is larger; 0 inside.
@@ -310,13 +310,13 @@ impl NewtonInverse {
         (c.x0 - p.x).max(p.x - c.x1).max(c.y0 - p.y).max(p.y - c.y1).max(0.0)
     }
 
-    /// Returns `true` for a preimage in the core, or on a sheet with its orientation.
-    fn counts(&self, found: &Jet) -> bool {
+    /// Returns `true` for a preimage in the core, or on a sheet with the orientation of the core's center.
+    fn is_eligible(&self, found: &Jet) -> bool {
         found.det().signum() == self.orientation || self.distance_from_core(found.p) <= self.reach
     }
 
     /// Newton's method from one starting point.
-    pub(super) fn newton(&self, map: &dyn Map, start: Point, q: Point, search: &mut Search) -> Option<Jet> {
+    fn newton(&self, map: &dyn Map, start: Point, q: Point, search: &mut Search) -> Option<Jet> {
         let room = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
         let mut x = start;
         let mut jet = map.jet(x);
@@ -521,7 +521,7 @@ impl Map for OnBranch {
         let Some(near) = near else { return Jet::UNDEFINED };
         let mut search = Search::default();
         let found = self.whole.newton(&*self.map, near.p, q, &mut search);
-        self.whole.counted((found, search)).unwrap_or(Jet::UNDEFINED)
+        self.whole.charged((found, search)).unwrap_or(Jet::UNDEFINED)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

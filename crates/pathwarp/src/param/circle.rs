@@ -51,17 +51,17 @@ fn example(word: &str) -> &'static str {
 /// Reads a circle, an arc or a spiral; `None` if the text is none of them. The error continues a sentence about the text.
 pub(super) fn circle(text: &str, frame: &Frame) -> Option<Result<Outline, String>> {
     let (word, values) = split(text)?;
-    Some(Typed::new(word, values, frame).and_then(|t| if word == "spiral" { t.spiral() } else { t.arc() }))
+    Some(Values::new(word, values, frame).and_then(|t| if word == "spiral" { t.spiral() } else { t.arc() }))
 }
 
 /// The values as typed.
-struct Typed<'a> {
+struct Values<'a> {
     word: &'a str,
     given: Vec<(&'a str, &'a str)>,
     frame: &'a Frame,
 }
 
-impl<'a> Typed<'a> {
+impl<'a> Values<'a> {
     fn new(word: &'a str, values: &'a str, frame: &'a Frame) -> Result<Self, String> {
         /// The name under which a direction is kept.
         const DIRECTION: &str = "direction";

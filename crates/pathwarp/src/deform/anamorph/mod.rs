@@ -30,7 +30,7 @@ use crate::error::{Error, within};
 use crate::map::{AffineMap, Chain, Local, Map};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, Point, Rect, Shape, Vec2};
-use net::{Net, Push};
+use net::{Push, PushedNet};
 use scene::Scene;
 use std::sync::Arc;
 use surface::{Anamorphosis, Camera, Radial, Surface};
@@ -62,7 +62,7 @@ pub struct Anamorph {
     length: Option<f64>,
     onto: Option<Onto>,
     look: Look,
-    net: Option<Net>,
+    net: Option<PushedNet>,
     local: bool,
     files: Vec<SpaceFile>,
 }
@@ -146,7 +146,7 @@ impl Anamorph {
         Self { look: Look::From([x, y, z]), ..self }
     }
 
-    fn with_net(mut self, change: impl FnOnce(&mut Net)) -> Self {
+    fn with_net(mut self, change: impl FnOnce(&mut PushedNet)) -> Self {
         change(self.net.get_or_insert_default());
         self
     }
@@ -545,7 +545,7 @@ fn look(s: &Settings<'_>) -> Result<Look, Error> {
 }
 
 /// Reads the control points; `None` if no parameter of theirs is given.
-fn net(s: &Settings<'_>) -> Result<Option<Net>, Error> {
+fn net(s: &Settings<'_>) -> Result<Option<PushedNet>, Error> {
     const NAMES: [&str; 6] = ["reference", "degree", "push", "away", "at", "point"];
     if !NAMES.iter().any(|n| s.given(n)) {
         return Ok(None);
@@ -578,7 +578,7 @@ fn net(s: &Settings<'_>) -> Result<Option<Net>, Error> {
         let (place, factor) = text.rsplit_once(':').ok_or_else(|| Error::usage("point", text, "is not X,Y:FACTOR"))?;
         pushes.push(Push::Prescribe(s.point_in("point", place)?, s.number_in("point", factor)?));
     }
-    Ok(Some(Net { reference: reference.unwrap_or_default(), degree, pushes }))
+    Ok(Some(PushedNet { reference: reference.unwrap_or_default(), degree, pushes }))
 }
 
 fn degree(text: &str, part: &str) -> Result<usize, Error> {

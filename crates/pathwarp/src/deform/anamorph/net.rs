@@ -9,7 +9,7 @@ use kurbo::{Point, Rect, Shape};
 
 /// A net of control points, and the pushes along rays through the eye.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Net {
+pub(super) struct PushedNet {
     /// Three corners of a triangle, two of a box; empty: the artwork's box.
     pub(super) reference: Vec<Point>,
     /// Degrees across and down a box; a triangle has the first.
@@ -17,7 +17,7 @@ pub(super) struct Net {
     pub(super) pushes: Vec<Push>,
 }
 
-impl Default for Net {
+impl Default for PushedNet {
     fn default() -> Self {
         Self { reference: Vec::new(), degree: [1, 1], pushes: Vec::new() }
     }
@@ -60,7 +60,7 @@ impl Push {
     }
 }
 
-impl Net {
+impl PushedNet {
     /// Returns the net with its control points pushed; the eye is `distance` in front of the drawing.
     pub(super) fn dilation(&self, scene: &Scene, distance: f64, local: bool) -> Result<Dilation, Error> {
         let reference = self.reference(scene)?;

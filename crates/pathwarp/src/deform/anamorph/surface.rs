@@ -571,14 +571,14 @@ impl Anamorphosis {
 
     /// Returns the eye's view: the drawing itself, computed through space.
     pub(super) fn seen(&self) -> Arc<dyn Map> {
-        Arc::new(Seen(self.clone()))
+        Arc::new(EyeView(self.clone()))
     }
 
     /// Returns a camera's view. The inverse is searched over `domain`.
     pub(super) fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
         match self.flattened(camera.at, camera.axes, camera.reach, Some(camera.forward), camera.centre) {
             Some(q) => q.simplest(),
-            None => Arc::new(Viewed { of: self.clone(), camera: *camera, domain }),
+            None => Arc::new(CameraView { of: self.clone(), camera: *camera, domain }),
         }
     }
 
@@ -595,9 +595,9 @@ impl Anamorphosis {
 }
 
 /// The eye's view.
-struct Seen(Anamorphosis);
+struct EyeView(Anamorphosis);
 
-impl Formula for Seen {
+impl Formula for EyeView {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         self.0.back(self.0.at(x, y))
     }
@@ -613,13 +613,13 @@ impl Formula for Seen {
 
 /// A camera's view.
 #[derive(Clone)]
-struct Viewed {
+struct CameraView {
     of: Anamorphosis,
     camera: Camera,
     domain: Rect,
 }
 
-impl Formula for Viewed {
+impl Formula for CameraView {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let q = self.of.at(x, y);
         let c = &self.camera;
@@ -682,14 +682,14 @@ impl Formula for Unrolled {
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(Rolled(self.clone())))
+        Some(Arc::new(RolledUp(self.clone())))
     }
 }
 
 /// The inverse: rolled up again, and seen by the eye.
-struct Rolled(Unrolled);
+struct RolledUp(Unrolled);
 
-impl Formula for Rolled {
+impl Formula for RolledUp {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let (r, kappa, sigma, m) = self.0.round();
         let (x, y) = if r.level { (y, x) } else { (x, y) };

@@ -281,7 +281,7 @@ impl SkeletonPiece {
         match &self.strip {
             Strip::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
             Strip::Normals { spine, table, mitres: [a, b], even } => {
-                let Moving { p, t, bend } = spine.moving(table.parameter(s));
+                let MovingFrame { p, t, bend } = spine.moving(table.parameter(s));
                 let side = self.side(t, *a, *b, s);
                 let along = t * ((1.0 + bend * d) / (1.0 + bend * even)) + (*b - *a) * (d / self.length);
                 (p + side * d, along, side)
@@ -316,7 +316,7 @@ pub(super) struct Spine {
 }
 
 /// The moving frame of a piece. With N the [`normal`], dT/ds = −bend·N, dN/ds = bend·T.
-pub(super) struct Moving {
+pub(super) struct MovingFrame {
     pub(super) p: Point,
     /// Unit tangent.
     pub(super) t: Vec2,
@@ -339,9 +339,9 @@ impl Spine {
     }
 
     /// Returns the moving frame at a parameter.
-    pub(super) fn moving(&self, u: f64) -> Moving {
+    pub(super) fn moving(&self, u: f64) -> MovingFrame {
         let (at, v, speed) = self.velocity(u);
-        Moving { p: self.seg.eval(u), t: v / speed, bend: v.cross(second(&self.seg, at)) / speed.powi(3) }
+        MovingFrame { p: self.seg.eval(u), t: v / speed, bend: v.cross(second(&self.seg, at)) / speed.powi(3) }
     }
 
     /// Returns a parameter with the derivative and its length there: `u` itself, or one a little further in where the curve stands still.

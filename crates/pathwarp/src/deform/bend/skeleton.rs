@@ -1,6 +1,6 @@
 //! The skeleton: a path's pieces in a row, measured, oriented, and joined.
 
-use super::map::{Moving, Ribbon, SkeletonPiece, Spine, Strip, normal};
+use super::map::{MovingFrame, Ribbon, SkeletonPiece, Spine, Strip, normal};
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::map::curves::ArcLength;
@@ -156,7 +156,7 @@ artwork's height; a smaller `width` helps too",
 
     /// Returns the unit normals at every piece's ends, mitred at corners, and the corners.
     fn sides(&self) -> Result<(Vec<[Vec2; 2]>, Vec<Corner>), Error> {
-        let ends: Vec<[Moving; 2]> = self.spines.iter().map(|(s, _)| [s.moving(0.0), s.moving(1.0)]).collect();
+        let ends: Vec<[MovingFrame; 2]> = self.spines.iter().map(|(s, _)| [s.moving(0.0), s.moving(1.0)]).collect();
         let mut sides: Vec<[Vec2; 2]> = ends.iter().map(|[a, b]| [normal(a.t), normal(b.t)]).collect();
         let mut corners = Vec::new();
         for (i, j) in self.joints() {

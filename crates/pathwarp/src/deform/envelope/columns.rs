@@ -84,7 +84,7 @@ impl Interval {
 }
 
 /// A vertical line: its x, the events on both sides of it, the width it stands for and its intervals.
-struct Upright {
+struct VerticalLine {
     x: f64,
     between: [f64; 2],
     width: f64,
@@ -111,7 +111,7 @@ impl Columns {
         let sloping = all.smoothed(curves.clone(), RAMP)?;
         let level = all.smoothed(curves, 0.0).filter(|l| l.area >= LEVEL * sloping.area);
         let best = level.unwrap_or(sloping);
-        let Smooth { curves: [low, high], jumps, heights, area: held } = &best;
+        let SmoothCurves { curves: [low, high], jumps, heights, area: held } = &best;
         let (from, to) = (low.first()?.from, low.last()?.to);
         let lowest = ends * heights.iter().map(|h| h.1).fold(0.0, f64::max);
         let height = |x: f64| all.at(high, x) - all.at(low, x) - lowest;
@@ -139,7 +139,7 @@ impl Columns {
 }
 
 /// Two curves without jumps: low and high.
-struct Smooth {
+struct SmoothCurves {
     curves: [Vec<Span>; 2],
     /// Where slopes begin.
     jumps: Vec<Point>,
@@ -176,7 +176,7 @@ impl Region {
     }
 
     /// Vertical lines from left to right, some between any two neighbouring ends of pieces.
-    fn lines(&self) -> Vec<Upright> {
+    fn lines(&self) -> Vec<VerticalLine> {
         let mut events: Vec<f64> = self.pieces.iter().flat_map(|p| [p.from, p.to]).collect();
         events.sort_by(f64::total_cmp);
         events.dedup_by(|b, a| *b - *a <= 1e-11 * self.bounds.width());
@@ -190,7 +190,7 @@ impl Region {
             let width = (e[1] - e[0]) / n;
             for i in 0..n as u32 {
                 let x = e[0] + (f64::from(i) + 0.5) * width;
-                out.push(Upright { x, between: [e[0], e[1]], width, intervals: self.intervals(&here, x) });
+                out.push(VerticalLine { x, between: [e[0], e[1]], width, intervals: self.intervals(&here, x) });
             }
         }
         out
@@ -219,7 +219,7 @@ impl Region {
     }
 
     /// The low (0) or high (1) end of the chosen intervals as parts of pieces.
-    fn traced(&self, chosen: &[(&Upright, Interval)], end: usize) -> Vec<Span> {
+    fn traced(&self, chosen: &[(&VerticalLine, Interval)], end: usize) -> Vec<Span> {
         let mut out: Vec<Span> = Vec::new();
         let (first, last) = (&chosen[0], &chosen[chosen.len() - 1]);
         let mut from = self.outer_end(first, first.0.between[0]);
@@ -241,7 +241,7 @@ impl Region {
     }
 
     /// The x at which an outermost interval ends: the event next to it, or where its ends cross before that.
-    fn outer_end(&self, (line, v): &(&Upright, Interval), event: f64) -> f64 {
+    fn outer_end(&self, (line, v): &(&VerticalLine, Interval), event: f64) -> f64 {
         let height = |x: f64| self.pieces[v.ends[1]].y(x) - self.pieces[v.ends[0]].y(x);
         if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
     }
@@ -288,7 +288,7 @@ impl Region {
     }
 
     /// Leads slopes over the jumps of two curves. `None` if the curves meet.
-    fn smoothed(&mut self, mut curves: [Vec<Span>; 2], ramp: f64) -> Option<Smooth> {
+    fn smoothed(&mut self, mut curves: [Vec<Span>; 2], ramp: f64) -> Option<SmoothCurves> {
         let mut jumps = Vec::new();
         for (curve, out) in curves.iter_mut().zip([-1.0, 1.0]) {
             self.smooth(curve, out, ramp, &mut jumps);
@@ -297,7 +297,7 @@ impl Region {
         let (from, to) = (low.first()?.from, low.last()?.to);
         let heights = self.heights(low, high, from, to);
         let area = heights.iter().map(|h| h.1).sum::<f64>() * (to - from) / heights.len() as f64;
-        heights.iter().all(|h| h.1 > 0.0).then_some(Smooth { curves, jumps, heights, area })
+        heights.iter().all(|h| h.1 > 0.0).then_some(SmoothCurves { curves, jumps, heights, area })
     }
 
     /// Leads slopes over jumps of a curve; `out` is −1 for the low and 1 for the high one.
@@ -404,7 +404,7 @@ impl Piece {
 }
 
 /// Returns the intervals from left to right, each meeting the next, with the largest area.
-fn largest(lines: &[Upright]) -> Option<Vec<(&Upright, Interval)>> {
+fn largest(lines: &[VerticalLine]) -> Option<Vec<(&VerticalLine, Interval)>> {
     // For every interval, the largest area from it on, and the next interval.
     let mut best: Vec<Vec<(f64, Option<usize>)>> = vec![Vec::new(); lines.len()];
     for k in (0..lines.len()).rev() {

@@ -52,8 +52,8 @@ pub(super) fn ring(
     places: &[Point],
 ) -> Result<Ring, Error> {
     let bounds = bounds(sub);
-    let Found { corners: locations, how, rival } = match corners {
-        Some(corners) => Found { corners: given(sub, corners, bounds)?, how: "as given", rival: None },
+    let FoundCorners { corners: locations, how, rival } = match corners {
+        Some(corners) => FoundCorners { corners: given(sub, corners, bounds)?, how: "as given", rival: None },
         None => found(name, sub, bounds, places)?,
     };
     let drawn = cut(&sub.segs, locations);
@@ -168,7 +168,7 @@ fn given(sub: &Subpath, corners: &Corners, bounds: Rect) -> Result<[Location; 4]
 /// Finds corners: a path's only four nodes if each lies in another quarter of its box; else, of all choices of four sharp nodes, and
 /// of points nearest to the corners of the box in whose quarter there is none, the one that distorts least. `places` are those of the
 /// artwork, in the unit square.
-fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Found, Error> {
+fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<FoundCorners, Error> {
     let n = sub.segs.len();
     let mut sharp: Vec<usize> = (0..n).filter(|&i| turn(sub, i).abs() >= CORNER).collect();
     let mut seen: Vec<_> = (0..n).filter_map(|i| quarter(sub.segs[i].start(), bounds)).collect();
@@ -176,7 +176,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     seen.dedup();
     // Four nodes are meant as corners, unless they are those of a circle.
     if n == 4 && seen.len() == 4 {
-        return Ok(Found { corners: [0, 1, 2, 3].map(|i| (i, 0.0)), how: "its four nodes", rival: None });
+        return Ok(FoundCorners { corners: [0, 1, 2, 3].map(|i| (i, 0.0)), how: "its four nodes", rival: None });
     }
     sharp.sort_by(|a, b| turn(sub, *b).abs().total_cmp(&turn(sub, *a).abs()).then(a.cmp(b)));
     sharp.truncate(MAX_SHARP);
@@ -212,7 +212,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     }
     candidates.sort_by(|a, b| a.0.0.cmp(&b.0.0).then(a.0.1.total_cmp(&b.0.1)));
     candidates.dedup_by(|a, b| a.0 == b.0);
-    let flat = Flat::new(sub);
+    let flat = FlatPath::new(sub);
     let at: Vec<f64> = candidates.iter().map(|c| flat.length_at(c.0)).collect();
     let mut scored: Vec<(f64, [usize; 4])> = Vec::new();
     let m = candidates.len();
@@ -236,7 +236,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     let differs =
         |four: &[usize; 4]| four.iter().any(|i| best.iter().all(|j| share(place(*i) - place(*j)).hypot() > DIFFERENT));
     let rival = scored.iter().skip(1).find(|s| differs(&s.1)).filter(|s| s.0 <= score + RIVAL_MARGIN);
-    Ok(Found {
+    Ok(FoundCorners {
         corners: best.map(|i| candidates[i].0),
         how: match smooth {
             0 => "found by angle, the least distortion",
@@ -248,7 +248,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
 }
 
 /// Corners found.
-struct Found {
+struct FoundCorners {
     corners: [Location; 4],
     how: &'static str,
     /// Others that are hardly worse, for a message.
@@ -256,7 +256,7 @@ struct Found {
 }
 
 /// A closed path as lines, with the length from its start to every point.
-struct Flat {
+struct FlatPath {
     points: Vec<Point>,
     lengths: Vec<f64>,
 }
@@ -264,7 +264,7 @@ struct Flat {
 /// Lines per piece.
 const LINES: u32 = 16;
 
-impl Flat {
+impl FlatPath {
     fn new(sub: &Subpath) -> Self {
         let at = |s: &Seg| (0..LINES).map(|i| s.eval(f64::from(i) / f64::from(LINES))).collect::<Vec<_>>();
         let mut points: Vec<Point> = sub.segs.iter().flat_map(at).collect();
@@ -451,7 +451,7 @@ pub(super) struct Curves<'a> {
 }
 
 /// Two facing curves, run the same way, and those drawn between them.
-struct Facing {
+struct FacingCurves {
     /// Bottom and top, rather than left and right.
     lying: bool,
     first: Vec<Seg>,
@@ -465,7 +465,7 @@ impl Curves<'_> {
     pub(super) fn ring(&self) -> Result<Ring, Error> {
         let mut notes = Vec::new();
         let facing = self.facing(&mut notes)?;
-        let Facing { lying, first, second, between } = &facing;
+        let FacingCurves { lying, first, second, between } = &facing;
         let [a, b, c, d] = [start(first), end(first), start(second), end(second)];
         let size = [b, c, d].iter().map(|p| p.distance(a)).fold(0.0, f64::max);
         let names = if *lying { ["left", "right"] } else { ["bottom", "top"] };
@@ -479,7 +479,7 @@ impl Curves<'_> {
             None => Ok(vec![Seg::Line(Line::new(from, to))]),
         };
         let (at_start, at_end) = (join(0, a, c)?, join(1, b, d)?);
-        let Facing { lying, first, second, .. } = facing;
+        let FacingCurves { lying, first, second, .. } = facing;
         let warnings = self.exchanged(lying, &first, &second).into_iter().collect();
         let mut sides = if lying {
             [first, at_end, reversed(&second), reversed(&at_start)]
@@ -523,7 +523,7 @@ impl Curves<'_> {
     }
 
     /// Returns the pair of curves drawn on both sides, the second a copy of the first if it is drawn alone.
-    fn facing(&self, notes: &mut Vec<String>) -> Result<Facing, Error> {
+    fn facing(&self, notes: &mut Vec<String>) -> Result<FacingCurves, Error> {
         let [bottom, right, top, left] = [0, 1, 2, 3].map(|k| self.curve(k));
         let (mut bottom, right, mut top, left) = (bottom?, right?, top?, left?);
         let given = [&bottom, &right, &top, &left].iter().filter(|c| c.is_some()).count();
@@ -545,11 +545,11 @@ impl Curves<'_> {
         match (bottom, top, left, right) {
             (Some(mut a), Some(mut b), left, right) => {
                 run(&mut a, &mut b, |v| v.x);
-                Ok(Facing { lying: true, first: a, second: b, between: [left, right] })
+                Ok(FacingCurves { lying: true, first: a, second: b, between: [left, right] })
             }
             (bottom, top, Some(mut a), Some(mut b)) => {
                 run(&mut a, &mut b, |v| -v.y);
-                Ok(Facing { lying: false, first: a, second: b, between: [bottom, top] })
+                Ok(FacingCurves { lying: false, first: a, second: b, between: [bottom, top] })
             }
             (Some(_), ..) => Err(needs_facing("top")),
             _ => Err(needs_facing("bottom")),

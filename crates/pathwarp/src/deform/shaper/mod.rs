@@ -340,6 +340,7 @@ fn outer_net(sides: &[CubicBez; 4], a: &Arrangement) -> Net {
 fn from_rows(given: &[NamedPath]) -> Result<Net, Error> {
     let name = &given[0].name;
     let subpaths: Vec<_> = given.iter().flat_map(|p| &p.outline.subpaths).collect();
+    let points: Vec<Point> = subpaths.iter().flat_map(|s| s.anchors()).collect();
     let rows: Option<Vec<[Point; 4]>> = if subpaths.len() == 4 && subpaths.iter().all(|s| s.segs.len() == 1) {
         let row = |s: &Seg| {
             let c = s.to_cubic();
@@ -347,13 +348,11 @@ fn from_rows(given: &[NamedPath]) -> Result<Net, Error> {
         };
         Some(subpaths.iter().map(|s| row(&s.segs[0])).collect())
     } else {
-        let points: Vec<Point> = subpaths.iter().flat_map(|s| s.anchors()).collect();
         (points.len() == 16).then(|| points.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]).collect())
     };
     let Some([a, b, c, d]) = rows.as_deref() else {
-        let anchors: Vec<Point> = subpaths.iter().flat_map(|s| s.anchors()).collect();
         let expected = "16 points, or four paths of one cubic each";
-        return Err(GeometryError::anchor_count(name, &anchors, expected).into());
+        return Err(GeometryError::anchor_count(name, &points, expected).into());
     };
     Ok([*a, *b, *c, *d])
 }
