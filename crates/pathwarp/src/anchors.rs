@@ -41,8 +41,7 @@ impl Anchors {
 /// Returns the only connected run of a path, without a stray closing line.
 pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<Subpath, Error> {
     let [sub] = path.outline.subpaths.as_slice() else {
-        let anchors: Vec<Point> = path.outline.subpaths.iter().flat_map(Subpath::anchors).collect();
-        return Err(GeometryError::anchor_count(&path.name, &anchors, expected).into());
+        return Err(GeometryError::anchor_count(&path.name, &path.outline.anchors(), expected).into());
     };
     let mut sub = sub.clone();
     let size = path.outline.bounding_box().map_or(0.0, |b| b.width().hypot(b.height()));

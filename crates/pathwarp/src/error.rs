@@ -5,7 +5,7 @@
 //! line adds its dashes.
 
 use crate::budget::Exceeded;
-use kurbo::Point;
+use kurbo::{Point, Rect};
 use thiserror::Error;
 
 /// Any error between a parameter's value and a warped path.
@@ -274,6 +274,12 @@ impl Error {
 #[cfg(not(feature = "serde"))]
 pub(crate) fn no_json(place: &str) -> Error {
     Error::input(place, "is JSON, and this build lacks the feature `serde` that reads it")
+}
+
+/// Returns a box if it has an area.
+pub(crate) fn with_area(r: Rect) -> Result<Rect, GeometryError> {
+    let (width, height) = (r.width(), r.height());
+    if width > 0.0 && height > 0.0 { Ok(r) } else { Err(GeometryError::FlatFrame { width, height }) }
 }
 
 /// Returns `value` if it is within the range, ends included.

@@ -268,7 +268,7 @@ fn row(s: &Settings<'_>, name: &str) -> Result<Option<Vec<Point>>, Error> {
             Seg::Cubic(c) => vec![c.p0, c.p1, c.p2, c.p3],
             _ => one.anchors(),
         },
-        all => all.iter().flat_map(crate::outline::Subpath::anchors).collect(),
+        _ => path.outline.anchors(),
     };
     Ok(Some(points))
 }

@@ -16,7 +16,7 @@ use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, 
 use crate::anchors;
 use crate::error::{Error, GeometryError, within};
 use crate::map::{AffineMap, Cost, Formula, Real};
-use crate::param::{Axis, Kind, NamedPath, Param, Settings};
+use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -217,9 +217,7 @@ fn handles(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
     }
     match (s.path_if("from")?, s.path_if("to")?) {
         (Some(from), Some(to)) => {
-            let anchors =
-                |p: &NamedPath| -> Vec<Point> { p.outline.subpaths.iter().flat_map(crate::Subpath::anchors).collect() };
-            let (a, b) = (anchors(&from), anchors(&to));
+            let (a, b) = (from.outline.anchors(), to.outline.anchors());
             if a.len() != b.len() {
                 let problem = format!("has {} anchors, {} has {}", b.len(), from.name, a.len());
                 return Err(Error::usage("to", to.name, problem));

@@ -7,7 +7,7 @@
 
 use super::rational_bezier::Scaled;
 use super::{AffineMap, Class, Jet, Map, RationalBezier, RationalDegree};
-use kurbo::{Affine, Point, Vec2};
+use kurbo::{Affine, Point, Rect, Vec2};
 
 /// Control points: four rows along v, each of four points along u.
 pub type Net = [[Point; 4]; 4];
@@ -82,6 +82,12 @@ impl BicubicNet {
         }
         let completed = [2, 3].iter().all(|&j| c[j][2] == Vec2::ZERO && c[j][3] == Vec2::ZERO);
         Self { pre, c, completed }
+    }
+
+    /// The map of a box, across which (u, v) run from 0 to 1.
+    pub(crate) fn over(rect: Rect, net: &Net) -> Self {
+        let (w, h) = (rect.width(), rect.height());
+        Self::new(net, Affine::new([1.0 / w, 0.0, 0.0, 1.0 / h, -rect.x0 / w, -rect.y0 / h]))
     }
 
     /// The coefficients of the powers of v at `u`.

@@ -118,6 +118,11 @@ impl Outline {
         Self { subpaths: vec![Subpath { start, segs, closed }] }
     }
 
+    /// The [anchors](Subpath::anchors) of all subpaths.
+    pub(crate) fn anchors(&self) -> Vec<Point> {
+        self.subpaths.iter().flat_map(Subpath::anchors).collect()
+    }
+
     /// All segments in drawing order.
     pub fn segs(&self) -> impl Iterator<Item = &Seg> {
         self.subpaths.iter().flat_map(|s| &s.segs)

@@ -11,7 +11,7 @@ mod quilt;
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Instead, Law, Role};
-use crate::error::{Error, GeometryError};
+use crate::error::{Error, GeometryError, with_area};
 use crate::map::Class;
 use crate::param::{Kind, NamedText, Param, Settings};
 use kurbo::{Point, Rect, Shape};
@@ -120,14 +120,6 @@ lays it onto the artwork",
         built.overlay(Role::Cage, quilt.curves());
         Ok(built)
     }
-}
-
-/// Refuses a box without area.
-fn with_area(r: Rect) -> Result<Rect, Error> {
-    if r.width() > 0.0 && r.height() > 0.0 {
-        return Ok(r);
-    }
-    Err(GeometryError::FlatFrame { width: r.width(), height: r.height() }.into())
 }
 
 // The registry's entry: reads a [`Mesh`] from text.

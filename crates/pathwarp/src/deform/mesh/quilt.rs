@@ -4,7 +4,7 @@ use crate::deform::entry::Built;
 use crate::error::Error;
 use crate::map::{BicubicNet, Map, Net, TileRow, Tiled};
 use crate::param::NamedPath;
-use kurbo::{Affine, BezPath, Point, Rect, Vec2};
+use kurbo::{BezPath, Point, Rect, Vec2};
 use std::sync::Arc;
 
 /// Limit on patches along one side.
@@ -169,9 +169,8 @@ impl Quilt {
         let across: Vec<f64> = self.x.iter().map(|u| r.x0 + u * r.width()).collect();
         let down: Vec<f64> = self.y.iter().map(|v| r.y0 + v * r.height()).collect();
         let patch = |i: usize, j: usize| -> Arc<dyn Map> {
-            let (w, h) = (across[i + 1] - across[i], down[j + 1] - down[j]);
-            let pre = Affine::new([1.0 / w, 0.0, 0.0, 1.0 / h, -across[i] / w, -down[j] / h]);
-            Arc::new(BicubicNet::new(&self.net(i, j), pre))
+            let rect = Rect::new(across[i], down[j], across[i + 1], down[j + 1]);
+            Arc::new(BicubicNet::over(rect, &self.net(i, j)))
         };
         let inner = |cuts: &[f64]| cuts[1..cuts.len() - 1].to_vec();
         let row = |j: usize| TileRow { cuts: inner(&across), maps: (0..columns).map(|i| patch(i, j)).collect() };

@@ -340,7 +340,7 @@ fn outer_net(sides: &[CubicBez; 4], a: &Arrangement) -> Net {
 fn from_rows(given: &[NamedPath]) -> Result<Net, Error> {
     let name = &given[0].name;
     let subpaths: Vec<_> = given.iter().flat_map(|p| &p.outline.subpaths).collect();
-    let points: Vec<Point> = subpaths.iter().flat_map(|s| s.anchors()).collect();
+    let points: Vec<Point> = given.iter().flat_map(|p| p.outline.anchors()).collect();
     let rows: Option<Vec<[Point; 4]>> = if subpaths.len() == 4 && subpaths.iter().all(|s| s.segs.len() == 1) {
         let row = |s: &Seg| {
             let c = s.to_cubic();

@@ -11,12 +11,13 @@ mod tests;
 use super::entry::{Built, ByHand, Case, Deformation, Example, Gallery, Info, Law, Role};
 use super::envelope::{self, Keep, Ring};
 use super::shaper::rows_path;
-use crate::error::{Error, GeometryError, within};
+use crate::anchors;
+use crate::error::{Error, with_area, within};
 use crate::formula::{Calculator, FormulaError};
 use crate::map::{BicubicNet, Net, complete_net};
 use crate::outline::Seg;
 use crate::param::{Kind, Param, Settings};
-use kurbo::{Affine, CubicBez, Point, Rect, Vec2};
+use kurbo::{CubicBez, Point, Rect, Vec2};
 use serde::Deserialize;
 use std::sync::{Arc, OnceLock};
 use thiserror::Error;
@@ -160,21 +161,9 @@ fn sides(net: &Net) -> Ring {
 
 /// Builds the map of one net over a box; the net's origin is the box's top left corner.
 pub(super) fn over(rect: Rect, net: &Net) -> Result<Built, Error> {
-    if !(rect.width() > 0.0 && rect.height() > 0.0) {
-        return Err(GeometryError::FlatFrame { width: rect.width(), height: rect.height() }.into());
-    }
+    with_area(rect)?;
     let net: Net = net.map(|row| row.map(|p| p + rect.origin().to_vec2()));
-    let pre = Affine::new([
-        1.0 / rect.width(),
-        0.0,
-        0.0,
-        1.0 / rect.height(),
-        -rect.x0 / rect.width(),
-        -rect.y0 / rect.height(),
-    ]);
-    let map = BicubicNet::new(&net, pre);
-    let map = crate::anchors::settled(Arc::new(map), rect);
-    let mut built = Built::new(map);
+    let mut built = Built::new(anchors::settled(Arc::new(BicubicNet::over(rect, &net)), rect));
     built.overlay(Role::Base, kurbo::Shape::to_path(&rect, 0.1));
     built.overlay(Role::Cage, rows_path(&net));
     Ok(built)

@@ -11,7 +11,7 @@ mod tests;
 use super::bend::{Align, Bend, Stretch};
 use super::entry::{Built, ByHand, Case, Deformation, Example, Gallery, Info, Law, Role};
 use crate::anchors;
-use crate::error::{Error, GeometryError};
+use crate::error::{Error, with_area};
 use crate::map::{AffineMap, Along, Guide, TileRow, Tiled, tiled};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Axis, Kind, Letter, Param, Settings, word_space};
@@ -103,9 +103,7 @@ impl WordArt {
     /// a guide that has no length in this box.
     pub fn build(&self) -> Result<Built, Error> {
         let Self { frame: rect, shape, adjusted, .. } = self;
-        if !(rect.width() > 0.0 && rect.height() > 0.0) {
-            return Err(GeometryError::FlatFrame { width: rect.width(), height: rect.height() }.into());
-        }
+        with_area(*rect)?;
         if let Some(extra) = adjusted.get(shape.adj.len()) {
             return Err(no_adjust_value(shape, &extra.to_string()));
         }
