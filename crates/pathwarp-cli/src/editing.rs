@@ -23,6 +23,8 @@ use std::sync::Arc;
 /// A drawing in the editor.
 struct EditedArtwork {
     svg: SvgArtwork,
+    /// The drawing with an id for every element, so that the page can tell what is clicked; `None` where all have one.
+    shown: Option<SvgArtwork>,
     registry: Arc<Registry>,
     given: Given,
     options: CommonOptions,
@@ -38,6 +40,7 @@ struct EditedArtwork {
 impl EditedArtwork {
     fn new(
         svg: SvgArtwork,
+        shown: Option<SvgArtwork>,
         registry: &Arc<Registry>,
         given: Given,
         options: CommonOptions,
@@ -45,6 +48,7 @@ impl EditedArtwork {
     ) -> Self {
         Self {
             svg,
+            shown,
             registry: Arc::clone(registry),
             given,
             options,
@@ -63,15 +67,17 @@ impl EditedArtwork {
         Self { folder: folder.to_owned(), ..self }
     }
 
-    /// Looks up files, and applies `work` to the drawing and the session with these steps.
+    /// Looks up files, and applies `work` to the drawing, as a file or for the page, and the session with these steps.
     fn with_steps<T>(
         &mut self,
         recipe: &Recipe,
+        is_file: bool,
         work: impl FnOnce(&Session<'_>, &mut SvgArtwork, Ready) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let Self { svg, registry, given, options, framed, .. } = self;
+        let Self { svg, shown, registry, given, options, framed, .. } = self;
+        let svg = shown.as_mut().filter(|_| !is_file).unwrap_or(svg);
         svg.renew_budget();
         svg.restore(options);
         let session = Session { registry, recipe: &resolved, options, given };
@@ -81,7 +87,8 @@ impl EditedArtwork {
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
         let folder = self.folder.clone();
-        self.with_steps(recipe, |session, svg, ready| bent(session, svg, ready, recipe, fineness, &folder))
+        let is_file = matches!(fineness, Fineness::Finished { .. });
+        self.with_steps(recipe, is_file, |session, svg, ready| bent(session, svg, ready, recipe, fineness, &folder))
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
@@ -160,7 +167,7 @@ impl Artwork for EditedArtwork {
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
-        let settled = self.with_steps(recipe, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
+        let settled = self.with_steps(recipe, true, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
         self.said(settled)
     }
 
@@ -218,7 +225,9 @@ impl EditorHost {
         };
         let options = given.read()?;
         let svg = SvgArtwork::read(source, file, &options, None)?;
-        let artwork = EditedArtwork::new(svg, &self.registry, given, options, &self.flags);
+        let named = svg.document().with_ids();
+        let shown = (named != svg.document().text()).then(|| SvgArtwork::read(named.as_bytes(), file, &options, None));
+        let artwork = EditedArtwork::new(svg, shown.transpose()?, &self.registry, given, options, &self.flags);
         let artwork = artwork.with_plugins(&self.plugins).in_folder(folder);
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }

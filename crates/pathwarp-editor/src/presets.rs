@@ -81,22 +81,26 @@ pub(crate) fn forget(host: &dyn Host, name: &str) -> Result<(), String> {
 impl Preset {
     /// Step `i` for artwork in `frame`.
     pub(crate) fn step_for(&self, registry: &Registry, i: usize, frame: Rect) -> Option<PageStep> {
-        let mut step = self.steps.get(i)?.clone();
-        let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
-        if let Some([x0, y0, x1, y1]) = self.frames.get(i) {
-            let onto = onto(Rect::new(*x0, *y0, *x1, *y1), frame);
-            for p in params.iter().filter(|p| p.kind == Kind::Path) {
-                for value in step.args.get_mut(p.name).into_iter().flatten() {
-                    if value.trim_start().starts_with(['M', 'm'])
-                        && let Ok(outline) = Outline::from_svg(value)
-                    {
-                        *value = path_data(&outline.transformed(onto));
-                    }
-                }
+        let step = self.steps.get(i)?.clone();
+        let Some([x0, y0, x1, y1]) = self.frames.get(i) else { return Some(step) };
+        Some(laid(registry, step, Rect::new(*x0, *y0, *x1, *y1), frame))
+    }
+}
+
+/// A step with its paths laid from one box onto another.
+pub(crate) fn laid(registry: &Registry, mut step: PageStep, from: Rect, to: Rect) -> PageStep {
+    let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+    let onto = onto(from, to);
+    for p in params.iter().filter(|p| p.kind == Kind::Path) {
+        for value in step.args.get_mut(p.name).into_iter().flatten() {
+            if value.trim_start().starts_with(['M', 'm'])
+                && let Ok(outline) = Outline::from_svg(value)
+            {
+                *value = path_data(&outline.transformed(onto));
             }
         }
-        Some(step)
     }
+    step
 }
 
 /// The map of one box onto another; a box without width or height keeps its scale there.

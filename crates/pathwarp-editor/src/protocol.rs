@@ -54,6 +54,8 @@ pub(crate) enum Request {
     },
     /// The drawing without any steps.
     Before,
+    /// The parts of the drawing.
+    Parts,
     /// How much these steps stretch the drawing.
     Stretch {
         steps: Vec<PageStep>,
@@ -63,6 +65,13 @@ pub(crate) enum Request {
         deformation: String,
         variant: Option<String>,
         steps: Vec<PageStep>,
+        #[serde(default)]
+        select: Vec<String>,
+    },
+    /// The last of these steps for other parts of the drawing: its paths are laid onto their box.
+    Scope {
+        steps: Vec<PageStep>,
+        select: Vec<String>,
     },
     /// A small picture of the drawing under these steps, or under a deformation, or a variant of it, as its examples show it.
     Thumbnail {

@@ -16,6 +16,7 @@ use pathwarp::deform::{Info, Variant};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Map as _, inverse_over};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp_svg::DrawingPart;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -24,6 +25,8 @@ use std::sync::Arc;
 
 /// Most states that can be undone.
 const MOST_UNDO: usize = 500;
+/// Most parts of a drawing that are listed.
+const MOST_PARTS: usize = 2000;
 /// Decimals of the coordinates of pictures, in px: a picture is zoomed, a draft hardly.
 const DECIMALS: u8 = 4;
 const DRAFT_DECIMALS: u8 = 2;
@@ -296,9 +299,36 @@ impl Session {
         deformation: &str,
         variant: Option<&str>,
         given: &[PageStep],
+        select: Vec<String>,
     ) -> Result<PageStep, String> {
-        let frame = self.frame_after(given)?;
-        self.begun(deformation, variant, frame, false)
+        let frame = self.frame_of(given, &select)?;
+        Ok(PageStep { select, ..self.begun(deformation, variant, frame, false)? })
+    }
+
+    /// The box of these parts of the drawing after these steps.
+    fn frame_of(&mut self, given: &[PageStep], select: &[String]) -> Result<Rect, String> {
+        if select.is_empty() {
+            return self.frame_after(given);
+        }
+        let still = PageStep { deformation: "affine".into(), select: select.to_vec(), ..PageStep::default() };
+        let steps = [given, &[still]].concat();
+        let (_, built) = self.opened.artwork.settle(&recipe(&steps))?;
+        built.frames.last().map(|f| f.rect).ok_or_else(|| "the parts have no box".into())
+    }
+
+    /// The last of these steps for other parts of the drawing, with its paths laid onto their box.
+    pub(crate) fn scope(&mut self, mut given: Vec<PageStep>, select: Vec<String>) -> Result<PageStep, String> {
+        let Some(step) = given.pop() else { return Err("there is no step".into()) };
+        let [from, to] = [self.frame_of(&given, &step.select)?, self.frame_of(&given, &select)?];
+        let step = presets::laid(self.host.registry(), step, from, to);
+        Ok(PageStep { select, ..step })
+    }
+
+    /// The parts of the drawing, for a list.
+    pub(crate) fn parts(&self) -> Value {
+        let parts = self.opened.artwork.document().parts().into_iter().take(MOST_PARTS);
+        let part = |p: DrawingPart| json!({ "name": p.name, "selector": p.selector, "label": p.label, "element": p.element, "depth": p.depth });
+        parts.map(part).collect()
     }
 
     /// The frame of a step after these.

@@ -91,6 +91,7 @@ impl Page {
                 (self.picture, self.quick) = (None, None);
                 Ok(json!({ "catalogue": session.catalogue(), "state": session.state() }))
             }
+            Request::Parts => Ok(json!({ "parts": session.parts() })),
             Request::Bend { steps, draft } => {
                 let shown = session.bend(&steps, draft)?;
                 self.show(shown)
@@ -109,9 +110,10 @@ impl Page {
             }
             Request::Before => Ok(json!({ "svg": session.before()?.text() })),
             Request::Stretch { steps } => Ok(json!({ "stretch": session.stretch(&steps)? })),
-            Request::Opening { deformation, variant, steps } => {
-                Ok(json!({ "step": session.opening(&deformation, variant.as_deref(), &steps)? }))
+            Request::Opening { deformation, variant, steps, select } => {
+                Ok(json!({ "step": session.opening(&deformation, variant.as_deref(), &steps, select)? }))
             }
+            Request::Scope { steps, select } => Ok(json!({ "step": session.scope(steps, select)? })),
             Request::Thumbnail { steps, example, variant } => {
                 let example = example.map(|name| session.example(&name, variant.as_deref())).transpose()?;
                 let steps = steps.or_else(|| example.map(|step| vec![step])).unwrap_or_default();

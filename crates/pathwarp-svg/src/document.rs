@@ -8,7 +8,7 @@ use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::task::placed_outlines;
 use crate::scene::areas::{self, stroked};
 use crate::scene::drawing::{Drawing, NamedPath, Shape, UnreadImages, named_path};
-use crate::scene::model::Bitmap;
+use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::scene::plot::{self, Plot};
 use crate::scene::selected_lettering::{Lettering, lettering};
 use crate::source::elements::{ElementId, is_shape};
@@ -21,7 +21,25 @@ use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::{AffineMap, Map};
 use pathwarp::{Error, Outline, refit};
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
+
+/// An element that holds something painted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct DrawingPart {
+    /// Its id, or else name and position such as `path at 12:5`.
+    pub name: String,
+    /// The [selector](Selection::select) for this element and no other.
+    pub selector: String,
+    /// Inkscape's label, or else the text of the `<title>`.
+    pub label: Option<String>,
+    /// The element, e.g. `circle`.
+    pub element: String,
+    /// The number of elements around it, without the root.
+    pub depth: usize,
+}
 
 /// An SVG file.
 #[derive(Debug)]
@@ -152,6 +170,44 @@ impl Document {
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
         self.drawing.shapes()
+    }
+
+    /// The elements that hold what is painted, in document order: shapes, texts and pictures, and the groups around them.
+    #[must_use]
+    pub fn parts(&self) -> Vec<DrawingPart> {
+        let (source, scene) = (&self.drawing.source, self.drawing.scene());
+        let shapes = scene.parts.iter().filter(|p| p.painted() && p.role == PartRole::Paint).filter_map(Part::element);
+        let painted: HashSet<ElementId> = shapes.chain(scene.bitmaps.iter().filter_map(|b| b.owner)).collect();
+        let mut depths: BTreeMap<ElementId, usize> = BTreeMap::new();
+        for &e in &painted {
+            depths.extend(source.ancestors(e).filter(|&a| a > 0).map(|a| (a, source.ancestors(a).count() - 2)));
+        }
+        let mut named: HashMap<String, usize> = HashMap::new();
+        for e in 0..source.elements.len() {
+            let title = source.elements[e].title.as_deref().map(Cow::Borrowed);
+            let names = [source.attr(e, "id"), source.label(e), title];
+            names.into_iter().flatten().for_each(|n| *named.entry(n.into_owned()).or_default() += 1);
+        }
+        let selector = |e: ElementId| match source.attr(e, "id").filter(|id| !id.is_empty()) {
+            Some(id) if named[&*id] == 1 => format!("#{id}"),
+            Some(id) => format!("[id={id}]"),
+            None => source.display_name(e),
+        };
+        let part = |(e, depth): (ElementId, usize)| DrawingPart {
+            name: source.display_name(e),
+            selector: selector(e),
+            label: source.label(e).map(Cow::into_owned).or_else(|| source.elements[e].title.clone()),
+            element: source.elements[e].tag.to_string(),
+            depth,
+        };
+        depths.into_iter().map(part).collect()
+    }
+
+    /// The drawing with an id for every element that has none: its name in [parts](Self::parts) and reports, so that a viewer can tell
+    /// which one is which. A selection by these names holds for both.
+    #[must_use]
+    pub fn with_ids(&self) -> String {
+        self.drawing.source.with_ids()
     }
 
     /// Bounding box of the selected painted shapes, without stroke widths, and of pictures.

@@ -82,7 +82,7 @@ pub use bend::pictures::{
     BentImage, GradientColors, GradientPainter, GradientRequest, ImageRequest, ImageWarper, Images, PictureError,
     SeenColor,
 };
-pub use document::Document;
+pub use document::{Document, DrawingPart};
 pub use embed::Origin;
 pub use scene::drawing::{NamedPath, Shape, UnreadImages};
 pub use scene::plot::{Plot, PlotLoss, PlotShape};

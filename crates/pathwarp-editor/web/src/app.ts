@@ -40,6 +40,8 @@ export class App {
   isWorkedOn = false;
   /** The next shape that is chosen becomes a step after the others. */
   appends = false;
+  /** Selectors of the parts that no step bends. */
+  locks: string[] = [];
   grips: StepGrips[] = [];
   handles: Handles | null = null;
   /** A path of the drawing that was a guide until its line was dragged just now. */
@@ -128,6 +130,7 @@ export class App {
     this.state = state;
     this.steps = structuredClone(state.steps);
     this.selected = Math.max(0, Math.min(this.steps.length - 1, Math.max(this.selected, this.steps.length - 1)));
+    this.locks = this.steps[0]?.exclude ?? this.locks;
     this.isProposal = false;
     this.isWorkedOn = this.steps.length > 0;
     this.appends = false;
@@ -146,8 +149,36 @@ export class App {
   }
 
   /** The first values of a deformation after these steps. */
-  async opening(deformation: string, steps: Step[], variant: string | null = null): Promise<Step | null> {
-    return this.attempt(async () => (await this.connection.ask({ do: "opening", deformation, variant, steps })).step ?? null);
+  async opening(deformation: string, steps: Step[], variant: string | null = null, select: string[] = []): Promise<Step | null> {
+    return this.attempt(async () => {
+      const { step } = await this.connection.ask({ do: "opening", deformation, variant, steps, select });
+      return step ? { ...step, exclude: this.locks } : null;
+    });
+  }
+
+  /** The parts of the drawing that the step being changed holds for; none for all. */
+  get chosen(): string[] {
+    return this.step?.select ?? [];
+  }
+
+  /** Lets the step being changed hold for these parts alone; its paths are laid onto their box. */
+  scope(select: string[]): Promise<void> {
+    return this.inTurn(async () => {
+      const { step, selected } = this;
+      if (!step || (select.length === 0 && this.chosen.length === 0)) return;
+      const answer = await this.attempt(() => this.connection.ask({ do: "scope", steps: this.visible, select }));
+      if (!answer?.step) return;
+      this.steps = this.steps.map((s, i) => (i === selected ? answer.step! : s));
+      this.tell("steps");
+      this.dropHandles();
+      await this.commit();
+    });
+  }
+
+  /** Lets no step bend these parts. */
+  lock(locks: string[]): Promise<void> {
+    this.locks = locks;
+    return this.arrange(this.steps.map((step) => ({ ...step, exclude: locks })), this.selected);
   }
 
   /** Shows the picture of the present steps, exactly. */
@@ -288,13 +319,13 @@ export class App {
   choose(deformation: string, args: Record<string, string[]>, variant: string | null = null): Promise<void> {
     const { appends } = this;
     this.appends = false;
-    return this.inTurn(() => this.chosen(deformation, args, appends, variant));
+    return this.inTurn(() => this.replaced(deformation, args, appends, variant));
   }
 
-  private async chosen(deformation: string, args: Record<string, string[]>, appends: boolean, variant: string | null): Promise<void> {
+  private async replaced(deformation: string, args: Record<string, string[]>, appends: boolean, variant: string | null): Promise<void> {
     const at = appends ? this.steps.length : this.selected;
     const before = this.steps.slice(0, at);
-    const step = await this.opening(deformation, before, variant);
+    const step = await this.opening(deformation, before, variant, this.chosen);
     if (!step) return;
     Object.assign(step.args, args);
     this.steps = appends ? [...this.steps, step] : this.steps.map((s, i) => (i === at ? step : s));

@@ -5,6 +5,7 @@ import { byId, isTyping } from "./dom";
 import { Gallery } from "./gallery";
 import { Modes, snapLines } from "./modes";
 import { Opening } from "./opening";
+import { Parts } from "./parts";
 import { Place } from "./place";
 import { Pointing } from "./pointing";
 import { Presets } from "./presets";
@@ -26,6 +27,7 @@ const saving = new Saving(app);
 const settings = new Settings(app);
 new Presets(app, new Gallery(app));
 new Steps(app);
+new Parts(app, stage, modes);
 new Place(app, stage);
 new Opening(app, stage);
 new Pointing(app, stage, modes).onPan = () => report.panned();
@@ -66,6 +68,11 @@ function toggle(id: string, get: () => boolean, set: (value: boolean) => void): 
 toggle("select", () => modes.selects, (v) => {
   modes.selects = v;
   stage.svg.classList.toggle("selecting", v);
+});
+toggle("pick-parts", () => modes.picksParts, (v) => {
+  modes.picksParts = v;
+  if (v) byId<HTMLDetailsElement>("parts-box").open = true;
+  stage.svg.classList.toggle("picking", v);
 });
 toggle("snap", () => modes.snaps, (v) => (modes.snaps = v));
 toggle("mirror", () => modes.mirrors, (v) => (modes.mirrors = v));

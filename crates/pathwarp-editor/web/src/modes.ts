@@ -8,6 +8,8 @@ export class Modes {
   snaps = true;
   /** Dragging the ground selects the points in a frame. */
   selects = false;
+  /** A click on the drawing chooses a part of it. */
+  picksParts = false;
   mirrors = false;
   smooths = true;
   private marks: XY[] = [];

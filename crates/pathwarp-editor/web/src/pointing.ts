@@ -74,6 +74,10 @@ export class Pointing {
     const bends = e.button === 0 && !stage.isBefore;
     const knob = target.closest<SVGGElement>(".knob");
     const part = target.closest<SVGGElement>(".part")?.dataset.part as Part | undefined;
+    if (this.modes.picksParts && bends && !knob) {
+      this.down.delete(e.pointerId);
+      return stage.pickedPart(e);
+    }
     if (knob && bends) this.drag(e, knob);
     else if (part && bends) this.transform(e, stage.selection.transform(part, stage.point(e)));
     else if (bends && (e.shiftKey || this.modes.selects)) this.frame(e);

@@ -42,6 +42,9 @@ export class Stage {
   /** The frame that points are selected with. */
   readonly marquee = s("rect", { class: "marquee", visibility: "hidden" });
   private lit = s("path", { class: "lit" });
+  /** Outlines of the parts that are chosen or pointed at in their list. */
+  private chosen = s("g", { class: "chosen-parts" });
+  private litParts: string[] = [];
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
@@ -68,13 +71,17 @@ export class Stage {
   private isStretchWanted = false;
   /** Takes the id of the path that is clicked next, instead of anything else. */
   picks: ((id: string) => void) | null = null;
+  /** The names of the drawing's parts. */
+  parts = new Set<string>();
+  /** A part was clicked, or none. */
+  onPart: (name: string | null, adds: boolean) => void = () => {};
   onFocus: (handle: Handle | null) => void = () => {};
   /** A handle has been moved by keys. */
   onKeys: (handle: Handle) => void = () => {};
   onZoom: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
     const stage = this;
     app.screen = {
       show: (answer) => this.show(answer),
@@ -93,7 +100,8 @@ export class Stage {
       if (e.key === "Tab" && this.focusedHandle) this.panTo(this.focusedHandle);
     });
     this.svg.addEventListener("pointermove", (e) => {
-      if (this.picks) this.light(this.named(e));
+      if (this.picks) this.light(this.named(e, ".art [id]"));
+      else if (this.modes.picksParts) this.light(this.named(e, ".art *"));
     });
     new ResizeObserver(() => this.resized()).observe(this.svg);
   }
@@ -189,6 +197,7 @@ export class Stage {
       this.isToFit = this.isFitted;
     }
     if (this.showsNodes) this.drawNodes();
+    if (this.litParts.length > 0) this.lightParts(this.litParts);
     this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
   }
 
@@ -273,6 +282,7 @@ export class Stage {
       mark.setAttribute("transform", `translate(${x} ${y})`);
     }
     this.placeHandles();
+    if (this.litParts.length > 0) this.lightParts(this.litParts);
     this.onZoom();
   }
 
@@ -391,7 +401,7 @@ export class Stage {
 
   /** Names the path that was clicked; elsewhere, the question stays. */
   picked(e: PointerEvent): void {
-    const named = this.named(e);
+    const named = this.named(e, ".art [id]");
     if (!named) return toast("No path with a name is there. Click one, or press Escape");
     const take = this.picks;
     this.pick(null);
@@ -399,13 +409,43 @@ export class Stage {
     take?.(named.closest("[id]")!.id.replace(/^art-/, ""));
   }
 
-  /** The path with a name that is nearest to the pointer. */
-  private named(e: PointerEvent): SVGGraphicsElement | null {
+  /** Names the part that was clicked. */
+  pickedPart(e: PointerEvent): void {
+    let name: string | null = null;
+    for (let at: Element | null = this.named(e, ".art *"); at && !at.matches(".art"); at = at.parentElement) {
+      const own = at.id.replace(/^art-/, "");
+      // A copy is one part, whatever it shows.
+      if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
+    }
+    this.light(null);
+    this.onPart(name, e.shiftKey);
+  }
+
+  /** The elements of a part in the picture. */
+  private ofPart(name: string): SVGGraphicsElement[] {
+    return Array.from(this.art.querySelectorAll<SVGGraphicsElement>(`[id="${CSS.escape(`art-${name}`)}"]`));
+  }
+
+  /** Draws the outlines of parts. */
+  lightParts(names: string[]): void {
+    this.litParts = names;
+    const outlines = names.flatMap((name) => this.ofPart(name)).flatMap((e) => (e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path"))));
+    this.chosen.replaceChildren(...outlines.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
+  }
+
+  /** Leaves parts out of the picture. */
+  hideParts(names: Set<string>): void {
+    for (const e of Array.from(this.art.querySelectorAll(".away"))) e.classList.remove("away");
+    for (const name of names) for (const e of this.ofPart(name)) e.classList.add("away");
+  }
+
+  /** The path, of those that the selector matches, that is nearest to the pointer. */
+  private named(e: PointerEvent, which: string): SVGGraphicsElement | null {
     for (let r = 0; r <= PICKED; r += 2) {
       for (let k = 0; k < (r === 0 ? 1 : 4 * r); k++) {
         const a = (2 * Math.PI * k) / (4 * r || 1);
         const there = document.elementFromPoint(e.clientX + r * Math.cos(a), e.clientY + r * Math.sin(a));
-        if (there instanceof SVGGraphicsElement && there.closest(".art [id]")) return there;
+        if (there instanceof SVGGraphicsElement && there.closest(which)) return there;
       }
     }
     return null;
@@ -413,9 +453,8 @@ export class Stage {
 
   /** Lights up a path. */
   private light(path: SVGGraphicsElement | null): void {
-    const [from, m] = [this.svg.getBoundingClientRect(), path?.getScreenCTM()];
-    this.lit.setAttribute("d", path?.getAttribute("d") ?? "");
-    if (m) this.lit.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
+    if (path) outlineOf(path, this.svg, this.lit);
+    else this.lit.setAttribute("d", "");
   }
 
   /** Writes the values of a handle that has been moved, and asks for the picture. */
@@ -522,6 +561,14 @@ export class Stage {
     this.modes.mover(handles, handle)(to, null);
     this.changed(handle, performance.now());
   }
+}
+
+/** Gives a path the outline of another one of the picture. */
+function outlineOf(path: SVGGraphicsElement, svg: SVGSVGElement, to: SVGPathElement): SVGPathElement {
+  const [from, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
+  to.setAttribute("d", path.getAttribute("d") ?? "");
+  if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
+  return to;
 }
 
 /** Gives the ids of a drawing other names, and its references with them. */

@@ -49,7 +49,9 @@ export class Steps {
     const { app } = this;
     const { steps, selected } = app;
     const title = stepName(step, app.deformation(step.deformation));
-    const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`);
+    const count = step.select?.length ?? 0;
+    const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
+    const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`, scope);
     choose.addEventListener("click", () => void app.select(i));
     const moved = (to: number) => {
       const others = steps.filter((_, k) => k !== i);

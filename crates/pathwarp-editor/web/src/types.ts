@@ -6,6 +6,19 @@ export interface Step {
   deformation: string;
   inverse: boolean;
   args: Record<string, string[]>;
+  /** Selectors of the parts of the drawing that it holds for, and of what it leaves out. */
+  select?: string[];
+  exclude?: string[];
+}
+
+/** A group or shape of the drawing. */
+export interface Part {
+  name: string;
+  /** What names it in a step. */
+  selector: string;
+  label: string | null;
+  element: string;
+  depth: number;
 }
 
 export type Kind =
@@ -144,6 +157,7 @@ export interface Answer {
   bytes?: string;
   copied?: boolean;
   presets?: string[];
+  parts?: Part[];
   steps?: Step[];
   stretch?: Stretch | null;
   event?: string;

@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// The part of a document to warp. By default, everything.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {
-    /// Elements to warp with all they contain, each as `#id`, `.class`, `tag` or a name (id, Inkscape label or title);
-    /// `[id=ID]` is the id alone. Empty: all.
+    /// Elements to warp with all they contain, each as `#id`, `.class`, `tag` or a name (id, Inkscape label or title, or the place of an
+    /// element without an id, as reports have it: `path at 12:5`); `[id=ID]` is the id alone. Empty: all.
     pub select: Vec<String>,
     /// Elements to leave unchanged with all they contain, in the same form.
     pub exclude: Vec<String>,
@@ -119,7 +119,10 @@ fn matches(source: &SourceText, e: ElementId, selector: &str) -> bool {
     match selector.split_at_checked(1) {
         Some(("#", name)) => is_named(source, e, name),
         Some((".", class)) => source.attr(e, "class").is_some_and(|c| c.split_ascii_whitespace().any(|c| c == class)),
-        _ => source.elements[e].tag == selector || is_named(source, e, selector),
+        _ => {
+            let by_place = || selector.contains(" at ") && source.display_name(e) == selector;
+            source.elements[e].tag == selector || is_named(source, e, selector) || by_place()
+        }
     }
 }
 

@@ -7,9 +7,11 @@ use super::elements::{
 use super::threads::{both, map_parallel};
 use pathwarp::budget::Budget;
 use pathwarp::{Error, Outline};
-use pathwarp_reader::{Change, Plain, ReadError, resolve, xml};
+use pathwarp_reader::xml::{self, escape};
+use pathwarp_reader::{Change, Plain, ReadError, resolve};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::fmt::Write as _;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use usvg::roxmltree;
@@ -295,6 +297,26 @@ impl SourceText {
                 format!("{}{letter} at {line}:{column}", self.elements[e].tag)
             }
         }
+    }
+
+    /// The text with an id for every graphics element that has none: its [name](Self::display_name).
+    pub(crate) fn with_ids(&self) -> String {
+        let nameless = |e: &ElementId| {
+            let element = &self.elements[*e];
+            is_tracked(&element.tag) && element.find(&self.text, "id").is_none()
+        };
+        let (mut out, mut done) = (String::with_capacity(self.text.len()), 0);
+        for e in (0..self.elements.len()).filter(nameless) {
+            let at = self.elements[e].qname.end;
+            // Elements from the same entity share their positions.
+            if at > done {
+                out.push_str(&self.text[done..at]);
+                let _ = write!(out, " id=\"{}\"", escape(&self.display_name(e)));
+                done = at;
+            }
+        }
+        out.push_str(&self.text[done..]);
+        out
     }
 
     /// Returns `true` if there are style sheets.

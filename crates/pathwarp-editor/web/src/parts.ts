@@ -1,0 +1,122 @@
+// The parts of the drawing: a list of its groups and shapes. A step holds for all of them or for those that are chosen, here or by clicks
+// on the drawing; those that are locked stay as they are.
+
+import type { App } from "./app";
+import { byId, h, icon } from "./dom";
+import type { Modes } from "./modes";
+import { capital } from "./names";
+import type { Stage } from "./stage";
+import type { Part } from "./types";
+
+/** Names for elements. */
+const ELEMENTS: Record<string, string> = { g: "group", a: "link", svg: "drawing", use: "copy", image: "picture", rect: "rectangle" };
+
+export class Parts {
+  private list = byId("parts");
+  private box = byId<HTMLDetailsElement>("parts-box");
+  private scope = byId("parts-scope");
+  private all: Part[] = [];
+  /** The names of what is not shown; the file has it all the same. */
+  private hidden = new Set<string>();
+  private shownFile = "";
+
+  constructor(private app: App, private stage: Stage, private modes: Modes) {
+    app.listen((change) => {
+      if (change === "state") void this.load();
+      if (change === "steps") this.show();
+      if (change === "report") this.shade();
+    });
+    byId("parts-all").addEventListener("click", () => void app.scope([]));
+    stage.onPart = (name, adds) => this.clicked(name, adds);
+  }
+
+  private async load(): Promise<void> {
+    const file = `${this.app.state?.folder}/${this.app.state?.file}`;
+    if (file === this.shownFile) return;
+    this.shownFile = file;
+    this.hidden.clear();
+    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
+    this.all = answer?.parts ?? [];
+    this.stage.parts = new Set(this.all.map(({ name }) => name));
+    byId("pick-parts").hidden = this.box.hidden = this.all.length < 2;
+    this.list.replaceChildren(...this.all.map((part) => this.row(part)));
+    this.show();
+  }
+
+  private row(part: Part): HTMLLIElement {
+    const title = part.label ?? part.name.replace(/^([a-z]+)(.*) at \d+:\d+$/i, (_, tag: string, letter: string) => capital((ELEMENTS[tag] ?? tag) + letter));
+    const choose = h("button", { type: "button", class: "part-name", title: part.name }, title);
+    choose.addEventListener("click", (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey));
+    choose.addEventListener("pointerenter", () => this.stage.lightParts([part, ...this.inside(part)].map(({ name }) => name)));
+    choose.addEventListener("pointerleave", () => this.show());
+    const button = (kind: "eye" | "lock", label: string, action: () => void) => {
+      const b = h("button", { type: "button", class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, icon(kind));
+      b.addEventListener("click", action);
+      return b;
+    };
+    const row = h(
+      "li", { "data-part": part.name }, choose,
+      button("eye", "Hide here:", () => this.hide(part)),
+      button("lock", "Lock:", () => void this.lock(part)),
+    );
+    row.style.setProperty("--depth", String(Math.min(part.depth, 8)));
+    return row;
+  }
+
+  /** What a group holds. */
+  private inside(part: Part): Part[] {
+    const after = this.all.slice(this.all.indexOf(part) + 1);
+    const end = after.findIndex(({ depth }) => depth <= part.depth);
+    return end < 0 ? after : after.slice(0, end);
+  }
+
+  private clicked(name: string | null, adds: boolean): void {
+    const part = this.all.find((p) => p.name === name);
+    const isLocked = part && this.app.locks.some((lock) => this.all.some((p) => p.selector === lock && (p === part || this.inside(p).includes(part))));
+    if (part && !isLocked) return this.toggle(part, adds);
+    if (!adds) void this.app.scope([]);
+  }
+
+  /** Chooses a part alone, or adds it to the others, or takes it from them. */
+  private toggle({ selector }: Part, adds: boolean): void {
+    const { chosen } = this.app;
+    const others = chosen.filter((s) => s !== selector);
+    const isChosen = others.length < chosen.length;
+    if (!adds) void this.app.scope(isChosen && others.length === 0 ? [] : [selector]);
+    else void this.app.scope(isChosen ? others : [...others, selector]);
+  }
+
+  private hide(part: Part): void {
+    if (!this.hidden.delete(part.name)) this.hidden.add(part.name);
+    this.show();
+    this.shade();
+  }
+
+  /** What is locked is bent by no step. */
+  private lock({ selector }: Part): Promise<void> {
+    const { locks } = this.app;
+    return this.app.lock(locks.includes(selector) ? locks.filter((s) => s !== selector) : [...locks, selector]);
+  }
+
+  private show(): void {
+    const { chosen, locks } = this.app;
+    for (const part of this.all) {
+      const row = this.list.querySelector(`[data-part="${CSS.escape(part.name)}"]`);
+      row?.querySelector(".part-name")?.setAttribute("aria-pressed", String(chosen.includes(part.selector)));
+      row?.querySelector(".eye")?.setAttribute("aria-pressed", String(this.hidden.has(part.name)));
+      row?.querySelector(".lock")?.setAttribute("aria-pressed", String(locks.includes(part.selector)));
+    }
+    const count = chosen.length;
+    this.scope.textContent = count === 0 ? "This step bends everything." : `This step bends ${count === 1 ? "one part" : `${count} parts`}.`;
+    byId("parts-all").hidden = count === 0;
+    if (count > 0 || locks.length > 0) this.box.open = true;
+    const own = this.all.filter(({ selector }) => chosen.includes(selector));
+    this.stage.lightParts(this.modes.picksParts || this.box.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
+  }
+
+  /** Hides what is not to be seen. */
+  private shade(): void {
+    const away = new Set(this.all.filter(({ name }) => this.hidden.has(name)).flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name));
+    this.stage.hideParts(away);
+  }
+}
