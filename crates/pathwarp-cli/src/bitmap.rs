@@ -8,10 +8,11 @@ use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::Cost;
 use pathwarp::map::{Batches, Jet, Map, NewtonInverse};
 use pathwarp_raster::{
-    ImageWarp, IntRect, Picture, PictureFormat, Pixmap, SeenColor, ShadeTolerance, SmoothShade, encode_png,
+    Color, ImageWarp, IntRect, Picture, PictureFormat, Pixmap, SeenColor, ShadeTolerance, SmoothShade, encode_png,
     encode_smooth_png, enlarged, extent, header_size, shown, warp_image,
 };
 use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
+use std::str::FromStr as _;
 use std::sync::Arc;
 
 /// Pixels per inch of a drawing at 100 %.
@@ -281,6 +282,20 @@ impl Batches for Inverse {
     fn differentiates(&self) -> bool {
         self.map.cost().batches.is_some_and(Batches::differentiates)
     }
+}
+
+/// A colour behind the drawing; `None` for transparency.
+#[derive(Clone)]
+pub(crate) struct Background(pub(crate) Option<Color>);
+
+/// Parses a colour as in CSS, or `none`.
+pub(crate) fn background(text: &str) -> Result<Background, String> {
+    if matches!(text, "none" | "transparent") {
+        return Ok(Background(None));
+    }
+    let c =
+        svgtypes::Color::from_str(text).map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
+    Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
 }
 
 /// The file of a picture in a format; PNG for formats that are not pictures'.

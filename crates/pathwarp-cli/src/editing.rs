@@ -1,7 +1,7 @@
 //! Drawings in the editor: what `pathwarp-editor` needs from the command line.
 
 use crate::advice::Flags;
-use crate::bitmap::encode;
+use crate::bitmap::{background, encode};
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format, PICTURES};
 use crate::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which, read_options};
@@ -14,7 +14,7 @@ use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Rect;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
-use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PICTURE_WIDTH, Summary};
+use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary};
 use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::{Document, Origin, ReadOptions, usvg_tree};
 use std::path::{Path, PathBuf};
@@ -232,7 +232,7 @@ impl EditorHost {
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
-    fn converted(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), Failure> {
+    fn converted(&self, svg: String, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), Failure> {
         let options = self.given.read()?;
         let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
         let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
@@ -243,8 +243,10 @@ impl EditorHost {
         }
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the result", &ReadOptions::default())?;
         let limits = options.reading.limits.for_input(svg.len());
-        let drawn =
-            RenderOptions { size: Size::Width(PICTURE_WIDTH), background: None }.render_within(&tree, &limits)?;
+        let size = picture.scale.map_or(Size::Width(picture.width), Size::Scale);
+        let background = picture.background.as_deref().map(background).transpose().map_err(Failure::usage)?;
+        let background = background.and_then(|b| b.0);
+        let drawn = RenderOptions { size, background }.render_within(&tree, &limits)?;
         Ok((encode(drawn, format, None)?, Vec::new()))
     }
 
@@ -271,8 +273,8 @@ impl Host for EditorHost {
         recipe_file::from_here(file)
     }
 
-    fn export(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), String> {
-        self.said(self.converted(svg, to))
+    fn export(&self, svg: String, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
+        self.said(self.converted(svg, to, picture))
     }
 
     fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String> {

@@ -124,7 +124,9 @@
   var ICONS = {
     close: "M6 6l12 12M18 6 6 18",
     up: "M12 19V6M6 11.5 12 5.5l6 6",
-    down: "M12 5v13M6 12.5l6 6 6-6"
+    down: "M12 5v13M6 12.5l6 6 6-6",
+    eye: "M2.5 12S6 5.5 12 5.5 21.5 12 21.5 12 18 18.5 12 18.5 2.5 12 2.5 12M12 9.2a2.8 2.8 0 1 1 0 5.6 2.8 2.8 0 0 1 0-5.6",
+    lock: "M6 11h12v8.5H6zM8.5 11V8a3.5 3.5 0 0 1 7 0v3"
   };
   function icon(name) {
     return s("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" }, s("path", { d: ICONS[name] }));
@@ -1027,6 +1029,8 @@
     isWorkedOn = false;
     /** The next shape that is chosen becomes a step after the others. */
     appends = false;
+    /** Selectors of the parts that no step bends. */
+    locks = [];
     grips = [];
     handles = null;
     /** A path of the drawing that was a guide until its line was dragged just now. */
@@ -1106,6 +1110,7 @@
       this.state = state;
       this.steps = structuredClone(state.steps);
       this.selected = Math.max(0, Math.min(this.steps.length - 1, Math.max(this.selected, this.steps.length - 1)));
+      this.locks = this.steps[0]?.exclude ?? this.locks;
       this.isProposal = false;
       this.isWorkedOn = this.steps.length > 0;
       this.appends = false;
@@ -1123,8 +1128,33 @@
       await this.refresh();
     }
     /** The first values of a deformation after these steps. */
-    async opening(deformation, steps, variant = null) {
-      return this.attempt(async () => (await this.connection.ask({ do: "opening", deformation, variant, steps })).step ?? null);
+    async opening(deformation, steps, variant = null, select = []) {
+      return this.attempt(async () => {
+        const { step: step2 } = await this.connection.ask({ do: "opening", deformation, variant, steps, select });
+        return step2 ? { ...step2, exclude: this.locks } : null;
+      });
+    }
+    /** The parts of the drawing that the step being changed holds for; none for all. */
+    get chosen() {
+      return this.step?.select ?? [];
+    }
+    /** Lets the step being changed hold for these parts alone; its paths are laid onto their box. */
+    scope(select) {
+      return this.inTurn(async () => {
+        const { step: step2, selected } = this;
+        if (!step2 || select.length === 0 && this.chosen.length === 0) return;
+        const answer = await this.attempt(() => this.connection.ask({ do: "scope", steps: this.visible, select }));
+        if (!answer?.step) return;
+        this.steps = this.steps.map((s2, i) => i === selected ? answer.step : s2);
+        this.tell("steps");
+        this.dropHandles();
+        await this.commit();
+      });
+    }
+    /** Lets no step bend these parts. */
+    lock(locks) {
+      this.locks = locks;
+      return this.arrange(this.steps.map((step2) => ({ ...step2, exclude: locks })), this.selected);
     }
     /** Shows the picture of the present steps, exactly. */
     async refresh() {
@@ -1247,12 +1277,12 @@
     choose(deformation, args, variant = null) {
       const { appends } = this;
       this.appends = false;
-      return this.inTurn(() => this.chosen(deformation, args, appends, variant));
+      return this.inTurn(() => this.replaced(deformation, args, appends, variant));
     }
-    async chosen(deformation, args, appends, variant) {
+    async replaced(deformation, args, appends, variant) {
       const at = appends ? this.steps.length : this.selected;
       const before2 = this.steps.slice(0, at);
-      const step2 = await this.opening(deformation, before2, variant);
+      const step2 = await this.opening(deformation, before2, variant, this.chosen);
       if (!step2) return;
       Object.assign(step2.args, args);
       this.steps = appends ? [...this.steps, step2] : this.steps.map((s2, i) => i === at ? step2 : s2);
@@ -1605,6 +1635,8 @@
     snaps = true;
     /** Dragging the ground selects the points in a frame. */
     selects = false;
+    /** A click on the drawing chooses a part of it. */
+    picksParts = false;
     mirrors = false;
     smooths = true;
     marks = [];
@@ -1754,6 +1786,116 @@
     return btoa(binary);
   }
 
+  // src/parts.ts
+  var ELEMENTS = { g: "group", a: "link", svg: "drawing", use: "copy", image: "picture", rect: "rectangle" };
+  var Parts = class {
+    constructor(app2, stage2, modes2) {
+      this.app = app2;
+      this.stage = stage2;
+      this.modes = modes2;
+      app2.listen((change) => {
+        if (change === "state") void this.load();
+        if (change === "steps") this.show();
+        if (change === "report") this.shade();
+      });
+      byId("parts-all").addEventListener("click", () => void app2.scope([]));
+      stage2.onPart = (name, adds) => this.clicked(name, adds);
+    }
+    app;
+    stage;
+    modes;
+    list = byId("parts");
+    box = byId("parts-box");
+    scope = byId("parts-scope");
+    all = [];
+    /** The names of what is not shown; the file has it all the same. */
+    hidden = /* @__PURE__ */ new Set();
+    shownFile = "";
+    async load() {
+      const file = `${this.app.state?.folder}/${this.app.state?.file}`;
+      if (file === this.shownFile) return;
+      this.shownFile = file;
+      this.hidden.clear();
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
+      this.all = answer?.parts ?? [];
+      this.stage.parts = new Set(this.all.map(({ name }) => name));
+      byId("pick-parts").hidden = this.box.hidden = this.all.length < 2;
+      this.list.replaceChildren(...this.all.map((part) => this.row(part)));
+      this.show();
+    }
+    row(part) {
+      const title = part.label ?? part.name.replace(/^([a-z]+)(.*) at \d+:\d+$/i, (_, tag, letter) => capital((ELEMENTS[tag] ?? tag) + letter));
+      const choose = h("button", { type: "button", class: "part-name", title: part.name }, title);
+      choose.addEventListener("click", (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey));
+      choose.addEventListener("pointerenter", () => this.stage.lightParts([part, ...this.inside(part)].map(({ name }) => name)));
+      choose.addEventListener("pointerleave", () => this.show());
+      const button = (kind, label, action) => {
+        const b = h("button", { type: "button", class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, icon(kind));
+        b.addEventListener("click", action);
+        return b;
+      };
+      const row = h(
+        "li",
+        { "data-part": part.name },
+        choose,
+        button("eye", "Hide here:", () => this.hide(part)),
+        button("lock", "Lock:", () => void this.lock(part))
+      );
+      row.style.setProperty("--depth", String(Math.min(part.depth, 8)));
+      return row;
+    }
+    /** What a group holds. */
+    inside(part) {
+      const after = this.all.slice(this.all.indexOf(part) + 1);
+      const end2 = after.findIndex(({ depth }) => depth <= part.depth);
+      return end2 < 0 ? after : after.slice(0, end2);
+    }
+    clicked(name, adds) {
+      const part = this.all.find((p) => p.name === name);
+      const isLocked = part && this.app.locks.some((lock) => this.all.some((p) => p.selector === lock && (p === part || this.inside(p).includes(part))));
+      if (part && !isLocked) return this.toggle(part, adds);
+      if (!adds) void this.app.scope([]);
+    }
+    /** Chooses a part alone, or adds it to the others, or takes it from them. */
+    toggle({ selector }, adds) {
+      const { chosen } = this.app;
+      const others = chosen.filter((s2) => s2 !== selector);
+      const isChosen = others.length < chosen.length;
+      if (!adds) void this.app.scope(isChosen && others.length === 0 ? [] : [selector]);
+      else void this.app.scope(isChosen ? others : [...others, selector]);
+    }
+    hide(part) {
+      if (!this.hidden.delete(part.name)) this.hidden.add(part.name);
+      this.show();
+      this.shade();
+    }
+    /** What is locked is bent by no step. */
+    lock({ selector }) {
+      const { locks } = this.app;
+      return this.app.lock(locks.includes(selector) ? locks.filter((s2) => s2 !== selector) : [...locks, selector]);
+    }
+    show() {
+      const { chosen, locks } = this.app;
+      for (const part of this.all) {
+        const row = this.list.querySelector(`[data-part="${CSS.escape(part.name)}"]`);
+        row?.querySelector(".part-name")?.setAttribute("aria-pressed", String(chosen.includes(part.selector)));
+        row?.querySelector(".eye")?.setAttribute("aria-pressed", String(this.hidden.has(part.name)));
+        row?.querySelector(".lock")?.setAttribute("aria-pressed", String(locks.includes(part.selector)));
+      }
+      const count = chosen.length;
+      this.scope.textContent = count === 0 ? "This step bends everything." : `This step bends ${count === 1 ? "one part" : `${count} parts`}.`;
+      byId("parts-all").hidden = count === 0;
+      if (count > 0 || locks.length > 0) this.box.open = true;
+      const own = this.all.filter(({ selector }) => chosen.includes(selector));
+      this.stage.lightParts(this.modes.picksParts || this.box.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
+    }
+    /** Hides what is not to be seen. */
+    shade() {
+      const away = new Set(this.all.filter(({ name }) => this.hidden.has(name)).flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name));
+      this.stage.hideParts(away);
+    }
+  };
+
   // src/place.ts
   var DECIMALS = 3;
   var Place = class {
@@ -1866,13 +2008,13 @@
   // src/drawing.ts
   var SVG2 = "http://www.w3.org/2000/svg";
   var XLINK = "http://www.w3.org/1999/xlink";
-  var ELEMENTS = new Set(
+  var ELEMENTS2 = new Set(
     "svg g path image defs linearGradient radialGradient stop pattern clipPath mask filter feBlend feColorMatrix feComponentTransfer feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow feFlood feFuncA feFuncB feFuncG feFuncR feGaussianBlur feImage feMerge feMergeNode feMorphology feOffset fePointLight feSpecularLighting feSpotLight feTile feTurbulence use".split(" ")
   );
   var LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
   var LOADS = /url\(\s*["']?(?!#)/i;
   function copy(from, lines) {
-    if (from.namespaceURI !== SVG2 || !ELEMENTS.has(from.localName)) {
+    if (from.namespaceURI !== SVG2 || !ELEMENTS2.has(from.localName)) {
       skip(from, lines);
       return null;
     }
@@ -2123,7 +2265,7 @@
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
       const stage2 = this;
       app2.screen = {
         show: (answer) => this.show(answer),
@@ -2144,7 +2286,8 @@
         if (e.key === "Tab" && this.focusedHandle) this.panTo(this.focusedHandle);
       });
       this.svg.addEventListener("pointermove", (e) => {
-        if (this.picks) this.light(this.named(e));
+        if (this.picks) this.light(this.named(e, ".art [id]"));
+        else if (this.modes.picksParts) this.light(this.named(e, ".art *"));
       });
       new ResizeObserver(() => this.resized()).observe(this.svg);
     }
@@ -2166,6 +2309,9 @@
     /** The frame that points are selected with. */
     marquee = s("rect", { class: "marquee", visibility: "hidden" });
     lit = s("path", { class: "lit" });
+    /** Outlines of the parts that are chosen or pointed at in their list. */
+    chosen = s("g", { class: "chosen-parts" });
+    litParts = [];
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });
@@ -2192,6 +2338,11 @@
     isStretchWanted = false;
     /** Takes the id of the path that is clicked next, instead of anything else. */
     picks = null;
+    /** The names of the drawing's parts. */
+    parts = /* @__PURE__ */ new Set();
+    /** A part was clicked, or none. */
+    onPart = () => {
+    };
     onFocus = () => {
     };
     /** A handle has been moved by keys. */
@@ -2278,6 +2429,7 @@
         this.isToFit = this.isFitted;
       }
       if (this.showsNodes) this.drawNodes();
+      if (this.litParts.length > 0) this.lightParts(this.litParts);
       this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
     }
     /** The page as saving makes it, as two corners in px of the drawing. */
@@ -2353,6 +2505,7 @@
         mark.setAttribute("transform", `translate(${x} ${y})`);
       }
       this.placeHandles();
+      if (this.litParts.length > 0) this.lightParts(this.litParts);
       this.onZoom();
     }
     /** Puts handles and their lines where they are now. */
@@ -2459,28 +2612,52 @@
     }
     /** Names the path that was clicked; elsewhere, the question stays. */
     picked(e) {
-      const named = this.named(e);
+      const named = this.named(e, ".art [id]");
       if (!named) return toast("No path with a name is there. Click one, or press Escape");
       const take = this.picks;
       this.pick(null);
       take?.(named.closest("[id]").id.replace(/^art-/, ""));
     }
-    /** The path with a name that is nearest to the pointer. */
-    named(e) {
+    /** Names the part that was clicked. */
+    pickedPart(e) {
+      let name = null;
+      for (let at = this.named(e, ".art *"); at && !at.matches(".art"); at = at.parentElement) {
+        const own = at.id.replace(/^art-/, "");
+        if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
+      }
+      this.light(null);
+      this.onPart(name, e.shiftKey);
+    }
+    /** The elements of a part in the picture. */
+    ofPart(name) {
+      return Array.from(this.art.querySelectorAll(`[id="${CSS.escape(`art-${name}`)}"]`));
+    }
+    /** Draws the outlines of parts. */
+    lightParts(names) {
+      this.litParts = names;
+      const outlines = names.flatMap((name) => this.ofPart(name)).flatMap((e) => e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path")));
+      this.chosen.replaceChildren(...outlines.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
+    }
+    /** Leaves parts out of the picture. */
+    hideParts(names) {
+      for (const e of Array.from(this.art.querySelectorAll(".away"))) e.classList.remove("away");
+      for (const name of names) for (const e of this.ofPart(name)) e.classList.add("away");
+    }
+    /** The path, of those that the selector matches, that is nearest to the pointer. */
+    named(e, which) {
       for (let r = 0; r <= PICKED; r += 2) {
         for (let k = 0; k < (r === 0 ? 1 : 4 * r); k++) {
           const a = 2 * Math.PI * k / (4 * r || 1);
           const there = document.elementFromPoint(e.clientX + r * Math.cos(a), e.clientY + r * Math.sin(a));
-          if (there instanceof SVGGraphicsElement && there.closest(".art [id]")) return there;
+          if (there instanceof SVGGraphicsElement && there.closest(which)) return there;
         }
       }
       return null;
     }
     /** Lights up a path. */
     light(path) {
-      const [from, m] = [this.svg.getBoundingClientRect(), path?.getScreenCTM()];
-      this.lit.setAttribute("d", path?.getAttribute("d") ?? "");
-      if (m) this.lit.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
+      if (path) outlineOf(path, this.svg, this.lit);
+      else this.lit.setAttribute("d", "");
     }
     /** Writes the values of a handle that has been moved, and asks for the picture. */
     changed(handle, since) {
@@ -2576,6 +2753,12 @@
       this.changed(handle, performance.now());
     }
   };
+  function outlineOf(path, svg, to) {
+    const [from, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
+    to.setAttribute("d", path.getAttribute("d") ?? "");
+    if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
+    return to;
+  }
   function renamed(root) {
     for (const element of Array.from(root.querySelectorAll("*"))) {
       for (const { name, value } of Array.from(element.attributes)) {
@@ -2644,6 +2827,10 @@
       const bends = e.button === 0 && !stage2.isBefore;
       const knob = target.closest(".knob");
       const part = target.closest(".part")?.dataset.part;
+      if (this.modes.picksParts && bends && !knob) {
+        this.down.delete(e.pointerId);
+        return stage2.pickedPart(e);
+      }
       if (knob && bends) this.drag(e, knob);
       else if (part && bends) this.transform(e, stage2.selection.transform(part, stage2.point(e)));
       else if (bends && (e.shiftKey || this.modes.selects)) this.frame(e);
@@ -2966,11 +3153,18 @@
   // src/saving.ts
   var FORMATS = [
     ["svg", "SVG", "Can be opened here again"],
+    ["svgz", "SVGZ", "The same, packed"],
     ["pdf", "PDF", "For print"],
     ["dxf", "DXF", "For cutters and CAD"],
     ["png", "PNG", "A picture"],
+    ["jpg", "JPEG", "A picture, smaller"],
+    ["webp", "WebP", "A picture for the web"],
     ["toml", "Recipe", "For other drawings"]
   ];
+  var PICTURES = ["png", "jpg", "webp"];
+  var WIDTH = 2e3;
+  var WIDEST = 2e4;
+  var REMEMBERED = "pathwarp-export";
   var NOTHING = "There is nothing to save yet: pull a blue point or choose a shape first";
   var FETCHED = 6e4;
   var Saving = class {
@@ -2987,11 +3181,14 @@
       byId("save-cancel").addEventListener("click", () => this.dialog.close());
       this.dialog.querySelector("form").addEventListener("submit", (e) => {
         e.preventDefault();
-        void this.write(this.name.value, false);
+        void this.write(false);
       });
-      this.replace.addEventListener("click", () => void this.write(this.name.value, true));
-      this.download.addEventListener("click", () => void this.fetch(this.name.value));
-      this.name.addEventListener("input", () => this.say(""));
+      this.replace.addEventListener("click", () => void this.write(true));
+      this.download.addEventListener("click", () => void this.fetch());
+      for (const field of [this.name, this.folder, this.size]) field.addEventListener("input", () => this.say(""));
+      this.background.addEventListener("change", () => this.colour.hidden = this.background.value !== "colour");
+      this.unit.addEventListener("change", () => this.size.value = this.unit.value === "%" ? "100" : String(WIDTH));
+      this.recall();
       byId("copy-command").addEventListener("click", () => void this.copyCommand());
       app2.listen((change) => {
         if (change === "state") this.show();
@@ -3004,6 +3201,11 @@
     message = byId("save-message");
     replace = byId("save-replace");
     download = byId("save-download");
+    folder = byId("save-folder");
+    size = byId("save-size");
+    unit = byId("save-unit");
+    background = byId("save-background");
+    colour = byId("save-colour");
     /** The steps that were downloaded last. */
     downloaded = "";
     show() {
@@ -3039,7 +3241,7 @@
     }
     /** Saves where it was saved last; the first time, under the usual name. */
     async quick() {
-      if (this.dialog.open) return this.write(this.name.value, false);
+      if (this.dialog.open) return this.write(false);
       if (!await this.app.settle()) return;
       const { state } = this.app;
       if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
@@ -3057,42 +3259,70 @@
       if (state.steps.length === 0) return toast(NOTHING);
       this.name.value = state.target;
       this.choose("svg");
-      byId("save-folder").textContent = state.folder;
+      this.folder.value = state.savedIn ?? state.folder;
       if (unwritable) this.refuse(unwritable);
       this.dialog.showModal();
       this.name.select();
     }
+    /** The choices of last time. */
+    recall() {
+      const { unit = "px", size = WIDTH, background = "none" } = JSON.parse(localStorage.getItem(REMEMBERED) ?? "{}");
+      const isColour = background.startsWith("#");
+      [this.unit.value, this.size.value, this.background.value] = [unit, String(size), isColour ? "colour" : background];
+      if (isColour) this.colour.value = background;
+      this.colour.hidden = !isColour;
+    }
+    /** The file that is asked for. Returns `null` for a picture without a size. */
+    target() {
+      const [name, folder] = [this.name.value, this.folder.value];
+      if (!PICTURES.includes(this.extension)) return { name, folder };
+      const size = Number(this.size.value.replace(",", "."));
+      const unit = this.unit.value === "%" ? "%" : "px";
+      if (!(size > 0 && size <= WIDEST) || unit === "px" && !Number.isInteger(size)) {
+        this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${WIDEST}`);
+        return null;
+      }
+      const background = this.background.value === "colour" ? this.colour.value : this.background.value;
+      localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background }));
+      const picture = { ...unit === "%" ? { scale: size / 100 } : { width: size }, background: background === "none" ? null : background };
+      return { name, folder, picture };
+    }
     choose(extension) {
       this.extension = extension;
-      this.name.value = `${this.name.value.replace(/\.(svgz?|pdf|dxf|png|toml)$/i, "")}.${extension}`;
+      this.name.value = `${this.name.value.replace(/\.(svgz?|pdf|dxf|png|jpe?g|webp|toml)$/i, "")}.${extension}`;
       for (const input of Array.from(this.dialog.querySelectorAll("input[type=radio]"))) {
         input.checked = input.value === this.extension;
       }
+      byId("save-picture").hidden = !PICTURES.includes(extension);
       this.say("");
     }
     /** Shows a message, with the button that helps. */
-    say(text, help = null) {
+    say(text, asks = false) {
       this.message.textContent = text;
-      for (const button of [this.replace, this.download]) button.hidden = button !== help;
+      this.replace.hidden = !asks;
     }
     refuse(unwritable) {
-      this.say(`${unwritable}. Download it instead: the browser has a folder of its own.`, this.download);
+      this.say(`${unwritable}. Download it instead: the browser has a folder of its own.`);
     }
-    async write(name, replace) {
+    async write(replace) {
+      const target = this.target();
+      if (!target) return;
       try {
-        const answer = await this.app.connection.ask({ do: "save", name, replace });
-        if (answer.exists) return this.say(`${answer.exists} exists already.`, this.replace);
+        const answer = await this.app.connection.ask({ do: "save", ...target, replace });
+        if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
         if (answer.unwritable) return this.refuse(answer.unwritable);
         this.dialog.close();
-        this.done(answer.written ?? name, answer.state, answer.warnings ?? []);
+        this.done(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
       } catch (e) {
         this.say(e instanceof Error ? e.message : String(e));
       }
     }
     /** Hands the file to the browser, which knows a folder that can be written. */
-    async fetch(name) {
+    async fetch() {
+      const target = this.target();
+      if (!target) return;
       try {
-        const { written = name, bytes = "", warnings = [] } = await this.app.connection.ask({ do: "download", name });
+        const { written = this.name.value, bytes = "", warnings = [] } = await this.app.connection.ask({ do: "download", ...target });
         const href = URL.createObjectURL(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
         h("a", { href, download: written }).click();
         setTimeout(() => URL.revokeObjectURL(href), FETCHED);
@@ -3110,13 +3340,15 @@
         this.app.tell("state");
       }
       const name = written.split(/[\\/]/).pop() ?? written;
-      toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
+      toast([`Saved ${name} in ${written.slice(0, -name.length - 1) || (this.app.state?.folder ?? "")}`, ...warnings].join(". "));
     }
     async copyCommand() {
       await this.app.settle();
+      const target = this.target();
+      if (!target) return;
       let line = "";
       try {
-        line = (await this.app.connection.ask({ do: "command-line", name: this.name.value })).text ?? "";
+        line = (await this.app.connection.ask({ do: "command-line", ...target })).text ?? "";
       } catch (e) {
         return this.say(e instanceof Error ? inWords(e.message) : String(e));
       }
@@ -3492,7 +3724,9 @@
       const { app: app2 } = this;
       const { steps, selected } = app2;
       const title = stepName(step2, app2.deformation(step2.deformation));
-      const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`);
+      const count = step2.select?.length ?? 0;
+      const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
+      const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`, scope);
       choose.addEventListener("click", () => void app2.select(i));
       const moved = (to) => {
         const others = steps.filter((_, k) => k !== i);
@@ -3527,6 +3761,7 @@
   var settings = new Settings(app);
   new Presets(app, new Gallery(app));
   new Steps(app);
+  new Parts(app, stage, modes);
   new Place(app, stage);
   new Opening(app, stage);
   new Pointing(app, stage, modes).onPan = () => report.panned();
@@ -3562,6 +3797,11 @@
   toggle("select", () => modes.selects, (v) => {
     modes.selects = v;
     stage.svg.classList.toggle("selecting", v);
+  });
+  toggle("pick-parts", () => modes.picksParts, (v) => {
+    modes.picksParts = v;
+    if (v) byId("parts-box").open = true;
+    stage.svg.classList.toggle("picking", v);
   });
   toggle("snap", () => modes.snaps, (v) => modes.snaps = v);
   toggle("mirror", () => modes.mirrors, (v) => modes.mirrors = v);

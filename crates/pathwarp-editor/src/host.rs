@@ -5,11 +5,39 @@ use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_svg::Document;
+use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// The width of pictures, in px: enough for a screen in full.
-pub const PICTURE_WIDTH: u32 = 2000;
+/// The usual width of pictures, in px: enough for a screen in full.
+const PICTURE_WIDTH: u32 = 2000;
+
+/// What a picture of a drawing is like.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default)]
+pub struct PictureOptions {
+    /// The width in px, unless there is a scale.
+    pub width: u32,
+    /// Pixels for each px of the drawing.
+    pub scale: Option<f32>,
+    /// The colour behind the drawing, as in CSS; `None` for none, which is white in a JPEG.
+    pub background: Option<String>,
+}
+
+impl Default for PictureOptions {
+    fn default() -> Self {
+        Self { width: PICTURE_WIDTH, scale: None, background: None }
+    }
+}
+
+impl PictureOptions {
+    /// The options of `pathwarp render` for such a picture.
+    pub(crate) fn options(&self) -> Vec<(&'static str, String)> {
+        let size = self.scale.map_or_else(|| ("width", self.width.to_string()), |s| ("scale", s.to_string()));
+        let background = self.background.as_ref().map(|b| ("background", b.clone()));
+        [size].into_iter().chain(background).collect()
+    }
+}
 
 /// The program around the editor. Errors are sentences for the user.
 pub trait Host: Send + Sync {
@@ -35,7 +63,7 @@ pub trait Host: Send + Sync {
     ///
     /// # Errors
     /// The format is unknown, or the drawing cannot be converted.
-    fn export(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), String>;
+    fn export(&self, svg: String, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String>;
 
     /// Writes a file completely or not at all.
     ///

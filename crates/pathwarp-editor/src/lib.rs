@@ -29,5 +29,5 @@ mod socket;
 mod stretch;
 
 pub use command_line::selectors;
-pub use host::{Artwork, Bent, Fineness, Host, Opened, PICTURE_WIDTH, Purpose, Summary};
+pub use host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Purpose, Summary};
 pub use server::{News, Options, serve};

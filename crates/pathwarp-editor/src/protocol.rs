@@ -3,6 +3,7 @@
 //! A page sends requests with a number, and gets one answer with the same number for each, in order. It sends the next picture
 //! of a drag only when it has the last one, so nothing piles up.
 
+use crate::host::PictureOptions;
 use pathwarp::param::Args;
 use pathwarp::recipe::{Recipe, Step};
 use serde::{Deserialize, Serialize};
@@ -91,12 +92,14 @@ pub(crate) enum Request {
     },
     /// Writes the result to a file; without a name to the usual one.
     Save {
-        name: Option<String>,
+        #[serde(flatten)]
+        to: Target,
         replace: bool,
     },
-    /// The bytes that *Save* would write to this file, for a folder that cannot be written.
+    /// The bytes that *Save* would write to this file, for the browser to keep.
     Download {
-        name: String,
+        #[serde(flatten)]
+        to: Target,
     },
     /// Keeps the steps for the program that waits for them.
     HandOver,
@@ -125,8 +128,22 @@ pub(crate) enum Request {
     },
     /// The command line with the same effect, for a file of this name.
     CommandLine {
-        name: Option<String>,
+        #[serde(flatten)]
+        to: Target,
     },
+}
+
+/// The file that a result goes to.
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct Target {
+    /// `None`: the usual one.
+    pub(crate) name: Option<String>,
+    /// `None`: that of the drawing.
+    #[serde(default)]
+    pub(crate) folder: Option<String>,
+    /// What a picture of the result is like.
+    #[serde(default)]
+    pub(crate) picture: PictureOptions,
 }
 
 /// The recipe of steps.

@@ -35,7 +35,7 @@ pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)>
     Some((free(result, &format!("{stem}-source")), false))
 }
 
-/// The file called `name` in the folder of `beside`. Pages name files, not folders.
+/// The file called `name` in the folder of `beside`.
 pub(crate) fn named(name: &str, beside: &Path) -> Result<PathBuf, String> {
     let name = name.trim();
     let wrong = |problem: &str| Err(format!("`{name}` {problem}"));
@@ -48,6 +48,17 @@ pub(crate) fn named(name: &str, beside: &Path) -> Result<PathBuf, String> {
     let path = Path::new(name);
     let with_extension = if path.extension().is_some() { path.to_owned() } else { path.with_extension("svg") };
     Ok(beside.with_file_name(with_extension))
+}
+
+/// The folder that a user names: as a whole, from the drawing's folder, or from their own by `~`. It has to be there.
+pub(crate) fn folder(name: &str, drawing: &Path) -> Result<PathBuf, String> {
+    let named = match (name.strip_prefix('~'), std::env::home_dir()) {
+        (Some(rest), Some(home)) if rest.is_empty() || rest.starts_with(['/', '\\']) => {
+            home.join(rest.trim_start_matches(['/', '\\']))
+        }
+        _ => drawing.parent().unwrap_or(Path::new("")).join(name),
+    };
+    if named.is_dir() { Ok(named) } else { Err(format!("there is no folder {name}")) }
 }
 
 /// Returns `true` if the file has one of these extensions.

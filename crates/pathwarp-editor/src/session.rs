@@ -5,9 +5,9 @@ use crate::command_line::{command_line, quoted};
 use crate::draft::{Draft, Kept, NO_FOLDER};
 use crate::grips::{grips, with_net_of};
 use crate::guard::Guard;
-use crate::host::{Bent, Fineness, Host, Opened, PICTURE_WIDTH, Purpose};
+use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
 use crate::picture::Picture;
-use crate::protocol::{PageStep, recipe, steps};
+use crate::protocol::{PageStep, Target, recipe, steps};
 use crate::stretch::stretch;
 use crate::{presets, saving};
 use base64::Engine as _;
@@ -141,17 +141,17 @@ impl Session {
         let saved = self.saved.as_ref().filter(|(_, steps)| *steps == self.kept.steps);
         let again = saved.map(|(p, _)| p).or(self.first.as_ref()).unwrap_or(&self.file);
         let again = std::path::absolute(again).unwrap_or_else(|_| again.clone());
-        let folder = self.file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         json!({
             "file": if let Purpose::Program { drawing, .. } = &self.purpose { Some(drawing.clone()) } else { name(&self.file) },
             "again": format!("pathwarp edit {}", quoted(&again.display().to_string())),
             "program": self.purpose.program(),
-            "folder": folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).display().to_string(),
+            "folder": folder_of(&self.file),
             "steps": self.kept.steps,
             "undo": !self.kept.undo.is_empty(),
             "redo": !self.kept.redo.is_empty(),
             "saved": saved.is_some(),
             "savedTo": self.saved.as_ref().and_then(|(p, _)| name(p)),
+            "savedIn": self.saved.as_ref().map(|(p, _)| folder_of(p)).filter(|f| *f != folder_of(&self.file)),
             "target": name(&self.target()),
             "restored": self.restored,
             "problem": self.problem,
@@ -399,6 +399,16 @@ impl Session {
         saved.or_else(|| self.out().cloned()).unwrap_or_else(|| saving::usual(&self.file))
     }
 
+    /// The file that a page names.
+    fn place(&self, target: &Target) -> Result<PathBuf, String> {
+        let Some(name) = &target.name else { return Ok(self.target()) };
+        let named = saving::named(name, &self.file)?;
+        let folder = target.folder.as_deref().map(str::trim).filter(|f| !f.is_empty() && *f != folder_of(&self.file));
+        let Some(folder) = folder else { return Ok(named) };
+        let folder = saving::folder(folder, &self.file)?;
+        Ok(folder.join(named.file_name().unwrap_or_default()))
+    }
+
     /// The file that the user asked for.
     fn out(&self) -> Option<&PathBuf> {
         if let Purpose::Files { out } = &self.purpose { out.as_ref() } else { None }
@@ -423,9 +433,9 @@ impl Session {
     }
 
     /// Writes the result. Answers with the name, or says that the file exists.
-    pub(crate) fn save(&mut self, name: Option<&str>, replace: bool) -> Result<Value, String> {
+    pub(crate) fn save(&mut self, target: &Target, replace: bool) -> Result<Value, String> {
         self.refuse_for_program("nothing can be saved")?;
-        let to = name.map_or_else(|| Ok(self.target()), |name| saving::named(name, &self.file))?;
+        let to = self.place(target)?;
         let own = self.saved.as_ref().is_some_and(|(p, _)| saving::same_file(p, &to));
         if !own && !self.opened.is_result && saving::same_file(&to, &self.file) {
             return Err(format!("{} is the drawing itself; choose another name", to.display()));
@@ -437,7 +447,7 @@ impl Session {
         if to.exists() && !own && !asked && !replace {
             return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
         }
-        let (bytes, lost) = self.finished(&to)?;
+        let (bytes, lost) = self.finished(&to, &target.picture)?;
         if let Err(why) = self.host.write(&to, &bytes) {
             return Ok(json!({ "unwritable": why }));
         }
@@ -453,27 +463,27 @@ impl Session {
     }
 
     /// The result as *Save* would write it to the file of this name, for a page that keeps it elsewhere.
-    pub(crate) fn download(&mut self, name: &str) -> Result<Value, String> {
+    pub(crate) fn download(&mut self, target: &Target) -> Result<Value, String> {
         self.refuse_for_program("nothing can be downloaded")?;
-        let to = saving::named(name, &self.file)?;
-        let (bytes, lost) = self.finished(&to)?;
+        let to = self.place(target)?;
+        let (bytes, lost) = self.finished(&to, &target.picture)?;
         let name = to.file_name().map(|n| n.to_string_lossy());
         Ok(json!({ "written": name, "bytes": STANDARD.encode(bytes), "warnings": lost }))
     }
 
     /// The result in the format of the file `to`, and what that cannot hold.
-    fn finished(&mut self, to: &Path) -> Result<(Vec<u8>, Vec<String>), String> {
+    fn finished(&mut self, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
         let given = recipe(&self.kept.steps);
         if saving::has_extension(to, &["toml"]) {
             return Ok((self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new()));
         }
         let svg = self.opened.artwork.bend(&given, Fineness::Finished { embedded: is_svg(to) })?.svg;
-        self.host.export(svg, to)
+        self.host.export(svg, to, picture)
     }
 
     /// The command line that writes the result as *Save* does, under a name or the usual one.
-    pub(crate) fn command_line(&self, name: Option<&str>) -> Result<String, String> {
-        let to = name.map_or_else(|| Ok(self.target()), |name| saving::named(name, &self.file))?;
+    pub(crate) fn command_line(&self, target: &Target) -> Result<String, String> {
+        let to = self.place(target)?;
         let given = recipe(&self.kept.steps);
         let document = self.opened.artwork.document();
         let is_result = self.opened.is_result;
@@ -500,9 +510,17 @@ impl Session {
         } else if saving::has_extension(&to, &["pdf", "dxf"]) {
             line(&options, &to)
         } else {
-            format!("{} | pathwarp render - --width {PICTURE_WIDTH} -o {}", line(&options, streamed), quoted(&name))
+            let picture = target.picture.options();
+            let picture: String = picture.iter().map(|(name, value)| format!(" --{name} {}", quoted(value))).collect();
+            format!("{} | pathwarp render -{picture} -o {}", line(&options, streamed), quoted(&name))
         })
     }
+}
+
+/// The folder of a file, for people.
+fn folder_of(file: &Path) -> String {
+    let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).display().to_string()
 }
 
 /// Returns `true` for a file that holds the source and the steps, to go on with.

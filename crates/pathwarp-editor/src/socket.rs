@@ -125,13 +125,13 @@ impl Page {
                 Ok(json!({ "state": session.state() }))
             }
             Request::Bring { name, bytes } => session.bring(&name, &bytes),
-            Request::Save { name, replace } => {
-                let mut answer = session.save(name.as_deref(), replace)?;
+            Request::Save { to, replace } => {
+                let mut answer = session.save(&to, replace)?;
                 self.count_change();
                 answer["state"] = session.state();
                 Ok(answer)
             }
-            Request::Download { name } => session.download(&name),
+            Request::Download { to } => session.download(&to),
             Request::HandOver => {
                 session.hand_over()?;
                 self.shared.pages.done.store(true, Ordering::SeqCst);
@@ -151,7 +151,7 @@ impl Page {
                 Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) }))
             }
             Request::Renet { steps, values } => Ok(json!({ "step": session.renet(&steps, values)? })),
-            Request::CommandLine { name } => Ok(json!({ "text": session.command_line(name.as_deref())? })),
+            Request::CommandLine { to } => Ok(json!({ "text": session.command_line(&to)? })),
         }
     }
 

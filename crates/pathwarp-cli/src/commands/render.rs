@@ -1,6 +1,6 @@
 //! Pictures: `render` draws an SVG file, `gallery` artwork under every preset of a set on one sheet.
 
-use crate::bitmap::encode;
+use crate::bitmap::{Background, background, encode};
 use crate::commands::args::{choice, file_arg, given_file, out_arg, target};
 use crate::failure::{Failure, Status};
 use crate::format::{Choice, Format, PICTURES};
@@ -10,13 +10,12 @@ use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::param::{Args, Axis, Frame, Kind};
 use pathwarp::refit;
-use pathwarp_raster::{Color, RenderOptions, Size};
+use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
 use pathwarp_svg::{Document, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument, usvg_tree};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::str::FromStr as _;
 
 pub(super) fn render_command() -> Command {
     let pixels = |name: &'static str, help: &'static str| {
@@ -88,20 +87,6 @@ pub(super) fn render(m: &ArgMatches) -> Result<Status, Failure> {
     }
     output::write(target, &picture)?;
     Ok(Status::partial_if(!read.unread.is_empty() || !read.undrawn.is_empty()))
-}
-
-/// A colour behind the drawing; `None` for transparency.
-#[derive(Clone)]
-struct Background(Option<Color>);
-
-/// Parses a colour as in CSS, or `none`.
-fn background(text: &str) -> Result<Background, String> {
-    if matches!(text, "none" | "transparent") {
-        return Ok(Background(None));
-    }
-    let c =
-        svgtypes::Color::from_str(text).map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
-    Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
 }
 
 /// The formats of sheets.

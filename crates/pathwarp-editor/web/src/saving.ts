@@ -7,11 +7,28 @@ import { toast } from "./toast";
 
 const FORMATS: [string, string, string][] = [
   ["svg", "SVG", "Can be opened here again"],
+  ["svgz", "SVGZ", "The same, packed"],
   ["pdf", "PDF", "For print"],
   ["dxf", "DXF", "For cutters and CAD"],
   ["png", "PNG", "A picture"],
+  ["jpg", "JPEG", "A picture, smaller"],
+  ["webp", "WebP", "A picture for the web"],
   ["toml", "Recipe", "For other drawings"],
 ];
+
+const PICTURES = ["png", "jpg", "webp"];
+/** Usual and largest width of a picture, in px. */
+const WIDTH = 2000;
+const WIDEST = 20_000;
+/** Where the choices for pictures and the folder are remembered. */
+const REMEMBERED = "pathwarp-export";
+
+/** What was chosen last. */
+interface Choices {
+  unit: "px" | "%";
+  size: number;
+  background: string;
+}
 
 const NOTHING = "There is nothing to save yet: pull a blue point or choose a shape first";
 
@@ -25,6 +42,11 @@ export class Saving {
   private message = byId("save-message");
   private replace = byId<HTMLButtonElement>("save-replace");
   private download = byId<HTMLButtonElement>("save-download");
+  private folder = byId<HTMLInputElement>("save-folder");
+  private size = byId<HTMLInputElement>("save-size");
+  private unit = byId<HTMLSelectElement>("save-unit");
+  private background = byId<HTMLSelectElement>("save-background");
+  private colour = byId<HTMLInputElement>("save-colour");
   /** The steps that were downloaded last. */
   private downloaded = "";
 
@@ -40,11 +62,14 @@ export class Saving {
     byId("save-cancel").addEventListener("click", () => this.dialog.close());
     this.dialog.querySelector("form")!.addEventListener("submit", (e) => {
       e.preventDefault();
-      void this.write(this.name.value, false);
+      void this.write(false);
     });
-    this.replace.addEventListener("click", () => void this.write(this.name.value, true));
-    this.download.addEventListener("click", () => void this.fetch(this.name.value));
-    this.name.addEventListener("input", () => this.say(""));
+    this.replace.addEventListener("click", () => void this.write(true));
+    this.download.addEventListener("click", () => void this.fetch());
+    for (const field of [this.name, this.folder, this.size]) field.addEventListener("input", () => this.say(""));
+    this.background.addEventListener("change", () => (this.colour.hidden = this.background.value !== "colour"));
+    this.unit.addEventListener("change", () => (this.size.value = this.unit.value === "%" ? "100" : String(WIDTH)));
+    this.recall();
     byId("copy-command").addEventListener("click", () => void this.copyCommand());
     app.listen((change) => {
       if (change === "state") this.show();
@@ -90,7 +115,7 @@ export class Saving {
 
   /** Saves where it was saved last; the first time, under the usual name. */
   async quick(): Promise<void> {
-    if (this.dialog.open) return this.write(this.name.value, false);
+    if (this.dialog.open) return this.write(false);
     if (!(await this.app.settle())) return;
     const { state } = this.app;
     if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
@@ -109,47 +134,77 @@ export class Saving {
     if (state.steps.length === 0) return toast(NOTHING);
     this.name.value = state.target;
     this.choose("svg");
-    byId("save-folder").textContent = state.folder;
+    this.folder.value = state.savedIn ?? state.folder;
     if (unwritable) this.refuse(unwritable);
     this.dialog.showModal();
     this.name.select();
   }
 
+  /** The choices of last time. */
+  private recall(): void {
+    const { unit = "px", size = WIDTH, background = "none" } = JSON.parse(localStorage.getItem(REMEMBERED) ?? "{}") as Partial<Choices>;
+    const isColour = background.startsWith("#");
+    [this.unit.value, this.size.value, this.background.value] = [unit, String(size), isColour ? "colour" : background];
+    if (isColour) this.colour.value = background;
+    this.colour.hidden = !isColour;
+  }
+
+  /** The file that is asked for. Returns `null` for a picture without a size. */
+  private target(): Record<string, unknown> | null {
+    const [name, folder] = [this.name.value, this.folder.value];
+    if (!PICTURES.includes(this.extension)) return { name, folder };
+    const size = Number(this.size.value.replace(",", "."));
+    const unit = this.unit.value === "%" ? "%" : "px";
+    if (!(size > 0 && size <= WIDEST) || (unit === "px" && !Number.isInteger(size))) {
+      this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${WIDEST}`);
+      return null;
+    }
+    const background = this.background.value === "colour" ? this.colour.value : this.background.value;
+    localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background } satisfies Choices));
+    const picture = { ...(unit === "%" ? { scale: size / 100 } : { width: size }), background: background === "none" ? null : background };
+    return { name, folder, picture };
+  }
+
   private choose(extension: string): void {
     this.extension = extension;
-    this.name.value = `${this.name.value.replace(/\.(svgz?|pdf|dxf|png|toml)$/i, "")}.${extension}`;
+    this.name.value = `${this.name.value.replace(/\.(svgz?|pdf|dxf|png|jpe?g|webp|toml)$/i, "")}.${extension}`;
     for (const input of Array.from(this.dialog.querySelectorAll<HTMLInputElement>("input[type=radio]"))) {
       input.checked = input.value === this.extension;
     }
+    byId("save-picture").hidden = !PICTURES.includes(extension);
     this.say("");
   }
 
   /** Shows a message, with the button that helps. */
-  private say(text: string, help: HTMLButtonElement | null = null): void {
+  private say(text: string, asks = false): void {
     this.message.textContent = text;
-    for (const button of [this.replace, this.download]) button.hidden = button !== help;
+    this.replace.hidden = !asks;
   }
 
   private refuse(unwritable: string): void {
-    this.say(`${unwritable}. Download it instead: the browser has a folder of its own.`, this.download);
+    this.say(`${unwritable}. Download it instead: the browser has a folder of its own.`);
   }
 
-  private async write(name: string, replace: boolean): Promise<void> {
+  private async write(replace: boolean): Promise<void> {
+    const target = this.target();
+    if (!target) return;
     try {
-      const answer = await this.app.connection.ask({ do: "save", name, replace });
-      if (answer.exists) return this.say(`${answer.exists} exists already.`, this.replace);
+      const answer = await this.app.connection.ask({ do: "save", ...target, replace });
+      if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
       if (answer.unwritable) return this.refuse(answer.unwritable);
       this.dialog.close();
-      this.done(answer.written ?? name, answer.state, answer.warnings ?? []);
+      this.done(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
     } catch (e) {
       this.say(e instanceof Error ? e.message : String(e));
     }
   }
 
   /** Hands the file to the browser, which knows a folder that can be written. */
-  private async fetch(name: string): Promise<void> {
+  private async fetch(): Promise<void> {
+    const target = this.target();
+    if (!target) return;
     try {
-      const { written = name, bytes = "", warnings = [] } = await this.app.connection.ask({ do: "download", name });
+      const { written = this.name.value, bytes = "", warnings = [] } = await this.app.connection.ask({ do: "download", ...target });
       const href = URL.createObjectURL(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
       h("a", { href, download: written }).click();
       setTimeout(() => URL.revokeObjectURL(href), FETCHED);
@@ -168,14 +223,16 @@ export class Saving {
       this.app.tell("state");
     }
     const name = written.split(/[\\/]/).pop() ?? written;
-    toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
+    toast([`Saved ${name} in ${written.slice(0, -name.length - 1) || (this.app.state?.folder ?? "")}`, ...warnings].join(". "));
   }
 
   private async copyCommand(): Promise<void> {
     await this.app.settle();
+    const target = this.target();
+    if (!target) return;
     let line = "";
     try {
-      line = (await this.app.connection.ask({ do: "command-line", name: this.name.value })).text ?? "";
+      line = (await this.app.connection.ask({ do: "command-line", ...target })).text ?? "";
     } catch (e) {
       return this.say(e instanceof Error ? inWords(e.message) : String(e));
     }

@@ -111,6 +111,8 @@ export interface State {
   redo: boolean;
   saved: boolean;
   savedTo: string | null;
+  /** The folder that the result was saved in last, unless that of the drawing. */
+  savedIn: string | null;
   target: string;
   /** The command that goes on with the steps. */
   again: string;
