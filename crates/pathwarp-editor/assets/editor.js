@@ -1556,17 +1556,21 @@
       if (isReplaced) toast(`${name(app2.step)} replaces ${old}. Undo brings it back, “Add step” keeps both`);
     }
     whole(d, variant = null) {
-      const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? called(d)), variant);
+      const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? (this.isTaken(called(d)) ? `${called(d)} (effect)` : called(d))), variant);
       card.button.title = capital(d.title);
       card.words += ` ${called(d)} ${d.name} ${d.title}`;
       return card;
+    }
+    /** Of two shapes with one name, the later one says what it is. */
+    isTaken(name) {
+      return this.cards.some(({ button }) => button.textContent === name);
     }
     presets(d) {
       const { presets } = d.gallery;
       const names = d.params.find((p) => p.name === presets)?.words ?? [];
       return names.map((name) => {
         const args = { [presets]: [name] };
-        return this.card(d.name, args, [{ deformation: d.name, inverse: false, args }], h("span", { class: "name" }, words(name)));
+        return this.card(d.name, args, [{ deformation: d.name, inverse: false, args }], h("span", { class: "name" }, this.isTaken(words(name)) ? `${words(name)} (${d.gallery.title})` : words(name)));
       });
     }
     /** Draws what is in view, one after another, so that dragging does not wait. */
@@ -2265,7 +2269,7 @@
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+      this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
       const stage2 = this;
       app2.screen = {
         show: (answer) => this.show(answer),
@@ -2298,6 +2302,8 @@
     /** A filter would be drawn anew with every picture, so the shadow is made of lines. */
     shadows = [s("rect", { class: "shadow wide" }), s("rect", { class: "shadow" })];
     sheet = s("rect", { class: "sheet" });
+    /** The pattern of a transparent sheet: squares of the same size at any magnification. */
+    checks = s("pattern", { id: "checks", width: 16, height: 16, patternUnits: "userSpaceOnUse" }, s("rect", { class: "checks-light", width: 16, height: 16 }), s("path", { class: "checks-dark", d: "M0 0h8v8H0zM8 8h8v8H8z" }));
     art = s("g", { class: "art" });
     beforeArt = s("g", { class: "art", visibility: "hidden" });
     heat = s("g", { class: "heat" });
@@ -2500,6 +2506,7 @@
       const { camera } = this;
       const layers = [...this.shadows, this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
       for (const layer of layers) layer.setAttribute("transform", camera.transform);
+      this.checks.setAttribute("patternTransform", `scale(${1 / camera.scale})`);
       for (const mark of Array.from(this.marks.children)) {
         const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at));
         mark.setAttribute("transform", `translate(${x} ${y})`);
@@ -3815,6 +3822,15 @@
     byId("legend").hidden = !v;
     void stage.drawStretch();
   });
+  var GROUNDS = ["white", "black", "checks"];
+  var GROUND = "pathwarp-ground";
+  function ground(name) {
+    for (const other of GROUNDS) document.body.classList.toggle(`on-${other}`, other === name);
+    byId("ground-name").textContent = name === "checks" ? "transparent" : name;
+    localStorage.setItem(GROUND, name);
+  }
+  ground(GROUNDS.find((name) => name === localStorage.getItem(GROUND)) ?? "white");
+  on("ground", () => ground(GROUNDS[(GROUNDS.indexOf(localStorage.getItem(GROUND) ?? "") + 1) % GROUNDS.length]));
   var SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" };
   var { classList } = document.body;
   for (const [sheet, button] of Object.entries(SHEETS)) {

@@ -142,11 +142,16 @@ export class Gallery {
   }
 
   private whole(d: Deformation, variant: Card["variant"] = null): Card {
-    const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? called(d)), variant);
+    const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? (this.isTaken(called(d)) ? `${called(d)} (effect)` : called(d))), variant);
     card.button.title = capital(d.title);
     // What it does is looked for, too.
     card.words += ` ${called(d)} ${d.name} ${d.title}`;
     return card;
+  }
+
+  /** Of two shapes with one name, the later one says what it is. */
+  private isTaken(name: string): boolean {
+    return this.cards.some(({ button }) => button.textContent === name);
   }
 
   private presets(d: Deformation): Card[] {
@@ -154,7 +159,7 @@ export class Gallery {
     const names = d.params.find((p) => p.name === presets)?.words ?? [];
     return names.map((name) => {
       const args = { [presets]: [name] };
-      return this.card(d.name, args, [{ deformation: d.name, inverse: false, args }], h("span", { class: "name" }, words(name)));
+      return this.card(d.name, args, [{ deformation: d.name, inverse: false, args }], h("span", { class: "name" }, this.isTaken(words(name)) ? `${words(name)} (${d.gallery!.title})` : words(name)));
     });
   }
 

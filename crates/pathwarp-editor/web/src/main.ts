@@ -87,6 +87,17 @@ toggle("stretch", () => stage.showsStretch, (v) => {
   void stage.drawStretch();
 });
 
+// The sheet under the drawing: white artwork is seen on black, what is transparent on a pattern.
+const GROUNDS = ["white", "black", "checks"];
+const GROUND = "pathwarp-ground";
+function ground(name: string): void {
+  for (const other of GROUNDS) document.body.classList.toggle(`on-${other}`, other === name);
+  byId("ground-name").textContent = name === "checks" ? "transparent" : name;
+  localStorage.setItem(GROUND, name);
+}
+ground(GROUNDS.find((name) => name === localStorage.getItem(GROUND)) ?? "white");
+on("ground", () => ground(GROUNDS[(GROUNDS.indexOf(localStorage.getItem(GROUND) ?? "") + 1) % GROUNDS.length]!));
+
 // The panels of a narrow window are sheets, of which one is open at most.
 const SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" } as const;
 const { classList } = document.body;

@@ -31,6 +31,8 @@ export class Stage {
   /** A filter would be drawn anew with every picture, so the shadow is made of lines. */
   private shadows = [s("rect", { class: "shadow wide" }), s("rect", { class: "shadow" })];
   private sheet = s("rect", { class: "sheet" });
+  /** The pattern of a transparent sheet: squares of the same size at any magnification. */
+  private checks = s("pattern", { id: "checks", width: 16, height: 16, patternUnits: "userSpaceOnUse" }, s("rect", { class: "checks-light", width: 16, height: 16 }), s("path", { class: "checks-dark", d: "M0 0h8v8H0zM8 8h8v8H8z" }));
   private art = s("g", { class: "art" });
   private beforeArt = s("g", { class: "art", visibility: "hidden" });
   private heat = s("g", { class: "heat" });
@@ -81,7 +83,7 @@ export class Stage {
   onZoom: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+    this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
     const stage = this;
     app.screen = {
       show: (answer) => this.show(answer),
@@ -277,6 +279,7 @@ export class Stage {
     const { camera } = this;
     const layers = [...this.shadows, this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
     for (const layer of layers) layer.setAttribute("transform", camera.transform);
+    this.checks.setAttribute("patternTransform", `scale(${1 / camera.scale})`);
     for (const mark of Array.from(this.marks.children) as SVGGElement[]) {
       const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at!) as XY);
       mark.setAttribute("transform", `translate(${x} ${y})`);

@@ -144,7 +144,7 @@ export const paths = (page) => page.$$eval("#stage .art:not([visibility=hidden])
 /** Chooses a shape by its name. */
 export async function choose(page, name, section = "") {
   const within = page.locator("#gallery section", { hasText: section });
-  await within.locator(".card", { hasText: new RegExp(`^${name}$`) }).first().click();
+  await within.locator(".card", { hasText: new RegExp(`^${name.replace(/[()]/g, "\\$&")}$`) }).first().click();
   await quiet(page);
 }
 

@@ -136,3 +136,19 @@ export const job_grid = () => job("grid", "logo.svg", async (page) => {
   await pull(page, await at(page, "Control point 4,3"), [30, 20]);
   await backAndForth(page, 4);
 });
+
+/** One letter of a word is warped alone, larger than its neighbours. */
+export const job_letter = () => job("letter", "lettering.svg", async (page) => {
+  await press(page, "Parts");
+  await press(page, "Bulge");
+  const whole = await paths(page);
+  // The middle of the d.
+  const box = await page.locator("#stage .art path").nth(3).boundingBox();
+  await page.mouse.click(box.x + 0.3 * box.width, box.y + 0.6 * box.height);
+  await quiet(page);
+  check((await page.getByText("This step bends one part.").count()) === 1, "no letter was chosen");
+  const [now, then] = [await paths(page), whole].map((all) => all.split("|"));
+  check(now.filter((d, i) => d === then[i]).length === 0, "the others are still bent");
+  await field(page, "Bend", "60");
+  await backAndForth(page, 3);
+});

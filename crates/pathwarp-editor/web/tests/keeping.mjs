@@ -203,7 +203,7 @@ export const where_nothing_can_be_written_it_is_downloaded = () => within(async 
       await page.click("#save-as");
       await page.check(`input[value=${format}]`);
       await page.click("#save-dialog button[type=submit]");
-      await page.waitForSelector("#save-download:not([hidden])");
+      await page.waitForSelector("#save-dialog[open] #save-download");
     }
     const [download] = await Promise.all([page.waitForEvent("download"), page.click("#save-download")]);
     check(download.suggestedFilename() === `logo-bent.${format}`, download.suggestedFilename());

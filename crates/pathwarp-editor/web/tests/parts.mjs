@@ -1,0 +1,140 @@
+// Parts of the drawing: chosen by clicks and in the list, hidden, locked; and results in other folders and formats.
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { check, choose, edit, folder, open, paths, program, quiet, sample } from "./harness.mjs";
+
+async function within(drawing, test) {
+  const dir = folder(drawing.includes("<") ? { "art.svg": drawing } : { "art.svg": sample(drawing) });
+  const editor = await edit(`${dir}/art.svg`);
+  const page = await open(editor.address, { viewport: { width: 1440, height: 900 } });
+  try {
+    await page.evaluate(() => { navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }; });
+    await test(page, dir);
+    check(page.problems.length === 0, page.problems.join("; "));
+  } finally {
+    editor.stop();
+    await page.context().close();
+  }
+}
+
+/** The outlines of the paths of the picture, in the order of the file. */
+const each = (page) => page.$$eval("#stage .art:not([visibility=hidden]) path", (all) => all.map((p) => p.getAttribute("d")));
+const clicked = async (page, n, modifiers = []) => {
+  const { x, y, width, height } = await page.locator("#stage .art:not([visibility=hidden]) path").nth(n).boundingBox();
+  for (const key of modifiers) await page.keyboard.down(key);
+  await page.mouse.click(x + width / 2, y + height / 2);
+  for (const key of modifiers) await page.keyboard.up(key);
+  await quiet(page);
+};
+const press = async (page, name) => {
+  await page.getByRole("button", { name, exact: true }).click();
+  await quiet(page);
+};
+/** Squares without ids, of which the last two are a group. */
+const SQUARES = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 40"><rect x="2" y="2" width="20" height="20"/>
+  <path d="M30 2h20v20H30z"/><g><path d="M60 2h15v20H60z"/><path d="M80 2h15v20H80z"/></g></svg>`;
+const moved = (before, after) => before.flatMap((d, i) => (d === after[i] ? [] : [i])).join();
+
+/** Two steps for two parts, a copied command line with the same bytes, and the file opened again. */
+export const steps_hold_for_parts = () => within(SQUARES, async (page, dir) => {
+  const before = await each(page);
+  await press(page, "Parts");
+  await choose(page, "Flag");
+  check(moved(before, await each(page)) === "0,1,2,3", "at first, everything is bent");
+  await clicked(page, 1);
+  check(moved(before, await each(page)) === "1", `${moved(before, await each(page))} are bent instead of the second`);
+  check((await page.textContent("#parts-scope")) === "This step bends one part.", "the list does not say so");
+  await clicked(page, 0, ["Shift"]);
+  check(moved(before, await each(page)) === "0,1", "Shift does not add a part");
+  await page.getByRole("button", { name: "Add step", exact: true }).click();
+  await choose(page, "Arch");
+  await page.locator("#parts .part-name", { hasText: "Group" }).click();
+  await quiet(page);
+  check(moved(before, await each(page)) === "0,1,2,3", "the second step does not bend the group");
+  await page.click("#save-as");
+  await page.fill("#save-name", "own.svg");
+  await page.locator("#save-dialog").getByRole("button", { name: "Save", exact: true }).click();
+  await page.waitForSelector("#toast.on");
+  await page.click("#save-as");
+  await page.fill("#save-name", "copied.svg");
+  await page.click("#copy-command");
+  const line = await (await page.waitForFunction(() => window.copied)).jsonValue();
+  execFileSync("sh", ["-c", line.replace(/^pathwarp/, program)], { cwd: dir, stdio: "pipe" });
+  check(readFileSync(join(dir, "copied.svg"), "utf8") === readFileSync(join(dir, "own.svg"), "utf8"), `${line} gives other bytes`);
+  const picture = await paths(page);
+  const again = await edit(join(dir, "own.svg"));
+  const page2 = await open(again.address);
+  await quiet(page2);
+  check((await paths(page2)) === picture, "opened again, it is another drawing");
+  await again.stop();
+  await page2.context().close();
+});
+
+/** What is locked stays as it is under every step, and is not clicked; what is hidden is not seen. */
+export const parts_are_locked_and_hidden = () => within(SQUARES, async (page) => {
+  const before = await each(page);
+  await press(page, "Parts");
+  await choose(page, "Flag");
+  await press(page, "Lock: Rectangle");
+  check(moved(before, await each(page)) === "1,2,3", "a locked part is bent");
+  await page.getByRole("button", { name: "Add step", exact: true }).click();
+  await choose(page, "Arch");
+  check(moved(before, await each(page)) === "1,2,3", "a locked part is bent by the next step");
+  await clicked(page, 0);
+  check((await page.textContent("#parts-scope")) === "This step bends everything.", "a locked part is chosen by a click");
+  await press(page, "Undo");
+  await press(page, "Undo");
+  check(moved(before, await each(page)) === "0,1,2,3", "the lock cannot be undone");
+  const seen = () => page.locator("#stage .art:not([visibility=hidden]) path:visible").count();
+  await press(page, "Hide here: Group");
+  check((await seen()) === 2, "the group is still seen");
+  await choose(page, "Rise");
+  check((await seen()) === 2, "the next picture shows it");
+  await press(page, "Hide here: Group");
+  check((await seen()) === 4, "it does not come back");
+});
+
+/** A picture of 150 % on a colour, in a folder of its own, as the copied command line makes it; the choices are remembered. */
+export const results_go_where_they_are_wanted = () => within("lettering.svg", async (page, dir) => {
+  await choose(page, "Flag");
+  mkdirSync(join(dir, "out"));
+  await page.click("#save-as");
+  await page.getByRole("radio", { name: /^WebP/ }).check();
+  await page.getByRole("textbox", { name: "Folder" }).fill("nowhere");
+  await page.getByRole("combobox", { name: "Unit of the size" }).selectOption("%");
+  await page.getByRole("textbox", { name: "Size" }).fill("150");
+  await page.getByRole("combobox", { name: "Background" }).selectOption("black");
+  const save = page.locator("#save-dialog").getByRole("button", { name: "Save", exact: true });
+  await save.click();
+  await page.locator("#save-message", { hasText: "there is no folder nowhere" }).waitFor();
+  await page.getByRole("textbox", { name: "Folder" }).fill("out");
+  await save.click();
+  await page.waitForSelector("#toast.on");
+  check(existsSync(join(dir, "out/art-bent.webp")), "the picture is not in the folder");
+  await page.click("#save-as");
+  await page.getByRole("radio", { name: /^WebP/ }).check();
+  check((await page.inputValue("#save-size")) === "150" && (await page.inputValue("#save-background")) === "black", "the choices are forgotten");
+  await page.fill("#save-name", "copied.webp");
+  await page.click("#copy-command");
+  const line = await (await page.waitForFunction(() => window.copied)).jsonValue();
+  execFileSync("sh", ["-c", line.replaceAll(/(^|\| )pathwarp/g, `$1${program}`)], { cwd: dir, stdio: "pipe" });
+  check(readFileSync(join(dir, "copied.webp")).equals(readFileSync(join(dir, "out/art-bent.webp"))), `${line} gives another picture`);
+  await page.click("#save-as");
+  await page.getByRole("radio", { name: /^JPEG/ }).check();
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#save-dialog").getByRole("button", { name: "Download" }).click()]);
+  check(readFileSync(await download.path()).readUInt16BE(0) === 0xffd8, "the download is no JPEG");
+});
+
+/** White artwork is seen on black. */
+export const the_sheet_changes = () => within(`<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path fill="#fff" d="M5 5h50v30H5z"/></svg>`, async (page) => {
+  const fill = () => page.$eval("#stage .sheet", (e) => getComputedStyle(e).fill);
+  const was = await fill();
+  await press(page, "Sheet: white");
+  check((await fill()) !== was, "the sheet is white on black");
+  await press(page, "Sheet: black");
+  check((await fill()).includes("#checks"), "the sheet has no pattern");
+  await page.reload();
+  await page.getByRole("button", { name: "Sheet: transparent", exact: true }).waitFor();
+  await press(page, "Sheet: transparent");
+});
