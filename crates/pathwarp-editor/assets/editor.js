@@ -2269,7 +2269,7 @@
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+      this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
       const stage2 = this;
       app2.screen = {
         show: (answer) => this.show(answer),
@@ -2304,6 +2304,8 @@
     sheet = s("rect", { class: "sheet" });
     /** The pattern of a transparent sheet: squares of the same size at any magnification. */
     checks = s("pattern", { id: "checks", width: 16, height: 16, patternUnits: "userSpaceOnUse" }, s("rect", { class: "checks-light", width: 16, height: 16 }), s("path", { class: "checks-dark", d: "M0 0h8v8H0zM8 8h8v8H8z" }));
+    /** What is seen behind the drawing. */
+    behind = s("g", {});
     art = s("g", { class: "art" });
     beforeArt = s("g", { class: "art", visibility: "hidden" });
     heat = s("g", { class: "heat" });
@@ -2380,7 +2382,7 @@
       const [x0, y0, x1, y1] = this.view;
       if (!this.app.state || x1 <= x0 || y1 <= y0) return;
       const handles = (this.app.handles?.handles ?? []).map((h2) => this.camera.inPx(h2.get())).filter((p) => p.every(Number.isFinite));
-      const [a, b, c, d] = this.page;
+      const [a, b, c, d] = this.pageBox;
       const [xs, ys] = [[a, c, ...handles.map((p) => p[0])], [b, d, ...handles.map((p) => p[1])]];
       this.camera.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)], [x1 - x0, y1 - y0]);
       const [x, y] = this.camera.shift;
@@ -2439,7 +2441,7 @@
       this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
     }
     /** The page as saving makes it, as two corners in px of the drawing. */
-    get page() {
+    get pageBox() {
       const { state } = this.app;
       if (!state) return [0, 0, 0, 0];
       const [x, y, w, h2] = this.grown ?? state.page;
@@ -2448,7 +2450,7 @@
     }
     /** Draws the sheet as large as the page. */
     grow() {
-      const [x0, y0, x1, y1] = this.page;
+      const [x0, y0, x1, y1] = this.pageBox;
       for (const sheet of [...this.shadows, this.sheet]) {
         sheet.setAttribute("x", String(x0));
         sheet.setAttribute("y", String(y0));
@@ -2504,7 +2506,7 @@
     /** Puts everything in its place on the screen. */
     layout() {
       const { camera } = this;
-      const layers = [...this.shadows, this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+      const layers = [...this.shadows, this.sheet, this.behind, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
       for (const layer of layers) layer.setAttribute("transform", camera.transform);
       this.checks.setAttribute("patternTransform", `scale(${1 / camera.scale})`);
       for (const mark of Array.from(this.marks.children)) {
@@ -3758,6 +3760,115 @@
     }
   };
 
+  // src/target.ts
+  var MM = 96 / 25.4;
+  var OPACITY = 50;
+  var Target = class {
+    constructor(app2, stage2) {
+      this.app = app2;
+      this.stage = stage2;
+      stage2.behind.append(this.image);
+      this.button.addEventListener("click", () => this.file ? this.show(this.box.hidden !== false) : this.chosen.click());
+      this.chosen.addEventListener("change", () => {
+        const file = this.chosen.files?.[0];
+        this.chosen.value = "";
+        if (file) void this.take(file);
+      });
+      const opacity = byId("target-opacity");
+      opacity.addEventListener("input", () => this.image.setAttribute("opacity", String(Number(opacity.value) / 100)));
+      byId("target-other").addEventListener("click", () => this.chosen.click());
+      byId("target-remove").addEventListener("click", () => this.remove());
+      this.outline.addEventListener("click", () => void this.shape());
+      for (const name of ["x", "y", "width"]) {
+        const input = byId(`target-${name}`);
+        const least = name === "width" ? 0.01 : void 0;
+        const isWrong = (text) => {
+          const q = evaluate(text, "mm");
+          return q && q.unit === "mm" && (least === void 0 || q.value >= least) ? null : asked("mm", least);
+        };
+        const field = new Field(input, () => String(Number((this.place[name] / MM).toFixed(2))), (text) => {
+          this.place[name] = (evaluate(text, "mm")?.value ?? 0) * MM;
+          this.lay();
+          return null;
+        }, isWrong);
+        this.box.querySelector(".messages").append(field.message);
+        this.fields.push(field);
+      }
+      app2.listen((change) => {
+        if (change === "drawing") this.remove();
+      });
+    }
+    app;
+    stage;
+    image = s("image", { class: "target", visibility: "hidden" });
+    button = byId("target");
+    box = byId("target-box");
+    chosen = byId("target-file");
+    outline = byId("target-outline");
+    file = null;
+    /** Left, top and width in px of the drawing, and height over width. */
+    place = { x: 0, y: 0, width: 1 };
+    ratio = 1;
+    /** The width of a drawing at its own size. */
+    natural = 1;
+    fields = [];
+    /** Shows a file behind the drawing: a drawing at its own size and place, a picture as wide as the page. */
+    async take(file) {
+      const url = URL.createObjectURL(file);
+      const probe = new Image();
+      probe.src = url;
+      try {
+        await probe.decode();
+      } catch {
+        URL.revokeObjectURL(url);
+        return this.app.fail(`${file.name} is not a picture or drawing that the browser can show`);
+      }
+      this.remove();
+      this.file = file;
+      const isDrawing = /\.svgz?$/i.test(file.name);
+      const [x0, y0, x1] = this.stage.pageBox;
+      this.ratio = probe.naturalHeight / Math.max(probe.naturalWidth, 1);
+      this.natural = probe.naturalWidth;
+      this.place = isDrawing ? { x: 0, y: 0, width: probe.naturalWidth } : { x: x0, y: y0, width: x1 - x0 };
+      this.outline.hidden = !isDrawing || this.app.state?.program !== null;
+      this.image.setAttribute("href", url);
+      this.image.setAttribute("opacity", String(Number(byId("target-opacity").value) / 100));
+      this.image.setAttribute("visibility", "visible");
+      this.lay();
+      this.show(true);
+    }
+    lay() {
+      const { x, y, width } = this.place;
+      for (const [name, value] of Object.entries({ x, y, width, height: width * this.ratio })) this.image.setAttribute(name, String(value));
+      for (const field of this.fields) field.refresh();
+    }
+    show(on2) {
+      this.box.hidden = !on2;
+      this.button.setAttribute("aria-pressed", String(this.file !== null));
+      this.button.setAttribute("aria-expanded", String(on2));
+      byId("target-name").textContent = this.file?.name ?? "";
+    }
+    remove() {
+      const href = this.image.getAttribute("href");
+      if (href) URL.revokeObjectURL(href);
+      this.image.removeAttribute("href");
+      this.image.setAttribute("visibility", "hidden");
+      byId("target-opacity").value = String(OPACITY);
+      this.file = null;
+      this.show(false);
+    }
+    /** Puts the artwork into the outline of the target: its file is copied beside the drawing, and counts at its own size and place. */
+    async shape() {
+      const { app: app2, file } = this;
+      if (!file) return;
+      const answer = await app2.attempt(async () => app2.connection.ask({ do: "bring", name: file.name, bytes: await base64(file) }));
+      const closed2 = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
+      this.place = { x: 0, y: 0, width: this.natural };
+      this.lay();
+      if (answer?.written && closed2) await app2.choose("envelope", { envelope: [answer.written] }, closed2.label);
+    }
+  };
+
   // src/main.ts
   var ZOOM = 1.25;
   var app = new App();
@@ -3771,6 +3882,7 @@
   new Parts(app, stage, modes);
   new Place(app, stage);
   new Opening(app, stage);
+  new Target(app, stage);
   new Pointing(app, stage, modes).onPan = () => report.panned();
   modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
   stage.onZoom = () => {

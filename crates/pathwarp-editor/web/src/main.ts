@@ -14,6 +14,7 @@ import { Saving } from "./saving";
 import { Settings } from "./settings";
 import { Stage } from "./stage";
 import { Steps } from "./steps";
+import { Target } from "./target";
 import { toast } from "./toast";
 
 /** The factor of one step of magnification. */
@@ -30,6 +31,7 @@ new Steps(app);
 new Parts(app, stage, modes);
 new Place(app, stage);
 new Opening(app, stage);
+new Target(app, stage);
 new Pointing(app, stage, modes).onPan = () => report.panned();
 modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
 stage.onZoom = () => {

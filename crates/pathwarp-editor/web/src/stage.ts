@@ -33,6 +33,8 @@ export class Stage {
   private sheet = s("rect", { class: "sheet" });
   /** The pattern of a transparent sheet: squares of the same size at any magnification. */
   private checks = s("pattern", { id: "checks", width: 16, height: 16, patternUnits: "userSpaceOnUse" }, s("rect", { class: "checks-light", width: 16, height: 16 }), s("path", { class: "checks-dark", d: "M0 0h8v8H0zM8 8h8v8H8z" }));
+  /** What is seen behind the drawing. */
+  readonly behind = s("g", {});
   private art = s("g", { class: "art" });
   private beforeArt = s("g", { class: "art", visibility: "hidden" });
   private heat = s("g", { class: "heat" });
@@ -83,7 +85,7 @@ export class Stage {
   onZoom: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+    this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
     const stage = this;
     app.screen = {
       show: (answer) => this.show(answer),
@@ -136,7 +138,7 @@ export class Stage {
     const [x0, y0, x1, y1] = this.view;
     if (!this.app.state || x1 <= x0 || y1 <= y0) return;
     const handles = (this.app.handles?.handles ?? []).map((h) => this.camera.inPx(h.get())).filter((p) => p.every(Number.isFinite));
-    const [a, b, c, d] = this.page;
+    const [a, b, c, d] = this.pageBox;
     const [xs, ys] = [[a, c, ...handles.map((p) => p[0])], [b, d, ...handles.map((p) => p[1])]];
     this.camera.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)], [x1 - x0, y1 - y0]);
     const [x, y] = this.camera.shift;
@@ -204,7 +206,7 @@ export class Stage {
   }
 
   /** The page as saving makes it, as two corners in px of the drawing. */
-  private get page(): Box {
+  get pageBox(): Box {
     const { state } = this.app;
     if (!state) return [0, 0, 0, 0];
     const [x, y, w, h] = this.grown ?? state.page;
@@ -214,7 +216,7 @@ export class Stage {
 
   /** Draws the sheet as large as the page. */
   private grow(): void {
-    const [x0, y0, x1, y1] = this.page;
+    const [x0, y0, x1, y1] = this.pageBox;
     for (const sheet of [...this.shadows, this.sheet]) {
       sheet.setAttribute("x", String(x0));
       sheet.setAttribute("y", String(y0));
@@ -277,7 +279,7 @@ export class Stage {
   /** Puts everything in its place on the screen. */
   layout(): void {
     const { camera } = this;
-    const layers = [...this.shadows, this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+    const layers = [...this.shadows, this.sheet, this.behind, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
     for (const layer of layers) layer.setAttribute("transform", camera.transform);
     this.checks.setAttribute("patternTransform", `scale(${1 / camera.scale})`);
     for (const mark of Array.from(this.marks.children) as SVGGElement[]) {

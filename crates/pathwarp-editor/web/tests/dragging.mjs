@@ -117,8 +117,8 @@ export async function every_shape_opens() {
     const names = await page.$$eval("#gallery section .card[title]", (all) => all.map((c) => c.textContent));
     check(names.length > 15, `only ${names.length} shapes`);
     for (const name of names) {
-      await page.locator(".card[title]", { hasText: new RegExp(`^${name}$`) }).click();
-      await page.waitForFunction((n) => document.querySelector("#steps").textContent.includes(n), name);
+      await page.locator(".card[title]", { hasText: new RegExp(`^${name.replace(/[()]/g, "\\$&")}$`) }).click();
+      await page.waitForFunction((n) => document.querySelector("#steps").textContent.includes(n), name.replace(" (effect)", ""));
       check(!(await page.isVisible("#problem")), `${name}: ${await page.textContent("#problem")}`);
     }
     check(page.problems.length === 0, page.problems.join("; "));

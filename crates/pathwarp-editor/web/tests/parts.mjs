@@ -138,3 +138,29 @@ export const the_sheet_changes = () => within(`<svg xmlns="http://www.w3.org/200
   await page.getByRole("button", { name: "Sheet: transparent", exact: true }).waitFor();
   await press(page, "Sheet: transparent");
 });
+
+/** A drawing behind the artwork, at its own place; its outline becomes the shape, and it is in no result. */
+export const a_target_is_fitted_to = () => within("lettering.svg", async (page, dir) => {
+  const leaf = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 200" width="400" height="200"><path id="leaf" fill="#8b8" d="M10 100Q200-60 390 100Q200 260 10 100Z"/></svg>`;
+  await page.setInputFiles("#target-file", { name: "leaf.svg", mimeType: "image/svg+xml", buffer: Buffer.from(leaf) });
+  const width = page.getByRole("textbox", { name: "Width" });
+  await width.waitFor();
+  check((await width.inputValue()) === "105.83", `400 px are ${await width.inputValue()} mm`);
+  const image = page.locator("#stage image.target");
+  const before = await image.boundingBox();
+  await width.fill("50+2.915");
+  await page.keyboard.press("Enter");
+  const after = await image.boundingBox();
+  check(Math.abs(before.width / after.width - 2) < 0.01 && Math.abs(before.height / after.height - 2) < 0.01, "it is not half as large");
+  await page.getByRole("slider", { name: "Opacity" }).fill("80");
+  check((await image.getAttribute("opacity")) === "0.8", "its opacity is another");
+  const was = await paths(page);
+  await press(page, "Use its outline as the shape");
+  check((await paths(page)) !== was && !(await page.isVisible("#problem")), await page.textContent("#problem"));
+  if (process.env.SHOTS) await page.screenshot({ path: join(process.env.SHOTS, "target.png") });
+  await page.click("#save");
+  await page.waitForSelector("#toast.on");
+  check(!readFileSync(join(dir, "art-bent.svg"), "utf8").includes("#8b8"), "the target is in the result");
+  await press(page, "Remove target");
+  check(!(await image.isVisible()), "it is still there");
+});
