@@ -1809,7 +1809,7 @@
     stage;
     modes;
     list = byId("parts");
-    box = byId("parts-box");
+    details = byId("parts-list");
     scope = byId("parts-scope");
     all = [];
     /** The names of what is not shown; the file has it all the same. */
@@ -1823,7 +1823,7 @@
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
       this.all = answer?.parts ?? [];
       this.stage.parts = new Set(this.all.map(({ name }) => name));
-      byId("pick-parts").hidden = this.box.hidden = this.all.length < 2;
+      byId("parts-box").hidden = this.all.length < 2;
       this.list.replaceChildren(...this.all.map((part) => this.row(part)));
       this.show();
     }
@@ -1889,9 +1889,9 @@
       const count = chosen.length;
       this.scope.textContent = count === 0 ? "This step bends everything." : `This step bends ${count === 1 ? "one part" : `${count} parts`}.`;
       byId("parts-all").hidden = count === 0;
-      if (count > 0 || locks.length > 0) this.box.open = true;
+      if (count > 0 || locks.length > 0) this.details.open = true;
       const own = this.all.filter(({ selector }) => chosen.includes(selector));
-      this.stage.lightParts(this.modes.picksParts || this.box.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
+      this.stage.lightParts(this.modes.picksParts || this.details.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
     }
     /** Hides what is not to be seen. */
     shade() {
@@ -3919,7 +3919,7 @@
   });
   toggle("pick-parts", () => modes.picksParts, (v) => {
     modes.picksParts = v;
-    if (v) byId("parts-box").open = true;
+    if (v) byId("parts-list").open = true;
     stage.svg.classList.toggle("picking", v);
   });
   toggle("snap", () => modes.snaps, (v) => modes.snaps = v);

@@ -73,7 +73,7 @@ toggle("select", () => modes.selects, (v) => {
 });
 toggle("pick-parts", () => modes.picksParts, (v) => {
   modes.picksParts = v;
-  if (v) byId<HTMLDetailsElement>("parts-box").open = true;
+  if (v) byId<HTMLDetailsElement>("parts-list").open = true;
   stage.svg.classList.toggle("picking", v);
 });
 toggle("snap", () => modes.snaps, (v) => (modes.snaps = v));

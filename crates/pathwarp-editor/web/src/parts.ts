@@ -13,7 +13,7 @@ const ELEMENTS: Record<string, string> = { g: "group", a: "link", svg: "drawing"
 
 export class Parts {
   private list = byId("parts");
-  private box = byId<HTMLDetailsElement>("parts-box");
+  private details = byId<HTMLDetailsElement>("parts-list");
   private scope = byId("parts-scope");
   private all: Part[] = [];
   /** The names of what is not shown; the file has it all the same. */
@@ -38,7 +38,7 @@ export class Parts {
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
     this.all = answer?.parts ?? [];
     this.stage.parts = new Set(this.all.map(({ name }) => name));
-    byId("pick-parts").hidden = this.box.hidden = this.all.length < 2;
+    byId("parts-box").hidden = this.all.length < 2;
     this.list.replaceChildren(...this.all.map((part) => this.row(part)));
     this.show();
   }
@@ -109,9 +109,9 @@ export class Parts {
     const count = chosen.length;
     this.scope.textContent = count === 0 ? "This step bends everything." : `This step bends ${count === 1 ? "one part" : `${count} parts`}.`;
     byId("parts-all").hidden = count === 0;
-    if (count > 0 || locks.length > 0) this.box.open = true;
+    if (count > 0 || locks.length > 0) this.details.open = true;
     const own = this.all.filter(({ selector }) => chosen.includes(selector));
-    this.stage.lightParts(this.modes.picksParts || this.box.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
+    this.stage.lightParts(this.modes.picksParts || this.details.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
   }
 
   /** Hides what is not to be seen. */

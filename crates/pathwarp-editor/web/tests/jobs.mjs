@@ -139,7 +139,7 @@ export const job_grid = () => job("grid", "logo.svg", async (page) => {
 
 /** One letter of a word is warped alone, larger than its neighbours. */
 export const job_letter = () => job("letter", "lettering.svg", async (page) => {
-  await press(page, "Parts");
+  await press(page, "Pick parts");
   await press(page, "Bulge");
   const whole = await paths(page);
   // The middle of the d.

@@ -39,7 +39,7 @@ const moved = (before, after) => before.flatMap((d, i) => (d === after[i] ? [] :
 /** Two steps for two parts, a copied command line with the same bytes, and the file opened again. */
 export const steps_hold_for_parts = () => within(SQUARES, async (page, dir) => {
   const before = await each(page);
-  await press(page, "Parts");
+  await press(page, "Pick parts");
   await choose(page, "Flag");
   check(moved(before, await each(page)) === "0,1,2,3", "at first, everything is bent");
   await clicked(page, 1);
@@ -74,7 +74,7 @@ export const steps_hold_for_parts = () => within(SQUARES, async (page, dir) => {
 /** What is locked stays as it is under every step, and is not clicked; what is hidden is not seen. */
 export const parts_are_locked_and_hidden = () => within(SQUARES, async (page) => {
   const before = await each(page);
-  await press(page, "Parts");
+  await press(page, "Pick parts");
   await choose(page, "Flag");
   await press(page, "Lock: Rectangle");
   check(moved(before, await each(page)) === "1,2,3", "a locked part is bent");
