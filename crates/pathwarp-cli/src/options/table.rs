@@ -170,7 +170,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 Ok(())
             },
         },
-        "Warp only these: #id, .class, an element's tag, or a label; may be given several times. In several parts of a chain, each \
+        "Warp only these: #id, .class, an element's tag, a label, or a place as reports have it (path at 12:5); may be given several times. In several parts of a chain, each \
          holds for its own step",
     ),
     stored(
