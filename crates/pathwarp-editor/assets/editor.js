@@ -312,8 +312,12 @@
     if (grip.point) return [point(grip.point, frame)];
     if (grip.points) return grip.points.map((p) => point(p, frame));
     if (grip.pairs) return grip.pairs.map(([a, b]) => `${point(a, frame)}:${point(b, frame)}`);
+    if (grip.circle) return [arc(grip.circle)];
     if (grip.paths) return grip.paths.map((path) => isPolygon(path) ? corners(path[0], frame) : pathData(path));
     return param.repeat || before2.length > 0 ? before2 : [];
+  }
+  function arc([cx, cy, r, from, to]) {
+    return `arc:r=${short(r)},from=${short(from)},to=${short(to)},cx=${short(cx)},cy=${short(cy)}`;
   }
   function isPolygon(path) {
     return path.length === 1 && !path[0].closed && path[0].segments.every((seg) => seg.length === 2);
@@ -522,6 +526,7 @@
   var MARGIN = 0.15;
   var PAIR = "X,Y:X,Y";
   var FEWEST_CLOSED = 3;
+  var ROUND = 90;
   var SKELETONS = /* @__PURE__ */ new Set(["along"]);
   var Handles = class {
     constructor(deformation, step2, grips) {
@@ -554,6 +559,7 @@
         grip.net?.points.forEach((_, i) => this.addNode(name, grip.net, i));
         if (name === this.deformation.gallery?.bend && grip.value !== void 0) this.addBend(name, grip);
         if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
+        if (grip.circle) this.addCircle(name, grip);
         grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
       }
       this.dials = this.handles.every(({ param }) => param === "about") ? dials({ deformation: this.deformation, grips: this.grips, frame: this.frame }) : [];
@@ -650,6 +656,23 @@
         get: () => [centre()[0] + grip.value, centre()[1]],
         set: (to) => void (grip.value = Math.hypot(to[0] - centre()[0], to[1] - centre()[1]))
       });
+    }
+    /** A circle or an arc: its centre moves it, the handle opposite its start makes it larger, its ends turn about the centre. */
+    addCircle(param, grip) {
+      const c = grip.circle;
+      const name = words(param);
+      const at = (degrees) => [c[0] + c[2] * Math.cos(degrees * Math.PI / 180), c[1] + c[2] * Math.sin(degrees * Math.PI / 180)];
+      const handle = (key, shape, label, get, set2) => this.handles.push({ key: `${param}/${key}`, param, shape, label: `${name}, ${label}`, group: param, get, set: set2 });
+      handle("centre", "node", "centre", () => [c[0], c[1]], (to) => void ([c[0], c[1]] = to));
+      handle("radius", "control", "radius", () => at((c[3] + c[4]) / 2), (to) => void (c[2] = Math.max(Math.hypot(to[0] - c[0], to[1] - c[1]), 1e-6)));
+      const isWhole = Math.abs(Math.abs(c[4] - c[3]) - 360) < 1e-6;
+      const turn = (from, to) => ((Math.atan2(to[1] - c[1], to[0] - c[0]) * 180 / Math.PI - from) % 360 + 540) % 360 - 180;
+      handle("start", "node", "start", () => at(c[3]), (to) => {
+        const by = turn(c[3], to);
+        c[3] += by;
+        if (isWhole) c[4] += by;
+      });
+      if (!isWhole) handle("end", "node", "end", () => at(c[4]), (to) => void (c[4] += turn(c[4], to)));
     }
     addOneOf(param, points, i) {
       this.handles.push({
@@ -867,6 +890,14 @@
         if (grip.net) {
           const { points } = grip.net;
           for (const line of grip.net.lines) out.push({ kind: "net", points: line.map((i) => points[i]) });
+        }
+        if (grip.circle) {
+          const [cx, cy, r, from, to] = grip.circle;
+          const at = (i) => {
+            const a = (from + (to - from) * i / ROUND) * Math.PI / 180;
+            return [cx + r * Math.cos(a), cy + r * Math.sin(a)];
+          };
+          out.push({ kind: "path", points: Array.from({ length: ROUND + 1 }, (_, i) => at(i)) }, { kind: "arm", points: [[cx, cy], at(0)] });
         }
         for (const path of grip.paths ?? []) path.forEach((sub) => this.subpathLines(sub, out));
       }
@@ -2269,7 +2300,7 @@
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+      this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.overlay, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
       const stage2 = this;
       app2.screen = {
         show: (answer) => this.show(answer),
@@ -2320,6 +2351,8 @@
     /** Outlines of the parts that are chosen or pointed at in their list. */
     chosen = s("g", { class: "chosen-parts" });
     litParts = [];
+    /** Lines that are being drawn. */
+    overlay = s("g", {});
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });
@@ -3376,6 +3409,11 @@
   var BOTH_WAYS = [-100, 100];
   var COARSE = 20;
   var SIDE_BY_SIDE = 3;
+  var SKETCHES = {
+    line: "Drag from its start to its end on the drawing",
+    path: "Click its points on the drawing; a double click, Enter or the first point ends it",
+    circle: "Drag from its centre to its edge on the drawing"
+  };
   var Settings = class {
     constructor(app2) {
       this.app = app2;
@@ -3391,6 +3429,9 @@
     refreshers = [];
     /** Asks for the id of a path that is clicked on the canvas. */
     onPick = () => {
+    };
+    /** Asks for a line that is drawn on the canvas. */
+    onDraw = () => {
     };
     build() {
       const { step: step2 } = this.app;
@@ -3445,7 +3486,12 @@
         case "path": {
           const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
           pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
-          return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), this.text(p, id));
+          const draws = ["line", "path", "circle"].map((kind) => {
+            const button = h("button", { type: "button", class: "link", title: SKETCHES[kind] }, `Draw ${kind}`);
+            button.addEventListener("click", () => this.onDraw(kind, (value) => this.app.set(p.name, [value], true)));
+            return button;
+          });
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), this.text(p, id));
         }
         default:
           return h("div", { class: "field", title }, label, this.text(p, id));
@@ -3667,6 +3713,9 @@
         return true;
       case "text":
         return p.needed || p.default !== void 0 || isGiven && !DRAGGED.has(p.notation ?? "");
+      // Lines with any number of points are drawn from here.
+      case "path":
+        return p.points === "any" && isGiven;
       default:
         return false;
     }
@@ -3690,6 +3739,81 @@
   function plain(text) {
     return text.replace(/--([a-z-]+)/g, (_, name) => `“${words(name)}”`);
   }
+
+  // src/sketch.ts
+  var HINTS = {
+    line: "Drag from the start of the line to its end",
+    path: "Click the points of the path; a double click or Enter ends it, a click on the first point closes it",
+    circle: "Drag from the centre of the circle to its edge"
+  };
+  var NEAR = 8;
+  var [FROM, TO] = [180, 540];
+  var Sketching = class {
+    constructor(stage2) {
+      this.stage = stage2;
+      stage2.overlay.append(this.line);
+    }
+    stage;
+    line = s("path", { class: "lit" });
+    stop = null;
+    /** Draws until the line is done; Escape gives it up. */
+    begin(kind, take) {
+      this.end();
+      const { stage: stage2 } = this;
+      const points = [];
+      const stop = new AbortController();
+      const listen = { signal: stop.signal, capture: true };
+      this.stop = () => stop.abort();
+      stage2.svg.classList.add("picking");
+      toast(HINTS[kind]);
+      const done = (value) => {
+        this.end();
+        if (value) take(value);
+      };
+      const user = (p) => stage2.camera.toUser(p).map(short).join(",");
+      const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+      const path = (closed2) => points.length < 2 ? null : `M${points.map(user).join(" L")}${closed2 ? " Z" : ""}`;
+      stage2.svg.addEventListener("pointerdown", (e) => {
+        if (e.button !== 0) return;
+        e.stopPropagation();
+        e.preventDefault();
+        const at = stage2.point(e);
+        if (kind === "path" && points.length > 2 && far(at, points[0]) < NEAR) return done(path(true));
+        if (points.length === 0 || far(at, points[points.length - 1]) >= NEAR) points.push(at);
+      }, listen);
+      stage2.svg.addEventListener("pointermove", (e) => this.show(kind, points, stage2.point(e)), listen);
+      window.addEventListener("pointerup", (e) => {
+        if (kind === "path" || points.length === 0) return;
+        const [from, to] = [points[0], stage2.point(e)];
+        if (far(from, to) < NEAR) return void (points.length = 0);
+        const [[x, y], [px, py]] = [stage2.camera.toUser(from), stage2.camera.toUser(to)];
+        done(kind === "line" ? `M${user(from)} L${user(to)}` : arc([x, y, Math.hypot(px - x, py - y), FROM, TO]));
+      }, listen);
+      stage2.svg.addEventListener("dblclick", (e) => {
+        e.stopPropagation();
+        if (kind === "path") done(path(false));
+      }, listen);
+      window.addEventListener("keydown", (e) => {
+        if (e.key !== "Escape" && e.key !== "Enter") return;
+        e.stopPropagation();
+        done(e.key === "Enter" && kind === "path" ? path(false) : null);
+      }, listen);
+    }
+    show(kind, points, to) {
+      const [from] = points;
+      if (!from) return;
+      const [x, y] = from;
+      const r = Math.hypot(to[0] - x, to[1] - y);
+      const circle2 = `M${x - r},${y}a${r},${r} 0 1 1 ${2 * r},0a${r},${r} 0 1 1 ${-2 * r},0`;
+      this.line.setAttribute("d", kind === "circle" ? circle2 : `M${[...points, to].join("L")}`);
+    }
+    end() {
+      this.stop?.();
+      this.stop = null;
+      this.line.setAttribute("d", "");
+      this.stage.svg.classList.remove("picking");
+    }
+  };
 
   // src/steps.ts
   var Steps = class {
@@ -3888,6 +4012,8 @@
   stage.onZoom = () => {
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
   };
+  var sketching = new Sketching(stage);
+  settings.onDraw = (kind, take) => sketching.begin(kind, take);
   settings.onPick = (take) => {
     toast("Click a path of the drawing");
     stage.pick(take);

@@ -59,7 +59,14 @@ fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
             let paths = s.paths(p.name).ok()?;
             let diagonal = s.frame().extent(Axis::Diagonal);
             let all: Vec<Value> = paths.iter().map(|named| path(&named.outline, ARCS_WITHIN * diagonal)).collect();
-            (!all.is_empty()).then(|| json!({ "paths": all }))
+            let round = match (s.texts(p.name).as_slice(), paths.as_slice()) {
+                ([text], [named]) if ["circle:", "arc:"].iter().any(|w| text.trim_start().starts_with(w)) => {
+                    circle(&named.outline)
+                }
+                _ => None,
+            };
+            (!all.is_empty())
+                .then(|| round.map_or_else(|| json!({ "paths": all }), |circle| json!({ "circle": circle })))
         }
         Kind::Length(_) | Kind::Number | Kind::Angle | Kind::Count => {
             Some(json!({ "value": s.number_if(p.name).ok()?.filter(|v| v.is_finite())? }))
@@ -95,6 +102,18 @@ fn words<'a>(s: &Settings<'a>, p: &Param) -> impl Iterator<Item = &'a str> {
 
 fn xy(p: Point) -> Value {
     json!([p.x, p.y])
+}
+
+/// The centre, the radius, and the angles in degrees at which a circle or an arc of one begins and ends, clockwise on the screen from the
+/// right.
+fn circle(outline: &Outline) -> Option<[f64; 5]> {
+    let [only] = outline.subpaths.as_slice() else { return None };
+    let arc = |s: &Seg| if let Seg::Arc(arc) = s { Some(*arc) } else { None };
+    let arcs = only.segs.iter().map(arc).collect::<Option<Vec<_>>>()?;
+    let first = arcs.first()?;
+    let from = (only.start - first.center).atan2().to_degrees();
+    let sweep: f64 = arcs.iter().map(|a| a.sweep * a.a.cross(a.b).signum()).sum();
+    Some([first.center.x, first.center.y, first.a.hypot(), from, from + sweep.to_degrees()])
 }
 
 /// A path as subpaths: the start, and cubics as six numbers or lines as two.

@@ -32,6 +32,9 @@ const PAIR = "X,Y:X,Y";
 /** Fewest points of a closed path that artwork can be put into. */
 const FEWEST_CLOSED = 3;
 
+/** Lines that a circle is drawn with. */
+const ROUND = 90;
+
 /** Lines that the artwork follows; their ends keep the directions of their handles. */
 const SKELETONS = new Set(["along"]);
 
@@ -66,6 +69,7 @@ export class Handles {
       grip.net?.points.forEach((_, i) => this.addNode(name, grip.net!, i));
       if (name === this.deformation.gallery?.bend && grip.value !== undefined) this.addBend(name, grip);
       if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
+      if (grip.circle) this.addCircle(name, grip);
       grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
     }
     // A point that turns and scales are about changes nothing by itself.
@@ -163,6 +167,26 @@ export class Handles {
       get: () => [centre()[0] + grip.value!, centre()[1]],
       set: (to) => void (grip.value = Math.hypot(to[0] - centre()[0], to[1] - centre()[1])),
     });
+  }
+
+  /** A circle or an arc: its centre moves it, the handle opposite its start makes it larger, its ends turn about the centre. */
+  private addCircle(param: string, grip: Grip): void {
+    const c = grip.circle!;
+    const name = words(param);
+    const at = (degrees: number): XY => [c[0] + c[2] * Math.cos((degrees * Math.PI) / 180), c[1] + c[2] * Math.sin((degrees * Math.PI) / 180)];
+    const handle = (key: string, shape: Shape, label: string, get: () => XY, set: (to: XY) => void) =>
+      this.handles.push({ key: `${param}/${key}`, param, shape, label: `${name}, ${label}`, group: param, get, set });
+    handle("centre", "node", "centre", () => [c[0], c[1]], (to) => void ([c[0], c[1]] = to));
+    handle("radius", "control", "radius", () => at((c[3] + c[4]) / 2), (to) => void (c[2] = Math.max(Math.hypot(to[0] - c[0], to[1] - c[1]), 1e-6)));
+    const isWhole = Math.abs(Math.abs(c[4] - c[3]) - 360) < 1e-6;
+    /** The turn that takes an angle to that of a place, the short way. */
+    const turn = (from: number, to: XY) => ((((Math.atan2(to[1] - c[1], to[0] - c[0]) * 180) / Math.PI - from) % 360) + 540) % 360 - 180;
+    handle("start", "node", "start", () => at(c[3]), (to) => {
+      const by = turn(c[3], to);
+      c[3] += by;
+      if (isWhole) c[4] += by;
+    });
+    if (!isWhole) handle("end", "node", "end", () => at(c[4]), (to) => void (c[4] += turn(c[4], to)));
   }
 
   private addOneOf(param: string, points: XY[], i: number): void {
@@ -364,6 +388,14 @@ export class Handles {
       if (grip.net) {
         const { points } = grip.net;
         for (const line of grip.net.lines) out.push({ kind: "net", points: line.map((i) => points[i]!) });
+      }
+      if (grip.circle) {
+        const [cx, cy, r, from, to] = grip.circle;
+        const at = (i: number): XY => {
+          const a = ((from + ((to - from) * i) / ROUND) * Math.PI) / 180;
+          return [cx + r * Math.cos(a), cy + r * Math.sin(a)];
+        };
+        out.push({ kind: "path", points: Array.from({ length: ROUND + 1 }, (_, i) => at(i)) }, { kind: "arm", points: [[cx, cy], at(0)] });
       }
       for (const path of grip.paths ?? []) path.forEach((sub) => this.subpathLines(sub, out));
     }

@@ -12,6 +12,7 @@ import { Presets } from "./presets";
 import { Report } from "./report";
 import { Saving } from "./saving";
 import { Settings } from "./settings";
+import { Sketching } from "./sketch";
 import { Stage } from "./stage";
 import { Steps } from "./steps";
 import { Target } from "./target";
@@ -37,6 +38,8 @@ modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
 stage.onZoom = () => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
 };
+const sketching = new Sketching(stage);
+settings.onDraw = (kind, take) => sketching.begin(kind, take);
 settings.onPick = (take) => {
   toast("Click a path of the drawing");
   stage.pick(take);

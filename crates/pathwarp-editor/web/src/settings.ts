@@ -5,6 +5,7 @@ import { byId, h } from "./dom";
 import { asked, evaluate, Field, type Quantity } from "./fields";
 import { capital, paramName, words } from "./names";
 import { base64 } from "./opening";
+import type { Sketch } from "./sketch";
 import { toast } from "./toast";
 import type { Adjust, Param } from "./types";
 import { adjustName, adjustUnit, DRAGGED, readAdjust, short, writeAdjust } from "./values";
@@ -17,6 +18,13 @@ const COARSE = 20;
 /** Choices of up to this many words are shown side by side. */
 const SIDE_BY_SIDE = 3;
 
+/** What is done to draw a line. */
+const SKETCHES: Record<Sketch, string> = {
+  line: "Drag from its start to its end on the drawing",
+  path: "Click its points on the drawing; a double click, Enter or the first point ends it",
+  circle: "Drag from its centre to its edge on the drawing",
+};
+
 export class Settings {
   private box = byId("settings");
   private shown = "";
@@ -24,6 +32,8 @@ export class Settings {
 
   /** Asks for the id of a path that is clicked on the canvas. */
   onPick: (take: (id: string) => void) => void = () => {};
+  /** Asks for a line that is drawn on the canvas. */
+  onDraw: (kind: Sketch, take: (value: string) => void) => void = () => {};
 
   constructor(private app: App) {
     app.listen((change) => {
@@ -82,7 +92,12 @@ export class Settings {
       case "path": {
         const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
         pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
-        return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), this.text(p, id));
+        const draws = (["line", "path", "circle"] as const).map((kind) => {
+          const button = h("button", { type: "button", class: "link", title: SKETCHES[kind] }, `Draw ${kind}`);
+          button.addEventListener("click", () => this.onDraw(kind, (value) => this.app.set(p.name, [value], true)));
+          return button;
+        });
+        return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), this.text(p, id));
       }
       default: return h("div", { class: "field", title }, label, this.text(p, id));
     }
@@ -311,6 +326,8 @@ function isMain(p: Param, isGiven: boolean): boolean {
     case "length": case "flag": case "file": return isGiven || (p.kind === "length" && p.default !== undefined);
     case "name": return true;
     case "text": return p.needed || p.default !== undefined || (isGiven && !DRAGGED.has(p.notation ?? ""));
+    // Lines with any number of points are drawn from here.
+    case "path": return p.points === "any" && isGiven;
     default: return false;
   }
 }

@@ -49,6 +49,8 @@ export class Stage {
   /** Outlines of the parts that are chosen or pointed at in their list. */
   private chosen = s("g", { class: "chosen-parts" });
   private litParts: string[] = [];
+  /** Lines that are being drawn. */
+  readonly overlay = s("g", {});
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
@@ -85,7 +87,7 @@ export class Stage {
   onZoom: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+    this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.overlay, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
     const stage = this;
     app.screen = {
       show: (answer) => this.show(answer),

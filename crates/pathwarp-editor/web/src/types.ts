@@ -95,6 +95,8 @@ export interface Grip {
   pairs?: [XY, XY][];
   net?: Net;
   paths?: Subpath[][];
+  /** Centre, radius, and the angles in degrees at which a circle or an arc begins and ends. */
+  circle?: [number, number, number, number, number];
   value?: number;
 }
 

@@ -50,8 +50,14 @@ export function valuesOf(param: Param, grip: Grip, frame: Frame, before: string[
   if (grip.point) return [point(grip.point, frame)];
   if (grip.points) return grip.points.map((p) => point(p, frame));
   if (grip.pairs) return grip.pairs.map(([a, b]) => `${point(a, frame)}:${point(b, frame)}`);
+  if (grip.circle) return [arc(grip.circle)];
   if (grip.paths) return grip.paths.map((path) => (isPolygon(path) ? corners(path[0]!, frame) : pathData(path)));
   return param.repeat || before.length > 0 ? before : [];
+}
+
+/** A circle or an arc of one as a value, in units of the drawing. */
+export function arc([cx, cy, r, from, to]: [number, number, number, number, number]): string {
+  return `arc:r=${short(r)},from=${short(from)},to=${short(to)},cx=${short(cx)},cy=${short(cy)}`;
 }
 
 /** Open lines through points can be written as points. */

@@ -164,3 +164,42 @@ export const a_target_is_fitted_to = () => within("lettering.svg", async (page, 
   await press(page, "Remove target");
   check(!(await image.isVisible()), "it is still there");
 });
+
+/** A word on a circle that is drawn: one centre, one radius, one start; and on a line drawn by clicks. */
+export const lines_are_drawn = () => within("lettering.svg", async (page) => {
+  await choose(page, "Bend");
+  const box = await page.locator("#stage .sheet").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.getByRole("button", { name: "Draw circle" }).first().click();
+  await page.mouse.move(x, y + 60);
+  await page.mouse.down();
+  await page.mouse.move(x + 150, y + 60, { steps: 6 });
+  await page.mouse.up();
+  await quiet(page);
+  check(!(await page.isVisible("#problem")), await page.textContent("#problem"));
+  const knobs = () => page.$$eval(".knob", (all) => all.map((k) => k.getAttribute("aria-label")));
+  check((await knobs()).join() === ["Along, centre", "Along, start", "Along, radius"].sort().join() || (await knobs()).length === 3, `${await knobs()}`);
+  const centre = async () => {
+    const b = await page.getByRole("button", { name: "Along, centre" }).locator(".body").boundingBox();
+    return [b.x + b.width / 2, b.y + b.height / 2];
+  };
+  const [cx, cy] = await centre();
+  check(Math.hypot(cx - x, cy - y - 60) < 2, `the centre is at ${[cx, cy]}`);
+  const picture = await paths(page);
+  await page.mouse.move(cx, cy);
+  await page.mouse.down();
+  await page.mouse.move(cx + 40, cy + 20, { steps: 6 });
+  await page.mouse.up();
+  await quiet(page);
+  const [mx, my] = await centre();
+  check(Math.hypot(mx - cx - 40, my - cy - 20) < 2 && (await paths(page)) !== picture, "the circle does not move as a whole");
+  if (process.env.SHOTS) await page.screenshot({ path: join(process.env.SHOTS, "circle.png") });
+  await page.getByRole("button", { name: "Draw path" }).first().click();
+  for (const [dx, dy] of [[-200, 0], [0, -60], [200, 0]]) await page.mouse.click(x + dx, y + dy);
+  await page.keyboard.press("Enter");
+  await quiet(page);
+  check(!(await page.isVisible("#problem")) && (await page.locator(".knob.node").count()) === 3, "the path has not three points");
+  await page.getByRole("button", { name: "Draw line" }).first().click();
+  await page.keyboard.press("Escape");
+  check((await page.locator(".knob.node").count()) === 3, "Escape does not give up");
+});
