@@ -2,6 +2,7 @@
 
 use crate::advice::Flags;
 use crate::bitmap::{background, encode};
+use crate::commands::text::plain;
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format, PICTURES};
 use crate::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which, read_options};
@@ -14,9 +15,9 @@ use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Rect;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
-use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary};
+use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary, Words};
 use pathwarp_raster::{RenderOptions, Size};
-use pathwarp_svg::{Document, Origin, ReadOptions, usvg_tree};
+use pathwarp_svg::{Document, Origin, ReadOptions, families, usvg_tree};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -263,6 +264,14 @@ impl Host for EditorHost {
     fn foreign_words(&self) -> Vec<(&str, &str)> {
         let named = coming_from::all().filter_map(|w| Some((w.subcommand()?, w.words)));
         named.flat_map(|(name, words)| words.into_iter().map(move |w| (w, name))).collect()
+    }
+
+    fn families(&self) -> Vec<String> {
+        self.given.read().map(|o| families(&o.reading.read_options())).unwrap_or_default()
+    }
+
+    fn set_words(&self, words: &Words) -> Result<String, String> {
+        self.said(self.given.read().and_then(|options| plain::set(words, &options.reading)))
     }
 
     fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String> {

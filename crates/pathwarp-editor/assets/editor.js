@@ -3993,6 +3993,88 @@
     }
   };
 
+  // src/words.ts
+  var BUNDLED = "Noto Sans (bundled)";
+  var LARGEST = 2e3;
+  var WordsDialog = class {
+    constructor(app2, stage2) {
+      this.app = app2;
+      this.stage = stage2;
+      byId("words").addEventListener("click", () => void this.open());
+      byId("words-cancel").addEventListener("click", () => this.dialog.close());
+      this.search.addEventListener("input", () => this.list());
+      this.fonts.addEventListener("change", () => this.font = this.fonts.value === BUNDLED ? null : this.fonts.value);
+      this.dialog.querySelector("form").addEventListener("submit", (e) => {
+        e.preventDefault();
+        void this.set();
+      });
+      app2.listen((change) => {
+        if (change === "state") this.show();
+      });
+    }
+    app;
+    stage;
+    dialog = byId("words-dialog");
+    text = byId("words-text");
+    search = byId("words-search");
+    fonts = byId("words-font");
+    size = byId("words-size");
+    spacing = byId("words-spacing");
+    message = byId("words-message");
+    families = null;
+    font = null;
+    show() {
+      const { state } = this.app;
+      byId("words").textContent = state?.words ? "Edit words…" : "Words…";
+      if (state?.program) byId("words").hidden = true;
+    }
+    async open() {
+      if (!await this.app.settle()) return;
+      const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
+      this.families ??= answer?.families ?? [];
+      const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
+      [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
+      this.font = font;
+      this.list();
+      const isMissing = font !== null && !this.families.includes(font);
+      this.message.textContent = isMissing ? `${font} is not installed here. The letters stay as they are until you choose another font` : "";
+      this.dialog.showModal();
+      this.text.focus();
+    }
+    /** The families that fit what was typed, each in its own letters. */
+    list() {
+      const wanted = this.search.value.trim().toLowerCase();
+      const all = [BUNDLED, ...this.families ?? []].filter((name) => name.toLowerCase().includes(wanted));
+      this.fonts.replaceChildren(...all.map((name) => {
+        const option = h("option", { value: name }, name);
+        if (name !== BUNDLED) option.style.setProperty("font-family", `"${name.replaceAll('"', "")}", system-ui`);
+        return option;
+      }));
+      this.fonts.value = this.font ?? BUNDLED;
+      this.fonts.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
+    }
+    async set() {
+      const { app: app2 } = this;
+      const number = (input) => Number(input.value.trim().replace(",", "."));
+      const [size, spacing] = [number(this.size), number(this.spacing)];
+      if (this.text.value.trim() === "") return this.say("Type some words first");
+      if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
+      if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
+      try {
+        const words2 = { text: this.text.value, font: this.font, size, spacing };
+        const { state } = await app2.connection.ask({ do: "set-words", words: words2 });
+        this.dialog.close();
+        this.stage.forget();
+        if (state) await app2.load(state);
+      } catch (e) {
+        this.say(e instanceof Error ? e.message : String(e));
+      }
+    }
+    say(text) {
+      this.message.textContent = text;
+    }
+  };
+
   // src/main.ts
   var ZOOM = 1.25;
   var app = new App();
@@ -4007,6 +4089,7 @@
   new Place(app, stage);
   new Opening(app, stage);
   new Target(app, stage);
+  new WordsDialog(app, stage);
   new Pointing(app, stage, modes).onPan = () => report.panned();
   modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
   stage.onZoom = () => {

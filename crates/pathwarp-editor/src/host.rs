@@ -5,7 +5,7 @@ use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_svg::Document;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -49,6 +49,15 @@ pub trait Host: Send + Sync {
         Vec::new()
     }
 
+    /// The families of the fonts there are.
+    fn families(&self) -> Vec<String>;
+
+    /// Sets words as a drawing.
+    ///
+    /// # Errors
+    /// The font is missing, or the words cannot be set.
+    fn set_words(&self, words: &Words) -> Result<String, String>;
+
     /// Reads a drawing. If it is the result of an earlier run with its source embedded, that source is opened, with its recipe.
     ///
     /// # Errors
@@ -70,6 +79,19 @@ pub trait Host: Send + Sync {
     /// # Errors
     /// The file cannot be written.
     fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String>;
+}
+
+/// Words that a drawing consists of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Words {
+    /// The text, with line breaks.
+    pub text: String,
+    /// The family; `None` for the bundled font.
+    pub font: Option<String>,
+    /// The size of the letters' em, in mm.
+    pub size: f64,
+    /// Space between letters, in per cent of the size.
+    pub spacing: f64,
 }
 
 /// A drawing that has been read.

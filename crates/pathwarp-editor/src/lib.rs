@@ -27,7 +27,8 @@ mod server;
 mod session;
 mod socket;
 mod stretch;
+mod words;
 
 pub use command_line::selectors;
-pub use host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Purpose, Summary};
+pub use host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Purpose, Summary, Words};
 pub use server::{News, Options, serve};

@@ -3,7 +3,7 @@
 //! A page sends requests with a number, and gets one answer with the same number for each, in order. It sends the next picture
 //! of a drag only when it has the last one, so nothing piles up.
 
-use crate::host::PictureOptions;
+use crate::host::{PictureOptions, Words};
 use pathwarp::param::Args;
 use pathwarp::recipe::{Recipe, Step};
 use serde::{Deserialize, Serialize};
@@ -79,6 +79,12 @@ pub(crate) enum Request {
         steps: Option<Vec<PageStep>>,
         example: Option<String>,
         variant: Option<String>,
+    },
+    /// The families of fonts.
+    Families,
+    /// Makes these words the drawing; if it consists of words already, with the present steps.
+    SetWords {
+        words: Words,
     },
     /// Opens a file that was dropped on the page, as base64.
     Open {

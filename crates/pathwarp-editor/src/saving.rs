@@ -13,6 +13,16 @@ pub(crate) fn usual(source: &Path) -> PathBuf {
     free(source, &(stem + SUFFIX))
 }
 
+/// A free name for words, beside `beside`.
+pub(crate) fn of_words(text: &str, beside: &Path) -> PathBuf {
+    /// Longest name, in letters.
+    const LONGEST: usize = 40;
+    let plain = |c: char| if c.is_alphanumeric() { c } else { '-' };
+    let name: String = text.trim().to_lowercase().chars().map(plain).take(LONGEST).collect();
+    let name = name.trim_matches('-');
+    free(beside, if name.is_empty() { "words" } else { name })
+}
+
 /// A name beside a file that no file has, with a number if need be.
 fn free(beside: &Path, stem: &str) -> PathBuf {
     let name = |n: usize| match n {

@@ -5,11 +5,11 @@ use crate::command_line::{command_line, quoted};
 use crate::draft::{Draft, Kept, NO_FOLDER};
 use crate::grips::{grips, with_net_of};
 use crate::guard::Guard;
-use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
+use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose, Words};
 use crate::picture::Picture;
 use crate::protocol::{PageStep, Target, recipe, steps};
 use crate::stretch::stretch;
-use crate::{presets, saving};
+use crate::{presets, saving, words};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::deform::{Info, Variant};
@@ -115,6 +115,42 @@ impl Session {
         Ok(())
     }
 
+    /// The families of the fonts there are.
+    pub(crate) fn families(&self) -> Vec<String> {
+        self.host.families()
+    }
+
+    /// Sets words, and makes them the drawing: a file beside the present one. If that consists of words, the new ones take their place
+    /// under its steps, whose paths are laid onto their box.
+    pub(crate) fn set_words(&mut self, words: &Words) -> Result<(), String> {
+        self.refuse_for_program("words cannot be set")?;
+        let svg = words::written(words, &self.host.set_words(words)?);
+        let before = words::of(self.opened.artwork.document().text());
+        let own = before.as_ref().filter(|_| !self.opened.is_result).map(|_| self.file.clone());
+        let file = own.unwrap_or_else(|| saving::of_words(&words.text, &self.file));
+        let old: Vec<Rect> = match &before {
+            Some(_) => self.opened.artwork.settle(&recipe(&self.kept.steps))?.1.frames.iter().map(|f| f.rect).collect(),
+            None => Vec::new(),
+        };
+        self.host.write(&file, svg.as_bytes())?;
+        let (host, purpose) = (Arc::clone(&self.host), self.purpose.clone());
+        let mut other = Self::open(host, &file, svg.as_bytes(), purpose, self.drafts.clone())?;
+        if before.is_some() {
+            let mut steps = Vec::with_capacity(self.kept.steps.len());
+            for (step, from) in self.kept.steps.iter().zip(old) {
+                let to = other.frame_of(&steps, &step.select)?;
+                steps.push(presets::laid(self.host.registry(), step.clone(), from, to));
+            }
+            other.kept = self.kept.clone();
+            other.kept.steps = steps;
+            other.saved = self.saved.clone().map(|(path, _)| (path, Vec::new()));
+            other.keep();
+        }
+        let first = self.first.take().or_else(|| before.is_none().then(|| self.file.clone()));
+        *self = Self { first, ..other };
+        Ok(())
+    }
+
     /// Copies a file that a step is to read beside the drawing, and answers with the text that names it in a step. A file that is
     /// there already is left as it is.
     pub(crate) fn bring(&self, name: &str, bytes: &str) -> Result<Value, String> {
@@ -157,6 +193,7 @@ impl Session {
             "problem": self.problem,
             "toPx": document.user_to_px().as_coeffs(),
             "page": [page.x0, page.y0, page.width(), page.height()],
+            "words": words::of(document.text()),
             "missing": document.missing(),
         })
     }

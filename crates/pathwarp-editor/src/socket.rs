@@ -119,6 +119,12 @@ impl Page {
                 let steps = steps.or_else(|| example.map(|step| vec![step])).unwrap_or_default();
                 Ok(json!({ "svg": session.thumbnail(&steps)? }))
             }
+            Request::Families => Ok(json!({ "families": session.families() })),
+            Request::SetWords { words } => {
+                session.set_words(&words)?;
+                self.count_change();
+                Ok(json!({ "state": session.state() }))
+            }
             Request::Open { name, bytes } => {
                 session.replace(&name, &bytes)?;
                 self.count_change();

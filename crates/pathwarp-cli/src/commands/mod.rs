@@ -16,7 +16,7 @@ mod plugin;
 mod render;
 #[cfg(feature = "solid")]
 mod solid;
-mod text;
+pub(crate) mod text;
 mod warp;
 
 pub(crate) use convert::convert_file;

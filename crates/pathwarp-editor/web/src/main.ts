@@ -17,6 +17,7 @@ import { Stage } from "./stage";
 import { Steps } from "./steps";
 import { Target } from "./target";
 import { toast } from "./toast";
+import { WordsDialog } from "./words";
 
 /** The factor of one step of magnification. */
 const ZOOM = 1.25;
@@ -33,6 +34,7 @@ new Parts(app, stage, modes);
 new Place(app, stage);
 new Opening(app, stage);
 new Target(app, stage);
+new WordsDialog(app, stage);
 new Pointing(app, stage, modes).onPan = () => report.panned();
 modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
 stage.onZoom = () => {

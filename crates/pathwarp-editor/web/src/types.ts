@@ -125,6 +125,16 @@ export interface State {
   toPx: [number, number, number, number, number, number];
   page: [number, number, number, number];
   missing: string[];
+  /** The words that the drawing was set from, if it was. */
+  words: Words | null;
+}
+
+/** Words, their family, the size in mm, and the space between letters in per cent of it. */
+export interface Words {
+  text: string;
+  font: string | null;
+  size: number;
+  spacing: number;
 }
 
 export interface Summary {
@@ -162,6 +172,7 @@ export interface Answer {
   copied?: boolean;
   presets?: string[];
   parts?: Part[];
+  families?: string[];
   steps?: Step[];
   stretch?: Stretch | null;
   event?: string;

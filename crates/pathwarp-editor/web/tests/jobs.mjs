@@ -152,3 +152,45 @@ export const job_letter = () => job("letter", "lettering.svg", async (page) => {
   await field(page, "Bend", "60");
   await backAndForth(page, 3);
 });
+
+/** A word is typed, set in another font, put on a drawn circle, saved, opened again, and is still a word. */
+export const job_words = () => job("words", "logo.svg", async (page, dir, editor) => {
+  await press(page, "Words…");
+  await page.getByRole("textbox", { name: "Text" }).fill("Harbour");
+  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("heading", { name: "harbour.svg" }).waitFor();
+  await quiet(page);
+  const bundled = await paths(page);
+  await press(page, "Bend");
+  const box = await page.locator("#stage .sheet").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.getByRole("button", { name: "Draw circle" }).first().click();
+  await pull(page, [x, y + 30], [box.width / 3, 0]);
+  const bent = await paths(page);
+  check(bent !== bundled, "the word is not bent");
+  await press(page, "Edit words…");
+  check((await page.getByRole("textbox", { name: "Text" }).inputValue()) === "Harbour", "the words are forgotten");
+  await page.getByRole("textbox", { name: "Spacing" }).fill("10");
+  const fonts = await page.getByRole("listbox", { name: "Font" }).locator("option").allTextContents();
+  if (fonts.length > 1) await page.getByRole("listbox", { name: "Font" }).selectOption({ index: fonts.length - 1 });
+  await page.getByRole("button", { name: "Set words" }).click();
+  await quiet(page);
+  check((await paths(page)) !== bent && (await page.locator("#steps").textContent()).includes("Bend"), "the bend is gone, or the words are as before");
+  await saved(page, "SVG", "sign.svg");
+  const picture = await paths(page);
+  await editor.stop();
+  const again = await edit(join(dir, "sign.svg"));
+  const page2 = await open(again.address);
+  try {
+    await becomes(page2, picture, "opened again, it is another drawing");
+    await page2.getByRole("button", { name: "Edit words…" }).click();
+    check((await page2.getByRole("textbox", { name: "Text" }).inputValue()) === "Harbour", "opened again, it is no word");
+    await page2.getByRole("textbox", { name: "Text" }).fill("Harbour Coffee");
+    await page2.getByRole("button", { name: "Set words" }).click();
+    await quiet(page2);
+    check((await paths(page2)) !== picture, "the words cannot be changed");
+  } finally {
+    await again.stop();
+    await page2.context().close();
+  }
+});

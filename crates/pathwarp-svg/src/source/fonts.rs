@@ -305,6 +305,14 @@ pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) ->
     })
 }
 
+/// The families of the fonts there are, in alphabetical order.
+#[must_use]
+pub fn families(read: &ReadOptions) -> Vec<String> {
+    let db = database(read.system_fonts, &read.fonts);
+    let names = db.faces().filter_map(|f| f.families.first()).map(|(name, _)| name.clone());
+    names.filter(|name| !name.starts_with('.')).collect::<BTreeSet<_>>().into_iter().collect()
+}
+
 /// The fonts of a family: weight, and `true` for italic and oblique ones; sorted, without repetitions.
 #[must_use]
 pub fn family_styles(family: &str, read: &ReadOptions) -> Vec<(u16, bool)> {

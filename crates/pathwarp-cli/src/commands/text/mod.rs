@@ -1,6 +1,7 @@
 //! `pathwarp text WORDS -o OUT.svg`: sets text as outlines, which any deformation takes as its input.
 
 mod on_path;
+pub(crate) mod plain;
 mod style;
 
 use crate::commands::args::{choice, out_arg, switch, target};

@@ -1,0 +1,89 @@
+// Words as the drawing: typed, set in a font that is installed, and changed later under the same steps.
+
+import type { App } from "./app";
+import { byId, h } from "./dom";
+import type { Stage } from "./stage";
+
+const BUNDLED = "Noto Sans (bundled)";
+const LARGEST = 2000;
+
+export class WordsDialog {
+  private dialog = byId<HTMLDialogElement>("words-dialog");
+  private text = byId<HTMLTextAreaElement>("words-text");
+  private search = byId<HTMLInputElement>("words-search");
+  private fonts = byId<HTMLSelectElement>("words-font");
+  private size = byId<HTMLInputElement>("words-size");
+  private spacing = byId<HTMLInputElement>("words-spacing");
+  private message = byId("words-message");
+  private families: string[] | null = null;
+  private font: string | null = null;
+
+  constructor(private app: App, private stage: Stage) {
+    byId("words").addEventListener("click", () => void this.open());
+    byId("words-cancel").addEventListener("click", () => this.dialog.close());
+    this.search.addEventListener("input", () => this.list());
+    this.fonts.addEventListener("change", () => (this.font = this.fonts.value === BUNDLED ? null : this.fonts.value));
+    this.dialog.querySelector("form")!.addEventListener("submit", (e) => {
+      e.preventDefault();
+      void this.set();
+    });
+    app.listen((change) => {
+      if (change === "state") this.show();
+    });
+  }
+
+  private show(): void {
+    const { state } = this.app;
+    byId("words").textContent = state?.words ? "Edit words…" : "Words…";
+    if (state?.program) byId("words").hidden = true;
+  }
+
+  private async open(): Promise<void> {
+    if (!(await this.app.settle())) return;
+    const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
+    this.families ??= answer?.families ?? [];
+    const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
+    [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
+    this.font = font;
+    this.list();
+    const isMissing = font !== null && !this.families.includes(font);
+    this.message.textContent = isMissing ? `${font} is not installed here. The letters stay as they are until you choose another font` : "";
+    this.dialog.showModal();
+    this.text.focus();
+  }
+
+  /** The families that fit what was typed, each in its own letters. */
+  private list(): void {
+    const wanted = this.search.value.trim().toLowerCase();
+    const all = [BUNDLED, ...(this.families ?? [])].filter((name) => name.toLowerCase().includes(wanted));
+    this.fonts.replaceChildren(...all.map((name) => {
+      const option = h("option", { value: name }, name);
+      if (name !== BUNDLED) option.style.setProperty("font-family", `"${name.replaceAll('"', "")}", system-ui`);
+      return option;
+    }));
+    this.fonts.value = this.font ?? BUNDLED;
+    this.fonts.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
+  }
+
+  private async set(): Promise<void> {
+    const { app } = this;
+    const number = (input: HTMLInputElement) => Number(input.value.trim().replace(",", "."));
+    const [size, spacing] = [number(this.size), number(this.spacing)];
+    if (this.text.value.trim() === "") return this.say("Type some words first");
+    if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
+    if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
+    try {
+      const words = { text: this.text.value, font: this.font, size, spacing };
+      const { state } = await app.connection.ask({ do: "set-words", words });
+      this.dialog.close();
+      this.stage.forget();
+      if (state) await app.load(state);
+    } catch (e) {
+      this.say(e instanceof Error ? e.message : String(e));
+    }
+  }
+
+  private say(text: string): void {
+    this.message.textContent = text;
+  }
+}
