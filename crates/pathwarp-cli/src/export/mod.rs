@@ -3,6 +3,8 @@
 #[cfg(feature = "dxf")]
 mod dxf;
 mod exported;
+#[cfg(feature = "dxf")]
+mod kerf;
 #[cfg(feature = "pdf")]
 mod pdf;
 
@@ -26,6 +28,10 @@ pub(crate) fn drawing(
     options: &CommonOptions,
     tolerance: Option<f64>,
 ) -> Result<Exported, Failure> {
+    if options.kerf.is_some() && format != Format::Dxf {
+        let advice = "in other formats, `pathwarp offset --by` moves outlines by half of it";
+        return Err(Failure::usage(format!("--kerf is for a DXF; {advice}")));
+    }
     let write: Option<Writer> = match format {
         #[cfg(feature = "pdf")]
         Format::Pdf => Some(pdf::write),

@@ -20,7 +20,7 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
-    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, ShapeReport,
+    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, ShapeReport, Strokes,
     WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
@@ -135,7 +135,11 @@ impl SvgArtwork {
         let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
         let warp = WarpOptions::new(refit)
             .with_precision(options.precision)
-            .with_strokes(options.strokes)
+            .with_strokes(match options.strokes {
+                // A cutter follows the middle of a stroke.
+                Strokes::Auto if self.format == Format::Dxf => Strokes::Keep,
+                given => given,
+            })
             .with_union(options.union)
             .with_text(options.text)
             .with_structure(options.structure)

@@ -104,6 +104,8 @@ pub(crate) struct CommonOptions {
     pub(crate) image_size: Option<(u32, Option<u32>)>,
     /// Form of Bézier curves in a DXF.
     pub(crate) dxf_polylines: bool,
+    /// Width of a cut, for which the contours of a DXF make room.
+    pub(crate) kerf: Option<Length>,
     /// Quality of a JPEG, from 1 to 100.
     pub(crate) quality: Option<u8>,
     pub(crate) on_failure: OnFailure,
