@@ -13,7 +13,7 @@ pub(crate) struct Pen<'a> {
 }
 
 /// Writes a subpath as one entity: exactly if it is all lines and circular arcs, one ellipse, or Bézier curves; arcs among curves become
-/// cubics within a tenth of the tolerance.
+/// cubics within a hundredth of the tolerance.
 pub(crate) fn exact(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance: f64) {
     let near = OF_TOLERANCE * tolerance;
     let segs = merged(subpath);
@@ -30,7 +30,7 @@ pub(crate) fn exact(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance
         [Seg::Arc(a)] if is_circular(a, near) => arc(out, pen, a),
         [Seg::Arc(a)] => ellipse(out, pen, a),
         all if all.iter().all(straight) => polyline_of(out, pen, &vertices(all, subpath.closed), subpath.closed),
-        all => spline(out, pen, all, subpath.closed, near),
+        all => spline(out, pen, all, subpath.closed, OF_TOLERANCE * near),
     }
 }
 
@@ -185,7 +185,7 @@ fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64)
     }
 }
 
-/// Share of the tolerance by which an arc may miss a circle and still be written as one, and cubics an arc.
+/// Share of the tolerance by which an arc may miss a circle and still be written as one.
 const OF_TOLERANCE: f64 = 0.1;
 
 /// The segments that have a length, with consecutive arcs of one ellipse as one.

@@ -124,10 +124,12 @@ impl SvgArtwork {
         let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
         let bender = Arc::new(bender);
         let gradients = match options.gradients {
+            GradientChoice::Keep => Gradients::Keep,
+            // Of a picture, a cutter would see nothing.
+            _ if self.format == Format::Dxf => Gradients::Fit,
             GradientChoice::Fit => Gradients::Fit,
             GradientChoice::Auto => Gradients::Auto(bender.clone()),
             GradientChoice::Exact => Gradients::Exact(bender.clone()),
-            GradientChoice::Keep => Gradients::Keep,
         };
         let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
         let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
