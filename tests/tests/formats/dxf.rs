@@ -103,7 +103,11 @@ fn warped_drawings_agree_with_their_svg() {
             let args = [command, &[&input, "--quiet"]].concat();
             for (curves, tolerance) in [("spline", 0.0), ("polyline", 0.05)] {
                 let more = ["--dxf-curves", curves, "--tolerance", "0.05mm"];
-                let (svg, _) = run(dir.path(), &[&args[..], &more[2..], &["--strokes", "keep"]].concat(), b"");
+                let (svg, _) = run(
+                    dir.path(),
+                    &[&args[..], &more[2..], &["--strokes", "keep", "--gradients", "fit"]].concat(),
+                    b"",
+                );
                 let exact = outlines(&svg);
                 let (file, _) = dxf(dir.path(), &[&args[..], &more].concat(), b"");
                 let got = file.polylines();

@@ -51,11 +51,7 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
     }
     let shapes = plot.shapes.iter().zip(&cuts);
     let shapes: Vec<Shape<'_>> = shapes
-        .map(|(s, cut)| Shape {
-            layer: s.layer.as_deref().unwrap_or_default(),
-            color: s.color,
-            outline: &cut.outline,
-        })
+        .map(|(s, cut)| Shape { layer: s.layer.as_deref().unwrap_or_default(), color: s.color, outline: &cut.outline })
         .collect();
     let settings = pathwarp_dxf::Options {
         curves: if options.dxf_polylines { Curves::Polylines } else { Curves::Splines },

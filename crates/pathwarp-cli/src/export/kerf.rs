@@ -22,7 +22,8 @@ pub(super) fn widen<K: PartialEq>(
     by: f64,
     tolerance: f64,
 ) -> Result<usize, GeometryError> {
-    let loops: Vec<(usize, Loop)> = cuts.iter().enumerate().filter(|(_, c)| c.even_odd.is_none()).flat_map(loops).collect();
+    let loops: Vec<(usize, Loop)> =
+        cuts.iter().enumerate().filter(|(_, c)| c.even_odd.is_none()).flat_map(loops).collect();
     let is_hole = |i: usize, s: &Subpath| {
         let around = |(k, l): &&(usize, Loop)| among(*k) == among(i) && l.is_around(s);
         loops.iter().filter(around).count() % 2 == 1
@@ -73,7 +74,8 @@ fn circle(s: &Subpath) -> Option<EllipticArc> {
     const SLACK: f64 = 1e-6;
     let Some(Seg::Arc(first)) = s.segs.first() else { return None };
     let slack = SLACK * first.a.hypot();
-    let round = (first.a.hypot() - first.b.hypot()).abs() <= slack && first.a.dot(first.b).abs() <= slack * first.a.hypot();
+    let round =
+        (first.a.hypot() - first.b.hypot()).abs() <= slack && first.a.dot(first.b).abs() <= slack * first.a.hypot();
     let mut sweep = 0.0;
     for seg in &s.segs {
         let Seg::Arc(a) = seg else { return None };

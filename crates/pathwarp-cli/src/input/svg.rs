@@ -20,8 +20,8 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
-    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, ShapeReport, Strokes,
-    WarpOptions, WarpedDocument,
+    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, ShapeReport,
+    Strokes, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
