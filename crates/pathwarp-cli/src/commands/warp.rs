@@ -129,7 +129,7 @@ pub(super) fn run_recipe(registry: &Registry, m: &ArgMatches, words: &[OsString]
 }
 
 /// The common options that say what is read and where the result goes.
-const SHARED: [&str; 21] = [
+const SHARED: [&str; 23] = [
     "out",
     "format",
     "out-dir",
@@ -145,6 +145,8 @@ const SHARED: [&str; 21] = [
     "structure",
     "dxf-curves",
     "kerf",
+    "page-width",
+    "page-height",
     "on-error",
     "report",
     "preview",

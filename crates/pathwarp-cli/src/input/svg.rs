@@ -14,7 +14,7 @@ use crate::units::units_per_px;
 use crate::{advice, export, watch};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
-use pathwarp::kurbo::Rect;
+use pathwarp::kurbo::{Rect, Size};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
@@ -31,6 +31,9 @@ use std::sync::Arc;
 
 /// With fewer segments, starting threads takes longer than looking for folds.
 const WORTH_THREADS: usize = 5000;
+
+/// Pages that differ by less have the same scale.
+const SAME_SCALE: f64 = 1e-3;
 
 /// Resolution of bitmaps in a draft.
 const DRAFT_DPI: f64 = 24.0;
@@ -156,6 +159,14 @@ impl SvgArtwork {
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
         request.edit.map_or(warp.clone(), |e| warp.editing(e))
+    }
+
+    /// The size of the result's page in px, which is the source's, or `after` instead of `before` in its units.
+    fn size_px(&self, page: Option<[Rect; 2]>) -> Size {
+        let Size { width, height } = self.doc.size_px();
+        page.map_or(Size { width, height }, |[before, after]| {
+            Size::new(width * after.width() / before.width(), height * after.height() / before.height())
+        })
     }
 
     /// The reason why the page stays although it could grow.
@@ -395,7 +406,17 @@ impl FileArtwork for SvgArtwork {
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options: common, .. } = request;
-        let (options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        let mut tolerance = request.tolerance;
+        // The scale of the result's page is known once the artwork is on it.
+        if common.has_tolerance_of_result()
+            && let Some(scale) = common.page_scale(self.size_px(warped.page))
+            && (scale.by - 1.0).abs() > SAME_SCALE
+        {
+            tolerance /= scale.by;
+            let finer = WarpRequest { tolerance, edit: request.edit, embedded_recipe: None, ..*request };
+            (options, warped) = self.bent(&built.parts, |k, part| self.warp_options(&finer, k, part))?;
+        }
         let page = PageNews::of(&mut warped, common.page, self.stays(request));
         if let Some(recipe) = &request.embedded_recipe {
             let origin = Origin { recipe: recipe.clone(), source: self.doc.source().to_vec() };
@@ -418,7 +439,7 @@ impl FileArtwork for SvgArtwork {
         let preview = common.preview.as_deref();
         let preview =
             preview.map(|file| beside::preview(&self.doc, &warped.svg, built, &self.read, (file, common.quality)));
-        let result = export::drawing(warped.svg, self.format, &self.read, common, Some(request.tolerance))?;
+        let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
         warnings.extend(result.warnings);
         Ok(WarpedArtwork {
             result: WarpedResult::Bytes(result.bytes),

@@ -2,6 +2,7 @@
 
 use super::common::{
     CommonOptions, GradientChoice, OnFailure, family_name, frame, image_size, limit, positive, positive_length,
+    side_of_page,
 };
 use crate::format::Format;
 use crate::left_out;
@@ -300,6 +301,25 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
              a warning if artwork extends past them",
         )
     },
+    stored(
+        "page-width",
+        OptionValue::Text {
+            name: "LENGTH",
+            minus: LeadingMinus::No,
+            set: |o, text| side_of_page(text).map(|l| o.page_width = Some(l)),
+        },
+        "Width of the result's page, such as 80mm; its height is in proportion. A --tolerance and --kerf with units are lengths of the result \
+         then, while lengths in parameters are those of the source",
+    ),
+    stored(
+        "page-height",
+        OptionValue::Text {
+            name: "LENGTH",
+            minus: LeadingMinus::No,
+            set: |o, text| side_of_page(text).map(|l| o.page_height = Some(l)),
+        },
+        "Height of the result's page; with --page-width, the page is as large as fits inside both",
+    ),
     CommonOption {
         default: Some("copy"),
         ..stored(
