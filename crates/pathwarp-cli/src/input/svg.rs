@@ -390,6 +390,10 @@ impl Artwork for SvgArtwork {
         units_per_px(&self.doc)
     }
 
+    fn page(&self) -> Option<Rect> {
+        Some(self.doc.view_box())
+    }
+
     fn budget(&self) -> &Arc<Budget> {
         self.doc.budget()
     }
