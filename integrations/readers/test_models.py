@@ -11,7 +11,7 @@ PLATE = (
     "<rect x='9' y='10' width='122' height='40'/></svg>"
 )
 SIZE = np.array([122.0, 40.0, 3.0])
-STAY = ("twist", "--angle", "0")
+STAY = ("bend", "--preset", "twist", "--angle", "0deg")
 
 
 def loaded(path):
