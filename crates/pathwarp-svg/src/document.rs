@@ -13,7 +13,7 @@ use crate::scene::plot::{self, Plot};
 use crate::scene::selected_lettering::{Lettering, lettering};
 use crate::source::edit::Edits;
 use crate::source::elements::{ElementId, is_shape};
-use crate::source::number::short;
+use crate::source::number::{short, single};
 use crate::source::read::ReadOptions;
 use crate::source::select::{self, Division, Selection, candidates, is_named, matches_any};
 use crate::source::tree::undrawn;
@@ -126,7 +126,7 @@ impl Document {
             edits.set_attr(0, "viewBox", view);
         }
         for (name, side) in [("width", page.width), ("height", page.height)] {
-            edits.set_property(0, name, format!("{}{unit}", short(side * scale / px)));
+            edits.set_property(0, name, format!("{}{unit}", single(side * scale / px)));
         }
         edits.apply().0
     }

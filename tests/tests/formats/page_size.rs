@@ -25,14 +25,14 @@ fn scaled(lines: &[Vec<Point>], k: f64) -> Vec<Vec<Point>> {
 /// The sides of a result's page, as its root says.
 fn sides(svg: &[u8]) -> [String; 2] {
     let text = std::str::from_utf8(svg).unwrap();
-    ["width", "height"]
-        .map(|name| text.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap().to_owned())
+    let value = |name: &str| text.split(&format!(" {name}=")).nth(1).unwrap()[1..].split(['\'', '"']).next().unwrap();
+    ["width", "height"].map(|name| value(name).to_owned())
 }
 
 #[test]
 fn the_page_has_the_size_asked_for_and_the_other_side_in_proportion() {
     let svg = drawing("80mm", "60mm", 1.0);
-    let stay = ["affine", "-", "--translate", "0,0"];
+    let stay = ["affine", "-", "--move-x", "0"];
     for (size, wanted) in [
         (&["--page-width", "40mm"][..], ["40mm", "30mm"]),
         (&["--page-height", "3cm"], ["4cm", "3cm"]),
@@ -72,7 +72,7 @@ fn parameters_are_lengths_of_the_source() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='80mm' height='60mm' viewBox='0 0 80 60'>\
                <circle cx='20' cy='20' r='10' fill='none' stroke='red' stroke-width='0.1'/></svg>";
     let circle = |args: &[&str]| {
-        let file = dxf(&[&["affine", "-", "--translate", "20mm,0"], args].concat(), svg);
+        let file = dxf(&[&["affine", "-", "--move-x", "20mm", "--fit", "none"], args].concat(), svg);
         let e = &file.entities[0];
         [e.number(10), e.number(20), e.number(40)]
     };
