@@ -14,7 +14,7 @@ const fn part(feature: &'static str, is_built_in: bool, what: &'static str, word
 }
 
 const PARTS: [Part; 7] = [
-    part("dxf", cfg!(feature = "dxf"), "DXF", &["dxf", "dxf-curves"]),
+    part("dxf", cfg!(feature = "dxf"), "DXF", &["dxf", "dxf-curves", "kerf"]),
     part("editor", cfg!(feature = "editor"), "the editor", &["edit"]),
     part("gimp", cfg!(feature = "gimp"), "GIMP's files", &["gimp", "xcf", "json", "into", "salvage"]),
     part(

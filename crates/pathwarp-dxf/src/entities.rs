@@ -1,4 +1,4 @@
-//! Subpaths as entities: divided into runs, each of which is one entity, or flattened.
+//! Subpaths as entities, one each: exact or flattened.
 
 use crate::file::{Codes, MODEL_SPACE, nearest};
 use pathwarp::kurbo::{CubicBez, ParamCurve as _, Point, Vec2};
@@ -12,24 +12,31 @@ pub(crate) struct Pen<'a> {
     pub(crate) color: Option<[u8; 3]>,
 }
 
-/// Writes a subpath exactly.
+/// Writes a subpath as one entity: exactly if it is all lines and circular arcs, one ellipse, or Bézier curves; arcs among curves become
+/// cubics within a hundredth of the tolerance.
 pub(crate) fn exact(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance: f64) {
-    for run in runs(subpath, tolerance) {
-        match (run.kind, run.segs.as_slice()) {
-            (Kind::Curve, segs) => spline(out, pen, segs),
-            (Kind::Ellipse, [Seg::Arc(arc)]) => ellipse(out, pen, arc),
-            (_, [Seg::Line(l)]) if !run.closed => {
-                entity(out, pen, "LINE", "AcDbLine").point(10, l.p0).point(11, l.p1);
-            }
-            (_, [Seg::Arc(a)]) => arc(out, pen, a),
-            _ => polyline_of(out, pen, &vertices(&run), run.closed),
+    let near = OF_TOLERANCE * tolerance;
+    let segs = merged(subpath);
+    let straight = |s: &Seg| match s {
+        Seg::Line(_) => true,
+        Seg::Arc(a) => is_circular(a, near),
+        Seg::Quad(_) | Seg::Cubic(_) => false,
+    };
+    match segs.as_slice() {
+        [] => {}
+        [Seg::Line(l)] => {
+            entity(out, pen, "LINE", "AcDbLine").point(10, l.p0).point(11, l.p1);
         }
+        [Seg::Arc(a)] if is_circular(a, near) => arc(out, pen, a),
+        [Seg::Arc(a)] => ellipse(out, pen, a),
+        all if all.iter().all(straight) => polyline_of(out, pen, &vertices(all, subpath.closed), subpath.closed),
+        all => spline(out, pen, all, subpath.closed, OF_TOLERANCE * near),
     }
 }
 
 /// Writes a subpath as one polyline. Circular arcs stay exact, as bulges.
 pub(crate) fn polyline(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance: f64) {
-    let near = 0.1 * tolerance;
+    let near = OF_TOLERANCE * tolerance;
     let mut segs = Vec::new();
     for seg in merged(subpath) {
         match seg {
@@ -46,10 +53,7 @@ pub(crate) fn polyline(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolera
     match segs.as_slice() {
         [] => {}
         [Seg::Arc(a)] if is_whole(a) => arc(out, pen, a),
-        _ => {
-            let run = Run { kind: Kind::Straight, segs, closed: subpath.closed };
-            polyline_of(out, pen, &vertices(&run), run.closed);
-        }
+        all => polyline_of(out, pen, &vertices(all, subpath.closed), subpath.closed),
     }
 }
 
@@ -71,10 +75,10 @@ fn entity<'c>(out: &'c mut Codes, pen: &Pen<'_>, name: &str, class: &str) -> &'c
 /// A vertex with the bulge of the line behind it: the tangent of a quarter of the angle, positive if it runs counter-clockwise.
 type Vertex = (Point, f64);
 
-/// The vertices of a run of lines and circular arcs.
-fn vertices(run: &Run) -> Vec<Vertex> {
-    let mut out = Vec::with_capacity(run.segs.len() + 1);
-    for seg in &run.segs {
+/// The vertices of lines and circular arcs.
+fn vertices(segs: &[Seg], closed: bool) -> Vec<Vertex> {
+    let mut out = Vec::with_capacity(segs.len() + 1);
+    for seg in segs {
         match seg {
             // The bulge of more than half a turn grows without bound.
             Seg::Arc(a) if a.sweep.abs() > PI => {
@@ -84,8 +88,8 @@ fn vertices(run: &Run) -> Vec<Vertex> {
             other => out.push((other.start(), 0.0)),
         }
     }
-    if !run.closed {
-        out.extend(run.segs.last().map(|s| (s.end(), 0.0)));
+    if !closed {
+        out.extend(segs.last().map(|s| (s.end(), 0.0)));
     }
     out
 }
@@ -147,12 +151,24 @@ fn axes(a: Vec2, b: Vec2) -> (Vec2, Vec2, f64) {
     (a * cos + b * sin, b * cos - a * sin, shift)
 }
 
-/// Bézier curves as one spline: every joint is a triple knot.
-fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg]) {
-    /// A planar spline that is neither closed nor rational; closed ones start and end at the same point.
+/// Segments as one spline: every joint is a triple knot, so corners stay. A closed one ends at the very point it starts from. Its flag for
+/// closed splines stays off: LibreCAD up to 2.2 draws those as periodic ones of the same control points, another curve.
+fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64) {
+    /// A planar spline that is not rational.
     const FLAGS: i64 = 8;
     const DEGREE: usize = 3;
-    let n = segs.len();
+    let mut cubics: Vec<CubicBez> = Vec::with_capacity(segs.len());
+    for seg in segs {
+        match seg {
+            Seg::Arc(a) => cubics.extend(a.to_cubics(near)),
+            other => cubics.push(other.to_cubic()),
+        }
+    }
+    let (Some(first), Some(last)) = (cubics.first().map(|c| c.p0), cubics.last_mut()) else { return };
+    if closed {
+        last.p3 = first;
+    }
+    let n = cubics.len();
     entity(out, pen, "SPLINE", "AcDbSpline").length(210, 0.0).length(220, 0.0).length(230, 1.0);
     out.whole(70, FLAGS).whole(71, DEGREE as i64);
     out.whole(72, (DEGREE * (n + 1) + 2) as i64).whole(73, (DEGREE * n + 1) as i64).whole(74, 0);
@@ -163,70 +179,17 @@ fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg]) {
             out.length(40, joint as f64);
         }
     }
-    out.point(10, segs[0].start());
-    for seg in segs {
-        let c = seg.to_cubic();
+    out.point(10, first);
+    for c in cubics {
         out.point(10, c.p1).point(10, c.p2).point(10, c.p3);
     }
 }
 
-/// Largest turn of a joint in a spline, as the sine of the angle: half a degree. At a corner a new spline starts.
-const SMOOTH: f64 = 0.008_73;
-
 /// Share of the tolerance by which an arc may miss a circle and still be written as one.
 const OF_TOLERANCE: f64 = 0.1;
 
-/// The kinds of entities that a segment can be part of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Lines and circular arcs.
-    Straight,
-    /// Bézier curves.
-    Curve,
-    /// An arc of an ellipse.
-    Ellipse,
-}
-
-/// Segments that are one entity.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Run {
-    pub(crate) kind: Kind,
-    pub(crate) segs: Vec<Seg>,
-    /// The run is a whole closed subpath.
-    pub(crate) closed: bool,
-}
-
-/// The runs of a subpath. Arcs within the tolerance of circular ones count as such.
-pub(crate) fn runs(subpath: &Subpath, tolerance: f64) -> Vec<Run> {
-    let segs = merged(subpath);
-    let near = OF_TOLERANCE * tolerance;
-    let kinds: Vec<Kind> = segs.iter().map(|s| kind(s, near)).collect();
-    let n = segs.len();
-    let breaks = |i: usize| {
-        let before = (i + n - 1) % n;
-        let differ = kinds[before] != kinds[i] || kinds[i] == Kind::Ellipse;
-        differ || kinds[i] == Kind::Curve && is_corner(&segs[before], &segs[i])
-    };
-    if n == 0 {
-        return Vec::new();
-    }
-    let starts: Vec<usize> =
-        (0..n).filter(|i| !subpath.closed && *i == 0 || (*i > 0 || subpath.closed) && breaks(*i)).collect();
-    let Some(&first) = starts.first() else {
-        return vec![Run { kind: kinds[0], segs, closed: true }];
-    };
-    let closed = subpath.closed && n == 1;
-    let ends = starts.iter().skip(1).copied().chain([first + n]);
-    let run = |(start, end): (&usize, usize)| Run {
-        kind: kinds[*start],
-        segs: (*start..end).map(|i| segs[i % n]).collect(),
-        closed,
-    };
-    starts.iter().zip(ends).map(run).collect()
-}
-
 /// The segments that have a length, with consecutive arcs of one ellipse as one.
-pub(crate) fn merged(subpath: &Subpath) -> Vec<Seg> {
+fn merged(subpath: &Subpath) -> Vec<Seg> {
     let mut out: Vec<Seg> = Vec::with_capacity(subpath.segs.len());
     for seg in &subpath.segs {
         if matches!(seg, Seg::Line(l) if l.p0 == l.p1) {
@@ -255,47 +218,23 @@ fn is_continued(last: &EllipticArc, next: &EllipticArc) -> bool {
     same && follows && last.sweep * next.sweep > 0.0 && (last.sweep + next.sweep).abs() <= TAU + SLACK
 }
 
-fn kind(seg: &Seg, near: f64) -> Kind {
-    match seg {
-        Seg::Line(_) => Kind::Straight,
-        Seg::Quad(_) | Seg::Cubic(_) => Kind::Curve,
-        Seg::Arc(arc) if is_circular(arc, near) => Kind::Straight,
-        Seg::Arc(_) => Kind::Ellipse,
-    }
-}
-
 /// Returns `true` if an arc is within `near` of a circular one.
-pub(crate) fn is_circular(arc: &EllipticArc, near: f64) -> bool {
+fn is_circular(arc: &EllipticArc, near: f64) -> bool {
     let (a, b) = (arc.a.hypot(), arc.b.hypot());
     let skew = arc.a.dot(arc.b).abs() / a.max(b);
     skew.is_finite() && (a - b).abs() + skew <= near.max(1e-9 * a)
 }
 
 /// Returns `true` if an arc is a whole ellipse.
-pub(crate) fn is_whole(arc: &EllipticArc) -> bool {
+fn is_whole(arc: &EllipticArc) -> bool {
     (arc.sweep.abs() - TAU).abs() < 1e-9
-}
-
-fn is_corner(before: &Seg, after: &Seg) -> bool {
-    let (u, v) = (tangent(before, 1.0), tangent(after, 0.0));
-    let both = u.hypot() * v.hypot();
-    both > 0.0 && (u.dot(v) < 0.0 || u.cross(v).abs() > SMOOTH * both)
-}
-
-/// The direction at an end; of a curve with a handle of no length, that to the next point.
-fn tangent(seg: &Seg, end: f64) -> Vec2 {
-    let c = seg.to_cubic();
-    let (from, others): (Point, [Point; 3]) =
-        if end == 0.0 { (c.p0, [c.p1, c.p2, c.p3]) } else { (c.p3, [c.p2, c.p1, c.p0]) };
-    let away = others.into_iter().map(|p| p - from).find(|v| v.hypot() > 0.0).unwrap_or(Vec2::ZERO);
-    if end == 0.0 { away } else { -away }
 }
 
 /// Deepest halving: a curve becomes at most 65536 lines.
 const DEEPEST: u32 = 16;
 
 /// Appends the points of a polyline within `tolerance` of a segment, without its first point.
-pub(crate) fn flatten(seg: &Seg, tolerance: f64, out: &mut Vec<Point>) {
+fn flatten(seg: &Seg, tolerance: f64, out: &mut Vec<Point>) {
     match seg {
         Seg::Line(l) => out.push(l.p1),
         Seg::Quad(_) | Seg::Cubic(_) => halve(seg.to_cubic(), tolerance, 0, out),
@@ -351,28 +290,43 @@ mod tests {
     use super::*;
     use pathwarp::Outline;
 
-    fn kinds(d: &str) -> Vec<(Kind, usize, bool)> {
+    /// The entities of a path, and the numbers of their vertices or control points.
+    fn entities(d: &str) -> Vec<(String, usize)> {
         let outline = Outline::from_svg(d).unwrap();
-        runs(&outline.subpaths[0], 0.01).into_iter().map(|r| (r.kind, r.segs.len(), r.closed)).collect()
+        let mut out = Codes::new();
+        for s in &outline.subpaths {
+            exact(&mut out, &Pen { layer: "0", color: None }, s, 0.01);
+        }
+        let text = out.finish();
+        let entity = |t: &str| {
+            let name = t.lines().next().unwrap_or_default().to_owned();
+            (name, t.lines().filter(|l| *l == " 10").count())
+        };
+        text.split("  0\n").skip(1).map(entity).collect()
+    }
+
+    fn named(name: &str, points: usize) -> (String, usize) {
+        (name.to_owned(), points)
     }
 
     #[test]
-    fn contours_of_lines_and_arcs_are_one_run() {
-        assert_eq!(kinds("M0,0 H50 V20 A10,10 0 0 1 40,30 H0 Z"), [(Kind::Straight, 5, true)]);
-        assert_eq!(kinds("M0,0 H50 V20"), [(Kind::Straight, 2, false)]);
+    fn contours_of_lines_and_arcs_are_polylines() {
+        assert_eq!(entities("M0,0 H50 V20 A10,10 0 0 1 40,30 H0 Z"), [named("LWPOLYLINE", 5)]);
+        assert_eq!(entities("M0,0 H50 V20"), [named("LWPOLYLINE", 3)]);
+        assert_eq!(entities("M0,0 H50"), [named("LINE", 1)]);
     }
 
     #[test]
-    fn a_circle_in_quarters_is_one_arc() {
+    fn a_circle_in_quarters_is_one_circle() {
         let d = "M10,0 A10,10 0 0 1 0,10 A10,10 0 0 1 -10,0 A10,10 0 0 1 0,-10 A10,10 0 0 1 10,0 Z";
-        assert_eq!(kinds(d), [(Kind::Straight, 1, true)]);
+        assert_eq!(entities(d), [named("CIRCLE", 1)]);
     }
 
     #[test]
-    fn kinds_and_corners_divide() {
-        // The run of lines goes on over the start of the subpath.
-        assert_eq!(kinds("M0,0 H50 C60,0 60,20 50,20 H0 Z"), [(Kind::Curve, 1, false), (Kind::Straight, 3, false)]);
-        assert_eq!(kinds("M0,0 C10,0 20,10 20,20 C20,30 30,40 40,40 C40,50 0,50 0,0 Z").len(), 2);
-        assert_eq!(kinds("M0,0 A20,10 0 0 1 40,0 A20,10 0 0 0 80,0"), [(Kind::Ellipse, 1, false); 2]);
+    fn a_mixed_contour_is_one_spline() {
+        assert_eq!(entities("M0,0 H50 C60,0 60,20 50,20 H0 Z"), [named("SPLINE", 13)]);
+        assert_eq!(entities("M0,0 C10,0 20,10 20,20 C20,30 30,40 40,40 C40,50 0,50 0,0 Z"), [named("SPLINE", 10)]);
+        assert_eq!(entities("M0,0 A20,10 0 0 1 40,0"), [named("ELLIPSE", 1)]);
+        assert_eq!(entities("M0,0 A20,10 0 0 1 40,0 A20,10 0 0 0 80,0")[0].0, "SPLINE");
     }
 }

@@ -1,8 +1,9 @@
 //! Writes outlines as DXF, the format that laser cutters, plotters and CAD programs read.
 //!
-//! Lines, circles and circular arcs are exact: `LINE`, `CIRCLE`, `ARC`, or an `LWPOLYLINE` where they follow one another.
-//! Ellipses and their arcs are exact `ELLIPSE`s, Bézier curves exact `SPLINE`s of degree 3, split at corners. For programs that
-//! know no splines, [`Curves::Polylines`] makes every subpath one `LWPOLYLINE` within a tolerance.
+//! Every subpath is one entity, as cutters need it. Lines, circles and circular arcs are exact: `LINE`, `CIRCLE`, `ARC`, or an
+//! `LWPOLYLINE` with bulges where they follow one another. An ellipse or an arc of one is an exact `ELLIPSE`. Any other subpath is a
+//! `SPLINE` of degree 3 with triple knots at the joints, exact but for arcs in it. For programs that know no splines,
+//! [`Curves::Polylines`] makes it an `LWPOLYLINE` within a tolerance.
 //!
 //! Files are of version AC1018 (AutoCAD 2004), the first with true colours: plain text with characters beyond ASCII escaped.
 //! The unit is the millimetre. They hold neither dates nor random ids: the same outlines always give the same text.

@@ -11,7 +11,9 @@ use crate::scene::drawing::{Drawing, NamedPath, Shape, UnreadImages, named_path}
 use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::scene::plot::{self, Plot};
 use crate::scene::selected_lettering::{Lettering, lettering};
+use crate::source::edit::Edits;
 use crate::source::elements::{ElementId, is_shape};
+use crate::source::number::{short, single};
 use crate::source::read::ReadOptions;
 use crate::source::select::{self, Division, Selection, candidates, is_named, matches_any};
 use crate::source::tree::undrawn;
@@ -110,6 +112,23 @@ impl Document {
             WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
         let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
         Ok(Some(self.warp(&map, &options)?.svg))
+    }
+
+    /// The drawing with its page `scale` times as large, and all that is on it; nothing else changes. The size is written in a unit of
+    /// so many px.
+    #[must_use]
+    pub fn resized(&self, scale: f64, unit: &str, px: f64) -> String {
+        let source = &self.drawing.source;
+        let (page, view) = (self.size_px(), self.view_box());
+        let mut edits = Edits::new(source);
+        if source.attr(0, "viewBox").is_none() {
+            let view = [view.x0, view.y0, view.width(), view.height()].map(short).join(" ");
+            edits.set_attr(0, "viewBox", view);
+        }
+        for (name, side) in [("width", page.width), ("height", page.height)] {
+            edits.set_property(0, name, format!("{}{unit}", single(side * scale / px)));
+        }
+        edits.apply().0
     }
 
     /// Size of the page in px.

@@ -5,5 +5,6 @@ mod choice;
 mod dxf;
 mod dxf_reader;
 mod geometry;
+mod page_size;
 mod pdf;
 mod pictures;

@@ -31,7 +31,7 @@ pub(super) fn convert_command() -> Command {
             "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
              drawing, or .dxf with its outlines in mm; - or none writes to standard output",
         ))
-        .args(some_options(&["format", "dxf-curves", "tolerance", "union", "quiet"]))
+        .args(some_options(&["format", "dxf-curves", "kerf", "page-width", "page-height", "tolerance", "union", "quiet"]))
         .arg(
             Arg::new("split")
                 .long("split")

@@ -129,7 +129,7 @@ pub(super) fn run_recipe(registry: &Registry, m: &ArgMatches, words: &[OsString]
 }
 
 /// The common options that say what is read and where the result goes.
-const SHARED: [&str; 20] = [
+const SHARED: [&str; 23] = [
     "out",
     "format",
     "out-dir",
@@ -144,6 +144,9 @@ const SHARED: [&str; 20] = [
     "precision",
     "structure",
     "dxf-curves",
+    "kerf",
+    "page-width",
+    "page-height",
     "on-error",
     "report",
     "preview",
@@ -177,8 +180,8 @@ pub(super) fn offset_command() -> Command {
              not. Strokes keep their width; text becomes outlines.",
         ))
         .after_help(
-            "Examples:\n  A sticker's edge around a badge:\n    pathwarp offset badge.svg --by 3mm -o edge.svg\n  Half of a laser's kerf, for \
-             a tight fit:\n    pathwarp offset parts.svg --by 0.1mm --join miter -o parts.dxf\n  Inlays, a little smaller than their \
+            "Examples:\n  A sticker's edge around a badge:\n    pathwarp offset badge.svg --by 3mm -o edge.svg\n  Parts a little larger, for a \
+             tight fit, with room for the cut:\n    pathwarp offset parts.svg --by 0.05mm --join miter --kerf 0.2mm -o parts.dxf\n  Inlays, a little smaller than their \
              holes:\n    pathwarp offset inlays.svg --by 0.2mm --side inside -o smaller.svg",
         )
 }

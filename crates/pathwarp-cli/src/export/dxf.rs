@@ -1,13 +1,14 @@
 //! Drawings as DXF, in millimetres.
 
 use super::exported::{Exported, counted};
+use super::kerf::{self, Cut};
 use crate::failure::Failure;
 use crate::options::CommonOptions;
 use crate::units::{MM_PER_PX, units_per_px};
-use pathwarp::Outline;
+use pathwarp::budget::cost;
 use pathwarp::edit::united;
 use pathwarp::kurbo::Affine;
-use pathwarp::param::Frame;
+use pathwarp::param::{Axis, Frame};
 use pathwarp_dxf::{Curves, Shape};
 use pathwarp_svg::{Document, Plot, PlotShape, Selection};
 
@@ -26,26 +27,41 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
         options.tolerance_for(bounds, &frame)
     };
     let tolerance = tolerance.map_or_else(default, Ok)?;
-    let outline = |s: &PlotShape| -> Result<Outline, Failure> {
+    let cut = |s: &PlotShape| -> Result<Cut, Failure> {
         let rule = s.even_odd.filter(|_| options.union);
         let united = rule.map(|even_odd| united(&s.outline, even_odd, tolerance)).transpose();
         let united = united.map_err(pathwarp::Error::from)?.flatten();
-        Ok(united.as_ref().unwrap_or(&s.outline).transformed(to_mm))
+        Ok(Cut { outline: united.as_ref().unwrap_or(&s.outline).transformed(to_mm), even_odd: s.even_odd })
     };
-    let outlines: Vec<Outline> = plot.shapes.iter().map(outline).collect::<Result<_, _>>()?;
-    let shapes = plot.shapes.iter().zip(&outlines);
+    let mut cuts: Vec<Cut> = plot.shapes.iter().map(cut).collect::<Result<_, _>>()?;
+    let mut warnings = lost_in_dxf(&plot);
+    let mm_per_unit = to_mm.determinant().abs().sqrt();
+    if let Some(kerf) = options.kerf {
+        let frame = Frame::new(doc.view_box()).with_units_per_px(units_per_px(doc));
+        let by = 0.5 * kerf.in_units(Axis::Diagonal, &frame) * mm_per_unit;
+        let contours = cuts.iter().map(|c| c.outline.subpaths.len() as f64).sum::<f64>();
+        let spent = doc.budget().spend(cost::COMPARISON * contours * contours);
+        spent.map_err(|e| pathwarp::Error::limit(doc.name(), "with --kerf, it takes", e))?;
+        let together = |i: usize| (&plot.shapes[i].layer, plot.shapes[i].color);
+        let fewer = kerf::widen(&mut cuts, together, by, tolerance * mm_per_unit).map_err(pathwarp::Error::from)?;
+        if fewer > 0 {
+            let contours = counted(fewer, "contour", "contours");
+            warnings.push(format!("--kerf leaves {contours} fewer: narrow ones close, and those that meet unite"));
+        }
+    }
+    let shapes = plot.shapes.iter().zip(&cuts);
     let shapes: Vec<Shape<'_>> = shapes
-        .map(|(s, outline)| Shape { layer: s.layer.as_deref().unwrap_or_default(), color: s.color, outline })
+        .map(|(s, cut)| Shape { layer: s.layer.as_deref().unwrap_or_default(), color: s.color, outline: &cut.outline })
         .collect();
     let settings = pathwarp_dxf::Options {
         curves: if options.dxf_polylines { Curves::Polylines } else { Curves::Splines },
-        tolerance: tolerance * to_mm.determinant().abs().sqrt(),
+        tolerance: tolerance * mm_per_unit,
         page,
         limits: doc.budget().limits(),
     };
     let text = pathwarp_dxf::write(&shapes, &settings)
         .map_err(|e| pathwarp::Error::limit(doc.name(), "as polylines, it takes", e))?;
-    Ok(Exported { bytes: text.into_bytes(), warnings: lost_in_dxf(&plot) })
+    Ok(Exported { bytes: text.into_bytes(), warnings })
 }
 
 /// Describes the content that outlines cannot show.

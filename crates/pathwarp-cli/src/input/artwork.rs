@@ -71,6 +71,11 @@ pub(crate) trait Artwork {
         [1.0; 2]
     }
 
+    /// The page that it is on.
+    fn page(&self) -> Option<Rect> {
+        None
+    }
+
     /// The outlines of the artwork.
     fn outlines(&self, which: Which) -> Vec<&Outline>;
 

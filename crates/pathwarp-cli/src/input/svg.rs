@@ -14,14 +14,14 @@ use crate::units::units_per_px;
 use crate::{advice, export, watch};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
-use pathwarp::kurbo::Rect;
+use pathwarp::kurbo::{Rect, Size};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
     Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, ShapeReport,
-    WarpOptions, WarpedDocument,
+    Strokes, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -31,6 +31,9 @@ use std::sync::Arc;
 
 /// With fewer segments, starting threads takes longer than looking for folds.
 const WORTH_THREADS: usize = 5000;
+
+/// Pages that differ by less have the same scale.
+const SAME_SCALE: f64 = 1e-3;
 
 /// Resolution of bitmaps in a draft.
 const DRAFT_DPI: f64 = 24.0;
@@ -124,10 +127,12 @@ impl SvgArtwork {
         let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
         let bender = Arc::new(bender);
         let gradients = match options.gradients {
+            GradientChoice::Keep => Gradients::Keep,
+            // Of a picture, a cutter would see nothing.
+            _ if self.format == Format::Dxf => Gradients::Fit,
             GradientChoice::Fit => Gradients::Fit,
             GradientChoice::Auto => Gradients::Auto(bender.clone()),
             GradientChoice::Exact => Gradients::Exact(bender.clone()),
-            GradientChoice::Keep => Gradients::Keep,
         };
         let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
         let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
@@ -135,7 +140,11 @@ impl SvgArtwork {
         let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
         let warp = WarpOptions::new(refit)
             .with_precision(options.precision)
-            .with_strokes(options.strokes)
+            .with_strokes(match options.strokes {
+                // A cutter follows the middle of a stroke.
+                Strokes::Auto if self.format == Format::Dxf => Strokes::Keep,
+                given => given,
+            })
             .with_union(options.union)
             .with_text(options.text)
             .with_structure(options.structure)
@@ -150,6 +159,14 @@ impl SvgArtwork {
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
         request.edit.map_or(warp.clone(), |e| warp.editing(e))
+    }
+
+    /// The size of the result's page in px, which is the source's, or `after` instead of `before` in its units.
+    fn size_px(&self, page: Option<[Rect; 2]>) -> Size {
+        let Size { width, height } = self.doc.size_px();
+        page.map_or(Size { width, height }, |[before, after]| {
+            Size::new(width * after.width() / before.width(), height * after.height() / before.height())
+        })
     }
 
     /// The reason why the page stays although it could grow.
@@ -373,6 +390,10 @@ impl Artwork for SvgArtwork {
         units_per_px(&self.doc)
     }
 
+    fn page(&self) -> Option<Rect> {
+        Some(self.doc.view_box())
+    }
+
     fn budget(&self) -> &Arc<Budget> {
         self.doc.budget()
     }
@@ -389,7 +410,17 @@ impl FileArtwork for SvgArtwork {
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options: common, .. } = request;
-        let (options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        let mut tolerance = request.tolerance;
+        // The scale of the result's page is known once the artwork is on it.
+        if common.has_tolerance_of_result()
+            && let Some(scale) = common.page_scale(self.size_px(warped.page))
+            && (scale.by - 1.0).abs() > SAME_SCALE
+        {
+            tolerance /= scale.by;
+            let finer = WarpRequest { tolerance, edit: request.edit, embedded_recipe: None, ..*request };
+            (options, warped) = self.bent(&built.parts, |k, part| self.warp_options(&finer, k, part))?;
+        }
         let page = PageNews::of(&mut warped, common.page, self.stays(request));
         if let Some(recipe) = &request.embedded_recipe {
             let origin = Origin { recipe: recipe.clone(), source: self.doc.source().to_vec() };
@@ -412,7 +443,7 @@ impl FileArtwork for SvgArtwork {
         let preview = common.preview.as_deref();
         let preview =
             preview.map(|file| beside::preview(&self.doc, &warped.svg, built, &self.read, (file, common.quality)));
-        let result = export::drawing(warped.svg, self.format, &self.read, common, Some(request.tolerance))?;
+        let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
         warnings.extend(result.warnings);
         Ok(WarpedArtwork {
             result: WarpedResult::Bytes(result.bytes),

@@ -95,6 +95,9 @@ pub(crate) struct CommonOptions {
     pub(crate) gradients: GradientChoice,
     pub(crate) patterns: Patterns,
     pub(crate) page: PageFit,
+    /// The size of the result's page.
+    pub(crate) page_width: Option<Length>,
+    pub(crate) page_height: Option<Length>,
     pub(crate) clones: Clones,
     pub(crate) structure: Structure,
     /// Warp the bitmaps in drawings.
@@ -104,6 +107,8 @@ pub(crate) struct CommonOptions {
     pub(crate) image_size: Option<(u32, Option<u32>)>,
     /// Form of Bézier curves in a DXF.
     pub(crate) dxf_polylines: bool,
+    /// Width of a cut, for which the contours of a DXF make room.
+    pub(crate) kerf: Option<Length>,
     /// Quality of a JPEG, from 1 to 100.
     pub(crate) quality: Option<u8>,
     pub(crate) on_failure: OnFailure,
@@ -134,6 +139,32 @@ impl CommonOptions {
         }
         let share = self.edit.as_ref().and_then(|e| e.info.tolerance).unwrap_or(TOLERANCE_OF_DIAGONAL);
         Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * share } else { share }))
+    }
+}
+
+/// A page of another size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PageScale {
+    /// How many times as large it is.
+    pub(crate) by: f64,
+    /// The unit that its size was given in.
+    pub(crate) unit: LengthUnit,
+}
+
+impl CommonOptions {
+    /// How much larger a page of this size in px becomes: as `--page-width` and `--page-height` say, inside both if both are given.
+    pub(crate) fn page_scale(&self, page: Size) -> Option<PageScale> {
+        let scale = |given: Option<Length>, side: f64| {
+            given.map(|l| PageScale { by: l.value * l.unit.px().unwrap_or(1.0) / side, unit: l.unit })
+        };
+        let both = scale(self.page_width, page.width).into_iter().chain(scale(self.page_height, page.height));
+        both.filter(|s| s.by > 0.0 && s.by.is_finite()).reduce(|a, b| if b.by < a.by { b } else { a })
+    }
+
+    /// Returns `true` if the tolerance is a length of the result, whose page has another scale than the source's.
+    pub(crate) fn has_tolerance_of_result(&self) -> bool {
+        let resizes = self.page_width.is_some() || self.page_height.is_some();
+        resizes && self.tolerance.is_some_and(|t| t.unit.px().is_some())
     }
 }
 
@@ -225,6 +256,12 @@ pub(super) fn limit(text: &str, limits: &mut Limits) -> Result<(), String> {
 pub(super) fn positive_length(text: &str) -> Result<Length, String> {
     let length: Length = text.parse().map_err(|e| format!("`{text}` {e}"))?;
     if length.value > 0.0 { Ok(length) } else { Err(format!("`{text}` is not positive")) }
+}
+
+/// Parses a side of a page.
+pub(super) fn side_of_page(text: &str) -> Result<Length, String> {
+    let length = positive_length(text)?;
+    if length.unit == LengthUnit::Percent { Err(format!("`{text}` is no length, such as 80mm")) } else { Ok(length) }
 }
 
 /// Parses a size in pixels, `W` or `WxH`.

@@ -2,6 +2,7 @@
 
 use super::common::{
     CommonOptions, GradientChoice, OnFailure, family_name, frame, image_size, limit, positive, positive_length,
+    side_of_page,
 };
 use crate::format::Format;
 use crate::left_out;
@@ -203,7 +204,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("outline", |o| o.strokes = Strokes::Outline),
             ]),
             "Strokes: keep their width, scale it by the local stretch, or convert them to outlines that are \
-             warped; auto scales if the edges are then within the tolerance, the width is right within 2 %, or the \
+             warped; auto keeps them in a DXF, where cutters follow their middle, and else scales if the edges are then within the tolerance, the width is right within 2 %, or the \
              stroke is a hairline (no wider than the tolerance or, on a page measured in mm, cm, in, pt or pc, than \
              0.1 mm), and outlines elsewhere",
         )
@@ -300,6 +301,25 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
              a warning if artwork extends past them",
         )
     },
+    stored(
+        "page-width",
+        OptionValue::Text {
+            name: "LENGTH",
+            minus: LeadingMinus::No,
+            set: |o, text| side_of_page(text).map(|l| o.page_width = Some(l)),
+        },
+        "Width of the result's page, such as 80mm; its height is in proportion. A --tolerance and --kerf with units are lengths of the result \
+         then, while lengths in parameters are those of the source",
+    ),
+    stored(
+        "page-height",
+        OptionValue::Text {
+            name: "LENGTH",
+            minus: LeadingMinus::No,
+            set: |o, text| side_of_page(text).map(|l| o.page_height = Some(l)),
+        },
+        "Height of the result's page; with --page-width, the page is as large as fits inside both",
+    ),
     CommonOption {
         default: Some("copy"),
         ..stored(
@@ -361,10 +381,21 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..stored(
             "dxf-curves",
             OptionValue::Choice(&[("spline", |o| o.dxf_polylines = false), ("polyline", |o| o.dxf_polylines = true)]),
-            "Curves in a DXF: exact splines, or for programs that know none, one polyline per contour within the \
-             tolerance. Lines, arcs and circles are exact in both",
+            "Curves in a DXF: splines, or for programs that know none, polylines within the tolerance; either way, \
+             each contour is one entity. Lines, arcs and circles are exact in both",
         )
     },
+    #[cfg(feature = "dxf")]
+    of_the_run(
+        "kerf",
+        OptionValue::Text {
+            name: "D",
+            minus: LeadingMinus::No,
+            set: |o, text| positive_length(text).map(|d| o.kerf = Some(d)),
+        },
+        "Width of the cut, such as 0.2mm: the outer contours of a DXF grow by half of it and holes shrink, so that parts have \
+         their size; open lines stay",
+    ),
     CommonOption {
         default: Some("92"),
         ..stored(

@@ -120,7 +120,11 @@ impl Session<'_> {
     /// The frame of some of the artwork.
     fn frame(&self, artwork: &dyn Artwork, which: Which, baseline: Baseline) -> Result<Frame, Failure> {
         let frame = artwork.frame(which, self.options.frame, artwork.bounding_box(which), baseline)?;
-        Ok(frame.with_units_per_px(artwork.units_per_px()))
+        let frame = frame.with_units_per_px(artwork.units_per_px());
+        Ok(match artwork.page() {
+            Some(page) => frame.with_page(page),
+            None => frame,
+        })
     }
 
     /// The frame of all artwork, as the last time if guides and baseline are the same.

@@ -13,6 +13,7 @@ use crate::settings::Box3;
 use crate::settings::{Extent, Settings3};
 use glam::{DMat3, DMat4, DVec3};
 use pathwarp::Error;
+use pathwarp::decimal::trimmed;
 use pathwarp::deform::{Example, Info};
 use pathwarp::param::{Kind, Param};
 use std::sync::Arc;
@@ -69,9 +70,9 @@ impl Wrap3 {
     /// # Errors
     /// [`Error::Usage`] for a radius that is not positive, or radii that differ by more than the model is high.
     pub fn build(&self) -> Result<Built3, Error> {
-        for (name, r) in [("radius", Some(self.radius)), ("top", self.far)] {
+        for (name, r) in [("radius", Some(self.radius)), ("top-radius", self.far)] {
             if let Some(r) = r.filter(|r| !(*r > 0.0 && r.is_finite())) {
-                return Err(Error::usage(name, r.to_string(), "is not positive"));
+                return Err(Error::usage(name, show(r), "is not positive"));
             }
         }
         let across = usize::from(self.level);
@@ -87,8 +88,8 @@ impl Wrap3 {
             let sine = (far - self.radius) / height;
             if sine.is_nan() || sine.abs() >= 1.0 {
                 let problem =
-                    format!("differs from the other radius by more than the model's side is long, {height:.6}");
-                return Err(Error::usage("top", far.to_string(), problem));
+                    format!("differs from the other radius by more than the model's side is long, {height:.6} mm");
+                return Err(Error::usage("top-radius", show(far), problem));
             }
             let mut chain = Chain3::default();
             chain.push(Arc::new(Collineation::new(turn(1 - across, middle[1 - across], surface, sine))));
@@ -178,6 +179,21 @@ impl Map3 for Unwrapped {
     }
 }
 
+/// A radius, given as such or as a diameter.
+fn radius(s: &Settings3<'_>, [radius, diameter]: [&str; 2]) -> Result<Option<f64>, Error> {
+    match (s.last(radius), s.last(diameter)) {
+        (Some(_), Some(text)) => Err(Error::usage(diameter, text, format!("and `{radius}` say the same; give one"))),
+        (Some(text), None) => s.length_in(radius, text, Extent::X).map(Some),
+        (None, Some(text)) => s.length_in(diameter, text, Extent::X).map(|d| Some(d / 2.0)),
+        (None, None) => Ok(None),
+    }
+}
+
+/// A length in a message, in millimetres without the error of its unit's conversion.
+fn show(length: f64) -> String {
+    format!("{} mm", trimmed(length, 6))
+}
+
 /// The registry's entry.
 pub(super) struct Entry;
 
@@ -185,17 +201,18 @@ static ABOUT: About3 = About3 {
     info: Info::new("wrap", "wrap a model round a mug, a bottle, a cup or a ring")
         .group("Along a curve")
         .about("Rolls the model round a cylinder of the given radius, which it touches with its back (--surface): lengths there are \
-kept, so that a word of 50 mm is 50 mm long on the mug. The middle stays where it is. With a second radius (--top) the model is rolled round a cone: lengths along its side are kept, and lengths round it in \
+kept, so that a word of 50 mm is 50 mm long on the mug. The middle stays where it is. With another width at its top (--top-diameter or --top-radius) the model is rolled round a cone: lengths along its side are kept, and lengths round it in \
 the middle of its height. Use --refine to give long faces enough corners.")
         .source("(x, y, z) to cylinder coordinates: θ = x/R, ρ = R + z")
         .params(&[
-            Param::new("radius", Kind::Text("LENGTH"), "Radius of the cylinder.").needed(),
+            Param::new("radius", Kind::Text("LENGTH"), "Radius of the cylinder; of a cone, at the bottom of the model."),
+            Param::new("diameter", Kind::Text("LENGTH"), "The same as a diameter, as one measures a cup."),
             Param::new(
-                "top",
+                "top-radius",
                 Kind::Text("LENGTH"),
-                "Radius at the top of the model (at its right end if the axis is level), for a cup or another cone; the other is then \
-the radius at the bottom.",
+                "Radius at the top of the model (at its right end if the axis is level), for a cup or another cone.",
             ),
+            Param::new("top-diameter", Kind::Text("LENGTH"), "The same as a diameter."),
             Param::new("axis", Kind::Choice(&["y", "x"]), "The cylinder's axis: y for upright, x for level.").default("y"),
             Param::new("surface", Kind::Text("Z"), "The z that comes to lie on the cylinder. Default: the back of the model."),
         ])
@@ -207,7 +224,7 @@ the radius at the bottom.",
             },
             Example {
                 what: "The same for a cup that is wider at the top",
-                command: "solid wrap samples/lettering.svg --extrude 3mm --radius 32mm --top 40mm --refine 0.05mm -o out.obj",
+                command: "solid wrap samples/lettering.svg --extrude 3mm --diameter 64mm --top-diameter 80mm --refine 0.05mm -o out.obj",
             },
             Example {
                 what: "Round a bottle that lies",
@@ -218,8 +235,8 @@ the radius at the bottom.",
         Law3::KeepsLinesAlong(&[("radius", "70")], [0.0, 1.0, 0.0]),
         Law3::KeepsLinesAlong(&[("radius", "70")], [0.0, 0.0, 1.0]),
         Law3::KeepsLinesAlong(&[("radius", "70"), ("axis", "x")], [1.0, 0.0, 0.0]),
-        Law3::KeepsLinesAlong(&[("radius", "70"), ("top", "50")], [0.0, 1.0, 0.0]),
-        Law3::Same(&[("radius", "70")], &[("radius", "70"), ("top", "70")]),
+        Law3::KeepsLinesAlong(&[("radius", "70"), ("top-diameter", "100")], [0.0, 1.0, 0.0]),
+        Law3::Same(&[("radius", "70")], &[("diameter", "140"), ("top-radius", "70")]),
     ],
     cases: &[
         // A quarter turn: 50 is a quarter of the circumference of radius 100/π.
@@ -239,11 +256,12 @@ impl Deformation3 for Entry {
     }
 
     fn build(&self, s: &Settings3<'_>) -> Result<Built3, Error> {
-        let radius = s.last("radius").unwrap_or_default();
-        let radius = s.length_in("radius", radius, Extent::X)?;
+        let radius = radius(s, ["radius", "diameter"])?;
+        let radius =
+            radius.ok_or_else(|| Error::missing("radius", "the radius of what is wrapped round; or its diameter"))?;
         let mut wrap = Wrap3::new(s.bounds(), radius).level(s.flat().choice("axis")? == "x");
-        if let Some(top) = s.last("top") {
-            wrap = wrap.cone(s.length_in("top", top, Extent::X)?);
+        if let Some(top) = self::radius(s, ["top-radius", "top-diameter"])? {
+            wrap = wrap.cone(top);
         }
         if let Some(z) = s.last("surface") {
             let from = if z.trim().ends_with('%') { s.bounds().min.z } else { 0.0 };

@@ -8,7 +8,7 @@ use super::geometry::stretch;
 use super::model::{Group, Node, Part, Scene};
 use crate::source::elements::{ElementId, Namespace};
 use crate::source::text::SourceText;
-use pathwarp::kurbo::Rect;
+use pathwarp::kurbo::{Line, Rect};
 use pathwarp::{Outline, Seg};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ pub struct PlotShape {
     pub layer: Option<Arc<str>>,
     /// The colour of the stroke, else of the fill; of a gradient, the mean of its stops. `None` for a pattern.
     pub color: Option<[u8; 3]>,
-    /// Outline in root user space.
+    /// Outline in root user space. The subpaths of a fill are closed, and those whose ends meet.
     pub outline: Arc<Outline>,
     /// Whether the fill, if there is one, follows the even-odd rule.
     pub even_odd: Option<bool>,
@@ -130,11 +130,31 @@ impl Walk<'_> {
         self.out.shapes.push(PlotShape {
             layer: p.element().and_then(|e| self.layers.layer(self.source, e)),
             color: paint.and_then(color),
-            outline,
+            outline: closed(outline, fill.is_some()),
             even_odd: fill.map(|f| f.rule() == usvg::FillRule::EvenOdd),
             stroke_width: stroke.map(|s| f64::from(s.width().get()) * scale),
         });
     }
+}
+
+/// Closes the subpaths whose ends meet, and of a fill also those that enclose an area.
+fn closed(outline: Arc<Outline>, filled: bool) -> Arc<Outline> {
+    /// Rounding, as a share of the size.
+    const SLACK: f64 = 1e-9;
+    if outline.subpaths.iter().all(|s| s.closed) {
+        return outline;
+    }
+    let mut out = Arc::unwrap_or_clone(outline);
+    for s in out.subpaths.iter_mut().filter(|s| !s.closed) {
+        let (start, end) = (s.start, s.end());
+        let meets = start.distance(end) <= SLACK * s.diagonal();
+        let area = !matches!(s.segs.as_slice(), [] | [Seg::Line(_)]);
+        if area && filled && !meets {
+            s.segs.push(Seg::Line(Line::new(end, start)));
+        }
+        s.closed = area && (filled || meets);
+    }
+    Arc::new(out)
 }
 
 /// The colour of a paint; of a gradient, the mean of its stops.

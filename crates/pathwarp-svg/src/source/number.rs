@@ -133,6 +133,11 @@ pub(crate) fn short(v: f64) -> String {
     significant(v, 9)
 }
 
+/// Formats `v` with as many significant digits as single precision has.
+pub(crate) fn single(v: f64) -> String {
+    significant(v, 7)
+}
+
 /// Formats `v` with `digits` significant digits.
 fn significant(v: f64, digits: i32) -> String {
     let mut out = String::new();

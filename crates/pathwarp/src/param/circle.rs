@@ -2,7 +2,7 @@
 //! `spiral:turns=3,inner=20mm,outer=80mm`.
 //!
 //! The centre is that of the frame, unless `cx` and `cy` give it, as lengths; percentages of them count from the left and top of
-//! the frame, those of radii refer to its width. Angles count clockwise on the screen from the right (three o'clock); an arc runs
+//! the frame, those of radii refer to its width; `%page` means the page instead of the frame. Angles count clockwise on the screen from the right (three o'clock); an arc runs
 //! from `from` to `to`, clockwise if `to` is larger. Circles and arcs are true arcs.
 //!
 //! A spiral is Archimedean, r = inner + (outer − inner)·φ/(360°·turns): it begins at the angle `from`, by default 180°, at the
@@ -12,7 +12,7 @@
 use super::value::{self, ValueError};
 use super::{Axis, Frame};
 use crate::outline::{EllipticArc, Outline, Seg, Subpath};
-use kurbo::{BezPath, CurveFitSample, ParamCurveFit, Point, Vec2};
+use kurbo::{BezPath, CurveFitSample, ParamCurveFit, Point, Rect, Vec2};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
@@ -102,22 +102,30 @@ impl<'a> Values<'a> {
     }
 
     fn radius(&self, name: &str) -> Result<f64, String> {
-        self.needed(name, |t| value::length(t, Axis::X, self.frame))
+        self.length(name, Axis::X).map(|(length, _)| length)
+    }
+
+    /// Reads a length, and the box that it is a share of, if it is one.
+    fn length(&self, name: &str, axis: Axis) -> Result<(f64, Option<Rect>), String> {
+        let of_page = self.text(name).and_then(|t| t.strip_suffix("page")).filter(|t| t.ends_with('%'));
+        let of_frame = self.text(name).is_some_and(|t| t.ends_with('%')).then_some(self.frame.rect);
+        let Some(share) = of_page else {
+            return Ok((self.needed(name, |t| value::length(t, axis, self.frame))?, of_frame));
+        };
+        let page = self.frame.page.ok_or_else(|| format!("refers to the page ({name}), and there is none"))?;
+        Ok((self.needed(name, |_| value::length(share, axis, &Frame::new(page)))?, Some(page)))
     }
 
     fn centre(&self) -> Result<Point, String> {
         // A percentage is a place in the frame, a length one on the page.
-        let place = |name: &str, axis, start: f64, middle: f64| -> Result<f64, String> {
-            match self.text(name) {
-                None => Ok(middle),
-                Some(v) => {
-                    let d = self.needed(name, |t| value::length(t, axis, self.frame))?;
-                    Ok(if v.ends_with('%') { start + d } else { d })
-                }
+        let place = |name: &str, axis, start: fn(Rect) -> f64, middle: f64| -> Result<f64, String> {
+            if self.text(name).is_none() {
+                return Ok(middle);
             }
+            self.length(name, axis).map(|(d, of)| of.map_or(0.0, start) + d)
         };
-        let (rect, middle) = (self.frame.rect, self.frame.rect.center());
-        Ok(Point::new(place("cx", Axis::X, rect.x0, middle.x)?, place("cy", Axis::Y, rect.y0, middle.y)?))
+        let middle = self.frame.rect.center();
+        Ok(Point::new(place("cx", Axis::X, |r| r.x0, middle.x)?, place("cy", Axis::Y, |r| r.y0, middle.y)?))
     }
 
     fn arc(&self) -> Result<Outline, String> {
@@ -202,7 +210,6 @@ impl ParamCurveFit for Spiral {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kurbo::Rect;
 
     fn read(text: &str) -> Result<Outline, String> {
         let frame = Frame::new(Rect::new(100.0, 0.0, 300.0, 50.0)).with_units_per_px([2.0; 2]);
@@ -225,6 +232,15 @@ mod tests {
             "{a:?} {b:?}"
         );
         assert!(circle("circles.svg#a", &Frame::new(Rect::ZERO)).is_none() && !is_circle("M0,0"));
+    }
+
+    #[test]
+    fn percentages_may_be_those_of_the_page() {
+        let frame = Frame::new(Rect::new(100.0, 0.0, 300.0, 50.0)).with_page(Rect::new(-20.0, 10.0, 380.0, 210.0));
+        let b = circle("circle:r=5%page,cx=50%page,cy=25%page", &frame).unwrap().unwrap().bounding_box().unwrap();
+        assert!(b.center().distance(Point::new(180.0, 60.0)) < 1e-9 && (b.width() - 40.0).abs() < 1e-9, "{b:?}");
+        assert!(read("circle:r=5%page").unwrap_err().contains("page"));
+        assert!(circle("circle:r=5page", &frame).unwrap().is_err());
     }
 
     #[test]

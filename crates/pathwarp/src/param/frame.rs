@@ -20,13 +20,22 @@ pub struct Frame {
     /// Points along the artwork, for deformations that ask for [letters](Self::letters): where distortion is visible. Empty if
     /// they are not known.
     pub ink: Arc<[Point]>,
+    /// The page of the drawing, to which circles and arcs may refer (`cx=50%page`); `None` if there is none.
+    pub page: Option<Rect>,
 }
 
 impl Frame {
     /// A frame without lettering.
     #[must_use]
     pub fn new(rect: Rect) -> Self {
-        Self { rect: rect.abs(), baseline: None, units_per_px: [1.0; 2], letters: Arc::new([]), ink: Arc::new([]) }
+        Self {
+            rect: rect.abs(),
+            baseline: None,
+            units_per_px: [1.0; 2],
+            letters: Arc::new([]),
+            ink: Arc::new([]),
+            page: None,
+        }
     }
 
     /// Adds letters.
@@ -39,6 +48,12 @@ impl Frame {
     #[must_use]
     pub fn with_units_per_px(self, units_per_px: [f64; 2]) -> Self {
         Self { units_per_px, ..self }
+    }
+
+    /// Sets the page.
+    #[must_use]
+    pub fn with_page(self, page: Rect) -> Self {
+        Self { page: Some(page), ..self }
     }
 
     /// The length of a px along `axis`, in user units. Along the diagonal: as SVG defines it, the root mean square.

@@ -139,7 +139,7 @@ fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 fn args(registry: &Registry) -> Vec<Arg> {
     let mut all = text_and_font();
     all.extend(on_path::args(registry));
-    all.extend(some_options(&["format", "dxf-curves", "tolerance"]));
+    all.extend(some_options(&["format", "dxf-curves", "kerf", "page-width", "page-height", "tolerance"]));
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
     all.extend(shaping().map(|a| a.help_heading(SHAPING)));
     all.extend(reading_args());

@@ -1,7 +1,7 @@
 //! glTF 2.0, `.glb` and `.gltf`, read by the crate gltf.
 //!
 //! Every node with a mesh becomes an object in the scene's coordinates. Materials, textures and pictures are carried along as they are.
-//! Nothing outside the file is opened.
+//! Nothing outside the file is opened. Lengths there are metres, and millimetres here.
 
 #[cfg(test)]
 mod tests;
@@ -20,6 +20,9 @@ use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
+/// Millimetres in glTF's unit of length.
+const METRE: f64 = 1000.0;
+
 // Reads glTF.
 
 /// Returns `true` if the file begins like binary glTF, or is JSON that says it is glTF.
@@ -29,7 +32,7 @@ pub fn sniff(bytes: &[u8]) -> bool {
         || bytes.trim_ascii_start().starts_with(b"{") && bytes.windows(7).any(|w| w == b"\"asset\"")
 }
 
-/// Reads the meshes of the default scene, or of the first, in its coordinates.
+/// Reads the meshes of the default scene, or of the first, in its coordinates as millimetres.
 ///
 /// # Errors
 /// The file is damaged or refers to buffers outside itself, or shows more than the limits allow.
@@ -53,7 +56,7 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     let mut mesh = Mesh::default();
     let mut lost = BTreeSet::new();
     // A stack of its own: nodes may be nested deeper than the program's.
-    let mut open: Vec<(Node<'_>, DMat4)> = scene.nodes().map(|n| (n, DMat4::IDENTITY)).collect();
+    let mut open: Vec<(Node<'_>, DMat4)> = scene.nodes().map(|n| (n, DMat4::from_scale(DVec3::splat(METRE)))).collect();
     open.reverse();
     while let Some((node, parent)) = open.pop() {
         // Children that are their own parents' parents go on for ever.
@@ -536,7 +539,7 @@ impl Store {
 fn primitive(mesh: &Mesh, part: &Part, store: &mut Store) -> Value {
     let mut attributes = Map::new();
     let corners = || part.corners.iter();
-    let at = |c: &Corner| mesh.positions[c.vertex as usize].to_array();
+    let at = |c: &Corner| (mesh.positions[c.vertex as usize] / METRE).to_array();
     attributes.insert("POSITION".into(), json!(store.floats(corners().map(at), true)));
     if corners().all(|c| (c.normal as usize) < mesh.normals.len()) {
         let normals = corners().map(|c| mesh.normals[c.normal as usize].normalize_or_zero().to_array());

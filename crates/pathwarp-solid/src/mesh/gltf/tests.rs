@@ -56,7 +56,7 @@ fn nodes_materials_textures_and_pictures_survive() {
     let mesh = read(&binary(&root, &bin), &budget()).unwrap();
     assert!(mesh.left_out.is_empty());
     assert_eq!((mesh.positions.len(), mesh.polygons.len()), (8, 4));
-    assert_eq!((mesh.positions[1], mesh.positions[5]), (DVec3::new(11.0, 0.0, 0.0), DVec3::new(8.0, 0.0, 0.0)));
+    assert_eq!((mesh.positions[1], mesh.positions[5]), (DVec3::new(11e3, 0.0, 0.0), DVec3::new(8e3, 0.0, 0.0)));
     // Mirrored, its triangles still face the viewer.
     assert!(mesh.triangles().all(|t| {
         let [a, b, c] = t.map(|c| mesh.positions[c.vertex as usize]);

@@ -309,7 +309,8 @@ fn check_indices(mesh: &Mesh, e: &Element, kind: &str, i: usize) -> Result<(), M
 
 // Writes PLY, binary, with coordinates in double precision.
 
-/// Writes a mesh. A vertex becomes several if its corners differ in texture coordinates or normals.
+/// Writes a mesh. A vertex becomes several if its corners differ in texture coordinates or normals. Faces of different sizes become
+/// triangles.
 ///
 /// # Errors
 /// The crate's.
@@ -345,6 +346,14 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
             // Vertices without a face are points by themselves.
             PolygonKind::Points => {}
         }
+    }
+    // Some readers, such as trimesh, take faces of one size only.
+    if faces.windows(2).any(|w| w[0].indices.len() != w[1].indices.len()) {
+        let fan = |f: &Element| -> Vec<Element> {
+            let [first, rest @ ..] = f.indices.as_slice() else { return Vec::new() };
+            rest.windows(2).map(|w| Element { indices: vec![*first, w[0], w[1]], ..Element::default() }).collect()
+        };
+        faces = faces.iter().flat_map(fan).collect();
     }
     let largest = faces.iter().map(|f| f.indices.len()).max().unwrap_or(0);
     let count = if u8::try_from(largest).is_ok() { ScalarType::UChar } else { ScalarType::UInt };

@@ -1,5 +1,5 @@
 use super::{read, sniff, write};
-use crate::mesh::{Corner, NONE, PolygonKind, gltf, obj};
+use crate::mesh::{Corner, Mesh, NONE, PolygonKind, gltf, obj};
 use pathwarp::budget::{Budget, Limits};
 
 const TEXT: &str = "ply\nformat ascii 1.0\ncomment a quad and a triangle\nelement vertex 5\nproperty float x\nproperty float y\nproperty double z\n\
@@ -19,9 +19,16 @@ fn quads_colours_normals_and_edges_come_back() {
     assert_eq!(kinds, [(PolygonKind::Face, 4), (PolygonKind::Face, 3), (PolygonKind::Line, 2)]);
     assert!((mesh.colors[3], mesh.positions[4].z, mesh.uvs[2]) == ([0.2, 0.0, 0.0, 1.0], 1.0, [1.0, 1.0, 0.0]));
     let back = read(&write(&mesh).unwrap()).unwrap();
+    assert_eq!((&back.positions, &back.colors), (&mesh.positions, &mesh.colors));
+    // Beside a triangle, the quad is two of them, from its first corner.
+    let kinds = |mesh: &Mesh| -> Vec<_> { mesh.polygons().map(|(k, c)| (k, c.len())).collect() };
+    assert_eq!(kinds(&back), [&[(PolygonKind::Face, 3); 3][..], &[(PolygonKind::Line, 2)]].concat());
     // The edge has no texture coordinates, and its vertices have.
-    assert_eq!((&back.positions, &back.colors, &back.polygons), (&mesh.positions, &mesh.colors, &mesh.polygons));
-    assert_eq!(back.corners[..7], mesh.corners[..7]);
+    assert_eq!(back.corners[..9], [0, 1, 2, 0, 2, 3, 4, 5, 6].map(|i| mesh.corners[i]));
+    let quad = read(TEXT.replace("face 2", "face 1").replace("3 1 4 2\n", "").as_bytes()).unwrap();
+    let back = read(&write(&quad).unwrap()).unwrap();
+    assert_eq!(kinds(&back), [(PolygonKind::Face, 4), (PolygonKind::Line, 2)]);
+    assert_eq!(back.corners[..4], quad.corners[..4]);
 }
 
 #[test]

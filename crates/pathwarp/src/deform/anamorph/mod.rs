@@ -65,6 +65,8 @@ pub struct Anamorph {
     net: Option<PushedNet>,
     local: bool,
     files: Vec<SpaceFile>,
+    /// For the sizes of the note.
+    units_per_px: [f64; 2],
 }
 
 /// The way a surface is shown.
@@ -95,6 +97,7 @@ impl Anamorph {
             net: None,
             local: false,
             files: Vec::new(),
+            units_per_px: [1.0; 2],
         }
     }
 
@@ -280,7 +283,7 @@ impl Anamorph {
             (solid.defined(p) > 0.0).then(|| solid.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
         });
         built.space = Some(InSpace { place, files: self.files.clone() });
-        built.note(scene.size(&*map));
+        built.note(scene.size(&*map, self.units_per_px));
         built.overlay(Role::Base, self.frame.to_path(0.1));
         if let Some(path) = scene.outline(&*map) {
             built.overlay(Role::Target, path);
@@ -354,7 +357,7 @@ plane:left plane:right a side wall along its left or right edge\n  \
 plane:ramp=20          ground that rises by an angle away from the eye\n  \
 plane:wall=30          a vertical wall, its right side turned away by an angle\n  \
 cylinder:radius=40mm   a mug, its front touching the artwork's middle\n  \
-cone:top=45mm,bottom=30mm,height=90mm  a cup; height by default the artwork's\n  \
+cone:top-diameter=90mm,bottom-diameter=60mm,height=110mm  a cup; or slant=…, along its side\n  \
 sphere:radius=60mm     a ball; it cannot be laid flat, so it needs --view\n  \
 sphere:eye             a dome with the eye on its near pole: lines become circles\n\
 Add `,inside` to a cylinder, cone or sphere to see it from within, `,level` to a cylinder to lay it down. --seen gives the eye's view, \
@@ -435,7 +438,7 @@ a fixed side: the first side of a triangle, the edge of a box if --local.",
         },
         Example {
             what: "A paper cup",
-            command: "anamorph samples/logo.svg --distance 40cm --picture-width 50mm --onto cone:top=45mm,bottom=30mm,height=100mm -o out.svg",
+            command: "anamorph samples/logo.svg --distance 40cm --picture-width 50mm --onto cone:top-diameter=90mm,bottom-diameter=60mm,height=100mm -o out.svg",
         },
         Example {
             what: "Into a dome, as another visitor sees it",
@@ -449,7 +452,7 @@ a fixed side: the first side of a triangle, the edge of a box if --local.",
     .laws(&[
         Law::Identity(&[]),
         Law::Identity(&[("distance", "120"), ("onto", "cylinder:radius=90"), ("seen", "true")]),
-        Law::Identity(&[("distance", "400"), ("onto", "cone:top=90,bottom=70"), ("eye", "40,70"), ("seen", "true")]),
+        Law::Identity(&[("distance", "400"), ("onto", "cone:top-radius=90,bottom-radius=70"), ("eye", "40,70"), ("seen", "true")]),
         Law::Identity(&[("distance", "120"), ("onto", "sphere:radius=150,inside"), ("seen", "true")]),
         Law::Identity(&[("distance", "99"), ("degree", "2x3"), ("push", "1,1:2"), ("seen", "true")]),
         Law::Identity(&[("distance", "70"), ("onto", "plane:ramp=90")]),
@@ -459,7 +462,7 @@ a fixed side: the first side of a triangle, the edge of a box if --local.",
         Law::KeepsLines(&[("reference", "0,0 100,0 0,100"), ("push", "0,1,0:1.5"), ("eye", "-40,20")]),
         Law::Same(
             &[("distance", "500"), ("onto", "cylinder:radius=80")],
-            &[("distance", "500"), ("onto", "cone:top=80,bottom=80,height=7")],
+            &[("distance", "500"), ("onto", "cone:top-radius=80,bottom-diameter=160,height=7")],
         ),
         Law::Same(
             &[("eye", "-30,20"), ("push", "1,1:2")],
@@ -520,6 +523,7 @@ impl Deformation for Entry {
             net: net(s)?,
             local: s.flag("local")?,
             files: files("mesh", true).chain(files("curves", false)).collect(),
+            units_per_px: s.frame().units_per_px,
         };
         // The surface as typed, rather than in user units.
         anamorph.build().map_err(|e| match (e, s.texts("onto").pop()) {
@@ -640,10 +644,15 @@ impl<'t> Words<'t> {
 
     /// Reads the radius or the diameter.
     fn radius(&self, s: &Settings<'_>) -> Result<f64, Error> {
-        match (self.size(s, "radius")?, self.size(s, "diameter")?) {
+        self.radius_at(s, "radius", "diameter")
+    }
+
+    /// Reads a radius by one of two names.
+    fn radius_at(&self, s: &Settings<'_>, radius: &str, diameter: &str) -> Result<f64, Error> {
+        match (self.size(s, radius)?, self.size(s, diameter)?) {
             (Some(r), None) => Ok(r),
             (None, Some(d)) => Ok(d / 2.0),
-            _ => Err(self.wrong(format!("needs radius=… or diameter=…, such as {}:radius=40mm", self.kind))),
+            _ => Err(self.wrong(format!("needs {radius}=… or {diameter}=…, such as {diameter}=80mm"))),
         }
     }
 }
@@ -658,13 +667,24 @@ fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
             Ok(Onto::Cylinder { radius: w.radius(s)?, level: w.has("level"), inside: w.has("inside") })
         }
         "cone" => {
-            w.only(&["inside"], &["top", "bottom", "height"])?;
-            let (Some(top), Some(bottom)) = (w.size(s, "top")?, w.size(s, "bottom")?) else {
-                return Err(w.wrong(
-                    "needs the radii at the top and the bottom, such as cone:top=45mm,bottom=30mm,height=100mm",
-                ));
+            if let Some((end, _)) = w.list.iter().find(|(name, _)| ["top", "bottom"].contains(name)) {
+                let problem =
+                    format!("has “{end}”, which could be a radius or a diameter: {end}-radius=… or {end}-diameter=…");
+                return Err(w.wrong(problem));
+            }
+            let ends = ["top-radius", "top-diameter", "bottom-radius", "bottom-diameter"];
+            w.only(&["inside"], &[&ends[..], &["height", "slant"]].concat())?;
+            let (top, bottom) = (w.radius_at(s, ends[0], ends[1])?, w.radius_at(s, ends[2], ends[3])?);
+            let height = match (w.size(s, "height")?, w.size(s, "slant")?) {
+                (Some(_), Some(_)) => return Err(w.wrong("has a height and a slant; give one")),
+                (height, None) => height,
+                (None, Some(slant)) => {
+                    let height = (slant * slant - (top - bottom).powi(2)).sqrt();
+                    let problem = "has a slant that is shorter than the radii differ";
+                    Some(Some(height).filter(|h| *h > 0.0).ok_or_else(|| w.wrong(problem))?)
+                }
             };
-            Ok(Onto::Cone { top, bottom, height: w.size(s, "height")?, inside: w.has("inside") })
+            Ok(Onto::Cone { top, bottom, height, inside: w.has("inside") })
         }
         "sphere" if w.has("eye") => {
             w.only(&["eye"], &[])?;

@@ -26,14 +26,14 @@ impl Scene {
     }
 
     /// Describes the sizes of the artwork and the result.
-    pub(super) fn size(&self, map: &dyn Map) -> String {
+    pub(super) fn size(&self, map: &dyn Map, [x, y]: [f64; 2]) -> String {
         const METRE: f64 = 96.0 / 0.0254;
         let r = self.frame;
         let grid = (0..=8).flat_map(|i| (0..=8).map(move |j| (f64::from(i) / 8.0, f64::from(j) / 8.0)));
         let at = |(u, v): (f64, f64)| map.point(Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()));
         let all = grid.map(at).filter(|p| p.is_finite()).map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b));
         let all = all.unwrap_or(r);
-        let say = |r: Rect| format!("{:.4} m × {:.4} m", r.width() / METRE, r.height() / METRE);
+        let say = |r: Rect| format!("{:.4} m × {:.4} m", r.width() / x / METRE, r.height() / y / METRE);
         format!("the artwork appears to be {}; the result is {}", say(r), say(all))
     }
 }

@@ -70,7 +70,9 @@ impl Onto {
             Self::Cylinder { radius, level, inside: i } => {
                 format!("cylinder:radius={radius}{}{}", if level { ",level" } else { "" }, inside(i))
             }
-            Self::Cone { top, bottom, inside: i, .. } => format!("cone:top={top},bottom={bottom}{}", inside(i)),
+            Self::Cone { top, bottom, inside: i, .. } => {
+                format!("cone:top-radius={top},bottom-radius={bottom}{}", inside(i))
+            }
             Self::Sphere { radius, inside: i } => format!("sphere:radius={radius}{}", inside(i)),
             Self::Dome => "sphere:eye".into(),
         }

@@ -1,0 +1,113 @@
+//! Room for the width of the cut: parts grow by half of it and their holes shrink, so that what is cut has the size drawn.
+
+use pathwarp::edit::{Offset, Side, moved};
+use pathwarp::kurbo::{BezPath, Join, Point, Rect, Shape as _};
+use pathwarp::outline::{EllipticArc, Subpath};
+use pathwarp::{GeometryError, Outline, Seg, refit};
+use std::f64::consts::TAU;
+
+/// An outline to cut.
+pub(super) struct Cut {
+    pub(super) outline: Outline,
+    /// The fill rule of an area; `None` for lines.
+    pub(super) even_odd: Option<bool>,
+}
+
+/// Moves closed contours by `by` to the outside of what they enclose; open lines stay. The areas of a fill follow its rule. Contours
+/// of lines alone are holes if an odd number of the others is around them; `among` says which lines belong together. Returns by how many
+/// there are fewer contours.
+pub(super) fn widen<K: PartialEq>(
+    cuts: &mut [Cut],
+    among: impl Fn(usize) -> K,
+    by: f64,
+    tolerance: f64,
+) -> Result<usize, GeometryError> {
+    let loops: Vec<(usize, Loop)> =
+        cuts.iter().enumerate().filter(|(_, c)| c.even_odd.is_none()).flat_map(loops).collect();
+    let is_hole = |i: usize, s: &Subpath| {
+        let around = |(k, l): &&(usize, Loop)| among(*k) == among(i) && l.is_around(s);
+        loops.iter().filter(around).count() % 2 == 1
+    };
+    let mut fewer = 0;
+    for (i, cut) in cuts.iter_mut().enumerate() {
+        let (closed, open): (Vec<Subpath>, Vec<Subpath>) = cut.outline.subpaths.drain(..).partition(|s| s.closed);
+        let areas: Vec<(Outline, Side)> = match cut.even_odd {
+            Some(_) if closed.is_empty() => Vec::new(),
+            Some(_) => vec![(Outline { subpaths: closed }, Side::Outside)],
+            None => closed
+                .into_iter()
+                .map(|s| {
+                    let side = if is_hole(i, &s) { Side::Inside } else { Side::Outside };
+                    (Outline { subpaths: vec![s] }, side)
+                })
+                .collect(),
+        };
+        for (area, side) in areas {
+            let to = widened(&area, side, by, cut.even_odd == Some(true), tolerance)?;
+            fewer += area.subpaths.len().saturating_sub(to.subpaths.len());
+            cut.outline.subpaths.extend(to.subpaths);
+        }
+        cut.outline.subpaths.extend(open);
+    }
+    Ok(fewer)
+}
+
+/// The area whose edge is `by` away. A circle stays one; corners stay sharp.
+fn widened(area: &Outline, side: Side, by: f64, even_odd: bool, tolerance: f64) -> Result<Outline, GeometryError> {
+    if let [only] = area.subpaths.as_slice()
+        && let Some(circle) = circle(only)
+    {
+        let radius = circle.a.hypot();
+        let wanted = if side == Side::Inside { radius - by } else { radius + by };
+        let scaled = |v| v * (wanted / radius);
+        let arc = EllipticArc::new(circle.center, scaled(circle.a), scaled(circle.b), circle.start, circle.sweep);
+        let larger = Subpath { start: arc.p0, segs: vec![Seg::Arc(arc)], closed: true };
+        return Ok(Outline { subpaths: (wanted > 0.0).then_some(larger).into_iter().collect() });
+    }
+    let offset = Offset { by, join: Join::Miter, side, even_odd };
+    Ok(Outline::from(&moved(area, &offset, &refit::Options::new(tolerance))?.path))
+}
+
+/// The circle that a contour is, if it is one.
+fn circle(s: &Subpath) -> Option<EllipticArc> {
+    /// Rounding, as a share of the radius.
+    const SLACK: f64 = 1e-6;
+    let Some(Seg::Arc(first)) = s.segs.first() else { return None };
+    let slack = SLACK * first.a.hypot();
+    let round =
+        (first.a.hypot() - first.b.hypot()).abs() <= slack && first.a.dot(first.b).abs() <= slack * first.a.hypot();
+    let mut sweep = 0.0;
+    for seg in &s.segs {
+        let Seg::Arc(a) = seg else { return None };
+        let same = a.center.distance(first.center) <= slack && (a.a.hypot() - first.a.hypot()).abs() <= slack;
+        if !same || a.sweep * first.sweep < 0.0 {
+            return None;
+        }
+        sweep += a.sweep;
+    }
+    let whole = (sweep.abs() - TAU).abs() <= SLACK;
+    (round && whole).then(|| EllipticArc::new(first.center, first.a, first.b, first.start, TAU.copysign(sweep)))
+}
+
+/// A contour of lines, to be looked up.
+struct Loop {
+    path: BezPath,
+    bounds: Rect,
+    start: Point,
+}
+
+impl Loop {
+    fn is_around(&self, s: &Subpath) -> bool {
+        self.start != s.start && self.bounds.contains(s.start) && self.path.winding(s.start) != 0
+    }
+}
+
+fn loops((i, cut): (usize, &Cut)) -> impl Iterator<Item = (usize, Loop)> {
+    /// Arcs as cubics, against the contour's size: enough to tell inside from outside.
+    const ROUGH: f64 = 1e-4;
+    let closed = cut.outline.subpaths.iter().filter(|s| s.closed);
+    closed.map(move |s| {
+        let path = Outline { subpaths: vec![s.clone()] }.to_bez_path(ROUGH * s.diagonal());
+        (i, Loop { path, bounds: s.bounding_box(), start: s.start })
+    })
+}

@@ -1,0 +1,158 @@
+"""DXF files as ezdxf reads them: sound, one closed entity for each contour, and where the exact image of the source is."""
+
+import math
+
+import ezdxf
+import numpy as np
+import pytest
+import svgpathtools
+from conftest import SAMPLES
+from ezdxf.lldxf.encoding import decode_dxf_unicode
+from scipy.spatial import cKDTree
+
+PAGE = 100.0
+# Of ezdxf's polylines from its curves, and between samples, in mm.
+FLATTENED = 1e-4
+STEP = 0.005
+# usvg reads coordinates in single precision.
+SINGLE = 2e-5
+
+# Contours of every kind: curves with corners, lines among curves, arcs among lines, a circle, and an open one.
+PATHS = {
+    "leaf": "M10,40 C20,10 40,10 45,40 C40,60 20,60 10,40 Z",
+    "mixed": "M55,10 H90 C95,20 95,30 90,40 L75,30 Q65,45 55,40 Z",
+    "tab": "M10,70 H40 A5,5 0 0 1 40,80 H30 A5,5 0 0 0 20,80 H10 Z",
+    "arch": "M55,90 V70 A15,20 0 0 1 85,70 V90 Z",
+}
+
+
+def drawing(body):
+    return (
+        f"<svg xmlns='http://www.w3.org/2000/svg' width='{PAGE}mm' height='{PAGE}mm' viewBox='0 0 {PAGE} {PAGE}'>{body}</svg>"
+    )
+
+
+def opened(path):
+    """The entities of a file in which ezdxf finds nothing wrong."""
+    file = ezdxf.readfile(path)
+    auditor = file.audit()
+    assert not auditor.errors and not auditor.fixes, auditor.errors
+    assert file.header["$INSUNITS"] == 4
+    return list(file.modelspace())
+
+
+def points(entity):
+    """Points along an entity, x to the right and y down as on the page."""
+    lines = np.array([(p.x, PAGE - p.y) for p in ezdxf.path.make_path(entity).flattening(FLATTENED)])
+    out = [lines[:1]]
+    for p, q in zip(lines, lines[1:]):
+        n = max(1, math.ceil(math.dist(p, q) / STEP))
+        out.append(p + (q - p) * (np.arange(1, n + 1) / n)[:, None])
+    return np.concatenate(out)
+
+
+def image(d, f):
+    """Points along the image of path data."""
+    path = svgpathtools.parse_path(d)
+    t = np.linspace(0, 1, 20001)
+    return np.concatenate([[f(p.real, p.imag) for p in map(seg.point, t)] for seg in path])
+
+
+def apart(a, b):
+    return max(cKDTree(a).query(b)[0].max(), cKDTree(b).query(a)[0].max())
+
+
+def is_closed(entity):
+    if entity.dxftype() == "LWPOLYLINE":
+        return entity.closed
+    first, *_, last = entity.control_points
+    return np.allclose(first, last, rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("curves", ["spline", "polyline"])
+@pytest.mark.parametrize("name", PATHS)
+def test_contours_are_one_entity_on_the_exact_image(run, tmp_path, name, curves):
+    d = PATHS[name]
+    (tmp_path / "in.svg").write_text(drawing(f"<path d='{d}'/>"))
+    ripple = ["--x", "x + 3*sin(y/9)", "--y", "y + x*x/300"]
+    wanted = image(d, lambda x, y: (x + 3 * math.sin(y / 9), y + x * x / 300))
+    run("expr", "in.svg", *ripple, "--fit", "none", "--tolerance", "0.02mm", "--dxf-curves", curves, "-o", "out.dxf")
+    (entity,) = opened(tmp_path / "out.dxf")
+    assert entity.dxftype() == {"spline": "SPLINE", "polyline": "LWPOLYLINE"}[curves]
+    assert is_closed(entity)
+    # The curve, and the polyline within as much again; half a step between samples.
+    room = {"spline": 0.02, "polyline": 0.04}[curves] + STEP + FLATTENED + SINGLE
+    assert apart(points(entity), wanted) < room
+    if curves == "spline":
+        knots = list(entity.knots)
+        assert all(knots.count(k) in (3, 4) for k in set(knots))
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_lines_and_arcs_are_polylines_with_bulges(run, tmp_path, name):
+    d = PATHS[name]
+    (tmp_path / "in.svg").write_text(drawing(f"<path d='{d}' fill='none' stroke='red' stroke-width='0.1'/>"))
+    run("convert", "in.svg", "-o", "out.dxf")
+    (entity,) = opened(tmp_path / "out.dxf")
+    kind = "LWPOLYLINE" if name == "tab" else "SPLINE"
+    assert entity.dxftype() == kind and is_closed(entity)
+    if name == "tab":
+        # Of half circles: y points up, so the first, clockwise on the page, is so in the file.
+        assert [round(b, 6) for *_, b in entity.get_points("xyb") if b] == [-1.0, 1.0]
+    assert apart(points(entity), image(d, lambda x, y: (x, y))) < 0.002 + STEP + FLATTENED + SINGLE
+
+
+def test_every_sample_is_sound(run, tmp_path):
+    for sample in sorted(SAMPLES.glob("*.svg")):
+        run("warp", sample, "--style", "flag", "--quiet", "-o", "out.dxf")
+        for entity in opened(tmp_path / "out.dxf"):
+            assert entity.dxftype() in {"SPLINE", "LWPOLYLINE", "LINE", "CIRCLE", "ARC", "ELLIPSE"}
+
+
+def test_what_is_cut_is_cut_once_and_filled_shapes_are_closed(run, tmp_path):
+    (tmp_path / "in.svg").write_text(
+        drawing(
+            "<g id='Zuschnitt ä'><path d='M20,2H30V12'/><path d='M2,2H12V12H2V2'/></g>"
+            "<g id='engrave' stroke='#f00' stroke-width='2'><path d='M50,50H80V70Z' fill='blue'/>"
+            "<path d='M5,60C20,50 20,80 40,70' fill='none'/></g>"
+        )
+    )
+    for args in (["convert", "in.svg"], ["expr", "in.svg", "--y", "y + x/9"]):
+        run(*args, "--quiet", "-o", "out.dxf")
+        entities = opened(tmp_path / "out.dxf")
+        assert [decode_dxf_unicode(e.dxf.layer) for e in entities] == ["Zuschnitt ä"] * 2 + ["engrave"] * 2
+        assert [is_closed(e) for e in entities] == [True, True, True, False]
+        assert [len(e) for e in entities[:3]] == [3, 4, 3]
+        assert [e.dxf.color for e in entities[2:]] == [1, 1]
+    run("expr", "in.svg", "--y", "y + x/9", "--strokes", "outline", "--quiet", "-o", "out.dxf")
+    assert len(opened(tmp_path / "out.dxf")) > 4
+
+
+def area(points):
+    x, y = points[:, 0], points[:, 1]
+    return abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
+
+
+def test_kerf_lets_parts_grow_and_holes_shrink(run, tmp_path):
+    lines = "fill='none' stroke='red' stroke-width='0.1'"
+    (tmp_path / "in.svg").write_text(
+        drawing(
+            f"<g {lines}><rect x='10' y='10' width='40' height='30'/><circle cx='30' cy='25' r='5'/>"
+            "<rect x='12' y='12' width='4' height='4'/><path d='M60,5V50'/></g>"
+            "<path fill='blue' d='M10,60H50V90H10ZM20,70V80H40V70Z'/>"
+            "<path d='M90,10 m10,0 A10,10 0 1 1 70,10 A10,10 0 1 1 90,10Z' transform='translate(-5,40)' fill='green'/>"
+        )
+    )
+    for kerf in (0.2, 1.0):
+        run("convert", "in.svg", "--kerf", f"{kerf}mm", "--quiet", "-o", "out.dxf")
+        entities = opened(tmp_path / "out.dxf")
+        plate, hole, square, line, outer, inner = entities[:6]
+        assert hole.dxftype() == "CIRCLE" and abs(hole.dxf.radius - (5 - kerf / 2)) < SINGLE
+        assert abs(line.dxf.start.y - 95) < SINGLE and abs(line.dxf.end.y - 50) < SINGLE
+        for entity, w, h, sign in [(plate, 40, 30, 1), (square, 4, 4, -1), (outer, 40, 30, 1), (inner, 20, 10, -1)]:
+            assert entity.dxftype() == "LWPOLYLINE" and entity.closed
+            wanted = (w + sign * kerf) * (h + sign * kerf)
+            assert abs(area(np.array(entity.get_points("xy"))) - wanted) < 1e-3 * wanted
+    said = run("convert", "in.svg", "--kerf", "5mm", "-o", "out.dxf")
+    assert "fewer" in said
+    run("convert", "in.svg", "--kerf", "0.2mm", "-o", "out.pdf", code=2)
