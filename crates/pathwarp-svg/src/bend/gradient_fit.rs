@@ -29,20 +29,43 @@ const NARROWEST: f64 = 0.9;
 /// Work of the search, in evaluations of a map.
 pub(super) const SEARCH: f64 = 60e3;
 
-/// The gradients to choose from, the plainest first. Each is the best of its kind, with few stops and with more.
-pub(super) fn candidates(shading: &Shading, moved: &[Moved]) -> Vec<Shading> {
-    let Some(ramp) = Ramp::of(shading, moved) else { return Vec::new() };
-    let Some(samples) = Samples::of(shading, &ramp, moved) else { return Vec::new() };
+/// The gradient that looks like the bent one, if any does: the plainest that is good, or else the best. `fitted` is the gradient under
+/// an affine fit, and `off` tells how far a gradient's look is off: by at most 1 if it is accepted.
+pub(super) fn nearest(
+    shading: &Shading,
+    fitted: Option<&Shading>,
+    moved: &[Moved],
+    off: impl Fn(&Shading) -> f64,
+) -> Option<Shading> {
+    /// Better than this, more stops are not worth their bytes.
+    const GOOD: f64 = 0.4;
+    let ramp = Ramp::of(shading, moved)?;
+    let samples = Samples::of(shading, &ramp, moved)?;
     let few = samples.thinned(SOUGHT_BY);
-    let linear = few.best(Levels::Lines(few.steepest()));
-    let start = few.circles();
-    let circles = few.best(Levels::Circles(start));
-    let mut out = samples.gradients(&ramp, linear);
-    out.extend(samples.gradients(&ramp, circles));
-    let Levels::Circles(centre) = circles else { return out };
-    let ellipses = few.best(Levels::Ellipses([centre[0], centre[1], 0.0, 0.0, 0.0, 0.0]));
-    out.extend(samples.gradients(&ramp, ellipses));
-    out
+    let mut best: Option<(f64, Shading)> = None;
+    let mut is_good = |levels: Levels| {
+        for gradient in samples.gradients(&ramp, levels) {
+            let off = off(&gradient);
+            if off <= best.as_ref().map_or(1.0, |b| b.0) {
+                best = Some((off, gradient));
+            }
+            if off <= GOOD {
+                return true;
+            }
+        }
+        false
+    };
+    if !is_good(few.best(Levels::Lines(few.steepest()))) {
+        let centre = few.best(Levels::Circles(few.circles())).parameters();
+        if !is_good(Levels::Circles([centre[0], centre[1]])) {
+            let around = [centre[0], centre[1], 0.0, 0.0, 0.0, 0.0];
+            let starts = [Some(around), fitted.and_then(|f| f.ellipses(samples.out))];
+            let found = starts.into_iter().flatten().map(|start| few.best(Levels::Ellipses(start)));
+            let rated = found.map(|e| (few.off(e).1, e)).min_by(|a, b| a.0.total_cmp(&b.0));
+            rated.map(|(_, ellipses)| is_good(ellipses));
+        }
+    }
+    best.map(|b| b.1)
 }
 
 /// The colours along a gradient, with all periods that are seen written out, and a scale on which they change evenly.
@@ -262,6 +285,23 @@ impl Levels {
 fn fine(length: f64) -> impl Fn(f64) -> f64 {
     let unit = 10.0_f64.powf((1e-4 * length).log10().floor());
     move |v| (v / unit).round() * unit
+}
+
+impl Shading {
+    /// The ellipses around the focus of a radial gradient, as parameters of [`Levels::Ellipses`]; `out` leads from their coordinates.
+    fn ellipses(&self, out: Affine) -> Option<[f64; 6]> {
+        let GradientShape::Radial { focus, .. } = self.kind else { return None };
+        let to = self.inside * out;
+        let [a, b, c, d, ..] = to.as_coeffs();
+        // The square of the symmetric matrix, of determinant 1, and half its logarithm.
+        let unit = to.determinant().abs();
+        let [xx, xy, yy] = [a * a + b * b, a * c + b * d, c * c + d * d].map(|v| v / unit);
+        let m = (0.5 * (xx + yy)).max(1.0).acosh();
+        let half = if m > 1e-6 { 0.5 * m / m.sinh() } else { 0.5 };
+        let place = to.inverse() * focus;
+        let all = [place.x, place.y, half * 0.5 * (xx - yy), half * xy, 0.0, 0.0];
+        all.iter().all(|v| v.is_finite()).then_some(all)
+    }
 }
 
 /// Places of the result about their mean, in units of their spread, with their values on the ramp's scale.

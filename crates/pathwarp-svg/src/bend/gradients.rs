@@ -1,7 +1,7 @@
 //! Gradients on a part that the affine fit would show wrong: another gradient, or else the request for a picture.
 
 use super::fits::PaintFit;
-use super::gradient_fit::{Moved, SEARCH, candidates};
+use super::gradient_fit::{Moved, SEARCH, nearest};
 use super::options::Gradients;
 use super::pictures::{BentImage, GradientRequest, PictureError, SeenColor};
 use super::task::PartTask;
@@ -68,10 +68,13 @@ impl BentGradient {
         let seen: Vec<SeenColor> = moved.iter().map(color).collect();
         let look = Look { opacity, share };
         let fitted = fit.map(|f| shading.moved(f.affine));
-        if fitted.is_some_and(|fitted| look.off(&fitted, &seen) <= least) {
+        if fitted.as_ref().is_some_and(|fitted| look.off(fitted, &seen) <= least) {
             return None;
         }
-        if let Some(near) = near(t, &shading, &moved, |s| look.off(s, &seen) / least) {
+        let near = || nearest(&shading, fitted.as_ref(), &moved, |s| look.off(s, &seen) / least);
+        if t.options().refit.budget.spend(SEARCH).is_ok()
+            && let Some(near) = near()
+        {
             return Some(Self::Near(near));
         }
         if !pictured {
@@ -103,24 +106,6 @@ impl Look {
         let counted = all.len() - (self.share * all.len() as f64) as usize;
         counted.checked_sub(1).map_or(0.0, |last| all[last])
     }
-}
-
-/// The gradient of SVG's that is seen to be like the bent one. `off` is at most 1 for those that are.
-fn near(t: &PartTask<'_>, shading: &Shading, moved: &[Moved], off: impl Fn(&Shading) -> f64) -> Option<Shading> {
-    /// Better than this, more stops are not worth their bytes.
-    const GOOD: f64 = 0.4;
-    t.options().refit.budget.spend(SEARCH).ok()?;
-    let mut best: Option<(f64, Shading)> = None;
-    for candidate in candidates(shading, moved) {
-        let off = off(&candidate);
-        if off <= 1.0 && best.as_ref().is_none_or(|b| off < b.0) {
-            best = Some((off, candidate));
-            if off <= GOOD {
-                break;
-            }
-        }
-    }
-    best.map(|b| b.1)
 }
 
 impl PaintedGradient {
