@@ -519,3 +519,86 @@ fn damped(columns: &[Vec<f64>], off: &[f64], damping: f64) -> Option<Vec<f64>> {
     }
     Some(out)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::gradients::tests::shading;
+    use super::*;
+
+    /// Straight lines across become circles around (50, 400): 100 units of x are a quarter of a turn, and y is the radius.
+    fn ring(p: Point) -> Point {
+        Point::new(50.0, 400.0) + Vec2::from_angle((p.x - 150.0) / 100.0 * std::f64::consts::FRAC_PI_2) * (80.0 + 2.0 * p.y)
+    }
+
+    fn egg(p: Point) -> Point {
+        Point::new(p.x + 0.002 * p.x * p.x, p.y + 0.05 * (p.x / 12.0).sin() * p.y)
+    }
+
+    fn places(n: u32) -> impl Iterator<Item = Point> {
+        (0..n).map(move |k| {
+            let k = f64::from(k);
+            Point::new((k * 0.618_033_988_749_895).fract() * 100.0, (k + 0.5) / f64::from(n) * 80.0)
+        })
+    }
+
+    /// The nearest gradient, and its largest difference from the definition at places that it was not fitted to.
+    fn fitted(gradient: &str, map: fn(Point) -> Point) -> Option<(Shading, f64)> {
+        let of = shading(gradient);
+        let off = |found: &Shading, places: &mut dyn Iterator<Item = Point>| {
+            let one = |p: Point| {
+                let (a, b) = (of.premultiplied(p), found.premultiplied(map(p)));
+                a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            };
+            places.map(one).fold(0.0, f64::max)
+        };
+        let moved: Vec<Moved> = places(400).map(|p| (p, map(p))).collect();
+        let found = nearest(&of, None, &moved, |s| off(s, &mut places(400)) / (8.0 / 255.0))?;
+        let worst = off(&found, &mut places(5000));
+        Some((found, worst))
+    }
+
+    #[test]
+    fn lines_that_become_circles_are_a_radial_gradient() {
+        let stops = "<stop stop-color='red'/><stop offset='.3' stop-color='#0f8' stop-opacity='.5'/><stop offset='1' \
+                     stop-color='blue'/>";
+        for (spread, end, most) in [("pad", "1", 0.5), ("reflect", ".4", 1.0)] {
+            let place = format!("x2='0' y2='{end}' spreadMethod='{spread}'");
+            let gradient = format!("<linearGradient id='a' {place}>{stops}</linearGradient>");
+            let (found, worst) = fitted(&gradient, ring).unwrap();
+            let GradientShape::Radial { centre, .. } = found.kind else { panic!("{gradient}: {found:?}") };
+            let centre = found.inside.inverse() * centre;
+            assert!(centre.distance(Point::new(50.0, 400.0)) < most, "{gradient}: {centre}");
+            assert!(worst < 3.5 / 255.0, "{gradient}: {}", worst * 255.0);
+        }
+    }
+
+    #[test]
+    fn uneven_lines_are_a_linear_gradient_with_more_stops() {
+        let uneven = |p: Point| Point::new(p.x + 0.008 * p.x * p.x, p.y);
+        let gradient = "<linearGradient id='a'><stop stop-color='red'/><stop offset='1' stop-color='blue'/></linearGradient>";
+        let (found, worst) = fitted(gradient, uneven).unwrap();
+        assert!(matches!(found.kind, GradientShape::Linear { .. }), "{found:?}");
+        assert!((3..=9).contains(&found.stops.len()) && worst < 3.5 / 255.0, "{found:?}: {}", worst * 255.0);
+        // A jump stays one, where it belongs.
+        let hard = "<linearGradient id='a'><stop offset='.5' stop-color='red'/><stop offset='.5' stop-color='blue'/>\
+                    </linearGradient>";
+        let (found, _) = fitted(hard, |p| Point::new(2.0 * p.x, p.y)).unwrap();
+        let jump = found.stops.windows(2).find(|w| w[1].offset - w[0].offset < 1e-3).unwrap();
+        assert!((jump[0].color[0] - 1.0).abs() < 0.01 && (jump[1].color[2] - 1.0).abs() < 0.01, "{found:?}");
+    }
+
+    #[test]
+    fn circles_that_become_eggs_are_ellipses_around_a_focus() {
+        let gradient = "<radialGradient id='a' r='.6'><stop stop-color='yellow'/><stop offset='1' stop-color='#06c'/></radialGradient>";
+        let (found, worst) = fitted(gradient, egg).unwrap();
+        assert!(matches!(found.kind, GradientShape::Radial { .. }) && worst < 9.0 / 255.0, "{found:?}: {}", worst * 255.0);
+    }
+
+    #[test]
+    fn waves_are_no_gradient() {
+        let wave = |p: Point| Point::new(p.x, p.y + 10.0 * (p.x / 8.0).sin());
+        let gradient = "<linearGradient id='a' x2='0' y2='1'><stop stop-color='red'/><stop offset='1' stop-color='blue'/>\
+                        </linearGradient>";
+        assert!(fitted(gradient, wave).is_none());
+    }
+}

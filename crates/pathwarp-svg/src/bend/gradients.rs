@@ -476,10 +476,10 @@ fn lattice(lines: &[(Point, Point)], bounds: Rect, rule: FillRule, n: usize) -> 
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn shading(gradient: &str) -> Shading {
+    pub(crate) fn shading(gradient: &str) -> Shading {
         let svg = format!(
             "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>{gradient}<rect width='100' height='80' \
          fill='url(#a)'/></svg>"
