@@ -2,6 +2,7 @@
 
 use crate::common::{Gap, drawing, gap};
 use crate::support::pathwarp_in;
+use base64::Engine as _;
 use serde_json::Value;
 use std::fs;
 
@@ -134,8 +135,16 @@ fn pictures_are_said_and_not_coarse() {
     assert_eq!((told.matches(line).count(), warnings.matches(line).count()), (1, 1), "{told}");
     assert!(told.contains("gradients: pictures on wide"), "{told}");
     let svg = fs::read_to_string(dir.path().join("out.svg")).unwrap();
-    let (width, height) = crate::common::first_picture(&svg);
+    let (width, height) = first_picture(&svg);
     assert!(width >= 900 / 4 && height >= 64, "{width} x {height}");
     let (told, warnings) = run(&["--gradients", "fit"]);
     assert!(!told.contains("picture") && warnings == "[]", "{told}");
+}
+
+/// Width and height in pixels of the first picture in a drawing, a PNG.
+fn first_picture(svg: &str) -> (u32, u32) {
+    let data = svg.split("data:image/png;base64,").nth(1).unwrap().split('"').next().unwrap();
+    let bytes = base64::engine::general_purpose::STANDARD.decode(data).unwrap();
+    let read = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());
+    (read(16), read(20))
 }
