@@ -213,9 +213,21 @@ mod tests {
         let (placed, after) = (Affine::IDENTITY, Affine::IDENTITY);
         let (source, coarsest, finest) = (SOURCE, Vec2::new(12.0, 12.0), 8.0);
         let colors = &each(color);
-        SmoothShade { colors, source, placed, map, after, target, shape: None, seen: &seen, tolerance, coarsest, finest }
-            .paint()
-            .unwrap()
+        SmoothShade {
+            colors,
+            source,
+            placed,
+            map,
+            after,
+            target,
+            shape: None,
+            seen: &seen,
+            tolerance,
+            coarsest,
+            finest,
+        }
+        .paint()
+        .unwrap()
     }
 
     #[test]

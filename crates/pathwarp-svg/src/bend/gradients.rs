@@ -109,7 +109,6 @@ impl Look {
 }
 
 impl PaintedGradient {
-
     /// Paints the gradient over the box of `target`. Records the error if there is one.
     pub(super) fn painted(
         &self,
