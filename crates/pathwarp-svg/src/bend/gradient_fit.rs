@@ -81,7 +81,7 @@ impl Ramp {
         let all = moved.iter().map(along).filter(|t| t.is_finite());
         let (from, to) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
         let stops = match shading.spread {
-            SpreadMethod::Pad => shading.stops.clone(),
+            SpreadMethod::Pad => padded(&shading.stops, from, to),
             SpreadMethod::Repeat | SpreadMethod::Reflect => {
                 let (first, last) = (from.floor(), to.ceil());
                 if !(last - first <= MAX_PERIODS) {
@@ -150,6 +150,17 @@ impl Ramp {
         out.push(Stop { offset: 1.0, color: self.color(profile[profile.len() - 1]) });
         pruned(out)
     }
+}
+
+/// Stops with one before and one after them where the first or the last is a jump, at the ends of a range.
+fn padded(stops: &[Stop], from: f64, to: f64) -> Vec<Stop> {
+    let jumps = |a: Option<&Stop>, b: Option<&Stop>| a.zip(b).is_none_or(|(a, b)| (b.offset - a.offset).abs() <= SAME);
+    let end = |s: Option<&Stop>, at: f64| s.map(|s| Stop { offset: at, ..*s });
+    let (first, last) = (stops.first(), stops.last());
+    let before = end(first, from).filter(|b| jumps(first, stops.get(1)) && first.is_some_and(|f| b.offset < f.offset));
+    let second = stops.len().checked_sub(2).and_then(|k| stops.get(k));
+    let after = end(last, to).filter(|a| jumps(last, second) && last.is_some_and(|l| a.offset > l.offset));
+    before.into_iter().chain(stops.iter().copied()).chain(after).collect()
 }
 
 /// The stops of the period of a gradient that begins at `n`.
