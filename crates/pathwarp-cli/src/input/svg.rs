@@ -384,7 +384,7 @@ impl Artwork for SvgArtwork {
 
 /// The warning about gradients that became pictures.
 fn pictured(shapes: &[ReportedShape]) -> Option<String> {
-    match shapes.iter().map(|s| s.pictures).sum() {
+    match shapes.iter().map(|s| s.shape.pictures).sum() {
         0 => None,
         1 => Some("a gradient became a picture; --gradients fit keeps it vector".into()),
         n => Some(format!("{n} gradients became pictures; --gradients fit keeps them vector")),

@@ -420,7 +420,7 @@ fn edge(r: Rect) -> impl Iterator<Item = Point> {
 /// Names the shapes whose gradients became pictures.
 fn pictures(shapes: &[ReportedShape]) -> Option<String> {
     const NAMED: usize = 5;
-    let pictured: Vec<&str> = shapes.iter().filter(|s| s.pictures > 0).map(|s| s.id.as_str()).collect();
+    let pictured: Vec<&str> = shapes.iter().filter(|s| s.shape.pictures > 0).map(|s| s.shape.id.as_str()).collect();
     let named = listed(&pictured, NAMED);
     (!pictured.is_empty()).then(|| format!("gradients: pictures on {named} (--gradients fit prevents that)"))
 }
