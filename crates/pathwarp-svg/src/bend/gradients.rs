@@ -71,6 +71,9 @@ impl BentGradient {
         if fitted.as_ref().is_some_and(|fitted| look.off(fitted, &seen) <= least) {
             return None;
         }
+        // An edge between hard stops must lie right: a gradient with one is taken only if it is right everywhere.
+        let sharp = shading.jumps(places.iter().copied(), NOTICED);
+        let look = Look { share: if sharp { 0.0 } else { share }, ..look };
         let near = || nearest(&shading, fitted.as_ref(), &moved, |s| look.off(s, &seen) / least);
         if t.options().refit.budget.spend(SEARCH).is_ok()
             && let Some(near) = near()
@@ -82,7 +85,6 @@ impl BentGradient {
         }
         let reach = if fill.is_some() { 0.0 } else { 0.5 * width };
         let area = p.local.bounding_box().unwrap_or_default().inflate(reach, reach);
-        let sharp = shading.jumps(places.into_iter(), NOTICED);
         Some(Self::Picture(PaintedGradient { shading, area, seen, strict, sharp }))
     }
 }
