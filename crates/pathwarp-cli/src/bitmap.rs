@@ -175,6 +175,7 @@ impl GradientPainter for Bender {
             shape: Some(r.shape),
             seen: if r.sharp { &[] } else { &seen },
             tolerance: if r.strict { ShadeTolerance::INVISIBLE } else { ShadeTolerance::UNNOTICED },
+            coarsest: coarsest((width * unit, height * unit), r.among),
             finest,
         };
         count_evaluations(&self.budget, &*self.map, GRADIENT).map_err(too_much)?;
@@ -186,6 +187,18 @@ impl GradientPainter for Bender {
         count_pixels(&self.budget, Pixel::Shaded, pixels).map_err(too_much)?;
         Ok(BentImage { png: encode_smooth_png(&pixmap).map_err(|e| e.to_string())?, area })
     }
+}
+
+/// The fewest pixels across and down of the picture of a gradient of this size in px, one `among` others: programs that do not smooth
+/// pictures show their pixels.
+fn coarsest((width, height): (f64, f64), among: usize) -> Vec2 {
+    /// Pixels along a side, and per px.
+    const SIDE: f64 = 64.0;
+    const DENSITY: f64 = 0.25;
+    /// Most pixels in all pictures of a drawing that are only there for that.
+    const MOST_TOGETHER: f64 = 4e6;
+    let least = Vec2::new((DENSITY * width).max(SIDE), (DENSITY * height).max(SIDE));
+    least * (MOST_TOGETHER / among.max(1) as f64 / (least.x * least.y)).sqrt().min(1.0)
 }
 
 /// A length that exceeds whole pixels by less than this is rounding error.

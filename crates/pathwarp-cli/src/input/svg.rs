@@ -403,6 +403,15 @@ impl Artwork for SvgArtwork {
     }
 }
 
+/// The warning about gradients that became pictures.
+fn pictured(shapes: &[ReportedShape]) -> Option<String> {
+    match shapes.iter().map(|s| s.shape.pictures).sum() {
+        0 => None,
+        1 => Some("a gradient became a picture; --gradients fit keeps it vector".into()),
+        n => Some(format!("{n} gradients became pictures; --gradients fit keeps them vector")),
+    }
+}
+
 impl FileArtwork for SvgArtwork {
     fn file_name(&self) -> String {
         self.name.clone()
@@ -432,6 +441,7 @@ impl FileArtwork for SvgArtwork {
         if empty {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
         }
+        warnings.extend(pictured(&shapes));
         warnings.extend(folds);
         warnings.extend(advice::outside(&self.doc.unread_images()));
         beside::check_surface(built)?;

@@ -268,7 +268,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("keep", |o| o.gradients = GradientChoice::Keep),
             ]),
             "Gradients follow the best affine fit. Where its colours would be off by more than 3 % (auto) or 0.6 % \
-             (exact), they become pictures clipped to the shape; fit never makes pictures, keep leaves them unchanged",
+             (exact), the nearest gradient with more stops takes its place, or else a picture clipped to the shape; fit never \
+             makes pictures, keep leaves them unchanged",
         )
     },
     CommonOption {

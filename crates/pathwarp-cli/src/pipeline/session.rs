@@ -208,6 +208,7 @@ impl Session<'_> {
         notes.extend_from_slice(framed);
         notes.extend(in_flags(flags, built, |e| &e.notes));
         notes.extend(strokes(shapes));
+        notes.extend(pictures(shapes));
         notes
     }
 
@@ -418,6 +419,14 @@ fn edge(r: Rect) -> impl Iterator<Item = Point> {
             Point::new(r.x0, r.y1 - t * r.height()),
         ]
     })
+}
+
+/// Names the shapes whose gradients became pictures.
+fn pictures(shapes: &[ReportedShape]) -> Option<String> {
+    const NAMED: usize = 5;
+    let pictured: Vec<&str> = shapes.iter().filter(|s| s.shape.pictures > 0).map(|s| s.shape.id.as_str()).collect();
+    let named = listed(&pictured, NAMED);
+    (!pictured.is_empty()).then(|| format!("gradients: pictures on {named} (--gradients fit prevents that)"))
 }
 
 #[cfg(test)]

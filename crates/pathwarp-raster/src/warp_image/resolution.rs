@@ -12,8 +12,6 @@ use pathwarp::map::Map;
 use std::fmt;
 use tiny_skia::Pixmap;
 
-/// Pixels along each side of the first picture, without its margin.
-const COARSEST: f64 = 12.0;
 /// Margin around the target in pixels: renderers read up to two pixels on either side of a place.
 const MARGIN: f64 = 2.0;
 /// Reach of the paint around its source, in pixels: the cells around the margin, several times as wide where the map compresses.
@@ -76,6 +74,8 @@ pub struct SmoothShade<'a> {
     pub seen: &'a [SeenColor],
     /// Accepted differences from `seen`.
     pub tolerance: ShadeTolerance,
+    /// Smallest number of pixels across the target and down.
+    pub coarsest: Vec2,
     /// Largest number of pixels per unit of the plane, reached if nothing less suffices.
     pub finest: f64,
 }
@@ -93,8 +93,9 @@ impl SmoothShade<'_> {
     /// Those of [`shade`].
     pub fn paint(&self) -> Result<(Pixmap, Rect), Error> {
         let finest = Vec2::new(self.target.width(), self.target.height()) * self.finest;
+        let finest = Vec2::new(finest.x.max(self.coarsest.x), finest.y.max(self.coarsest.y));
         let limit = |v: Vec2| Vec2::new(v.x.min(finest.x), v.y.min(finest.y));
-        let mut inner = if self.seen.is_empty() { finest } else { limit(Vec2::new(COARSEST, COARSEST)) };
+        let mut inner = if self.seen.is_empty() { finest } else { self.coarsest };
         loop {
             let (pixmap, area) = self.painted(inner)?;
             if inner == finest {
@@ -210,11 +211,23 @@ mod tests {
         let seen = seen(map, color);
         let target = Rect::new(0.0, -8.0, 100.0, 68.0);
         let (placed, after) = (Affine::IDENTITY, Affine::IDENTITY);
-        let (source, finest) = (SOURCE, 8.0);
+        let (source, coarsest, finest) = (SOURCE, Vec2::new(12.0, 12.0), 8.0);
         let colors = &each(color);
-        SmoothShade { colors, source, placed, map, after, target, shape: None, seen: &seen, tolerance, finest }
-            .paint()
-            .unwrap()
+        SmoothShade {
+            colors,
+            source,
+            placed,
+            map,
+            after,
+            target,
+            shape: None,
+            seen: &seen,
+            tolerance,
+            coarsest,
+            finest,
+        }
+        .paint()
+        .unwrap()
     }
 
     #[test]

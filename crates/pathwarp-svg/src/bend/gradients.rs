@@ -1,6 +1,7 @@
-//! Gradients on a part that must become pictures: the decision, and the request to paint them.
+//! Gradients on a part that the affine fit would show wrong: another gradient, or else the request for a picture.
 
 use super::fits::PaintFit;
+use super::gradient_fit::{Moved, SEARCH, nearest};
 use super::options::Gradients;
 use super::pictures::{BentImage, GradientRequest, PictureError, SeenColor};
 use super::task::PartTask;
@@ -19,8 +20,15 @@ const NOTICED_SHARE: f64 = 0.01;
 /// The largest error of an affine fit over a shape, relative to that at the places where it was measured.
 const BETWEEN: f64 = 1.25;
 
+/// A gradient that an affine fit would show wrong.
+pub(super) enum BentGradient {
+    /// Another gradient shows it right.
+    Near(Shading),
+    Picture(PaintedGradient),
+}
+
 /// A gradient that must become a picture to look right.
-pub(super) struct BentGradient {
+pub(super) struct PaintedGradient {
     shading: Shading,
     /// The box on which it is painted, in the part's user space.
     area: Rect,
@@ -30,8 +38,9 @@ pub(super) struct BentGradient {
 }
 
 impl BentGradient {
-    /// Returns the gradient of a paint of the part if the affine fit would be seen to be wrong.
-    pub(super) fn of(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>) -> Option<Self> {
+    /// Returns the gradient of a paint of the part if the affine fit would be seen to be wrong; one that needs a picture only if it
+    /// can be `pictured`.
+    pub(super) fn of(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>, pictured: bool) -> Option<Self> {
         let (p, options) = (t.part, t.options());
         // A gradient spans all copies, which the map does not describe. In tiles, errors are too small to see.
         let repeated = options.copies.len() > 1 || !options.letters.places.is_empty();
@@ -54,21 +63,54 @@ impl BentGradient {
             Some(f) => inside(&p.local, f.rule(), strict),
             None => along(&p.local, width),
         };
-        let seen = seen(t, &shading, &places);
-        let back = fit.map(|f| f.affine.inverse());
-        let differs = |s: &&SeenColor| {
-            let found = back.map(|back| shading.premultiplied(back * s.at));
-            found.is_none_or(|found| s.color.iter().zip(found).any(|(w, f)| (w - f).abs() * opacity > least))
-        };
-        if seen.iter().filter(differs).count() as f64 <= share * seen.len() as f64 {
+        let moved = moved(t, &places);
+        let color = |(p, at): &Moved| SeenColor { at: *at, color: shading.premultiplied(*p) };
+        let seen: Vec<SeenColor> = moved.iter().map(color).collect();
+        let look = Look { opacity, share };
+        let fitted = fit.map(|f| shading.moved(f.affine));
+        if fitted.as_ref().is_some_and(|fitted| look.off(fitted, &seen) <= least) {
+            return None;
+        }
+        // An edge between hard stops must lie right: a gradient with one is taken only if it is right everywhere.
+        let sharp = shading.jumps(places.iter().copied(), NOTICED);
+        let look = Look { share: if sharp { 0.0 } else { share }, ..look };
+        let near = || nearest(&shading, fitted.as_ref(), &moved, |s| look.off(s, &seen) / least);
+        if t.options().refit.budget.spend(SEARCH).is_ok()
+            && let Some(near) = near()
+        {
+            return Some(Self::Near(near));
+        }
+        if !pictured {
             return None;
         }
         let reach = if fill.is_some() { 0.0 } else { 0.5 * width };
         let area = p.local.bounding_box().unwrap_or_default().inflate(reach, reach);
-        let sharp = shading.jumps(places.into_iter(), NOTICED);
-        Some(Self { shading, area, seen, strict, sharp })
+        Some(Self::Picture(PaintedGradient { shading, area, seen, strict, sharp }))
     }
+}
 
+/// How a gradient is seen: with an opacity, and on a share of places whatever it likes.
+#[derive(Clone, Copy)]
+struct Look {
+    opacity: f64,
+    share: f64,
+}
+
+impl Look {
+    /// The largest difference from what is to be seen, but for the share.
+    fn off(self, shading: &Shading, seen: &[SeenColor]) -> f64 {
+        let off = |s: &SeenColor| {
+            let found = shading.premultiplied(s.at);
+            s.color.iter().zip(found).map(|(w, f)| (w - f).abs() * self.opacity).fold(0.0, f64::max)
+        };
+        let mut all: Vec<f64> = seen.iter().map(off).collect();
+        all.sort_by(f64::total_cmp);
+        let counted = all.len() - (self.share * all.len() as f64) as usize;
+        counted.checked_sub(1).map_or(0.0, |last| all[last])
+    }
+}
+
+impl PaintedGradient {
     /// Paints the gradient over the box of `target`. Records the error if there is one.
     pub(super) fn painted(
         &self,
@@ -95,13 +137,12 @@ impl BentGradient {
     }
 }
 
-/// The exact colours of the bent gradient at the images of `places`.
-fn seen(t: &PartTask<'_>, shading: &Shading, places: &[Point]) -> Vec<SeenColor> {
+/// Places of the part with their images in the user space of the result.
+fn moved(t: &PartTask<'_>, places: &[Point]) -> Vec<Moved> {
     let roots: Vec<Point> = places.iter().map(|p| t.part.frame * *p).collect();
     let mut images = vec![Point::ORIGIN; roots.len()];
     t.context.map.points(&roots, &mut images);
-    let pairs = places.iter().zip(images).map(|(p, q)| (p, t.back * q)).filter(|(_, q)| q.is_finite());
-    pairs.map(|(p, at)| SeenColor { at, color: shading.premultiplied(*p) }).collect()
+    places.iter().zip(images).map(|(p, q)| (*p, t.back * q)).filter(|(_, q)| q.is_finite()).collect()
 }
 
 /// Places whose colours are computed together.
@@ -109,19 +150,19 @@ const TOGETHER: usize = 32;
 
 /// A gradient as a function of the plane.
 #[derive(Debug, Clone)]
-pub(super) struct Shading {
+pub(crate) struct Shading {
     /// From user space to the gradient's space.
-    inside: Affine,
-    kind: GradientShape,
-    stops: Vec<Stop>,
-    spread: SpreadMethod,
+    pub(crate) inside: Affine,
+    pub(crate) kind: GradientShape,
+    pub(crate) stops: Vec<Stop>,
+    pub(super) spread: SpreadMethod,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Stop {
-    offset: f64,
+pub(crate) struct Stop {
+    pub(crate) offset: f64,
     /// Not premultiplied.
-    color: [f64; 4],
+    pub(crate) color: [f64; 4],
 }
 
 /// The colours between two neighbouring stops, or before the first or beyond the last: `color` at the parameter `from`, changing by
@@ -135,7 +176,7 @@ struct Band {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum GradientShape {
+pub(crate) enum GradientShape {
     /// The parameter at `from` is 0, and grows by `slope`.
     Linear {
         from: Point,
@@ -179,6 +220,28 @@ impl Shading {
         })
     }
 
+    /// The name of its element, and the attributes that say where it is.
+    pub(crate) fn geometry(&self) -> (&'static str, Vec<(&'static str, f64)>) {
+        match self.kind {
+            GradientShape::Linear { from, slope } => {
+                let to = from + slope / slope.hypot2();
+                ("linearGradient", vec![("x1", from.x), ("y1", from.y), ("x2", to.x), ("y2", to.y)])
+            }
+            GradientShape::Radial { centre, radius, focus, .. } => {
+                let mut all = vec![("cx", centre.x), ("cy", centre.y), ("r", radius)];
+                if focus != centre {
+                    all.extend([("fx", focus.x), ("fy", focus.y)]);
+                }
+                ("radialGradient", all)
+            }
+        }
+    }
+
+    /// The gradient in the place of its image under an affine map.
+    fn moved(&self, by: Affine) -> Self {
+        Self { inside: self.inside * by.inverse(), ..self.clone() }
+    }
+
     /// Parameters along the stops at points of user space; NaN outside of the cone of a focal gradient.
     fn along(&self, places: &[Point], out: &mut [f64]) {
         let pairs = out.iter_mut().zip(places);
@@ -197,7 +260,7 @@ impl Shading {
     }
 
     /// The parameter along the stops at one point.
-    fn along_one(&self, p: Point) -> f64 {
+    pub(super) fn along_one(&self, p: Point) -> f64 {
         let mut t = [0.0];
         self.along(&[p], &mut t);
         t[0]
@@ -321,7 +384,7 @@ impl Shading {
     }
 }
 
-fn premultiplied([r, g, b, a]: [f64; 4]) -> [f64; 4] {
+pub(super) fn premultiplied([r, g, b, a]: [f64; 4]) -> [f64; 4] {
     [r * a, g * a, b * a, a]
 }
 
@@ -414,10 +477,10 @@ fn lattice(lines: &[(Point, Point)], bounds: Rect, rule: FillRule, n: usize) -> 
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn shading(gradient: &str) -> Shading {
+    pub(crate) fn shading(gradient: &str) -> Shading {
         let svg = format!(
             "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>{gradient}<rect width='100' height='80' \
          fill='url(#a)'/></svg>"

@@ -3,6 +3,7 @@
 pub(crate) mod bends;
 pub(crate) mod drawing;
 pub(crate) mod fits;
+pub(crate) mod gradient_fit;
 pub(crate) mod gradients;
 pub(crate) mod options;
 pub(crate) mod outcome;

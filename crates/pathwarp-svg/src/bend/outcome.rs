@@ -1,6 +1,7 @@
 //! Results of warping: per part for the writers, per shape for the report.
 
 use super::fits::PaintFit;
+use super::gradients::Shading;
 use super::pictures::{BentImage, PictureError};
 use crate::source::number::path_data_by;
 use pathwarp::kurbo::{BezPath, Rect};
@@ -175,6 +176,9 @@ pub(crate) struct WarpedPart {
     pub(super) stroke_refused: bool,
     /// Fit to be applied to gradients and patterns; `None` if they are unchanged.
     pub(crate) fit: Option<PaintFit>,
+    /// Gradients in the place of the fill's and the stroke's, which no affine map makes right.
+    pub(crate) fill_gradient: Option<Shading>,
+    pub(crate) stroke_gradient: Option<Shading>,
     /// Pictures of the fill's and the stroke's gradient.
     pub(crate) fill_image: Option<BentImage>,
     pub(crate) stroke_image: Option<BentImage>,

@@ -1,7 +1,7 @@
 //! The image of a part: path, fill, stroke, and paints.
 
 use super::fits::{self, PaintFit};
-use super::gradients::BentGradient;
+use super::gradients::{BentGradient, PaintedGradient, Shading};
 use super::options::{Strokes, WarpOptions};
 use super::outcome::{StrokeOutcome, WarpedPart};
 use super::task::{BentPath, LetterPiece, PartTask};
@@ -25,8 +25,9 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let (centre, pieces) = (bent.report.segments_in, bent.report.segments_out);
     let Filled { mut path, mut data, fill, mut report } = filled(t, bent)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
-    let stroke_gradient = p.stroke.as_ref().filter(|s| expands(t, s)).and_then(|s| BentGradient::of(t, s.paint(), fit));
-    let bent = stroke::stroke(t, &path, pieces, stroke_gradient.is_some())?;
+    let stroke_gradient = p.stroke.as_ref().and_then(|s| BentGradient::of(t, s.paint(), fit, expands(t, s)));
+    let (stroke_gradient, stroke_picture) = divided(stroke_gradient);
+    let bent = stroke::stroke(t, &path, pieces, stroke_picture.is_some())?;
     if draft && bent.outcome.outline().is_none() {
         let refitted = t.bend(&t.outline, &t.contours)?;
         (path, data, report) = (refitted.path, refitted.data, [Some(refitted.report), None]);
@@ -36,7 +37,8 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let mut written = written(p, &bent.outcome, report, fill.is_some());
     written.extend(bent.report);
     let report = combined(centre, written);
-    let fill_gradient = p.fill.as_ref().and_then(|f| BentGradient::of(t, f.paint(), fit));
+    let fill_gradient = p.fill.as_ref().and_then(|f| BentGradient::of(t, f.paint(), fit, true));
+    let (fill_gradient, fill_picture) = divided(fill_gradient);
     let mut out = WarpedPart {
         path,
         fill,
@@ -47,6 +49,8 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         stroke_error: bent.error.map(|e| e + bent.leverage * (error + t.rounding)),
         stroke_refused: bent.refused,
         fit,
+        fill_gradient,
+        stroke_gradient,
         fill_image: None,
         stroke_image: None,
         unpainted: None,
@@ -55,12 +59,21 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         rounding: t.rounding,
     };
     let filled = out.fill.as_ref().filter(|f| !f.is_empty()).unwrap_or(&out.path);
-    out.fill_image = fill_gradient.and_then(|g| g.painted(t, filled, &mut out.unpainted));
-    if let (Some(g), StrokeOutcome::Outlined(outline)) = (stroke_gradient, &out.stroke) {
+    out.fill_image = fill_picture.and_then(|g| g.painted(t, filled, &mut out.unpainted));
+    if let (Some(g), StrokeOutcome::Outlined(outline)) = (stroke_picture, &out.stroke) {
         out.stroke_image = g.painted(t, outline, &mut out.unpainted);
     }
     out.residual = fit.filter(|_| follows_fit(p, &out, t.options())).map(|f| f.miss * stretch(t.write));
     Ok(out)
+}
+
+/// A gradient that became another, or one to be painted.
+fn divided(bent: Option<BentGradient>) -> (Option<Shading>, Option<PaintedGradient>) {
+    match bent {
+        None => (None, None),
+        Some(BentGradient::Near(near)) => (Some(near), None),
+        Some(BentGradient::Picture(picture)) => (None, Some(picture)),
+    }
 }
 
 /// Returns `true` if a part's stroke may become an outline.
@@ -188,11 +201,12 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
     Some((Outline { subpaths: outline.subpaths.iter().filter(encloses).map(closed).collect() }, contours))
 }
 
-/// Returns `true` if one of the part's paints follows the affine fit. Only gradients become pictures, and only patterns tiles.
+/// Returns `true` if one of the part's paints follows the affine fit. Only gradients become others or pictures, and only patterns tiles.
 fn follows_fit(p: &Part, warped: &WarpedPart, options: &WarpOptions) -> bool {
-    let follows = |paint: &Paint, replaced: bool| options.moves(paint) && !replaced;
-    let fill = p.fill.as_ref();
-    let stroke = p.stroke.as_ref();
-    fill.is_some_and(|f| follows(f.paint(), warped.fill_image.is_some() || p.fill_tiles.is_some()))
-        || stroke.is_some_and(|s| follows(s.paint(), warped.stroke_image.is_some() || p.stroke_tiles.is_some()))
+    let follows = |paint: &Paint, replaced: [bool; 3]| options.moves(paint) && !replaced.contains(&true);
+    let w = warped;
+    let filled = [w.fill_gradient.is_some(), w.fill_image.is_some(), p.fill_tiles.is_some()];
+    let stroked = [w.stroke_gradient.is_some(), w.stroke_image.is_some(), p.stroke_tiles.is_some()];
+    p.fill.as_ref().is_some_and(|f| follows(f.paint(), filled))
+        || p.stroke.as_ref().is_some_and(|s| follows(s.paint(), stroked))
 }

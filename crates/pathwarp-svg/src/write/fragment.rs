@@ -10,6 +10,7 @@ use super::markup::{
 };
 use super::{boxes, filter};
 use crate::bend::fits::EmbeddedImage;
+use crate::bend::gradients::{Shading, Stop};
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::bend::pictures::BentImage;
 use crate::scene::geometry::affine;
@@ -283,6 +284,9 @@ impl<'a> Writer<'a> {
 
     /// A paint as a CSS value.
     pub(super) fn paint(&mut self, paint: &Paint, p: &Part, warped: Option<&WarpedPart>) -> String {
+        if let Some(bent) = warped.and_then(|w| self.input.bent_gradient(paint, p, w)) {
+            return self.bent_gradient(paint, bent);
+        }
         let fit = self.input.paint_fit(paint, p, warped).map_or(Affine::IDENTITY, |f| f.affine);
         match paint {
             Paint::Color(c) => color(*c),
@@ -331,12 +335,40 @@ impl<'a> Writer<'a> {
     }
 
     fn stop(&self, s: &usvg::Stop) -> String {
-        let mut properties = vec![("stop-color", color(s.color()))];
-        if s.opacity().get() < 1.0 || self.markup.styled {
-            properties.push(("stop-opacity", short(s.opacity().get().into())));
+        self.stop_at(s.offset().get().into(), s.color(), s.opacity().get().into())
+    }
+
+    fn stop_at(&self, offset: f64, of: usvg::Color, opacity: f64) -> String {
+        let mut properties = vec![("stop-color", color(of))];
+        if opacity < 1.0 || self.markup.styled {
+            properties.push(("stop-opacity", short(opacity)));
         }
-        let tag = self.markup.element("stop").with("offset", &short(s.offset().get().into()));
+        let tag = self.markup.element("stop").with("offset", &short(offset));
         tag.raw(&self.markup.attributes(&properties)).empty()
+    }
+
+    /// Writes a gradient with stops of its own in the place of another.
+    fn bent_gradient(&mut self, paint: &Paint, bent: &Shading) -> String {
+        let name = match paint {
+            Paint::LinearGradient(g) => g.id(),
+            Paint::RadialGradient(g) => g.id(),
+            Paint::Color(_) | Paint::Pattern(_) => "gradient",
+        };
+        let id = self.defs.new_id(name);
+        let (tag, geometry) = bent.geometry();
+        let mut tag = self.markup.element(tag).with("id", &id).with("gradientUnits", "userSpaceOnUse");
+        tag = geometry.into_iter().fold(tag, |tag, (name, v)| tag.with(name, &short(v)));
+        if bent.inside != Affine::IDENTITY {
+            tag = tag.with("gradientTransform", &matrix(bent.inside.inverse()));
+        }
+        let stop = |s: &Stop| {
+            let [r, g, b] = [0, 1, 2].map(|k| (s.color[k] * 255.0).round() as u8);
+            let fine = |v: f64| (v * 1e6).round() / 1e6;
+            self.stop_at(fine(s.offset), usvg::Color::new_rgb(r, g, b), fine(s.color[3]))
+        };
+        let stops: String = bent.stops.iter().map(stop).collect();
+        self.defs.push(&tag.around(&stops));
+        format!("url(#{id})")
     }
 
     /// Refers to a pattern, writing it if necessary.

@@ -3,6 +3,7 @@
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::BentDrawing;
 use crate::bend::fits::{EmbeddedImage, PaintFit, PlacedSlot, written};
+use crate::bend::gradients::Shading;
 use crate::bend::options::WarpOptions;
 use crate::bend::outcome::{PartOutcome, WarpedPart};
 use crate::scene::drawing::Drawing;
@@ -71,6 +72,14 @@ impl<'a> WriteInput<'a> {
     pub(super) fn paint_fit(&self, paint: &Paint, p: &Part, warped: Option<&WarpedPart>) -> Option<PaintFit> {
         let fit = warped.and_then(|w| w.fit).filter(|_| self.options.moves(paint));
         fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)))
+    }
+
+    /// The gradient in the place of a paint of the part, if there is one.
+    pub(super) fn bent_gradient<'w>(&self, paint: &Paint, p: &Part, warped: &'w WarpedPart) -> Option<&'w Shading> {
+        match &p.fill {
+            Some(f) if std::ptr::eq(f.paint(), paint) => warped.fill_gradient.as_ref(),
+            _ => warped.stroke_gradient.as_ref(),
+        }
     }
 
     /// Returns `true` if a part is written in several pieces: its fill or stroke consists of tiles or a picture.

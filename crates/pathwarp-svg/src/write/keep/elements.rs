@@ -116,7 +116,11 @@ pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
 fn patch_paint(k: &mut Keeper<'_, '_>, e: ElementId, i: usize, p: &Part, warped: &WarpedPart) {
     let paints = [("fill", p.fill.as_ref().map(Fill::paint)), ("stroke", p.stroke.as_ref().map(Stroke::paint))];
     for (name, paint) in paints {
-        if let Some(paint) = paint.filter(|paint| k.input.paint_fit(paint, p, Some(warped)).is_some()) {
+        let moves = |paint: &&usvg::Paint| {
+            let fitted = k.input.paint_fit(paint, p, Some(warped)).is_some();
+            fitted || k.input.bent_gradient(paint, p, warped).is_some()
+        };
+        if let Some(paint) = paint.filter(moves) {
             let paint = k.writer.paint(paint, p, Some(warped));
             k.edits.set_property(e, name, paint);
         }

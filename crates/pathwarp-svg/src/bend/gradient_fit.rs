@@ -1,0 +1,625 @@
+//! Gradients of SVG's that show what a bent one does: the nearest linear or radial gradient, with as many stops as it takes.
+//!
+//! A bent gradient is constant along curves. If these are nearly lines or ellipses, a gradient of SVG's has the same ones, and the stops
+//! say which colour lies on each. The lines or ellipses are sought by Gauss–Newton's method, with the colours projected out: for every
+//! choice, the piecewise linear profile nearest to the samples follows by least squares.
+
+use super::gradients::{GradientShape, Shading, Stop, premultiplied};
+use pathwarp::kurbo::{Affine, Point, Vec2};
+use usvg::SpreadMethod;
+
+/// A place under the map: where it was, and where it is in the user space of the result.
+pub(super) type Moved = (Point, Point);
+
+/// Samples by which the lines or ellipses are sought.
+const SOUGHT_BY: usize = 256;
+/// Cells of the profile while they are sought, and of the profiles that are tried in the end.
+const CELLS: usize = 10;
+const TRIED_CELLS: [usize; 5] = [1, 2, 4, 8, 16];
+/// Most periods of a gradient that repeats.
+const MAX_PERIODS: f64 = 8.0;
+/// Stops nearer than this are at one place; usvg moves them apart by a rounding error.
+const SAME: f64 = 1e-4;
+/// Places between and around the samples, as a share of their range.
+const AROUND: f64 = 0.03;
+
+/// The largest offset at which the colours of a radial gradient may begin: some renderers hold 256 of them.
+const NARROWEST: f64 = 0.9;
+
+/// Work of the search, in evaluations of a map.
+pub(super) const SEARCH: f64 = 60e3;
+
+/// The gradient that looks like the bent one, if any does: the plainest that is good, or else the best. `fitted` is the gradient under
+/// an affine fit, and `off` tells how far a gradient's look is off: by at most 1 if it is accepted.
+pub(super) fn nearest(
+    shading: &Shading,
+    fitted: Option<&Shading>,
+    moved: &[Moved],
+    off: impl Fn(&Shading) -> f64,
+) -> Option<Shading> {
+    /// Better than this, more stops are not worth their bytes.
+    const GOOD: f64 = 0.4;
+    let ramp = Ramp::of(shading, moved)?;
+    let samples = Samples::of(shading, &ramp, moved)?;
+    let few = samples.thinned(SOUGHT_BY);
+    let mut best: Option<(f64, Shading)> = None;
+    let mut is_good = |levels: Levels| {
+        for gradient in samples.gradients(&ramp, levels) {
+            let off = off(&gradient);
+            if off <= best.as_ref().map_or(1.0, |b| b.0) {
+                best = Some((off, gradient));
+            }
+            if off <= GOOD {
+                return true;
+            }
+        }
+        false
+    };
+    if !is_good(few.best(Levels::Lines(few.steepest()))) {
+        let centre = few.best(Levels::Circles(few.circles())).parameters();
+        if !is_good(Levels::Circles([centre[0], centre[1]])) {
+            let around = [centre[0], centre[1], 0.0, 0.0, 0.0, 0.0];
+            let starts = [Some(around), fitted.and_then(|f| f.ellipses(samples.out))];
+            let found = starts.into_iter().flatten().map(|start| few.best(Levels::Ellipses(start)));
+            let rated = found.map(|e| (few.off(e).1, e)).min_by(|a, b| a.0.total_cmp(&b.0));
+            rated.map(|(_, ellipses)| is_good(ellipses));
+        }
+    }
+    best.map(|b| b.1)
+}
+
+/// The colours along a gradient, with all periods that are seen written out, and a scale on which they change evenly.
+struct Ramp {
+    stops: Vec<Stop>,
+    /// The scale at each stop: it does not grow where colours jump.
+    scale: Vec<f64>,
+}
+
+impl Ramp {
+    fn of(shading: &Shading, moved: &[Moved]) -> Option<Self> {
+        let along = |p: &Moved| shading.along_one(p.0);
+        let all = moved.iter().map(along).filter(|t| t.is_finite());
+        let (from, to) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
+        let stops = match shading.spread {
+            SpreadMethod::Pad => padded(&shading.stops, from, to),
+            SpreadMethod::Repeat | SpreadMethod::Reflect => {
+                let (first, last) = (from.floor(), to.ceil());
+                if !(last - first <= MAX_PERIODS) {
+                    return None;
+                }
+                let periods = (0..(last - first) as usize).map(|n| first + n as f64);
+                periods.flat_map(|n| period(shading, n)).collect()
+            }
+        };
+        let change = |pair: &[Stop]| {
+            let (a, b) = (premultiplied(pair[0].color), premultiplied(pair[1].color));
+            a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        let length = stops.last()?.offset - stops.first()?.offset;
+        // Places count a little even where colours do not change: a jump or an end must lie right.
+        let total: f64 = stops.windows(2).map(change).sum();
+        if !(length > 0.0 && total > 0.0) {
+            return None;
+        }
+        let least = 0.2 * total / length;
+        let mut scale = vec![0.0];
+        for pair in stops.windows(2) {
+            let apart = pair[1].offset - pair[0].offset;
+            let grown = if apart <= SAME { 0.0 } else { change(pair) + least * apart };
+            scale.push(scale[scale.len() - 1] + grown);
+        }
+        Some(Self { stops, scale })
+    }
+
+    /// The scale at a parameter. It goes on a little before the first stop and beyond the last, where colours are constant: else, profiles
+    /// would have kinks there.
+    fn at(&self, t: f64) -> f64 {
+        const BEYOND: f64 = 0.15;
+        let last = self.stops.len() - 1;
+        let b = self.stops.partition_point(|s| s.offset <= t).clamp(1, last);
+        let [from, to] = [self.stops[b - 1].offset, self.stops[b].offset];
+        let rate = if to - from <= SAME { 0.0 } else { (self.scale[b] - self.scale[b - 1]) / (to - from) };
+        let end = self.scale[last];
+        (self.scale[b - 1] + (t - from) * rate).clamp(-BEYOND * end, (1.0 + BEYOND) * end)
+    }
+
+    /// The colour at a place of the scale.
+    fn color(&self, v: f64) -> [f64; 4] {
+        let next = self.scale.partition_point(|s| *s < v).clamp(1, self.scale.len() - 1);
+        let (a, b) = (self.scale[next - 1], self.scale[next]);
+        let share = if b > a { ((v - a) / (b - a)).clamp(0.0, 1.0) } else { 0.0 };
+        let [from, to] = [self.stops[next - 1].color, self.stops[next].color];
+        std::array::from_fn(|k| from[k] + share * (to[k] - from[k]))
+    }
+
+    /// The stops of a gradient whose parameter has these values of the scale at evenly spaced offsets.
+    fn stops(&self, profile: &[f64]) -> Vec<Stop> {
+        let mut out = Vec::new();
+        let cells = (profile.len() - 1) as f64;
+        for (k, pair) in profile.windows(2).enumerate() {
+            let (from, to) = (pair[0], pair[1]);
+            out.push(Stop { offset: k as f64 / cells, color: self.color(from) });
+            let inside = |i: &usize| (self.scale[*i] - from) * (self.scale[*i] - to) < 0.0;
+            let mut crossed: Vec<usize> = (0..self.scale.len()).filter(inside).collect();
+            if to < from {
+                crossed.reverse();
+            }
+            let offset = |v: f64| (k as f64 + (v - from) / (to - from)) / cells;
+            out.extend(crossed.iter().map(|&i| Stop { offset: offset(self.scale[i]), color: self.stops[i].color }));
+        }
+        out.push(Stop { offset: 1.0, color: self.color(profile[profile.len() - 1]) });
+        pruned(out)
+    }
+}
+
+/// Stops with one before and one after them where the first or the last is a jump, at the ends of a range.
+fn padded(stops: &[Stop], from: f64, to: f64) -> Vec<Stop> {
+    let jumps = |a: Option<&Stop>, b: Option<&Stop>| a.zip(b).is_none_or(|(a, b)| (b.offset - a.offset).abs() <= SAME);
+    let end = |s: Option<&Stop>, at: f64| s.map(|s| Stop { offset: at, ..*s });
+    let (first, last) = (stops.first(), stops.last());
+    let before = end(first, from).filter(|b| jumps(first, stops.get(1)) && first.is_some_and(|f| b.offset < f.offset));
+    let second = stops.len().checked_sub(2).and_then(|k| stops.get(k));
+    let after = end(last, to).filter(|a| jumps(last, second) && last.is_some_and(|l| a.offset > l.offset));
+    before.into_iter().chain(stops.iter().copied()).chain(after).collect()
+}
+
+/// The stops of the period of a gradient that begins at `n`.
+fn period(shading: &Shading, n: f64) -> Vec<Stop> {
+    let (Some(first), Some(last)) = (shading.stops.first(), shading.stops.last()) else { return Vec::new() };
+    let mut out = vec![Stop { offset: 0.0, ..*first }];
+    out.extend(&shading.stops);
+    out.push(Stop { offset: 1.0, ..*last });
+    if shading.spread == SpreadMethod::Reflect && n.rem_euclid(2.0) == 1.0 {
+        out.reverse();
+        out.iter_mut().for_each(|s| s.offset = 1.0 - s.offset);
+    }
+    out.iter_mut().for_each(|s| s.offset += n);
+    out
+}
+
+/// Drops stops between which the colours are the same without them.
+fn pruned(stops: Vec<Stop>) -> Vec<Stop> {
+    /// A difference that rounding to 255 levels hides.
+    const HIDDEN: f64 = 0.3 / 255.0;
+    let mut out: Vec<Stop> = Vec::with_capacity(stops.len());
+    // The stops since the last one that is kept.
+    let mut between: Vec<Stop> = Vec::new();
+    for (i, stop) in stops.iter().enumerate() {
+        let follows = |s: &Stop, a: &Stop, b: &Stop| {
+            let share = if b.offset > a.offset { (s.offset - a.offset) / (b.offset - a.offset) } else { 2.0 };
+            (0..4).all(|k| (a.color[k] + share * (b.color[k] - a.color[k]) - s.color[k]).abs() <= HIDDEN)
+        };
+        if let (Some(a), Some(b)) = (out.last(), stops.get(i + 1)) {
+            between.push(*stop);
+            if between.iter().all(|s| follows(s, a, b)) {
+                continue;
+            }
+        }
+        between.clear();
+        out.push(*stop);
+    }
+    out
+}
+
+/// The curves along which a gradient is constant. Coordinates are those of [`Samples`].
+#[derive(Debug, Clone, Copy)]
+enum Levels {
+    /// Lines across this direction.
+    Lines(f64),
+    /// Circles around a point.
+    Circles([f64; 2]),
+    /// Ellipses that shrink to a focus: the focus, the logarithm of a symmetric matrix of determinant 1 that makes them circles, and the
+    /// direction in which their centres move.
+    Ellipses([f64; 6]),
+}
+
+impl Levels {
+    fn parameters(self) -> Vec<f64> {
+        match self {
+            Self::Lines(angle) => vec![angle],
+            Self::Circles(centre) => centre.to_vec(),
+            Self::Ellipses(all) => all.to_vec(),
+        }
+    }
+
+    fn with(self, p: &[f64]) -> Self {
+        match self {
+            Self::Lines(_) => Self::Lines(p[0]),
+            Self::Circles(_) => Self::Circles([p[0], p[1]]),
+            Self::Ellipses(_) => Self::Ellipses(std::array::from_fn(|k| p[k])),
+        }
+    }
+
+    /// The focus, the matrix and the movement of the centres.
+    fn cone(p: [f64; 6]) -> (Point, Affine, Vec2) {
+        /// Nearer to 1, the ellipses are no longer within each other.
+        const FARTHEST: f64 = 0.9;
+        let [fx, fy, p, r, ex, ey] = p;
+        let m = p.hypot(r);
+        let (even, odd) = (m.cosh(), if m > 1e-9 { m.sinh() / m } else { 1.0 });
+        let e = Vec2::new(ex, ey);
+        let e = e * (FARTHEST / (1.0 + e.hypot2()).sqrt());
+        (Point::new(fx, fy), Affine::new([even + odd * p, odd * r, odd * r, even - odd * p, 0.0, 0.0]), e)
+    }
+
+    /// The parameter of the level at every place.
+    fn along(self, places: &[Point]) -> Vec<f64> {
+        match self {
+            Self::Lines(angle) => {
+                let d = Vec2::from_angle(angle);
+                places.iter().map(|q| q.to_vec2().dot(d)).collect()
+            }
+            Self::Circles(c) => places.iter().map(|q| q.distance(Point::new(c[0], c[1]))).collect(),
+            Self::Ellipses(p) => {
+                let (focus, round, e) = Self::cone(p);
+                let a = 1.0 - e.hypot2();
+                let one = |q: &Point| {
+                    let y = (round * (*q - focus).to_point()).to_vec2();
+                    let b = y.dot(e);
+                    ((b * b + a * y.hypot2()).sqrt() - b) / a
+                };
+                places.iter().map(one).collect()
+            }
+        }
+    }
+
+    /// The gradient whose offset 1 is at `to`, and whose offset 0 is at `from` for lines and at the focus otherwise.
+    fn shading(self, (from, to): (f64, f64), out: Affine, stops: Vec<Stop>) -> Shading {
+        let scale = out.determinant().abs().sqrt();
+        let (kind, placed) = match self {
+            Self::Lines(angle) => {
+                let d = Vec2::from_angle(angle);
+                let fine = fine((to - from) * scale);
+                let [a, b] = [from, to].map(|s| out * (d * s).to_point()).map(|p| Point::new(fine(p.x), fine(p.y)));
+                (GradientShape::Linear { from: a, slope: (b - a) / (b - a).hypot2() }, Affine::IDENTITY)
+            }
+            Self::Circles(c) => {
+                let fine = fine(to * scale);
+                let (centre, radius) = (out * Point::new(c[0], c[1]), fine(to * scale));
+                let centre = Point::new(fine(centre.x), fine(centre.y));
+                (GradientShape::Radial { centre, radius, focus: centre, focal_radius: 0.0 }, Affine::IDENTITY)
+            }
+            Self::Ellipses(p) => {
+                let (focus, round, e) = Self::cone(p);
+                let placed = out * Affine::translate(focus.to_vec2()) * round.inverse() * Affine::scale(to);
+                let centre = e.to_point();
+                (GradientShape::Radial { centre, radius: 1.0, focus: Point::ORIGIN, focal_radius: 0.0 }, placed)
+            }
+        };
+        Shading { inside: placed.inverse(), kind, stops, spread: SpreadMethod::Pad }
+    }
+}
+
+/// Rounds to a ten thousandth of a length, or less.
+fn fine(length: f64) -> impl Fn(f64) -> f64 {
+    let unit = 10.0_f64.powf((1e-4 * length).log10().floor());
+    move |v| (v / unit).round() * unit
+}
+
+impl Shading {
+    /// The ellipses around the focus of a radial gradient, as parameters of [`Levels::Ellipses`]; `out` leads from their coordinates.
+    fn ellipses(&self, out: Affine) -> Option<[f64; 6]> {
+        let GradientShape::Radial { focus, .. } = self.kind else { return None };
+        let to = self.inside * out;
+        let [a, b, c, d, ..] = to.as_coeffs();
+        // The square of the symmetric matrix, of determinant 1, and half its logarithm.
+        let unit = to.determinant().abs();
+        let [xx, xy, yy] = [a * a + b * b, a * c + b * d, c * c + d * d].map(|v| v / unit);
+        let m = (0.5 * (xx + yy)).max(1.0).acosh();
+        let half = if m > 1e-6 { 0.5 * m / m.sinh() } else { 0.5 };
+        let place = to.inverse() * focus;
+        let all = [place.x, place.y, half * 0.5 * (xx - yy), half * xy, 0.0, 0.0];
+        all.iter().all(|v| v.is_finite()).then_some(all)
+    }
+}
+
+/// Places of the result about their mean, in units of their spread, with their values on the ramp's scale.
+struct Samples {
+    places: Vec<Point>,
+    values: Vec<f64>,
+    /// To the user space of the result.
+    out: Affine,
+}
+
+impl Samples {
+    fn of(shading: &Shading, ramp: &Ramp, moved: &[Moved]) -> Option<Self> {
+        let n = moved.len() as f64;
+        let mean = moved.iter().map(|m| m.1.to_vec2()).fold(Vec2::ZERO, |a, b| a + b) / n;
+        let spread = (moved.iter().map(|m| (m.1.to_vec2() - mean).hypot2()).sum::<f64>() / n).sqrt();
+        if moved.len() < 3 * CELLS || !(spread > 0.0 && spread.is_finite()) {
+            return None;
+        }
+        let out = Affine::translate(mean) * Affine::scale(spread);
+        let into = out.inverse();
+        let values: Vec<f64> = moved.iter().map(|m| ramp.at(shading.along_one(m.0))).collect();
+        let places = moved.iter().map(|m| into * m.1).collect();
+        values.iter().all(|v| v.is_finite()).then_some(Self { places, values, out })
+    }
+
+    fn thinned(&self, most: usize) -> Self {
+        let step = self.places.len().div_ceil(most).max(1);
+        Self {
+            places: self.places.iter().copied().step_by(step).collect(),
+            values: self.values.iter().copied().step_by(step).collect(),
+            out: self.out,
+        }
+    }
+
+    /// The direction in which the values rise, by least squares.
+    fn steepest(&self) -> f64 {
+        let (mut xx, mut xy, mut yy, mut vx, mut vy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let mean = self.values.iter().sum::<f64>() / self.values.len() as f64;
+        for (q, v) in self.places.iter().zip(&self.values) {
+            xx += q.x * q.x;
+            xy += q.x * q.y;
+            yy += q.y * q.y;
+            vx += q.x * (v - mean);
+            vy += q.y * (v - mean);
+        }
+        (xx * vy - xy * vx).atan2(yy * vx - xy * vy)
+    }
+
+    /// Where to seek the centre of circles: the best of some places around the samples, near and far.
+    fn circles(&self) -> [f64; 2] {
+        const AROUND: u32 = 16;
+        const FAR: [f64; 5] = [0.0, 0.7, 1.5, 3.0, 8.0];
+        let at = |r: f64, k: u32| {
+            let d = Vec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(AROUND)) * r;
+            [d.x, d.y]
+        };
+        let all = FAR.into_iter().flat_map(|r| (0..AROUND).map(move |k| at(r, k)));
+        let rated = all.map(|c| (self.off(Levels::Circles(c)).1, c));
+        rated.min_by(|a, b| a.0.total_cmp(&b.0)).map_or([0.0; 2], |b| b.1)
+    }
+
+    /// The differences of the values from the best profile, and the sum of their squares.
+    fn off(&self, levels: Levels) -> (Vec<f64>, f64) {
+        let along = levels.along(&self.places);
+        let range = range(&along);
+        let profile = profile(&along, &self.values, range, CELLS);
+        let off = along.iter().zip(&self.values).map(|(s, v)| v - read(&profile, range, *s));
+        let off: Vec<f64> = off.collect();
+        let sum = off.iter().map(|r| r * r).sum::<f64>();
+        (off, if sum.is_finite() { sum } else { f64::INFINITY })
+    }
+
+    /// The best levels of a kind, from a start.
+    fn best(&self, start: Levels) -> Levels {
+        const ROUNDS: usize = 24;
+        const STEP: f64 = 1e-5;
+        let (mut levels, mut damping) = (start, 1e-3);
+        let (mut off, mut sum) = self.off(levels);
+        for _ in 0..ROUNDS {
+            let p = levels.parameters();
+            let column = |k: usize| {
+                let mut moved = p.clone();
+                moved[k] += STEP;
+                let (there, _) = self.off(levels.with(&moved));
+                there.iter().zip(&off).map(|(a, b)| (a - b) / STEP).collect::<Vec<f64>>()
+            };
+            let columns: Vec<Vec<f64>> = (0..p.len()).map(column).collect();
+            let before = sum;
+            for _ in 0..6 {
+                let Some(step) = damped(&columns, &off, damping) else { break };
+                let next = levels.with(&p.iter().zip(&step).map(|(p, s)| p - s).collect::<Vec<f64>>());
+                let (there, less) = self.off(next);
+                if less < sum {
+                    (levels, off, sum, damping) = (next, there, less, damping * 0.2);
+                    break;
+                }
+                damping *= 5.0;
+            }
+            if !(sum < 0.999 * before) {
+                break;
+            }
+        }
+        levels
+    }
+
+    /// The gradients with these levels, with few stops and with more.
+    fn gradients(&self, ramp: &Ramp, levels: Levels) -> Vec<Shading> {
+        let along = levels.along(&self.places);
+        let (from, to) = range(&along);
+        let around = AROUND * (to - from);
+        let range = (from - around, to + around);
+        let range = if matches!(levels, Levels::Lines(_)) { range } else { (range.0.max(0.0), range.1) };
+        if !matches!(levels, Levels::Lines(_)) && range.0 > NARROWEST * range.1 {
+            return Vec::new();
+        }
+        let gradient = |cells: usize| {
+            let profile = monotone(profile(&along, &self.values, range, cells));
+            let mut stops = ramp.stops(&profile);
+            if !matches!(levels, Levels::Lines(_)) {
+                stops.iter_mut().for_each(|s| s.offset = (range.0 + s.offset * (range.1 - range.0)) / range.1);
+            }
+            levels.shading(range, self.out, stops)
+        };
+        TRIED_CELLS.into_iter().map(gradient).collect()
+    }
+}
+
+/// Range of values.
+fn range(all: &[f64]) -> (f64, f64) {
+    all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(*s), b.max(*s)))
+}
+
+/// A place in a range of some cells: the cell, and the place in it.
+fn cell(s: f64, (from, to): (f64, f64), cells: usize) -> (usize, f64) {
+    let at = ((s - from) / (to - from) * cells as f64).clamp(0.0, cells as f64);
+    let k = (at as usize).min(cells - 1);
+    (k, at - k as f64)
+}
+
+/// The value of a profile at a place.
+fn read(profile: &[f64], range: (f64, f64), s: f64) -> f64 {
+    let (k, u) = cell(s, range, profile.len() - 1);
+    profile[k] + u * (profile[k + 1] - profile[k])
+}
+
+/// The piecewise linear function nearest to the samples, by its values between `cells` cells.
+fn profile(along: &[f64], values: &[f64], range: (f64, f64), cells: usize) -> Vec<f64> {
+    /// Ties neighbours where there are no samples.
+    const TIE: f64 = 1e-6;
+    let tie = TIE * along.len() as f64;
+    let (mut diagonal, mut beside, mut right) = (vec![0.0; cells + 1], vec![-tie; cells], vec![0.0; cells + 1]);
+    for k in 0..cells {
+        diagonal[k] += tie;
+        diagonal[k + 1] += tie;
+    }
+    for (s, v) in along.iter().zip(values) {
+        let (k, u) = cell(*s, range, cells);
+        let w = 1.0 - u;
+        diagonal[k] += w * w;
+        diagonal[k + 1] += u * u;
+        beside[k] += w * u;
+        right[k] += w * v;
+        right[k + 1] += u * v;
+    }
+    // Gaussian elimination of a tridiagonal system.
+    for k in 0..cells {
+        let factor = beside[k] / diagonal[k];
+        diagonal[k + 1] -= factor * beside[k];
+        right[k + 1] -= factor * right[k];
+    }
+    for k in (0..=cells).rev() {
+        let above = if k < cells { beside[k] * right[k + 1] } else { 0.0 };
+        right[k] = (right[k] - above) / diagonal[k];
+    }
+    right
+}
+
+/// Makes a profile rise or fall throughout.
+fn monotone(mut profile: Vec<f64>) -> Vec<f64> {
+    let falls = profile[profile.len() - 1] < profile[0];
+    let sign = if falls { -1.0 } else { 1.0 };
+    let mut most = f64::NEG_INFINITY;
+    for v in &mut profile {
+        most = most.max(sign * *v);
+        *v = sign * most;
+    }
+    profile
+}
+
+/// The step of Levenberg and Marquardt.
+fn damped(columns: &[Vec<f64>], off: &[f64], damping: f64) -> Option<Vec<f64>> {
+    let n = columns.len();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut rows: Vec<Vec<f64>> = (0..n)
+        .map(|i| (0..n).map(|j| dot(&columns[i], &columns[j])).chain([dot(&columns[i], off)]).collect())
+        .collect();
+    let largest = (0..n).map(|i| rows[i][i]).fold(0.0, f64::max);
+    for (i, row) in rows.iter_mut().enumerate() {
+        row[i] += damping * row[i].max(1e-6 * largest);
+    }
+    for i in 0..n {
+        let pivot = rows[i].clone();
+        if !(pivot[i] > 0.0 && pivot[i].is_finite()) {
+            return None;
+        }
+        for row in rows.iter_mut().skip(i + 1) {
+            let factor = row[i] / pivot[i];
+            row.iter_mut().zip(&pivot).for_each(|(a, b)| *a -= factor * b);
+        }
+    }
+    let mut out = vec![0.0; n];
+    for i in (0..n).rev() {
+        let rest: f64 = (i + 1..n).map(|j| rows[i][j] * out[j]).sum();
+        out[i] = (rows[i][n] - rest) / rows[i][i];
+    }
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::gradients::tests::shading;
+    use super::*;
+
+    /// Straight lines across become circles around (50, 400): 100 units of x are a quarter of a turn, and y is the radius.
+    fn ring(p: Point) -> Point {
+        Point::new(50.0, 400.0)
+            + Vec2::from_angle((p.x - 150.0) / 100.0 * std::f64::consts::FRAC_PI_2) * (80.0 + 2.0 * p.y)
+    }
+
+    /// The Möbius map z / (1 + z / 400) about (50, 40): circles stay circles, whose centres move.
+    fn inversion(p: Point) -> Point {
+        let (x, y) = (p.x - 50.0, p.y - 40.0);
+        let (a, b) = (1.0 + x / 400.0, y / 400.0);
+        let size = a * a + b * b;
+        Point::new((x * a + y * b) / size, (y * a - x * b) / size)
+    }
+
+    fn places(n: u32) -> impl Iterator<Item = Point> {
+        (0..n).map(move |k| {
+            let k = f64::from(k);
+            Point::new((k * 0.618_033_988_749_895).fract() * 100.0, (k + 0.5) / f64::from(n) * 80.0)
+        })
+    }
+
+    /// The nearest gradient, and its largest difference from the definition on 99 % of places that it was not fitted to.
+    fn fitted(gradient: &str, map: fn(Point) -> Point) -> Option<(Shading, f64)> {
+        let of = shading(gradient);
+        let off = |found: &Shading, places: &mut dyn Iterator<Item = Point>| {
+            let one = |p: Point| {
+                let (a, b) = (of.premultiplied(p), found.premultiplied(map(p)));
+                a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            };
+            let mut all: Vec<f64> = places.map(one).collect();
+            all.sort_by(f64::total_cmp);
+            all[all.len() * 99 / 100]
+        };
+        let moved: Vec<Moved> = places(400).map(|p| (p, map(p))).collect();
+        let found = nearest(&of, None, &moved, |s| off(s, &mut places(400)) / (8.0 / 255.0))?;
+        let worst = off(&found, &mut places(5000));
+        Some((found, worst))
+    }
+
+    #[test]
+    fn lines_that_become_circles_are_a_radial_gradient() {
+        let stops = "<stop stop-color='red'/><stop offset='.3' stop-color='#0f8' stop-opacity='.5'/><stop offset='1' \
+                     stop-color='blue'/>";
+        for (spread, end, most) in [("pad", "1", 0.5), ("reflect", ".4", 1.0)] {
+            let place = format!("x2='0' y2='{end}' spreadMethod='{spread}'");
+            let gradient = format!("<linearGradient id='a' {place}>{stops}</linearGradient>");
+            let (found, worst) = fitted(&gradient, ring).unwrap();
+            let GradientShape::Radial { centre, .. } = found.kind else { panic!("{gradient}: {found:?}") };
+            let centre = found.inside.inverse() * centre;
+            assert!(centre.distance(Point::new(50.0, 400.0)) < most, "{gradient}: {centre}");
+            assert!(worst < 8.5 / 255.0, "{gradient}: {}", worst * 255.0);
+        }
+    }
+
+    #[test]
+    fn uneven_lines_are_a_linear_gradient_with_more_stops() {
+        let uneven = |p: Point| Point::new(p.x + 0.008 * p.x * p.x, p.y);
+        let gradient =
+            "<linearGradient id='a'><stop stop-color='red'/><stop offset='1' stop-color='blue'/></linearGradient>";
+        let (found, worst) = fitted(gradient, uneven).unwrap();
+        assert!(matches!(found.kind, GradientShape::Linear { .. }), "{found:?}");
+        assert!((3..=12).contains(&found.stops.len()) && worst < 3.5 / 255.0, "{found:?}: {}", worst * 255.0);
+        // A jump stays one, where it belongs.
+        let hard = "<linearGradient id='a'><stop offset='.5' stop-color='red'/><stop offset='.5' stop-color='blue'/>\
+                    </linearGradient>";
+        let (found, _) = fitted(hard, |p| Point::new(2.0 * p.x, p.y)).unwrap();
+        let jump = found.stops.windows(2).find(|w| w[1].offset - w[0].offset < 1e-3).unwrap();
+        assert!((jump[0].color[0] - 1.0).abs() < 0.01 && (jump[1].color[2] - 1.0).abs() < 0.01, "{found:?}");
+    }
+
+    #[test]
+    fn circles_whose_centres_move_are_a_radial_gradient() {
+        let gradient = "<radialGradient id='a' gradientUnits='userSpaceOnUse' cx='50' cy='40' r='60'><stop stop-color='yellow'/><stop offset='1' stop-color='#06c'/></radialGradient>";
+        let (found, worst) = fitted(gradient, inversion).unwrap();
+        assert!(
+            matches!(found.kind, GradientShape::Radial { .. }) && worst < 8.5 / 255.0,
+            "{found:?}: {}",
+            worst * 255.0
+        );
+    }
+
+    #[test]
+    fn waves_are_no_gradient() {
+        let wave = |p: Point| Point::new(p.x, p.y + 10.0 * (p.x / 8.0).sin());
+        let gradient = "<linearGradient id='a' x2='0' y2='1'><stop stop-color='red'/><stop offset='1' stop-color='blue'/>\
+                        </linearGradient>";
+        assert!(fitted(gradient, wave).is_none());
+    }
+}
