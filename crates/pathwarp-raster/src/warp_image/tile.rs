@@ -213,4 +213,4 @@ impl SourceBlock {
 pub(super) type Firsts = [u32; TILE];
 
 /// Marks pixels outside the block.
-pub(super) const OUTSIDE: u32 = u32::MAX_BLOCK;
+pub(super) const OUTSIDE: u32 = u32::MAX;
