@@ -159,12 +159,11 @@ pub(crate) fn align(lines: &mut [LetteringLine], align: Align, rtl: bool) {
     for line in lines {
         let room = width - line.end.x;
         let before = match align {
-            Align::Left => 0.0,
             Align::Center => 0.5 * room,
             Align::Right => room,
             Align::Justify if widen(line, room) => 0.0,
             Align::Start | Align::Justify | Align::Fill if rtl => room,
-            Align::Start | Align::Justify | Align::Fill => 0.0,
+            Align::Left | Align::Start | Align::Justify | Align::Fill => 0.0,
         };
         for c in &mut line.clusters {
             shift(c, before);
