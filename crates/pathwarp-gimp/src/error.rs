@@ -7,11 +7,11 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// The file has none of the formats that this crate reads.
+    /// The format of the file is none that this crate reads.
     UnknownFormat,
     /// The file ends too early.
     Truncated,
-    /// The file breaks its format.
+    /// The file violates its format.
     Damaged,
     /// The file is valid, but of a version or form that this crate does not read or write.
     Unsupported,
@@ -59,12 +59,12 @@ impl Error {
         Self::new(ErrorKind::Io, offset, format!("cannot be read: {error}"))
     }
 
-    /// `needed`, a clause, asks for more than the `left` bytes that remain.
+    /// Reports that only `left` bytes remain. `needed` is a clause that says what takes more.
     pub(crate) fn truncated(offset: u64, needed: &str, left: u64) -> Self {
         Self::new(ErrorKind::Truncated, offset, format!("{needed}, but only {left} are left"))
     }
 
-    /// Adds to a truncation which length word (`length`, of `owner`) limits the bytes left.
+    /// Adds to a truncation that the length word of `owner` limits the bytes left.
     pub(crate) fn within(mut self, length: u64, owner: &str) -> Self {
         if self.kind == ErrorKind::Truncated {
             self.problem += &format!(" of the {length} bytes given for {owner}");

@@ -1,7 +1,7 @@
 //! Reads and writes the paths in GIMP's files without loss.
 //!
 //! * [`read`] and [`open`] read XCF files of every version (also compressed with gzip, bzip2 or xz), SVG exported by GIMP, point
-//!   lists in JSON (as returned by `gimp-path-stroke-get-points`), and the text files of GIMP 1. [`sniff`] recognises them, and
+//!   lists in JSON (as returned by `gimp-path-stroke-get-points`), and the text files of GIMP 1. [`sniff`] recognizes them, and
 //!   [`salvage`] reads damaged ones as far as possible.
 //! * [`rewrite`] replaces paths in a copy of an XCF and keeps every other byte.
 //! * [`to_svg`], [`to_json`] and [`new_xcf`] write paths to new files.
@@ -29,8 +29,7 @@ mod xcf;
 
 pub use error::{Error, ErrorKind};
 pub use open::{HEAD, may_begin, open, salvage, salvage_within, sniff};
-pub use path::{FileKind, PathFile, Salvaged};
-pub use path::{GimpPath, Stroke};
+pub use path::{FileKind, GimpPath, PathFile, Salvaged, Stroke};
 pub use point_list::to_json;
 pub use svg::to_svg;
 pub use xcf::{new_xcf, rewrite};

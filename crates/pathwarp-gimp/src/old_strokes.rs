@@ -1,4 +1,4 @@
-//! The order in which GIMP 1 lists the points of a path, in XCF files and in text.
+//! Converts strokes from and to the order in which GIMP 1 lists points, in XCF files and in text.
 //!
 //! Every stroke starts with its anchor, followed by the outgoing handle of each anchor and the incoming handle of the next. Every
 //! stroke but the last is closed, and an open stroke lacks its first handle.
@@ -14,7 +14,7 @@ pub(crate) const NEW_STROKE: u32 = 3;
 /// A point with its type.
 pub(crate) type TypedPoint = (u32, [f64; 2]);
 
-/// Splits the points of a path into strokes. `offset` returns the place of a point in the file.
+/// Splits the points of a path into strokes. `offset` returns the offset of a point in the file.
 pub(crate) fn strokes(
     points: &[TypedPoint],
     closed: bool,
@@ -53,7 +53,7 @@ pub(crate) fn strokes(
     Ok(out)
 }
 
-/// Lists the points of a stroke in this order, as a further stroke of a path.
+/// Lists the points of a stroke in the order of GIMP 1, as a further stroke of a path.
 pub(crate) fn listed(s: &Stroke) -> Vec<TypedPoint> {
     let kind = |i: usize| match i {
         0 => NEW_STROKE,
@@ -65,7 +65,7 @@ pub(crate) fn listed(s: &Stroke) -> Vec<TypedPoint> {
     rest.chain(first).collect()
 }
 
-/// Returns `true` if this form can hold the strokes: only the last may be open.
+/// Whether the form of GIMP 1 can hold the strokes, of which only the last may be open.
 pub(crate) fn can_hold(strokes: &[Stroke]) -> bool {
     strokes.iter().rev().skip(1).all(|s| s.closed)
 }

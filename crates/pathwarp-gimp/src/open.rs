@@ -24,13 +24,42 @@ pub fn salvage(file: impl Read + Seek) -> Result<Salvaged, Error> {
     salvage_within(file, &Limits::default())
 }
 
-/// Reads a file like [`salvage`], within limits for its size: those on bytes of text, which paths are read from, and on bytes of
-/// pictures, among which they lie in compressed files.
+/// Reads a file like [`salvage`], within limits for its size. They apply to the bytes of text and of paths, and to the unpacked bytes
+/// of compressed files, in which paths lie among pictures.
 ///
 /// # Errors
 /// As for [`salvage`].
 pub fn salvage_within(mut file: impl Read + Seek, limits: &Limits) -> Result<Salvaged, Error> {
-    dispatch(&mut file, limits)
+    let file: &mut dyn ReadSeek = &mut file;
+    let packing = packing(&head(file)?);
+    let mut input = unpacked(file, packing, limits)?;
+    let head = input.peek(HEAD)?;
+    if head.is_empty() {
+        return Err(Error::new(ErrorKind::UnknownFormat, 0, "the file is empty"));
+    }
+    if head.starts_with(xcf::MAGIC) {
+        let mut xcf = xcf::Xcf::default();
+        let damage = xcf::read(&mut input, &mut xcf).err();
+        let kind = if packing == Packing::None { FileKind::Xcf } else { FileKind::PackedXcf };
+        // Without even a size there is nothing to salvage.
+        if let (Some(e), 0) = (&damage, xcf.width) {
+            return Err(e.clone());
+        }
+        let size = Some([f64::from(xcf.width), f64::from(xcf.height)]);
+        let paths = xcf.records.into_iter().map(|r| r.path).collect();
+        return Ok(Salvaged { file: PathFile { kind: kind(xcf.version), size, paths }, damage });
+    }
+    let whole = |file| Salvaged { file, damage: None };
+    match first_byte(&head) {
+        Some(b'<') => svg::read(&input.text()?).map(whole),
+        Some(b'{') => point_list::read(&input.text()?).map(whole),
+        _ if head.starts_with(text::FIRST) => {
+            let mut file = PathFile { kind: FileKind::Text, size: None, paths: Vec::new() };
+            let damage = text::read(&input.text()?, &mut file.paths).err();
+            Ok(Salvaged { file, damage })
+        }
+        _ => Err(Error::new(ErrorKind::UnknownFormat, 0, "not a file of GIMP: neither XCF, SVG, JSON nor GIMP 1 text")),
+    }
 }
 
 /// The compression of a file.
@@ -71,39 +100,6 @@ fn head(file: &mut dyn ReadSeek) -> Result<Vec<u8>, Error> {
 /// Number of bytes that identify a file, including the declarations of an SVG.
 pub const HEAD: usize = 512;
 
-/// Reads a file by its format.
-fn dispatch(file: &mut dyn ReadSeek, limits: &Limits) -> Result<Salvaged, Error> {
-    let packing = packing(&head(file)?);
-    let mut input = unpacked(file, packing, limits)?;
-    let head = input.peek(HEAD)?;
-    if head.is_empty() {
-        return Err(Error::new(ErrorKind::UnknownFormat, 0, "the file is empty"));
-    }
-    if head.starts_with(xcf::MAGIC) {
-        let mut xcf = xcf::Xcf::default();
-        let damage = xcf::read(&mut input, &mut xcf).err();
-        let kind = if packing == Packing::None { FileKind::Xcf } else { FileKind::PackedXcf };
-        // Without even a size there is nothing to salvage.
-        if let (Some(e), 0) = (&damage, xcf.width) {
-            return Err(e.clone());
-        }
-        let size = Some([f64::from(xcf.width), f64::from(xcf.height)]);
-        let paths = xcf.records.into_iter().map(|r| r.path).collect();
-        return Ok(Salvaged { file: PathFile { kind: kind(xcf.version), size, paths }, damage });
-    }
-    let whole = |file| Salvaged { file, damage: None };
-    match first_byte(&head) {
-        Some(b'<') => svg::read(&input.text()?).map(whole),
-        Some(b'{') => point_list::read(&input.text()?).map(whole),
-        _ if head.starts_with(text::FIRST) => {
-            let mut file = PathFile { kind: FileKind::Text, size: None, paths: Vec::new() };
-            let damage = text::read(&input.text()?, &mut file.paths).err();
-            Ok(Salvaged { file, damage })
-        }
-        _ => Err(Error::new(ErrorKind::UnknownFormat, 0, "not a file of GIMP: neither XCF, SVG, JSON nor GIMP 1 text")),
-    }
-}
-
 /// Memory limit for xz in KiB; its highest preset needs 65 MiB.
 const XZ_MEMORY_KIB: u32 = 96 << 10;
 
@@ -113,7 +109,8 @@ fn first_byte(head: &[u8]) -> Option<u8> {
     head.iter().copied().find(|b| !b.is_ascii_whitespace())
 }
 
-/// Returns `false` if no file for which [`sniff`] is `true` begins with these bytes, which are the first [`HEAD`], or all there are.
+/// A quick test for [`sniff`]: returns `false` if a file that begins with `head` certainly holds no paths of GIMP. `head` is the first
+/// [`HEAD`] bytes, or the whole file.
 #[must_use]
 pub fn may_begin(head: &[u8]) -> bool {
     packing(head) != Packing::None
@@ -125,7 +122,7 @@ pub fn may_begin(head: &[u8]) -> bool {
         }
 }
 
-/// Returns `true` if a file contains paths of GIMP: an XCF, GIMP 1 text, a valid point list, or an SVG as GIMP exports it.
+/// Whether a file holds paths of GIMP: an XCF, GIMP 1 text, a valid point list, or an SVG as GIMP exports it.
 #[must_use]
 pub fn sniff(mut file: impl Read + Seek) -> bool {
     let file: &mut dyn ReadSeek = &mut file;

@@ -22,17 +22,9 @@ pub struct GimpPath {
 pub struct Stroke {
     /// `true` if the last anchor connects to the first.
     pub closed: bool,
-    /// Control points in pixels, y down: for every anchor its incoming handle, the anchor, its outgoing handle. The single
-    /// precision of XCF is kept without change.
+    /// Control points in pixels, with y pointing down: for every anchor its incoming handle, the anchor, and its outgoing handle.
+    /// Points from an XCF keep their single precision.
     pub points: Vec<[f64; 2]>,
-}
-
-impl Stroke {
-    /// Returns the number of anchors.
-    #[must_use]
-    pub fn anchors(&self) -> usize {
-        self.points.len() / 3
-    }
 }
 
 impl GimpPath {
@@ -41,9 +33,7 @@ impl GimpPath {
     pub fn bounds(&self) -> Option<[f64; 4]> {
         self.outline().bounding_box().map(|b| [b.x0, b.y0, b.x1, b.y1])
     }
-}
 
-impl GimpPath {
     /// Returns the curves that GIMP draws. A segment whose handles coincide with their anchors is a line.
     #[must_use]
     pub fn outline(&self) -> Outline {
@@ -52,13 +42,19 @@ impl GimpPath {
 }
 
 impl Stroke {
+    /// Returns the number of anchors.
+    #[must_use]
+    pub fn anchors(&self) -> usize {
+        self.points.len() / 3
+    }
+
     /// Returns the curve; `None` if there is no anchor.
     #[must_use]
     pub fn subpath(&self) -> Option<Subpath> {
         let triples: Vec<[Point; 3]> = self.triples().collect();
         let (first, last) = (triples.first()?, triples.last()?);
         let mut segs: Vec<Seg> = triples.windows(2).map(|w| segment(w[0], w[1])).collect();
-        // Drop a closing segment without length: of a single anchor, or of a last anchor on top of the first.
+        // Drop a closing segment without length, from a single anchor or from a last anchor on top of the first.
         let closing = segment(*last, *first);
         if self.closed && !matches!(closing, Seg::Line(l) if l.p0 == l.p1) {
             segs.push(closing);
@@ -66,7 +62,7 @@ impl Stroke {
         Some(Subpath { start: first[1], segs, closed: self.closed })
     }
 
-    /// Iterates over the anchors: incoming handle, anchor, outgoing handle.
+    /// Iterates over the anchors, each with its incoming handle before and its outgoing handle after it.
     pub fn triples(&self) -> impl Iterator<Item = [Point; 3]> + '_ {
         self.points.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|[x, y]| Point::new(x, y)))
     }
@@ -120,8 +116,8 @@ pub struct Salvaged {
     pub damage: Option<Error>,
 }
 
-/// The shortest text that parses to the same number, in single precision if the number has no more, as in GIMP's files, or
-/// else in double precision.
+/// The shortest text that parses to the same number: in single precision if the number has no more, as in GIMP's files, else in
+/// double precision.
 pub(crate) fn shortest(v: f64) -> String {
     let single = v as f32;
     // Adding 0.0 turns -0 into 0.

@@ -1,4 +1,5 @@
-//! Point lists in JSON, as returned by GIMP's `gimp-path-stroke-get-points` (3.0) and `gimp-vectors-stroke-get-points` (2.x).
+//! Reads and writes point lists in JSON, as returned by GIMP's `gimp-path-stroke-get-points` (3.0) and
+//! `gimp-vectors-stroke-get-points` (2.x).
 //!
 //! ```json
 //! {"width": 640, "height": 400, "paths": [{"name": "Base", "visible": true, "strokes": [
@@ -88,7 +89,7 @@ fn path(p: JsonPath) -> Result<GimpPath, String> {
     Ok(GimpPath { name: p.name, visible: p.visible, strokes })
 }
 
-/// Writes paths as point lists in JSON; every coordinate is exact.
+/// Writes paths as point lists in JSON. Coordinates are exact.
 #[must_use]
 pub fn to_json(size: Option<[f64; 2]>, paths: &[GimpPath]) -> String {
     let points = |s: &Stroke| JsonStroke {
@@ -105,6 +106,6 @@ pub fn to_json(size: Option<[f64; 2]>, paths: &[GimpPath]) -> String {
     };
     let file =
         JsonFile { width: size.map(|s| s[0]), height: size.map(|s| s[1]), paths: paths.iter().map(path).collect() };
-    // Serialization cannot fail: there are no maps, and numbers are finite.
+    // Without maps, serialization cannot fail.
     serde_json::to_string(&file).unwrap_or_default() + "\n"
 }

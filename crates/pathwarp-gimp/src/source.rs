@@ -16,7 +16,7 @@ enum Backend<'a> {
     Stream(BufReader<Box<dyn Read + 'a>>),
 }
 
-/// The length of a file, from whose start it is read afterwards.
+/// Returns the length of a file, and rewinds it.
 pub(crate) fn length(file: &mut dyn ReadSeek) -> Result<u64, Error> {
     let end = file.seek(SeekFrom::End(0)).and_then(|end| file.seek(SeekFrom::Start(0)).map(|_| end));
     end.map_err(|e| Error::io(0, &e))
@@ -29,7 +29,7 @@ pub(crate) struct ByteSource<'a> {
     /// Upper bound for the end of the data.
     pub(crate) end: u64,
     limits: Limits,
-    /// Number of bytes read, not skipped, from compressed data, of which a few kilobytes can unpack to any amount.
+    /// Bytes read, not skipped, from compressed data, of which a few kilobytes can unpack to any amount.
     unpacked: u64,
 }
 
@@ -47,8 +47,8 @@ impl<'a> ByteSource<'a> {
         Self { backend, at: 0, end: limits.of(Limit::Bytes) as u64, limits, unpacked: 0 }
     }
 
-    /// Checks that `count` bytes are left; if not, the error at byte `place` says what `needed` them. The end of a stream is the limit,
-    /// unless a length word set another.
+    /// Checks that `count` bytes are left. If not, returns an error at byte `place` that says what `needed` them. A stream ends at the
+    /// limit, unless a length word ends it before.
     pub(crate) fn need(&self, count: u64, place: u64, needed: impl FnOnce() -> String) -> Result<(), Error> {
         if count <= self.left() {
             return Ok(());
@@ -58,7 +58,7 @@ impl<'a> ByteSource<'a> {
         Err(if of_limit { self.beyond(self.at.saturating_add(count), known) } else { known })
     }
 
-    /// The error about byte `to`, which is beyond the end: that of a file is `known`, that of a stream is a limit.
+    /// Chooses the error about a byte `to` beyond the end: `known` for a file, and the limit for a stream.
     pub(crate) fn beyond(&self, to: u64, known: Error) -> Error {
         match (&self.backend, self.limits.check(Limit::Bytes, to as f64)) {
             (Backend::Stream(_), Err(e)) => Error::too_large(known.offset, "unpacked, the file takes", e.cut_short()),
@@ -74,7 +74,7 @@ impl<'a> ByteSource<'a> {
         self.end.saturating_sub(self.at)
     }
 
-    /// Fills `buffer`; an error at the end of the data names `what`.
+    /// Fills `buffer`. An error at the end of the data names `what`.
     pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Error> {
         self.need(buffer.len() as u64, self.at, || format!("{what} needs {} more bytes", buffer.len()))?;
         let read = match &mut self.backend {
@@ -97,7 +97,7 @@ impl<'a> ByteSource<'a> {
         Ok(())
     }
 
-    /// Reads `count` bytes, bounded by those left. Allocates as they arrive.
+    /// Reads `count` bytes, after checking that they are left. Allocates memory as they arrive.
     pub(crate) fn vec(&mut self, count: u64, what: &str) -> Result<Vec<u8>, Error> {
         self.need(count, self.at, || format!("{what} needs {count} bytes"))?;
         let mut out = Vec::new();
@@ -114,10 +114,10 @@ impl<'a> ByteSource<'a> {
     /// Reads everything up to the end as UTF-8.
     pub(crate) fn text(&mut self) -> Result<String, Error> {
         let mut out = Vec::new();
-        let most = (self.limits.of(Limit::Bytes) as u64).saturating_add(1);
+        let max = (self.limits.of(Limit::Bytes) as u64).saturating_add(1);
         let read = match &mut self.backend {
-            Backend::File(f) => f.take(most).read_to_end(&mut out),
-            Backend::Stream(s) => s.take(most).read_to_end(&mut out),
+            Backend::File(f) => f.take(max).read_to_end(&mut out),
+            Backend::Stream(s) => s.take(max).read_to_end(&mut out),
         };
         read.map_err(|e| Error::io(self.at, &e))?;
         self.limits
@@ -140,7 +140,7 @@ impl<'a> ByteSource<'a> {
         Ok(buffer[..buffer.len().min(count)].to_vec())
     }
 
-    /// Moves to byte `to`; a stream only moves forwards.
+    /// Moves to byte `to`. Streams only move forwards.
     pub(crate) fn seek(&mut self, to: u64, what: &str) -> Result<(), Error> {
         if to > self.end {
             let problem = format!("{what} points to byte {to}, but the file ends at {}", self.end);

@@ -22,7 +22,7 @@ const ATTRIBUTES: [(&str, &str); 3] = [("fill", "none"), ("stroke", "black"), ("
 /// Our own attribute for GIMP's visibility switch, on paths that are switched off. GIMP ignores it.
 const VISIBLE: &str = "data-gimp-visible";
 
-/// Returns `true` if a file with these first bytes can be an export from GIMP.
+/// Whether a file with these first bytes can be an export from GIMP.
 pub(crate) fn may_be_export(head: &[u8]) -> bool {
     head.windows(DOCTYPE.len()).any(|w| w == DOCTYPE.as_bytes())
 }
@@ -40,16 +40,18 @@ fn parse(text: &str) -> Result<Document<'_>, Error> {
     })
 }
 
-/// Returns `true` if parsing takes time and memory in proportion to the text: without entities, which may expand to entities,
-/// and without elements of very many attributes, which the parser compares with each other.
+/// Whether parsing takes time and memory in proportion to the text: there are no entities, which may expand to entities, and no
+/// elements with very many attributes, which the parser compares with each other.
 fn is_plain(text: &str) -> bool {
-    /// GIMP writes six attributes.
-    const MOST: usize = 1000;
-    let many = |tag: &str| tag.len() > MOST && tag.bytes().filter(|b| matches!(b, b'"' | b'\'')).count() / 2 > MOST;
+    /// GIMP writes six.
+    const MAX_ATTRIBUTES: usize = 1000;
+    let many = |tag: &str| {
+        tag.len() > MAX_ATTRIBUTES && tag.bytes().filter(|b| matches!(b, b'"' | b'\'')).count() / 2 > MAX_ATTRIBUTES
+    };
     !text.contains("<!ENTITY") && !text.split('<').any(|tag| many(tag.split('>').next().unwrap_or_default()))
 }
 
-/// Returns `true` if an SVG is as GIMP exports it: one or more paths, each with a name and GIMP's stroke and nothing else.
+/// Whether an SVG is as GIMP exports it: one or more paths, each with a name and GIMP's stroke and nothing else.
 pub(crate) fn is_export(text: &str) -> bool {
     let Ok(doc) = parse(text) else { return false };
     let mut paths = doc.root_element().children().filter(Node::is_element).peekable();
@@ -94,14 +96,14 @@ pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
         let strokes =
             outline.subpaths.iter().map(|s| single_anchor_loop(s).unwrap_or_else(|| Stroke::from_subpath(s))).collect();
         let name = p.attribute("id").unwrap_or_default().to_owned();
-        // GIMP's own exports do not tell.
+        // Paths in GIMP's own exports count as visible.
         let visible = p.attribute(VISIBLE) != Some("false");
         paths.push(GimpPath { name, visible, strokes });
     }
     Ok(PathFile { kind: FileKind::Svg, size, paths })
 }
 
-/// Recognises a closed stroke of a single anchor. GIMP omits its `C` command, so its four points read as three lines.
+/// Recognizes a closed stroke with a single anchor. GIMP omits its `C` command, so its four points read as three lines.
 fn single_anchor_loop(s: &Subpath) -> Option<Stroke> {
     let lines: Option<Vec<Point>> =
         s.segs.iter().map(|g| if let Seg::Line(l) = g { Some(l.p1) } else { None }).collect();
@@ -115,7 +117,8 @@ fn single_anchor_loop(s: &Subpath) -> Option<Stroke> {
 }
 
 /// Writes paths as SVG that GIMP imports without scaling: sizes in pixels, a matching viewBox, and one `path` each with its name
-/// as id. Paths that are not visible in GIMP are marked for [`read`](crate::read). `decimals` rounds coordinates; without it they keep the single precision of GIMP.
+/// as id. Paths that are not visible in GIMP are marked for [`read`](crate::read). `decimals` rounds coordinates; without it they
+/// keep the single precision of GIMP.
 ///
 /// The outer handles at the ends of open strokes carry no geometry and are lost.
 #[must_use]
@@ -164,7 +167,7 @@ fn data(s: &Stroke, decimals: Option<u8>) -> String {
     };
     triples.windows(2).for_each(|w| segment(&w[0], &w[1]));
     if s.closed {
-        // Z draws a closing line by itself.
+        // `Z` draws a closing line by itself.
         if last[2] != last[1] || first[0] != first[1] {
             segment(last, first);
         }
@@ -173,7 +176,7 @@ fn data(s: &Stroke, decimals: Option<u8>) -> String {
     out
 }
 
-/// Returns `true` if a name is a valid XML id.
+/// Whether a name is a valid XML id.
 fn is_id(name: &str) -> bool {
     let mut chars = name.chars();
     chars.next().is_some_and(|c| c.is_alphabetic() || c == '_')

@@ -1,4 +1,4 @@
-//! The text format of "Export path" in GIMP 1: records of a name, a count, flags, and one line per point.
+//! Reads the text format of "Export path" in GIMP 1: records of a name, a count, flags, and one line per point.
 
 use crate::error::{Error, ErrorKind};
 use crate::old_strokes::{self, TypedPoint};
@@ -9,6 +9,8 @@ pub(crate) const FIRST: &[u8] = b"Name: ";
 
 /// Reads all records. Those before an error remain in `paths`.
 pub(crate) fn read(text: &str, paths: &mut Vec<GimpPath>) -> Result<(), Error> {
+    /// A lower bound on the length of a point's line.
+    const MIN_LINE: u64 = 16;
     let mut at = 0;
     let mut lines = text.split_inclusive('\n').map(|l| {
         let start = at;
@@ -31,9 +33,7 @@ pub(crate) fn read(text: &str, paths: &mut Vec<GimpPath>) -> Result<(), Error> {
         let closed = field("CLOSED:")? != 0;
         field("DRAW:")?;
         field("STATE:")?;
-        // A lower bound for the line of a point.
-        const LEAST: u64 = 16;
-        if n > text.len() as u64 / LEAST {
+        if n > text.len() as u64 / MIN_LINE {
             return Err(Error::damaged(start, format!("{n} points do not fit into the file")));
         }
         let mut points = Vec::new();

@@ -17,7 +17,7 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// Memory is counted for the whole process, so tests run one at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// Returns the error of a damaged file, which must take less than 50 MB, and milliseconds: ten seconds are allowed to a machine under load.
+/// Returns the error for a damaged file. Reading must take less than 50 MB, and only milliseconds; ten seconds allow for a loaded machine.
 #[track_caller]
 fn error_of(bytes: &[u8]) -> Error {
     let before = MEMORY.current_usage();

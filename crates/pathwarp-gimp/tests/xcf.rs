@@ -1,4 +1,4 @@
-//! Files of every version and form: read bit for bit, compressed and plain, and rewritten with every other byte kept.
+//! Files of every version and form, plain and compressed, are read bit for bit, and rewritten without a change to any other byte.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "tests may panic")]
 
 mod common;
@@ -73,7 +73,7 @@ fn xz(plain: &[u8]) -> Option<Vec<u8>> {
         .stdout(std::process::Stdio::piped())
         .spawn()
         .inspect_err(|_| {
-            // Past the captured output: the gate lists such lines.
+            // Tests do not capture this; the gate lists such lines.
             let _ = std::io::stderr().write_all(b"skipped: compressed XCF files are not tested without `xz`\n");
         })
         .ok()?;
@@ -81,7 +81,7 @@ fn xz(plain: &[u8]) -> Option<Vec<u8>> {
     Some(child.wait_with_output().ok()?.stdout)
 }
 
-/// A file, and the number of bytes that were read from it.
+/// A file that counts the bytes read from it.
 struct Counted(std::fs::File, usize);
 
 impl Read for Counted {

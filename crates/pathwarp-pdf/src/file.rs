@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::io::Write as _;
 use std::sync::Arc;
 
-/// Draws a group. Patterns, masks and images hold groups, and groups hold them.
+/// Draws a group. Patterns, masks and images call this for groups that they contain.
 pub(crate) type DrawGroup = fn(&mut File<'_>, &mut Stream, &usvg::Group);
 
 /// A PDF under construction.
@@ -21,12 +21,13 @@ pub(crate) struct File<'a> {
     pub(crate) pdf: Pdf,
     pub(crate) options: &'a Options<'a>,
     pub(crate) draw: DrawGroup,
-    /// Number of groups that became pictures, and of those with fewer pixels than wanted.
+    /// Number of groups that became pictures.
     pub(crate) pictures: usize,
+    /// Number of these with fewer pixels than requested.
     pub(crate) coarser: usize,
-    /// The work on pictures.
+    /// Bounds the work on pictures.
     pub(crate) budget: Budget,
-    /// The first error about a picture. The file is then dropped, so the rest is not drawn.
+    /// The first error about a picture. Since the file will be dropped, later pictures are not drawn.
     pub(crate) failed: Option<Error>,
     /// The objects of embedded pictures, by their data and whether they are smooth.
     pub(crate) embedded: HashMap<(Arc<Vec<u8>>, bool), Ref>,
@@ -37,17 +38,17 @@ pub(crate) struct File<'a> {
 /// Parameters of a graphics state.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub(crate) struct State {
-    /// Opacity, by its bits.
+    /// Opacity as bits.
     opacity: Option<u32>,
     blend: Option<Blend>,
     mask: Option<(MaskKind, Ref)>,
 }
 
-/// A blend mode, by its place in the list of PDF's.
+/// Index of a blend mode in [`BLEND_MODES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Blend(u8);
 
-/// The property of a mask's content that counts.
+/// The property of a mask's content that determines what shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum MaskKind {
     Luminosity,
@@ -70,13 +71,13 @@ impl State {
         self
     }
 
-    /// Returns `true` if the state changes nothing.
+    /// Whether the state changes nothing.
     pub(crate) fn is_plain(self) -> bool {
         self == Self::default()
     }
 }
 
-/// The blend modes besides the normal one.
+/// All blend modes except the normal one.
 const BLEND_MODES: [(usvg::BlendMode, BlendMode); 15] = [
     (usvg::BlendMode::Multiply, BlendMode::Multiply),
     (usvg::BlendMode::Screen, BlendMode::Screen),
@@ -99,7 +100,7 @@ impl<'a> File<'a> {
     pub(crate) fn new(options: &'a Options<'a>, draw: DrawGroup) -> Self {
         let mut pdf = Pdf::new();
         pdf.set_version(1, 7);
-        // Bytes above 127, so that programs take the file for binary.
+        // Bytes above 127 make programs treat the file as binary.
         pdf.set_binary_marker(b"\xe2\xe3\xcf\xd3");
         Self {
             pdf,
@@ -115,7 +116,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// A number for a new object.
+    /// Allocates a number for a new object.
     pub(crate) fn new_ref(&mut self) -> Ref {
         self.last += 1;
         Ref::new(self.last)
@@ -126,8 +127,8 @@ impl<'a> File<'a> {
         self.pdf.stream(at, &deflated(bytes)).filter(Filter::FlateDecode);
     }
 
-    /// Adds what `draw` draws as a group that is composed on its own. `bounds` is in the coordinates of the group, which are written with
-    /// the [shift](Stream::shift) of where it is drawn.
+    /// Adds an isolated group with the content that `draw` draws. `bounds` is in the group's coordinates, which are written with the
+    /// [shift](Stream::shift) of the stream that shows the group.
     pub(crate) fn group(&mut self, bounds: Rect, shift: Vec2, draw: impl FnOnce(&mut Self, &mut Stream)) -> Ref {
         let mut stream = Stream::shifted(shift);
         draw(self, &mut stream);
@@ -142,7 +143,7 @@ impl<'a> File<'a> {
         at
     }
 
-    /// The graphics state with these parameters.
+    /// Returns the graphics state with these parameters, adding it if it is new.
     pub(crate) fn state(&mut self, state: State) -> Ref {
         if let Some(known) = self.states.get(&state) {
             return *known;
@@ -167,7 +168,7 @@ impl<'a> File<'a> {
     }
 }
 
-/// The bytes, compressed.
+/// Compresses bytes for `FlateDecode`.
 pub(crate) fn deflated(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
     // Writing to memory cannot fail.

@@ -1,7 +1,7 @@
-//! Gradients as PDF's axial and radial shadings.
+//! Writes gradients as PDF's axial and radial shadings.
 //!
-//! A shading cannot repeat or reflect its colours. The range of such a gradient is extended instead until it covers what is
-//! painted, and the colours are listed once for each period.
+//! A shading cannot repeat or reflect its colours. The range of such a gradient is extended until it covers the painted area, and the
+//! colours are listed once for each period.
 
 use crate::file::File;
 use crate::stream::{FAR, affine, matrix};
@@ -10,16 +10,16 @@ use pdf_writer::types::FunctionShadingType;
 use pdf_writer::{Finish as _, Name, Ref};
 use usvg::{Paint, SpreadMethod, Stop};
 
-/// Most periods of a repeating gradient. Finer ones look like their average.
-const MOST_PERIODS: i32 = 256;
+/// Limit on the periods of a repeating gradient. Finer ones look like their average.
+const MAX_PERIODS: i32 = 256;
 
-/// Offsets closer than this are a sharp change.
+/// Stops closer than this make a sharp change.
 const SHARP: f64 = 1e-6;
 
-/// Share of the range in which a colour at its very end counts.
+/// Fraction of the range over which to show a colour that only holds at the very end.
 const EDGE: f64 = 1e-4;
 
-/// A gradient over the range of offsets that a painted area needs.
+/// A gradient over the range of offsets that covers the painted area.
 pub(crate) struct Gradient {
     /// To the user space of the painted path.
     transform: Affine,
@@ -35,7 +35,7 @@ enum Shape {
 }
 
 impl Gradient {
-    /// The gradient of a paint, if it is one, for painting `area`.
+    /// Reads the gradient of a paint, for painting `area`. Returns `None` for other paints.
     pub(crate) fn of(paint: &Paint, area: Rect) -> Option<Self> {
         let point = |x: f32, y: f32| Point::new(f64::from(x), f64::from(y));
         match paint {
@@ -60,7 +60,7 @@ impl Gradient {
                     _ => {
                         let corners = corners(transform, area)?;
                         let holds = |(c, r): (Point, f64)| corners.iter().all(|p| p.distance(c) <= r);
-                        (0, (1..MOST_PERIODS).find(|t| holds(circle(*t))).unwrap_or(MOST_PERIODS))
+                        (0, (1..MAX_PERIODS).find(|t| holds(circle(*t))).unwrap_or(MAX_PERIODS))
                     }
                 };
                 let shape = Shape::Radial([circle(range.0), circle(range.1)]);
@@ -70,12 +70,12 @@ impl Gradient {
         }
     }
 
-    /// Returns `true` if a colour is not opaque.
+    /// Whether any colour is translucent.
     pub(crate) fn is_translucent(&self) -> bool {
         self.stops.iter().any(|(_, _, opacity)| *opacity < 1.0)
     }
 
-    /// Adds the colours as a pattern. `to_start` leads from the user space of the painted path to the start of the content
+    /// Adds the colours as a pattern. `to_start` maps the user space of the painted path to that at the start of the content
     /// stream.
     pub(crate) fn colors(&self, file: &mut File<'_>, to_start: Affine) -> Ref {
         let stops: Vec<_> = self.stops.iter().map(|(at, color, _)| (*at, color.to_vec())).collect();
@@ -88,7 +88,7 @@ impl Gradient {
         self.shading(file, to_start, &stops, Name(b"DeviceGray"))
     }
 
-    /// The place of a gradient that is far from the origin.
+    /// The position of a gradient far from the origin; zero for others.
     fn far(&self) -> Vec2 {
         let (Shape::Axial([at, _]) | Shape::Radial([(at, _), _])) = self.shape;
         if at.to_vec2().hypot() > FAR { at.to_vec2() } else { Vec2::ZERO }
@@ -131,7 +131,7 @@ fn corners(transform: Affine, area: Rect) -> Option<[Point; 4]> {
 fn periods_of_line(p: Point, q: Point, points: [Point; 4]) -> (i32, i32) {
     let along: Vec2 = q - p;
     let at = points.map(|c| (c - p).dot(along) / along.hypot2());
-    let half = f64::from(MOST_PERIODS / 2);
+    let half = f64::from(MAX_PERIODS / 2);
     let first = at.iter().copied().fold(f64::INFINITY, f64::min).floor().clamp(-half, half - 1.0);
     let last = at.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil().clamp(first + 1.0, half.max(first + 1.0));
     (first as i32, last as i32)
@@ -145,7 +145,7 @@ fn stops(stops: &[Stop], spread: SpreadMethod, (first, last): (i32, i32)) -> Vec
         (f64::from(s.offset().get()), color, s.opacity().get())
     };
     let mut period: Vec<(f64, [f32; 3], f32)> = stops.iter().map(one).collect();
-    // Before the first stop and behind the last the colour does not change.
+    // The colour does not change before the first stop and after the last.
     if let (Some(a), Some(z)) = (period.first().copied(), period.last().copied()) {
         period.insert(0, (0.0, a.1, a.2));
         period.push((1.0, z.1, z.2));
@@ -163,13 +163,13 @@ fn stops(stops: &[Stop], spread: SpreadMethod, (first, last): (i32, i32)) -> Vec
     out
 }
 
-/// Adds the function that goes through these stops.
+/// Adds the function that interpolates these stops.
 fn function(file: &mut File<'_>, stops: &[(f64, Vec<f32>)]) -> Ref {
     let span = 1.0 / stops.len().max(1) as f64;
     let pairs = stops.iter().zip(stops.iter().skip(1));
     let mut pieces: Vec<[(f64, Vec<f32>); 2]> =
         pairs.filter(|(a, b)| b.0 - a.0 > SHARP * span).map(|(a, b)| [a.clone(), b.clone()]).collect();
-    // The colours at the very ends go on outside, even if others take over at once.
+    // The colours at the very ends extend outside, even if a sharp change follows at once.
     if let (Some(first), Some([start, _])) = (stops.first(), pieces.first_mut())
         && first.1 != start.1
     {

@@ -1,4 +1,4 @@
-//! Draws groups: clip paths, masks, opacity, blend modes, and what is in them. A group with a filter becomes a picture.
+//! Draws groups with their clip paths, masks, opacity, blend modes and content. A group with a filter becomes a picture.
 
 use crate::file::{File, MaskKind, State};
 use crate::options::PRINT;
@@ -41,7 +41,7 @@ fn children(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
     }
 }
 
-/// Draws a group that is composed on its own, in its own coordinates.
+/// Draws an isolated group, in its own coordinates.
 fn isolated(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
     let bounds = roomy(rect(g.layer_bounding_box().to_rect()));
     let mut masks = Vec::new();
@@ -119,8 +119,8 @@ fn filtered(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
     image::place(stream, object, area);
 }
 
-/// Restricts what is drawn to a clip path. Returns the group of a mask if outlines cannot do it.
-pub(crate) fn apply(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, bounds: Rect) -> Option<Ref> {
+/// Restricts drawing to a clip path. If outlines cannot express it, returns the group of a mask that does.
+fn apply(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, bounds: Rect) -> Option<Ref> {
     if let Some(outlines) = outlines(file, clip) {
         for (path, rule) in &outlines {
             stream.clip(path, *rule);
@@ -140,20 +140,20 @@ pub(crate) fn apply(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, b
     }))
 }
 
-/// The outlines whose common part is the clip path; `None` if there are no such outlines.
+/// Expresses a clip path as an intersection of outlines. Returns `None` if that is impossible.
 fn outlines(file: &File<'_>, clip: &ClipPath) -> Option<Vec<(BezPath, FillRule)>> {
     let mut own = Vec::new();
     collect(file, clip.root(), affine(clip.transform()), &mut own)?;
     let rule = own.first().map_or(FillRule::NonZero, |(_, rule)| *rule);
     let boxes: Vec<Rect> = own.iter().map(|(path, _)| path.bounding_box()).collect();
-    // Outlines that overlap would add up their winding numbers.
+    // The winding numbers of outlines that overlap would add up.
     if own.iter().any(|(_, r)| *r != rule) || !are_apart(&boxes) {
         return None;
     }
     let mut path = BezPath::new();
     own.iter().for_each(|(p, _)| path.extend(p.iter()));
     if path.elements().is_empty() {
-        // An empty clip path hides everything, an empty outline is no clip path.
+        // An empty clip path hides everything, but an empty outline would not clip at all.
         path = Rect::ZERO.to_path(1.0);
     }
     let mut out = clip.clip_path().map_or(Some(Vec::new()), |next| outlines(file, next))?;
@@ -161,14 +161,14 @@ fn outlines(file: &File<'_>, clip: &ClipPath) -> Option<Vec<(BezPath, FillRule)>
     Some(out)
 }
 
-/// Returns `true` if no two of the boxes overlap. Of many boxes it says `false`: looking at all pairs would take long.
+/// Whether no two boxes overlap. Returns `false` for many boxes, since comparing all pairs would take long.
 fn are_apart(boxes: &[Rect]) -> bool {
-    const MOST: usize = 256;
+    const MAX_BOXES: usize = 256;
     let overlap = |a: &Rect, b: &Rect| a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
-    boxes.len() <= MOST && boxes.iter().enumerate().all(|(i, a)| !boxes[i + 1..].iter().any(|b| overlap(a, b)))
+    boxes.len() <= MAX_BOXES && boxes.iter().enumerate().all(|(i, a)| !boxes[i + 1..].iter().any(|b| overlap(a, b)))
 }
 
-/// Collects the outlines of a clip path's content; `None` if a part of it is clipped in turn.
+/// Collects the outlines of a clip path's content. Returns `None` if a part of it is clipped in turn.
 fn collect(file: &File<'_>, g: &Group, to_user: Affine, out: &mut Vec<(BezPath, FillRule)>) -> Option<()> {
     for child in g.children() {
         match child {
@@ -219,25 +219,24 @@ fn silhouette(file: &mut File<'_>, stream: &mut Stream, g: &Group, bounds: Rect)
     }
 }
 
-/// Px per inch.
 const PX_PER_INCH: f64 = 96.0;
 
-/// Times that the sides of a picture are halved to stay within the limits: from print to a thumbnail.
-const MOST_HALVINGS: i32 = 4;
+/// Limit on halvings of a picture's sides to stay within the limits, from print to a thumbnail.
+const MAX_HALVINGS: i32 = 4;
 
 /// A picture in the coordinates of a group.
-pub(crate) struct Picture {
-    pub(crate) pixmap: Pixmap,
-    pub(crate) area: Rect,
+struct Picture {
+    pixmap: Pixmap,
+    area: Rect,
 }
 
 /// Renders a group with its filters, clip path, mask and opacity, with fewer pixels if the limits do not allow the resolution.
-/// `None` if it shows nothing.
-pub(crate) fn of_group(file: &mut File<'_>, g: &Group) -> Result<Option<Picture>, Error> {
+/// Returns `None` if it shows nothing.
+fn of_group(file: &mut File<'_>, g: &Group) -> Result<Option<Picture>, Error> {
     let area = rect(g.layer_bounding_box().to_rect());
     let dpi = file.options.picture_dpi.unwrap_or(PRINT);
     let wanted = affine(g.abs_transform()).determinant().abs().sqrt() * dpi / PX_PER_INCH;
-    // The renderer moves the picture's corner to the origin, and applies the group's transform; both are undone.
+    // The renderer moves the picture's corner to the origin and applies the group's transform; undo both.
     let back = affine(g.transform()).inverse();
     if !back.is_finite() || !wanted.is_finite() {
         return Ok(None);
@@ -253,7 +252,7 @@ pub(crate) fn of_group(file: &mut File<'_>, g: &Group) -> Result<Option<Picture>
         let to_pixels = Affine::scale_non_uniform(size[0] / area.width(), size[1] / area.height()) * to_area;
         let [a, b, c, d, e, f] = to_pixels.as_coeffs().map(|v| v as f32);
         match render_group(g, Transform::from_row(a, b, c, d, e, f), size, &file.budget) {
-            Err(Error::TooLarge { .. } | Error::TooMuch(_)) if halvings < MOST_HALVINGS => halvings += 1,
+            Err(Error::TooLarge { .. } | Error::TooMuch(_)) if halvings < MAX_HALVINGS => halvings += 1,
             Err(e) => return Err(e),
             Ok(drawn) => {
                 file.coarser += usize::from(halvings > 0);

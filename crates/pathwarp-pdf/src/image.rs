@@ -1,4 +1,4 @@
-//! Images. A JPEG stays as it is; other bitmaps are stored without loss.
+//! Draws images. A JPEG stays as it is; other bitmaps are stored without loss.
 
 use crate::file::{File, deflated};
 use crate::stream::Stream;
@@ -38,7 +38,7 @@ pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, image: &Image) {
     }
 }
 
-/// The object of an embedded picture, which is added once, however often it is drawn.
+/// The object of an embedded picture. It is added only once, no matter how often it is drawn.
 fn embedded(file: &mut File<'_>, data: &Arc<Vec<u8>>, smooth: bool) -> Option<Ref> {
     let key = (Arc::clone(data), smooth);
     if let Some(known) = file.embedded.get(&key) {
@@ -51,12 +51,12 @@ fn embedded(file: &mut File<'_>, data: &Arc<Vec<u8>>, smooth: bool) -> Option<Re
 
 /// Draws a bitmap over an area.
 pub(crate) fn place(stream: &mut Stream, object: Ref, area: Rect) {
-    // A bitmap fills the unit square, its first row on top.
+    // A bitmap fills the unit square, with its first row on top.
     let unit = Affine::new([area.width(), 0.0, 0.0, -area.height(), area.x0, area.y1]);
     stream.placed(object, unit);
 }
 
-/// Adds a picture as its pixels. What cannot be decoded is not drawn, as in browsers; too large a one is an error.
+/// Adds the pixels of a picture. One that cannot be decoded is not drawn, as in browsers; one that is too large is an error.
 fn decoded(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     if file.failed.is_some() {
         return None;
@@ -73,8 +73,9 @@ fn decoded(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     }
 }
 
-/// Work for a pixel that is decoded, and for one that is compressed again, in pixels painted.
+/// Work of decoding a pixel, in pixels painted.
 const DECODING: f64 = 4.0;
+/// Work of compressing a pixel, in pixels painted.
 const COMPRESSING: f64 = 20.0;
 
 fn count(file: &File<'_>, (width, height): (u32, u32), work: f64) -> Result<(), Error> {
@@ -109,7 +110,7 @@ pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<
     Ok(add(&colors, Name(b"DeviceRGB"), mask))
 }
 
-/// Adds a JPEG as it is, if PDF programs show it as browsers do: grey or with three components of 8 bits.
+/// Adds a JPEG as it is, if PDF programs show it as browsers do, which takes one or three components of 8 bits.
 fn jpeg(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     let frame = JpegFrame::of(data)?;
     let space = match frame.components {
@@ -134,7 +135,7 @@ struct JpegFrame {
 }
 
 impl JpegFrame {
-    /// Finds the frame; `None` if there is none of 8 bits that PDF allows: baseline, extended or progressive.
+    /// Finds a frame of 8 bits in a mode that PDF allows: baseline, extended or progressive.
     fn of(data: &[u8]) -> Option<Self> {
         let mut rest = data.strip_prefix(b"\xff\xd8")?;
         loop {

@@ -1,8 +1,8 @@
 //! Writes a resolved SVG drawing as a PDF of one page.
 //!
 //! Shapes, strokes, gradients, patterns, clip paths, masks, opacity and blend modes become the PDF's own. Letters are written as
-//! outlines, JPEG images byte for byte. Only what a filter produces becomes a picture, as PDF has no filters. The page has the
-//! physical size of the drawing: 1 px is ¾ pt.
+//! outlines, and JPEG images byte for byte. Only groups with filters become pictures, as PDF has no filters. The page has the physical
+//! size of the drawing: 1 px is ¾ pt.
 //!
 //! The output holds neither dates nor random ids: the same drawing always gives the same bytes.
 //!
@@ -30,11 +30,11 @@ use kurbo::Affine;
 use pdf_writer::{Name, Rect, TextStr};
 use stream::Stream;
 
-/// Points per px: 72 points and 96 px are an inch.
+/// Points per px. An inch is 72 points or 96 px.
 const POINTS_PER_PX: f64 = 0.75;
 
-/// The longest side of a page in its units (PDF 32000-1, annex C.2). The unit of a larger page is a multiple of a point.
-const LONGEST_SIDE: f64 = 14_400.0;
+/// Longest side of a page in its units (PDF 32000-1, annex C.2). The unit of a larger page is a multiple of a point.
+const MAX_SIDE: f64 = 14_400.0;
 
 /// A PDF.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub struct Written {
     pub bytes: Vec<u8>,
     /// Number of groups that became pictures because of a filter.
     pub pictures: usize,
-    /// Number of those with fewer pixels than the resolution asks for, to stay within the limits.
+    /// Number of these with fewer pixels than requested, to stay within the limits.
     pub coarser: usize,
 }
 
@@ -55,7 +55,7 @@ pub fn write(tree: &usvg::Tree, options: &Options<'_>) -> Result<Written, Error>
     let mut file = File::new(options, group::draw);
     let [catalog, pages, page, info, content] = [(); 5].map(|()| file.new_ref());
     let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
-    let unit = (width.max(height) * POINTS_PER_PX / LONGEST_SIDE).ceil().max(1.0);
+    let unit = (width.max(height) * POINTS_PER_PX / MAX_SIDE).ceil().max(1.0);
     let scale = POINTS_PER_PX / unit;
 
     let mut stream = Stream::new();

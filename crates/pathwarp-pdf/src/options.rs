@@ -4,19 +4,19 @@ use kurbo::BezPath;
 use pathwarp::budget::Limits;
 use std::fmt;
 
-/// Resolution of the pictures that stand for filters, in pixels per inch, if none is given: the usual one for print.
+/// Default resolution of pictures that replace filters, in pixels per inch: the usual one for print.
 pub(crate) const PRINT: f64 = 300.0;
 
-/// Gives the exact outline of a path in its own coordinates, if usvg's is an approximation.
+/// Returns the exact outline of a path in its own coordinates, if usvg's is an approximation.
 pub type ExactOutline<'a> = dyn Fn(&usvg::Path) -> Option<BezPath> + 'a;
 
 /// Options for writing a PDF.
 pub struct Options<'a> {
-    /// Outlines that replace usvg's, which approximates arcs.
+    /// Provides outlines in place of usvg's, which approximates arcs.
     pub exact: &'a ExactOutline<'a>,
-    /// Pixels per inch of the pictures that stand for filters; `None`: 300.
+    /// Pixels per inch of pictures that replace filters; `None` stands for 300.
     pub picture_dpi: Option<f64>,
-    /// Limits on the pictures, embedded ones and those that stand for filters.
+    /// Limits on embedded pictures, and on those that replace filters.
     pub limits: Limits,
 }
 

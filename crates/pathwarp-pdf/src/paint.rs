@@ -9,22 +9,22 @@ use pdf_writer::{Filter, Ref};
 use usvg::{Fill, FillRule, LineCap, LineJoin, Paint, PaintOrder, Path, Stroke};
 
 /// A use of a paint.
-pub(crate) struct Use<'a> {
-    pub(crate) paint: &'a Paint,
-    pub(crate) opacity: f32,
+struct Use<'a> {
+    paint: &'a Paint,
+    opacity: f32,
     /// `true` for a stroke, `false` for a fill.
-    pub(crate) strokes: bool,
-    /// The path that is painted.
-    pub(crate) path: &'a Path,
+    strokes: bool,
+    /// The path to paint.
+    path: &'a Path,
 }
 
 /// Calls `draw` with the paint set.
-pub(crate) fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use<'_>, draw: impl FnOnce(&mut Stream)) {
+fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use<'_>, draw: impl FnOnce(&mut Stream)) {
     let area = roomy(rect(painted.path.stroke_bounding_box()));
     let gradient = Gradient::of(painted.paint, area);
     let mut state = State::default().opacity(painted.opacity);
     if let Some(gradient) = gradient.as_ref().filter(|g| g.is_translucent()) {
-        // The same gradient in grey says how much shows.
+        // The same gradient in shades of grey serves as a mask.
         let group = file.group(area, stream.shift, |file, stream| {
             let shift = stream.shift;
             let grey = gradient.opacities(file, stream.to_start);
@@ -35,7 +35,7 @@ pub(crate) fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use
         });
         state = state.mask(MaskKind::Luminosity, group);
     }
-    // A gradient or pattern is set anew for every path, so that leaving it set does no harm; a state would stay.
+    // Every path sets its paint, so a gradient or pattern can stay set, but a state would affect later paths.
     let limited = !state.is_plain();
     if limited {
         stream.save();
@@ -135,9 +135,9 @@ fn pen(stream: &mut Stream, stroke: &Stroke) {
     content.set_dash_pattern(dashes.iter().copied(), offset(dashes, stroke.dashoffset()));
 }
 
-/// The outline with lines of no length made minute ones: SVG draws their square caps, PDF does not.
+/// Gives lines of no length a minute length, since SVG draws their square caps and PDF does not.
 fn with_dots(outline: &BezPath, width: f32) -> BezPath {
-    /// Length as a share of the width.
+    /// As a fraction of the width.
     const MINUTE: f64 = 1e-4;
     let elements = outline.elements();
     let starts = |i: usize| elements.get(i).is_none_or(|e| matches!(e, PathEl::MoveTo(_)));
@@ -153,13 +153,13 @@ fn with_dots(outline: &BezPath, width: f32) -> BezPath {
     out
 }
 
-/// The offset into the dashes, which PDF wants positive.
+/// The offset into the dashes, which PDF requires to be positive.
 fn offset(dashes: &[f32], offset: f32) -> f32 {
     let period: f32 = dashes.iter().sum();
     if period > 0.0 { offset.rem_euclid(period) } else { 0.0 }
 }
 
-/// Adds a pattern. `to_start` leads from the user space of the painted path to the start of the content stream.
+/// Adds a pattern. `to_start` maps the user space of the painted path to that at the start of the content stream.
 fn add_pattern(file: &mut File<'_>, pattern: &usvg::Pattern, to_start: Affine) -> Ref {
     let mut stream = Stream::new();
     (file.draw)(file, &mut stream, pattern.root());
@@ -167,7 +167,7 @@ fn add_pattern(file: &mut File<'_>, pattern: &usvg::Pattern, to_start: Affine) -
     let bytes = deflated(&bytes);
     let tile = pattern.rect();
     let (width, height) = (tile.width(), tile.height());
-    // The content's origin is the tile's corner.
+    // The origin of the content is the corner of the tile.
     let corner = Affine::translate((f64::from(tile.x()), f64::from(tile.y())));
     let at = file.new_ref();
     let mut out = file.pdf.tiling_pattern(at, &bytes);

@@ -1,4 +1,4 @@
-//! A content stream under construction, with the resources it uses; outlines as path operators.
+//! Builds content streams, with the resources that they use.
 
 use kurbo::{Affine, BezPath, PathEl, Point, Rect, Shape as _, Vec2};
 use pdf_writer::types::ColorSpaceOperand;
@@ -7,12 +7,12 @@ use pdf_writer::{Content, Finish as _, Name, Ref};
 use std::collections::BTreeSet;
 use usvg::tiny_skia_path::{Path, PathSegment};
 
-/// Coordinates beyond this are far from the page's corner: in single precision their last digit is a hundredth.
+/// Coordinates beyond this are far from the page's corner: single precision resolves only hundredths there.
 pub(crate) const FAR: f64 = 1e5;
 
-/// The kinds of resources in use here.
+/// A kind of resource.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Kind {
+enum Kind {
     /// A graphics state: opacity, blend mode, mask.
     State,
     /// A gradient or pattern.
@@ -29,11 +29,12 @@ pub(crate) struct Used(BTreeSet<(Kind, i32)>);
 pub(crate) struct Stream {
     pub(crate) content: Content,
     used: Used,
-    /// From the current coordinates to those in which the stream starts: patterns are anchored there.
+    /// From the current coordinates to those at the start of the stream, to which patterns refer.
     pub(crate) to_start: Affine,
-    /// What is subtracted from the current coordinates before they are written: PDF has single precision, too coarse for maps in
-    /// metres. Nothing, as long as the page's corner is not far.
+    /// Subtracted from the current coordinates before they are written, since the single precision of PDF is too coarse for maps in
+    /// metres. Zero unless the page's corner is far away.
     pub(crate) shift: Vec2,
+    /// `to_start` and `shift` of the saved graphics states.
     outer: Vec<(Affine, Vec2)>,
 }
 
@@ -42,19 +43,17 @@ impl Stream {
         Self::shifted(Vec2::ZERO)
     }
 
-    /// The content of an object that is drawn in coordinates that are written with this shift.
+    /// Starts the content of an object whose coordinates are written with this shift.
     pub(crate) fn shifted(shift: Vec2) -> Self {
         let to_start = Affine::translate(-shift);
         Self { content: Content::new(), used: Used::default(), to_start, shift, outer: Vec::new() }
     }
 
-    /// Saves the graphics state.
     pub(crate) fn save(&mut self) {
         self.content.save_state();
         self.outer.push((self.to_start, self.shift));
     }
 
-    /// Restores the graphics state.
     pub(crate) fn restore(&mut self) {
         self.content.restore_state();
         (self.to_start, self.shift) = self.outer.pop().unwrap_or_default();
@@ -71,7 +70,7 @@ impl Stream {
         }
     }
 
-    /// Draws an object of the unit square in an area given by a transform of that.
+    /// Draws an object that fills the unit square, transformed by `unit`.
     pub(crate) fn placed(&mut self, object: Ref, unit: Affine) {
         self.content.save_state();
         self.content.transform(matrix(Affine::translate(-self.shift) * unit));
@@ -110,7 +109,7 @@ impl Stream {
         self.content.x_object(Name(name.as_bytes()));
     }
 
-    /// Takes a pattern as the paint.
+    /// Sets a pattern as the paint.
     pub(crate) fn pattern(&mut self, pattern: Ref, strokes: bool) {
         let name = self.used.name(Kind::Pattern, pattern);
         let name = Name(name.as_bytes());
@@ -121,14 +120,14 @@ impl Stream {
         }
     }
 
-    /// The bytes and the resources.
+    /// Returns the bytes and the resources.
     pub(crate) fn finish(self) -> (Vec<u8>, Used) {
         (self.content.finish().into_vec(), self.used)
     }
 }
 
 impl Used {
-    /// The name of a resource, which is used from now on.
+    /// Records the use of a resource, and returns its name.
     fn name(&mut self, kind: Kind, r: Ref) -> String {
         self.0.insert((kind, r.get()));
         name(kind, r.get())
@@ -163,7 +162,7 @@ fn name(kind: Kind, r: i32) -> String {
     format!("{letter}{r}")
 }
 
-/// An outline of usvg in f64.
+/// Converts an outline of usvg to f64.
 pub(crate) fn from_usvg(path: &Path) -> BezPath {
     let point = |p: usvg::tiny_skia_path::Point| Point::new(f64::from(p.x), f64::from(p.y));
     let mut out = BezPath::new();
@@ -180,7 +179,7 @@ pub(crate) fn from_usvg(path: &Path) -> BezPath {
 }
 
 /// Writes the operators that construct an outline.
-pub(crate) fn write(out: &mut Content, path: &BezPath) {
+fn write(out: &mut Content, path: &BezPath) {
     let mut at = Point::ORIGIN;
     for element in path.elements() {
         let f = |p: Point| (p.x as f32, p.y as f32);
@@ -191,7 +190,7 @@ pub(crate) fn write(out: &mut Content, path: &BezPath) {
         match *element {
             PathEl::MoveTo(p) => drop(out.move_to(f(p).0, f(p).1)),
             PathEl::LineTo(p) => drop(out.line_to(f(p).0, f(p).1)),
-            // PDF has no quadratics; this cubic is the same curve.
+            // PDF has no quadratics, but this cubic is the same curve.
             PathEl::QuadTo(p, q) => cubic(out, at + (p - at) * (2.0 / 3.0), q + (p - q) * (2.0 / 3.0), q),
             PathEl::CurveTo(p, q, r) => cubic(out, p, q, r),
             PathEl::ClosePath => drop(out.close_path()),
@@ -200,37 +199,37 @@ pub(crate) fn write(out: &mut Content, path: &BezPath) {
     }
 }
 
-/// Returns `true` if the outline has an area to fill.
+/// Whether the outline has an area to fill.
 pub(crate) fn has_area(path: &BezPath) -> bool {
     let r = path.bounding_box();
     r.width() > 0.0 && r.height() > 0.0
 }
 
-/// A transform in f64.
+/// Converts a transform to f64.
 pub(crate) fn affine(t: usvg::Transform) -> Affine {
     Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
 }
 
-/// A transform as PDF writes it.
+/// Converts a transform for PDF.
 pub(crate) fn matrix(m: Affine) -> [f32; 6] {
     m.as_coeffs().map(|v| v as f32)
 }
 
-/// A rectangle in f64.
+/// Converts a rectangle to f64.
 pub(crate) fn rect(r: usvg::Rect) -> Rect {
     let [x0, y0, x1, y1] = [r.left(), r.top(), r.right(), r.bottom()].map(f64::from);
     Rect::new(x0, y0, x1, y1)
 }
 
-/// A rectangle as PDF writes it.
+/// Converts a rectangle for PDF.
 pub(crate) fn pdf_rect(r: Rect) -> pdf_writer::Rect {
     let [x0, y0, x1, y1] = [r.x0, r.y0, r.x1, r.y1].map(|v| v as f32);
     pdf_writer::Rect::new(x0, y0, x1, y1)
 }
 
-/// A rectangle that surely holds what is drawn in `r`, whose numbers are rounded and ignore anti-aliasing.
+/// Inflates a rectangle to make up for rounding and antialiasing.
 pub(crate) fn roomy(r: Rect) -> Rect {
-    /// A share of the size, and a pixel.
+    /// A fraction of the size, and a pixel.
     const MARGIN: (f64, f64) = (0.01, 1.0);
     r.inflate(MARGIN.0 * r.width() + MARGIN.1, MARGIN.0 * r.height() + MARGIN.1)
 }

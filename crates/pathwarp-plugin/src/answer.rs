@@ -1,11 +1,11 @@
-//! Requests, answers and descriptions of built maps: the same in the binary and the text form of the protocol.
+//! Requests, answers and descriptions of built maps, which the binary and the text form of the protocol share.
 
 use crate::fault::Fault;
 use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp::map::{Crease, CreaseKind, Creases, Jet, Level};
 use std::sync::Arc;
 
-/// The kinds of batches.
+/// The kind of a batch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ask {
     /// Values.
@@ -26,18 +26,18 @@ impl Ask {
         }
     }
 
-    /// Numbers in the answer for one point.
+    /// The number of numbers in the answer for one point.
     pub(crate) fn numbers(self) -> usize {
         if self == Self::Jets { 6 } else { 2 }
     }
 }
 
-/// The point in two numbers of an answer.
+/// Reads a point from two numbers of an answer.
 pub(crate) fn point(&[x, y]: &[f64; 2]) -> Point {
     Point::new(x, y)
 }
 
-/// The jet in six numbers of an answer: F, ∂F/∂x, ∂F/∂y.
+/// Reads a jet from six numbers of an answer: F, ∂F/∂x, ∂F/∂y.
 pub(crate) fn jet(&[x, y, xx, xy, yx, yy]: &[f64; 6]) -> Jet {
     Jet { p: Point::new(x, y), dx: Vec2::new(xx, xy), dy: Vec2::new(yx, yy) }
 }
@@ -50,12 +50,12 @@ pub(crate) struct BuildAnswer {
     pub(crate) creases: Vec<CreaseAnswer>,
 }
 
-/// A crease, or an edge of the domain, which is where the level is positive.
+/// A crease, or an edge of the domain. The domain is where the level is positive.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CreaseAnswer {
     /// a·x + b·y + c.
     pub(crate) line: Option<[f64; 3]>,
-    /// The part of the line within this box x0, y0, x1, y1.
+    /// x0, y0, x1, y1: only the part of the line within this box.
     pub(crate) within: Option<[f64; 4]>,
     /// cx, cy, r: the distance from the center less r.
     pub(crate) circle: Option<[f64; 3]>,
@@ -70,7 +70,7 @@ impl CreaseAnswer {
                 Level::Stretch { a, b, c, within: Rect::new(x0, y0, x1, y1) }
             }
             (None, Some([x, y, r]), None) if r != 0.0 => {
-                // Inside of a circle with a negative radius the level is positive.
+                // The level is positive inside a circle with a negative radius.
                 Level::Field(Arc::new(move |p: Point| r.signum() * (p.distance(Point::new(x, y)) - r.abs())))
             }
             _ => return None,

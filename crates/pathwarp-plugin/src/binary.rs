@@ -1,23 +1,23 @@
 //! The protocol as length-prefixed little-endian numbers.
 //!
-//! A message is its length in bytes without this prefix (u32), one byte for its kind, and a body.
+//! A message consists of its length in bytes without this prefix (u32), one byte for its kind, and a body.
 
 use crate::answer::Ask;
-use crate::fault::{Fault, MESSAGE_BYTES, beginning};
+use crate::fault::{Fault, MAX_MESSAGE_BYTES, beginning};
 use pathwarp::kurbo::Point;
 
-/// Kinds of requests.
+// Kinds of requests.
 const BUILD: u8 = 1;
 const POINTS: u8 = 2;
 const JETS: u8 = 3;
 const INVERSE: u8 = 4;
 
-/// Kinds of answers.
+// Kinds of answers.
 const DONE: u8 = 0;
 const REFUSED: u8 = 1;
 
-/// Length prefix and kind.
-pub(crate) const HEAD: usize = 5;
+/// Size in bytes of the length prefix and the kind.
+const HEAD: usize = 5;
 
 fn head(kind: u8, body: usize, out: &mut Vec<u8>) {
     let length = u32::try_from(body + 1).unwrap_or(u32::MAX);
@@ -25,7 +25,7 @@ fn head(kind: u8, body: usize, out: &mut Vec<u8>) {
     out.push(kind);
 }
 
-/// The request to build a map from `lines`.
+/// Encodes the request to build a map from `lines`.
 pub(crate) fn build(lines: &[String]) -> Vec<u8> {
     let body = lines.concat();
     let mut out = Vec::with_capacity(body.len() + HEAD);
@@ -34,7 +34,7 @@ pub(crate) fn build(lines: &[String]) -> Vec<u8> {
     out
 }
 
-/// The request for a batch.
+/// Encodes the request for a batch.
 pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
     let kind = match ask {
         Ask::Points => POINTS,
@@ -51,8 +51,8 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
     }
 }
 
-/// The length of the message at the beginning of `bytes`, once its head is there. `body` is the length of the body if it is known;
-/// a message instead of it may have up to [`MESSAGE_BYTES`].
+/// The length of the message at the beginning of `bytes`, once its head has arrived. `body` is the length of the body if it is known; an
+/// error message in its place may have up to [`MAX_MESSAGE_BYTES`].
 pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &dyn Fn() -> String) -> Result<Option<usize>, Fault> {
     let Some((head, _)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
     let [a, b, c, d, kind] = *head;
@@ -64,7 +64,7 @@ pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &dyn Fn() -> S
             expected: expected(),
             found: format!("has {} bytes of numbers instead of {body}", length - 1),
         }),
-        (DONE, None) | (REFUSED, _) if (1..=MESSAGE_BYTES).contains(&length) => Ok(Some(length + 4)),
+        (DONE, None) | (REFUSED, _) if (1..=MAX_MESSAGE_BYTES).contains(&length) => Ok(Some(length + 4)),
         _ => garbage(),
     }
 }

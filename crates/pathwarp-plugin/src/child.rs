@@ -1,17 +1,17 @@
-//! Starting and ending the processes. None outlives this one, however it ends, short of being killed.
+//! Starts and ends processes. None outlives this one, unless it is killed.
 
 use crate::fault::Fault;
 use std::path::Path;
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Every process that runs.
+/// All running processes.
 static LIVE: Mutex<Vec<Shared>> = Mutex::new(Vec::new());
 
-/// A process until it is ended: its number may then belong to another.
+/// A process, or `None` once it has been ended, since another may then have its number.
 type Shared = Arc<Mutex<Option<Child>>>;
 
-/// Set for programs that are started: a plug-in that calls pathwarp with itself as a plug-in would start programs without an end.
+/// Set for programs that are started, since a plug-in that calls pathwarp with itself as a plug-in would start programs endlessly.
 const WITHIN: &str = "PATHWARP_WITHIN_PLUGIN";
 
 /// A running program, in a process group of its own where the system has them. Killed and waited for when dropped.
@@ -34,7 +34,7 @@ impl Running {
             use std::os::unix::process::CommandExt;
             command.process_group(0);
         }
-        // Held until the process is known, so that `end_all` misses none.
+        // Hold the lock until the process is listed, so that `end_all` misses none.
         let mut live = live();
         let child = command.spawn().map_err(|e| Fault::NotStarted(e.to_string()))?;
         let child = Arc::new(Mutex::new(Some(child)));
@@ -42,7 +42,7 @@ impl Running {
         Ok(Self { child })
     }
 
-    /// The ends of its pipes, once.
+    /// Takes the ends of the pipes.
     pub(crate) fn pipes(&self) -> Option<(ChildStdin, ChildStdout, ChildStderr)> {
         let mut child = self.child();
         let child = child.as_mut()?;
@@ -53,12 +53,12 @@ impl Running {
         self.child.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns `true` if the process has ended.
+    /// Whether the process has ended.
     pub(crate) fn has_ended(&self) -> bool {
         self.child().as_mut().is_none_or(has_ended)
     }
 
-    /// Kills the process and its children, and returns its exit status, which is its own one if it has ended already.
+    /// Kills the process and its children. Returns its exit status, which is its own if it had already ended.
     pub(crate) fn end(&mut self) -> Option<ExitStatus> {
         let status = self.child().take().and_then(kill);
         live().retain(|c| !Arc::ptr_eq(c, &self.child));
@@ -72,13 +72,13 @@ impl Drop for Running {
     }
 }
 
-/// Kills every program that runs. For processes that are about to end without unwinding; no program can be started after it.
+/// Kills all running programs, for a process about to end without unwinding. No program can be started afterwards.
 pub fn end_all() {
     let live = live();
     for child in live.iter() {
         child.lock().unwrap_or_else(PoisonError::into_inner).take().and_then(kill);
     }
-    // Whoever is about to start another waits here until the process ends.
+    // Block threads that are about to start another until the process ends.
     std::mem::forget(live);
 }
 
@@ -90,7 +90,7 @@ fn live() -> MutexGuard<'static, Vec<Shared>> {
 fn has_ended(child: &mut Child) -> bool {
     use rustix::process::{WaitId, WaitIdOptions, waitid};
     let Some(pid) = pid(child) else { return true };
-    // Not waited for yet: until then nothing else can have its number.
+    // Don't reap the process: until then, nothing else can have its number.
     let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
     !matches!(waitid(WaitId::Pid(pid), options), Ok(None))
 }
@@ -108,14 +108,14 @@ fn pid(child: &Child) -> Option<rustix::process::Pid> {
 fn kill(mut child: Child) -> Option<ExitStatus> {
     #[cfg(unix)]
     if let Some(pid) = pid(&child) {
-        // The whole group, which may have a member left although the program itself has ended.
+        // Kill the whole group, which may have members left even if the program itself has ended.
         let _ = rustix::process::kill_process_group(pid, rustix::process::Signal::KILL);
     }
     let _ = child.kill();
     child.wait().ok()
 }
 
-/// Checks that the file can be started.
+/// Checks that a file can be started.
 fn check_file(path: &Path) -> Result<(), Fault> {
     let meta = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file).ok_or(Fault::NoFile)?;
     #[cfg(unix)]

@@ -29,22 +29,22 @@ impl fmt::Debug for Plugin {
 }
 
 impl Plugin {
-    /// Starts the program at `path` and reads its entry. Returns the entry's text, too.
+    /// Starts the program at `path` and reads its entry. Also returns the entry's text.
     ///
     /// # Errors
-    /// The program cannot be started, or its entry is not what the protocol says.
+    /// The program cannot be started, or its entry violates the protocol.
     pub fn start(path: &Path, reserved: Reserved<'_>) -> Result<(Self, String), Fault> {
-        // A name without a folder would be looked for in PATH.
+        // The system would search PATH for a name without a folder.
         let path = path.canonicalize().map_err(|_| Fault::NoFile)?;
         let (session, text) = Session::start(&path)?;
         let entry = read(&text, reserved)?;
         Ok((Self::new(&path, &entry, Some(session)), String::from_utf8_lossy(&text).into_owned()))
     }
 
-    /// The program at `path`, whose entry is known, without starting it.
+    /// Makes a plug-in of the program at `path` from its known entry, without starting it.
     ///
     /// # Errors
-    /// The entry is not what the protocol says.
+    /// The entry violates the protocol.
     pub(crate) fn known(path: &Path, text: &str, reserved: Reserved<'_>) -> Result<Self, Fault> {
         Ok(Self::new(path, &read(text.as_bytes(), reserved)?, None))
     }
@@ -66,13 +66,13 @@ impl Plugin {
         self.program.said()
     }
 
-    /// Returns `true` if the program gives derivatives itself.
+    /// Whether the program gives derivatives itself.
     #[must_use]
     pub fn gives_jacobian(&self) -> bool {
         self.abilities.jacobian
     }
 
-    /// Returns `true` if the program gives the inverse itself.
+    /// Whether the program gives the inverse itself.
     #[must_use]
     pub fn gives_inverse(&self) -> bool {
         self.abilities.inverse

@@ -1,4 +1,4 @@
-//! The entry of a program: JSON with the schema of `pathwarp list --json`, as a description for the registry.
+//! Reads the entry of a program, which is JSON with the schema of `pathwarp list --json`, as a description for the registry.
 
 use crate::fault::Fault;
 use crate::map::Abilities;
@@ -12,7 +12,7 @@ use std::slice;
 
 /// The version of the protocol.
 pub(crate) const VERSION: u32 = 2;
-/// The oldest version that programs may speak. Of a repeated number, length, angle, count, point or choice they get the last value.
+/// The oldest version that programs may speak. They get only the last value of a repeated number, length, angle, count, point or choice.
 pub(crate) const FIRST_VERSION: u32 = 1;
 
 /// Names that a program may not use.
@@ -24,7 +24,7 @@ pub struct Reserved<'a> {
     pub parameters: &'a [&'a str],
 }
 
-/// An entry, read and checked.
+/// A checked entry.
 pub(crate) struct Entry {
     pub(crate) info: &'static Info,
     pub(crate) version: u32,
@@ -68,10 +68,10 @@ struct Written {
 #[derive(Deserialize, Default, PartialEq)]
 #[serde(rename_all = "lowercase")]
 enum Domain {
-    /// Everywhere, but for the edges that it declares.
+    /// Everywhere within the edges that it declares.
     #[default]
     Plane,
-    /// All points but those for which it answers NaN.
+    /// All points except those for which it answers NaN.
     Partial,
 }
 
@@ -135,7 +135,7 @@ struct WrittenCase {
     tolerance: f64,
 }
 
-/// Reads an entry. Its texts are kept until the process ends, as those of built-in deformations are.
+/// Reads an entry. Its texts are kept until the process ends, like those of built-in deformations.
 pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault> {
     let wrong = |problem: String| Fault::Entry(problem);
     let json: Value = serde_json::from_slice(bytes).map_err(|e| wrong(format!("it is not JSON: {e}")))?;
@@ -147,7 +147,7 @@ pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault>
     if let Some(text) = with_controls(&json) {
         return Err(wrong(format!("`{}` holds control characters", text.escape_debug())));
     }
-    // From the text again, for the line of an error.
+    // Read from the text again, so that errors name the line.
     let written: Written = serde_json::from_slice(bytes).map_err(|e| wrong(e.to_string()))?;
     if !is_kebab(&written.name) {
         return Err(wrong(format!("its name `{}` is not lower-case words joined by hyphens", written.name)));
@@ -180,7 +180,7 @@ pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault>
     Ok(Entry { info: Box::leak(Box::new(info)), version, protocol, abilities })
 }
 
-/// The first text that could do something to a terminal.
+/// Finds the first text that could control a terminal.
 fn with_controls(json: &Value) -> Option<&str> {
     match json {
         Value::String(text) => text.contains(|c: char| c.is_control() && c != '\n').then_some(text),
@@ -204,7 +204,7 @@ fn is_kebab(name: &str) -> bool {
     name.len() <= 64 && name.split('-').all(is_word)
 }
 
-/// A value as it would be typed.
+/// Writes a value as one would type it.
 fn typed(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -251,13 +251,13 @@ fn param(w: WrittenParam) -> Result<Param, String> {
     if kind == Kind::Angle {
         out = out.slider(-180.0, 180.0);
     }
-    if let Some([least, most]) = w.range {
-        let (least, most) = (least.unwrap_or(f64::NEG_INFINITY), most.unwrap_or(f64::INFINITY));
-        if least.is_nan() || least > most {
+    if let Some([min, max]) = w.range {
+        let (min, max) = (min.unwrap_or(f64::NEG_INFINITY), max.unwrap_or(f64::INFINITY));
+        if min.is_nan() || min > max {
             return Err(format!("the parameter `{}` has an empty range", out.name));
         }
-        let ui = if least.is_finite() && most.is_finite() { (least, most) } else { out.ui };
-        out = Param { range: (least, most), ui, ..out };
+        let ui = if min.is_finite() && max.is_finite() { (min, max) } else { out.ui };
+        out = Param { range: (min, max), ui, ..out };
     }
     if let Some([from, to]) = w.slider {
         out = out.slider(from, to);
@@ -292,11 +292,11 @@ fn case(c: &WrittenCase) -> Case {
     Case { args: pairs(&c.args), at: c.at, to: c.to, tolerance: c.tolerance }
 }
 
-/// Largest error of the cubics for arcs in paths that a program gets, user units.
+/// Largest error of the cubics that stand for arcs in paths sent to a program, in user units.
 const PATH_ACCURACY: f64 = 1e-6;
 
-/// The frame, and the values that are given or have a default, for a program that speaks this version of the protocol: a line
-/// `NAME VALUE` for each, several for repeated ones.
+/// Writes the frame and the values that are given or have a default, for a program that speaks this version of the protocol: a line
+/// `NAME VALUE` for each, and several for repeated ones.
 pub(crate) fn lines(params: &[Param], s: &Settings<'_>, version: u32) -> Result<Vec<String>, Error> {
     let frame = s.frame().rect;
     let mut out = vec![format!("frame {} {} {} {}\n", frame.x0, frame.y0, frame.x1, frame.y1)];
@@ -307,7 +307,7 @@ pub(crate) fn lines(params: &[Param], s: &Settings<'_>, version: u32) -> Result<
     Ok(out)
 }
 
-/// The values of a parameter that may be given several times.
+/// Writes all values of a parameter that may be repeated.
 fn each(p: &Param, s: &Settings<'_>) -> Result<Vec<String>, Error> {
     let texts = s.texts(p.name);
     let is_single = matches!(p.kind, Kind::Flag | Kind::Path | Kind::File | Kind::NameOrFile(_));
@@ -353,7 +353,7 @@ fn joined(numbers: &[f64]) -> String {
     numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
 }
 
-/// Text on one line: `\` and line breaks are escaped.
+/// Puts text on one line by escaping `\` and line breaks.
 fn escaped(text: &str) -> String {
     text.replace('\\', "\\\\").replace('\n', "\\n").replace('\r', "\\r")
 }

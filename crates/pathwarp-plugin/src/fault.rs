@@ -11,10 +11,10 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The file is not there, or not a file.
+    /// There is no such file.
     #[error("is not a file")]
     NoFile,
-    /// The file may not be executed.
+    /// The file is not executable.
     #[error("is not executable; allow it with chmod +x")]
     NotExecutable,
     /// The system cannot start it.
@@ -33,7 +33,7 @@ pub enum Fault {
         /// The end of its standard error.
         said: String,
     },
-    /// It closed its standard output or input and runs on.
+    /// It closed its standard output or input without ending.
     #[error("closed its standard {stream} while {expected} was expected{}", quoted(.said))]
     Closed {
         /// Input or output.
@@ -53,7 +53,7 @@ pub enum Fault {
         /// The end of its standard error.
         said: String,
     },
-    /// It wrote more than an answer can have.
+    /// It wrote more than the longest possible answer.
     #[error("wrote more than {limit} bytes where {expected} was expected")]
     Flood {
         /// The expected answer.
@@ -62,12 +62,12 @@ pub enum Fault {
         limit: usize,
     },
     /// It wrote too much to standard error.
-    #[error("wrote more than {ERROR_BYTES} bytes to standard error{}", quoted(.0))]
+    #[error("wrote more than {MAX_ERROR_BYTES} bytes to standard error{}", quoted(.0))]
     ErrorFlood(String),
-    /// The entry is not what the protocol says.
+    /// The entry violates the protocol.
     #[error("has a wrong entry: {0}")]
     Entry(String),
-    /// The entry is of another version of the protocol.
+    /// The entry is for another version of the protocol.
     #[error("speaks version {found} of the protocol; this program speaks version {known} and older ones")]
     Version {
         /// The version of the entry.
@@ -107,67 +107,65 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// As an error of the file at `path`.
+    /// Converts the fault to an error about the file at `path`.
     #[must_use]
     pub fn of(&self, path: &Path) -> Error {
         Error::input(format!("plug-in {}", path.display()), self.to_string())
     }
 }
 
-/// What a program said on standard error, for the end of a message.
+/// Quotes a program's standard error at the end of a message.
 fn quoted(said: &str) -> String {
     if said.is_empty() { String::new() } else { format!("; it said: {said}") }
 }
 
-/// The last lines of `bytes` on one line, each with the number of times that it comes in a row, without characters that would change
-/// the terminal.
+/// Joins the last lines of `bytes` to one line, without characters that would control the terminal. Repeated lines appear once with
+/// their number.
 pub(crate) fn readable(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let line: Vec<&str> = text.split(|c: char| c.is_control()).map(str::trim).filter(|l| !l.is_empty()).collect();
     let times =
         |run: &[&str]| if run.len() == 1 { run[0].to_owned() } else { format!("{} ({} times)", run[0], run.len()) };
     let line = line.chunk_by(|a, b| a == b).map(times).collect::<Vec<_>>().join(" | ");
-    let skipped = line.char_indices().rev().nth(QUOTED_BYTES).map_or(0, |(i, _)| i);
+    let skipped = line.char_indices().rev().nth(MAX_QUOTED_BYTES).map_or(0, |(i, _)| i);
     if skipped == 0 { line } else { format!("…{}", &line[skipped..]) }
 }
 
-/// The beginning of `bytes` in quotes.
+/// Quotes the beginning of `bytes`.
 pub(crate) fn beginning(bytes: &[u8]) -> String {
-    /// Characters shown.
-    const SHOWN: usize = 40;
+    const MAX_CHARS: usize = 40;
     let text = String::from_utf8_lossy(bytes);
-    let mut shown: String = text.chars().take(SHOWN).flat_map(char::escape_default).collect();
-    if text.chars().nth(SHOWN).is_some() {
+    let mut shown: String = text.chars().take(MAX_CHARS).flat_map(char::escape_default).collect();
+    if text.chars().nth(MAX_CHARS).is_some() {
         shown.push('…');
     }
     format!("`{shown}`")
 }
 
-/// Environment variable for the seconds that a program may take for one answer.
+/// Environment variable that sets the seconds that a program may take for one answer.
 const SECONDS_VARIABLE: &str = "PATHWARP_PLUGIN_SECONDS";
 
-/// Seconds for one answer: of the slowest interpreters on a busy machine, many times what they need.
+/// Default seconds for one answer, many times what the slowest interpreters need on a busy machine.
 const SECONDS: f64 = 10.0;
 
-/// Points in one request. More are asked in several, so that a program needs little memory and answers in time.
-pub(crate) const MOST_POINTS: usize = 1 << 13;
+/// Largest number of points in one request. More are split, so that a program needs little memory and answers in time.
+pub(crate) const MAX_POINTS: usize = 1 << 13;
 
-/// Bytes of an entry.
-pub(crate) const ENTRY_BYTES: usize = 1 << 18;
+pub(crate) const MAX_ENTRY_BYTES: usize = 1 << 18;
 
-/// Bytes of an answer that is a message or a list of creases.
-pub(crate) const MESSAGE_BYTES: usize = 1 << 16;
+/// Limit on an answer that is a message or a list of creases.
+pub(crate) const MAX_MESSAGE_BYTES: usize = 1 << 16;
 
-/// Bytes of a line with the answer for one point: six numbers of up to 25 characters, and some more for their authors.
-pub(crate) const LINE_BYTES: usize = 256;
+/// Limit on a line with the answer for one point: six numbers of up to 25 characters, with some room to spare.
+pub(crate) const MAX_LINE_BYTES: usize = 256;
 
-/// Bytes on standard error while a program is running.
-pub(crate) const ERROR_BYTES: usize = 1 << 20;
+/// Limit on standard error over the whole run of a program.
+pub(crate) const MAX_ERROR_BYTES: usize = 1 << 20;
 
-/// Bytes of standard error that are quoted in messages.
-pub(crate) const QUOTED_BYTES: usize = 300;
+/// Limit on the part of standard error that messages quote.
+const MAX_QUOTED_BYTES: usize = 300;
 
-/// The time for one answer.
+/// The time limit for one answer.
 pub(crate) fn time() -> Duration {
     static TIME: OnceLock<Duration> = OnceLock::new();
     *TIME.get_or_init(|| {

@@ -1,4 +1,4 @@
-//! The folder of plug-ins.
+//! Finds the plug-ins in the user's folder, and caches their entries.
 
 use crate::deformation::Plugin;
 use crate::entry::Reserved;
@@ -10,25 +10,25 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
-/// Environment variable for another folder.
+/// Environment variable that sets the folder of plug-ins.
 pub const FOLDER_VARIABLE: &str = "PATHWARP_PLUGINS";
 
-/// What the names of programs begin with.
+/// Prefix of the names of programs.
 const PREFIX: &str = "pathwarp-";
 
 /// The plug-ins that were found.
 #[derive(Debug, Default)]
 pub struct Found {
-    /// Those that can be used, by name.
+    /// Usable plug-ins, sorted by name.
     pub plugins: Vec<Plugin>,
-    /// Those that cannot.
+    /// Programs that cannot be used.
     pub broken: Vec<Broken>,
 }
 
 /// A program that cannot be used.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Broken {
-    /// The name by its file.
+    /// The name according to the file.
     pub name: String,
     /// The file.
     pub path: PathBuf,
@@ -43,8 +43,8 @@ pub fn folder() -> Option<PathBuf> {
     given.map(PathBuf::from).or_else(|| Some(of_user("XDG_DATA_HOME", ".local/share", "APPDATA")?.join("plug-ins")))
 }
 
-/// The file that remembers entries.
-fn memory() -> Option<PathBuf> {
+/// The file that caches entries.
+fn cache_file() -> Option<PathBuf> {
     let folder = if cfg!(target_os = "macos") {
         PathBuf::from(env::var_os("HOME")?).join("Library/Caches/pathwarp")
     } else {
@@ -53,7 +53,7 @@ fn memory() -> Option<PathBuf> {
     Some(folder.join("plug-ins.json"))
 }
 
-/// This program's own folder in one of the user's folders.
+/// This program's folder within one of the user's folders.
 fn of_user(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
     let var = |name: &str| env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
     let base = if cfg!(target_os = "windows") {
@@ -66,7 +66,7 @@ fn of_user(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
     Some(base.join("pathwarp"))
 }
 
-/// The name of the plug-in in the file `path`, `pathwarp-NAME` with any extension; on Windows with one of those that can be started.
+/// The name of the plug-in in the file `path`, which is `pathwarp-NAME` with any extension; on Windows, with that of an executable.
 #[must_use]
 pub fn name_of(path: &Path) -> Option<String> {
     if cfg!(target_os = "windows") {
@@ -79,8 +79,8 @@ pub fn name_of(path: &Path) -> Option<String> {
     (!name.is_empty()).then(|| name.to_owned())
 }
 
-/// The plug-ins of the user's folder. A program is started only if its file is new or has changed, or if it is called `afresh`:
-/// otherwise its entry, or its fault, is remembered.
+/// Finds the plug-ins in the user's folder. A program is started only if its file is new or has changed, or if its name is `afresh`;
+/// otherwise its entry, or its fault, comes from a cache.
 #[must_use]
 pub fn installed(reserved: Reserved<'_>, afresh: Option<&str>) -> Found {
     let mut found = Found::default();
@@ -91,32 +91,32 @@ pub fn installed(reserved: Reserved<'_>, afresh: Option<&str>) -> Found {
         return found;
     }
     files.sort();
-    let mut memory = Remembered::read(memory());
+    let mut cache = Cache::read(cache_file());
     for path in files {
         let Some(name) = name_of(&path) else { continue };
         let path = path.canonicalize().unwrap_or(path);
         if path.is_dir() {
             continue;
         }
-        let plugin = match memory.get(&path).filter(|_| afresh != Some(name.as_str())) {
+        let plugin = match cache.get(&path).filter(|_| afresh != Some(name.as_str())) {
             Some(Ok(entry)) => Plugin::known(&path, entry, reserved),
             Some(Err(fault)) => Err(fault.clone()),
             None => {
                 let started = Plugin::start(&path, reserved);
-                memory.set(&path, started.as_ref().map(|(_, text)| text.as_str()));
+                cache.set(&path, started.as_ref().map(|(_, text)| text.as_str()));
                 started.map(|(plugin, _)| plugin)
             }
         };
         found.add(name, path, plugin);
     }
-    memory.write();
+    cache.write();
     found
 }
 
-/// The program in one file, wherever it lies.
+/// Starts the plug-in in one file, which may be in any folder.
 ///
 /// # Errors
-/// It cannot be used.
+/// The plug-in cannot be used.
 pub fn by_file(path: &Path, reserved: Reserved<'_>) -> Result<Plugin, Fault> {
     Plugin::start(path, reserved).map(|(plugin, _)| plugin)
 }
@@ -138,12 +138,12 @@ impl Found {
     }
 }
 
-/// The version of the file. One of another version is written anew.
+/// The version of the cache file. A file of another version is replaced.
 const VERSION: u32 = 1;
 
-/// What is known about programs.
+/// Caches the entries and faults of programs.
 #[derive(Default)]
-pub(crate) struct Remembered {
+struct Cache {
     file: Option<PathBuf>,
     data: Data,
     changed: bool,
@@ -155,7 +155,7 @@ struct Data {
     programs: BTreeMap<String, Known>,
 }
 
-/// A program with the state of its file.
+/// The entry or fault of a program, with the state of its file.
 #[derive(Serialize, Deserialize)]
 struct Known {
     stamp: Stamp,
@@ -177,24 +177,24 @@ impl Stamp {
     }
 }
 
-impl Remembered {
-    /// Reads the file. One that is missing or damaged is an empty one.
-    pub(crate) fn read(file: Option<PathBuf>) -> Self {
+impl Cache {
+    /// Reads the cache. A file that is missing or damaged counts as empty.
+    fn read(file: Option<PathBuf>) -> Self {
         let read = |f: &PathBuf| serde_json::from_slice(&std::fs::read(f).ok()?).ok();
         let data = file.as_ref().and_then(read).filter(|d: &Data| d.version == VERSION);
         let data = data.unwrap_or(Data { version: VERSION, programs: BTreeMap::new() });
         Self { file, data, changed: false }
     }
 
-    /// The entry of a program, or its fault, if its file has not changed.
-    pub(crate) fn get(&self, path: &Path) -> Option<Result<&str, &Fault>> {
+    /// Returns the entry or fault of a program if its file has not changed.
+    fn get(&self, path: &Path) -> Option<Result<&str, &Fault>> {
         let known = self.data.programs.get(path.to_str()?)?;
         (Stamp::of(path)? == known.stamp).then_some(known.entry.as_deref())
     }
 
-    /// Remembers an entry or a fault.
-    pub(crate) fn set(&mut self, path: &Path, entry: Result<&str, &Fault>) {
-        // That says nothing about the program.
+    /// Stores an entry or a fault.
+    fn set(&mut self, path: &Path, entry: Result<&str, &Fault>) {
+        // Nesting is not the program's fault.
         if entry == Err(&Fault::Nested) {
             return;
         }
@@ -205,8 +205,8 @@ impl Remembered {
         self.changed = true;
     }
 
-    /// Writes the file if something is new. If that fails, programs are started again next time.
-    pub(crate) fn write(&self) {
+    /// Writes the file if anything changed. If that fails, programs are started again next time.
+    fn write(&self) {
         let Some((file, folder)) = self.file.as_ref().filter(|_| self.changed).and_then(|f| Some((f, f.parent()?)))
         else {
             return;

@@ -1,4 +1,4 @@
-//! The map of a program.
+//! A map whose values come from a program.
 
 use crate::answer::{Ask, jet, point};
 use crate::fault::Fault;
@@ -13,7 +13,7 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct Abilities {
     pub(crate) jacobian: bool,
     pub(crate) inverse: bool,
-    /// It may answer NaN, where its map is undefined.
+    /// Whether it may answer NaN where its map is undefined.
     pub(crate) partial: bool,
 }
 
@@ -35,11 +35,11 @@ impl ProgramMap {
         if self.failed.get().is_some() {
             return None;
         }
-        // Of several threads, the first one tells.
+        // The first error wins.
         answers(&self.program).map_err(|fault| self.failed.set(fault)).ok()
     }
 
-    /// Writes the answers for those of `ps` that are finite. All others are undefined, and so are all once the program has failed.
+    /// Writes the answers for the finite points among `ps`. The others stay undefined, as do all once the program has failed.
     fn write<const N: usize, T: Clone>(
         &self,
         ask: Ask,
@@ -68,7 +68,7 @@ impl ProgramMap {
         }
     }
 
-    /// The same map, as it is on the side of `inside` of every crease.
+    /// The map as it is on the side of `inside` of every crease.
     fn beside(&self, inside: Point) -> Beside {
         Beside { map: self.clone(), inside }
     }
@@ -76,7 +76,7 @@ impl ProgramMap {
 
 const UNDEFINED: Point = Point::new(f64::NAN, f64::NAN);
 
-/// The points that are finite: others are not asked for.
+/// The finite points. The program is not asked for others.
 fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
     if ps.iter().all(|p| p.is_finite()) {
         Cow::Borrowed(ps)
@@ -155,17 +155,17 @@ impl Batches for ProgramMap {
     }
 }
 
-/// The map on one side of its creases. The program does not know the side, so points on a crease are moved towards `inside` a little.
+/// The map on one side of its creases. The program does not know the side, so points on a crease are moved slightly towards `inside`.
 struct Beside {
     map: ProgramMap,
     inside: Point,
 }
 
 impl Beside {
-    /// Share of the way by which a point is moved: well above rounding and invisibly small.
+    /// Fraction of the way by which a point is moved, well above rounding and invisibly small.
     const AWAY: f64 = 1e-9;
 
-    /// Points nearer to a crease than this share of the frame may be on either side of it by rounding.
+    /// Distance within which rounding may put a point on either side of a crease, as a fraction of the frame.
     const NEAR: f64 = 1e-11;
 
     fn moved(&self, p: Point) -> Point {
@@ -238,19 +238,19 @@ impl Map for Inverse {
 
 impl Batches for Inverse {}
 
-/// Steps, as shares of the frame's diagonal. The first one is best for maps that bend a few times across the frame: the error is
-/// 10⁻¹² there by either term. The others are for waves of a hundredth of the frame, and of a thousandth.
+/// Steps for differences, as fractions of the frame's diagonal. The first is best for maps that bend a few times across the frame, for
+/// which truncation and rounding each contribute an error of 10⁻¹². The others are for waves of a hundredth and a thousandth of the frame.
 const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
 
-/// An estimate of the relative error that is good enough. Where the third derivative happens to be small, the error is a few tens
-/// of times the estimate; a tangent needs half as many digits.
+/// Estimate of the relative error that is good enough. Where the third derivative happens to be small, the error is a few tens of
+/// times the estimate; tangents need half as many digits.
 const GOOD: f64 = 3e-11;
 
-/// Values at a point's four neighbours at the whole step, then at half of it.
+/// A point's four neighbours at the whole step, then at half of it.
 const STENCIL: [(f64, f64); 8] =
     [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5)];
 
-/// The jets at `ps`, from a function that gives the values at many points. `size` is the frame's diagonal.
+/// Computes the jets at `ps` by differences of `values`, which evaluates many points at once. `size` is the frame's diagonal.
 fn differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point])) -> Vec<Jet> {
     let mut out: Vec<Jet> = vec![Jet::UNDEFINED; ps.len()];
     let mut least = vec![f64::INFINITY; ps.len()];
@@ -284,7 +284,7 @@ fn differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point]))
             if off < *least || !least.is_finite() {
                 (jet.dx, jet.dy, *least) = (dx, dy, off);
             }
-            // An estimate that is not a number, at the edge of a domain, may become one at a smaller step.
+            // At the edge of a domain, an estimate of NaN may become finite with a smaller step.
             if off.is_nan() || off > GOOD * scale.max(f64::MIN_POSITIVE) {
                 again.push(*i);
             }
@@ -294,20 +294,20 @@ fn differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point]))
     out
 }
 
-/// A power of two near `h`, so that p ± h is exact more often; larger where coordinates are.
+/// A power of two near `h`, so that p ± h is exact more often; larger if the coordinates are large.
 fn step(p: Point, h: f64) -> f64 {
-    /// Smallest step as a share of the coordinates, which have 53 bits.
-    const FINEST: f64 = 1e-8;
-    let least = FINEST * p.x.abs().max(p.y.abs());
-    h.max(least).max(f64::MIN_POSITIVE).log2().round().exp2()
+    /// Smallest step as a fraction of the coordinates, which have 53 bits.
+    const MIN_STEP: f64 = 1e-8;
+    let min = MIN_STEP * p.x.abs().max(p.y.abs());
+    h.max(min).max(f64::MIN_POSITIVE).log2().round().exp2()
 }
 
-/// The extrapolated slope along one axis, which has the places `k` and `k` + 4 of the stencil, with the estimate of its error.
+/// The extrapolated slope along the axis of the stencil's points `k` and `k` + 4, with an estimate of its error.
 fn slope(places: &[Point], images: &[Point], k: usize) -> (Vec2, f64) {
     let central = |k: usize| (images[k] - images[k + 1]) / (places[k] - places[k + 1]).hypot();
     let (whole, half) = (central(k), central(k + 4));
     let correction = (half - whole) / 3.0;
-    // Of the fourth order, after a correction of the second: its square, relative to the slope.
+    // The error is of fourth order after a correction of second order: about the square of the relative correction.
     let size = half.hypot().max(f64::MIN_POSITIVE);
     let off = correction.hypot() * (correction.hypot() / size).min(1.0);
     (half + correction, off)

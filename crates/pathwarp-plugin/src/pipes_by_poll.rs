@@ -1,20 +1,21 @@
-//! The three pipes of a program, on Unix: one loop writes, reads, and looks at the clock, so that no side can block the other.
+//! Handles the three pipes of a program on Unix. One loop writes, reads, and checks the clock, so that neither side can block the
+//! other.
 
 use crate::child::Running;
-use crate::fault::{ERROR_BYTES, Fault, readable, time};
+use crate::fault::{Fault, MAX_ERROR_BYTES, readable, time};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{OFlags, fcntl_setfl};
 use std::io::{ErrorKind, Read, Write};
 use std::process::{ChildStderr, ChildStdin, ChildStdout};
 use std::time::{Duration, Instant};
 
-/// Time between two looks whether the program has ended while its pipes are held open by a child of it.
+/// Interval of checking whether the program has ended, since a child of it may hold its pipes open.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Time for a program whose pipe has closed to end, so that its exit status can be told.
+/// Time for a program to end after closing a pipe, so that its exit status can be reported.
 const GRACE: Duration = Duration::from_millis(200);
 
-/// Bytes of standard error that are kept for messages.
+/// Bytes of standard error to keep for messages.
 const KEPT: usize = 4096;
 
 /// The pipes of a running program.
@@ -47,7 +48,7 @@ impl Pipes {
         })
     }
 
-    /// Sends `request` and reads until `whole` finds the end of the answer, which may have up to `limit` bytes.
+    /// Sends `request` and reads until `whole` finds the end of the answer, which may take up to `limit` bytes.
     pub(crate) fn exchange(
         &mut self,
         running: &mut Running,
@@ -57,7 +58,7 @@ impl Pipes {
     ) -> Result<Vec<u8>, Fault> {
         let (mut rest, until) = (request, Instant::now() + time());
         loop {
-            // An answer may come before all is sent: a request to build is followed by its points.
+            // An answer may arrive before all is sent, since points follow a request to build.
             if rest.is_empty()
                 && let Some(length) = whole(&self.incoming)?.filter(|n| *n <= self.incoming.len())
             {
@@ -89,7 +90,7 @@ impl Pipes {
         }
     }
 
-    /// The end of what was said on standard error so far.
+    /// The end of standard error so far.
     pub(crate) fn said(&mut self) -> String {
         while self.wait(false, Duration::ZERO)[1] && self.hear().is_ok() {}
         readable(&self.said)
@@ -100,7 +101,7 @@ impl Pipes {
         &self.incoming
     }
 
-    /// Writes as much as fits. `Err`: nobody reads any longer.
+    /// Writes as much as fits, and returns the rest. `Err` means that the pipe is closed.
     fn write<'a>(&mut self, mut rest: &'a [u8]) -> Result<&'a [u8], ()> {
         while !rest.is_empty() {
             match self.input.write(rest) {
@@ -113,13 +114,13 @@ impl Pipes {
         Ok(rest)
     }
 
-    /// Returns `true` if nobody can read what is written: a request may have been sent before the program closed the pipe.
+    /// Whether the program has closed its input, possibly after a request was written to the pipe.
     fn input_is_closed(&self) -> bool {
         let mut fds = [PollFd::new(&self.input, PollFlags::empty())];
         poll(&mut fds, Some(&Timespec { tv_sec: 0, tv_nsec: 0 })).is_ok() && !fds[0].revents().is_empty()
     }
 
-    /// Waits until there is something to do; says whether output and errors have something to read, or have ended.
+    /// Waits until there is something to do. Returns whether output and errors have something to read, or have ended.
     fn wait(&self, write: bool, time: Duration) -> [bool; 2] {
         let mut fds = vec![PollFd::new(&self.output, PollFlags::IN)];
         fds.extend(self.errors.as_ref().map(|e| PollFd::new(e, PollFlags::IN)));
@@ -127,7 +128,7 @@ impl Pipes {
             fds.push(PollFd::new(&self.input, PollFlags::OUT));
         }
         let time = Timespec { tv_sec: 0, tv_nsec: time.subsec_nanos().into() };
-        // An interrupted wait is repeated by the caller.
+        // The caller repeats an interrupted wait.
         if poll(&mut fds, Some(&time)).is_err() {
             return [false; 2];
         }
@@ -135,7 +136,7 @@ impl Pipes {
         [ready(0), self.errors.is_some() && ready(1)]
     }
 
-    /// Reads what there is. Returns `false` at the end of the stream.
+    /// Reads the available output. Returns `false` at the end of the stream.
     fn read(&mut self) -> bool {
         match self.output.read(&mut self.chunk) {
             Ok(0) => false,
@@ -147,7 +148,7 @@ impl Pipes {
         }
     }
 
-    /// Reads what was said on standard error.
+    /// Reads the available standard error.
     fn hear(&mut self) -> Result<(), Fault> {
         let Some(errors) = &mut self.errors else { return Ok(()) };
         match errors.read(&mut self.chunk) {
@@ -161,7 +162,7 @@ impl Pipes {
             Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
             Err(_) => self.errors = None,
         }
-        if self.said_in_all > ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
+        if self.said_in_all > MAX_ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
     }
 
     /// The fault of a program that has ended, or closed a stream.

@@ -1,22 +1,22 @@
-//! The three pipes of a program where they cannot be polled: a thread for each sends on what arrives.
+//! Handles the three pipes of a program where they cannot be polled, with a thread for each.
 
 use crate::child::Running;
-use crate::fault::{ERROR_BYTES, Fault, readable, time};
+use crate::fault::{Fault, MAX_ERROR_BYTES, readable, time};
 use std::io::{Read, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
-/// Time for a program whose pipe has closed to end, so that its exit status can be told.
+/// Time for a program to end after closing a pipe, so that its exit status can be reported.
 const GRACE: Duration = Duration::from_millis(200);
 
-/// Time between two looks whether the program has ended while its pipes are held open by a child of it.
+/// Interval of checking whether the program has ended, since a child of it may hold its pipes open.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Chunks that may wait to be taken. A program that writes more has to wait.
+/// Capacity of the queue of events. A program that writes more has to wait.
 const WAITING: usize = 4;
 
-/// Something that happened at a pipe.
+/// An event at a pipe.
 enum Event {
     Output(Vec<u8>),
     Errors(Vec<u8>),
@@ -56,7 +56,7 @@ impl Pipes {
         Ok(Self { requests, events, incoming: Vec::new(), said: Vec::new(), said_in_all: 0 })
     }
 
-    /// Sends `request` and reads until `whole` finds the end of the answer, which may have up to `limit` bytes.
+    /// Sends `request` and reads until `whole` finds the end of the answer, which may take up to `limit` bytes.
     pub(crate) fn exchange(
         &mut self,
         running: &mut Running,
@@ -95,7 +95,7 @@ impl Pipes {
         }
     }
 
-    /// The end of what was said on standard error so far.
+    /// The end of standard error so far.
     pub(crate) fn said(&mut self) -> String {
         while let Ok(event) = self.events.try_recv() {
             match event {
@@ -113,13 +113,13 @@ impl Pipes {
     }
 
     fn hear(&mut self, bytes: &[u8]) -> Result<(), Fault> {
-        /// Bytes that are kept for messages.
+        /// Bytes to keep for messages.
         const KEPT: usize = 4096;
         self.said_in_all += bytes.len();
         self.said.extend_from_slice(bytes);
         let surplus = self.said.len().saturating_sub(KEPT);
         self.said.drain(..surplus);
-        if self.said_in_all > ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
+        if self.said_in_all > MAX_ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
     }
 
     /// The fault of a program that has ended, or closed a stream.
@@ -144,7 +144,7 @@ impl Pipes {
     }
 }
 
-/// A thread that sends on what `pipe` gives.
+/// Starts a thread that forwards what it reads from `pipe`.
 fn reading(
     mut pipe: impl Read + Send + 'static,
     happened: SyncSender<Event>,

@@ -1,9 +1,9 @@
-//! A running program that is asked for its entry, maps and points.
+//! Talks to running programs: asks for their entries, maps and points.
 
 use crate::answer::{Ask, BuildAnswer};
 use crate::binary;
 use crate::child::Running;
-use crate::fault::{ENTRY_BYTES, Fault, LINE_BYTES, MESSAGE_BYTES, MOST_POINTS, beginning};
+use crate::fault::{Fault, MAX_ENTRY_BYTES, MAX_LINE_BYTES, MAX_MESSAGE_BYTES, MAX_POINTS, beginning};
 #[cfg(unix)]
 use crate::pipes_by_poll::Pipes;
 #[cfg(not(unix))]
@@ -28,47 +28,51 @@ pub(crate) enum Protocol {
 pub(crate) struct Session {
     running: Running,
     pipes: Pipes,
-    /// The map it has built last; 0 for none.
-    pub(crate) instance: u64,
+    /// Id of the map built last; 0 for none.
+    instance: u64,
 }
 
-/// Words for messages.
+// Expected answers in the words of messages.
 const ENTRY: &str = "its entry as JSON with a line break after it";
 const BUILT: &str = "the answer to `build`";
 
 impl Session {
-    /// Starts the program. Returns the text of its entry, too.
+    /// Starts the program. Also returns the text of its entry.
     pub(crate) fn start(path: &Path) -> Result<(Self, Vec<u8>), Fault> {
         let running = Running::start(path)?;
         let pipes = Pipes::new(&running)?;
         let mut session = Self { running, pipes, instance: 0 };
         let mut scan = JsonScan::default();
         let expected = || ENTRY.to_owned();
-        let entry = session.pipes.exchange(&mut session.running, &[], (&expected, ENTRY_BYTES), |b| scan.end(b))?;
+        let entry = session.pipes.exchange(&mut session.running, &[], (&expected, MAX_ENTRY_BYTES), |b| scan.end(b))?;
         Ok((session, entry))
     }
 
-    /// The end of what the program has said on standard error.
-    pub(crate) fn said(&mut self) -> String {
+    /// The end of the program's standard error.
+    fn said(&mut self) -> String {
         self.pipes.said()
     }
 
-    /// Builds a map.
-    pub(crate) fn build(&mut self, protocol: Protocol, instance: &Instance) -> Result<BuildAnswer, Fault> {
+    fn build(&mut self, protocol: Protocol, instance: &Instance) -> Result<BuildAnswer, Fault> {
         let answer = self.built(protocol, &instance.request, 0)?;
         self.nothing_left(|| BUILT.to_owned())?;
         self.instance = instance.id;
         Ok(answer)
     }
 
-    /// Sends `request`, which begins with that for a map, and reads the description of the map. Up to `more` bytes may follow it.
+    /// Sends `request`, which starts by requesting a map, and reads the description of the map. Up to `more` bytes may follow it.
     fn built(&mut self, protocol: Protocol, request: &[u8], more: usize) -> Result<BuildAnswer, Fault> {
         let expected = || BUILT.to_owned();
         let bytes =
-            self.pipes.exchange(&mut self.running, request, (&expected, MESSAGE_BYTES + more), |b| match protocol {
-                Protocol::Text => Ok(text::build_length(b)),
-                Protocol::Binary => binary::length(b, None, &expected),
-            })?;
+            self.pipes.exchange(
+                &mut self.running,
+                request,
+                (&expected, MAX_MESSAGE_BYTES + more),
+                |b| match protocol {
+                    Protocol::Text => Ok(text::build_length(b)),
+                    Protocol::Binary => binary::length(b, None, &expected),
+                },
+            )?;
         match protocol {
             Protocol::Text => text::read_build(&bytes),
             Protocol::Binary => text::read_build(binary::body(&bytes)?),
@@ -76,8 +80,8 @@ impl Session {
     }
 
     /// Asks for batches of a map, which is built first if it is not the last one. All requests are sent at once. Appends the
-    /// numbers of each answer to the list beside the question.
-    pub(crate) fn ask(
+    /// numbers of each answer to the batch's list.
+    fn ask(
         &mut self,
         protocol: Protocol,
         instance: &Instance,
@@ -91,7 +95,7 @@ impl Session {
                 Protocol::Binary => binary::batch(*ask, points, &mut request),
             }
         }
-        // The first answer is read while the requests are sent, with all that follows it.
+        // While the requests are sent, all answers may already arrive.
         let mut limit = batches.iter().map(|(ask, points, _)| answer_bytes(protocol, *ask, points.len())).sum();
         if must_build {
             self.built(protocol, &request, limit)?;
@@ -116,7 +120,7 @@ impl Session {
         self.nothing_left(|| for_points(batches.last().map_or(0, |(_, points, _)| points.len())))
     }
 
-    /// Checks that the program has not written more than its answer.
+    /// Checks that the program has written no more than its answer.
     fn nothing_left(&self, expected: impl Fn() -> String) -> Result<(), Fault> {
         match self.pipes.left_over() {
             [] => Ok(()),
@@ -128,18 +132,18 @@ impl Session {
     }
 }
 
-/// Words for messages.
+/// The expected answer to a batch, in the words of messages.
 fn for_points(count: usize) -> String {
     format!("the answer for {count} {}", if count == 1 { "point" } else { "points" })
 }
 
-/// The most bytes of the answer for `count` points.
+/// The largest size of the answer for `count` points, in bytes.
 fn answer_bytes(protocol: Protocol, ask: Ask, count: usize) -> usize {
     let body = match protocol {
-        Protocol::Text => LINE_BYTES * count,
+        Protocol::Text => MAX_LINE_BYTES * count,
         Protocol::Binary => 8 * ask.numbers() * count,
     };
-    body + MESSAGE_BYTES
+    body + MAX_MESSAGE_BYTES
 }
 
 /// Finds the end of a JSON object as it arrives.
@@ -149,12 +153,12 @@ struct JsonScan {
     depth: usize,
     in_text: bool,
     escaped: bool,
-    /// The closing brace was seen.
+    /// Whether the closing brace has been seen.
     closed: bool,
 }
 
 impl JsonScan {
-    /// The length up to the line break after the object, once it is there.
+    /// The length up to the line break after the object, once that has arrived.
     fn end(&mut self, bytes: &[u8]) -> Result<Option<usize>, Fault> {
         let garbage = || Fault::Garbage { expected: ENTRY.into(), found: beginning(bytes) };
         for (i, b) in bytes.iter().enumerate().skip(self.seen) {
@@ -178,30 +182,30 @@ impl JsonScan {
     }
 }
 
-/// A map by its number, and the request to build it.
+/// A map: the request to build it, and an id.
 #[derive(Debug)]
 pub(crate) struct Instance {
-    pub(crate) id: u64,
-    pub(crate) request: Vec<u8>,
+    id: u64,
+    request: Vec<u8>,
 }
 
 impl Instance {
-    /// Numbers begin at 1; a process that has built nothing is at 0.
+    /// Makes a map with a new id. Ids start at 1; 0 stands for no map.
     pub(crate) fn new(request: Vec<u8>) -> Self {
         static LAST: AtomicU64 = AtomicU64::new(0);
         Self { id: LAST.fetch_add(1, Ordering::Relaxed) + 1, request }
     }
 }
 
-/// Times that the program may fail to answer in time before it is not asked again.
-const MOST_SILENT: usize = 3;
+/// After the program has failed to answer in time this many times, it is not asked again.
+const MAX_TIMEOUTS: usize = 3;
 
 /// A program with its processes.
 pub(crate) struct Program {
     pub(crate) path: PathBuf,
     pub(crate) protocol: Protocol,
-    /// Processes at most. Asking the system for it takes longer than a request.
-    most: usize,
+    /// Maximum number of processes, cached since the system takes longer to tell it than a request.
+    max_processes: usize,
     state: Mutex<State>,
     returned: Condvar,
 }
@@ -215,7 +219,7 @@ struct State {
 }
 
 impl Program {
-    /// The work of an answer for this side alone, in evaluations of a net.
+    /// The work of encoding and decoding on this side alone, in evaluations of a net.
     pub(crate) fn work(&self) -> f64 {
         match self.protocol {
             Protocol::Text => 16.0,
@@ -223,21 +227,20 @@ impl Program {
         }
     }
 
-    /// A program, with a process that runs already.
+    /// Makes a program, with a process if one is already running.
     pub(crate) fn new(path: PathBuf, protocol: Protocol, running: Option<Session>) -> Self {
         let idle = Vec::from_iter(running);
         let state = State { running: idle.len(), idle, silent: 0 };
-        let most = std::thread::available_parallelism().map_or(1, usize::from);
-        Self { path, protocol, most, state: Mutex::new(state), returned: Condvar::new() }
+        let max_processes = std::thread::available_parallelism().map_or(1, usize::from);
+        Self { path, protocol, max_processes, state: Mutex::new(state), returned: Condvar::new() }
     }
 
-    /// The end of what the processes have said on standard error.
+    /// The end of the standard error of idle processes.
     pub(crate) fn said(&self) -> Option<String> {
         let all: Vec<String> = self.state().idle.iter_mut().map(Session::said).filter(|s| !s.is_empty()).collect();
         all.into_iter().reduce(|a, b| if a == b { a } else { format!("{a} | {b}") })
     }
 
-    /// Builds a map.
     pub(crate) fn build(&self, instance: &Instance) -> Result<BuildAnswer, Fault> {
         self.with_session(0, |s| s.build(self.protocol, instance))
     }
@@ -246,18 +249,18 @@ impl Program {
     pub(crate) fn ask(&self, instance: &Instance, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Fault> {
         let mut out = Vec::with_capacity(ask.numbers() * points.len());
         self.with_session(instance.id, |s| {
-            points.chunks(MOST_POINTS).try_for_each(|ps| s.ask(self.protocol, instance, &mut [(ask, ps, &mut out)]))
+            points.chunks(MAX_POINTS).try_for_each(|ps| s.ask(self.protocol, instance, &mut [(ask, ps, &mut out)]))
         })?;
         Ok(out)
     }
 
-    /// Asks for the values of `points` and the jets of `others`: at once by the binary protocol, if they are few enough.
+    /// Asks for the values of `points` and the jets of `others`; at once with the binary protocol, if they are few enough.
     pub(crate) fn ask_both(
         &self,
         instance: &Instance,
         [points, others]: [&[Point]; 2],
     ) -> Result<[Vec<f64>; 2], Fault> {
-        if self.protocol == Protocol::Text || points.len() + others.len() > MOST_POINTS {
+        if self.protocol == Protocol::Text || points.len() + others.len() > MAX_POINTS {
             return Ok([self.ask(instance, Ask::Points, points)?, self.ask(instance, Ask::Jets, others)?]);
         }
         let (mut values, mut jets) = (Vec::new(), Vec::new());
@@ -286,16 +289,16 @@ impl Program {
     fn take(&self, id: u64) -> Result<Session, Fault> {
         let mut state = self.state();
         loop {
-            if state.silent >= MOST_SILENT {
+            if state.silent >= MAX_TIMEOUTS {
                 return Err(Fault::Refused(format!(
-                    "gave no answer in time {MOST_SILENT} times; it is not asked again"
+                    "gave no answer in time {MAX_TIMEOUTS} times; it is not asked again"
                 )));
             }
             let same = state.idle.iter().position(|s| s.instance == id);
             if let Some(i) = same.or_else(|| state.idle.len().checked_sub(1)) {
                 return Ok(state.idle.swap_remove(i));
             }
-            if state.running < self.most {
+            if state.running < self.max_processes {
                 state.running += 1;
                 break;
             }

@@ -5,12 +5,12 @@ use crate::fault::{Fault, beginning};
 use pathwarp::kurbo::Point;
 use std::fmt::Write as _;
 
-/// The request to build a map from `lines`.
+/// Encodes the request to build a map from `lines`.
 pub(crate) fn build(lines: &[String]) -> Vec<u8> {
     format!("build {}\n{}", lines.len(), lines.concat()).into_bytes()
 }
 
-/// The request for a batch.
+/// Encodes the request for a batch.
 pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
     let mut text = String::with_capacity(40 * points.len() + 16);
     let _ = writeln!(text, "{} {}", ask.word(), points.len());
@@ -20,7 +20,7 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
     out.extend_from_slice(text.as_bytes());
 }
 
-/// The length of the answer to `build` at the beginning of `bytes`: up to the line `ok`, or one that begins with `error`.
+/// The length of the answer to `build` at the beginning of `bytes`, up to the line `ok`, or one that begins with `error`.
 pub(crate) fn build_length(bytes: &[u8]) -> Option<usize> {
     let mut at = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
@@ -54,7 +54,7 @@ fn garbage(line: &str) -> Fault {
     Fault::Garbage { expected: "ok, error, note, warning, crease or edge".into(), found: beginning(line.as_bytes()) }
 }
 
-/// `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`.
+/// Reads `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`.
 fn crease(text: &str, edge: bool) -> Option<CreaseAnswer> {
     let mut words = text.split_whitespace();
     let shape = words.next()?;
@@ -78,7 +78,7 @@ pub(crate) struct LineCount {
 }
 
 impl LineCount {
-    /// The length of the first `wanted` lines, once they are there. An answer of one line that begins with `error` is whole.
+    /// The length of the first `wanted` lines, once they have arrived. A single line that begins with `error` is a whole answer.
     pub(crate) fn length(&mut self, bytes: &[u8], wanted: usize) -> Option<usize> {
         for (i, b) in bytes.iter().enumerate().skip(self.seen) {
             if *b == b'\n' {

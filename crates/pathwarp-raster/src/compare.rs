@@ -25,7 +25,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Returns `true` if the pictures are equal pixel for pixel.
+    /// Whether the pictures are equal pixel for pixel.
     pub fn is_same(&self) -> bool {
         self.max_channel == 0
     }
@@ -35,7 +35,7 @@ impl Difference {
         self.histogram.iter().skip(usize::from(threshold) + 1).sum()
     }
 
-    /// Returns the share of pixels, 0 to 1, with a channel that differs by more than `threshold`.
+    /// Returns the fraction of pixels with a channel that differs by more than `threshold`.
     pub fn share_over(&self, threshold: u8) -> f64 {
         self.pixels_over(threshold) as f64 / (f64::from(self.width) * f64::from(self.height))
     }
@@ -92,7 +92,7 @@ fn largest(differences: [u8; 4]) -> u8 {
     differences.into_iter().fold(0, u8::max)
 }
 
-/// The pixel on white as grey, blended three quarters towards white.
+/// Converts a pixel on white to grey, blended three quarters towards white.
 fn pale(pixel: PremultipliedColorU8) -> ColorU8 {
     let white = u32::from(u8::MAX - pixel.alpha());
     let on_white = |channel: u8| u32::from(channel) + white;

@@ -28,11 +28,11 @@ pub enum Error {
     /// Drawing the picture takes more work or memory than a limit allows.
     #[error("drawing it takes {0}; draw it smaller, or simplify its masks, filters and patterns")]
     TooMuch(#[from] Exceeded),
-    /// Geometry reaches farther than the renderer can compute with.
+    /// Geometry extends farther than the renderer can handle.
     #[error(
         "a shape or a stroke extends more than {:.0e} pixels from the picture, or has coordinates that are not finite, which \
          cannot be drawn; remove it, or draw the picture smaller",
-        crate::load::FARTHEST
+        crate::load::MAX_COORDINATE
     )]
     TooFar,
     /// A turbulence filter has more octaves than have any effect.
@@ -61,7 +61,7 @@ pub enum Error {
         /// Width and height of the second picture.
         b: (u32, u32),
     },
-    /// The map takes no point to the place that the picture shows.
+    /// The map takes no point to the area that the picture shows.
     #[error("no pixel of the picture has an inverse image")]
     NoInverse,
     /// The page and the overlays of a preview are empty or not finite.

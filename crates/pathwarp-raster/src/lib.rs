@@ -44,8 +44,7 @@ pub use picture::{Picture, PictureFormat, header_size};
 pub use pixmap::enlarged;
 pub use png::{decode_png, encode_png, encode_smooth_png};
 pub use preview::{OverlayKind, Panel, Preview, PreviewOverlay};
-pub use render::render_group;
-pub use render::{RenderOptions, Size, render};
+pub use render::{RenderOptions, Size, render, render_group};
 pub use tiny_skia::{Color, IntRect, Pixmap};
 pub use warp_image::{
     Colors, Extent, GridInverse, ImageWarp, SeenColor, Shade, ShadeTolerance, SmoothShade, extent, shade, shown,

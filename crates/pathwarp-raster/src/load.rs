@@ -1,11 +1,10 @@
-//! The work that rendering a drawing takes, estimated before it is done: pixels painted, pixels held, and how far geometry
-//! reaches.
+//! Estimates the work of rendering a drawing beforehand: pixels painted, pixels held, and how far geometry extends.
 //!
-//! The renderer, resvg 0.49 (<https://github.com/linebender/resvg/tree/v0.49.0/crates/resvg>), has no limits of its own. It paints every isolated group, mask and filter on layers that may be larger than
-//! the picture, evaluates filters at any size, decodes pictures whatever size they announce, and aborts on coordinates that
-//! its fixed-point numbers cannot hold.
+//! The renderer, resvg 0.49 (<https://github.com/linebender/resvg/tree/v0.49.0/crates/resvg>), has no limits of its own. It paints
+//! every isolated group, mask and filter on layers that may be larger than the picture, evaluates filters at any size, decodes
+//! pictures of any stated size, and aborts on coordinates that its fixed-point numbers cannot hold.
 //!
-//! A unit of work is about five nanoseconds, which is a pixel composited with a little arithmetic.
+//! A unit of work is about five nanoseconds, the time to composite a pixel with a little arithmetic.
 
 use crate::error::Error;
 use crate::picture::header_size;
@@ -16,17 +15,17 @@ use tiny_skia::{PathSegment, Rect, Transform};
 use usvg::filter::Kind;
 use usvg::{Group, ImageKind, LineCap, LineJoin, Node, Paint, Stroke};
 
-/// Farthest that geometry may reach from the picture's origin, in pixels, with stroke widths. The renderer's edges hold 16 bits
-/// before the point after clipping, and its clipping loses its footing from about 1e9 on.
-pub(crate) const FARTHEST: f32 = 1e8;
+/// Largest distance of geometry from the picture's origin, in pixels, including stroke widths. The renderer's edges hold 16 bits
+/// before the point after clipping, and its clipping breaks down from about 1e9 on.
+pub(crate) const MAX_COORDINATE: f32 = 1e8;
 
 /// The renderer's layers extend up to twice the picture's size past it on every side.
 const LAYER_REACH: f32 = 2.0;
 
-/// Work for a pixel, by what is done with it.
+// Work for a pixel, by operation.
 const LAYER: f64 = 4.0;
 const GRADIENT: f64 = 2.0;
-/// The same for each stop of a gradient: the renderer looks at all of them.
+/// Work for each stop of a gradient, since the renderer checks them all for each pixel.
 const STOP: f64 = 0.03;
 const BICUBIC: f64 = 8.0;
 const DECODED: f64 = 4.0;
@@ -35,20 +34,21 @@ const BLURRED: f64 = 20.0;
 const LIT: f64 = 20.0;
 const OCTAVE: f64 = 24.0;
 const WINDOW: f64 = 0.4;
-/// Work for a path, and for a dash.
+/// Work for a path.
 const PATH: f64 = 50.0;
+/// Work for a dash.
 const DASH: f64 = 200.0;
 
 /// Bytes of a pixel.
 const PIXEL_BYTES: f64 = 4.0;
 
-/// Octaves of turbulence beyond these change no colour of eight bits, and overflow in the renderer.
+/// Further octaves of turbulence change no colour of eight bits, and overflow in the renderer.
 const MAX_OCTAVES: u32 = 24;
 
-/// Counts the work of drawing a group with `transform` on a picture of `width` × `height` pixels.
+/// Charges for drawing a group with `transform` on a picture of `width` × `height` pixels.
 ///
 /// # Errors
-/// It exceeds the limits, or geometry reaches too far.
+/// The work exceeds the limits, or geometry extends too far.
 pub(crate) fn of_group(
     group: &Group,
     transform: Transform,
@@ -61,40 +61,40 @@ pub(crate) fn of_group(
     Ok(budget.spend(cost::PIXEL * load.work)?)
 }
 
-/// The surface that is painted on.
+/// The surface to paint on.
 #[derive(Clone, Copy)]
 struct Canvas {
     width: f32,
     height: f32,
-    /// Pixels held, with all surfaces below this one.
+    /// Pixels held by this surface and all below it.
     held: f64,
 }
 
 impl Canvas {
-    /// Area of a box on the canvas, in pixels.
+    /// Width and height of the visible part of a box, in pixels.
     fn seen(&self, r: Rect) -> [f64; 2] {
         self.within(r, 0.0)
     }
 
-    /// Width and height of a layer for a box: it may extend past the canvas.
+    /// Width and height of a layer for a box, which may extend past the canvas.
     fn layer(&self, r: Rect) -> [f64; 2] {
         self.within(r, LAYER_REACH)
     }
 
     fn within(&self, r: Rect, reach: f32) -> [f64; 2] {
         let side = |from: f32, to: f32, size: f32| {
-            let (least, most) = (-reach * size, (1.0 + reach) * size);
-            f64::from(to.min(most) - from.max(least)).max(0.0)
+            let (min, max) = (-reach * size, (1.0 + reach) * size);
+            f64::from(to.min(max) - from.max(min)).max(0.0)
         };
         [side(r.left(), r.right(), self.width), side(r.top(), r.bottom(), self.height)]
     }
 }
 
-/// The sum of the work.
+/// Adds up the work.
 struct Load {
     limits: Limits,
     work: f64,
-    /// Sizes of pictures, by the address of their data.
+    /// Sizes of pictures by the address of their data.
     sizes: HashMap<usize, f64>,
 }
 
@@ -104,7 +104,7 @@ impl Load {
         Ok(self.limits.check(Limit::Work, cost::PIXEL * self.work).map_err(Exceeded::cut_short)?)
     }
 
-    /// The canvas with another surface of `area` pixels.
+    /// Adds a surface of `area` pixels to those held.
     fn hold(&self, canvas: &Canvas, area: f64) -> Result<Canvas, Error> {
         let held = canvas.held + area;
         self.limits.check(Limit::Memory, PIXEL_BYTES * held)?;
@@ -121,7 +121,6 @@ impl Load {
         let area = w * h;
         self.add(LAYER * area)?;
         let layer = self.hold(canvas, area)?;
-        let layer = Canvas { held: layer.held, ..*canvas };
         g.children().iter().try_for_each(|n| self.node(n, transform, &layer))?;
         for f in g.filters() {
             self.filter(f, transform, area, &layer)?;
@@ -159,7 +158,7 @@ impl Load {
         if let Some(stroke) = p.stroke() {
             let scale = f64::from(transform.sx.hypot(transform.ky).max(transform.kx.hypot(transform.sy)));
             let width = f64::from(stroke.width().get()) * scale;
-            if width > f64::from(FARTHEST) {
+            if width > f64::from(MAX_COORDINATE) {
                 return Err(Error::TooFar);
             }
             let edges = edges.stroked(p.data().len(), stroke, width, picture);
@@ -172,7 +171,7 @@ impl Load {
         self.add(PATH)
     }
 
-    /// The tile of a pattern, which the renderer paints for every shape.
+    /// Adds the tile of a pattern, which the renderer paints anew for every shape.
     fn pattern(&mut self, paint: &Paint, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
         let Paint::Pattern(pattern) = paint else { return Ok(()) };
         let (sx, sy) = transform.pre_concat(pattern.transform()).get_scale();
@@ -196,9 +195,9 @@ impl Load {
         };
         let limits = &mut self.limits;
         let pixels = *self.sizes.entry(Arc::as_ptr(data) as usize).or_insert_with(|| {
-            // The renderer skips what it cannot decode.
+            // The renderer skips pictures that it cannot decode.
             let pixels = header_size(data).map_or(0.0, |(w, h)| f64::from(w) * f64::from(h));
-            // It was counted when it was read, and holds as much as a result of its size.
+            // The picture's size was checked when it was read, so it may hold as much memory as a result of its size.
             *limits = limits.for_pixels(2.0 * pixels);
             pixels
         });
@@ -215,7 +214,7 @@ impl Load {
         c.clip_path().map_or(Ok(()), |c| self.clip(c, transform, area, &inner))
     }
 
-    /// The content of a clip path, in which groups are not isolated, but may be clipped in turn.
+    /// Adds the content of a clip path, whose groups are not isolated, but may be clipped in turn.
     fn clipped(&mut self, g: &Group, outer: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
         let transform = outer.pre_concat(g.transform());
         let mut surface = *canvas;
@@ -239,7 +238,7 @@ impl Load {
         m.mask().map_or(Ok(()), |m| self.mask(m, transform, area, &inner))
     }
 
-    /// A filter on a layer of `area` pixels. The results of all primitives are held until its end.
+    /// Adds a filter on a layer of `area` pixels. The results of all primitives are held until it is done.
     fn filter(
         &mut self,
         f: &usvg::filter::Filter,
@@ -256,8 +255,8 @@ impl Load {
                 Kind::DropShadow(s) => [s.dx() * sx, s.dy() * sy],
                 _ => [0.0; 2],
             };
-            // The renderer computes where a picture ends in 32 bits.
-            if !moved.iter().all(|v| v.abs() <= FARTHEST) {
+            // The renderer computes the end of a shifted picture in 32 bits.
+            if !moved.iter().all(|v| v.abs() <= MAX_COORDINATE) {
                 return Err(Error::TooFar);
             }
             let more = match p.kind() {
@@ -294,12 +293,12 @@ fn paint_work(paint: &Paint) -> f64 {
     }
 }
 
-/// Returns `true` if the renderer stands these coordinates.
+/// Whether the renderer can handle these coordinates.
 fn is_near(r: &Rect) -> bool {
-    [r.left(), r.top(), r.right(), r.bottom()].iter().all(|v| v.abs() <= FARTHEST)
+    [r.left(), r.top(), r.right(), r.bottom()].iter().all(|v| v.abs() <= MAX_COORDINATE)
 }
 
-/// Number of dashes along a path.
+/// Estimates the number of dashes along a path.
 fn dashes_along(path: &tiny_skia::Path, dashes: &[f32]) -> f64 {
     let period: f64 = dashes.iter().map(|d| f64::from(*d)).sum();
     let legs = path.points().windows(2).map(|p| f64::from(p[0].distance(p[1])));
@@ -307,13 +306,15 @@ fn dashes_along(path: &tiny_skia::Path, dashes: &[f32]) -> f64 {
     if period > 0.0 { length / period * dashes.len() as f64 } else { 0.0 }
 }
 
-/// Work for a row of pixels that an edge crosses, in four scan lines; for two edges in the same row, as they may cross; and for an edge.
+/// Work for a row of pixels that an edge crosses, in four scan lines.
 const CROSSING: f64 = 4.0;
+/// Work for two edges in the same row, since they may change places.
 const BESIDE: f64 = 0.4;
+/// Work for an edge.
 const SEGMENT: f64 = 10.0;
 
 /// Edges of an outline, with the rows and columns that they cross.
-pub(super) struct Edges {
+struct Edges {
     count: f64,
     /// Sums over all edges, in pixels.
     rows: f64,
@@ -321,10 +322,10 @@ pub(super) struct Edges {
 }
 
 impl Edges {
-    /// The edges of a path that is filled.
-    pub(super) fn of(path: &tiny_skia::Path, transform: Transform, [width, height]: [f32; 2]) -> Self {
+    /// The edges of a filled path.
+    fn of(path: &tiny_skia::Path, transform: Transform, [width, height]: [f32; 2]) -> Self {
         let mut edges = Self { count: 0.0, rows: 0.0, columns: 0.0 };
-        // Parts outside of the picture are cut off first.
+        // The renderer first cuts off the parts outside the picture.
         let within = |v: f32, size: f32| if v > 0.0 { f64::from(v.min(size)) } else { 0.0 };
         let place = |mut p: tiny_skia::Point| {
             transform.map_point(&mut p);
@@ -335,7 +336,7 @@ impl Edges {
             // The control polygon crosses at least as many rows as the curve.
             match segment {
                 PathSegment::MoveTo(p) => {
-                    // An open subpath is filled as if it were closed.
+                    // Filling closes open subpaths.
                     edges.add(&[last, start]);
                     start = place(p);
                     last = start;
@@ -352,7 +353,7 @@ impl Edges {
         edges
     }
 
-    /// Adds a polygon, and returns its end.
+    /// Adds a polyline, and returns its end.
     fn add<const N: usize>(&mut self, polygon: &[[f64; 2]; N]) -> [f64; 2] {
         for p in polygon.windows(2) {
             self.columns += (p[1][0] - p[0][0]).abs();
@@ -361,9 +362,9 @@ impl Edges {
         polygon[N - 1]
     }
 
-    /// The outline of a stroke of `width` pixels along these edges: two sides, and a join or a cap at every node, which is as high as the
-    /// stroke is wide.
-    pub(super) fn stroked(&self, nodes: usize, stroke: &Stroke, width: f64, picture: [f32; 2]) -> Self {
+    /// The edges of a stroke of `width` pixels along these edges: two sides, and a join or a cap at every node, which is as high as
+    /// the stroke is wide.
+    fn stroked(&self, nodes: usize, stroke: &Stroke, width: f64, picture: [f32; 2]) -> Self {
         let nodes = nodes as f64;
         let round = stroke.linejoin() == LineJoin::Round || stroke.linecap() == LineCap::Round;
         let (edges, sides) = if round { (8.0, 4.0) } else { (2.0, 2.0) };
@@ -375,10 +376,10 @@ impl Edges {
         }
     }
 
-    /// The work of filling the outline, which has this size as far as it is seen.
-    pub(super) fn work(&self, [width, height]: [f64; 2]) -> f64 {
+    /// The work of filling the outline. `width` and `height` are those of its visible part.
+    fn work(&self, [width, height]: [f64; 2]) -> f64 {
         let beside = self.rows / height.max(1.0);
-        // Edges change places in a row only where their columns overlap.
+        // Edges only change places in a row where their columns overlap.
         let overlap = (2.0 * self.columns / (self.count.max(1.0) * width.max(1.0))).min(1.0);
         SEGMENT * self.count + CROSSING * self.rows + BESIDE * self.count.min(self.rows) * beside * overlap
     }

@@ -6,10 +6,10 @@ use pathwarp::budget::{Exceeded, Limit, Limits};
 use rayon::prelude::*;
 use tiny_skia::{FilterQuality, IntRect, Pixmap, PixmapPaint, Transform};
 
-/// Bytes held for each pixel of a picture that is made: itself, and the file that it becomes.
+/// Bytes held for each pixel of a new picture: the pixel itself, and its share of the file.
 const BYTES: f64 = 8.0;
 
-/// Checks the size of a picture that is read.
+/// Checks the size of a picture to read.
 pub(crate) fn check_size(width: f64, height: f64, limits: &Limits) -> Result<(), Error> {
     let too_large = |exceeded| Error::TooLarge { width, height, exceeded };
     limits.check(Limit::Pixels, width * height).map_err(too_large)
@@ -33,8 +33,8 @@ pub(crate) fn new_pixmap(width: f64, height: f64, limits: &Limits) -> Result<Pix
     Pixmap::new(whole_width, whole_height).ok_or_else(|| too_large(refused()))
 }
 
-/// Returns a part of a picture with each pixel enlarged `factor` times: as a square, or with colours interpolated linearly between
-/// the centres of pixels, as browsers enlarge pictures.
+/// Enlarges a part of a picture `factor` times. Pixels become squares, or colours are interpolated linearly between the centres of
+/// pixels, as browsers do.
 ///
 /// # Errors
 /// The result exceeds the limits.

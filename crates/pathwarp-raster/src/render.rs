@@ -8,9 +8,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use tiny_skia::{Color, Pixmap, Transform};
 use usvg::{Group, Node};
 
-/// Excess over a whole number of pixels that does not start another row.
+/// Excess over a whole number of pixels that does not add another row.
 ///
-/// Sizes in physical units (`210mm`) carry rounding errors, and a row that is covered by a thousandth shows only a faint line.
+/// Sizes in physical units (`210mm`) carry rounding errors, and a row covered to a thousandth would only show a faint line.
 const ROUNDING_SLACK: f64 = 1e-3;
 
 /// The size of a picture. It always keeps the aspect ratio of the drawing.
@@ -49,13 +49,13 @@ impl RenderOptions {
     /// Renders `tree` with these options.
     ///
     /// # Errors
-    /// The size is zero or not a positive number, the picture or the work to draw it exceeds the limits, or a shape reaches
-    /// farther than the renderer can compute with.
+    /// The size is zero or not a positive number, the picture or the work to draw it exceeds the limits, or a shape extends farther
+    /// than the renderer can handle.
     pub fn render_within(&self, tree: &usvg::Tree, limits: &Limits) -> Result<Pixmap, Error> {
         self.render_counted(tree, &Budget::new(*limits))
     }
 
-    /// Renders `tree` with these options, and counts the work: several drawings may share a budget.
+    /// Renders `tree` with these options, and charges the work to `budget`, which several drawings may share.
     ///
     /// # Errors
     /// As for [`RenderOptions::render_within`].
@@ -105,7 +105,7 @@ impl Size {
 /// Draws `tree` on a picture.
 ///
 /// # Errors
-/// It takes more than the limits allow, or the renderer fails.
+/// The work exceeds the budget, or the renderer fails.
 pub(crate) fn draw(
     tree: &usvg::Tree,
     transform: Transform,
@@ -115,13 +115,14 @@ pub(crate) fn draw(
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     let size = [picture.width() as f32, picture.height() as f32];
     load::of_group(tree.root(), transform, size, budget)?;
-    // A failure leaves the picture half painted; it is then dropped.
+    // After a failure, the caller drops the half-painted picture.
     let drawn = catch_unwind(AssertUnwindSafe(|| resvg::render(tree, transform, &mut picture.as_mut())));
     drawn.map_err(|_| Error::Renderer)
 }
 
-/// Draws a group with its filters, clip path, mask and opacity as a picture, and counts the work in `budget`. `transform` leads from
-/// the corner of the group's layer to pixels, as in `resvg::render_node`. `None` if the group shows nothing.
+/// Draws a group with its filters, clip path, mask and opacity as a picture, and charges the work to `budget`. `transform` maps the
+/// group, moved so that the corner of its layer is the origin, to pixels, as in `resvg::render_node`. Returns `None` if the group
+/// shows nothing.
 ///
 /// # Errors
 /// As for [`RenderOptions::render_within`](crate::RenderOptions::render_within).

@@ -1,7 +1,7 @@
-//! Pictures of every kind, as other programs read them.
+//! Checks that pictures of every kind are read as other programs read them.
 //!
-//! The files in `pictures/` are of 16 × 16 pixels in four tiles. They were written by Pillow 13 (libjpeg-turbo, libwebp, zlib), which
-//! also says what their colours are.
+//! The files in `pictures/` have 16 × 16 pixels in four tiles. They were written by Pillow 13 (libjpeg-turbo, libwebp, zlib), which also gave
+//! the expected colours.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
@@ -21,18 +21,18 @@ fn file(name: &str) -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures").join(name)).unwrap()
 }
 
-/// All pixels with straight alpha.
+/// All pixels, with straight alpha.
 fn pixels(pixmap: &Pixmap) -> Vec<Rgba> {
     let straight = pixmap.pixels().iter().map(PremultipliedColorU8::demultiply);
     straight.map(|c| [c.red(), c.green(), c.blue(), c.alpha()]).collect()
 }
 
-/// The pixels of a picture of four tiles, above, below, from the left.
+/// The pixels of a picture of four tiles, given row by row.
 fn tiled(tiles: &[Rgba; 4]) -> Vec<Rgba> {
     (0..256).map(|i| tiles[i / 128 * 2 + i % 16 / 8]).collect()
 }
 
-/// Asserts that no sample is further off than by `tolerance`.
+/// Asserts that no sample is off by more than `tolerance`.
 fn assert_near(seen: &[Rgba], expected: &[Rgba], tolerance: u8, name: &str) {
     assert_eq!(seen.len(), expected.len(), "{name}");
     for (i, (a, b)) in seen.iter().zip(expected).enumerate() {
@@ -74,25 +74,25 @@ fn jpegs_of_every_colour_space() {
 fn webps_of_every_kind() {
     check("lossless.webp", &TILES, 0);
     check("lossless-alpha.webp", &TRANSLUCENT, 1);
-    // Colours have half the resolution, so those at the edges of tiles are mixed.
+    // Colour is stored at half the resolution, so it mixes at the edges of tiles.
     let inside = |i: usize| (i % 8).abs_diff(4) < 3 && (i / 16 % 8).abs_diff(4) < 3;
     check_at("lossy.webp", &TILES, 2, inside);
     check_at("lossy-alpha.webp", &TRANSLUCENT, 3, inside);
     check("animated.webp", &TRANSLUCENT, 1);
 }
 
-/// Appends a chunk of a WebP with content of an even size.
+/// Appends a chunk of a WebP; the content must have an even size.
 fn riff(out: &mut Vec<u8>, name: &[u8; 4], content: &[u8]) {
     out.extend(name);
     out.extend(u32::try_from(content.len()).unwrap().to_le_bytes());
     out.extend(content);
 }
 
-/// `lossy-alpha.webp` as the only frame of an animation, for which another height may be given. Of a wrong one the decoder would panic.
+/// `lossy-alpha.webp` as the only frame of an animation, with this height. The decoder itself would panic at a wrong one.
 #[test]
 fn frames_of_webps_are_as_large_as_they_say() {
     let still = file("lossy-alpha.webp");
-    // Before the chunks with the pixels are those with the size.
+    // The chunks with the size come before those with the pixels.
     let parts = &still[still.windows(4).position(|name| name == b"ALPH").unwrap()..];
     let animation = |height: u8| {
         let mut frame = [[0; 6].as_slice(), &[15, 0, 0, height - 1, 0, 0], &[50, 0, 0, 2]].concat();
@@ -133,7 +133,7 @@ fn pngs_with_animations_are_their_default_image() {
     check("default-image.png", &TILES, 0);
 }
 
-/// Number 6: the first row is the right side, so what was stored on the left is above.
+/// Orientation 6: the first row is the right side, so what is stored on the left is at the top.
 #[test]
 fn orientation_is_found_in_every_format() {
     let [a, b, c, d] = TILES;
@@ -154,7 +154,7 @@ fn chunk(out: &mut Vec<u8>, name: &[u8; 4], content: &[u8]) {
     out.extend([&name[..], content, &crc.sum().to_be_bytes()].concat());
 }
 
-/// A PNG from its rows, each after the number of its filter.
+/// A PNG made from its rows, each preceded by the number of its filter.
 fn png(
     [width, height]: [u32; 2],
     depth: u8,
@@ -197,7 +197,7 @@ fn pngs_of_every_colour_type_and_depth() {
     assert_eq!(row(1, 16, 6, &[], &[1, 1, 2, 2, 3, 3, 255, 255]), [[1, 2, 3, 255]]);
 }
 
-/// The nearest of 256 levels to each of 65,536.
+/// Each of 65,536 levels becomes the nearest of 256.
 #[test]
 fn sixteen_bits_are_rounded() {
     let samples: Vec<u8> = (0..=u16::MAX).flat_map(u16::to_be_bytes).collect();
@@ -214,7 +214,7 @@ fn palettes_and_transparent_colours_of_pngs() {
     let palette: &[u8] = &[255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255];
     let colors: [Rgba; 4] = [[255, 0, 0, 0], [0, 255, 0, 128], [0, 0, 255, 255], [255, 255, 255, 255]];
     let mut shown = colors;
-    // Premultiplied, transparent pixels are black.
+    // With premultiplied alpha, transparent pixels are black.
     shown[0] = [0; 4];
     let extra: [(&[u8; 4], &[u8]); 2] = [(b"PLTE", palette), (b"tRNS", &[0, 128])];
     assert_eq!(row(4, 2, 3, &extra, &[0b0001_1011]), shown);
@@ -226,7 +226,7 @@ fn palettes_and_transparent_colours_of_pngs() {
     assert_eq!(row(2, 16, 0, &[(b"tRNS", &[1, 2])], &[1, 2, 1, 3]), [[0; 4], [1, 1, 1, 255]]);
 }
 
-/// The decoder would panic.
+/// The decoder itself would panic.
 #[test]
 fn palettes_that_end_within_a_colour_are_errors() {
     for length in [3, 4, 5, 6] {
@@ -239,21 +239,21 @@ fn palettes_that_end_within_a_colour_are_errors() {
     }
 }
 
-/// Adam7: of 2 × 2 pixels, the first pass has the first one, the sixth the second, the seventh the second row.
+/// Adam7: of 2 × 2 pixels, the first pass holds the first pixel, the sixth the second one, and the seventh the second row.
 #[test]
 fn interlaced_pngs() {
     let bytes = png([2, 2], 8, 0, true, &[], &[0, 10, 0, 20, 0, 30, 40]);
     assert_eq!(pixels(&Picture::read(&bytes).unwrap().pixmap), grey([10, 20, 30, 40]));
 }
 
-/// A GIF of a page of 4 × 3 pixels, and a frame with the colours 0, 1, 2, 3 again and again, of which 2 is transparent.
+/// A GIF with a page of 4 × 3 pixels and a frame that repeats the colours 0, 1, 2, 3, of which 2 is transparent.
 fn gif(frame: [u16; 4], is_interlaced: bool) -> Vec<u8> {
     let mut out = b"GIF89a\x04\0\x03\0\x81\0\0".to_vec();
     out.extend([255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255]);
     out.extend(b"!\xf9\x04\x01\0\0\x02\0,");
     out.extend(frame.iter().flat_map(|n| n.to_le_bytes()));
     out.extend([if is_interlaced { 0x40 } else { 0 }, 2]);
-    // Codes of three bits: 4 clears the table, 5 ends. Cleared before every colour, the table never grows.
+    // Codes of three bits: 4 clears the table, 5 ends. The table is cleared before every colour, so it never grows.
     let colors = (0..u32::from(frame[2]) * u32::from(frame[3])).flat_map(|i| [4, i % 4]);
     let bits: Vec<bool> = colors.chain([5]).flat_map(|code| [code & 1 != 0, code & 2 != 0, code & 4 != 0]).collect();
     let data: Vec<u8> =
@@ -297,7 +297,7 @@ fn frames_of_gifs_have_their_place() {
     }
 }
 
-/// Stripes of one pixel keep their colours: none are averaged before they are packed.
+/// Stripes one pixel wide keep their colours, as colours are not averaged before they are packed.
 #[test]
 fn jpegs_are_as_fine_in_colour_as_in_brightness() {
     let mut pixmap = Pixmap::new(16, 16).unwrap();

@@ -11,7 +11,7 @@ const P3_TO_XYZ: [[f64; 3]; 3] = [
     [0.0, 32_229.0 / 714_400.0, 5_220_557.0 / 5_000_800.0],
 ];
 
-/// A paint as usvg reads it. `None` for what is no paint, or of a kind that is not supported.
+/// Rewrites a paint for usvg. Returns `None` if it is invalid or of an unsupported kind.
 pub(super) fn paint(value: &str) -> Option<Cow<'_, str>> {
     if is_hex(value) || value == "none" {
         return Some(Cow::Borrowed(value));
@@ -38,7 +38,7 @@ fn is_hex(value: &str) -> bool {
     matches!(digits.len(), 3 | 4 | 6 | 8) && digits.bytes().all(|b| b.is_ascii_hexdigit())
 }
 
-/// A colour as usvg reads it.
+/// Rewrites a colour for usvg. Returns `None` if it is invalid or of an unsupported kind.
 pub(super) fn color(value: &str) -> Option<Cow<'_, str>> {
     if is_hex(value) {
         return Some(Cow::Borrowed(value));
@@ -57,7 +57,7 @@ pub(super) fn color(value: &str) -> Option<Cow<'_, str>> {
     Some(format!("rgba({r},{g},{b},{})", f64::from(a) / 255.0).into())
 }
 
-/// Writes a colour of Display P3 in XYZ.
+/// Converts a colour of Display P3 to XYZ.
 fn in_xyz(color: &str) -> Option<String> {
     let arguments = color.strip_prefix("color(display-p3")?.strip_suffix(')')?;
     let (channels, alpha) = arguments.split_once('/').unwrap_or((arguments, "1"));

@@ -19,12 +19,12 @@ const SHARES: &str = "spacing in per cent is a share of the font's size, which C
 
 const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
 
-/// What an element hands on to its children.
+/// State passed from an element to its children.
 #[derive(Debug, Clone)]
 pub(super) struct Inherited {
-    /// Percentages refer to another size than usvg takes: that of a symbol's own viewport.
+    /// Inside a symbol with a viewport of its own. Percentages refer to that viewport, which usvg doesn't know.
     pub(super) in_symbol: bool,
-    /// Paths have markers.
+    /// Whether paths have markers.
     pub(super) marked: bool,
     pub(super) custom: Rc<Custom>,
     pub(super) units: Units,
@@ -36,23 +36,22 @@ pub(super) struct Inherited {
 /// The style of an element.
 #[derive(Debug, Default)]
 pub(super) struct Computed<'a> {
-    /// Declarations that usvg reads, if they are not those of the style attribute.
+    /// Declarations for usvg, unless the style attribute already holds exactly these.
     pub(super) style: Option<Vec<(Cow<'a, str>, Cow<'a, str>)>>,
-    /// New values of attributes; `None` takes the attribute away.
+    /// New values of attributes; `None` removes the attribute.
     pub(super) attributes: Vec<(&'static str, Option<String>)>,
-    /// Declarations of the transform.
+    /// Declarations that make up the transform.
     pub(super) transform: Vec<Declaration<'a>>,
-    /// What is not supported, in words.
+    /// Unsupported features, worded for people.
     pub(super) unsupported: Vec<String>,
     pub(super) letters: Letters,
-    /// What browsers show a little otherwise.
+    /// Small differences from what browsers show.
     pub(super) notes: Vec<&'static str>,
     /// The first number out of range.
     pub(super) far: Option<String>,
 }
 
-/// The geometry properties of an element, as far as Chromium goes: nested viewports take none from style sheets, and a `use` no
-/// size.
+/// The geometry properties that Chromium takes from style sheets. Nested viewports take none, and a `use` takes no size.
 fn geometry(tag: &str, is_root: bool) -> &'static [&'static str] {
     match tag {
         "rect" => &["x", "y", "width", "height", "rx", "ry"],
@@ -65,7 +64,7 @@ fn geometry(tag: &str, is_root: bool) -> &'static [&'static str] {
     }
 }
 
-/// What 100 % of a property is.
+/// The length that 100 % of a property stands for.
 fn whole(name: &str, units: &Units) -> f64 {
     let (w, h) = units.viewport;
     match name {
@@ -75,8 +74,8 @@ fn whole(name: &str, units: &Units) -> f64 {
     }
 }
 
-/// Computes the style of an element from the declarations that apply, weakest first. `inherited` is what its parent hands on, and
-/// becomes what the element itself does.
+/// Computes the style of an element from the declarations that apply, weakest first. `inherited` comes from the parent and is
+/// updated for the element's children.
 pub(super) fn computed<'a>(
     node: Node<'a, '_>,
     is_root: bool,
@@ -99,7 +98,7 @@ pub(super) fn computed<'a>(
         absolute: inherited.in_symbol && !is_server && !tag.starts_with("fe"),
         ids,
     };
-    // The font size first: other lengths refer to it.
+    // Resolve the font size first; other lengths depend on it.
     if let Some(px) = font_size(node, declarations, &values) {
         inherited.units.font = px;
     }
@@ -132,12 +131,12 @@ fn font_size(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Val
     declared.or_else(|| px(node.attribute("font-size")?, false))
 }
 
-/// A keyword that every property has.
+/// A CSS-wide keyword.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Wide {
     Inherit,
     Initial,
-    /// One of the two: whichever is natural.
+    /// Inherits if the property is inherited by default; otherwise the initial value.
     Unset,
 }
 
@@ -155,7 +154,7 @@ fn wide(value: &str) -> Option<Wide> {
     }
 }
 
-/// What a wide keyword comes to; `None` if the value is the parent's.
+/// The value that a CSS-wide keyword stands for; `None` for that of the parent.
 fn resolved(wide: Wide, p: &Property) -> Option<&'static str> {
     match wide {
         Wide::Inherit => None,
@@ -170,7 +169,7 @@ struct Values<'d, 'a, 'i> {
     units: Units,
     /// Font size of the parent.
     font: f64,
-    /// Percentages become px.
+    /// Whether percentages are converted to px.
     absolute: bool,
     ids: &'d Ids<'a, 'i>,
 }
@@ -180,7 +179,7 @@ impl Values<'_, '_, '_> {
         value::substituted(raw, &|n| self.custom.get(n).map(ToString::to_string))
     }
 
-    /// A value as usvg reads it. `None` if it is invalid. Where `strict`, lengths need units, except for zero.
+    /// Rewrites a value for usvg. Returns `None` if it is invalid. If `strict`, lengths other than zero need a unit.
     fn of<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
         let raw = raw.trim();
         if value::has_functions(raw) && !matches!(p.kind, Kind::Transform | Kind::Any) {
@@ -195,13 +194,13 @@ impl Values<'_, '_, '_> {
         self.plain(p, raw, strict)
     }
 
-    /// Font sizes refer to that of the parent.
+    /// The units for a property; those of font sizes refer to the parent's font.
     fn units_for(&self, p: &Property) -> Units {
         let font = if matches!(p.kind, Kind::FontSize) { self.font } else { self.units.font };
         Units { font, ..self.units }
     }
 
-    /// What 100 % is.
+    /// The value that 100 % stands for.
     fn full(&self, p: &Property) -> f64 {
         match p.kind {
             Kind::FontSize => self.font,
@@ -211,7 +210,7 @@ impl Values<'_, '_, '_> {
         }
     }
 
-    /// A value without variables and expressions.
+    /// Rewrites a value that holds no variables or expressions.
     fn plain<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
         match p.kind {
             Kind::Word(words) => word(words, raw),
@@ -237,19 +236,18 @@ impl Values<'_, '_, '_> {
         }
     }
 
-    /// A length with a unit that usvg knows.
+    /// Rewrites a length in a unit that usvg knows.
     fn length<'v>(&self, p: &Property, raw: &'v str, sign: Sign, strict: bool) -> Option<Cow<'v, str>> {
         let relative = self.absolute || matches!(p.kind, Kind::FontSize | Kind::Spacing);
         value::known_length(raw, &self.units_for(p), relative.then(|| self.full(p)), sign == Sign::Positive, strict)
     }
 
-    /// What is painted instead of a gradient or pattern that its transform flattens: the colour beside it, or nothing.
+    /// Replaces a gradient or pattern with a singular transform by its fallback colour, or by `none`.
     fn seen_paint<'v>(&self, raw: &'v str) -> &'v str {
-        /// Longest chain of references followed.
-        const LINKS: usize = 16;
+        const MAX_LINKS: usize = 16;
         let Some(link) = reference(raw) else { return raw };
         let first = link.id.as_deref().and_then(|id| self.ids.get(id));
-        let mut chain = std::iter::successors(first, |n| self.ids.target(*n)).take(LINKS);
+        let mut chain = std::iter::successors(first, |n| self.ids.target(*n)).take(MAX_LINKS);
         let given = chain.find_map(|n| n.attribute("gradientTransform").or_else(|| n.attribute("patternTransform")));
         let t = given.and_then(|t| t.parse::<svgtypes::Transform>().ok());
         match t.filter(|t| t.a * t.d == t.b * t.c) {
@@ -259,7 +257,7 @@ impl Values<'_, '_, '_> {
         }
     }
 
-    /// Filters. Where one of them is not there, browsers show the element without any.
+    /// Rewrites a list of filters. If one of them does not exist, browsers apply none.
     fn filter<'v>(&self, raw: &'v str) -> Cow<'v, str> {
         let links =
             || raw.char_indices().filter_map(|(at, c)| reference(&raw[at..]).filter(|_| c.eq_ignore_ascii_case(&'u')));
@@ -267,7 +265,7 @@ impl Values<'_, '_, '_> {
         if raw.eq_ignore_ascii_case("none") || links().any(|l| l.id.as_deref().is_none_or(|id| !is_there(id))) {
             return "none".into();
         }
-        // Several would be written one by one.
+        // Lists stay as they are.
         match reference(raw).filter(|l| l.rest.trim().is_empty()) {
             Some(only) => only.text(raw),
             None => Cow::Borrowed(raw),
@@ -282,11 +280,11 @@ impl Values<'_, '_, '_> {
     }
 }
 
-/// A list with all items valid, separated by spaces, by commas, or by both.
+/// Rewrites a list separated by spaces, commas, or both. Returns `None` if any item is invalid.
 fn list<'v>(raw: &'v str, of: impl Fn(&'v str) -> Option<Cow<'v, str>>) -> Option<Cow<'v, str>> {
     let items = raw.split(',').flat_map(|part| {
         let mut words = part.split_ascii_whitespace().peekable();
-        // Nothing between commas is not valid.
+        // Two commas in a row make an empty, invalid item.
         let empty = words.peek().is_none().then_some("");
         words.chain(empty)
     });
@@ -309,12 +307,12 @@ fn lower(raw: &str) -> Cow<'_, str> {
 
 fn share(raw: &str) -> Option<Cow<'_, str>> {
     let number = raw.strip_suffix('%').unwrap_or(raw);
-    // What ends with a point is no number of CSS.
+    // CSS numbers must not end in a point.
     let valid = !number.ends_with('.') && number.parse::<f64>().is_ok_and(f64::is_finite);
     valid.then_some(Cow::Borrowed(raw))
 }
 
-/// A reference, or `none`. Shapes of CSS stay as they are.
+/// Rewrites a reference or `none`. CSS shapes stay as they are.
 fn link(raw: &str) -> Option<Cow<'_, str>> {
     if raw.eq_ignore_ascii_case("none") {
         return Some("none".into());
@@ -322,15 +320,15 @@ fn link(raw: &str) -> Option<Cow<'_, str>> {
     Some(reference(raw).map_or(Cow::Borrowed(raw), |r| r.text(raw)))
 }
 
-/// The declarations of an element on their way to usvg.
+/// Collects the declarations of an element for usvg.
 struct Declared<'v, 'a, 'i> {
     tag: &'v str,
     geometry: &'static [&'static str],
     values: &'v Values<'v, 'a, 'i>,
     seen: HashSet<Cow<'a, str>>,
-    /// Properties whose value is the parent's, where usvg does not know `inherit`.
+    /// Properties that inherit, but for which usvg doesn't know the keyword `inherit`. They are left out.
     dropped: HashSet<&'static str>,
-    /// Strongest first while declarations are added.
+    /// Strongest first, until all declarations have been added.
     style: Vec<(Cow<'a, str>, Cow<'a, str>)>,
     out: Computed<'a>,
 }
@@ -341,7 +339,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         Self { tag, geometry: &[], values, seen, dropped, style: Vec::new(), out: Computed::default() }
     }
 
-    /// Adds a declaration that is weaker than those before. Of several for a property, the strongest valid one counts.
+    /// Adds a declaration weaker than all before it. The strongest valid declaration of a property wins.
     fn declare(&mut self, d: &Declaration<'a>) {
         match d.name.as_ref() {
             "font" => {
@@ -395,7 +393,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             Kind::Transform => self.out.transform.push(Declaration { value, ..d.clone() }),
             Kind::Geometry(_) if self.geometry.contains(&p.name) => {
                 let value = self.near(&value).into_owned();
-                // `auto` is the value of an attribute that is not there.
+                // Attributes cannot say `auto`; leaving one out means the same.
                 self.out.attributes.push((p.name, Some(value).filter(|v| v != "auto")));
             }
             Kind::Path if self.tag == "path" => {
@@ -414,12 +412,12 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
     }
 
-    /// Notes what Chromium takes of the size on the screen.
+    /// Notes percentages that Chromium resolves against the font's size on the screen.
     fn note_share(&mut self, p: &Property, value: &str) {
         self.out.notes.extend((matches!(p.kind, Kind::Spacing) && value.trim_end().ends_with('%')).then_some(SHARES));
     }
 
-    /// A value with its numbers in range.
+    /// Brings the numbers of a value into range, and remembers the first that was not.
     fn near<'t>(&mut self, value: &'t str) -> Cow<'t, str> {
         let (near, far) = range::in_range(value);
         if self.out.far.is_none() {
@@ -428,7 +426,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         near
     }
 
-    /// Computes the attributes for which no declaration stands.
+    /// Computes the attributes that no declaration overrides.
     fn take_attributes(&mut self, node: Node<'a, '_>) {
         for a in node.attributes().filter(|a| a.namespace().is_none()) {
             let (name, raw) = (a.name(), a.value());
@@ -462,7 +460,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
         self.note_share(p, raw);
         if p.name == "image-rendering" {
-            // usvg reads the words of CSS in style only.
+            // usvg reads the CSS keywords from the style attribute only.
             let new = self.values.of(p, raw, false).map(|v| (p.name.into(), v.into_owned().into()));
             self.style.extend(new);
             return;
@@ -475,9 +473,9 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 None => None,
             },
             None => match self.values.of(p, raw, false) {
-                // In attributes, `auto` is no radius.
+                // A radius of `auto` in an attribute means zero.
                 Some(v) if v == "auto" && matches!(p.name, "rx" | "ry") => Some("0".into()),
-                // usvg knows what to do about geometry without a valid value.
+                // usvg handles invalid geometry as browsers do.
                 None if is_geometry => return,
                 new => new,
             },
@@ -490,7 +488,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
     }
 
-    /// Adds what texts, dashes and `use` elements need.
+    /// Applies the rules specific to texts, dashes, markers and `use` elements.
     fn finish(mut self, node: Node<'a, '_>, inherited: &mut Inherited) -> Computed<'a> {
         let tag = self.tag;
         let mut out = self.out;
@@ -505,13 +503,13 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         let markers: Vec<bool> = MARKERS.into_iter().filter_map(marker).collect();
         inherited.marked = markers.contains(&true) || inherited.marked && markers.len() < 3;
         if inherited.marked && matches!(tag, "rect" | "circle" | "ellipse") {
-            // usvg takes them for paths.
+            // usvg would draw markers on these as on paths.
             out.attributes.retain(|a| !MARKERS.contains(&a.0));
             style.retain(|s| !MARKERS.contains(&s.0.as_ref()));
             style.extend(MARKERS.map(|name| (name.into(), "none".into())));
         }
         if matches!(tag, "tspan" | "textPath") {
-            // It is a property of whole texts.
+            // The writing mode applies to whole texts.
             style.retain(|s| s.0 != "writing-mode");
             out.attributes.retain(|a| a.0 != "writing-mode");
             out.attributes.extend(node.has_attribute("writing-mode").then_some(("writing-mode", None)));
@@ -571,7 +569,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     }
 }
 
-/// The size of a `use` in px: usvg takes percentages twice where it shows a symbol.
+/// Converts the size of a `use` to px; usvg would apply percentages twice when it shows a symbol.
 fn size_of_use(node: Node<'_, '_>, units: &Units) -> impl Iterator<Item = (&'static str, Option<String>)> {
     ["width", "height"].into_iter().filter_map(move |name| {
         let share = node.attribute(name).filter(|v| v.trim().ends_with('%'))?;
@@ -579,7 +577,7 @@ fn size_of_use(node: Node<'_, '_>, units: &Units) -> impl Iterator<Item = (&'sta
     })
 }
 
-/// The attributes of a `use` with which usvg, which knows no place, size and transform of symbols, shows one (SVG 2, section 5.5).
+/// Moves the position, size and transform of a symbol, which usvg ignores, to the `use` that shows it (SVG 2, section 5.5).
 fn shown_symbol(
     node: Node<'_, '_>,
     symbol: Node<'_, '_>,
@@ -609,7 +607,7 @@ fn shown_symbol(
     out
 }
 
-/// Whether usvg knows what `inherit` means for a property.
+/// Whether usvg understands `inherit` as a value of a property.
 fn knows_inherit(p: &Property) -> bool {
     let unknown = matches!(p.kind, Kind::Geometry(_) | Kind::Transform | Kind::Path)
         || matches!(
@@ -639,7 +637,7 @@ fn knows_inherit(p: &Property) -> bool {
     !unknown
 }
 
-/// Dashes in user units, where `pathLength` gives their unit.
+/// Converts dashes from the unit that `pathLength` sets to user units.
 fn scaled_dashes(node: Node<'_, '_>, style: &Computed<'_>, inherited: &Inherited) -> Option<[String; 2]> {
     let whole: f64 = node.attribute("pathLength")?.trim().parse().ok().filter(|l| *l > 0.0)?;
     let [Some(array), offset] = &inherited.dashes else { return None };
@@ -653,14 +651,13 @@ fn scaled_dashes(node: Node<'_, '_>, style: &Computed<'_>, inherited: &Inherited
 }
 
 impl<'a> Computed<'a> {
-    /// All values.
     pub(super) fn values(&self) -> impl Iterator<Item = &str> {
         let declared =
             self.style.iter().flatten().map(|d| d.1.as_ref()).chain(self.transform.iter().map(|d| d.value.as_ref()));
         declared.chain(self.attributes.iter().filter_map(|a| a.1.as_deref()))
     }
 
-    /// The value of an attribute as it is going to be.
+    /// The value that an attribute will have.
     pub(super) fn value<'s>(&'s self, node: Node<'a, '_>, name: &str) -> Option<&'s str> {
         match self.attributes.iter().find(|a| a.0 == name) {
             Some(new) => new.1.as_deref(),
@@ -669,7 +666,7 @@ impl<'a> Computed<'a> {
     }
 }
 
-/// What has no effect in the result, in words.
+/// Describes a declaration that the result ignores.
 fn unsupported(name: &str, value: &str) -> Option<String> {
     if !matches!(name, "clip-path" | "mask" | "text-transform" | "mask-image" | "offset-path") {
         return None;

@@ -1,5 +1,5 @@
-//! Elements as the crate `selectors` looks at them. Every look is counted: a selector of many parts tries many ways to choose
-//! them among an element's ancestors and siblings.
+//! Matches elements against selectors, by the crate `selectors`. Every access is counted, since a selector of many parts can
+//! try many combinations of an element's ancestors and siblings.
 
 use crate::names::{Name, State, Svg};
 use crate::sheet::{Declaration, Rules};
@@ -15,41 +15,43 @@ use selectors::matching::{ElementSelectorFlags, matches_selector};
 use selectors::parser::Selector;
 use std::cell::Cell;
 
-/// Bytes of an attribute's value, and attributes, that are looked at in the time of a comparison.
-const VALUE: usize = 32;
+/// Bytes of an attribute's value that take as long to read as one comparison.
+const VALUE_BYTES: usize = 32;
+
+/// Attributes that take as long to search as one comparison.
 const ATTRIBUTES: usize = 64;
 
-/// Comparisons that can be made in the time of trying a selector.
-const TRIED: usize = 2;
+/// Cost of trying a selector, in comparisons.
+const SELECTOR: usize = 2;
 
-/// Counts what matching looks at, up to a limit.
+/// Counts the comparisons of matching, up to a limit.
 pub(super) struct Looks {
     done: Cell<u64>,
-    most: f64,
+    max: f64,
 }
 
 impl Looks {
     pub(super) fn within(budget: &Budget) -> Self {
-        Self { done: Cell::new(0), most: budget.left() / cost::COMPARISON }
+        Self { done: Cell::new(0), max: budget.left() / cost::COMPARISON }
     }
 
-    /// Counts the looks in the budget.
+    /// Charges the budget for all looks so far.
     pub(super) fn spend(&self, budget: &Budget) -> Result<(), Exceeded> {
         budget.spend(cost::COMPARISON * self.done.get() as f64)
     }
 
-    /// Counts, and tells whether matching may go on.
+    /// Adds to the count. Returns `false` if matching has to stop.
     pub(super) fn add(&self, looks: usize) -> bool {
         self.done.set(self.done.get().saturating_add(looks as u64));
         !self.exceeded()
     }
 
     pub(super) fn exceeded(&self) -> bool {
-        self.done.get() as f64 > self.most
+        self.done.get() as f64 > self.max
     }
 }
 
-/// Whether an element matches selectors.
+/// Returns a test of whether an element matches a selector.
 pub(super) fn matcher<'b>(
     node: Node<'b, '_>,
     looks: &Looks,
@@ -64,10 +66,10 @@ pub(super) fn matcher<'b>(
         MatchingForInvalidation::No,
     );
     let element = Counted { node, looks };
-    move |selector| looks.add(TRIED) && matches_selector(selector, 0, None, element, &mut context)
+    move |selector| looks.add(SELECTOR) && matches_selector(selector, 0, None, element, &mut context)
 }
 
-/// An element that counts what is looked at, and has no neighbours once that is too much.
+/// An element that counts accesses, and appears to have no neighbours once the limit is exceeded.
 #[derive(Clone, Copy)]
 struct Counted<'a, 'b, 'i> {
     node: Node<'b, 'i>,
@@ -87,7 +89,7 @@ impl<'b, 'i> Counted<'_, 'b, 'i> {
 
     fn attribute(&self, name: &str) -> Option<&'b str> {
         let value = self.node.attribute(name);
-        let looked_at = 1 + value.map_or(0, str::len) / VALUE + self.node.attributes().len() / ATTRIBUTES;
+        let looked_at = 1 + value.map_or(0, str::len) / VALUE_BYTES + self.node.attributes().len() / ATTRIBUTES;
         value.filter(|_| self.looks.add(looked_at))
     }
 }
@@ -96,7 +98,7 @@ impl selectors::Element for Counted<'_, '_, '_> {
     type Impl = Svg;
 
     fn opaque(&self) -> OpaqueElement {
-        // No two elements begin at the same place.
+        // The address of its first byte identifies an element.
         let text = self.node.document().input_text().as_bytes();
         OpaqueElement::new(text.get(self.node.range().start).unwrap_or(&0))
     }
@@ -155,14 +157,14 @@ impl selectors::Element for Counted<'_, '_, '_> {
             NamespaceConstraint::Specific(uri) => uri.as_ref(),
             NamespaceConstraint::Any => {
                 let mut values = self.node.attributes().filter(|a| a.name() == name.as_ref()).map(|a| a.value());
-                return values.any(|v| self.looks.add(1 + v.len() / VALUE) && operation.eval_str(v));
+                return values.any(|v| self.looks.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v));
             }
         };
         if uri.is_empty() {
             return self.attribute(name.as_ref()).is_some_and(|value| operation.eval_str(value));
         }
         let value = self.node.attribute((uri, name.as_ref()));
-        value.is_some_and(|v| self.looks.add(1 + v.len() / VALUE) && operation.eval_str(v))
+        value.is_some_and(|v| self.looks.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v))
     }
 
     fn match_non_ts_pseudo_class(&self, state: &State, _: &mut MatchingContext<'_, Svg>) -> bool {
@@ -217,18 +219,18 @@ impl selectors::Element for Counted<'_, '_, '_> {
     }
 }
 
-/// Bytes of a value that are computed in the time of a comparison.
-const COMPUTED: usize = 8;
-
-/// Comparisons that can be made in the time of storing a custom property.
-const REMEMBERED: usize = 8;
+/// Cost of storing a custom property, in comparisons.
+const CUSTOM_PROPERTY: usize = 8;
 
 /// Estimates the work of computing a value, in comparisons.
 pub(super) fn work(value: &str) -> usize {
-    1 + value.len() / COMPUTED
+    /// Bytes that take as long to compute as one comparison.
+    const BYTES: usize = 8;
+    1 + value.len() / BYTES
 }
 
-/// Lists the declarations of rules and of the style attribute, `own`, that apply to an element, weakest first.
+/// Lists the declarations that apply to an element, weakest first: those of matching rules, and those of its style attribute,
+/// `own`.
 pub(super) fn applying<'r, 'a>(
     rules: &'r Rules<'a>,
     own: &'r [Declaration<'a>],
@@ -242,17 +244,17 @@ pub(super) fn applying<'r, 'a>(
         for candidate in rules.candidates(node.tag_name().name(), node.attribute("id"), node.attribute("class")) {
             let Some((selector, order)) = rules.selectors.get(candidate).filter(|s| matches(&s.0)) else { continue };
             let block = &rules.blocks[*order];
-            let variable = |d: &Declaration<'_>| if d.name.starts_with("--") { REMEMBERED } else { 0 };
+            let variable = |d: &Declaration<'_>| if d.name.starts_with("--") { CUSTOM_PROPERTY } else { 0 };
             looks.add(block.declarations.iter().map(|d| variable(d) + work(&d.value)).sum());
             for d in &block.declarations {
-                // Importance turns the order of layers around.
+                // `!important` reverses the order of layers.
                 let layer = if d.important { usize::MAX - block.layer } else { block.layer };
                 all.push(((d.important, false, layer, selector.specificity(), *order), d));
             }
         }
     }
     all.extend(own.iter().map(|d| ((d.important, true, 0, 0, 0), d)));
-    // The sort is stable: of equals, the later declaration is stronger.
+    // The sort is stable, so that the later of two equals is stronger.
     all.sort_by_key(|(strength, _)| *strength);
     all.into_iter().map(|(_, d)| d).collect()
 }

@@ -1,12 +1,13 @@
-//! Transforms as style sheets write them (CSS Transforms 1 and 2), computed to a matrix, and the boxes and lengths of shapes.
+//! Computes matrices from CSS transforms (CSS Transforms 1 and 2), and the boxes and lengths of shapes.
 
 use crate::value::{Units, length, nested};
 use cssparser::{Parser, Token};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Ellipse, ParamCurveArclen as _, Point, Rect, Shape as _, Vec2};
 
-/// Computes the transform of an element. `declared` gives the values of the properties that make it; `reference` is the box that percentages
-/// and the origin refer to; `is_box`: it is laid out by CSS, so that it turns about its centre. Returns `None` for what is not flat or not valid.
+/// Computes the transform of an element. `declared` looks up the properties that make it up; percentages and the origin refer to
+/// the box `reference`. If `is_box`, CSS lays the element out, and it turns about its centre. Returns `None` if the transform is
+/// invalid or leaves the plane.
 pub(super) fn matrix<'a>(
     declared: impl Fn(&str) -> Option<&'a str>,
     units: &Units,
@@ -27,7 +28,7 @@ pub(super) fn matrix<'a>(
     })?;
     let list = set("transform").map_or(Some(Affine::IDENTITY), |v| functions(v, units, size))?;
     let origin = declared("transform-origin").map_or(Some(None), |v| origin(v, units, size).map(Some))?;
-    // Without a declaration, the origin of what CSS does not lay out is the corner of the box that `transform-box` names.
+    // The origin defaults to the centre of CSS boxes, and to the corner of the reference box otherwise.
     let origin = origin.or(is_box.then(|| Vec2::new(size.0 / 2.0, size.1 / 2.0)));
     let origin = (reference.origin() + origin.unwrap_or_default()).to_vec2();
     let all =
@@ -35,7 +36,7 @@ pub(super) fn matrix<'a>(
     all.is_finite().then_some(all)
 }
 
-/// `transform-origin`, from the corner of the box.
+/// Reads `transform-origin`, relative to the corner of the box.
 fn origin(value: &str, units: &Units, size: (f64, f64)) -> Option<Vec2> {
     let words: Vec<&str> = value.split_ascii_whitespace().collect();
     let (first, second) = match words.as_slice() {
@@ -65,7 +66,7 @@ fn lengths(value: &str, units: &Units, size: (f64, f64)) -> Option<Vec<f64>> {
     (!all.is_empty()).then_some(all)
 }
 
-/// An angle in radians; without a unit in degrees, as in attributes.
+/// Reads an angle and returns it in radians. Without a unit, as in attributes, it is in degrees.
 fn angle(text: &str) -> Option<f64> {
     let text = text.trim();
     let split = text.find(|c: char| c.is_ascii_alphabetic() && c != 'e').unwrap_or(text.len());
@@ -79,7 +80,7 @@ fn angle(text: &str) -> Option<f64> {
     })
 }
 
-/// A number or a percentage.
+/// Reads a number or a percentage.
 pub(super) fn factor(text: &str) -> Option<f64> {
     let text = text.trim();
     match text.strip_suffix('%') {
@@ -88,7 +89,7 @@ pub(super) fn factor(text: &str) -> Option<f64> {
     }
 }
 
-/// A list of functions, of attributes or of style sheets.
+/// Reads a list of transform functions, in the syntax of attributes or of style sheets.
 fn functions(value: &str, units: &Units, size: (f64, f64)) -> Option<Affine> {
     let mut input = Parser::new(value);
     let mut out = Affine::IDENTITY;
@@ -104,7 +105,7 @@ fn functions(value: &str, units: &Units, size: (f64, f64)) -> Option<Affine> {
 }
 
 fn function(name: &str, text: &str, units: &Units, size: (f64, f64)) -> Option<Affine> {
-    // Attributes may leave commas out; inside of expressions, spaces do not separate.
+    // Attributes may leave out commas. Spaces within expressions do not separate arguments.
     let separators: &[char] =
         if text.contains(',') || text.contains('(') { &[','] } else { &[',', ' ', '\n', '\t', '\r'] };
     let all: Vec<&str> = text.split(separators).map(str::trim).filter(|a| !a.is_empty()).collect();
@@ -126,7 +127,7 @@ fn function(name: &str, text: &str, units: &Units, size: (f64, f64)) -> Option<A
         "scale3d" => Affine::scale_non_uniform(by(0)?, by(1)?),
         "scalex" => Affine::scale_non_uniform(by(0)?, 1.0),
         "scaley" => Affine::scale_non_uniform(1.0, by(0)?),
-        // Depth is not seen from the front.
+        // Depth is invisible from the front.
         "translatez" | "scalez" => Affine::IDENTITY,
         "rotate" if all.len() == 3 => Affine::rotate_about(turn(0)?, Point::new(x(1)?, y(2)?)),
         "rotate" | "rotatez" => Affine::rotate(turn(0)?),
@@ -137,16 +138,17 @@ fn function(name: &str, text: &str, units: &Units, size: (f64, f64)) -> Option<A
     })
 }
 
-/// The box of a shape whose attributes `attr` gives. `None` for what is no shape, or has no size.
+/// Reads a list of points up to the first that is invalid.
+fn points(list: &str) -> Vec<Point> {
+    let numbers: Vec<f64> = svgtypes::NumberListParser::from(list).map_while(Result::ok).collect();
+    numbers.chunks_exact(2).map(|p| Point::new(p[0], p[1])).collect()
+}
+
+/// The bounding box of a shape; `attr` looks up its attributes. `None` for other elements and for shapes without a size.
 pub(super) fn shape_box<'a>(tag: &str, attr: impl Fn(&str) -> Option<&'a str>, units: &Units) -> Option<Rect> {
     let (w, h) = units.viewport;
     let optional = |name: &str, full: f64| attr(name).and_then(|v| length(v, units, full));
     let get = |name: &str, full: f64| optional(name, full).unwrap_or(0.0);
-    let points = || {
-        let numbers: Vec<f64> = svgtypes::NumberListParser::from(attr("points")?).map_while(Result::ok).collect();
-        let all = numbers.chunks_exact(2).map(|p| Rect::from_points((p[0], p[1]), (p[0], p[1])));
-        all.reduce(|a, b| a.union(b))
-    };
     match tag {
         "rect" | "image" => {
             let corner = Point::new(get("x", w), get("y", h));
@@ -162,26 +164,21 @@ pub(super) fn shape_box<'a>(tag: &str, attr: impl Fn(&str) -> Option<&'a str>, u
             Some(Rect::from_center_size((get("cx", w), get("cy", h)), (2.0 * rx, 2.0 * ry)))
         }
         "line" => Some(Rect::from_points((get("x1", w), get("y1", h)), (get("x2", w), get("y2", h)))),
-        "polyline" | "polygon" => points(),
+        "polyline" | "polygon" => {
+            points(attr("points")?).into_iter().map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))
+        }
         "path" => Outline::from_svg_lossy(attr("d")?).bounding_box(),
         _ => None,
     }
     .filter(Rect::is_finite)
 }
 
-/// Accuracy of lengths, as a fraction of the shape's size.
-const ACCURACY: f64 = 1e-7;
-
 /// The length of a shape's outline.
 pub(super) fn shape_length<'a>(tag: &str, attr: impl Fn(&str) -> Option<&'a str>, units: &Units) -> Option<f64> {
+    /// As a fraction of the shape's size.
+    const ACCURACY: f64 = 1e-7;
     let area = shape_box(tag, &attr, units)?;
     let accuracy = ACCURACY * area.width().hypot(area.height());
-    let points = |closed: bool| {
-        let numbers: Vec<f64> = svgtypes::NumberListParser::from(attr("points")?).map_while(Result::ok).collect();
-        let all: Vec<Point> = numbers.chunks_exact(2).map(|p| Point::new(p[0], p[1])).collect();
-        let open: f64 = all.windows(2).map(|w| w[0].distance(w[1])).sum();
-        Some(open + if closed { all.first()?.distance(*all.last()?) } else { 0.0 })
-    };
     let length = match tag {
         "rect" => {
             let (w, h) = units.viewport;
@@ -196,8 +193,11 @@ pub(super) fn shape_length<'a>(tag: &str, attr: impl Fn(&str) -> Option<&'a str>
             Ellipse::new(area.center(), (area.width() / 2.0, area.height() / 2.0), 0.0).perimeter(accuracy)
         }
         "line" => area.width().hypot(area.height()),
-        "polyline" => points(false)?,
-        "polygon" => points(true)?,
+        "polyline" | "polygon" => {
+            let all = points(attr("points")?);
+            let open: f64 = all.windows(2).map(|w| w[0].distance(w[1])).sum();
+            open + if tag == "polygon" { all.first()?.distance(*all.last()?) } else { 0.0 }
+        }
         "path" => {
             let path = Outline::from_svg_lossy(attr("d")?).to_bez_path(accuracy);
             path.segments().map(|s| s.arclen(accuracy)).sum()

@@ -1,4 +1,4 @@
-//! Keeps the style of an edited drawing what it was: rules of its sheets that now hit other elements are overridden.
+//! Preserves the style of an edited drawing by overriding rules of its sheets that now match other elements.
 
 use crate::computed::MARKERS;
 use crate::element::{Looks, applying};
@@ -12,9 +12,10 @@ use roxmltree::Node;
 use selectors::context::SelectorCaches;
 use std::collections::{BTreeSet, HashMap};
 
-/// Adds declarations to an edited drawing so that no rule of its style sheets gives an element what it did not have before. `kept` tells
-/// where elements of the drawing, by their numbers in document order, begin in the edited text; all others are new, and mean what their
-/// attributes say. Returns `None` if there is nothing to add.
+/// Adds declarations to an edited drawing so that its style sheets give no element a value that it did not have before.
+///
+/// `kept` pairs each element of the original, by its number in document order, with the place in the edited text where it begins.
+/// All other elements are new, and their attributes alone decide their style. Returns `None` if there is nothing to add.
 ///
 /// # Errors
 /// One of the texts is not XML, or its style takes more work than the budget allows.
@@ -81,8 +82,8 @@ pub fn guarded(
     Ok((done > 0).then_some(out))
 }
 
-/// The declarations that give an element what it is to have, as the text of an attribute. Each side has the rules that apply, weakest
-/// first, and the element's own declarations.
+/// Computes the declarations that restore an element's style, as the text of an attribute. Either side lists the rules that
+/// apply, weakest first, and the element's own declarations.
 fn corrections(node: Node<'_, '_>, then: [&Vec<&Declaration<'_>>; 2], now: [&Vec<&Declaration<'_>>; 2]) -> String {
     let concerned = then[0].iter().chain(now[0]).flat_map(|d| match d.name.as_ref() {
         "marker" => MARKERS.to_vec(),
@@ -114,7 +115,7 @@ fn corrections(node: Node<'_, '_>, then: [&Vec<&Declaration<'_>>; 2], now: [&Vec
     escape(&out.join(";"))
 }
 
-/// What an attribute says, as a value of CSS.
+/// Converts the value of an attribute to CSS.
 fn from_attribute(node: Node<'_, '_>, name: &str) -> Option<String> {
     let value = node.attribute(name)?.trim();
     match name {

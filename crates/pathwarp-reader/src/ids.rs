@@ -1,11 +1,11 @@
-//! The elements that references lead to, and attributes by their names.
+//! Finds the targets of references, and attributes by name.
 
 use crate::value::percent_decoded;
 use roxmltree::{Document, NS_XML_URI, Node};
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
-/// The elements of a drawing by their ids; of several with one id, the first.
+/// The elements of a drawing by id. The first of several with the same id wins.
 pub(super) struct Ids<'a, 'i> {
     doc: &'a Document<'i>,
     known: OnceCell<HashMap<&'a str, Node<'a, 'i>>>,
@@ -29,7 +29,7 @@ impl<'a, 'i> Ids<'a, 'i> {
         known.get(id).copied()
     }
 
-    /// The element that a link of an element leads to.
+    /// The element that an element's `href` refers to.
     pub(super) fn target(&self, node: Node<'_, '_>) -> Option<Node<'a, 'i>> {
         let links = || node.attributes().filter(|a| a.name() == "href");
         let link = links().find(|a| a.namespace().is_none()).or_else(|| links().next())?;
@@ -37,7 +37,7 @@ impl<'a, 'i> Ids<'a, 'i> {
     }
 }
 
-/// An attribute by its name with the prefix `xml`, or without a prefix.
+/// Looks up an attribute whose name has no prefix, or the prefix `xml`.
 pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     match name.strip_prefix("xml:") {
         Some(name) => node.attribute((NS_XML_URI, name)),

@@ -1,9 +1,9 @@
 //! Resolves SVG drawings into plain SVG that usvg reads as browsers read the original.
 //!
 //! Text goes in, text comes out: [`resolve`] computes the style of every element as browsers do (CSS Cascade 5, Selectors 4, Media
-//! Queries 4, CSS Values 4, CSS Transforms 1 and 2, SVG 2's geometry properties) and writes what usvg would read otherwise into
-//! attributes that it reads alike. What usvg reads as browsers do stays as it is, byte for byte; each change says where it stands,
-//! and what stood there, so that a program that edits the drawing can put the original back.
+//! Queries 4, CSS Values 4, CSS Transforms 1 and 2, SVG 2's geometry properties). Where usvg would read something else, it writes
+//! the computed value into an attribute. Everything else stays byte for byte. Each [`Change`] records its place and the original
+//! text, so that a program that edits the drawing can put the original back.
 //!
 //! ```
 //! use pathwarp::budget::Budget;
@@ -14,8 +14,8 @@
 //! assert_eq!(plain.restored(), svg);
 //! ```
 //!
-//! One table of properties says what each of them is (`table.rs`); what usvg learns can be deleted there. It is written for usvg
-//! 0.49.
+//! `table.rs` describes every property. The crate is written for usvg 0.49; when usvg learns to read a property, its entry there
+//! can be simplified.
 
 mod color;
 mod computed;

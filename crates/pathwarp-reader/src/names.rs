@@ -1,4 +1,4 @@
-//! The types that the crate `selectors` asks for: names, pseudo-classes, pseudo-elements, and how to parse them.
+//! The types that the crate `selectors` requires: names, pseudo-classes, pseudo-elements, and their parser.
 
 use cssparser::{ParseError, Parser, ToCss, serialize_identifier};
 use precomputed_hash::PrecomputedHash;
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// Selectors for SVG.
+/// The selectors of SVG drawings.
 #[derive(Debug, Clone)]
 pub(super) struct Svg;
 
@@ -56,7 +56,7 @@ impl PrecomputedHash for Name {
 pub(super) enum State {
     /// `:link` and `:any-link`.
     Link,
-    /// What only a reader at a screen can bring about, such as `:hover`.
+    /// Depends on interaction, such as `:hover`, so it never matches.
     Never,
 }
 
@@ -79,7 +79,7 @@ impl NonTSPseudoClass for State {
     }
 }
 
-/// A part of an element that has no counterpart in the file, such as `::before`.
+/// A pseudo-element, such as `::before`. It never matches.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Part;
 
@@ -112,7 +112,7 @@ pub(super) struct Namespaces {
 }
 
 impl Namespaces {
-    /// Takes over what stands in an `@namespace` rule.
+    /// Records the namespace of an `@namespace` rule.
     pub(super) fn declare(&mut self, rule: &str) {
         let mut input = Parser::new(rule);
         let prefix = input.try_parse(Parser::expect_ident_cloned).ok();
@@ -125,7 +125,7 @@ impl Namespaces {
     }
 }
 
-/// Parses selectors as browsers do: one that is unknown makes the whole list invalid.
+/// Parses selectors as browsers do: an unknown one makes the whole list invalid.
 struct Dialect<'a>(&'a Namespaces);
 
 impl<'i> selectors::parser::Parser<'i> for Dialect<'_> {

@@ -1,21 +1,19 @@
-//! Numbers that are out of range: no program that follows computes with them, and some never return from the attempt. They are
-//! replaced by a large number; the elements that hold them are named.
+//! Replaces numbers out of range. No later stage can compute with them, and some would never return.
 
 use memchr::memchr2;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Numbers from here on are out of range. Coordinates of real drawings stay below a million; from 1e12 on, coordinates of
-/// single precision are farther apart than a page.
+/// Numbers from here on are out of range. Coordinates of real drawings stay below a million; from 1e12 on, adjacent
+/// single-precision numbers are farther apart than a page is wide.
 pub const LARGEST: f64 = 1e9;
 
-/// Stands for a number out of range.
-const INSTEAD: &str = "9e8";
+const REPLACEMENT: &str = "9e8";
 
-/// Fewest digits before the point of a number out of range without exponent.
-const DIGITS: usize = 10;
+/// Digits before the point of the smallest number out of range.
+const MIN_DIGITS: usize = 10;
 
-/// Attributes that are no properties and no lengths, and hold numbers of geometry.
+/// Attributes that hold geometry and are neither properties nor lengths.
 #[rustfmt::skip]
 const CHECKED: [&str; 25] = [
     "points", "z", "viewBox", "gradientTransform", "patternTransform", "stdDeviation", "radius", "baseFrequency",
@@ -23,19 +21,19 @@ const CHECKED: [&str; 25] = [
     "bias", "k1", "k2", "k3", "k4", "pathLength", "d", "rotate", "scale",
 ];
 
-/// The name of an attribute that holds numbers of geometry.
+/// Returns the static name of one of these attributes.
 pub(super) fn checked(name: &str) -> Option<&'static str> {
     CHECKED.iter().copied().find(|n| *n == name)
 }
 
-/// A number, list or path data with all numbers in range, and the first that was not.
+/// Brings all numbers of a text into range. Returns the new text and the first number that was out of range.
 pub(super) fn in_range(value: &str) -> (Cow<'_, str>, Option<String>) {
     let found = if may_be_far(value) { far(value) } else { Vec::new() };
     let Some(first) = found.first().and_then(|r| value.get(r.clone())) else { return (Cow::Borrowed(value), None) };
     let first = first.to_owned();
     let mut out = value.to_owned();
     for r in found.into_iter().rev() {
-        out.replace_range(r, INSTEAD);
+        out.replace_range(r, REPLACEMENT);
     }
     (Cow::Owned(out), Some(first))
 }
@@ -44,18 +42,18 @@ pub(super) fn in_range(value: &str) -> (Cow<'_, str>, Option<String>) {
 fn may_be_far(text: &str) -> bool {
     let bytes = text.as_bytes();
     let digits = || {
-        // A run of ten digits has one at a multiple of ten.
-        let places = (0..bytes.len()).step_by(DIGITS).filter(|&i| bytes[i].is_ascii_digit());
+        // A run of ten digits covers a multiple of ten.
+        let places = (0..bytes.len()).step_by(MIN_DIGITS).filter(|&i| bytes[i].is_ascii_digit());
         let mut runs = places.map(|i| {
             let before = bytes[..i].iter().rev().take_while(|b| b.is_ascii_digit()).count();
             before + bytes[i..].iter().take_while(|b| b.is_ascii_digit()).count()
         });
-        runs.any(|run| run >= DIGITS)
+        runs.any(|run| run >= MIN_DIGITS)
     };
     memchr2(b'e', b'E', bytes).is_some() || digits()
 }
 
-/// The numbers out of range in a text, without their signs.
+/// Finds the numbers out of range in a text, without their signs.
 fn far(text: &str) -> Vec<Range<usize>> {
     let bytes = text.as_bytes();
     let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);

@@ -1,4 +1,4 @@
-//! Writes computed style into the text.
+//! Writes the computed style into the text of a drawing.
 
 use crate::sheet::declarations;
 use crate::text::{Letters, Rewritten, joined, rewritten};
@@ -15,12 +15,12 @@ use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// Bytes of style that are written in the time of a comparison.
+/// Bytes of style that take as long to write as one comparison.
 const WRITTEN: usize = 16;
 
 const KERNED: &str = "letters of different elements of a text are kerned, which browsers do not do";
 
-/// Words that style and attributes are searched for, whether they are units, and what is done otherwise.
+/// Words to search the text for, whether each is a unit, and how its result differs from browsers.
 const HINTS: [(&str, bool, &str); 8] = [
     ("vw", true, WINDOW),
     ("vh", true, WINDOW),
@@ -33,7 +33,7 @@ const HINTS: [(&str, bool, &str); 8] = [
 ];
 const WINDOW: &str = "lengths in vw and vh refer to the drawing, not to a window around it";
 
-/// What is done otherwise, by the words of a drawing.
+/// Lists the differences from browsers that the words in a drawing imply.
 fn hints(text: &str) -> impl Iterator<Item = &'static str> {
     let is_unit = |at: usize, word: &str| {
         let (before, after) = (text.as_bytes().get(at.wrapping_sub(1)), text.as_bytes().get(at + word.len()));
@@ -47,40 +47,40 @@ fn hints(text: &str) -> impl Iterator<Item = &'static str> {
 
 const SINGLE_LETTERS: &str = "only from left to right, as its letters have positions of their own";
 
-/// A drawing in plain SVG.
+/// A drawing resolved into plain SVG.
 #[derive(Debug, Default)]
 pub struct Plain {
-    /// The text.
+    /// The text of the drawing.
     pub text: String,
-    /// How it differs from the drawing's own, in the order of the text.
+    /// Differences from the original, in the order of the text.
     pub changes: Vec<Change>,
-    /// What is not supported: the element, or none for the style sheets, and what there is to say.
+    /// Unsupported features: the element, or `None` for the style sheets, and a phrase about it.
     pub unsupported: Vec<(Option<usize>, String)>,
-    /// The elements with numbers out of range, which the text has not, each with the first of them.
+    /// Elements whose numbers were out of range, each with the first such number. The text holds smaller ones.
     pub far: Vec<(usize, String)>,
-    /// The properties that its style sheets declare.
+    /// The properties that the style sheets declare.
     pub declared: BTreeSet<String>,
-    /// What browsers show a little otherwise: a sentence, and what it is about.
+    /// Small differences from what browsers show: a sentence, and the element or name it is about.
     pub notes: BTreeSet<(&'static str, String)>,
-    /// Elements that entities hold are written out, which no change tells.
+    /// Whether elements were written out in place of the entities that hold them. `changes` does not list these.
     pub expanded: bool,
 }
 
-/// An attribute or words that differ from the drawing's own. Elements are numbered in document order, from 0.
+/// An attribute or a run of characters that differs from the original. Elements are numbered in document order, from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
-    /// The last element that begins before.
+    /// The last element that begins before the change.
     pub element: usize,
-    /// The attribute's local name; `xml:space` has its prefix. Words have none.
+    /// The attribute's local name; `xml:space` keeps its prefix. Empty for text content.
     pub name: &'static str,
-    /// The attribute and the space before it, or the words.
+    /// Range in the new text: the attribute with the space before it, or the text content.
     pub range: Range<usize>,
-    /// The drawing's own text in this place.
+    /// The original text.
     pub text: String,
-    /// The attribute's value in an edited drawing that does not change it, if it has one there: that of the drawing, unless a
-    /// transform is frozen, as boxes that it refers to change, or an id is no name.
+    /// The value that the attribute gets in an edited drawing, if any. It is the original value, unless a transform was frozen,
+    /// since the boxes that it refers to change, or an id had to be renamed.
     pub value: Option<String>,
-    /// That attribute, with the space before it.
+    /// The attribute with this value and the space before it.
     pub kept: String,
 }
 
@@ -114,16 +114,17 @@ impl Plain {
     }
 }
 
-/// A new value for an attribute, and what an edited drawing is to have if that is not what the drawing has.
+/// A new value for an attribute.
 struct Edit {
     name: &'static str,
-    /// `None` takes the attribute away.
+    /// `None` removes the attribute.
     value: Option<String>,
+    /// The value for an edited drawing, if it is not the original one.
     kept: Option<String>,
 }
 
-/// Resolves a drawing whose markup is known to be within the budget (see [`xml::check`]). Elements that come from entities get a
-/// place of their own in the text.
+/// Resolves a drawing whose markup is known to be within the budget (see [`xml::check`]). Entities that hold elements are expanded
+/// first, so that each element has its own place in the text.
 ///
 /// # Errors
 /// It is not XML, or its style takes more work than the budget allows.
@@ -159,7 +160,7 @@ pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
     Ok(out)
 }
 
-/// Lists what is to be changed, each with the new text.
+/// Lists all changes, each with its new text.
 fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>, Plain), Exceeded> {
     let text = doc.input_text();
     let nodes: Vec<Node<'_, '_>> = doc.descendants().filter(Node::is_element).collect();
@@ -169,12 +170,12 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     let mut out = Plain { unsupported, declared, notes, ..Plain::default() };
     let mut all: Vec<(Change, String)> = Vec::new();
     let mut paths = String::new();
-    // Ids that are no names: then all references stay as they are written here, also in an edited drawing.
+    // If any id is renamed, edited drawings keep all references as they are written here.
     let renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| is_renamed(id, text));
     for (e, (node, style)) in nodes.iter().zip(&styles).enumerate() {
         all.extend(edits(*node, style, renamed).into_iter().map(|edit| edit.of(text, e, *node)));
         if sheets.contains(&e) {
-            // usvg passes over sheets of other types.
+            // usvg ignores sheets of other types.
             all.push(Edit { name: "type", value: Some("text/plain".to_owned()), kept: None }.of(text, e, *node));
         }
         if node.tag_name().name() == "text" {
@@ -213,7 +214,7 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     Ok((all, out))
 }
 
-/// For a `textPath` with path data, a path of its own and the link to it.
+/// Makes a path from the path data of a `textPath`. Returns the link to the new path, and the path.
 fn path_of_text(e: usize, node: Node<'_, '_>, doc: &Document<'_>) -> Option<(Edit, String)> {
     let data = node.attribute("path").filter(|_| node.tag_name().name() == "textPath")?;
     let mut id = format!("text-path-{e}");
@@ -225,13 +226,13 @@ fn path_of_text(e: usize, node: Node<'_, '_>, doc: &Document<'_>) -> Option<(Edi
 }
 
 impl Edit {
-    /// The edit of an element in the text, and the attribute that it writes.
+    /// Locates the edit in the text. Returns the change and the attribute to write.
     fn of(self, text: &str, element: usize, node: Node<'_, '_>) -> (Change, String) {
         let Self { name, value, kept } = self;
         let found = attribute_node(node, name);
         let range = place(text, node, found);
         let old = text[range.clone()].to_owned();
-        // Lines keep their numbers.
+        // Keep the line numbers of everything that follows.
         let lines = "\n".repeat(old.matches('\n').count());
         let qname = found.and_then(|a| text.get(a.range_qname())).unwrap_or(name);
         let written = |value: &str| format!(" {lines}{qname}=\"{}\"", escape(value));
@@ -244,7 +245,7 @@ impl Edit {
     }
 }
 
-/// The edits of a text's words. `None` if they cannot be made.
+/// Lists the changes to the content of a text. Returns `None` if they cannot be made.
 fn words(
     text: &str,
     e: usize,
@@ -255,7 +256,7 @@ fn words(
     let letters: Vec<Letters> = letters.collect();
     let new = if letters.iter().all(|l| *l == Letters::default()) { Vec::new() } else { rewritten(node, &letters)? };
     let start = node.range().start;
-    // Words of an entity stand in its declaration.
+    // The content of an entity lies in its declaration, before the text.
     let own = new.into_iter().filter(move |r| r.range.start > start);
     Some(own.map(move |Rewritten { elements, range, text: new }| {
         let old = text[range.clone()].to_owned();
@@ -264,7 +265,7 @@ fn words(
     }))
 }
 
-/// The attributes to change in an element.
+/// Lists the attributes of an element to change.
 fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
     let computed = &style.computed;
     let refers = |v: &&String| renamed && v.contains("url(#");
@@ -273,7 +274,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
         attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
     out.extend(names(node, renamed));
     out.extend(structural(node).map(|(name, value)| Edit { name, value, kept: None }));
-    // The origin of what only an animation turns stays.
+    // Without a transform, the origin may serve an animation: it stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
     let frozen =
         style.matrix.filter(|m| !(is_still(m) || computed.transform.is_empty() && *m == Affine::IDENTITY)).map(frozen);
@@ -282,7 +283,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
     };
     let known = computed.style.as_ref().map(|s| written(&mut s.iter().map(|(n, v)| (n.as_ref(), v.as_ref()))));
     if let Some([(_, list), ..]) = frozen.as_ref().filter(|_| node.parent_element().is_none()) {
-        // usvg takes that of the root from its attribute.
+        // usvg reads the root's transform from its attribute only.
         out.retain(|edit| edit.name != "transform");
         out.push(Edit { name: "transform", value: Some(list.clone()), kept: None });
         out.extend(node.attribute("transform-origin").map(|_| Edit {
@@ -310,7 +311,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
     out
 }
 
-/// Ids that end references before their end, and what refers to elements: also in results, where they belong together.
+/// Renames ids that would cut off the references to them, and corrects links. Results keep both, since they belong together.
 fn names(node: Node<'_, '_>, renamed: bool) -> impl Iterator<Item = Edit> {
     node.attributes().filter_map(move |a| {
         let (name, new) = match a.name() {
@@ -331,7 +332,7 @@ fn names(node: Node<'_, '_>, renamed: bool) -> impl Iterator<Item = Edit> {
     })
 }
 
-/// Whether an id has signs that end references, and something may refer to it.
+/// Whether an id contains characters that end references, and something may refer to it.
 fn is_renamed(id: &str, text: &str) -> bool {
     safe_id(id) != id && (text.contains(&format!("#{id}")) || text.contains('%') && text.contains("href"))
 }
@@ -344,7 +345,7 @@ fn with_declaration(style: &str, name: &str, value: &str) -> String {
     others.chain([format!("{name}:{value}")]).collect::<Vec<_>>().join(";")
 }
 
-/// Declarations of a transform that refers to nothing. The first two are for usvg.
+/// Declares a transform that depends on no box. usvg needs only the first two declarations.
 fn frozen(m: Affine) -> [(&'static str, String); 6] {
     let list = m.as_coeffs().map(|c| c.to_string()).join(",");
     let none = || "none".to_owned();
@@ -358,7 +359,7 @@ fn frozen(m: Affine) -> [(&'static str, String); 6] {
     ]
 }
 
-/// An attribute by its name with the prefix `xml`, or without a prefix; `href` with or without.
+/// Looks up an attribute whose name has no prefix, or the prefix `xml`; `href` may have any.
 fn attribute_node<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<roxmltree::Attribute<'a, 'i>> {
     match name.strip_prefix("xml:") {
         Some(name) => node.attribute_node((NS_XML_URI, name)),
@@ -367,7 +368,7 @@ fn attribute_node<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<roxmltree::A
     }
 }
 
-/// The range of an attribute with the space before it, or the place after the element's name.
+/// The range of an attribute with the space before it. Without an attribute, an empty range after the element's name.
 fn place(text: &str, node: Node<'_, '_>, attribute: Option<roxmltree::Attribute<'_, '_>>) -> Range<usize> {
     if let Some(a) = attribute {
         let range = a.range();
@@ -377,17 +378,17 @@ fn place(text: &str, node: Node<'_, '_>, attribute: Option<roxmltree::Attribute<
     end..end
 }
 
-/// The attributes that change, each with its new value; `None` takes it away.
+/// Lists attributes that change regardless of style, each with its new value; `None` removes it.
 pub(super) fn structural(node: Node<'_, '_>) -> impl Iterator<Item = (&'static str, Option<String>)> + use<> {
     let root = ["display", "systemLanguage"].into_iter().filter(|name| {
-        // A drawing of its own is shown.
+        // Browsers always show the root of a file.
         node.parent_element().is_none() && node.has_attribute(*name)
     });
     // No browser knows `tref`.
     let tref = (node.tag_name().name() == "tref" && link(node).is_some()).then_some("href");
     let aspect = (node.tag_name().name() == "image").then(|| picture_aspect(node)).flatten();
     let aspect = aspect.map(|value| ("preserveAspectRatio", Some(value)));
-    // A list with anything else draws nothing.
+    // Any other character makes the list invalid, and nothing is drawn.
     let is_list =
         |b: u8| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b',' | b'e' | b'E') || b.is_ascii_whitespace();
     let damaged = node.attribute("points").is_some_and(|list| !list.bytes().all(is_list));
@@ -399,7 +400,8 @@ fn link<'a>(node: Node<'a, '_>) -> Option<&'a str> {
     node.attributes().find(|a| a.name() == "href").map(|a| a.value())
 }
 
-/// How an embedded drawing without a size of its own fits into its image: as it says itself (CSS Images 3, section 4.2).
+/// The `preserveAspectRatio` of an embedded drawing without a size, which decides how it fits into its image (CSS Images 3,
+/// section 4.2).
 fn picture_aspect(image: Node<'_, '_>) -> Option<String> {
     let data = link(image)?.trim().strip_prefix("data:")?;
     let (kind, data) = data.split_once(',').filter(|(kind, _)| kind.starts_with("image/svg+xml"))?;

@@ -1,4 +1,4 @@
-//! Style sheets and style attributes, parsed into rules and declarations.
+//! Parses style sheets and style attributes into rules and declarations.
 
 use crate::names::{Namespaces, Svg, selectors};
 use cssparser::{
@@ -11,17 +11,16 @@ use std::collections::{BTreeSet, HashMap};
 
 type Failure = ParseError<SelectorParseErrorKind>;
 
-/// Rank of what is in no layer.
+/// Rank of rules outside any layer.
 const UNLAYERED: usize = usize::MAX;
 
-/// A declaration.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Declaration<'a> {
     /// In lower case, unless it is a custom property.
     pub(super) name: Cow<'a, str>,
     pub(super) value: Cow<'a, str>,
     pub(super) important: bool,
-    /// Lengths of fonts need units: true in style sheets only, as browsers read style attributes of SVG in quirks mode.
+    /// Whether lengths of fonts need units. True in style sheets only; browsers read style attributes of SVG in quirks mode.
     pub(super) strict: bool,
 }
 
@@ -36,18 +35,18 @@ pub(super) struct Block<'a> {
 #[derive(Default)]
 pub(super) struct Rules<'a> {
     pub(super) blocks: Vec<Block<'a>>,
-    /// Selectors with the numbers of their blocks.
+    /// Selectors with the indices of their blocks.
     pub(super) selectors: Vec<(Selector<Svg>, usize)>,
-    /// The selectors that an element with an id, a class or a name may match; and those that any may.
+    /// Indices of selectors that require an id, a class or an element's name, and of those that require none of these.
     by_id: HashMap<String, Vec<usize>>,
     by_class: HashMap<String, Vec<usize>>,
     by_tag: HashMap<String, Vec<usize>>,
     others: Vec<usize>,
     /// Ranks of layers by name.
     layers: HashMap<String, usize>,
-    /// What is not supported, in words.
+    /// Unsupported features, worded for people.
     pub(super) unsupported: BTreeSet<String>,
-    /// The animations that move what they animate, or change its geometry.
+    /// Names of the animations that move elements or change their geometry.
     pub(super) moving: BTreeSet<String>,
 }
 
@@ -72,7 +71,7 @@ const MOVING: [&str; 16] = [
 ];
 
 impl<'a> Rules<'a> {
-    /// Adds a sheet.
+    /// Adds the rules of a sheet.
     pub(super) fn add(&mut self, css: &'a str) {
         let mut input = Parser::new(css);
         let mut names = Namespaces::default();
@@ -83,7 +82,7 @@ impl<'a> Rules<'a> {
     fn add_rule(&mut self, list: &SelectorList<Svg>, block: Block<'a>) {
         for selector in list.slice() {
             let number = self.selectors.len();
-            // What the element itself has to be; an id tells most.
+            // The most selective requirement on the element itself decides the index.
             let (mut id, mut class, mut tag) = (None, None, None);
             for part in selector.iter() {
                 match part {
@@ -131,7 +130,7 @@ impl<'a> Rules<'a> {
     }
 }
 
-/// The declarations of a style attribute.
+/// Parses a style attribute.
 pub(super) fn declarations(style: &str) -> Vec<Declaration<'_>> {
     if let Some(all) = simple(style) {
         let lower = |name: &str| !name.starts_with("--") && name.bytes().any(|b| b.is_ascii_uppercase());
@@ -146,23 +145,23 @@ pub(super) fn declarations(style: &str) -> Vec<Declaration<'_>> {
     RuleBodyParser::new(&mut input, &mut body).flatten().collect()
 }
 
-/// What stands before the block of an at-rule.
+/// The meaning of an at-rule's block.
 enum Prelude {
-    /// Its rules count, in this layer.
+    /// Rules that apply, in this layer.
     Inside(usize),
     /// An animation of this name.
     Keyframes(String),
     Ignored,
 }
 
-/// Reads rules.
+/// Parses rules.
 struct Sheet<'a, 'i> {
     out: &'a mut Rules<'i>,
     layer: usize,
     names: &'a mut Namespaces,
 }
 
-/// The rest of the input, which the parser wants to see used up.
+/// Consumes the rest of the input, as the parser demands, and returns it.
 fn rest<'i>(input: &mut Parser<'i>) -> &'i str {
     let start = input.position();
     while input.next_including_whitespace().is_ok() {}
@@ -235,7 +234,7 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_, 'i> {
         selectors(input, self.names).inspect_err(|_| {
             input.reset(&state);
             let text = rest(input);
-            // Other selectors are wrong to browsers, too.
+            // Browsers reject all other selectors, too.
             if text.contains([':', '&']) {
                 self.out.unsupported.insert(format!("rules for “{text}” are ignored"));
             }
@@ -254,10 +253,10 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_, 'i> {
     }
 }
 
-/// Reads declarations.
+/// Parses declarations.
 #[derive(Default)]
 struct Body {
-    /// Rules were nested in it, or at-rules.
+    /// Whether rules or at-rules were nested in the block.
     nested: bool,
 }
 
@@ -317,7 +316,7 @@ impl<'i> RuleBodyItemParser<'i, Declaration<'i>, SelectorParseErrorKind> for Bod
     }
 }
 
-/// The declarations of a style attribute that is so simple that every parser sees the same ones.
+/// Parses a style attribute that is so simple that all parsers agree. Returns `None` for others.
 pub(super) fn simple(style: &str) -> Option<Vec<(&str, &str)>> {
     if style.bytes().any(|b| matches!(b, b'{' | b'\\' | b'@' | b'<' | b'!')) || style.contains("/*") {
         return None;
@@ -332,7 +331,7 @@ pub(super) fn simple(style: &str) -> Option<Vec<(&str, &str)>> {
     pairs.map(|pair| pair.filter(|(name, value)| is_name(name) && is_whole(value))).collect()
 }
 
-/// Replaces comments by spaces.
+/// Replaces each comment by a space.
 fn without_comments(value: &str) -> String {
     let mut out = String::with_capacity(value.len());
     let mut left = value;
@@ -345,7 +344,7 @@ fn without_comments(value: &str) -> String {
     out
 }
 
-/// Whether any query of a list applies. `None` if that depends on something unknown.
+/// Whether any media query of a list applies. `None` if that depends on something unknown.
 pub(super) fn applies(queries: &str) -> Option<bool> {
     if queries.trim().is_empty() {
         return Some(true);
@@ -354,7 +353,7 @@ pub(super) fn applies(queries: &str) -> Option<bool> {
     decided(answers, true)
 }
 
-/// `decisive` if any answer is, else its opposite if all are known.
+/// Combines answers: `decisive` if any answer is, its opposite if all are known, and `None` otherwise.
 fn decided(answers: impl Iterator<Item = Option<bool>>, decisive: bool) -> Option<bool> {
     let mut out = Some(!decisive);
     for answer in answers {

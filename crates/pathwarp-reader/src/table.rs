@@ -1,26 +1,27 @@
-//! The properties that a drawing is read by, in one table: what browsers know of each, in the words that usvg 0.49 knows.
+//! A table of the properties that determine how a drawing looks, with the values that browsers accept, spelled as usvg 0.49 reads
+//! them.
 //!
-//! Facts are from Chromium's computed values. An entry with a [`Kind`] of its own is there because usvg reads the property otherwise.
+//! The facts are Chromium's computed values. A [`Kind`] other than [`Any`] means that usvg reads the property differently.
 
 use Kind::{
     Any, BaselineShift, Color, Dashes, Filter, FontSize, FontWeight, Geometry, Length, Link, Number, Paint, Path,
     Share, Spacing, Transform, Word, Words,
 };
 
-/// A property of CSS that stands in style sheets, style attributes, and mostly in an attribute of its name.
+/// A CSS property, which style sheets, style attributes, and mostly an attribute of the same name set.
 #[derive(Debug)]
 pub(super) struct Property {
     pub(super) name: &'static str,
-    /// Children have the value of their parent.
+    /// Whether children inherit the value by default.
     pub(super) inherited: bool,
     pub(super) initial: &'static str,
     pub(super) kind: Kind,
 }
 
-/// What values a property has.
+/// The values that a property takes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
-    /// One of these words, in any case.
+    /// One of these keywords, in upper or lower case.
     Word(&'static [&'static str]),
     Paint,
     Color,
@@ -35,20 +36,20 @@ pub(super) enum Kind {
     Dashes,
     /// `none`, or a reference to an element.
     Link,
-    /// References and functions; one without its element is `none`.
+    /// References and functions; `none` if an element that is referred to is missing.
     Filter,
     FontSize,
     FontWeight,
     BaselineShift,
     /// A part of the transform.
     Transform,
-    /// A length of SVG 2's geometry. Not all elements take it from style sheets.
+    /// A length of SVG 2's geometry. Some elements don't take it from style sheets.
     Geometry(Sign),
     /// Path data, as `path("…")`.
     Path,
-    /// Any words, in any case.
+    /// Any keywords, in upper or lower case.
     Words,
-    /// Anything; usvg and browsers agree, or neither of them shows it.
+    /// Anything: usvg and browsers agree, or neither shows it.
     Any,
 }
 
@@ -75,6 +76,7 @@ const BLENDS: &[&str] = &[
     "normal", "multiply", "screen", "overlay", "darken", "lighten", "color-dodge", "color-burn", "hard-light", "soft-light",
     "difference", "exclusion", "hue", "saturation", "color", "luminosity", "plus-lighter",
 ];
+
 /// An inherited property.
 const fn up(name: &'static str, initial: &'static str, kind: Kind) -> Property {
     Property { name, inherited: true, initial, kind }
@@ -173,7 +175,7 @@ static PROPERTIES: [Property; 84] = [
     own("y", "0", Geometry(Sign::Any)),
 ];
 
-/// Attributes that are no properties and hold a length.
+/// Attributes that hold lengths and are not properties.
 #[rustfmt::skip]
 const LENGTHS: [&str; 15] = [
     "dx", "dy", "fr", "fx", "fy", "markerHeight", "markerWidth", "refX", "refY", "startOffset", "textLength", "x1", "x2", "y1",
@@ -188,7 +190,7 @@ const STYLE_ONLY: [&str; 17] = [
     "scale", "text-shadow", "text-transform", "translate", "white-space",
 ];
 
-/// The property with a name in lower case.
+/// Looks up a property by its name in lower case.
 pub(super) fn property(name: &str) -> Option<&'static Property> {
     PROPERTIES.binary_search_by(|p| p.name.cmp(name)).ok().map(|i| &PROPERTIES[i])
 }
@@ -198,7 +200,7 @@ pub(super) fn of_attribute(name: &str) -> Option<&'static Property> {
     property(name).filter(|p| !STYLE_ONLY.contains(&p.name))
 }
 
-/// The name of an attribute that holds a length or lengths and is no property.
+/// Returns the static name of an attribute that holds lengths and is not a property.
 pub(super) fn length_attribute(name: &str) -> Option<&'static str> {
     LENGTHS.iter().copied().find(|n| *n == name)
 }

@@ -1,4 +1,4 @@
-//! Properties of text that usvg reads otherwise, or not at all (CSS Fonts 4, Text 3 and 4, Writing Modes 3).
+//! Properties of text that usvg reads differently, or not at all (CSS Fonts 4, Text 3 and 4, Writing Modes 3).
 
 use crate::geometry::factor;
 use crate::ids::attribute;
@@ -19,7 +19,7 @@ const FONT: [(&str, &str); 7] = [
     ("font-kerning", "auto"),
 ];
 
-/// Widths by their keywords, in percent.
+/// Widths in percent, with their keywords.
 const WIDTHS: [(f64, &str); 9] = [
     (50.0, "ultra-condensed"),
     (62.5, "extra-condensed"),
@@ -32,7 +32,7 @@ const WIDTHS: [(f64, &str); 9] = [
     (200.0, "ultra-expanded"),
 ];
 
-/// Sizes by their keywords, in px, as browsers have them (CSS Fonts 4, section 2.5.1).
+/// Sizes by keyword, in px, as in browsers (CSS Fonts 4, section 2.5.1).
 const SIZES: [(&str, f64); 8] = [
     ("xx-small", 9.0),
     ("x-small", 10.0),
@@ -44,7 +44,7 @@ const SIZES: [(&str, f64); 8] = [
     ("xxx-large", 48.0),
 ];
 
-/// Properties without effect, with the values that ask for none. Other values count if a word of them is not among these.
+/// Properties that usvg ignores, with the words that ask for nothing special. A value with any other word is reported.
 const WITHOUT_EFFECT: [(&str, &[&str]); 13] = [
     ("font-variant", &["normal", "none", "common-ligatures", "contextual"]),
     ("font-variant-caps", &["normal"]),
@@ -64,7 +64,6 @@ const WITHOUT_EFFECT: [(&str, &[&str]); 13] = [
 const OVERLINE: &str = "overlines are a little nearer to the letters than in browsers";
 const SPACES: &str = "spaces where parts of a text keep them and others do not are not those of browsers";
 const LINES: &str = "a tspan with y and without x begins where the words before end, which centred or right-aligned lines of browsers do not";
-
 const ON_PATHS: &str =
     "letters on a path turn about their middle, which in browsers is that of the letter with its spacing";
 const AFTER_PATHS: &str = "words after a textPath begin elsewhere than in browsers";
@@ -77,7 +76,7 @@ pub(super) enum Case {
     AsTyped,
     Upper,
     Lower,
-    /// Words begin with a capital.
+    /// Every word begins with a capital.
     Capitalized,
 }
 
@@ -89,20 +88,20 @@ enum Anchor {
     End,
 }
 
-/// What a text inherits.
+/// Inherited style of text.
 #[derive(Debug, Clone)]
 pub(super) struct TextStyle {
     weight: u16,
-    /// Keeps white space if `Some(true)`, collapses it if `Some(false)`; `None` leaves it to `xml:space`.
+    /// Whether white space is kept rather than collapsed; `None` leaves it to `xml:space`.
     keeps_space: Option<bool>,
     rtl: bool,
     anchor: Anchor,
     /// Opacities of the fill and the stroke.
     opacities: [f64; 2],
-    /// The opacity of the elements around, up to the text. `None` outside of texts.
+    /// Combined opacity of the elements between the text, excluded, and this one. `None` outside of texts.
     fade: Option<f64>,
     case: Case,
-    /// Letters have space between them.
+    /// Whether `letter-spacing` is not zero.
     spaced: bool,
     /// Declarations without effect, by property.
     without_effect: Rc<BTreeMap<&'static str, String>>,
@@ -124,24 +123,24 @@ impl Default for TextStyle {
     }
 }
 
-/// What is to be changed in an element for usvg.
+/// Changes to an element for usvg.
 #[derive(Debug, Default)]
 pub(super) struct TextChanges {
     pub(super) style: Vec<(String, String)>,
     pub(super) attributes: Vec<(&'static str, String)>,
     pub(super) unsupported: Vec<String>,
-    /// What browsers show a little otherwise.
+    /// Small differences from what browsers show.
     pub(super) notes: Vec<&'static str>,
 }
 
-/// What is to be changed in the letters of an element.
+/// Changes to the letters of an element.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Letters {
     pub(super) case: Case,
-    /// Ligatures are separated: usvg sets them also where letters have space between them (CSS Text 3, section 8.2).
+    /// Whether to break up ligatures, which usvg forms even between letters with spacing (CSS Text 3, section 8.2).
     pub(super) separate: bool,
-    /// A control character that sets the direction of what follows (Unicode Standard Annex 9, section 2): usvg begins from left to
-    /// right.
+    /// A control character to set the direction of the text (Unicode Standard Annex 9, section 2), since usvg always starts from
+    /// left to right.
     pub(super) direction: Option<char>,
 }
 
@@ -151,7 +150,7 @@ impl TextStyle {
         tag == "text" || self.fade.is_some()
     }
 
-    /// Takes over what an element declares: `value` gives the values of its properties.
+    /// Applies the properties of an element, which `value` looks up.
     pub(super) fn declare<'a>(
         &mut self,
         node: Node<'_, '_>,
@@ -186,7 +185,7 @@ impl TextStyle {
             .map_or(self.keeps_space, |v| Some(matches!(v, "pre" | "pre-wrap" | "break-spaces" | "-moz-pre-space")));
         let is_content = tag == "text" || self.fade.is_some() && matches!(tag, "tspan" | "textPath" | "a" | "tref");
         if is_content && self.rtl {
-            // The start is on the right.
+            // CSS starts at the right, usvg at the left.
             let anchor = match self.anchor {
                 Anchor::Start => "end",
                 Anchor::Middle => "middle",
@@ -231,7 +230,7 @@ impl TextStyle {
         (out, Letters { case: self.case, separate: self.spaced, direction })
     }
 
-    /// Parts of a text take their opacity into those of their fill and stroke.
+    /// Multiplies the opacity of a part of a text into those of its fill and stroke.
     fn fade<'a>(&mut self, tag: &str, value: &impl Fn(&str) -> Option<&'a str>, set: &mut impl FnMut(&str, String)) {
         const NAMES: [&str; 2] = ["fill-opacity", "stroke-opacity"];
         let own = NAMES.map(|name| value(name).and_then(opacity));
@@ -251,7 +250,7 @@ impl TextStyle {
         }
     }
 
-    /// Lists the declarations without effect for a text or a part of one.
+    /// Lists the declarations that usvg ignores on a text or a part of one.
     fn without_effect<'a>(
         &mut self,
         tag: &str,
@@ -278,15 +277,15 @@ impl TextStyle {
     }
 }
 
-/// Whether an element keeps its white space, as its style or else `xml:space` says.
+/// Whether an element keeps its white space, according to its style or else `xml:space`.
 fn keeps_space(style: Option<bool>, node: Option<Node<'_, '_>>) -> bool {
     let said = |n: Node<'_, '_>| n.ancestors().find_map(|a| attribute(a, "xml:space").map(|v| v == "preserve"));
     style.or_else(|| said(node?)).unwrap_or(false)
 }
 
-/// Whether a part of a text begins below what comes before, wherever that ends.
+/// Whether a part of a text sets only its y, so that it begins below the end of the words before it.
 fn is_lower(part: Node<'_, '_>) -> bool {
-    /// As many as are looked at: white space and comments may be among them.
+    /// Siblings to search for words; some may be white space or comments.
     const NEAR: usize = 4;
     let says = |n: Node<'_, '_>| n.descendants().filter_map(|d| d.text()).any(|t| !t.trim().is_empty());
     part.has_attribute("y") && !part.has_attribute("x") && part.prev_siblings().skip(1).take(NEAR).any(says)
@@ -311,18 +310,18 @@ pub(super) fn concerns(name: &str) -> bool {
         ) || WITHOUT_EFFECT.iter().any(|(n, _)| *n == name))
 }
 
-/// Whether a value is a weight of fonts.
+/// Whether a value is a valid font weight.
 pub(super) fn is_weight(value: &str) -> bool {
     weight(value, 400).is_some()
 }
 
-/// The start of a value, as long as messages show it: many texts may inherit it.
+/// Shortens a value for messages, of which there may be many, since texts inherit it.
 pub(super) fn start(value: &str) -> &str {
-    const SHOWN: usize = 80;
-    &value[..value.char_indices().nth(SHOWN).map_or(value.len(), |(at, _)| at)]
+    const MAX_CHARS: usize = 80;
+    &value[..value.char_indices().nth(MAX_CHARS).map_or(value.len(), |(at, _)| at)]
 }
 
-/// The longhands of a `font` declaration. `None` if it is invalid, or names a font of the system.
+/// Expands a `font` declaration into its longhands. Returns `None` if it is invalid, or names a system font.
 pub(super) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
     let with = |v: &dyn Fn(usize) -> String| FONT.iter().enumerate().map(|(i, (name, _))| (*name, v(i))).collect();
     if ["inherit", "initial", "unset"].iter().any(|k| value.eq_ignore_ascii_case(k)) {
@@ -367,9 +366,9 @@ pub(super) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
     (!family.is_empty()).then(|| with(&|i| found[i].clone()))
 }
 
-/// A font size for usvg: lengths for keywords. `parent` is the parent's.
+/// Converts a keyword for a font size to px. `parent` is the font size of the parent.
 pub(super) fn size(value: &str, parent: f64) -> Option<f64> {
-    /// From one size to the next.
+    /// Ratio of adjacent sizes.
     const STEP: f64 = 1.2;
     match value.trim().to_ascii_lowercase().as_str() {
         "larger" => Some(parent * STEP),
@@ -382,7 +381,7 @@ fn is_angle(unit: &str) -> bool {
     ["deg", "rad", "grad", "turn"].iter().any(|u| unit.eq_ignore_ascii_case(u))
 }
 
-/// A weight in hundreds, which usvg knows. `parent` is the inherited one.
+/// Rounds a weight to hundreds, as usvg requires. `parent` is the inherited weight.
 fn weight(value: &str, parent: u16) -> Option<u16> {
     Some(match value.to_ascii_lowercase().as_str() {
         "normal" => 400,
@@ -407,7 +406,7 @@ fn weight(value: &str, parent: u16) -> Option<u16> {
     })
 }
 
-/// The keyword nearest to a width in percent.
+/// Finds the keyword nearest to a width in percent.
 fn width(value: &str) -> Option<&'static str> {
     let percent: f64 = value.strip_suffix('%')?.parse().ok()?;
     let off = |w: f64| (w - percent).abs();
@@ -427,11 +426,10 @@ fn case(value: &str) -> Case {
     }
 }
 
-/// Not seen, and not passed over when ligatures and kerning are looked for. usvg adds no space after it, as it does after U+200C.
-pub(super) const SEPARATOR: char = '\u{180b}';
-
-/// Separates letters that fonts join.
-pub(super) fn separated(text: &str) -> String {
+/// Breaks up the ligatures of a text.
+fn separated(text: &str) -> String {
+    /// An invisible character that prevents ligatures and kerning. Unlike U+200C, usvg adds no letter spacing after it.
+    const SEPARATOR: char = '\u{180b}';
     let mut out = String::with_capacity(text.len() + 8);
     let mut last = ' ';
     for c in text.chars() {
@@ -445,8 +443,8 @@ pub(super) fn separated(text: &str) -> String {
 }
 
 impl Case {
-    /// Rewrites letters. `before` is the letter before them.
-    pub(super) fn of(self, text: &str, before: Option<char>) -> String {
+    /// Changes the case of letters. `before` is the letter before them.
+    fn of(self, text: &str, before: Option<char>) -> String {
         match self {
             Self::AsTyped => text.to_owned(),
             Self::Upper => text.to_uppercase(),
@@ -455,7 +453,7 @@ impl Case {
                 let mut out = String::with_capacity(text.len());
                 let mut last = before;
                 for c in text.chars() {
-                    // Apostrophes are inside of words.
+                    // Apostrophes do not end a word.
                     let begins = last.is_none_or(|l| !l.is_alphanumeric() && !matches!(l, '\'' | '’'));
                     if begins {
                         out.extend(c.to_uppercase());
@@ -472,21 +470,21 @@ impl Case {
 
 /// New content for a run of characters.
 pub(super) struct Rewritten {
-    /// Number of elements inside of the text that begin before.
+    /// Number of elements within the text that begin before the run.
     pub(super) elements: usize,
     pub(super) range: Range<usize>,
     pub(super) text: String,
 }
 
-/// A run of characters, before and after.
+/// A run of characters with its old and new content.
 struct Run<'a> {
     new: Rewritten,
     old: &'a str,
     style: Letters,
 }
 
-/// Rewrites a text. `letters` has the style of its elements, its own first. `None` if its direction cannot be set: letters have
-/// positions of their own, and marks would count as letters.
+/// Rewrites a text. `letters` has the style of its elements, its own first. Returns `None` if its direction cannot be set because
+/// letters have positions of their own: the control characters would count as letters.
 pub(super) fn rewritten(text: Node<'_, '_>, letters: &[Letters]) -> Option<Vec<Rewritten>> {
     let mut styles: HashMap<NodeId, Letters> = HashMap::new();
     let mut lines: Vec<Vec<Run<'_>>> = vec![Vec::new()];
@@ -522,9 +520,9 @@ pub(super) fn rewritten(text: Node<'_, '_>, letters: &[Letters]) -> Option<Vec<R
     Some(lines.into_iter().flatten().filter(|r| r.new.text != r.old).map(|r| r.new).collect())
 }
 
-/// Sets the direction of a line, separates ligatures, and ends it so that the last letter has its space, too.
+/// Sets the direction of a line, breaks up its ligatures, and ends it so that its last letter keeps its spacing.
 fn mark(line: &mut [Run<'_>]) {
-    /// Invisible; nothing follows for which it would leave space.
+    /// An invisible character at the end of a line takes no spacing itself.
     const END: char = '\u{2060}';
     let is_letter = |c: char| !c.is_whitespace();
     for run in line.iter_mut().filter(|r| r.style.separate) {
@@ -545,7 +543,7 @@ fn is_part(node: Node<'_, '_>) -> bool {
     matches!(node.tag_name().name(), "tspan" | "textPath" | "a" | "tref")
 }
 
-/// Whether letters of different elements touch: usvg kerns them, and browsers do not.
+/// Whether letters of different elements touch. usvg kerns them; browsers don't.
 pub(super) fn joined(text: Node<'_, '_>) -> bool {
     let mut ends = false;
     text.descendants().skip(1).any(|node| {
@@ -560,12 +558,12 @@ pub(super) fn joined(text: Node<'_, '_>) -> bool {
     })
 }
 
-/// usvg sets text on a path, and text from another place on, as a line of its own.
+/// Whether usvg starts a new line of text at an element: one with a position of its own, or a path.
 fn begins_line(node: Node<'_, '_>) -> bool {
     ["x", "y"].iter().any(|a| node.has_attribute(*a)) || node.tag_name().name() == "textPath"
 }
 
-/// Returns `true` if single letters are placed or rotated, or `textLength` spreads them.
+/// Whether single letters have positions or rotations, or `textLength` spreads them.
 fn has_places(node: Node<'_, '_>) -> bool {
     let several = |v: &str| v.split([',', ' ', '\n', '\t', '\r']).filter(|n| !n.is_empty()).nth(1).is_some();
     node.has_attribute("textLength")

@@ -1,5 +1,5 @@
-//! The style of every element, from the root down, and the transforms, from the leaves up: the box of a group depends on those
-//! of its children.
+//! Computes the style of every element from the root down, and transforms from the leaves up, since the box of a group depends on
+//! its children.
 
 use crate::computed::{Computed, Inherited, computed};
 use crate::element::{Looks, applying, work};
@@ -15,36 +15,36 @@ use selectors::context::SelectorCaches;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
-/// Size of a drawing that does not tell (CSS 2.1, section 10.3.2).
+/// Size of a drawing that specifies none (CSS 2.1, section 10.3.2).
 const REPLACED: (f64, f64) = (300.0, 150.0);
 
 const MOVING: &str = "animations of style sheets (@keyframes) go the same ways as before";
 
-/// Bytes of a style sheet that are parsed in the time of a comparison.
+/// Bytes of a style sheet that take as long to parse as one comparison.
 const PARSED: usize = 16;
 
 /// Bytes that a variable takes besides its value.
 const VARIABLE: usize = 64;
 
-/// The style of an element.
+/// The style and transform of an element.
 #[derive(Debug)]
 pub(super) struct Styled<'a> {
     pub(super) computed: Computed<'a>,
-    /// Its transform. `None` if it cannot be computed.
+    /// `None` if the transform cannot be computed.
     pub(super) matrix: Option<Affine>,
 }
 
 /// The style of a drawing.
 pub(super) struct Tree<'a> {
-    /// Element by element.
+    /// One for each element, in document order.
     pub(super) styles: Vec<Styled<'a>>,
-    /// The elements that are style sheets.
+    /// Indices of the elements that are style sheets.
     pub(super) sheets: BTreeSet<usize>,
-    /// What is not supported of them, in words.
+    /// Unsupported features of the style sheets, worded for people.
     pub(super) unsupported: BTreeSet<String>,
-    /// The properties that they declare.
+    /// The properties that the style sheets declare.
     pub(super) declared: BTreeSet<String>,
-    /// What browsers show a little otherwise.
+    /// Small differences from what browsers show.
     pub(super) notes: BTreeSet<(&'static str, String)>,
 }
 
@@ -57,13 +57,13 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     let looks = Looks::within(budget);
     let mut caches = SelectorCaches::default();
     let ids = Ids::new(doc);
-    // What the elements around hand on, outermost first.
+    // Inherited state of the enclosing elements, outermost first.
     let mut around: Vec<(NodeId, Inherited)> = Vec::new();
     let mut known: HashMap<&str, Rc<[Declaration<'_>]>> = HashMap::new();
     let mut out: Vec<(Computed<'_>, Units)> = Vec::with_capacity(nodes.len());
     for node in nodes {
         let own = node.attribute("style").map(|style| {
-            // Many elements have the same style.
+            // Many elements share the same style, so keep what is slow to parse.
             let parsed = || declarations(style).into();
             if style.len() < REPEATED { parsed() } else { Rc::clone(known.entry(style).or_insert_with(parsed)) }
         });
@@ -83,7 +83,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
         let mut here = around.last().map_or_else(|| at_root(doc), |(_, inherited)| inherited.clone());
         let custom = Rc::clone(&here.custom);
         let style = computed(*node, parent.is_none(), &declarations, &ids, &mut here);
-        // Variables can make any value of a short one.
+        // Variables can expand a short value to a long one, so charge for the result.
         budget.spend(cost::COMPARISON * style.values().map(work).sum::<usize>() as f64)?;
         if !Rc::ptr_eq(&custom, &here.custom) {
             let bytes: usize = here.custom.values().map(|v| VARIABLE + v.len()).sum();
@@ -109,13 +109,13 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     Ok(Tree { styles: all.collect(), sheets, unsupported, declared, notes })
 }
 
-/// What the root element inherits.
+/// The state that the root element inherits.
 fn at_root(doc: &Document<'_>) -> Inherited {
     let (custom, text) = (Rc::new(Custom::new()), TextStyle::default());
     Inherited { in_symbol: false, marked: false, custom, units: root_units(doc), dashes: [None, None], text }
 }
 
-/// The rules of a drawing, the elements that are sheets, and what is not supported of them, in words.
+/// The rules of a drawing, the indices of the elements that are sheets, and their unsupported features.
 pub(super) type Sheets<'a> = (Rules<'a>, BTreeSet<usize>, BTreeSet<String>);
 
 /// Reads the style sheets of a drawing.
@@ -147,7 +147,7 @@ pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheet
     Ok((rules, sheets, unsupported))
 }
 
-/// Bytes of style attributes from which on looking for the same one takes less time than reading it again.
+/// Length in bytes from which finding an equal style attribute is faster than parsing it again.
 const REPEATED: usize = 128;
 
 fn is_sheet(node: &Node<'_, '_>) -> bool {
@@ -155,7 +155,7 @@ fn is_sheet(node: &Node<'_, '_>) -> bool {
     node.tag_name().name() == "style" && node.attribute("type").is_none_or(is_css)
 }
 
-/// Units of the root element: the window is the drawing's size.
+/// The units of the root element. The window has the size of the drawing.
 fn root_units(doc: &Document<'_>) -> Units {
     let root = doc.root_element();
     let units = Units { font: MEDIUM, root_font: MEDIUM, window: REPLACED, viewport: REPLACED };
@@ -170,7 +170,7 @@ fn root_units(doc: &Document<'_>) -> Units {
     Units { window, viewport: window, ..units }
 }
 
-/// Size of the viewport that an `<svg>` makes, in its own coordinates.
+/// The size of the viewport that an `<svg>` establishes, in its inner coordinates.
 fn viewport<'a>(node: Node<'a, '_>, style: &Computed<'a>, units: &Units) -> (f64, f64) {
     let size = |name: &str, full: f64| style.value(node, name).and_then(|v| length(v, units, full)).unwrap_or(full);
     view_box(node).unwrap_or_else(|| (size("width", units.viewport.0), size("height", units.viewport.1)))
@@ -181,14 +181,15 @@ fn view_box(node: Node<'_, '_>) -> Option<(f64, f64)> {
     Some((b.w, b.h))
 }
 
-/// The transforms of all elements. Where a style sheet has a part in one, it is computed; `None` if it cannot be.
+/// Computes the transforms that style sheets contribute to, and that of the root. All others are the identity, so usvg's own
+/// reading stands; `None` means that one cannot be computed.
 fn matrices<'a>(nodes: &[Node<'a, '_>], styles: &[(Computed<'a>, Units)]) -> Vec<Option<Affine>> {
     let is_turned = nodes.first().is_some_and(|root| root.has_attribute("transform"));
     if !is_turned && styles.iter().all(|(s, _)| s.transform.is_empty()) {
         return vec![Some(Affine::IDENTITY); nodes.len()];
     }
     let numbers: HashMap<NodeId, usize> = nodes.iter().enumerate().map(|(e, n)| (n.id(), e)).collect();
-    // Of what is inside, in the element's own coordinates.
+    // Boxes of the children, in the element's own coordinates.
     let mut boxes: Vec<Option<Rect>> = vec![None; nodes.len()];
     let mut out = vec![Some(Affine::IDENTITY); nodes.len()];
     for (e, (node, (style, units))) in nodes.iter().zip(styles).enumerate().rev() {
@@ -200,10 +201,10 @@ fn matrices<'a>(nodes: &[Node<'a, '_>], styles: &[(Computed<'a>, Units)]) -> Vec
             last.or_else(|| node.attribute(name).filter(|_| matches!(name, "transform" | "transform-origin")))
         };
         let reference = match declared("transform-box").unwrap_or("view-box") {
-            // The root is a box of CSS, which turns about its centre.
+            // CSS lays out the root as a box.
             _ if e == 0 => Some(Rect::from_origin_size((0.0, 0.0), units.window)),
             "view-box" => Some(Rect::from_origin_size((0.0, 0.0), units.viewport)),
-            // Strokes are left out of account.
+            // Boxes ignore strokes.
             _ => own,
         };
         let matrix = reference.and_then(|r| geometry::matrix(declared, units, r, e == 0));

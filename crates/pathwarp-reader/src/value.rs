@@ -1,5 +1,5 @@
-//! Values that usvg does not read: `var()` (CSS Custom Properties 1), `calc()`, `min()`, `max()`, `clamp()` and units relative
-//! to fonts and windows (CSS Values 4), `light-dark()` (CSS Color 5).
+//! Computes values that usvg does not read: `var()` (CSS Custom Properties 1), `calc()`, `min()`, `max()`, `clamp()` and units
+//! relative to fonts and windows (CSS Values 4), `light-dark()` (CSS Color 5).
 
 use cssparser::{Parser, Token};
 use std::borrow::Cow;
@@ -7,22 +7,22 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// Longest chain of variables that is followed.
-const CHAIN: usize = 16;
+/// Longest chain of variables to follow.
+const MAX_CHAIN: usize = 16;
 
-/// Longest value with its variables replaced. A few lines could ask for any length.
-const LONGEST: usize = 1 << 14;
+/// Length of the longest value after substitution. A few variables can multiply to any length.
+const MAX_LEN: usize = 1 << 14;
 
-/// Names that mark values which are not plain.
+/// Functions that need computing.
 const FUNCTIONS: [&str; 6] = ["var(", "calc(", "min(", "max(", "clamp(", "light-dark("];
 
-/// Font size where nothing sets one, in px.
+/// The initial font size, in px.
 pub(super) const MEDIUM: f64 = 16.0;
 
-/// Custom properties and their values, variables replaced.
+/// Custom properties with their values after substitution.
 pub(super) type Custom = BTreeMap<String, Rc<str>>;
 
-/// What relative units refer to, in user units.
+/// The bases of relative units, in user units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Units {
     /// Font size of the element.
@@ -35,7 +35,7 @@ pub(super) struct Units {
     pub(super) viewport: (f64, f64),
 }
 
-/// Returns `true` if a value has no variables, expressions or units for [`substituted`] and [`computed`] to replace.
+/// Whether a value has no variables, expressions or units for [`substituted`] and [`computed`] to replace.
 pub(super) fn is_plain(value: &str) -> bool {
     let bytes = value.as_bytes();
     let unit = |(i, b): (usize, &u8)| {
@@ -48,7 +48,7 @@ pub(super) fn is_plain(value: &str) -> bool {
     !has_functions(value) && !bytes.iter().enumerate().any(unit)
 }
 
-/// Returns `true` if a value has variables or expressions.
+/// Whether a value has variables or expressions.
 pub(super) fn has_functions(value: &str) -> bool {
     value.contains('(') && FUNCTIONS.iter().any(|f| contains(value, f))
 }
@@ -57,12 +57,12 @@ fn contains(value: &str, function: &str) -> bool {
     find(value, function).is_some()
 }
 
-/// The first place of a function's name, in upper or lower case.
+/// Finds the first occurrence of a function's name, in upper or lower case.
 fn find(value: &str, function: &str) -> Option<usize> {
     value.as_bytes().windows(function.len()).position(|w| w.eq_ignore_ascii_case(function.as_bytes()))
 }
 
-/// Units that usvg does not know.
+/// Whether usvg doesn't know a unit.
 fn is_relative(unit: &str) -> bool {
     let unit = unit.to_ascii_lowercase();
     matches!(unit.as_str(), "em" | "ex" | "rem" | "ch" | "ic" | "cap" | "lh" | "rlh" | "q")
@@ -75,7 +75,7 @@ fn is_relative(unit: &str) -> bool {
 
 /// Replaces variables. Returns `None` if one has no value, which makes the declaration invalid.
 pub(super) fn substituted(value: &str, variable: &dyn Fn(&str) -> Option<String>) -> Option<String> {
-    replaced(value, variable, CHAIN)
+    replaced(value, variable, MAX_CHAIN)
 }
 
 fn replaced(value: &str, variable: &dyn Fn(&str) -> Option<String>, depth: usize) -> Option<String> {
@@ -90,16 +90,16 @@ fn replaced(value: &str, variable: &dyn Fn(&str) -> Option<String>, depth: usize
         let (name, fallback) = arguments.split_once(',').map_or((arguments, None), |(n, f)| (n, Some(f)));
         let found = variable(name.trim()).or_else(|| replaced(fallback?, variable, depth.checked_sub(1)?))?;
         out.push_str(found.trim());
-        if out.len() > LONGEST {
+        if out.len() > MAX_LEN {
             return None;
         }
         left = from.get("var(".len() + end + 1..).unwrap_or_default();
     }
     out.push_str(left);
-    (out.len() <= LONGEST).then(|| out.trim().to_owned())
+    (out.len() <= MAX_LEN).then(|| out.trim().to_owned())
 }
 
-/// Position of the parenthesis that closes what the input begins in.
+/// The position of the parenthesis that closes the current block.
 fn closing(input: &mut Parser<'_>) -> usize {
     loop {
         let at = input.position().byte_index();
@@ -113,7 +113,7 @@ fn closing(input: &mut Parser<'_>) -> usize {
     }
 }
 
-/// The custom properties of an element: its own, and those of its parent.
+/// The custom properties of an element: its own and the inherited ones.
 pub(super) fn custom(own: &[(String, String)], inherited: &Custom) -> Custom {
     let found = Variables {
         own: own.iter().map(|(n, v)| (n.as_str(), v.as_str())).collect(),
@@ -122,7 +122,7 @@ pub(super) fn custom(own: &[(String, String)], inherited: &Custom) -> Custom {
     };
     let mut out = inherited.clone();
     for name in found.own.keys() {
-        match found.value(name, CHAIN) {
+        match found.value(name, MAX_CHAIN) {
             Some(v) => out.insert((*name).to_owned(), v),
             None => out.remove(*name),
         };
@@ -130,12 +130,12 @@ pub(super) fn custom(own: &[(String, String)], inherited: &Custom) -> Custom {
     out
 }
 
-/// Variables whose values are found one after the other.
+/// Resolves variables that may refer to each other.
 struct Variables<'a> {
-    /// Of several values, the last.
+    /// The last declaration of each.
     own: BTreeMap<&'a str, &'a str>,
     inherited: &'a Custom,
-    /// Values that were found, and `None` for those that have none or are being looked for.
+    /// Values found so far; `None` for variables without a value, and for those being resolved.
     known: RefCell<BTreeMap<String, Option<Rc<str>>>>,
 }
 
@@ -149,7 +149,7 @@ impl Variables<'_> {
         let value = if contains(raw, "var(") {
             depth.checked_sub(1).and_then(|depth| substituted(raw, &|n| self.value(n, depth).map(|v| v.to_string())))
         } else {
-            (raw.len() <= LONGEST).then(|| (*raw).to_owned())
+            (raw.len() <= MAX_LEN).then(|| (*raw).to_owned())
         };
         let value: Option<Rc<str>> = value.map(Into::into);
         self.known.borrow_mut().insert(name.to_owned(), value.clone());
@@ -157,8 +157,8 @@ impl Variables<'_> {
     }
 }
 
-/// Replaces expressions and relative units by px. `percent` is what 100 % of the property is. Returns `None` for values that are
-/// invalid or cannot be computed.
+/// Replaces expressions and relative units by px. `percent` is the value of 100 %. Returns `None` for values that are invalid or
+/// cannot be computed.
 pub(super) fn computed(value: &str, units: &Units, percent: Option<f64>) -> Option<String> {
     let mut out = String::new();
     let mut input = Parser::new(value);
@@ -197,7 +197,7 @@ pub(super) fn nested<'i>(input: &mut Parser<'i>) -> &'i str {
     inside.unwrap_or_default()
 }
 
-/// The text before the first comma that is in no parentheses.
+/// The text before the first comma outside parentheses.
 fn first_argument(text: &str) -> &str {
     let mut depth = 0_usize;
     let end = text.find(|c| {
@@ -211,14 +211,15 @@ fn first_argument(text: &str) -> &str {
     text[..end.unwrap_or(text.len())].trim()
 }
 
-/// A single length in user units, percentages included.
+/// Reads a single length or percentage, in user units.
 pub(super) fn length(value: &str, units: &Units, percent: f64) -> Option<f64> {
     let mut input = Parser::new(value);
     let quantity = Math { units, percent: Some(percent) }.atom(&mut input)?;
     (input.is_exhausted() && quantity.value.is_finite()).then_some(quantity.value)
 }
 
-/// A length as usvg reads it. `percent` is what 100 % is, if usvg does not know. `None` for what is none; where `strict`, without a unit.
+/// Rewrites a length for usvg. `percent` is the value of 100 %, if usvg doesn't know it. Returns `None` for anything that is not a
+/// length; if `strict`, for numbers without a unit, too.
 pub(super) fn known_length<'v>(
     text: &'v str,
     units: &Units,
@@ -258,17 +259,17 @@ pub(super) fn known_length<'v>(
     }
 }
 
-/// A `url()`.
+/// A parsed `url()`.
 #[derive(Debug, PartialEq)]
 pub(super) struct Reference<'v> {
-    /// The element in the same file, by its id.
+    /// The id of an element in the same file.
     pub(super) id: Option<String>,
-    /// What follows.
+    /// The text that follows.
     pub(super) rest: &'v str,
 }
 
 impl Reference<'_> {
-    /// The reference as usvg reads it.
+    /// Rewrites the reference for usvg.
     pub(super) fn text<'t>(&self, old: &'t str) -> Cow<'t, str> {
         let Some(id) = self.id.as_deref().map(safe_id) else { return Cow::Borrowed(old) };
         let is_plain = old.strip_prefix("url(#").and_then(|o| o.strip_prefix(&*id)).is_some_and(|o| o.starts_with(')'));
@@ -276,7 +277,7 @@ impl Reference<'_> {
     }
 }
 
-/// The reference that a value begins with.
+/// Parses the reference that a value begins with.
 pub(super) fn reference(value: &str) -> Option<Reference<'_>> {
     if !value.as_bytes().get(..4)?.eq_ignore_ascii_case(b"url(") {
         return None;
@@ -294,7 +295,7 @@ pub(super) fn reference(value: &str) -> Option<Reference<'_>> {
     Some(Reference { id, rest: value.get(input.position().byte_index()..)? })
 }
 
-/// A fragment with its percent escapes replaced.
+/// Decodes the percent escapes of a URL's fragment.
 pub(super) fn percent_decoded(fragment: &str) -> Cow<'_, str> {
     if !fragment.contains('%') {
         return Cow::Borrowed(fragment);
@@ -309,7 +310,7 @@ pub(super) fn percent_decoded(fragment: &str) -> Cow<'_, str> {
     String::from_utf8(out).map_or(Cow::Borrowed(fragment), Cow::Owned)
 }
 
-/// An id with signs that end references replaced by their codes.
+/// Replaces characters of an id that would end references by their codes.
 pub(super) fn safe_id(id: &str) -> Cow<'_, str> {
     let is_bad = |c: char| c.is_whitespace() || matches!(c, '(' | ')' | '"' | '\'' | '\\');
     if !id.contains(is_bad) {
@@ -318,12 +319,12 @@ pub(super) fn safe_id(id: &str) -> Cow<'_, str> {
     id.chars().map(|c| if is_bad(c) { format!("_{:x}_", u32::from(c)) } else { c.to_string() }).collect()
 }
 
-/// The data of `path("…")`.
+/// Reads the path data of `path("…")`.
 pub(super) fn path_data(value: &str) -> Option<String> {
     let mut input = Parser::new(value);
     input.expect_function_matching("path").ok()?;
     let data = input.parse_nested_block(|i| {
-        // A fill rule before it has no effect.
+        // A fill rule may precede the data; it has no effect.
         let _ = i.try_parse(|i| i.expect_ident_cloned().and_then(|_| i.expect_comma()));
         i.expect_string_cloned().map_err(|_| unexpected())
     });
@@ -347,7 +348,7 @@ fn is_math(name: &str) -> bool {
     ["calc", "min", "max", "clamp", "-webkit-calc"].iter().any(|f| name.eq_ignore_ascii_case(f))
 }
 
-/// Expressions of CSS Values 4, section 10.
+/// Evaluates math expressions (CSS Values 4, section 10).
 struct Math<'a> {
     units: &'a Units,
     percent: Option<f64>,
@@ -461,7 +462,7 @@ impl Math<'_> {
             "px" => 1.0,
             "em" | "ic" => u.font,
             "rem" => u.root_font,
-            // Half an em, as CSS assumes for fonts without these metrics.
+            // CSS assumes half an em for fonts without these metrics.
             "ex" | "ch" => 0.5 * u.font,
             "cap" => 0.7 * u.font,
             "lh" => 1.2 * u.font,

@@ -1,4 +1,4 @@
-//! XML text: parsing it, and the escapes for writing it.
+//! Parses and escapes XML.
 
 use memchr::{memchr, memchr_iter, memchr2_iter, memchr3, memmem};
 use pathwarp::Error;
@@ -24,7 +24,7 @@ pub fn parse<'a>(text: &'a str, name: &str, budget: &Budget) -> Result<roxmltree
     parse_checked(text, name)
 }
 
-/// Counts the work of parsing.
+/// Charges the budget for parsing.
 ///
 /// # Errors
 /// It exceeds the budget.
@@ -43,7 +43,7 @@ pub fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Documen
     })
 }
 
-/// Writes the elements that entities hold in their places. `None` if there are none.
+/// Expands the references to entities. Returns `None` if no entity holds elements.
 pub(super) fn with_elements_of_entities(text: &str) -> Option<String> {
     let entities = declared(text);
     // The subset of the DTD ends with a bracket.
@@ -57,7 +57,7 @@ pub(super) fn with_elements_of_entities(text: &str) -> Option<String> {
         };
         out.push_str(before);
         left.push((after, level));
-        match entities.iter().find(|e| e.0 == name).filter(|_| level < LEVELS) {
+        match entities.iter().find(|e| e.0 == name).filter(|_| level < MAX_LEVELS) {
             Some((_, value)) => left.push((value, level + 1)),
             None => {
                 out.push('&');
@@ -69,7 +69,7 @@ pub(super) fn with_elements_of_entities(text: &str) -> Option<String> {
     Some(out)
 }
 
-/// The first reference to an entity, with the text before and after it.
+/// Splits a text at its first reference to an entity: the text before it, the entity's name, and the text after it.
 fn reference(text: &str) -> Option<(&str, &str, &str)> {
     let (before, rest) = text.split_once('&')?;
     let (name, after) = rest.split_once(';')?;
@@ -117,25 +117,20 @@ fn escaped(text: &str, in_attribute: bool) -> String {
     out
 }
 
-/// Shorter tags have so few attributes that comparing them takes no time.
-const LONG_TAG: usize = 4096;
-
-/// Counts the bytes that the entities of a text expand to, and the comparisons of attributes.
-///
-/// # Errors
-/// They exceed the limits.
-pub(crate) fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+/// Charges the budget for the bytes that entities expand to, and for comparisons of attributes and namespaces.
+fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     tags(text, budget)?;
     entities(text, budget)?;
     namespaces(text, budget)?;
     attributes(text, budget)
 }
 
-/// Declarations of namespaces. An element with one gets a copy of all that hold around it, each compared with the others.
+/// Charges for declarations of namespaces. The parser gives an element with one a copy of all that are in scope, and compares
+/// each with the others.
 fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
-    /// Namespaces that are compared in the time of a comparison.
+    /// Namespaces that are compared in the time of one comparison.
     const COPIED: f64 = 3.0;
-    /// Ordinary drawings, in which any element may declare a few.
+    /// More than in any ordinary drawing.
     const FEW: usize = 64;
     let declarations = || memmem::find_iter(text.as_bytes(), "xmlns").map(|at| at + "xmlns".len());
     let end = |at: usize| memchr3(b' ', b'>', b'/', &text.as_bytes()[at..]).map_or(text.len(), |i| at + i);
@@ -146,9 +141,10 @@ fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     budget.spend(cost::COMPARISON * declarations().count() as f64 * all.len() as f64 / COPIED)
 }
 
-/// Tags, which also count comments and texts: several make an element. Short texts are parsed and counted exactly.
+/// Bounds the number of elements by that of tags, which includes comments. Short texts pass: they are counted exactly once
+/// parsed.
 fn tags(text: &str, budget: &Budget) -> Result<(), Exceeded> {
-    /// More per element than in any ordinary drawing.
+    /// Tags per element; more than in any ordinary drawing.
     const PER_ELEMENT: f64 = 8.0;
     const FEW: usize = 10_000;
     let tags = memchr_iter(b'<', text.as_bytes()).count();
@@ -158,20 +154,20 @@ fn tags(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     budget.check(Limit::Elements, tags as f64 / PER_ELEMENT).map_err(Exceeded::cut_short)
 }
 
-/// Declarations of entities, and what they expand to.
+/// Charges for the bytes that entities expand to, and for looking them up.
 fn entities(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     let declared = declared(text);
     if declared.is_empty() {
         return Ok(());
     }
-    // The parser takes the first of several, and searches them in order.
+    // The parser searches entities in order and takes the first with the name.
     let mut index: HashMap<&str, usize> = HashMap::new();
     for (i, (name, _)) in declared.iter().enumerate() {
         index.entry(name).or_insert(i);
     }
-    // An entity may refer to later ones. Values grow with every round until none does; the parser allows ten levels.
+    // Entities may refer to later ones, so sizes grow round by round, up to the depth that the parser allows.
     let mut sizes: Vec<f64> = declared.iter().map(|(_, value)| value.len() as f64).collect();
-    for _ in 0..=LEVELS {
+    for _ in 0..=MAX_LEVELS {
         let next: Vec<f64> = declared.iter().map(|(_, value)| expanded(value, &index, &sizes)).collect();
         if next == sizes {
             break;
@@ -184,15 +180,15 @@ fn entities(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     budget.spend(cost::COMPARISON * lookups as f64)
 }
 
-/// Levels of entities in entities that the parser follows.
-pub(super) const LEVELS: usize = 10;
+/// Depth of nested entities that the parser follows.
+const MAX_LEVELS: usize = 10;
 
-/// The entities that a text declares: names and values.
-pub(super) fn declared(text: &str) -> Vec<(&str, &str)> {
+/// Lists the names and values of the entities that a text declares.
+fn declared(text: &str) -> Vec<(&str, &str)> {
     memmem::find_iter(text.as_bytes(), "<!ENTITY").filter_map(|at| declaration(&text[at..])).collect()
 }
 
-/// Name and value of the declaration that a text begins with.
+/// Parses the declaration that a text begins with into name and value.
 fn declaration(text: &str) -> Option<(&str, &str)> {
     let rest = text.strip_prefix("<!ENTITY")?.trim_start();
     let (name, rest) = rest.split_once(|c: char| c.is_ascii_whitespace())?;
@@ -202,23 +198,24 @@ fn declaration(text: &str) -> Option<(&str, &str)> {
     Some((name, &rest[..rest.find(quote)?]))
 }
 
-/// The names of the entities that a text refers to.
+/// Lists the names of the entities that a text refers to.
 fn references(text: &str) -> impl Iterator<Item = &str> {
     text.split('&').skip(1).filter_map(|rest| {
-        // Names are short; a lone ampersand is no reference.
         let end = memchr(b';', rest.as_bytes())?;
         rest.get(..end)
     })
 }
 
-/// Size of a text with its references expanded.
+/// The size of a text with its references expanded.
 fn expanded(text: &str, index: &HashMap<&str, usize>, sizes: &[f64]) -> f64 {
     let inner = references(text).filter_map(|name| index.get(name)).map(|&i| sizes[i]);
     text.len() as f64 + inner.sum::<f64>()
 }
 
-/// Comparisons of the names of attributes with each other, and of the declarations in style attributes.
+/// Charges for comparing the names of an element's attributes with each other, and likewise the declarations of its style.
 fn attributes(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    /// Shorter tags have so few attributes that comparing them takes no time.
+    const LONG_TAG: usize = 4096;
     let bytes = text.as_bytes();
     let mut at = 0;
     while let Some(from) = bytes.get(at..).and_then(|b| memchr(b'<', b)).map(|i| at + i) {

@@ -1,12 +1,12 @@
 //! Maps vector artwork to a surface in space and writes it as Wavefront OBJ: a mesh of the filled shapes, or their outlines as
 //! polylines.
 //!
-//! The artwork is flattened in the plane until its image in space is within the tolerance and triangulated (by lyon's sweep-line
-//! tessellator). Then edges of triangles are halved until they follow the surface; both triangles at an edge are split alike, so
+//! The artwork is flattened in the plane until its image in space is within the tolerance, and triangulated by lyon's sweep-line
+//! tessellator. Then edges of triangles are halved until they follow the surface. Both triangles at an edge are split alike, so that
 //! the mesh has no cracks.
 //!
-//! In space x points right, y down and z away from the viewer. OBJ files have y up and z towards the viewer, as modelling programs
-//! expect, in user units of the drawing.
+//! In space, x points right, y down and z away from the viewer. In OBJ files, y points up and z towards the viewer, as modelling
+//! programs expect. Lengths are in user units of the drawing.
 //!
 //! ```
 //! use pathwarp::Outline;
@@ -33,7 +33,7 @@ use std::fmt::Write as _;
 /// A point in space: x, y, z.
 pub type Point3 = [f64; 3];
 
-/// Maps points of the drawing to a surface in space; `None` for points without an image.
+/// Maps points of the drawing to a surface in space. Returns `None` for points without an image.
 pub type SurfaceFn<'a> = dyn Fn(Point) -> Option<Point3> + 'a;
 
 /// A named shape of the artwork.
@@ -132,7 +132,7 @@ pub fn outlines(
 }
 
 /// Maximum number of halvings of a segment.
-const MOST_HALVINGS: u32 = 14;
+const MAX_HALVINGS: u32 = 14;
 
 /// A polygon or polyline in the plane of the drawing.
 struct Polygon {
@@ -164,7 +164,7 @@ fn polygons(
     Ok(out)
 }
 
-/// Counts segments of a shape.
+/// Charges for segments of a shape.
 fn spend(shape: &str, segments: f64, budget: &Budget) -> Result<(), Error> {
     let spent = budget.spend(cost::SEGMENT * segments);
     spent.map_err(|exceeded| Error::TooMany { shape: shape.to_owned(), exceeded })
@@ -177,7 +177,7 @@ fn flatten(
     tolerance: f64,
     out: &mut Vec<Point>,
 ) -> Result<(), Error> {
-    // Start with quarters, so that a symmetric bend is not missed.
+    // Start with quarters, so as not to miss a symmetric bend.
     let mut stack: Vec<(f64, f64, u32)> =
         (0..4).rev().map(|i| (0.25 * f64::from(i), 0.25 * f64::from(i + 1), 2)).collect();
     if let Seg::Line(_) = seg {
@@ -189,7 +189,7 @@ fn flatten(
         for k in [0.25, 0.5, 0.75] {
             off = off.max(from_chord(from, to, place(seg.eval(a + k * (b - a)))?.into()));
         }
-        if off <= tolerance || depth >= MOST_HALVINGS {
+        if off <= tolerance || depth >= MAX_HALVINGS {
             out.push(seg.eval(b));
         } else {
             let m = 0.5 * (a + b);
@@ -247,10 +247,10 @@ fn fill(shape: &NamedShape<'_>, polygons: &[Polygon]) -> Result<FlatMesh, Error>
     Ok(FlatMesh { points: buffers.vertices, triangles })
 }
 
-/// Sides of a mesh for each of its triangles: two triangles share a side.
+/// Number of sides per triangle of a mesh, since two triangles share a side.
 const SIDES: f64 = 1.5;
 /// Maximum number of rounds of halving, which gives at most 2^20 parts per edge.
-const MOST_ROUNDS: usize = 20;
+const MAX_ROUNDS: usize = 20;
 
 /// Triangles in space.
 struct TriangleMesh {
@@ -273,9 +273,9 @@ fn to_surface(
     let mut points = placed?;
     let mut triangles = flat.triangles;
     count(triangles.len())?;
-    // Edges that are known to be close enough.
+    // Edges known to be close enough.
     let mut close: HashSet<Edge> = HashSet::new();
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let mut middles: HashMap<Edge, u32> = HashMap::new();
         for (a, b) in sides(&triangles) {
             let e = edge(a, b);
@@ -322,7 +322,7 @@ fn split(t: [u32; 3], middles: &HashMap<Edge, u32>, out: &mut Vec<[u32; 3]>) {
     }
 }
 
-/// Collects the text of a file.
+/// Writes the text of a file.
 struct ObjWriter {
     text: String,
     vertices: usize,

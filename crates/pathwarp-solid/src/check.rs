@@ -1,11 +1,10 @@
-//! Properties that every deformation of space must have, as a function that returns the faults.
+//! Checks the properties that every deformation of space must have.
 //!
-//! It checks the parameter table, Jacobians against finite differences, batches, the inverse there and back, laws and cases.
+//! [`entry`] checks the parameter table, Jacobians against finite differences, batches, the inverse there and back, laws and cases.
 
 use crate::deform::{Deformation3, Law3};
 use crate::map::{Creases3, Jet3, Map3, NewtonInverse3};
-use crate::settings::Box3;
-use crate::settings::Frame3;
+use crate::settings::{Box3, Frame3};
 use glam::DVec3;
 use pathwarp::deform::Pairs;
 use pathwarp::param::Args;
@@ -17,7 +16,7 @@ pub fn frame() -> Frame3 {
     Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(100.0)))
 }
 
-/// Checks an entry, and returns what is wrong with it.
+/// Checks an entry, and returns its faults.
 #[must_use]
 pub fn entry(entry: &dyn Deformation3) -> Vec<String> {
     let info = &entry.about().info;
@@ -113,7 +112,7 @@ fn off_line(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     (b - a).cross((c - a).normalize_or_zero()).length()
 }
 
-/// Distance of the image of a point of a triangle from the plane of the corners' images.
+/// Distance of the image of a point in a triangle from the plane of the corners' images.
 fn off_plane(m: &dyn Map3, p: DVec3) -> f64 {
     let [a, b, c] = [p, DVec3::new(97.0 - p.x, 11.0, p.z), DVec3::new(p.y, 90.0, 45.0)].map(|p| m.point(p));
     let inner = 0.5 * p + 0.3 * DVec3::new(97.0 - p.x, 11.0, p.z) + 0.2 * DVec3::new(p.y, 90.0, 45.0);

@@ -6,7 +6,7 @@
 //! *Free-form deformation of solid geometric models*, SIGGRAPH 1986; with weights: P. Kalra et al., 1992). i counts from the
 //! left, j from the bottom, k from the back.
 //!
-//! Nothing moves outside the box unless the map is extended, so its faces are creases. If the k + 1 outermost layers along a face
+//! Nothing moves outside the box unless the map is extended, so the faces are creases. If the k + 1 outermost layers along a face
 //! are in their regular positions with weights 1, the map is Cᵏ across that face.
 
 use crate::map::{
@@ -19,9 +19,7 @@ use pathwarp::budget::Budget;
 use pathwarp::map::bspline;
 use std::sync::Arc;
 
-// The lattice as data: control points and weights over a box.
-
-/// A grid of weighted control points over a box: the data of a [`LatticeMap3`](LatticeMap3).
+/// A grid of weighted control points over a box: the data of a [`LatticeMap3`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lattice3 {
     region: Box3,
@@ -29,7 +27,7 @@ pub struct Lattice3 {
     cells: [usize; 3],
     /// Regular positions along x, y and z, from 0 to 1.
     places: [Vec<f64>; 3],
-    /// Displacements from the regular positions; x runs fastest.
+    /// Displacements from the regular positions, with x running fastest.
     moves: Vec<DVec3>,
     weights: Vec<f64>,
 }
@@ -44,8 +42,8 @@ enum Piece {
 }
 
 impl Lattice3 {
-    /// The lattice that is the identity: `degree` along each axis (at least 1), `cells` Bézier pieces along each (1 for a Bézier
-    /// lattice).
+    /// Makes a lattice that is the identity, with `degree` (at least 1) and the number of Bézier pieces, `cells`, along each axis. A
+    /// Bézier lattice has a single piece.
     #[must_use]
     pub fn regular(region: Box3, degree: [usize; 3], cells: [usize; 3]) -> Self {
         let (degree, cells) = (degree.map(|d| d.max(1)), cells.map(|c| c.max(1)));
@@ -78,13 +76,13 @@ impl Lattice3 {
         [0, 1, 2].map(|a| self.places[a].len())
     }
 
-    /// All control points' numbers; the first runs fastest.
+    /// Iterates over the numbers of all control points, with the first running fastest.
     pub fn nodes(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
         let [nx, ny, nz] = self.size();
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
     }
 
-    /// Returns `true` if there is such a control point.
+    /// Whether a control point exists.
     #[must_use]
     pub fn has(&self, node: [usize; 3]) -> bool {
         node.iter().zip(self.size()).all(|(n, size)| *n < size)
@@ -96,14 +94,14 @@ impl Lattice3 {
         (k * self.places[1].len() + j) * self.places[0].len() + i
     }
 
-    /// A control point's place in the identity.
+    /// The position of a control point in the identity.
     #[must_use]
     pub fn regular_point(&self, node: [usize; 3]) -> DVec3 {
         let at = |a: usize| self.places[a][node[a]];
         self.region.min + DVec3::new(at(0), at(1), at(2)) * self.region.size()
     }
 
-    /// A control point.
+    /// The position of a control point.
     #[must_use]
     pub fn point(&self, node: [usize; 3]) -> DVec3 {
         self.regular_point(node) + self.moves[self.index(node)]
@@ -133,7 +131,7 @@ impl Lattice3 {
         self.weights[n] = w;
     }
 
-    /// Returns `true` if a control point differs from its regular position by more than rounding, or its weight from 1.
+    /// Whether a control point differs from its regular position by more than rounding, or its weight from 1.
     #[must_use]
     pub fn is_changed(&self, node: [usize; 3]) -> bool {
         let size = self.region.diagonal() + self.region.min.length();
@@ -141,14 +139,14 @@ impl Lattice3 {
         self.moves[n].length() > 1e-12 * size || self.weights[n] != 1.0
     }
 
-    /// The same lattice scaled to another box.
+    /// Scales the lattice to another box.
     #[must_use]
     pub fn on(&self, region: Box3) -> Self {
         let scale = region.size() / self.region.size();
         Self { region, moves: self.moves.iter().map(|v| *v * scale).collect(), ..self.clone() }
     }
 
-    /// The influence of the control points at `p`: their numbers and Nᵢ·Nⱼ·Nₖ·wᵢⱼₖ / Σ, which add up to 1.
+    /// The influences of control points on `p`, with their numbers: Nᵢ·Nⱼ·Nₖ·wᵢⱼₖ / Σ, which add up to 1.
     #[must_use]
     pub fn influence(&self, p: DVec3) -> Vec<([usize; 3], f64)> {
         let at = ((p - self.region.min) / self.region.size()).to_array();
@@ -168,7 +166,7 @@ impl Lattice3 {
         out
     }
 
-    /// The coordinates of one cell, −1 to 1.
+    /// The coordinates of one cell, from −1 to 1.
     fn local(&self, cell: [usize; 3]) -> Local {
         let cells = DVec3::from_array(self.cells.map(|c| c as f64));
         let middle = (DVec3::from_array(cell.map(|c| c as f64)) + 0.5) / cells;
@@ -215,8 +213,6 @@ impl Lattice3 {
     }
 }
 
-// The lattice as a map, and its inverse.
-
 /// Distance from the faces, relative to the coordinates, within which outside points count as inside.
 const ROUNDING: f64 = 1e-12;
 
@@ -235,17 +231,17 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Debug, Clone)]
 pub struct LatticeMap3 {
     region: Box3,
-    /// The region, enlarged by rounding.
+    /// The region, enlarged to allow for rounding.
     inside: Box3,
     cells: [usize; 3],
-    /// x runs fastest.
+    /// The pieces, with x running fastest.
     pieces: Arc<[(Local, Piece)]>,
-    /// The outermost pieces continue beyond the region.
+    /// Whether the outermost pieces continue beyond the region.
     extended: bool,
 }
 
 impl LatticeMap3 {
-    /// The map of `lattice`. Outside its box it is the identity or, if `extended`, continues the outermost pieces.
+    /// Makes the map of `lattice`. Outside its box, the map is the identity or, if `extended`, continues the outermost pieces.
     #[must_use]
     pub fn new(lattice: &Lattice3, extended: bool) -> Self {
         let region = lattice.region();
@@ -270,12 +266,12 @@ impl LatticeMap3 {
             return self.pieces.first();
         }
         let t = (p - self.region.min) / self.region.size();
-        // A cast of a negative number gives 0.
+        // Casting a negative number gives 0.
         let at = |a: usize| ((t[a] * self.cells[a] as f64) as usize).min(self.cells[a] - 1);
         self.pieces.get((at(2) * self.cells[1] + at(1)) * self.cells[0] + at(0))
     }
 
-    /// The piece for a whole box, or `Some(None)` where nothing moves; `None` if a crease may cross the box.
+    /// The piece that applies to a whole box, or `Some(None)` if nothing moves there. `None` if a crease may cross the box.
     fn piece_on(&self, on: &Box3) -> Option<Option<&(Local, Piece)>> {
         let slack = 4.0 * (self.inside.max - self.region.max);
         let within = self.extended || self.inside.contains(on.min) && self.inside.contains(on.max);
@@ -283,14 +279,15 @@ impl LatticeMap3 {
             let beside = on.max.cmple(self.region.min + slack).any() || on.min.cmpge(self.region.max - slack).any();
             return beside.then_some(None);
         }
-        // Between the same knots along every axis. A flat box may lie in a crease.
+        // Compare the cells of the corners, which are moved inwards except along an axis on which the box is flat, since it may lie in
+        // a crease.
         let middle = on.center();
         let cell = |p: DVec3| self.piece(p).map(std::ptr::from_ref);
         let same = cell((on.min + slack).min(middle))? == cell((on.max - slack).max(middle))?;
         same.then(|| self.piece(middle))
     }
 
-    /// The common denominator at `p`, positive where the map is defined.
+    /// The common denominator at `p`, which is positive where the map is defined.
     fn denominator(&self, p: DVec3) -> f64 {
         match self.piece(p) {
             Some((local, Piece::Quotient(t))) => t.at((p - local.middle) * local.scale)[3],
@@ -397,19 +394,19 @@ impl Map3 for LatticeMap3 {
         }
     }
 
-    /// By Newton's method over the region, or up to half its size outside if the map is extended. Outside points to which no
-    /// point of the region is taken stay where they are.
+    /// Inverts by Newton's method over the region, or up to half its size outside if the map is extended. Outside points that are not
+    /// the image of a point of the region stay where they are.
     fn inverse(&self) -> Option<Arc<dyn Map3>> {
         let beyond = if self.extended { 0.5 } else { 0.0 };
         let domain = self.region.inflate(beyond * self.region.size());
-        // Newton steps may leave the region on their way and must not meet the identity there.
+        // Newton steps may leave the region on the way, where they must not meet the identity.
         let smooth = Self { extended: true, ..self.clone() };
         let reach = 1e3 * (self.inside.max - self.region.max).max_element();
         let inner = NewtonInverse3::with_core(Arc::new(smooth), self.region, domain, reach, self.cells);
         Some(Arc::new(LatticeInverse { map: self.clone(), inner }))
     }
 
-    /// By the control points of a piece, all of which a point depends on, besides what is done once.
+    /// Grows with the number of control points of a piece, all of which affect a point.
     fn work(&self) -> f64 {
         const EACH: f64 = 1.0 / 16.0;
         let degrees = |piece: &Piece| match piece {

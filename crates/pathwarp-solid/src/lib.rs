@@ -5,9 +5,9 @@
 //! - [`recipe`]: steps one after another as one map.
 //! - [`mesh`]: polygon meshes with groups, materials and texture coordinates, and their files.
 //! - [`artwork`]: outlines in the plane as triangles, and on a surface in space as OBJ.
-//! - [`patch`]: Bézier patches and NURBS surfaces, whose images are exact where the map allows it.
+//! - [`patch`]: Bézier patches and NURBS surfaces, with exact images where the map allows it.
 //!
-//! Space is x right, y up, z towards the viewer. The crate is pure: no I/O, no globals, no printing.
+//! In space, x points right, y up and z towards the viewer. The crate is pure: no I/O, no globals, no printing.
 
 pub mod artwork;
 pub mod check;

@@ -1,29 +1,29 @@
-//! Pictures of meshes: a small rasteriser with depth and shading.
+//! Pictures of meshes: a small rasterizer with depth and shading.
 
-use crate::mesh::Mesh;
+use crate::mesh::{Mark, Mesh, PolygonKind};
 use crate::settings::Box3;
 use glam::{DMat3, DVec3};
 
-/// A camera in perspective.
+/// A perspective camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera3 {
     eye: DVec3,
     /// Rows: right, up and forward.
     axes: DMat3,
-    /// Half the height of the picture at distance 1.
+    /// Half the height of the view at distance 1.
     half: f64,
 }
 
-/// Nearer than this share of the distance to the middle of the scene, nothing is drawn.
+/// Nothing nearer than this is drawn, as a fraction of the distance to the middle of the scene.
 const NEAR: f64 = 1e-3;
 
 impl Camera3 {
-    /// A camera at `eye` that looks at the middle of a box and holds all of it, y up. `None` if the eye is inside the box.
+    /// A camera at `eye` that looks at the middle of a box and shows all of it, y up. `None` if the box is not all in front of the eye.
     #[must_use]
     pub fn at(eye: DVec3, scene: Box3) -> Option<Self> {
         let to = scene.center() - eye;
         let forward = to.try_normalize()?;
-        // Looking straight down, the back is up in the picture.
+        // Looking straight down, the back of the scene is at the top of the picture.
         let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
         let axes = DMat3::from_cols(right, right.cross(forward), forward).transpose();
         let sight = |p: DVec3| axes * (p - eye);
@@ -37,13 +37,13 @@ impl Camera3 {
         Some(Self { eye, axes, half: half * 1.04 })
     }
 
-    /// A camera in this direction from the middle of a box, twice its diagonal away.
+    /// A camera that looks at the middle of a box from this direction, twice the diagonal of the box away.
     #[must_use]
     pub fn towards(direction: DVec3, scene: Box3) -> Option<Self> {
         Self::at(scene.center() + direction.try_normalize()? * 2.0 * scene.diagonal(), scene)
     }
 
-    /// Place in a square picture of `side` pixels, and depth.
+    /// The place of a point in a square picture of `side` pixels, and its depth.
     fn project(&self, p: DVec3, side: f64) -> DVec3 {
         let q = self.axes * (p - self.eye);
         let k = 0.5 * side / (self.half * q.z);
@@ -51,7 +51,7 @@ impl Camera3 {
     }
 }
 
-/// Colours of objects in order, red, green, blue.
+/// Colours of objects, in turn: red, green, blue.
 const PALETTE: [[f64; 3]; 6] = [
     [0.36, 0.55, 0.76],
     [0.87, 0.56, 0.29],
@@ -60,14 +60,13 @@ const PALETTE: [[f64; 3]; 6] = [
     [0.58, 0.47, 0.70],
     [0.62, 0.55, 0.45],
 ];
-/// Back faces, seen through openings or where a map turned them.
+/// Colour of back faces, seen through openings or where a map turned faces over.
 const INSIDE: [f64; 3] = [0.75, 0.72, 0.68];
-/// Guides.
 const GUIDE: [f64; 3] = [0.80, 0.10, 0.35];
-/// Samples of a pixel along each side.
+/// Samples along each side of a pixel.
 const SAMPLES: usize = 2;
 
-/// The samples that [`draw`] looks at for a mesh: those in the boxes of its triangles, many times over where triangles cover each other.
+/// How many samples [`draw`] looks at for a mesh: all those in the bounding box of each triangle.
 #[must_use]
 pub fn samples(mesh: &Mesh, camera: &Camera3, side: usize) -> f64 {
     let fine = (side * SAMPLES) as f64;
@@ -76,29 +75,29 @@ pub fn samples(mesh: &Mesh, camera: &Camera3, side: usize) -> f64 {
         corners.windows(2).skip(1).map(move |w| [corners[0], w[0], w[1]].map(|c| c.vertex as usize))
     });
     let length = |v: [f64; 3]| {
-        let [least, most] = [v.iter().copied().fold(fine, f64::min), v.iter().copied().fold(0.0, f64::max)];
-        (most.min(fine) - least.max(0.0)).max(0.0)
+        let [min, max] = [v.iter().copied().fold(fine, f64::min), v.iter().copied().fold(0.0, f64::max)];
+        (max.min(fine) - min.max(0.0)).max(0.0)
     };
     triangles.map(|t| length(t.map(|v| places[v].x)) * length(t.map(|v| places[v].y))).sum()
 }
 
-/// Draws a mesh with guides over it as a square of `side` × `side` pixels: red, green, blue, opaque, on white.
+/// Draws a mesh with guides over it, on white: `side` × `side` opaque pixels of red, green, blue and alpha.
 #[must_use]
 pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -> Vec<u8> {
     let fine = side * SAMPLES;
     let mut canvas = Canvas { side: fine, color: vec![[1.0; 3]; fine * fine], near: vec![0.0; fine * fine] };
     let places: Vec<DVec3> = mesh.positions.iter().map(|p| camera.project(*p, fine as f64)).collect();
     let light = camera.axes.transpose() * DVec3::new(-0.4, 0.6, -0.7).normalize();
-    let least = NEAR * places.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
+    let nearest = NEAR * places.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
     let mut names: Vec<&str> = Vec::new();
     let mut marks = mesh.marks.iter().peekable();
     for (n, (kind, corners)) in mesh.polygons().enumerate() {
         while let Some((_, mark)) = marks.next_if(|(first, _)| *first as usize <= n) {
-            if let crate::mesh::Mark::Object(name) | crate::mesh::Mark::Group(name) = mark {
+            if let Mark::Object(name) | Mark::Group(name) = mark {
                 names.push(name);
             }
         }
-        if kind != crate::mesh::PolygonKind::Face {
+        if kind != PolygonKind::Face {
             continue;
         }
         let base = PALETTE[names.len().saturating_sub(1) % PALETTE.len()];
@@ -109,14 +108,14 @@ pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -
             let facing = normal.dot(camera.eye - a) >= 0.0;
             let shade = 0.35 + 0.65 * (normal.dot(light) * if facing { 1.0 } else { -1.0 }).max(0.0);
             let color = (if facing { base } else { INSIDE }).map(|v| v * shade);
-            if t.iter().all(|v| places[*v].z > least) {
+            if t.iter().all(|v| places[*v].z > nearest) {
                 canvas.triangle(t.map(|v| places[v]), color);
             }
         }
     }
     for guide in guides {
         for w in guide.windows(2) {
-            canvas.line([w[0], w[1]].map(|p| camera.project(p, fine as f64)), least);
+            canvas.line([w[0], w[1]].map(|p| camera.project(p, fine as f64)), nearest);
         }
     }
     canvas.pixels()
@@ -155,9 +154,9 @@ impl Canvas {
         }
     }
 
-    /// A thin line over everything.
-    fn line(&mut self, [a, b]: [DVec3; 2], least: f64) {
-        if a.z <= least || b.z <= least || !(a.is_finite() && b.is_finite()) {
+    /// Draws a thin line over everything.
+    fn line(&mut self, [a, b]: [DVec3; 2], nearest: f64) {
+        if a.z <= nearest || b.z <= nearest || !(a.is_finite() && b.is_finite()) {
             return;
         }
         let limit = self.side as f64;
@@ -170,7 +169,7 @@ impl Canvas {
         }
     }
 
-    /// The means of the samples.
+    /// The pixels, each the mean of its samples.
     fn pixels(&self) -> Vec<u8> {
         let side = self.side / SAMPLES;
         let mut out = Vec::with_capacity(4 * side * side);

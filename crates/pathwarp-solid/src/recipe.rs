@@ -1,9 +1,8 @@
-//! Recipes in space: deformations one after another, composed into one map.
+//! Recipes of deformations of space, applied one after another and composed into one map.
 
 use crate::deform::{Built3, Registry3};
 use crate::map::{Chain3, Creases3, Map3, NewtonInverse3};
-use crate::settings::Box3;
-use crate::settings::Frame3;
+use crate::settings::{Box3, Frame3};
 use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded, Limits};
 use pathwarp::recipe::Recipe;
@@ -18,9 +17,9 @@ pub struct BuiltRecipe3 {
     pub map: Chain3,
     /// The steps one by one.
     pub steps: Vec<Built3>,
-    /// What percentages of each step referred to.
+    /// What percentages in each step referred to.
     pub frames: Vec<Frame3>,
-    /// What searches of inverses spend.
+    /// What searches for inverses spend from.
     budget: Arc<Budget>,
 }
 
@@ -40,22 +39,22 @@ impl BuiltRecipe3 {
         }
     }
 
-    /// Returns the limit that searches for an inverse have exceeded. Results computed with the map are then not to be used.
+    /// The limit that searches for an inverse have exceeded, if any. If there is one, discard results computed with the map.
     #[must_use]
     pub fn exceeded(&self) -> Option<Exceeded> {
         self.budget.exceeded()
     }
 }
 
-/// Distance beyond the frame at which a solution of Newton's method is accepted, as a share of its diagonal.
+/// How far outside the frame a solution of Newton's method is accepted, as a fraction of the diagonal.
 const REACH: f64 = 0.25;
-/// Smooth pieces of a map along an axis that Newton's method is prepared for.
+/// How many smooth pieces of a map along each axis Newton's method is prepared for.
 const PIECES: [usize; 3] = [4; 3];
 
-/// Places along an axis of a box.
+/// Places along each axis of a box.
 const GRID: usize = 12;
 
-/// Places all over a box, with its corners.
+/// A grid of places all over a box, corners included.
 fn places(bounds: &Box3) -> impl Iterator<Item = DVec3> {
     let at = |i: usize| i as f64 / (GRID - 1) as f64;
     let place = move |k: usize| DVec3::new(at(k % GRID), at(k / GRID % GRID), at(k / (GRID * GRID)));
@@ -63,7 +62,7 @@ fn places(bounds: &Box3) -> impl Iterator<Item = DVec3> {
     (0..GRID.pow(3)).map(move |k| from + place(k) * size)
 }
 
-/// A place of a box where a map turns space inside out, if it does not everywhere.
+/// A place in a box where a map turns space inside out, unless it does so everywhere.
 fn fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
     let mut creases = Creases3::default();
     map.creases(&mut creases);
@@ -73,19 +72,19 @@ fn fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
     signs.iter().any(|(_, det)| *det > 0.0).then_some(first.0)
 }
 
-/// Builds every step of a recipe. Percentages refer to `frame` in the first step, and in later ones to the bounding box of
-/// `points` as they are by then. As in the plane, a recipe of inverse steps alone undoes its reverse: `points` are of a result, `frame` is
-/// that of its source, and the other boxes are found by turns; a warning says so if they do not settle.
+/// Builds every step of a recipe. Percentages refer to `frame` in the first step, and to the bounding box of the points mapped so far in
+/// later ones. As in the plane, a recipe of inverse steps only undoes its reverse: then `points` are those of a result, `frame` is the
+/// frame of its source, and the boxes in between are found by iteration, with a warning if they do not settle.
 ///
 /// # Errors
-/// An unknown deformation, or any error from building a step.
+/// A deformation is unknown, or building a step fails.
 pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVec3]) -> Result<BuiltRecipe3, Error> {
     build_within(recipe, registry, frame, points, &Arc::new(Budget::new(Limits::none())))
 }
 
-/// As [`build`], within a budget, which counts the evaluations that find out where the points are after each step, and those of one
-/// more run of the map at all points. Inverses that search spend from it what each search takes beyond [`Map3::work`], for as long as they
-/// are used: once nothing is left they are undefined everywhere, and [`BuiltRecipe3::exceeded`] says so.
+/// Like [`build`], within a budget. It is charged for mapping the points through each step, and for mapping all of them once more by the
+/// whole map. Inverses that search also spend from it, for as long as they are used, what each search takes beyond [`Map3::work`]: once
+/// nothing is left they are undefined everywhere, and [`BuiltRecipe3::exceeded`] tells.
 ///
 /// # Errors
 /// As for [`build`], and [`GeometryError::Limit`] if the budget does not allow so many.
@@ -105,7 +104,7 @@ pub fn build_within(
     Ok(out)
 }
 
-/// Counts evaluations of a map.
+/// Charges the budget for evaluations of a map.
 fn count(budget: &Budget, map: &dyn Map3, places: usize) -> Result<(), GeometryError> {
     budget.spend(places as f64 * map.work()).map_err(GeometryError::Limit)
 }
@@ -145,7 +144,8 @@ fn built(
     Ok(out)
 }
 
-/// Builds the inverse of a recipe of several steps: boxes give the source's points, and these the boxes on their way, until they settle.
+/// Builds the inverse of a recipe of several steps. The boxes of all steps and the points of the source are computed from each other in
+/// turn until the boxes settle.
 fn undo(
     recipe: &Recipe,
     registry: &Registry3,
@@ -153,12 +153,12 @@ fn undo(
     images: &[DVec3],
     budget: &Arc<Budget>,
 ) -> Result<BuiltRecipe3, Error> {
-    /// Boxes that differ by less than this share of their size are the same.
+    /// Boxes that differ by less than this fraction of their size are the same.
     const SETTLED: f64 = 1e-12;
-    const TURNS: usize = 64;
+    const MAX_ROUNDS: usize = 64;
     let mut there = built(recipe, registry, frame, &places(&frame.bounds).collect::<Vec<_>>(), budget)?;
     let mut off = f64::INFINITY;
-    for _ in 0..TURNS {
+    for _ in 0..MAX_ROUNDS {
         if off <= SETTLED {
             break;
         }
@@ -189,12 +189,12 @@ fn undo(
     Ok(out)
 }
 
-/// The distance of two boxes' corners, as a share of their size.
+/// The distance between the corners of two boxes, as a fraction of their size.
 fn apart(a: &Box3, b: &Box3) -> f64 {
     a.min.distance(b.min).max(a.max.distance(b.max)) / b.diagonal()
 }
 
-/// Inverts a step over its box, with a warning if it folds.
+/// Inverts a step over its box. Warns if the step folds space there.
 fn inverted(mut built: Built3, bounds: &Box3, budget: &Arc<Budget>) -> Result<Built3, GeometryError> {
     count(budget, &*built.map, GRID.pow(3))?;
     if let Some(at) = fold(&*built.map, bounds) {

@@ -1,14 +1,14 @@
-//! Typed access to the values of parameters, with lengths, points and boxes in space.
+//! Typed access to parameter values: lengths, points and boxes in space.
 
 use glam::DVec3;
 use pathwarp::Error;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit, NamedText, Param, Settings};
 
-/// Millimetres of a px, in which lengths with units are counted.
+/// Millimetres in a px.
 const MM_PER_PX: f64 = 25.4 / 96.0;
 
-/// An axis of space, or the diagonal of a box: the length to which percentages refer.
+/// What a percentage is a percentage of: the frame's size along an axis, or its diagonal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
     /// The width.
@@ -21,12 +21,12 @@ pub enum Extent {
     Diagonal,
 }
 
-/// The box that percentages refer to, and the size of a unit.
+/// The box to which percentages refer, and the size of a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame3 {
     /// The box, usually the model's.
     pub bounds: Box3,
-    /// Units of the model in a millimetre: 1, as programs for 3D printing take it, unless the file's format says otherwise.
+    /// Units of the model in a millimetre: 1, as 3D printing software assumes, unless the file format says otherwise.
     pub units_per_mm: f64,
 }
 
@@ -37,7 +37,7 @@ impl Frame3 {
         Self { bounds, units_per_mm: 1.0 }
     }
 
-    /// The front of the box as a frame of the plane, for values that are read as in the plane.
+    /// The front of the box as a frame in the plane, for values that are read as in the plane.
     #[must_use]
     pub fn front(&self) -> Frame {
         let Box3 { min, max } = self.bounds;
@@ -56,7 +56,7 @@ impl Frame3 {
     }
 }
 
-/// The parameters of a deformation of space with their values, from which it is built.
+/// The parameter values from which a deformation of space is built.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings3<'a> {
     flat: Settings<'a>,
@@ -72,7 +72,7 @@ impl<'a> Settings3<'a> {
         Ok(Self { flat: Settings::new(params, args, front)?, frame })
     }
 
-    /// The values that need no third dimension: flags, numbers, angles, words, texts and files.
+    /// The settings of the plane, for values that need no third dimension: flags, numbers, angles, words, texts and files.
     #[must_use]
     pub fn flat(&self) -> &Settings<'a> {
         &self.flat
@@ -84,19 +84,19 @@ impl<'a> Settings3<'a> {
         self.frame.bounds
     }
 
-    /// The last value of a text parameter, or its default.
+    /// The last value given for a text parameter, or its default.
     #[must_use]
     pub fn last(&self, name: &str) -> Option<&'a str> {
         self.flat.texts(name).last().copied()
     }
 
-    /// The words of all values of a text parameter.
+    /// The words of all values of a text parameter, split at white space.
     #[must_use]
     pub fn words(&self, name: &str) -> Vec<&'a str> {
         self.flat.texts(name).into_iter().flat_map(str::split_whitespace).collect()
     }
 
-    /// A length within a text parameter, in units of the model.
+    /// Reads a length from a text parameter, in units of the model.
     ///
     /// # Errors
     /// `text` is not a length. The message names the parameter.
@@ -108,7 +108,7 @@ impl<'a> Settings3<'a> {
         Ok(length.in_units(Axis::X, &self.frame.front()))
     }
 
-    /// A vector `dx,dy,dz` of lengths within a text parameter.
+    /// Reads a vector `dx,dy,dz` of lengths from a text parameter.
     ///
     /// # Errors
     /// `text` is not three lengths. The message names the parameter.
@@ -121,7 +121,7 @@ impl<'a> Settings3<'a> {
         Ok(DVec3::new(along(x, Extent::X)?, along(y, Extent::Y)?, along(z, Extent::Z)?))
     }
 
-    /// A point `x,y,z` within a text parameter. Percentages count from the left, bottom and back of the frame.
+    /// Reads a point `x,y,z` from a text parameter. Percentages count from the left, bottom and back of the frame.
     ///
     /// # Errors
     /// `text` is not a point. The message names the parameter.
@@ -164,10 +164,10 @@ impl<'a> Settings3<'a> {
         self.words(name).into_iter().map(pair).collect()
     }
 
-    /// The box given by a text parameter: the word `model` (the frame), or `x,y,z,w,h,d`. `None` if it is the frame or not given.
+    /// The box given for a text parameter as `x,y,z,w,h,d`. `None` if it is not given, or is the word `model`, which means the frame.
     ///
     /// # Errors
-    /// The value is not a box, or has no volume.
+    /// The value is not a box, or the box has no volume.
     pub fn box_if(&self, name: &str) -> Result<Option<Box3>, Error> {
         let Some(text) = self.last(name).filter(|t| *t != "model") else { return Ok(None) };
         let words: Vec<&str> = text.split(',').collect();
@@ -180,37 +180,35 @@ impl<'a> Settings3<'a> {
         if size.min_element() > 0.0 { Ok(Some(Box3 { min, max: min + size })) } else { Err(wrong()) }
     }
 
-    /// Up to three whole numbers from 1 to `most`, `4x3x2`, or one number for all three; `None` if not given.
+    /// Three whole numbers from 1 to `max`, such as `4x3x2`, or one number for all three; `None` if not given.
     ///
     /// # Errors
     /// The value is something else.
-    pub fn counts_if(&self, name: &str, most: usize) -> Result<Option<[usize; 3]>, Error> {
+    pub fn counts_if(&self, name: &str, max: usize) -> Result<Option<[usize; 3]>, Error> {
         let Some(text) = self.last(name) else { return Ok(None) };
-        let number = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=most).contains(n));
+        let number = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=max).contains(n));
         let numbers: Option<Vec<usize>> = text.split(['x', 'X', '×']).map(number).collect();
         match numbers.as_deref() {
             Some([n]) => Ok(Some([*n; 3])),
             Some([a, b, c]) => Ok(Some([*a, *b, *c])),
-            _ => Err(Error::usage(name, text, format!("is not three numbers from 1 to {most}, such as 3x2x2"))),
+            _ => Err(Error::usage(name, text, format!("is not three numbers from 1 to {max}, such as 3x2x2"))),
         }
     }
 
-    /// The file named by a parameter, already read.
+    /// The contents of the file named by a parameter.
     ///
     /// # Errors
-    /// The file was not read.
+    /// The file has not been read.
     pub fn file_if(&self, name: &str) -> Result<Option<&'a NamedText>, Error> {
         self.flat.file_if(name)
     }
 }
 
-/// A point in messages, to six decimals.
+/// A point for messages, to six decimals.
 pub(crate) fn show(p: DVec3) -> String {
     let round = |v: f64| pathwarp::decimal::trimmed(v, 6);
     format!("{},{},{}", round(p.x), round(p.y), round(p.z))
 }
-
-// Boxes in space.
 
 /// A box with edges along the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -228,7 +226,7 @@ impl Box3 {
         Self { min: a.min(b), max: a.max(b) }
     }
 
-    /// The smallest box around points; `None` if there are none that are finite.
+    /// The smallest box around the finite ones among `points`; `None` if there are none.
     #[must_use]
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         let finite = points.into_iter().filter(|p| p.is_finite());
@@ -241,7 +239,7 @@ impl Box3 {
         self.max - self.min
     }
 
-    /// The middle.
+    /// The centre.
     #[must_use]
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)
@@ -253,7 +251,7 @@ impl Box3 {
         self.size().length()
     }
 
-    /// Returns `true` if `p` is inside or on the boundary.
+    /// Whether `p` is inside or on the boundary.
     #[must_use]
     pub fn contains(&self, p: DVec3) -> bool {
         p.cmpge(self.min).all() && p.cmple(self.max).all()

@@ -1,5 +1,5 @@
-//! The work of CFF and CFF2 charstrings. A subroutine that calls another one a hundred times, ten levels deep, would occupy the reader
-//! for ever.
+//! Measures the work of CFF and CFF2 charstrings. Subroutines that call others a hundred times, ten levels deep, would occupy the
+//! reader forever.
 
 use skrifa::raw::TableProvider as _;
 use skrifa::raw::ps::cff::CffFontRef;
@@ -15,22 +15,22 @@ use std::cell::Cell;
 pub(crate) struct Charstrings<'a>(CffFontRef<'a>);
 
 impl<'a> Charstrings<'a> {
-    /// `None` if the font has none.
+    /// Returns `None` if the font has no charstrings.
     pub(crate) fn new(font: &FontRef<'a>) -> Option<Self> {
         let cff = || CffFontRef::new_cff(font.cff().ok()?.offset_data().as_bytes(), 0, None).ok();
         let cff2 = || CffFontRef::new_cff2(font.cff2().ok()?.offset_data().as_bytes(), None).ok();
         cff2().or_else(cff).map(Self)
     }
 
-    /// Bytes that the reader evaluates for a glyph, those of subroutines at each call; `most` or more if it never ends.
-    pub(crate) fn work(&self, glyph: GlyphId, most: u64) -> u64 {
+    /// The number of bytes that the reader evaluates for a glyph, counting subroutines at each call. Stops counting at `max`.
+    pub(crate) fn work(&self, glyph: GlyphId, max: u64) -> u64 {
         let used = Cell::new(0);
-        // A damaged charstring takes what it took up to the damage.
-        let _ = self.evaluated(glyph, most, &used);
+        // A damaged charstring counts up to the damage.
+        let _ = self.evaluated(glyph, max, &used);
         used.get()
     }
 
-    fn evaluated(&self, glyph: GlyphId, most: u64, used: &Cell<u64>) -> Result<(), Error> {
+    fn evaluated(&self, glyph: GlyphId, max: u64, used: &Cell<u64>) -> Result<(), Error> {
         let Self(font) = self;
         let part = font.subfont_index(glyph).ok_or(Error::MissingFdArray)?;
         let part = font.subfont(part, &[])?;
@@ -43,24 +43,24 @@ impl<'a> Charstrings<'a> {
         };
         let blend = font.var_store().and_then(|s| BlendState::new(s.clone(), &[], part.vs_index()).ok());
         let all = font.charstrings();
-        let context = Counting { inner: (font.data(), all, font.global_subrs(), &local), used, most };
+        let context = Counting { inner: (font.data(), all, font.global_subrs(), &local), used, max };
         let own = context.counted(all.get(glyph.to_u32() as usize)?)?;
         evaluate(&context, blend, own, &mut Nothing)?;
         Ok(())
     }
 }
 
-/// What the reader looks up, counted.
+/// Counts the charstrings that the evaluator looks up.
 struct Counting<'a> {
     inner: (&'a [u8], &'a Index<'a>, &'a Index<'a>, &'a Index<'a>),
     used: &'a Cell<u64>,
-    most: u64,
+    max: u64,
 }
 
 impl Counting<'_> {
     fn counted<'b>(&self, charstring: &'b [u8]) -> Result<&'b [u8], Error> {
         self.used.set(self.used.get() + 1 + charstring.len() as u64);
-        if self.used.get() < self.most { Ok(charstring) } else { Err(Error::CharstringNestingDepthLimitExceeded) }
+        if self.used.get() < self.max { Ok(charstring) } else { Err(Error::CharstringNestingDepthLimitExceeded) }
     }
 }
 
@@ -83,7 +83,7 @@ impl CharstringContext for Counting<'_> {
     }
 }
 
-/// Takes an outline and keeps nothing of it.
+/// Discards an outline.
 struct Nothing;
 
 impl CommandSink for Nothing {

@@ -12,7 +12,7 @@ pub enum Error {
     /// The bytes are not a readable font.
     #[error("not a readable font: {0}")]
     NotAFont(String),
-    /// The file has fewer fonts.
+    /// The file has no font with this index.
     #[error("the file has no font {index}; it has {count}, counted from 0")]
     NoSuchFace {
         /// Requested index.
@@ -87,12 +87,12 @@ pub enum Error {
     Failed,
 }
 
-/// A quantity that is limited.
+/// A limited quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Letters of the text.
     Letters,
-    /// Glyphs that the fonts make of them.
+    /// Glyphs that the fonts make of the letters.
     Glyphs,
     /// Segments of the outlines.
     Segments,

@@ -96,27 +96,27 @@ impl<'a> Font<'a> {
         Ok(self)
     }
 
-    /// Thickens the stems of every letter by `share` of the em, and widens its advance by as much: a synthesised bold.
+    /// Synthesizes a bold font: thickens the stems of every letter by a fraction of the em, and widens its advance by as much.
     #[must_use]
     pub fn emboldened(mut self, share: f64) -> Self {
         self.synthesis.bold = share;
         self
     }
 
-    /// Slants every letter to the right, in degrees: a synthesised italic.
+    /// Synthesizes an italic font: slants every letter to the right, in degrees.
     #[must_use]
     pub fn slanted(mut self, degrees: f64) -> Self {
         self.synthesis.slant = degrees;
         self
     }
 
-    /// Returns the weight of the font as it was designed, such as 400 for a regular and 700 for a bold one.
+    /// Returns the design weight of the font, such as 400 for a regular and 700 for a bold one.
     #[must_use]
     pub fn weight(&self) -> f64 {
         f64::from(self.font.attributes().weight.value())
     }
 
-    /// Returns `true` if the font is italic or oblique.
+    /// Whether the font is italic or oblique.
     #[must_use]
     pub fn is_italic(&self) -> bool {
         self.font.attributes().style != skrifa::attribute::Style::Normal
@@ -157,7 +157,7 @@ impl<'a> Font<'a> {
         self.metrics.scaled(size / self.units_per_em)
     }
 
-    /// Returns `true` if the font has a glyph for a character.
+    /// Whether the font has a glyph for a character.
     #[must_use]
     pub fn has(&self, c: char) -> bool {
         self.charmap.map(c).is_some_and(|g| g.to_u32() != 0)
@@ -183,7 +183,7 @@ impl<'a> Font<'a> {
         };
     }
 
-    /// Height of the outline of a character.
+    /// The height of a character's outline.
     fn top_of(&self, c: char) -> Option<f64> {
         let glyph: GlyphId = self.charmap.map(c)?;
         let outline = self.outlines.draw(glyph, self.location()).ok()?;

@@ -1,8 +1,8 @@
-//! Outlines of glyphs: the exact curves of the font in font units, with y pointing down, thickened or slanted if asked for.
+//! Reads the outlines of glyphs, the exact curves of the font in font units with y pointing down, and thickens or slants them.
 
 use crate::charstrings::Charstrings;
 use crate::error::Error;
-use crate::work::MOST_WORK;
+use crate::work::MAX_WORK;
 use kurbo::{Affine, BezPath, PathEl, Point, Shape as _, Vec2};
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::pen::PathStyle;
@@ -14,8 +14,8 @@ use skrifa::{FontRef, GlyphId};
 use std::collections::HashMap;
 
 /// Maximum number of components of a glyph, including nested ones. The reader limits points and depth, but components without
-/// points could occupy it for ever.
-const MOST_PARTS: usize = 10_000;
+/// points could occupy it forever.
+const MAX_PARTS: usize = 10_000;
 
 /// The outlines of a font.
 pub(crate) struct Outlines<'a> {
@@ -41,11 +41,11 @@ impl<'a> Outlines<'a> {
     /// Returns the outline of a glyph; empty for spaces.
     pub(crate) fn draw(&self, glyph: GlyphId, at: LocationRef<'_>) -> Result<BezPath, Error> {
         let damaged = |problem: String| Error::Glyph { glyph: glyph.to_u32(), problem };
-        if self.parts(glyph, 0, &mut HashMap::new())? > MOST_PARTS {
-            return Err(damaged(format!("it has more than {MOST_PARTS} parts")));
+        if self.parts(glyph, 0, &mut HashMap::new())? > MAX_PARTS {
+            return Err(damaged(format!("it has more than {MAX_PARTS} parts")));
         }
-        if self.charstrings.as_ref().is_some_and(|c| c.work(glyph, MOST_WORK) >= MOST_WORK) {
-            return Err(damaged(format!("it has {MOST_WORK} bytes or more, with all of its subroutines")));
+        if self.charstrings.as_ref().is_some_and(|c| c.work(glyph, MAX_WORK) >= MAX_WORK) {
+            return Err(damaged(format!("it has {MAX_WORK} bytes or more, with all of its subroutines")));
         }
         let mut pen = GlyphPen::default();
         if let Some(outline) = self.glyphs.get(glyph) {
@@ -62,20 +62,20 @@ impl<'a> Outlines<'a> {
     /// Counts the components of a glyph, including nested ones, with memoized sums. A component without points but with data for
     /// them is an error, since the reader would panic.
     fn parts(&self, glyph: GlyphId, depth: usize, known: &mut HashMap<u32, usize>) -> Result<usize, Error> {
-        /// One level more than the reader follows.
-        const DEEP: usize = 33;
+        /// One more level than the reader follows.
+        const MAX_DEPTH: usize = 33;
         if let Some(n) = known.get(&glyph.to_u32()) {
             return Ok(*n);
         }
         let Some((glyf, loca)) = &self.composites else { return Ok(1) };
-        // A glyph inside itself counts as too many; the reader rejects it.
-        known.insert(glyph.to_u32(), MOST_PARTS + 1);
+        // A glyph that contains itself counts as too many; the reader rejects it.
+        known.insert(glyph.to_u32(), MAX_PARTS + 1);
         let n = match loca.get_glyf(glyph, glyf) {
-            Ok(Some(Glyph::Composite(c))) if depth < DEEP => {
+            Ok(Some(Glyph::Composite(c))) if depth < MAX_DEPTH => {
                 let mut n = 1_usize;
                 for part in c.components() {
                     n = n.saturating_add(self.parts(part.glyph.into(), depth + 1, known)?);
-                    if n > MOST_PARTS {
+                    if n > MAX_PARTS {
                         break;
                     }
                 }
@@ -123,12 +123,12 @@ impl OutlinePen for GlyphPen {
     }
 }
 
-/// A synthesised style.
+/// A synthesized style.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Synthesis {
-    /// Thickness added to stems, as a share of the em.
+    /// Thickness added to stems, as a fraction of the em.
     pub(crate) bold: f64,
-    /// Angle of the slant to the right, degrees.
+    /// Angle of the slant to the right, in degrees.
     pub(crate) slant: f64,
 }
 
@@ -140,9 +140,9 @@ impl Synthesis {
     }
 }
 
-/// Thickens stems by `by`: half of it on each side, and to the right by the same, so that the left side bearing stays.
+/// Thickens stems by `by`, half of it on each side, and moves the outline right by that half, so that the left side bearing stays.
 fn emboldened(outline: &BezPath, by: f64) -> BezPath {
-    // Of nested contours, the outer one decides the sign.
+    // The outer of nested contours decides the sign.
     let outwards = if outline.area() < 0.0 { 1.0 } else { -1.0 };
     let mut out = BezPath::new();
     let mut contour: Vec<PathEl> = Vec::new();
@@ -183,10 +183,10 @@ fn points_of(el: &PathEl) -> Vec<Point> {
 
 /// The vector by which a point moves if both edges of the closed polygon at it move by 1 to their right.
 fn mitre(points: &[Point], i: usize) -> Vec2 {
-    /// 1 + cos of the turn beyond which the mitre is cut: FreeType's limit.
-    const SHARPEST: f64 = 1.0 / 16.0;
+    /// 1 + cos of the turn beyond which the mitre is cut, as in FreeType.
+    const MIN_SPREAD: f64 = 1.0 / 16.0;
     let n = points.len();
-    // Neighbours that coincide have no direction.
+    // Skip neighbours that coincide with the point.
     let towards = |step: usize| {
         let others = (1..n).map(|k| points[(i + k * step) % n] - points[i]);
         others.into_iter().find(|d| d.hypot2() > 0.0).map(|d| d / d.hypot())
@@ -195,7 +195,7 @@ fn mitre(points: &[Point], i: usize) -> Vec2 {
     let normal = |d: Vec2| Vec2::new(-d.y, d.x);
     let (a, b) = (normal(-before), normal(after));
     let spread = 1.0 + a.dot(b);
-    if spread > SHARPEST { (a + b) / spread } else { a }
+    if spread > MIN_SPREAD { (a + b) / spread } else { a }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use unicode_script::{Script, UnicodeScript as _};
 /// Text of one direction and one script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Run {
-    /// Bytes in the line.
+    /// Byte range in the line.
     pub(crate) range: Range<usize>,
     pub(crate) rtl: bool,
     pub(crate) script: Script,
@@ -39,7 +39,8 @@ pub(crate) fn runs(line: &str, rtl: bool, script: Option<Script>) -> Vec<Run> {
     out
 }
 
-/// Splits a line by script. Characters common to many scripts join the preceding text, or else the following (Unicode annex 24, 5.1).
+/// Splits a line by script. Characters common to many scripts join the preceding text, or else the following text (Unicode annex 24,
+/// 5.1).
 fn scripts(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Script)> {
     if let Some(script) = all {
         return vec![(0..line.len(), script)];
@@ -70,7 +71,7 @@ pub(crate) fn for_shaper(script: Script) -> Option<ShapeScript> {
     ShapeScript::from_iso15924_tag(Tag::from_u32(script.as_iso15924_tag()))
 }
 
-/// Returns `true` for scripts with joined letters, which letter spacing would tear apart (CSS Text 3, "Cursive Scripts").
+/// Whether a script joins letters, which letter spacing would tear apart (CSS Text 3, "Cursive Scripts").
 pub(crate) fn joins(script: Script) -> bool {
     matches!(
         script,
@@ -84,7 +85,7 @@ pub(crate) fn joins(script: Script) -> bool {
     )
 }
 
-/// Returns `true` if the first character with a direction is right-to-left (Unicode annex 9, rules P2 and P3).
+/// Whether the first character with a direction is right-to-left (Unicode annex 9, rules P2 and P3).
 pub(crate) fn starts_rtl(text: &str) -> bool {
     matches!(unicode_bidi::get_base_direction_full(text), unicode_bidi::Direction::Rtl)
 }

@@ -1,4 +1,4 @@
-//! Sets text in lines of clusters: itemized, shaped, spaced, aligned, stacked.
+//! Sets text: itemizes, shapes, spaces, aligns and stacks lines of clusters.
 
 use crate::error::{Error, guarded};
 use crate::font::Font;
@@ -12,8 +12,8 @@ use crate::style::{Align, Direction, Feature, Ligatures, TextStyle, check};
 use kurbo::Affine;
 use std::collections::{BTreeSet, HashMap};
 
-/// Sets text within the default limits. Lines end at newlines; a tab or other control character becomes a space. Characters that the first font lacks are
-/// taken from the next font that has them.
+/// Sets text within the default limits. Lines end at newlines; tabs and other control characters become spaces. Characters that the
+/// first font lacks come from the next font that has them.
 ///
 /// ```
 /// use pathwarp_text::{Align, Font, TextStyle, features, layout};
@@ -110,7 +110,7 @@ fn features(style: &TextStyle) -> Vec<harfrust::Feature> {
     shape::for_whole_text(&all)
 }
 
-/// Shapes and spaces a line; the clusters go from left to right.
+/// Shapes and spaces a line. The clusters go from left to right.
 fn clusters(
     line: &str,
     runs: &[Run],
@@ -159,17 +159,11 @@ pub(crate) fn align(lines: &mut [LetteringLine], align: Align, rtl: bool) {
     for line in lines {
         let room = width - line.end.x;
         let before = match align {
-            Align::Left => 0.0,
             Align::Center => 0.5 * room,
             Align::Right => room,
             Align::Justify if widen(line, room) => 0.0,
-            Align::Start | Align::Justify | Align::Fill => {
-                if rtl {
-                    room
-                } else {
-                    0.0
-                }
-            }
+            Align::Start | Align::Justify | Align::Fill if rtl => room,
+            Align::Left | Align::Start | Align::Justify | Align::Fill => 0.0,
         };
         for c in &mut line.clusters {
             shift(c, before);
@@ -179,7 +173,7 @@ pub(crate) fn align(lines: &mut [LetteringLine], align: Align, rtl: bool) {
     }
 }
 
-/// Scales every line so that its ink is as wide as the widest line's, from x = 0 on.
+/// Scales every line so that its ink is as wide as the widest line's, and starts at x = 0.
 fn fill(lines: &mut [LetteringLine]) {
     let width = lines.iter().filter_map(LetteringLine::ink).map(|b| b.width()).fold(0.0, f64::max);
     for line in lines {
@@ -201,9 +195,9 @@ fn fill(lines: &mut [LetteringLine]) {
     }
 }
 
-/// Moves lines of different sizes, or with a gap between their ink, to their heights. `metrics` are those of a line of scale 1.
+/// Moves lines vertically if they differ in size or have a gap between their ink. `metrics` are those of a line of scale 1.
 pub(crate) fn stack(lines: &mut [LetteringLine], style: &TextStyle, metrics: &FontMetrics) {
-    // The baseline of the line before with its scale, and the lower end of its ink.
+    // The baseline and scale of the previous line, and the lower end of its ink.
     let mut above: Option<(f64, f64, f64)> = None;
     for line in lines {
         let y = line.start.y;
@@ -252,7 +246,7 @@ fn shift(c: &mut Cluster, dx: f64) {
     }
 }
 
-/// Returns `true` for a space that separates words.
+/// Whether a cluster is a space that separates words.
 pub(crate) fn is_space(text: &str) -> bool {
     !text.is_empty() && text.chars().all(|c| matches!(c, ' ' | '\u{a0}'))
 }

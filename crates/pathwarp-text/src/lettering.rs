@@ -3,19 +3,19 @@
 use crate::metrics::FontMetrics;
 use kurbo::{BezPath, Point, Rect};
 
-/// A glyph and its place in its cluster, in user units, y down.
+/// A glyph and its place in its cluster, in user units, with y pointing down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PlacedGlyph {
-    /// Index of its font.
+    /// Index of the font.
     pub font: usize,
-    /// Its number in the font; 0 is the glyph for missing characters.
+    /// Number of the glyph in the font; 0 is the glyph for missing characters.
     pub id: u32,
     /// Horizontal offset from the origin of the cluster.
     pub dx: f64,
     /// Vertical offset from the origin of the cluster.
     pub dy: f64,
-    /// Its advance width.
+    /// Advance width.
     pub advance: f64,
 }
 
@@ -23,7 +23,7 @@ pub struct PlacedGlyph {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Cluster {
-    /// Its characters.
+    /// The characters.
     pub text: String,
     /// Left end on the baseline.
     pub origin: Point,
@@ -39,13 +39,14 @@ pub struct Cluster {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct LetteringLine {
-    /// Its characters.
+    /// The characters.
     pub text: String,
     /// Left end of the baseline: the start of the first advance.
     pub start: Point,
     /// Right end of the baseline: the end of the last advance.
     pub end: Point,
-    /// Size of its em relative to the style's: 1, but for [`Align::Fill`](crate::Align::Fill), where the line's ends are those of its ink.
+    /// Size of the em relative to the style's. It is 1 except with [`Align::Fill`](crate::Align::Fill), where the line also starts and
+    /// ends with its ink.
     pub scale: f64,
     /// The clusters from left to right.
     pub clusters: Vec<Cluster>,
@@ -83,7 +84,8 @@ impl OutlinedText {
         self.lines.iter().filter_map(LetteringLine::ink).reduce(|a, b| a.union(b))
     }
 
-    /// Returns the bounding box of all lines: the baselines horizontally, from the first ascent to the last descent vertically.
+    /// Returns the bounding box of all lines. Horizontally, it covers the baselines; vertically, it extends from the first ascent to the
+    /// last descent.
     #[must_use]
     pub fn line_box(&self) -> Rect {
         let of = |l: &LetteringLine| {

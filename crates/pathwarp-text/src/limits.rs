@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Quantity};
 
-/// Glyphs for each letter, several times what sound fonts give.
+/// Glyphs allowed for each letter, several times as many as sound fonts use.
 const GLYPHS_PER_LETTER: usize = 16;
 
 /// Limits on a text.
@@ -19,9 +19,9 @@ const GLYPHS_PER_LETTER: usize = 16;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TextLimits {
-    /// Most letters of a text. A font may make sixteen glyphs of each on average.
+    /// Maximum number of letters. A font may use up to sixteen glyphs for each on average.
     pub letters: usize,
-    /// Most segments of all outlines.
+    /// Maximum number of segments of all outlines.
     pub segments: usize,
 }
 

@@ -17,7 +17,7 @@ pub struct FontMetrics {
 }
 
 impl FontMetrics {
-    /// The heights in a size that is larger by this factor.
+    /// Scales the heights.
     #[must_use]
     pub fn scaled(self, by: f64) -> Self {
         Self {

@@ -16,7 +16,7 @@ pub(crate) struct SpacedCluster {
     pub(crate) gap: f64,
 }
 
-/// Draws glyphs, keeping outlines that were drawn before.
+/// Draws glyphs, and caches their outlines.
 pub(crate) struct GlyphPainter<'s, 'f> {
     pub(crate) fonts: &'s [Font<'f>],
     pub(crate) size: f64,

@@ -1,4 +1,4 @@
-//! Shapes runs with the first font, and the parts that it lacks with the next.
+//! Shapes runs with the first font, and the parts that it lacks with the next one.
 
 use crate::error::Error;
 use crate::font::Font;
@@ -13,7 +13,7 @@ use std::ops::Range;
 /// A cluster of glyphs, in user units.
 #[derive(Debug, Clone)]
 pub(crate) struct ShapedCluster {
-    /// Bytes in the line.
+    /// Byte range in the line.
     pub(crate) range: Range<usize>,
     pub(crate) advance: f64,
     pub(crate) glyphs: Vec<PlacedGlyph>,
@@ -33,7 +33,7 @@ pub(crate) struct RunShaper<'s, 'f> {
 }
 
 impl RunShaper<'_, '_> {
-    /// Shapes a run; the clusters go from left to right.
+    /// Shapes a run. The clusters go from left to right.
     pub(crate) fn run(&mut self, line: &str, run: &Run) -> Result<Vec<ShapedCluster>, Error> {
         self.shape(line, run, run.range.clone(), 0)
     }
@@ -45,7 +45,7 @@ impl RunShaper<'_, '_> {
             return Ok(own);
         }
         let mut out = Vec::with_capacity(own.len());
-        // A damaged font may repeat a place; shape each missing part once.
+        // A damaged font may repeat a cluster; shape each missing part only once.
         let mut sought = BTreeSet::new();
         for group in own.chunk_by(|a, b| a.missing == b.missing) {
             if group.iter().all(|c| !c.missing) {
@@ -110,7 +110,7 @@ impl RunShaper<'_, '_> {
                 out.push(ShapedCluster { range: start..end, advance: 0.0, glyphs: Vec::new(), missing: false });
             }
             let Some(cluster) = out.last_mut() else { continue };
-            // Marks without advance stay so.
+            // Marks without an advance don't get one.
             let thicker = if place.x_advance > 0 { font.synthesis.bold * self.size } else { 0.0 };
             let glyph = PlacedGlyph {
                 font: index,

@@ -33,7 +33,7 @@ pub enum Align {
     Right,
     /// Justified: widens the spaces of every line that has any.
     Justify,
-    /// Sized: every line is as large as makes its ink as wide as the widest line's.
+    /// Scaled: the ink of every line is as wide as that of the widest line.
     Fill,
 }
 
@@ -41,7 +41,7 @@ pub enum Align {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Ligatures {
-    /// On without letter spacing, which a ligature cannot follow.
+    /// On unless there is letter spacing, which cannot be applied within a ligature.
     #[default]
     Auto,
     /// Always.
@@ -60,11 +60,11 @@ pub struct TextStyle {
     pub letter_spacing: f64,
     /// Space added to every space character. Positive or negative, at most a thousand times the size.
     pub word_spacing: f64,
-    /// Distance between baselines, of lines that are sized by [`Align::Fill`] at their size; `None` for the font's (ascent + descent +
-    /// line gap). At least 0, at most a thousand times the size.
+    /// Distance between baselines, which scales with lines that [`Align::Fill`] scales; `None` for the font's (ascent + descent + line
+    /// gap). At least 0, at most a thousand times the size.
     pub line_height: Option<f64>,
-    /// Distance from the lower end of a line's ink to the upper end of the next one's, instead of a distance between baselines. Positive or
-    /// negative, at most a thousand times the size.
+    /// Distance from the lower end of a line's ink to the upper end of the next one's, in place of a distance between baselines.
+    /// Positive or negative, at most a thousand times the size.
     pub gap: Option<f64>,
     /// Alignment of lines.
     pub align: Align,
@@ -74,7 +74,7 @@ pub struct TextStyle {
     pub script: Option<String>,
     /// Language as a BCP 47 tag such as `sr` or `tr`; fonts have special letter forms for some.
     pub language: Option<String>,
-    /// Kern pairs of letters.
+    /// Whether to kern pairs of letters.
     pub kerning: bool,
     /// Use of optional ligatures.
     pub ligatures: Ligatures,
@@ -104,15 +104,14 @@ impl Default for TextStyle {
 
 /// Checks the numbers of a style and parses its script and language.
 pub(crate) fn check(style: &TextStyle) -> Result<(Option<Script>, Option<harfrust::Language>), Error> {
-    /// Largest size of the em.
-    const LARGEST: f64 = 1e6;
-    /// Largest length in units of the size.
-    const FURTHEST: f64 = 1e3;
+    const MAX_SIZE: f64 = 1e6;
+    /// In units of the size.
+    const MAX_LENGTH: f64 = 1e3;
     let out_of_range = |property, value, range| Err(Error::Style { property, value, range });
-    if !(style.size > 0.0 && style.size <= LARGEST) {
+    if !(style.size > 0.0 && style.size <= MAX_SIZE) {
         return out_of_range("size", style.size, "greater than 0 and at most 1000000");
     }
-    let far = |v: f64| v.is_nan() || v.abs() > FURTHEST * style.size;
+    let far = |v: f64| v.is_nan() || v.abs() > MAX_LENGTH * style.size;
     if far(style.letter_spacing) {
         return out_of_range("letter spacing", style.letter_spacing, "at most 1000 times the size");
     }

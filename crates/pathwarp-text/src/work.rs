@@ -1,5 +1,5 @@
-//! The work that a glyph takes to be read and drawn, found without doing it. A font of a few kilobytes can describe glyphs without an
-//! end: parts of parts, subroutines of subroutines, colours over colours.
+//! Measures the work of reading and drawing a glyph without doing it. A font of a few kilobytes can describe endless glyphs: parts of
+//! parts, subroutines of subroutines, colours over colours.
 
 use crate::charstrings::Charstrings;
 use crate::error::guarded;
@@ -12,13 +12,13 @@ use skrifa::{FontRef, GlyphId};
 use std::collections::HashMap;
 use std::fmt;
 
-/// Most work of one glyph. Ornaments and coloured glyphs of sound fonts take some ten thousand.
-pub const MOST_WORK: u64 = 200_000;
+/// Limit on the work of one glyph. Ornaments and coloured glyphs of sound fonts take about ten thousand.
+pub const MAX_WORK: u64 = 200_000;
 
-/// Levels of parts and paints, more than readers follow.
-const DEEP: usize = 64;
+/// Limit on the nesting of parts and paints, more than readers follow.
+const MAX_DEPTH: usize = 64;
 
-/// The work of the glyphs of a font: points of outlines with those of their parts, bytes of charstrings with those of their subroutines,
+/// Measures the glyphs of a font: points of outlines including their parts, bytes of charstrings including their subroutines, and
 /// layers of colour.
 pub struct GlyphWork<'a> {
     charmap: Charmap<'a>,
@@ -27,7 +27,7 @@ pub struct GlyphWork<'a> {
     charstrings: Option<Charstrings<'a>>,
     colr: Option<Colr<'a>>,
     outlines: HashMap<u32, u64>,
-    /// By the address of the paint.
+    /// By address.
     paints: HashMap<usize, u64>,
     coloured: HashMap<u32, u64>,
 }
@@ -39,7 +39,7 @@ impl fmt::Debug for GlyphWork<'_> {
 }
 
 impl<'a> GlyphWork<'a> {
-    /// Looks at a font; `index` counts the fonts of a collection from 0. `None` if it cannot be read.
+    /// Opens a font; `index` counts the fonts of a collection from 0. Returns `None` if it cannot be read.
     #[must_use]
     pub fn new(bytes: &'a [u8], index: u32) -> Option<Self> {
         Self::of(&FontRef::from_index(bytes, index).ok()?)
@@ -58,16 +58,16 @@ impl<'a> GlyphWork<'a> {
         })
     }
 
-    /// The work of a letter, without what the shaper puts in its place; at most [`MOST_WORK`].
+    /// The work of a letter, if the shaper does not substitute it; at most [`MAX_WORK`].
     pub fn of_letter(&mut self, letter: char) -> u64 {
         let glyph = self.charmap.map(letter).unwrap_or_default();
-        guarded(|| Ok(self.glyph(glyph))).unwrap_or(MOST_WORK)
+        guarded(|| Ok(self.glyph(glyph))).unwrap_or(MAX_WORK)
     }
 
-    /// The first glyph that takes [`MOST_WORK`] or more.
+    /// The first glyph that takes [`MAX_WORK`] or more.
     pub fn endless(&mut self) -> Option<u32> {
-        let found = guarded(|| Ok((0..self.glyphs).find(|g| self.glyph(GlyphId::new(*g)) >= MOST_WORK)));
-        // A font that makes its reader panic is none to use.
+        let found = guarded(|| Ok((0..self.glyphs).find(|g| self.glyph(GlyphId::new(*g)) >= MAX_WORK)));
+        // A font that makes its reader panic must not be used.
         found.unwrap_or(Some(0))
     }
 
@@ -79,19 +79,19 @@ impl<'a> GlyphWork<'a> {
         if let Some(known) = self.outlines.get(&glyph.to_u32()) {
             return *known;
         }
-        // A glyph inside itself has no end.
-        self.outlines.insert(glyph.to_u32(), MOST_WORK);
-        let work = self.outline_anew(glyph, depth).min(MOST_WORK);
+        // A glyph that contains itself is endless.
+        self.outlines.insert(glyph.to_u32(), MAX_WORK);
+        let work = self.outline_anew(glyph, depth).min(MAX_WORK);
         self.outlines.insert(glyph.to_u32(), work);
         work
     }
 
     fn outline_anew(&mut self, glyph: GlyphId, depth: usize) -> u64 {
-        if depth > DEEP {
-            return MOST_WORK;
+        if depth > MAX_DEPTH {
+            return MAX_WORK;
         }
         if let Some(charstrings) = &self.charstrings {
-            return charstrings.work(glyph, MOST_WORK);
+            return charstrings.work(glyph, MAX_WORK);
         }
         let found = self.glyf.as_ref().and_then(|(glyf, loca)| loca.get_glyf(glyph, glyf).ok().flatten());
         match found {
@@ -103,13 +103,13 @@ impl<'a> GlyphWork<'a> {
         }
     }
 
-    /// The layers of a glyph, with the outlines that they fill.
+    /// The work of a glyph's layers of colour, including the outlines that they fill.
     fn colours(&mut self, glyph: GlyphId, depth: usize) -> u64 {
         let Some(colr) = self.colr.clone() else { return 0 };
         if let Some(known) = self.coloured.get(&glyph.to_u32()) {
             return *known;
         }
-        self.coloured.insert(glyph.to_u32(), MOST_WORK);
+        self.coloured.insert(glyph.to_u32(), MAX_WORK);
         let mut work = 0;
         if let Ok(Some((paint, _))) = colr.v1_base_glyph(glyph) {
             work = self.paint(&colr, &paint, depth);
@@ -118,7 +118,7 @@ impl<'a> GlyphWork<'a> {
             let layers = layers.map_while(|i| colr.v0_layer(i).ok());
             work += sum(layers, |(filled, _)| LAYER + self.outline(filled.into(), 0));
         }
-        let work = work.min(MOST_WORK);
+        let work = work.min(MAX_WORK);
         self.coloured.insert(glyph.to_u32(), work);
         work
     }
@@ -128,10 +128,10 @@ impl<'a> GlyphWork<'a> {
         if let Some(known) = self.paints.get(&place) {
             return *known;
         }
-        if depth > DEEP {
-            return MOST_WORK;
+        if depth > MAX_DEPTH {
+            return MAX_WORK;
         }
-        self.paints.insert(place, MOST_WORK);
+        self.paints.insert(place, MAX_WORK);
         let mut below = |p: Result<Paint<'a>, _>| p.map_or(0, |p: Paint<'a>| self.paint(colr, &p, depth + 1));
         let own = match paint {
             Paint::Composite(p) => below(p.source_paint()) + below(p.backdrop_paint()),
@@ -144,28 +144,28 @@ impl<'a> GlyphWork<'a> {
             Paint::ColrGlyph(p) => self.colours(p.glyph_id().into(), depth + 1),
             other => child(other).map_or(0, |p| below(Ok(p))),
         };
-        let work = (LAYER + own).min(MOST_WORK);
+        let work = (LAYER + own).min(MAX_WORK);
         self.paints.insert(place, work);
         work
     }
 }
 
-/// A layer is worth this many points: it becomes an element.
+/// Work of a layer, in points; it becomes an element.
 const LAYER: u64 = 20;
 
-/// Adds work up to the limit.
+/// Adds up work, stopping at the limit.
 fn sum<T>(items: impl Iterator<Item = T>, mut work: impl FnMut(T) -> u64) -> u64 {
     let mut total = 0;
     for item in items {
         total += work(item);
-        if total >= MOST_WORK {
+        if total >= MAX_WORK {
             break;
         }
     }
     total
 }
 
-/// The paint that another one moves; `None` for one that fills.
+/// The paint that another one transforms. `None` for paints that fill.
 fn child<'a>(paint: &Paint<'a>) -> Option<Paint<'a>> {
     let found = match paint {
         Paint::Transform(p) => p.paint(),

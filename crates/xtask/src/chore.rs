@@ -1,4 +1,4 @@
-//! A chore: its command line and the function that runs it.
+//! Chores, and what their command lines have in common.
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 use std::path::{Path, PathBuf};
@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 /// An error message for the person at the terminal.
 pub(crate) type ChoreError = String;
 
-/// One subcommand of `cargo xtask`.
+/// A subcommand of `cargo xtask`.
 pub(crate) struct Chore {
-    /// Declares its name and options.
+    /// Declares the name and the options.
     pub(crate) command: fn() -> Command,
-    /// Runs it and returns a summary to print.
+    /// Runs the chore and returns a summary to print.
     pub(crate) run: fn(&ArgMatches) -> Result<String, ChoreError>,
 }
 
@@ -39,7 +39,7 @@ pub(crate) fn paths(arguments: &ArgMatches, name: &str) -> Vec<PathBuf> {
     arguments.get_many(name).unwrap_or_default().cloned().collect()
 }
 
-/// Returns a function that turns an error of a path into a message naming the path.
+/// Returns a function that turns an error into a message that names `path`.
 pub(crate) fn at<E: std::fmt::Display>(path: &Path) -> impl Fn(E) -> ChoreError {
     move |error| format!("{}: {error}", path.display())
 }

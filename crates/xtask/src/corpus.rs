@@ -1,8 +1,8 @@
-//! `cargo xtask corpus`: the icon paths that refitting is measured on, one path per line.
+//! `cargo xtask corpus`: makes the file of icon paths, one per line, on which refitting is measured.
 //!
-//! Fetches two icon sets with `npm pack`, takes every Nth file of each in the order of their names, scales them to a box of
-//! 0..1000, and writes them to `corpus/icons.txt`. Arcs become cubics of at most a quarter turn, so that every program that reads
-//! the file measures the same curves.
+//! Fetches two icon sets with `npm pack`, takes every Nth file of each in alphabetical order, scales the paths to a box of 0..1000, and writes
+//! them to `corpus/icons.txt`. Arcs become cubics of at most a quarter turn, so that every program that reads the file measures the same
+//! curves.
 
 use crate::chore::{Chore, workspace};
 use clap::Command as ChoreCommand;
@@ -12,7 +12,6 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore {
     command: || ChoreCommand::new("corpus").about("Fetch the icons that refitting is measured on (needs npm)"),
     run: |_| fetch_all().map_err(|e| e.to_string()),
@@ -21,15 +20,15 @@ pub(crate) const CHORE: Chore = Chore {
 /// A package of icons on npm.
 struct IconSet {
     package: &'static str,
-    /// Folder of its SVG files.
+    /// The folder of its SVG files.
     folder: &'static str,
-    /// Side of their square view box.
+    /// The side of their square view boxes.
     side: f64,
-    /// Take every Nth file.
+    /// Every how many-th file is taken.
     every: usize,
 }
 
-/// Together they give some 23,000 segments.
+/// The icon sets: some 23,000 segments in total.
 const SETS: [IconSet; 2] = [
     IconSet { package: "simple-icons", folder: "package/icons", side: 24.0, every: 10 },
     IconSet { package: "bootstrap-icons", folder: "package/icons", side: 16.0, every: 15 },
@@ -38,7 +37,7 @@ const SETS: [IconSet; 2] = [
 /// Side of the box that icons are scaled to.
 const BOX: f64 = 1000.0;
 
-/// Tolerance for arcs: any, which gives one cubic per quarter turn.
+/// Tolerance for arcs: any error is allowed, which gives one cubic per quarter turn.
 const ARC_TOLERANCE: f64 = f64::INFINITY;
 
 /// Fetches the icons, writes `corpus/icons.txt` beside the workspace's `Cargo.toml`, and returns a summary.
@@ -70,7 +69,7 @@ fn fetch_all() -> io::Result<String> {
     Ok("wrote corpus/icons.txt".to_owned())
 }
 
-/// Unpacks a package into `work`, unless it is there already.
+/// Downloads a package and unpacks it into `work`, unless it is there already.
 fn fetch(package: &str, work: &Path) -> io::Result<()> {
     if work.join("package").is_dir() {
         return Ok(());

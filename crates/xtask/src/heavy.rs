@@ -1,5 +1,5 @@
-//! `cargo xtask heavy FOLDER`: makes honest heavy files, twenty of each kind, runs a command on each, and prints the table of
-//! `docs/reliability.md`. It fails if one is refused. Files that lie in the folder's own folders of these names are run, too.
+//! `cargo xtask heavy FOLDER`: makes realistic heavy files, twenty of each kind, runs a command on each, and prints the table in
+//! `docs/reliability.md`. It fails if any is refused. Each kind has a folder below `FOLDER`; other files found there are run too.
 
 use crate::chore::{Chore, ChoreError, at, program_option, workspace};
 use crate::hostile::measure;
@@ -12,14 +12,14 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
 /// Files of each kind.
 const EACH: usize = 20;
 const MEBIBYTE: f64 = 1_048_576.0;
 
-/// A kind of drawing: its name, the command, and its content by the heaviness, from 1 to [`EACH`], on a page of 1000 × 1000.
+/// A kind of drawing: its name, the command, and a function that makes the content of a page of 1000 × 1000, given how heavy it is to be,
+/// from 1 to [`EACH`].
 type Kind = (&'static str, &'static str, fn(usize, &mut Random) -> String);
 
 const BEND: &str = "wave IN -o OUT.svg";
@@ -63,7 +63,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
             let size = std::fs::metadata(&file).map_err(at(&file))?.len() as f64;
             let (size, promised) = promise(&file, size)?;
             (count, largest) = (count + 1, largest.max(size));
-            for (most, (used, promised, unit)) in most.iter_mut().zip(shares(&used, promised)) {
+            for (most, (used, promised, unit)) in most.iter_mut().zip(compared(&used, promised)) {
                 if used / promised > most.0 {
                     *most = (used / promised, format!("{used:.1} of {promised:.0} {unit}"));
                 }
@@ -80,12 +80,12 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     if refused.is_empty() { Ok(table) } else { Err(format!("{table}\nrefused: {}", refused.join("; "))) }
 }
 
-/// What was used and promised of time and memory.
-fn shares(used: &Usage, [seconds, megabytes]: [f64; 2]) -> [(f64, f64, &'static str); 2] {
+/// Time and memory, each as used, as promised, and with its unit.
+fn compared(used: &Usage, [seconds, megabytes]: [f64; 2]) -> [(f64, f64, &'static str); 2] {
     [(used.cpu, seconds, "s"), (used.megabytes(), megabytes, "MB")]
 }
 
-/// The size of a file in megabytes, or megapixels, and the seconds and megabytes promised.
+/// The size of a file in megabytes or megapixels, and the seconds and megabytes promised for it.
 fn promise(file: &Path, bytes: f64) -> Result<(f64, [f64; 2]), ChoreError> {
     if shell::ends_in(file, &["svg"]) {
         let begun = (bytes / MEBIBYTE).ceil();
@@ -94,11 +94,11 @@ fn promise(file: &Path, bytes: f64) -> Result<(f64, [f64; 2]), ChoreError> {
     let content = std::fs::read(file).map_err(at(file))?;
     let (width, height) = pathwarp_raster::header_size(&content).map_err(at(file))?;
     let pixels = f64::from(width) * f64::from(height) / 1e6;
-    // The decoded picture has four bytes a pixel.
+    // The decoded picture takes four bytes per pixel.
     Ok((pixels, [(pixels / 10.0).ceil(), 60.0 * (pixels / 10.0).ceil() + 4.0 * pixels]))
 }
 
-/// Makes the files of a kind that are not there.
+/// Makes the files of a kind that do not exist yet.
 fn make(kind: &str, folder: &Path) -> Result<(), ChoreError> {
     for n in 1..=EACH {
         let drawing = DRAWINGS.iter().find(|(name, ..)| *name == kind);
@@ -118,7 +118,7 @@ fn make(kind: &str, folder: &Path) -> Result<(), ChoreError> {
     Ok(())
 }
 
-/// Five to a hundred megapixels of soft light, some with grain, three by two.
+/// A photograph of 5·n megapixels: soft light, sometimes with grain, in the ratio 3:2.
 fn photograph(n: usize) -> Result<Vec<u8>, pathwarp_raster::Error> {
     let height = (f64::from(u32::try_from(n).unwrap_or(1)) * 5e6 / 1.5).sqrt() as u32;
     let (width, grain) = (height * 3 / 2, u64::from(n % 4 == 3));
@@ -142,11 +142,11 @@ fn color(random: &mut Random) -> String {
     format!("#{:06x}", (random.next() * f64::from(1 << 24)) as u32)
 }
 
-/// `words` words of up to nine letters.
-fn words(words: usize, random: &mut Random) -> String {
+/// `count` words of two to nine letters.
+fn words(count: usize, random: &mut Random) -> String {
     let letter = |r: &mut Random| char::from(b'a' + (26.0 * r.next()) as u8);
     let word = |r: &mut Random| (0..2 + (8.0 * r.next()) as usize).map(|_| letter(r)).collect::<String>();
-    (0..words).map(|_| word(random) + " ").collect()
+    (0..count).map(|_| word(random) + " ").collect()
 }
 
 /// Up to 27,000 letters.
@@ -169,7 +169,7 @@ fn plot(n: usize, random: &mut Random) -> String {
     (0..5_000 * n).map(|_| word()).collect()
 }
 
-/// Coasts of up to 60,000 points together.
+/// Coasts of up to 60,000 points in total.
 fn map(n: usize, random: &mut Random) -> String {
     let mut coast = |_| {
         let ([x, y], fill, mut r) = (place(random), color(random), 5.0 + 20.0 * random.next());
@@ -184,7 +184,7 @@ fn map(n: usize, random: &mut Random) -> String {
     (0..10 * n).map(&mut coast).collect()
 }
 
-/// Lines, arcs, circles and dashes with measures.
+/// Lines, arcs, circles and dashes, with dimensions.
 fn cad(n: usize, random: &mut Random) -> String {
     let mut part = |_| {
         let ([x, y], [u, v]) = (place(random), place(random));
@@ -198,7 +198,7 @@ fn cad(n: usize, random: &mut Random) -> String {
     format!("<g fill='none' stroke='#000' stroke-width='.35'>{parts}</g>")
 }
 
-/// Staves, note heads that are shown again, stems and beams.
+/// Staves, and notes with reused heads and stems.
 fn score(n: usize, random: &mut Random) -> String {
     let head = "<defs><path id='h' d='M-4 2C-4-2 4-4 4-1C4 3-4 4-4 2Z'/></defs>";
     let mut note = |i: usize| {
@@ -229,7 +229,7 @@ fn emoji(n: usize, random: &mut Random) -> String {
     (0..10 * n).map(&mut face).collect()
 }
 
-/// Two dozen blurred blobs and more.
+/// Up to two dozen blurred blobs.
 fn blurred(n: usize, random: &mut Random) -> String {
     let blur =
         "<filter id='b' x='-50%' y='-50%' width='200%' height='200%'><feGaussianBlur stdDeviation='30'/></filter>";
@@ -240,7 +240,7 @@ fn blurred(n: usize, random: &mut Random) -> String {
     format!("{blur}{}", (0..4 + n).map(&mut blob).collect::<String>())
 }
 
-/// Symbols that are shown again and again.
+/// Fifty symbols, used over and over.
 fn icons(n: usize, random: &mut Random) -> String {
     let mut symbol = |i: usize| {
         let [a, b, c, d] = [0; 4].map(|_| (24.0 * random.next()).round());
@@ -254,7 +254,7 @@ fn icons(n: usize, random: &mut Random) -> String {
     format!("{symbols}{}", (0..150 * n).map(shown).collect::<String>())
 }
 
-/// Boxes with words and arrows between them.
+/// Boxes with words, and arrows.
 fn diagram(n: usize, random: &mut Random) -> String {
     let arrow = "<marker id='a' markerWidth='6' markerHeight='6' refX='5' refY='3' orient='auto'><path d='M0 0L6 3L0 6Z'/></marker>";
     let mut shape = |_| {

@@ -1,5 +1,5 @@
-//! `cargo xtask hostile FOLDER`: runs commands on every file of a folder of hostile files, and prints the table of
-//! `docs/reliability.md`: exit code, processor time and memory. It fails if a run breaks the promise.
+//! `cargo xtask hostile FOLDER`: runs commands on every file in a folder of hostile files, and prints the table in `docs/reliability.md`: exit
+//! code, CPU time and memory. It fails if any run breaks the promise made there.
 
 use crate::chore::{Chore, ChoreError, at, program_option, workspace};
 use crate::process::{Job, Usage};
@@ -8,14 +8,13 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
-/// The promise for files of up to a mebibyte.
+/// The limits promised for files of up to a mebibyte.
 const SECONDS: f64 = 5.0;
 const MEGABYTES: f64 = 500.0;
 
-/// The commands for drawings, by their heading. `IN` is the file, `OUT` a new one.
+/// The headings and commands for drawings. `IN` is the file, `OUT` a new one.
 const DRAWINGS: [(&str, &str); 4] = [
     ("swirl", "swirl IN -o OUT.svg"),
     ("flat, outlined", "wave IN -o OUT.svg --structure flatten --strokes outline --fit page"),
@@ -70,7 +69,7 @@ fn cell(used: &Usage) -> String {
     format!("{code}: {:.2} s, {:.0} MB", used.cpu, used.megabytes())
 }
 
-/// Runs a command line on a file: `IN` is the file, `OUT` a new one.
+/// Runs a command line in which `IN` is the file and `OUT` a new one in `scratch`.
 pub(crate) fn measure(program: &Path, line: &str, file: &Path, scratch: &Path) -> Result<Usage, ChoreError> {
     let (input, output) = (file.to_string_lossy(), scratch.join("out"));
     let word = |w: String| w.replace("IN", &input).replace("OUT", &output.to_string_lossy());

@@ -19,7 +19,7 @@ use chore::Chore;
 use clap::Command;
 use std::process::ExitCode;
 
-/// Every chore, declared with its options in a separate file.
+/// All chores. Each declares its options in a file of its own.
 const CHORES: [Chore; 12] = [
     new_deformation::CHORE,
     corpus::CHORE,
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
         .subcommands(CHORES.iter().map(|chore| (chore.command)()))
         .get_matches();
     let Some((name, arguments)) = matches.subcommand() else { return ExitCode::FAILURE };
-    // clap has already refused every other name.
+    // clap has already refused any other name.
     let Some(chore) = CHORES.iter().find(|chore| (chore.command)().get_name() == name) else {
         return ExitCode::FAILURE;
     };

@@ -5,10 +5,9 @@ use clap::{Arg, ArgMatches, Command};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
-/// The end of the list in `deform/mod.rs`; the new entry goes before it.
+/// The end of the list of entries in `deform/mod.rs`; the new entry goes before it.
 const END_OF_LIST: &str = "    ]\n}\n";
 
 fn command() -> Command {
@@ -63,7 +62,7 @@ fn register(list: &str, module: &str, ty: &str) -> Result<String, ChoreError> {
     Ok(format!("{}        Arc::new({module}::Entry),\n{}", &list[..at], &list[at..]))
 }
 
-/// Inserts a line into the sorted block of lines that begin with `start`.
+/// Inserts a line into the sorted block of lines that start with `start`.
 fn insert(text: &str, start: &str, line: &str) -> Option<String> {
     let after = text.lines().filter(|l| l.starts_with(start)).rfind(|l| *l < line);
     let next = text.lines().find(|l| l.starts_with(start))?;
@@ -195,17 +194,18 @@ mod tests {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shell;
     use std::process;
 
-    /// In a copy of the workspace, the new deformation compiles, is registered, and passes its tests.
+    /// In a copy of the workspace, the new deformation compiles, is registered and passes its tests.
     #[test]
     fn the_new_deformation_passes_its_tests() {
         let root = workspace();
         let copy = tempfile::tempdir().unwrap();
         let here = copy.path();
         let pathwarp = here.join("crates/pathwarp");
-        copy_folder(&root.join("crates/pathwarp"), &pathwarp);
-        copy_folder(&root.join("crates/bezierfit"), &here.join("crates/bezierfit"));
+        shell::copy_folder(&root.join("crates/pathwarp"), &pathwarp).unwrap();
+        shell::copy_folder(&root.join("crates/bezierfit"), &here.join("crates/bezierfit")).unwrap();
         fs::create_dir_all(here.join("all/src")).unwrap();
         fs::write(here.join("all/src/lib.rs"), "//! Asks for every dependency of the workspace.\n").unwrap();
         let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
@@ -214,7 +214,7 @@ mod tests {
         fs::copy(root.join("Cargo.lock"), here.join("Cargo.lock")).unwrap();
 
         create(here, "square-wave").unwrap();
-        // The target folder of this test has the dependencies already.
+        // This test's own target folder already has the dependencies.
         let target = std::env::current_exe().unwrap().ancestors().nth(3).unwrap().to_owned();
         let test = process::Command::new(env!("CARGO"))
             .args(["test", "--quiet", "-p", "pathwarp", "-p", "all", "--lib", "--target-dir"])
@@ -231,8 +231,8 @@ mod tests {
         assert!(create(here, "Square").is_err() && create(here, "").is_err() && create(here, "a--b").is_err());
     }
 
-    /// The workspace's manifest with three members. The copies are built once, so optimising them takes longer than running them as they
-    /// are; and built otherwise than the workspace's own, they do not take the place of these in the target folder.
+    /// The workspace's manifest, reduced to the copied crates. They are not optimised: they run only once, so that would take longer than it
+    /// saves. And since they are built differently, they do not replace the workspace's own crates in the target folder.
     fn reduced(manifest: &str) -> String {
         let members = manifest.lines().find(|l| l.starts_with("members")).unwrap();
         let own = manifest.lines().filter(|l| !l.contains("crates/pathwarp-") && !l.starts_with("default-members"));
@@ -244,25 +244,11 @@ mod tests {
             .replace(profile, &format!("{profile}bezierfit.opt-level = 0\npathwarp.opt-level = 0\n"))
     }
 
-    /// The manifest of a crate that depends on all that the workspace depends on: with the same features of the same crates,
-    /// nothing but the copy is built again.
+    /// The manifest of a crate that has all dependencies of the workspace, so that they have the same features and are not built again.
     fn asking_for_all(manifest: &str) -> String {
         let table = manifest.split("[workspace.dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
         let names = table.lines().filter(|l| !l.contains("path = ")).filter_map(|l| l.split_once(" = "));
         let names: String = names.map(|(name, _)| format!("{name}.workspace = true\n")).collect();
         format!("[package]\nname = \"all\"\nedition.workspace = true\n\n[dependencies]\n{names}")
-    }
-
-    fn copy_folder(from: &Path, to: &Path) {
-        fs::create_dir_all(to).unwrap();
-        for entry in fs::read_dir(from).unwrap() {
-            let entry = entry.unwrap();
-            let target = to.join(entry.file_name());
-            if entry.file_type().unwrap().is_dir() {
-                copy_folder(&entry.path(), &target);
-            } else {
-                fs::copy(entry.path(), target).unwrap();
-            }
-        }
     }
 }

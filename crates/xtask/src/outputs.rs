@@ -1,11 +1,10 @@
-//! `cargo xtask outputs`: a fingerprint of everything the program writes, to show that a restructuring changes no output.
+//! `cargo xtask outputs`: fingerprints everything the program writes, to show that a refactoring changes no output.
 //!
-//! `--store FILE` runs every command of the cookbook, of the guides and of the help pages that needs only samples, and one over
-//! each drawing of the given folders, and writes one line per command: a hash of all its output, and the command. `--check FILE` runs the same
-//! commands again and lists those whose hash differs.
+//! `--store FILE` runs every command in the guides and help pages that needs only samples, and one command on each drawing in the given
+//! folders. For each it writes a line to `FILE`: a hash of all output, and the command. `--check FILE` runs the same commands again and lists
+//! those whose hash differs.
 //!
-//! Wording is not compared: standard error is ignored, messages and times are removed from reports, and descriptions from the
-//! schema.
+//! Wording is not compared: standard error is ignored, messages and times are removed from reports, and descriptions from the schema.
 
 use crate::chore::{Chore, ChoreError, at, count_option, hex, path_option, paths, program_option, workspace};
 use crate::shell;
@@ -19,7 +18,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process;
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
 fn command() -> Command {
@@ -62,7 +60,7 @@ fn store(root: &Path, program: &Path, file: &Path, drawings: &[PathBuf], count: 
     Ok(format!("stored the hashes of {} commands", lines.len()))
 }
 
-/// Runs every `every`th command of `file` and compares.
+/// Runs every `every`th command in `file` and compares the hashes.
 fn check(root: &Path, program: &Path, file: &Path, every: usize) -> Result<String, ChoreError> {
     let text = fs::read_to_string(file).map_err(at(file))?;
     let stored: Vec<(&str, &str)> = text.lines().filter_map(|l| l.split_once(' ')).step_by(every.max(1)).collect();
@@ -81,7 +79,7 @@ fn check(root: &Path, program: &Path, file: &Path, every: usize) -> Result<Strin
     }
 }
 
-/// Commands for the drawings, taken in turn.
+/// Commands for the drawings, used in turn.
 const WARPS: [&str; 8] = [
     "warp FILE --style flag --bend 40%",
     "shaper FILE --shaper samples/cages.svg#arch --strokes outline --gradients exact",
@@ -104,7 +102,7 @@ const MORE: [&str; 7] = [
     "schema",
 ];
 
-/// Pages written by hand. The pages of the deformations show the registry's examples.
+/// The pages written by hand. (Those of the deformations show the examples in the registry.)
 const GUIDES: [&str; 6] = [
     "README.md",
     "docs/tour.md",
@@ -134,13 +132,13 @@ fn all_commands(root: &Path, program: &Path, drawings: &[PathBuf], count: usize)
             add(example.command.to_owned());
         }
     }
-    // Help wraps long lines, so the registry's examples come from its table above.
+    // Help wraps long lines, so the examples in the registry are taken from there, above.
     for line in help_examples(program)? {
         add(line);
     }
     for folder in drawings {
         let folder = folder.canonicalize().map_err(at(folder))?;
-        // A quote would end the word.
+        // A quote in the path would end the word.
         let plain = |path: &Path| shell::ends_in(path, &["svg"]) && !path.display().to_string().contains('\'');
         let files = shell::files_below(&folder, plain)?;
         let step = (files.len() / count.max(1)).max(1);
@@ -152,19 +150,19 @@ fn all_commands(root: &Path, program: &Path, drawings: &[PathBuf], count: usize)
     Ok(all)
 }
 
-/// The commands in the code blocks of a page that need no file of the reader's.
+/// The commands in the code blocks of a page that need no files of the reader's own.
 fn guide_commands(page: &str) -> impl Iterator<Item = &str> {
-    // Code and prose alternate; a block opens with the name of its language.
+    // Code and prose alternate. A block starts with the name of its language.
     let blocks = page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
     blocks.flat_map(str::lines).filter_map(|l| l.strip_prefix("pathwarp ")).filter(|l| is_self_contained(l))
 }
 
-/// Returns `true` for a command on samples or on words that it sets itself.
+/// Whether a command works on samples or sets its own text.
 fn is_self_contained(command: &str) -> bool {
     command.contains("samples/") || command.starts_with("text ")
 }
 
-/// The examples on samples in the help of every subcommand that is not a deformation.
+/// The self-contained examples in the help of every subcommand that is not a deformation.
 fn help_examples(program: &Path) -> Result<Vec<String>, ChoreError> {
     let help = |args: &[&str]| -> Result<String, ChoreError> {
         let out = process::Command::new(program).args(args).output().map_err(at(program))?;
@@ -191,7 +189,7 @@ fn hashes_of(root: &Path, program: &Path, lines: &[String]) -> Result<Vec<String
     shell::in_parallel(lines, |line| hash_of(root, program, line)).into_iter().collect()
 }
 
-/// Folders of the workspace that commands read.
+/// Folders of the workspace that commands may read.
 const INPUTS: [&str; 2] = ["samples", "crates/pathwarp-text/tests/fonts"];
 
 /// Runs a command line in a folder that holds only its inputs, and hashes its exit codes, standard output and files.
@@ -245,7 +243,7 @@ fn numbers(report: &[u8]) -> Result<Vec<u8>, ChoreError> {
     without(report, |name, _| ["warnings", "why", "seconds", "version"].contains(&name))
 }
 
-/// A schema without descriptions and titles. Properties may have these names, too, but their values are not strings.
+/// A schema without descriptions and titles. Properties may also have these names, but their values are not strings.
 fn wordless(schema: &[u8]) -> Result<Vec<u8>, ChoreError> {
     without(schema, |name, value| value.is_string() && ["description", "title"].contains(&name))
 }

@@ -1,4 +1,4 @@
-//! Runs programs and accounts for each run: CPU time, elapsed time and peak memory of exactly that process.
+//! Runs programs and measures each run: CPU time, elapsed time and peak memory of exactly that process.
 
 use crate::chore::{ChoreError, at};
 use std::ffi::OsString;
@@ -10,13 +10,13 @@ use wait4::Wait4 as _;
 /// Time and memory of one run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Usage {
-    /// The exit code; `None` if it was killed.
+    /// The exit code; `None` if the process was killed.
     pub(crate) code: Option<i32>,
     /// User and system time in seconds.
     pub(crate) cpu: f64,
     /// Elapsed time in seconds.
     pub(crate) wall: f64,
-    /// Largest resident size in bytes.
+    /// Peak resident size in bytes.
     pub(crate) peak: u64,
 }
 
@@ -38,7 +38,7 @@ impl Job {
         Self { program: program.to_owned(), args: args.into_iter().map(Into::into).collect() }
     }
 
-    /// The same with more arguments.
+    /// The same program with more arguments.
     pub(crate) fn with(&self, more: &[&str]) -> Self {
         let args = self.args.iter().cloned().chain(more.iter().map(Into::into)).collect();
         Self { args, ..self.clone() }
@@ -58,7 +58,7 @@ impl Job {
         })
     }
 
-    /// Runs it once. `None` if it refuses its input: an exit code above 1, which pathwarp uses for partial success.
+    /// Runs it once. `None` if it refuses its input, with an exit code above 1; 1 is partial success of pathwarp.
     pub(crate) fn run(&self) -> Result<Option<Usage>, ChoreError> {
         Ok(Some(self.usage()?).filter(|used| used.code.is_some_and(|c| c <= 1)))
     }
@@ -74,8 +74,8 @@ impl Job {
     }
 }
 
-/// Runs two jobs in turn and returns the pair with the median ratio of CPU times, so that a machine whose speed drifts slows both
-/// alike. `None` if either refuses its input.
+/// Runs two jobs alternately, so that a drift of the machine's speed affects both alike, and returns the pair of runs with the median ratio of
+/// CPU times. `None` if either job refuses its input.
 pub(crate) fn paired(a: &Job, b: &Job, rounds: usize) -> Result<Option<(Usage, Usage)>, ChoreError> {
     let mut pairs = Vec::with_capacity(rounds);
     for _ in 0..rounds {

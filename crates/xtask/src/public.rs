@@ -1,10 +1,9 @@
-//! `cargo xtask public`: compares each library's public items with the list beside it, `public.txt`.
+//! `cargo xtask public`: compares the public items of each library with the list in its folder, `public.txt`.
 
 use crate::chore::{Chore, ChoreError, at, workspace};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use std::fs;
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
 /// The libraries whose items are listed.
@@ -57,7 +56,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     Err(format!("{}\nIf that is meant, run `cargo xtask public --write`.", differences.join("\n")))
 }
 
-/// The items on rustdoc's page of all items, one a line: the kind and the path.
+/// The kind and path of each item on rustdoc's page of all items, one per line.
 fn items(page: &str) -> String {
     let item = |link: &str| {
         let (address, rest) = link.split_once("\">")?;

@@ -12,7 +12,6 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
 /// The default path: a line, a full turn, a sharp bend and an inflection.
@@ -25,7 +24,7 @@ const SAMPLES: usize = 60;
 const SIDE: f64 = 640.0;
 /// Height of the chart of the error.
 const CHART: f64 = 200.0;
-/// Colours of the pieces, taken in turn.
+/// Colours of the pieces, used in turn.
 const COLOURS: [&str; 2] = ["#0072b2", "#d55e00"];
 
 fn command() -> Command {
@@ -93,7 +92,7 @@ fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, ChoreError> {
     ))
 }
 
-/// Draws the true image as a broad pale line.
+/// Draws the exact image as a wide pale line.
 fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, place: &impl Fn(Point) -> Point) {
     for seg in source.segs() {
         let points: Vec<String> = (0..=400)
@@ -136,7 +135,7 @@ fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, place: &impl Fn(P
     }
 }
 
-/// Charts the signed error along the output in units of the tolerance, and returns the largest absolute error.
+/// Draws the chart of the signed error along the output, in units of the tolerance, and returns the largest absolute error.
 fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn Map, tolerance: f64) -> f64 {
     let lengths: Vec<f64> = pieces.iter().map(|p| p.arclen(1e-6)).collect();
     let total: f64 = lengths.iter().sum();
@@ -173,7 +172,7 @@ fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn 
     worst
 }
 
-/// Signed distance from the true image to the output at `t`, positive to the left.
+/// The signed distance of the output at `t` from the exact image.
 fn signed_error(piece: &PathSeg, t: f64, source: &Outline, map: &dyn Map) -> f64 {
     let p = piece.eval(t);
     let tangent: Vec2 = match piece {
@@ -186,7 +185,7 @@ fn signed_error(piece: &PathSeg, t: f64, source: &Outline, map: &dyn Map) -> f64
     (p - foot).cross(tangent) / tangent.hypot().max(f64::MIN_POSITIVE)
 }
 
-/// Distance to the nearest point of a segment's true image, and that point: dense sampling, then golden-section search.
+/// The distance to the nearest point of a segment's exact image, and that point, by dense sampling and golden-section search.
 fn nearest(seg: &Seg, map: &dyn Map, p: Point) -> (f64, Point) {
     const COARSE: usize = 200;
     let at = |t: f64| map.point(seg.eval(t));

@@ -1,4 +1,4 @@
-//! Runs the command lines that pages show, with pipes but without a shell; lists files, and spreads work over threads.
+//! Runs command lines from the documentation, with pipes but without a shell; lists and copies files; and spreads work over threads.
 
 use crate::chore::{ChoreError, at};
 use clap::ArgMatches;
@@ -13,7 +13,7 @@ pub(crate) fn program(root: &Path, arguments: &ArgMatches) -> Result<PathBuf, Ch
     built(root, arguments, "release")
 }
 
-/// The program named by `--program`, or else one built with this profile.
+/// The program named by `--program`, or else one built in this profile.
 pub(crate) fn built(root: &Path, arguments: &ArgMatches, profile: &str) -> Result<PathBuf, ChoreError> {
     if let Some(program) = arguments.get_one::<PathBuf>("program") {
         return program.canonicalize().map_err(at(program));
@@ -29,7 +29,7 @@ pub(crate) fn built(root: &Path, arguments: &ArgMatches, profile: &str) -> Resul
     Ok(root.join("target").join(profile).join("pathwarp").with_extension(std::env::consts::EXE_EXTENSION))
 }
 
-/// Splits a shell command line with single quotes into words.
+/// Splits a command line into words, which may be in single quotes.
 pub(crate) fn words(line: &str) -> Vec<String> {
     let mut out = Vec::new();
     for (i, part) in line.split('\'').enumerate() {
@@ -42,7 +42,7 @@ pub(crate) fn words(line: &str) -> Vec<String> {
     out
 }
 
-/// The commands of a pipeline, each without its first word. An output file is replaced by standard output.
+/// The commands of a pipeline, each without its first word. Output files are replaced by standard output.
 pub(crate) fn stages(line: &str) -> Vec<Vec<String>> {
     let words = words(line);
     let stages = words.split(|w| w == "|").map(|stage| {
@@ -60,14 +60,13 @@ pub(crate) fn stages(line: &str) -> Vec<Vec<String>> {
 pub(crate) fn feed(command: &mut Command, input: &[u8]) -> io::Result<Output> {
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     if let Some(mut stdin) = child.stdin.take() {
-        // The child may exit without reading; ignore the broken pipe.
+        // The child may exit without reading its input, which breaks the pipe.
         let _ = stdin.write_all(input);
     }
     child.wait_with_output()
 }
 
-/// Runs the program on `input` and returns its standard output. Any message on standard error is a failure, but for notes, such as
-/// of a page that grew.
+/// Runs the program on `input` and returns its standard output. Any message other than a note, such as that a page grew, counts as a failure.
 pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, ChoreError> {
     let out = feed(Command::new(program).args(args).current_dir(root), input).map_err(at(program))?;
     let said = String::from_utf8_lossy(&out.stderr);
@@ -75,6 +74,13 @@ pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -
         return Ok(out.stdout);
     }
     Err(format!("pathwarp {}: {said}", args.join(" ")))
+}
+
+/// Renders a drawing on white to a PNG file.
+pub(crate) fn render(root: &Path, program: &Path, drawing: &[u8], width: &str, png: &Path) -> Result<(), ChoreError> {
+    let file = png.display().to_string();
+    let args = ["render", "-", "--width", width, "--background", "white", "-o", &file].map(str::to_owned);
+    pipe(root, program, &args, drawing).map(drop)
 }
 
 /// Renders the preview of a command, given without its leading `pathwarp`, to a PNG file.
@@ -86,11 +92,8 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
         drawing = pipe(root, program, &stage, &drawing)?;
     }
     if last[0] == "text" {
-        // Text has no picture from before.
-        let lettering = pipe(root, program, &last, &drawing)?;
-        let file = png.display().to_string();
-        let render = ["render", "-", "--width", "800", "--background", "white", "-o", &file].map(str::to_owned);
-        return pipe(root, program, &render, &lettering).map(drop);
+        // There is nothing to show before text.
+        return render(root, program, &pipe(root, program, &last, &drawing)?, "800", png);
     }
     // Replace any preview that the example itself asks for.
     if let Some(i) = last.iter().position(|w| w == "--preview") {
@@ -102,7 +105,7 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
     pipe(root, program, &last, &drawing).map(drop)
 }
 
-/// Every wanted file below a folder, sorted by its whole path.
+/// The files below a folder for which `wanted` holds, sorted by path.
 pub(crate) fn files_below(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Result<Vec<PathBuf>, ChoreError> {
     let mut out = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -120,12 +123,22 @@ pub(crate) fn files_below(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Resu
     Ok(out)
 }
 
-/// Returns `true` for a file with one of these extensions.
+/// Copies a folder with everything in it.
+pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<(), ChoreError> {
+    for file in files_below(from, |_| true)? {
+        let copy = to.join(file.strip_prefix(from).unwrap_or(&file));
+        fs::create_dir_all(copy.parent().unwrap_or(to)).map_err(at(to))?;
+        fs::copy(&file, &copy).map_err(at(&file))?;
+    }
+    Ok(())
+}
+
+/// Whether a file has one of these extensions.
 pub(crate) fn ends_in(path: &Path, extensions: &[&str]) -> bool {
     path.extension().is_some_and(|e| extensions.iter().any(|known| e == *known))
 }
 
-/// Applies `f` to every item, on as many threads as the machine has, and returns the results in order.
+/// Applies `f` to every item, on all of the machine's threads, and returns the results in order.
 pub(crate) fn in_parallel<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let worker = || {

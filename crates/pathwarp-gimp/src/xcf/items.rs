@@ -1,6 +1,6 @@
-//! Paths as items (version 18 and later, GIMP 3): each behind a pointer, with its own property list.
+//! Reads paths that are items (version 18 and later, GIMP 3), each behind a pointer and with its own property list.
 
-use super::model::{MOST_PROPERTIES, PROP_END, PathLayout, PathRecord, Xcf};
+use super::model::{MAX_PROPERTIES, PROP_END, PathLayout, PathRecord, Xcf};
 use super::primitives::{count, string};
 use super::vectors;
 use crate::error::Error;
@@ -9,10 +9,8 @@ use crate::source::ByteSource;
 use std::collections::HashMap;
 
 const PROP_VISIBLE: u32 = 8;
-/// Size of a stroke without points.
-const LEAST_STROKE: u64 = 16;
 
-/// Reads the tables of pointers after the property list, and the paths in the third.
+/// Reads the tables of pointers after the property list, and the paths of the third table.
 pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     table(input, xcf, "layer")?;
     table(input, xcf, "channel")?;
@@ -50,7 +48,7 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
     damage.map_or(Ok(()), Err)
 }
 
-/// Reads a table of pointers up to its zero: the place and the target of each.
+/// Reads a table of pointers up to its zero. Returns the offset and the target of each.
 fn table(input: &mut ByteSource<'_>, xcf: &Xcf, of: &str) -> Result<Vec<(u64, u64)>, Error> {
     let mut out = Vec::new();
     loop {
@@ -90,17 +88,17 @@ fn item(input: &mut ByteSource<'_>, pointer_at: u64) -> Result<PathRecord, Error
     Ok(PathRecord { path: GimpPath { name, visible, strokes }, span: start..end, layout })
 }
 
-/// Reads the properties and strokes of an item: its visibility, the place of its number of strokes, and the strokes.
+/// Reads the content of an item. Returns its visibility, the offset of its number of strokes, and its strokes.
 fn content(input: &mut ByteSource<'_>) -> Result<(bool, u64, Vec<crate::Stroke>), Error> {
     let mut visible = false;
-    for _ in 0..MOST_PROPERTIES {
+    for _ in 0..MAX_PROPERTIES {
         let kind = input.u32("a path's properties")?;
         let length = u64::from(input.u32("a path's properties")?);
         match (kind, length) {
             (PROP_END, _) => {
                 vectors::version(input)?;
                 let count_at = input.at();
-                let n = count(input, LEAST_STROKE, "strokes of a path")?;
+                let n = count(input, vectors::MIN_STROKE, "strokes of a path")?;
                 return Ok((visible, count_at, vectors::strokes(input, n)?));
             }
             (PROP_VISIBLE, 4) => visible = input.u32("a path's properties")? != 0,

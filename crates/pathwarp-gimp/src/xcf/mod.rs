@@ -14,5 +14,4 @@ mod vectors;
 
 pub(crate) use model::{MAGIC, Xcf};
 pub(crate) use read::read;
-pub use rewrite::new_xcf;
-pub use rewrite::rewrite;
+pub use rewrite::{new_xcf, rewrite};

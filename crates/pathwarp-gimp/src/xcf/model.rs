@@ -1,4 +1,4 @@
-//! The paths of an XCF and their places in it.
+//! The paths of an XCF with their offsets in the file.
 
 use crate::path::GimpPath;
 use std::ops::Range;
@@ -10,8 +10,8 @@ const WIDE_POINTERS: u32 = 11;
 /// The first version that stores paths as items.
 pub(super) const PATH_ITEMS: u32 = 18;
 
-/// A bound for damaged property lists; GIMP writes a few dozen properties.
-pub(super) const MOST_PROPERTIES: u32 = 100_000;
+/// Limit for damaged property lists. GIMP writes a few dozen properties.
+pub(super) const MAX_PROPERTIES: u32 = 100_000;
 pub(super) const PROP_END: u32 = 0;
 pub(super) const PROP_PATHS: u32 = 23;
 pub(super) const PROP_VECTORS: u32 = 25;
@@ -29,7 +29,7 @@ pub(crate) struct Xcf {
 }
 
 impl Xcf {
-    /// Returns `true` if pointers have 64 bits.
+    /// Whether pointers have 64 bits.
     pub(super) fn wide(&self) -> bool {
         self.version >= WIDE_POINTERS
     }
@@ -38,19 +38,19 @@ impl Xcf {
 /// A property that holds paths.
 pub(crate) struct PathBlock {
     pub(crate) property: u32,
-    /// From its type word to the end of its content.
+    /// From the type word to the end of the content.
     pub(crate) span: Range<u64>,
 }
 
-/// A path and its place.
+/// A path and its place in the file.
 pub(crate) struct PathRecord {
     pub(crate) path: GimpPath,
-    /// From its name to its last point.
+    /// From the name to the last point.
     pub(crate) span: Range<u64>,
     pub(crate) layout: PathLayout,
 }
 
-/// Offsets that are needed to replace the strokes of a path.
+/// The offsets needed to replace the strokes of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PathLayout {
     /// In `PROP_PATHS`: the state byte, and the tattoo that format 3 stores.

@@ -1,4 +1,4 @@
-//! `PROP_PATHS`, the paths of GIMP 1.
+//! Reads and encodes `PROP_PATHS`, the paths of GIMP 1.
 
 use super::model::{PathLayout, PathRecord, Xcf};
 use super::primitives::{coordinate, count, string};
@@ -8,7 +8,7 @@ use crate::path::{GimpPath, Stroke};
 use crate::source::ByteSource;
 
 /// Size of a path of format 1 without a name and points.
-const LEAST_PATH: u64 = 21;
+const MIN_PATH: u64 = 21;
 /// Size of a point: its type and two coordinates.
 const POINT: u64 = 12;
 /// State byte of a closed path.
@@ -16,10 +16,10 @@ const CLOSED: u8 = 4;
 /// State byte of an open path.
 const OPEN: u8 = 2;
 
-/// Reads the property. GIMP ignores its length word, and writers have written wrong ones.
+/// Reads the property. GIMP ignores its length word, which some programs write wrong.
 pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     input.u32("PROP_PATHS")?;
-    for _ in 0..count(input, LEAST_PATH, "paths")? {
+    for _ in 0..count(input, MIN_PATH, "paths")? {
         let start = input.at();
         let name = string(input, "a path's name")?;
         input.u32("a path")?;
@@ -62,7 +62,7 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
     Ok(())
 }
 
-/// Reads the points of a path in the order of the file; format 1 stores whole numbers.
+/// Reads the points of a path in the order of the file. Format 1 stores them as whole numbers.
 fn points(input: &mut ByteSource<'_>, n: u32, whole: bool) -> Result<Vec<TypedPoint>, Error> {
     let mut out = Vec::new();
     for _ in 0..n {
@@ -83,7 +83,7 @@ fn points(input: &mut ByteSource<'_>, n: u32, whole: bool) -> Result<Vec<TypedPo
     Ok(out)
 }
 
-/// Encodes a path from its state byte on, in a format that keeps fractions.
+/// Encodes a path, from its state byte to its last point, in a format that keeps fractions.
 pub(super) fn encode(strokes: &[Stroke], tattoo: Option<u32>) -> Vec<u8> {
     let closed = strokes.last().is_none_or(|s| s.closed);
     let listed: Vec<TypedPoint> = strokes.iter().flat_map(listed).collect();

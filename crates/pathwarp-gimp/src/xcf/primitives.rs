@@ -1,17 +1,17 @@
-//! Strings, counts and coordinates.
+//! Reads strings, counts and coordinates.
 
 use crate::error::Error;
 use crate::source::ByteSource;
 
-/// Longest accepted name in bytes; anything longer is damage.
-const LONGEST_NAME: u64 = 1 << 20;
+/// Length of the longest plausible name in bytes.
+const MAX_NAME: u64 = 1 << 20;
 
 /// Reads a string: its length including a final NUL, then its bytes. GIMP writes an empty string as length 0.
 pub(super) fn string(input: &mut ByteSource<'_>, what: &str) -> Result<String, Error> {
     let at = input.at();
     let length = u64::from(input.u32(what)?);
     input.need(length, at, || format!("{what} needs {length} bytes"))?;
-    if length > LONGEST_NAME {
+    if length > MAX_NAME {
         return Err(Error::damaged(at, format!("{what} of {length} bytes is longer than any name")));
     }
     let mut bytes = input.vec(length, what)?;
@@ -24,16 +24,16 @@ pub(super) fn string(input: &mut ByteSource<'_>, what: &str) -> Result<String, E
     text.map_err(|e| Error::damaged(at + 4 + e.utf8_error().valid_up_to() as u64, format!("{what} is not UTF-8")))
 }
 
-/// Reads the number of things that take at least `least` bytes each.
-pub(super) fn count(input: &mut ByteSource<'_>, least: u64, what: &str) -> Result<u32, Error> {
+/// Reads the number of things that take at least `min_size` bytes each.
+pub(super) fn count(input: &mut ByteSource<'_>, min_size: u64, what: &str) -> Result<u32, Error> {
     let at = input.at();
     let n = input.u32(what)?;
-    let size = u64::from(n) * least;
+    let size = u64::from(n) * min_size;
     input.need(size, at, || format!("{n} {what} need {size} bytes or more"))?;
     Ok(n)
 }
 
-/// Decodes a coordinate; NaN and infinities are errors.
+/// Decodes a coordinate. NaN and infinities are errors.
 pub(super) fn coordinate(bytes: [u8; 4], at: u64) -> Result<f64, Error> {
     let v = f32::from_be_bytes(bytes);
     if v.is_finite() {

@@ -1,11 +1,11 @@
-//! Reads the header and the property list, and from there the paths.
+//! Reads the header and the property list, and the paths that these lead to.
 
-use super::model::{MAGIC, MOST_PROPERTIES, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, Xcf};
+use super::model::{MAGIC, MAX_PROPERTIES, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, Xcf};
 use super::{items, old_paths, vectors};
 use crate::error::Error;
 use crate::source::ByteSource;
 
-/// Later versions add things but have kept the layout so far. A higher number is damage.
+/// Versions so far have added things but kept the layout. A higher number is damage.
 const LAST_VERSION: u32 = 99;
 /// The first version that stores a precision.
 const WITH_PRECISION: u32 = 4;
@@ -53,7 +53,7 @@ fn header(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
 }
 
 fn properties(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
-    for _ in 0..MOST_PROPERTIES {
+    for _ in 0..MAX_PROPERTIES {
         let at = input.at();
         let kind = input.u32("the image's properties")?;
         let length = u64::from(input.u32("the image's properties")?);
@@ -72,5 +72,5 @@ fn properties(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
             xcf.blocks.push(PathBlock { property: kind, span: at..input.at() });
         }
     }
-    Err(Error::damaged(input.at(), format!("more than {MOST_PROPERTIES} properties: the list has no end")))
+    Err(Error::damaged(input.at(), format!("more than {MAX_PROPERTIES} properties: the list has no end")))
 }

@@ -1,4 +1,4 @@
-//! Writes paths: replaces their strokes in an XCF, adjusts its pointers and keeps every other byte, or makes a new file.
+//! Replaces strokes in an XCF, adjusting its pointers and keeping every other byte, or makes a new file.
 
 use crate::error::{Error, ErrorKind};
 use crate::old_strokes;
@@ -7,8 +7,7 @@ use crate::source::{ByteSource, ReadSeek};
 use crate::xcf::model::{
     MAGIC, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, PathLayout, PathRecord, Xcf,
 };
-use crate::xcf::read::read;
-use crate::xcf::{old_paths, vectors};
+use crate::xcf::{old_paths, read::read, vectors};
 use pathwarp::budget::Limits;
 use std::collections::{BTreeMap, HashSet};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -104,7 +103,7 @@ fn word(n: usize) -> Vec<u8> {
     u32::try_from(n).unwrap_or(u32::MAX).to_be_bytes().to_vec()
 }
 
-/// Growth of the file by the edits before `place`, in bytes.
+/// The growth of the file by the edits before `place`, in bytes.
 fn shift(edits: &[ByteEdit], place: u64) -> i64 {
     let before = edits.iter().filter(|e| e.span.end <= place);
     before.map(|e| e.bytes.len() as i64 - (e.span.end - e.span.start) as i64).sum()
@@ -138,7 +137,7 @@ fn with_pointers(input: &mut ByteSource<'_>, xcf: &Xcf, mut edits: Vec<ByteEdit>
             format!("a file of version {} stores paths as items; the old block in it cannot be resized", xcf.version);
         return Err(Error::unsupported(0, problem));
     }
-    // Everything that pointers point to is after the property list and moves by the same amount.
+    // All targets of pointers are after the property list and move by the same amount.
     let by = shift(&edits, xcf.properties_end);
     let mut adjusted = Vec::new();
     for (at, target) in all(input, xcf)? {
@@ -176,13 +175,13 @@ fn copy(from: &mut (impl Read + Seek), to: &mut dyn Write, edits: &[ByteEdit], e
     Ok(())
 }
 
-/// The targets of pointers by their places.
-pub(super) type Pointers = BTreeMap<u64, u64>;
+/// The targets of pointers by their offsets.
+type Pointers = BTreeMap<u64, u64>;
 
 /// A property whose whole content is a pointer.
 const PROP_FLOATING_SELECTION: u32 = 5;
 /// Size of a property without content.
-const LEAST_PROPERTY: u64 = 8;
+const MIN_PROPERTY: u64 = 8;
 
 /// The type of structure that a pointer points to.
 #[derive(Clone, Copy)]
@@ -198,18 +197,19 @@ struct PointerWalk<'i, 'a> {
     input: &'i mut ByteSource<'a>,
     wide: bool,
     found: Pointers,
-    /// Maximum number of further pointers, and of properties: structures that do not overlap fit into the file.
+    /// Maximum number of further pointers. Sound structures do not overlap, so they fit into the file.
     left: u64,
+    /// Maximum number of further properties.
     properties_left: u64,
     /// Lowest valid target.
     first: u64,
-    /// Structures still to be visited.
+    /// Structures still to visit.
     pending: Vec<(u64, PointerTarget)>,
     visited: HashSet<u64>,
 }
 
 /// Collects all pointers of the file that `xcf` was read from.
-pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
+fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
     input.seek(xcf.properties_end, "the property list")?;
     let input_end = input.end;
     let mut walk = PointerWalk {
@@ -217,7 +217,7 @@ pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Err
         input,
         found: Pointers::new(),
         left: input_end / if xcf.wide() { 8 } else { 4 },
-        properties_left: input_end / LEAST_PROPERTY,
+        properties_left: input_end / MIN_PROPERTY,
         first: xcf.properties_end,
         pending: Vec::new(),
         visited: HashSet::new(),
@@ -243,8 +243,8 @@ pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Err
             }
             PointerTarget::Hierarchy => {
                 walk.input.skip(12, "a hierarchy")?;
-                // GIMP reads only the first level. With 64-bit pointers the others are empty, and GIMP ends their table with a
-                // word of 32 bits.
+                // GIMP reads only the first level. In files with 64-bit pointers, the others are empty, and their table ends with
+                // a 32-bit word.
                 if walk.pointer(Some(PointerTarget::Level))? {
                     walk.table((!walk.wide).then_some(PointerTarget::Level))?;
                 }
@@ -264,7 +264,7 @@ impl PointerWalk<'_, '_> {
         Ok(())
     }
 
-    /// Records a pointer; returns `false` if it is the zero that ends a table.
+    /// Records a pointer. Returns `false` for the zero that ends a table.
     fn pointer(&mut self, to: Option<PointerTarget>) -> Result<bool, Error> {
         let at = self.input.at();
         let what = "a table of pointers";
@@ -314,8 +314,8 @@ impl PointerWalk<'_, '_> {
     }
 }
 
-/// Creates an RGB image of this size in pixels, without layers, with these paths. It has version 1 of the format, which every
-/// GIMP since 2.0 opens.
+/// Creates an RGB image of this size in pixels, with paths and without layers. It uses version 1 of the format, which every GIMP
+/// since 2.0 opens.
 #[must_use]
 pub fn new_xcf(size: [u32; 2], paths: &[GimpPath]) -> Vec<u8> {
     /// The code for RGB.

@@ -1,4 +1,4 @@
-//! `PROP_VECTORS`, the paths of GIMP 2, and the encoding of strokes that it shares with path items.
+//! Reads `PROP_VECTORS`, the paths of GIMP 2, and encodes strokes, also for path items.
 
 use super::model::{PathLayout, PathRecord, Xcf};
 use super::primitives::{coordinate, count, string, word};
@@ -9,11 +9,11 @@ use crate::source::ByteSource;
 /// The only version.
 const VERSION: u32 = 1;
 /// Size of a path without a name and strokes.
-const LEAST_PATH: u64 = 24;
+const MIN_PATH: u64 = 24;
 /// Size of a stroke without points.
-const LEAST_STROKE: u64 = 16;
+pub(super) const MIN_STROKE: u64 = 16;
 /// Size of a parasite without a name and data.
-const LEAST_PARASITE: u64 = 12;
+const MIN_PARASITE: u64 = 12;
 /// The only type of stroke.
 const BEZIER: u32 = 1;
 const ANCHOR: u32 = 0;
@@ -41,15 +41,15 @@ pub(super) fn read(input: &mut ByteSource<'_>, length: u64, xcf: &mut Xcf) -> Re
 fn paths(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     version(input)?;
     input.u32("PROP_VECTORS")?;
-    for _ in 0..count(input, LEAST_PATH, "paths")? {
+    for _ in 0..count(input, MIN_PATH, "paths")? {
         let start = input.at();
         let name = string(input, "a path's name")?;
         input.skip(4, "a path's tattoo")?;
         let visible = input.u32("a path")? != 0;
         input.skip(4, "a path's link")?;
-        let parasites = count(input, LEAST_PARASITE, "parasites of a path")?;
+        let parasites = count(input, MIN_PARASITE, "parasites of a path")?;
         let count_at = input.at();
-        let n = count(input, LEAST_STROKE, "strokes of a path")?;
+        let n = count(input, MIN_STROKE, "strokes of a path")?;
         for _ in 0..parasites {
             parasite(input)?;
         }
@@ -82,7 +82,7 @@ fn parasite(input: &mut ByteSource<'_>) -> Result<(), Error> {
     input.skip(size, what)
 }
 
-/// Reads the strokes of a path; those without points are skipped.
+/// Reads the strokes of a path, leaving out those without points.
 pub(super) fn strokes(input: &mut ByteSource<'_>, n: u32) -> Result<Vec<Stroke>, Error> {
     let mut out = Vec::new();
     for _ in 0..n {
@@ -142,7 +142,7 @@ fn points(input: &mut ByteSource<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>
 pub(super) fn encode(strokes: &[Stroke]) -> Vec<u8> {
     let mut out = Vec::new();
     for s in strokes {
-        // 32 bits bounded the number of points when they were read, and refitting does not come near that.
+        // Points read from a file were counted in 32 bits, and refitting makes far fewer.
         let n = u32::try_from(s.points.len()).unwrap_or(u32::MAX);
         for word in [BEZIER, u32::from(s.closed), 2, n] {
             out.extend(word.to_be_bytes());

@@ -12,21 +12,20 @@ pub(super) trait Bitmap {
     /// The ICC profile.
     fn profile(&mut self) -> Option<Vec<u8>>;
 
-    /// The EXIF metadata, from the header of its TIFF file on.
+    /// The EXIF metadata, starting with its TIFF header.
     fn exif(&mut self) -> Option<Vec<u8>> {
         None
     }
 
-    /// Decodes the pixels to a transparent picture of the same size.
+    /// Decodes the pixels into a transparent picture of the same size.
     fn decode(self: Box<Self>, to: &mut Pixmap) -> Result<(), Error>;
 }
 
-/// The error of a decoder.
 pub(super) fn undecodable(format: &str, why: impl Display) -> Error {
     Error::Decode(format!("{format}: {why}"))
 }
 
-/// Sets opaque pixels, of `N` samples each.
+/// Sets opaque pixels from `N` samples each.
 pub(super) fn set_opaque<const N: usize>(to: &mut Pixmap, samples: &[u8], rgb: impl Fn([u8; N]) -> [u8; 3]) {
     let (to, _) = to.data_mut().as_chunks_mut::<4>();
     for (to, from) in to.iter_mut().zip(samples.as_chunks::<N>().0) {
@@ -35,7 +34,7 @@ pub(super) fn set_opaque<const N: usize>(to: &mut Pixmap, samples: &[u8], rgb: i
     }
 }
 
-/// Sets pixels with straight alpha, of `N` samples each.
+/// Sets pixels with straight alpha from `N` samples each.
 pub(super) fn set_straight<const N: usize>(to: &mut Pixmap, samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) {
     let (to, _) = to.data_mut().as_chunks_mut::<4>();
     for (to, from) in to.iter_mut().zip(samples.as_chunks::<N>().0) {
@@ -43,7 +42,7 @@ pub(super) fn set_straight<const N: usize>(to: &mut Pixmap, samples: &[u8], rgba
     }
 }
 
-/// Premultiplies pixels that were decoded in place, with straight alpha.
+/// Premultiplies pixels that were decoded in place with straight alpha.
 pub(super) fn premultiply(pixmap: &mut Pixmap) {
     for pixel in pixmap.data_mut().as_chunks_mut::<4>().0 {
         *pixel = premultiplied(*pixel);
@@ -59,7 +58,7 @@ fn premultiplied([r, g, b, a]: [u8; 4]) -> [u8; 4] {
 /// The first bytes of every PNG file.
 pub(crate) const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// A format that can be read.
+/// A readable file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Png,
@@ -69,7 +68,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The format of a file that starts with these bytes.
+    /// Recognizes the format of a file by its first bytes.
     pub(super) fn of(bytes: &[u8]) -> Option<Self> {
         if bytes.starts_with(PNG_SIGNATURE) {
             Some(Self::Png)

@@ -1,4 +1,4 @@
-//! From the bytes of a file to its pixels, within limits.
+//! Decodes files to pixels, within limits.
 
 use super::bitmap::{Bitmap, Kind};
 use super::gif::Gif;
@@ -11,7 +11,7 @@ use crate::pixmap::{check_size, new_pixmap};
 use pathwarp::budget::{Limit, Limits};
 use tiny_skia::Pixmap;
 
-/// The pixels and the ICC profile, upright if asked.
+/// Decodes the pixels and the ICC profile. If `upright`, applies the EXIF orientation.
 pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<(Pixmap, Option<Vec<u8>>), Error> {
     let check = |(width, height): (u32, u32)| check_size(f64::from(width), f64::from(height), limits);
     png::size(bytes).map_or(Ok(()), check)?;
@@ -27,26 +27,26 @@ pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<(Pi
     Ok((orientation.apply(pixmap, limits)?, profile))
 }
 
-/// Width and height that the header of a picture announces.
+/// Returns the width and height in the header of a picture.
 ///
 /// # Errors
 /// [`Error::Decode`] for other and damaged files.
 pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
     let opened = open(bytes, &Limits::default().for_input(bytes.len())).map(|bitmap| bitmap.size());
-    // A PNG that announces more than its decoder stands says so, too.
+    // A PNG may be larger than its decoder allows.
     opened.or_else(|e| png::size(bytes).ok_or(e))
 }
 
-/// The number of pixels is limited by the caller. What a decoder holds besides them is limited here: unpacked profiles, and a frame of
-/// an animation, which may be larger than the picture.
+/// Opens a picture. The caller limits the number of pixels; this limits what else a decoder holds: unpacked profiles, and a frame of an
+/// animation, which may be larger than the picture.
 fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Box<dyn Bitmap + 'a>, Error> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    let most = limits.of(Limit::Bytes) as usize;
+    let max = limits.of(Limit::Bytes) as usize;
     match Kind::of(bytes) {
-        Some(Kind::Png) => Ok(Box::new(Png::open(bytes, most)?)),
+        Some(Kind::Png) => Ok(Box::new(Png::open(bytes, max)?)),
         Some(Kind::Jpeg) => Ok(Box::new(Jpeg::open(bytes)?)),
         Some(Kind::WebP) => Ok(Box::new(WebP::open(bytes)?)),
-        Some(Kind::Gif) => Ok(Box::new(Gif::open(bytes, most)?)),
+        Some(Kind::Gif) => Ok(Box::new(Gif::open(bytes, max)?)),
         None => Err(Error::Decode("neither a PNG nor a JPEG nor a WebP nor a GIF".to_owned())),
     }
 }

@@ -7,7 +7,7 @@ use png::{BitDepth, ColorType, Compression, Filter, Info};
 use std::fmt::Display;
 use tiny_skia::Pixmap;
 
-/// A file format to write.
+/// An output format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum PictureFormat {
@@ -19,12 +19,12 @@ pub enum PictureFormat {
         /// From 1 (small) to 100 (fine).
         quality: u8,
     },
-    /// WebP with transparency, without loss.
+    /// Lossless WebP with transparency.
     WebP,
 }
 
 impl PictureFormat {
-    /// A quality of JPEGs at which artefacts are hard to see.
+    /// JPEG quality at which artefacts are hard to see.
     pub const QUALITY: u8 = 92;
 }
 
@@ -45,7 +45,7 @@ fn encode_png(pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error>
     encoder.set_color(ColorType::Rgba);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::Fast);
-    // After the compression, which has a filter of its own.
+    // Setting the compression sets a filter, so this comes after it.
     encoder.set_filter(Filter::Adaptive);
     let mut writer = encoder.write_header().map_err(unencodable)?;
     writer.write_image_data(&straight(pixmap)).map_err(unencodable)?;
@@ -65,14 +65,14 @@ fn encode_webp(pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error
 fn encode_jpeg(pixmap: &Pixmap, profile: Option<&[u8]>, quality: u8) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
     let mut encoder = jpeg_encoder::Encoder::new(&mut out, quality.clamp(1, 100));
-    // Colours as fine as brightness: red on white has no fringes.
+    // Don't subsample colours, so that red on white has no fringes.
     encoder.set_sampling_factor(SamplingFactor::F_1_1);
     encoder.add_icc_profile(profile.unwrap_or_default()).map_err(unencodable)?;
     encoder.encode_image(OnWhite::new(pixmap)?).map_err(unencodable)?;
     Ok(out)
 }
 
-/// A picture on white for the JPEG encoder.
+/// Feeds a picture on white to the JPEG encoder.
 struct OnWhite<'a> {
     pixmap: &'a Pixmap,
     size: [u16; 2],
@@ -113,7 +113,7 @@ impl ImageBuffer for OnWhite<'_> {
     }
 }
 
-/// The samples with straight alpha.
+/// Converts the samples to straight alpha.
 fn straight(pixmap: &Pixmap) -> Vec<u8> {
     let pixels = pixmap.pixels().iter().flat_map(|p| {
         let c = p.demultiply();

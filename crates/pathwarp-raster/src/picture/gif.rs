@@ -1,4 +1,4 @@
-//! Reads GIF: the first frame at its place on a transparent page.
+//! Reads the first frame of a GIF, placed on a transparent page.
 
 use super::bitmap::{Bitmap, undecodable};
 use crate::error::Error;
@@ -8,14 +8,14 @@ use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 /// An opened GIF.
 pub(super) struct Gif<'a> {
     decoder: Decoder<&'a [u8]>,
-    most: usize,
+    max: usize,
 }
 
 impl<'a> Gif<'a> {
-    /// Reads the header. A frame that is larger than the page takes at most so many bytes.
-    pub(super) fn open(bytes: &'a [u8], most: usize) -> Result<Self, Error> {
+    /// Reads the header. A frame larger than the page takes at most `max` bytes.
+    pub(super) fn open(bytes: &'a [u8], max: usize) -> Result<Self, Error> {
         let decoder = DecodeOptions::new().read_info(bytes).map_err(wrong)?;
-        Ok(Self { decoder, most })
+        Ok(Self { decoder, max })
     }
 }
 
@@ -34,7 +34,7 @@ impl Bitmap for Gif<'_> {
         let [left, top, width, height] = [frame.left, frame.top, frame.width, frame.height].map(usize::from);
         let transparent = frame.transparent;
         let area = width.saturating_mul(height);
-        if area == 0 || area > self.most.max(to.pixels().len()) {
+        if area == 0 || area > self.max.max(to.pixels().len()) {
             return Err(undecodable("GIF", format!("its first frame has {width} x {height} pixels")));
         }
         let mut colors = [PremultipliedColorU8::TRANSPARENT; 256];

@@ -16,9 +16,9 @@ pub(super) struct Jpeg<'a> {
 }
 
 impl<'a> Jpeg<'a> {
-    /// Reads the file up to its pixels. Metadata are not packed, so they take no more than the file.
+    /// Reads the file up to its pixels. Metadata are not compressed, so they take no more than the file.
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Error> {
-        // Sides have 16 bits.
+        // The format stores sides in 16 bits.
         let side = usize::from(u16::MAX);
         let options = DecoderOptions::default().set_strict_mode(false).set_max_width(side).set_max_height(side);
         let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);

@@ -1,4 +1,4 @@
-//! Photographs: bitmap files with orientation and colour profile.
+//! Reads and writes photographs, with orientation and colour profile.
 
 mod bitmap;
 mod decode;
@@ -28,7 +28,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Returns `true` if the bytes start like a PNG, JPEG or WebP file.
+    /// Whether the bytes start like a PNG, JPEG or WebP file.
     #[must_use]
     pub fn sniff(bytes: &[u8]) -> bool {
         matches!(Kind::of(bytes), Some(Kind::Png | Kind::Jpeg | Kind::WebP))

@@ -1,4 +1,4 @@
-//! The EXIF orientation of a photograph: reads it, and turns the picture upright.
+//! Reads the EXIF orientation of a photograph, and turns the picture upright.
 
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
@@ -7,10 +7,10 @@ use tiny_skia::Pixmap;
 
 /// The tag of the orientation in TIFF and EXIF.
 const TAG: u16 = 0x0112;
-/// The type of its value, a number of 16 bits.
+/// The type of a 16-bit number.
 const SHORT: u16 = 3;
 
-/// What makes a stored picture upright: mirrored along its axes, then with rows as columns.
+/// The operation that turns a stored picture upright: mirrors it along its axes, then swaps rows and columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Orientation {
     mirror_x: bool,
@@ -19,7 +19,7 @@ pub(super) struct Orientation {
 }
 
 impl Orientation {
-    /// The orientation that EXIF metadata tell, which are a TIFF file; upright if they tell none.
+    /// Reads the orientation from EXIF metadata, which are a TIFF file; upright if there is none.
     pub(super) fn of_exif(exif: &[u8]) -> Self {
         number(exif).map_or_else(Self::default, |n| Self {
             mirror_x: matches!(n, 2 | 3 | 7 | 8),
@@ -28,7 +28,7 @@ impl Orientation {
         })
     }
 
-    /// The picture, upright.
+    /// Turns a picture upright.
     pub(super) fn apply(self, stored: Pixmap, limits: &Limits) -> Result<Pixmap, Error> {
         if self == Self::default() {
             return Ok(stored);
@@ -50,7 +50,7 @@ impl Orientation {
     }
 }
 
-/// The number in the first directory of a TIFF file: 1 is upright.
+/// Finds the number of the orientation in the first directory of a TIFF file; 1 is upright.
 fn number(tiff: &[u8]) -> Option<u16> {
     let is_little = match tiff.get(..4)? {
         b"II\x2a\0" => true,
@@ -70,7 +70,7 @@ fn number(tiff: &[u8]) -> Option<u16> {
     let entries = (0..usize::from(short(directory)?)).map(|i| directory.saturating_add(2 + 12 * i));
     let is_it = |at: usize| Some((short(at)?, short(at + 2)?, long(at + 4)?) == (TAG, SHORT, 1));
     let at = entries.take_while(|at| *at < tiff.len()).find(|at| is_it(*at) == Some(true))?;
-    // The value is followed by two bytes of nothing; an entry that is cut short is none.
+    // Two bytes of padding follow the value; an entry cut short within them does not count.
     long(at + 8).and(short(at + 8))
 }
 

@@ -1,4 +1,5 @@
-//! Reads PNG: every colour type and depth as eight bits per channel; of an animation, the image that programs without animations show.
+//! Reads PNG. Every colour type and depth becomes eight bits per channel; an animation, the image that programs without support for
+//! animations show.
 
 use super::bitmap::{Bitmap, PNG_SIGNATURE, premultiply, set_opaque, set_straight, undecodable};
 use crate::error::Error;
@@ -9,7 +10,7 @@ use tiny_skia::Pixmap;
 /// An opened PNG.
 pub(super) struct Png<'a>(Reader<Cursor<&'a [u8]>>);
 
-/// Width and height in the header of a PNG. Unlike [`Png::open`] it takes no memory, of which a long row needs much.
+/// Reads the width and height in the header of a PNG. Unlike [`Png::open`], this allocates no row, which may be very long.
 pub(super) fn size(bytes: &[u8]) -> Option<(u32, u32)> {
     let header = bytes.strip_prefix(PNG_SIGNATURE)?.get(4..)?.strip_prefix(b"IHDR")?;
     let (&[a, b, c, d, e, f, g, h], _) = header.split_first_chunk()?;
@@ -17,9 +18,9 @@ pub(super) fn size(bytes: &[u8]) -> Option<(u32, u32)> {
 }
 
 impl<'a> Png<'a> {
-    /// Reads the file up to its pixels. An unpacked profile and a row together take at most so many bytes.
-    pub(super) fn open(bytes: &'a [u8], most: usize) -> Result<Self, Error> {
-        let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: most });
+    /// Reads the file up to its pixels. An unpacked profile and a row together take at most `max` bytes.
+    pub(super) fn open(bytes: &'a [u8], max: usize) -> Result<Self, Error> {
+        let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: max });
         decoder.set_ignore_text_chunk(true);
         decoder.set_transformations(Transformations::EXPAND);
         decoder.read_info().map(Self).map_err(wrong)
@@ -40,7 +41,7 @@ impl Bitmap for Png<'_> {
     }
 
     fn decode(mut self: Box<Self>, to: &mut Pixmap) -> Result<(), Error> {
-        // The decoder (png 0.18) takes whole colours for granted and panics otherwise.
+        // The decoder (png 0.18) panics on a partial colour.
         let info = self.0.info();
         if info.color_type == ColorType::Indexed && info.palette.as_deref().is_some_and(|p| p.len() % 3 != 0) {
             return Err(undecodable("PNG", "its palette ends within a colour"));
@@ -69,14 +70,14 @@ impl Bitmap for Png<'_> {
             (ColorType::Rgba, _) => set_straight(to, &samples, |[r, s, g, h, b, c, a, z]| {
                 [eight(r, s), eight(g, h), eight(b, c), eight(a, z)]
             }),
-            // Expanded by the decoder.
+            // The decoder expands palettes.
             (ColorType::Indexed, _) => return Err(undecodable("PNG", "its colours are left as numbers")),
         }
         Ok(())
     }
 }
 
-/// The nearest sample of eight bits to one of sixteen: of v / 65535, in units of 1/255.
+/// Rounds a sample of sixteen bits, in units of 1/65535, to eight bits, in units of 1/255.
 #[inline]
 fn eight(high: u8, low: u8) -> u8 {
     ((u32::from(u16::from_be_bytes([high, low])) + 128) / 257) as u8

@@ -1,4 +1,4 @@
-//! Reads WebP; of an animation, the first frame.
+//! Reads WebP, of an animation the first frame.
 
 use super::bitmap::{Bitmap, premultiply, set_opaque, undecodable};
 use crate::error::Error;
@@ -16,7 +16,7 @@ impl<'a> WebP<'a> {
     /// Reads the file up to its pixels.
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Error> {
         let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(wrong)?;
-        // Metadata are not packed: what is said to be longer than the file is not there.
+        // Metadata are not compressed, so none can be longer than the file.
         decoder.set_memory_limit(bytes.len());
         Ok(Self { decoder, bytes })
     }
@@ -52,26 +52,26 @@ impl Bitmap for WebP<'_> {
     }
 }
 
-/// Returns `Some(false)` if the first frame of an animation is not as large as the picture with transparency in it. The decoder
-/// (image-webp 0.2) takes that for granted and panics otherwise.
+/// Whether the first frame of an animation has the size of the picture with transparency in it; if not, the decoder (image-webp 0.2)
+/// panics. `None` if there is no such picture.
 fn first_frame_fits(bytes: &[u8]) -> Option<bool> {
     let (_, frame) = chunks(bytes.get(12..)?).find(|(name, _)| name == b"ANMF")?;
     let (head, parts) = frame.split_at_checked(16)?;
     let mut parts = chunks(parts);
     let (_, picture) = parts.next().filter(|(name, _)| name == b"ALPH").and_then(|_| parts.next())?;
-    // Of the frame three bytes for each side, less one; of the picture 14 bits, after a tag and a signature of three bytes each.
+    // The frame stores each side less one in three bytes; the picture, in 14 bits after a tag and a signature of three bytes each.
     let (&[.., a, b, c, d, e, f], _) = head.split_first_chunk::<12>()?;
     let frame = [[a, b, c, 0], [d, e, f, 0]].map(|side| u32::from_le_bytes(side) + 1);
     let (&[.., a, b, c, d], _) = picture.split_first_chunk::<10>()?;
     Some([[a, b], [c, d]].map(|side| u32::from(u16::from_le_bytes(side) & 0x3fff)) == frame)
 }
 
-/// The chunks of a RIFF file, by name; the last one may be cut short.
+/// Lists the chunks of a RIFF file with their names. The last one may be cut short.
 fn chunks(mut bytes: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
     std::iter::from_fn(move || {
         let (&[a, b, c, d, e, f, g, h], rest) = bytes.split_first_chunk()?;
         let size = u32::from_le_bytes([e, f, g, h]) as usize;
-        // Padded to an even size.
+        // Chunks are padded to an even size.
         bytes = rest.get(size.saturating_add(size % 2)..).unwrap_or_default();
         Some(([a, b, c, d], rest.get(..size).unwrap_or(rest)))
     })

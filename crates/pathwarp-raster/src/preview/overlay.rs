@@ -7,8 +7,8 @@
 use kurbo::{Affine, BezPath, ParamCurve, ParamCurveDeriv, PathEl, PathSeg, Point, Rect, Shape, Vec2};
 use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
 
-/// Largest coordinate that the rasterizer can handle, in pixels. Paths beyond it are not drawn.
-const FARTHEST: f64 = 1e6;
+/// Largest coordinate that the rasterizer can handle, in pixels. Paths that exceed it are not drawn.
+const MAX_COORDINATE: f64 = 1e6;
 
 /// The role of an overlay, which sets its look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -66,7 +66,7 @@ impl PreviewOverlay {
     /// Draws the overlay; `unit` is the number of pixels per nominal pixel.
     pub(super) fn draw(&self, to_panel: Affine, unit: f32, picture: &mut Pixmap) {
         let path = to_panel * &self.path;
-        let drawable = |p: Point| p.x.abs() < FARTHEST && p.y.abs() < FARTHEST;
+        let drawable = |p: Point| p.x.abs() < MAX_COORDINATE && p.y.abs() < MAX_COORDINATE;
         if !control_points(&path).all(drawable) {
             return;
         }
@@ -84,7 +84,7 @@ impl PreviewOverlay {
     }
 }
 
-/// All control points, on the curve and off it.
+/// Lists the control points, on and off the curve.
 fn control_points(path: &BezPath) -> impl Iterator<Item = Point> {
     path.elements().iter().flat_map(|element| match *element {
         PathEl::MoveTo(p) | PathEl::LineTo(p) => vec![p],
@@ -104,23 +104,23 @@ const FIRST_ANCHOR: f64 = 5.6;
 const ARROW: f64 = 6.5;
 
 /// The look of an overlay; widths are in nominal pixels.
-pub(super) struct OverlayStyle {
-    pub(super) rgba: [u8; 4],
-    pub(super) width: f32,
-    pub(super) dash: Option<[f32; 2]>,
-    pub(super) anchors: Option<AnchorMark>,
+struct OverlayStyle {
+    rgba: [u8; 4],
+    width: f32,
+    dash: Option<[f32; 2]>,
+    anchors: Option<AnchorMark>,
 }
 
 /// The shape of an anchor.
 #[derive(Clone, Copy)]
-pub(super) enum AnchorMark {
+enum AnchorMark {
     Round,
     Square,
     Diamond,
 }
 
-/// The end points of segments. A closed subpath may repeat its first point at its end; it counts once.
-pub(super) fn anchors(path: &BezPath) -> Vec<Point> {
+/// Lists the end points of segments. If a closed subpath repeats its first point at its end, the point counts once.
+fn anchors(path: &BezPath) -> Vec<Point> {
     let mut found: Vec<Point> = Vec::new();
     let mut first = 0;
     for element in path.elements() {
@@ -143,11 +143,11 @@ pub(super) fn anchors(path: &BezPath) -> Vec<Point> {
 }
 
 /// Draws in one style on one picture.
-pub(super) struct Brush<'a> {
-    pub(super) style: &'a OverlayStyle,
+struct Brush<'a> {
+    style: &'a OverlayStyle,
     /// Pixels per nominal pixel.
-    pub(super) unit: f32,
-    pub(super) picture: &'a mut Pixmap,
+    unit: f32,
+    picture: &'a mut Pixmap,
 }
 
 impl Brush<'_> {
@@ -157,7 +157,7 @@ impl Brush<'_> {
     }
 
     /// Draws a path on a white border.
-    pub(super) fn line(&mut self, path: &BezPath) {
+    fn line(&mut self, path: &BezPath) {
         if self.style.width <= 0.0 {
             return;
         }
@@ -186,7 +186,7 @@ impl Brush<'_> {
     }
 
     /// Draws an arrow head in the middle of the first segment that is long enough.
-    pub(super) fn arrow(&mut self, path: &BezPath) {
+    fn arrow(&mut self, path: &BezPath) {
         let size = ARROW * f64::from(self.unit);
         let Some(segment) = path.segments().find(|s| s.start().distance(s.end()) > 4.0 * size) else { return };
         let (tip, tangent) = middle(segment);
@@ -208,7 +208,7 @@ impl Brush<'_> {
     }
 
     /// Draws an anchor; the first one is larger and hollow.
-    pub(super) fn anchor(&mut self, mark: AnchorMark, at: Point, first: bool) {
+    fn anchor(&mut self, mark: AnchorMark, at: Point, first: bool) {
         let radius = if first { FIRST_ANCHOR } else { ANCHOR } * f64::from(self.unit);
         let outline = |radius: f64| skia_path(&mark.outline(at, radius));
         if let (Some(halo), Some(dot)) = (outline(radius + f64::from(HALO * self.unit)), outline(radius)) {
@@ -222,7 +222,7 @@ impl Brush<'_> {
 }
 
 impl AnchorMark {
-    /// The outline around `at`; all marks of the same radius have about the same area.
+    /// The outline around `at`. All marks of the same radius have about the same area.
     fn outline(self, at: Point, radius: f64) -> BezPath {
         let corners = |reach: [Vec2; 4]| {
             let mut path = BezPath::new();

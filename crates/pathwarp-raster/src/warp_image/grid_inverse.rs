@@ -1,36 +1,35 @@
-//! The inverse of a map over a box, started from a grid of the map's values.
+//! Inverts a map over a box, starting from a grid of the map's values.
 //!
 //! The box is cut into cells, whose corners are mapped forwards. To invert a point, the triangle of mapped corners that contains it
-//! gives a first answer, and Newton's steps x ← x + J⁻¹(q − F(x)) improve it. A point outside of all triangles has no inverse, which
-//! costs a look into a table and no step. The inverse reaches a little beyond the image of the box: around the box the map goes on, or,
-//! where it is undefined or changes much there, its tangent.
+//! gives a first answer, and Newton steps x ← x + J⁻¹(q − F(x)) improve it. A point outside all triangles has no inverse, which takes
+//! one table lookup to find out and no step. The inverse extends a little beyond the image of the box. There it inverts the map, or,
+//! if that is undefined or changes much around the box, its tangents.
 //!
 //! Unlike [`NewtonInverse`](pathwarp::map::NewtonInverse), answers are not certified: this serves colours, not geometry.
 
 use super::image_warp::in_pixels;
 use kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::map::Cost;
-use pathwarp::map::{Batches, Creases, Jet, Map};
+use pathwarp::map::{Batches, Cost, Creases, Jet, Map};
 use std::fmt;
 
 /// Pixels of the result per side of a cell.
 const PIXELS: f64 = 2.0;
-/// Fewest and most cells along a side of a square box; an oblong one has more along its longer and fewer along its shorter side.
+/// Range of the number of cells along a side of a square box. An oblong one has more along its longer and fewer along its shorter side.
 const SQUARE_CELLS: (f64, f64) = (8.0, 24.0);
-/// Fewest and most cells along a side.
+/// Range of the number of cells along any side.
 const CELL_RANGE: (f64, f64) = (6.0, 96.0);
-/// Shortest side of the box in terms of the other, so that a line has cells too.
-const FLATTEST: f64 = 1e-3;
+/// Smallest ratio of the box's shorter to its longer side. Flatter boxes are inflated, so that even a line has cells.
+const MIN_ASPECT: f64 = 1e-3;
 /// Buckets along a side of the image's bounding box.
 const BUCKETS: usize = 32;
 /// Largest number of Newton steps. The first nearly always suffices; more help at creases.
 const MAX_STEPS: usize = 5;
-/// A residual below this fraction of the image's size needs no step after the next: that leaves about its square.
+/// A residual below this fraction of the image's size needs just one more step, which about squares it.
 const CLOSE: f64 = 1.0 / 1024.0;
-/// The map goes on around the box if it is off its tangent by no more than this fraction of the way.
+/// The map is used around the box if it differs from its tangent by no more than this fraction of the distance.
 const CONTINUES: f64 = 0.25;
-/// Farthest step from the first answer, in cells.
-const FARTHEST: f64 = 1.5;
+/// Largest distance from the first answer, in cells.
+const MAX_DRIFT: f64 = 1.5;
 
 /// The inverse of a map over a box and a little beyond it. NaN marks points outside.
 pub struct GridInverse<'a> {
@@ -41,7 +40,7 @@ pub struct GridInverse<'a> {
     triangles: Vec<Triangle>,
     buckets: Buckets,
     cell: Vec2,
-    /// A residual below this needs no second step.
+    /// A residual below this needs just one more step.
     close: f64,
 }
 
@@ -60,21 +59,21 @@ struct Node {
 #[derive(Debug, Clone, Copy)]
 struct Triangle {
     corners: [usize; 3],
-    /// The triangle lies in the box.
+    /// Whether the triangle lies in the box.
     inner: bool,
-    /// The map holds in it: Newton's steps can improve its answers.
+    /// Whether the map, not a tangent, applies in the triangle, so that Newton steps can improve its answers.
     mapped: bool,
-    /// The map does not reverse it.
+    /// Whether the map keeps its orientation.
     upright: bool,
 }
 
 impl<'a> GridInverse<'a> {
-    /// The inverse of `read`, then `map`, then `write` over `area`, a box before `read`, and up to `reach` around it, for a picture
-    /// of about `pixels` pixels along each side.
+    /// Inverts `read`, then `map`, then `write`. `area` is a box in the coordinates before `read`; the inverse extends up to `reach`
+    /// around it. It serves a picture of about `pixels` pixels along each side.
     #[must_use]
     pub fn new(map: &'a dyn Map, area: Rect, reach: f64, read: Affine, write: Affine, pixels: f64) -> Self {
         let longest = area.width().max(area.height());
-        let grow = |side: f64| 0.5 * (FLATTEST * longest - side).max(0.0);
+        let grow = |side: f64| 0.5 * (MIN_ASPECT * longest - side).max(0.0);
         let area = area.inflate(grow(area.width()), grow(area.height()));
         let grid = Grid::over(area, reach, (pixels / PIXELS).clamp(SQUARE_CELLS.0, SQUARE_CELLS.1));
         let (nodes, continues) = grid.nodes(map, read, write);
@@ -88,7 +87,7 @@ impl<'a> GridInverse<'a> {
         Self { map, read, write, nodes, triangles, buckets, cell: grid.cell(), close }
     }
 
-    /// Returns `false` if no point of a box has an inverse.
+    /// Returns `false` if certainly no point of a box has an inverse.
     #[must_use]
     pub fn touches(&self, r: Rect) -> bool {
         let common = r.intersect(self.buckets.bounds);
@@ -98,8 +97,8 @@ impl<'a> GridInverse<'a> {
         r.overlaps(self.buckets.bounds) && all.any(|k| self.buckets.starts[k] < self.buckets.starts[k + 1])
     }
 
-    /// The first answer for a point, and whether it can be improved. `last` is the triangle of the answer before, where a
-    /// neighbour is likely to be, too.
+    /// The first answer for a point, and whether it can be improved. `last` caches the triangle of the previous answer, which a
+    /// neighbour is likely to share.
     fn locate(&self, q: Point, last: &mut Option<u32>) -> Option<(Point, bool)> {
         let found = last.and_then(|k| self.within(q, k));
         if found.is_some() {
@@ -128,7 +127,7 @@ impl<'a> GridInverse<'a> {
         Some((a.at + (b.at - a.at) * v + (c.at - a.at) * w, t.mapped))
     }
 
-    /// One Newton step from `p`, whose jet is known; `None` where that is singular.
+    /// The next Newton step, given the jet at the current point, with its residual. `None` if the jet is singular.
     fn step(&self, q: Point, jet: &Jet) -> Option<(Vec2, f64)> {
         let jet = in_pixels(jet, self.write, self.read);
         let (r, det) = (q - jet.p, jet.det());
@@ -183,7 +182,7 @@ impl Map for GridInverse<'_> {
                 out[s.index] = s.at;
                 s.best = residual;
                 let (to, far) = (s.at + step, s.at + step - s.start);
-                if far.x.abs() > FARTHEST * self.cell.x || far.y.abs() > FARTHEST * self.cell.y {
+                if far.x.abs() > MAX_DRIFT * self.cell.x || far.y.abs() > MAX_DRIFT * self.cell.y {
                     return false;
                 }
                 s.at = to;
@@ -234,8 +233,8 @@ impl Grid {
         self.columns + 3
     }
 
-    /// The nodes row by row: those of the box, and those around it, all by the map, or else on its tangents. Returns `true` beside them if
-    /// it is the map.
+    /// The nodes of the box and around it, row by row, and whether those around it are images under the map. If not, they lie on its
+    /// tangents.
     fn nodes(&self, map: &dyn Map, read: Affine, write: Affine) -> (Vec<Node>, bool) {
         let (area, side) = (self.area, self.side());
         let along = |k: usize, from: f64, size: f64, n: usize| match k {
@@ -278,7 +277,7 @@ impl Grid {
         (nodes, continues)
     }
 
-    /// The triangles between nodes that have images: those of the box first, which take precedence.
+    /// The triangles between nodes that have images. Those of the box come first, since they take precedence.
     fn triangles(&self, nodes: &[Node], continues: bool) -> Vec<Triangle> {
         let area = |t: [usize; 3]| {
             let [a, b, c] = t.map(|n| nodes[n].image);
@@ -295,7 +294,7 @@ impl Grid {
                 }
             }
         }
-        // The larger part of the image decides which side is up.
+        // The larger part of the image decides which orientation is upright.
         let up = out.iter().filter(|t| t.0.inner).map(|t| t.1).sum::<f64>().signum();
         for (t, size) in &mut out {
             t.upright = size.signum() == up;
@@ -307,7 +306,7 @@ impl Grid {
 
 /// Weights of a triangle's second and third corner at a point inside it.
 fn barycentric(q: Point, a: Point, b: Point, c: Point) -> Option<(f64, f64)> {
-    /// Points on a common side belong to both triangles in spite of rounding.
+    /// Slack for rounding, so that points on a common side belong to both triangles.
     const ROUNDING: f64 = 1e-9;
     let (ab, ac, aq) = (b - a, c - a, q - a);
     let scale = 1.0 / ab.cross(ac);
@@ -315,7 +314,7 @@ fn barycentric(q: Point, a: Point, b: Point, c: Point) -> Option<(f64, f64)> {
     (v >= -ROUNDING && w >= -ROUNDING && v + w <= 1.0 + ROUNDING).then_some((v, w))
 }
 
-/// The triangles near each place of the image, in their order.
+/// Lists the triangles near each place of the image, in order of precedence.
 struct Buckets {
     bounds: Rect,
     /// Start of each bucket's list, and the end of the last.

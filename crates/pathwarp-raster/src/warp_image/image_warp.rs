@@ -1,4 +1,4 @@
-//! The description of a warp.
+//! Describes a warp of a bitmap, and measures its extent.
 
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Creases, Jet, Map};
@@ -13,7 +13,7 @@ pub struct ImageWarp<'a> {
     pub placed: Affine,
     /// The map of the plane.
     pub map: &'a dyn Map,
-    /// The inverse of the map; values that are not finite mark points outside its image.
+    /// The inverse of the map. Values that are not finite mark points outside the map's image.
     pub inverse: &'a dyn Map,
     /// The view of the result: maps its pixels (the box 0, 0, width, height) to the plane.
     pub shown: Affine,
@@ -37,7 +37,7 @@ pub(super) fn in_pixels(jet: &Jet, to_source: Affine, shown: Affine) -> Jet {
     Jet { p: to_source * jet.p, dx: along(jet.push(Vec2::new(p, q))), dy: along(jet.push(Vec2::new(r, s))) }
 }
 
-/// Number of cells along a side of the sampling grid.
+/// Cells along a side of the sampling grid.
 const CELLS: usize = 192;
 
 /// The extent of a warped picture.
@@ -54,8 +54,8 @@ pub struct Extent {
     pub undefined: Option<Point>,
 }
 
-/// Measures the image of the box `area` under `placed`, then `map`, then `after`, from samples inside it and many along its edge.
-/// `None` if the map is defined nowhere on it.
+/// Measures the image of the box `area` under `placed`, then `map`, then `after`, from samples inside and many along the edge.
+/// Returns `None` if the map is defined at none of them.
 #[must_use]
 pub fn extent(area: Rect, placed: Affine, map: &dyn Map, after: Affine) -> Option<Extent> {
     const ALONG: usize = 2048;

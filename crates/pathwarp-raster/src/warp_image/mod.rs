@@ -1,4 +1,4 @@
-//! Warps bitmaps and paints: every pixel of the result asks the inverse map for its place in the source.
+//! Warps bitmaps and paints: the inverse map gives every pixel of the result its place in the source.
 //!
 //! The derivatives of the inverse give the footprint of a pixel in the source, a parallelogram to first order. If that is no
 //! larger than a source pixel, the source is interpolated by the Catmull-Rom cubic, which reproduces the pixels. If it is larger,
@@ -12,8 +12,8 @@
 //! warped shapes are antialiased. The surroundings of the source are transparent, and its edge is antialiased over one pixel of
 //! the result.
 //!
-//! Within a tile the inverse is nearly always as accurate as a cubic polynomial through a few of its values ([`trace`]), and whole
-//! rows of pixels are computed together ([`rows`]); elsewhere every pixel asks the inverse.
+//! Within a tile, a cubic polynomial through a few values of the inverse is nearly always accurate enough ([`trace`]), and whole rows
+//! of pixels are computed together ([`rows`]); elsewhere, the inverse is evaluated for every pixel.
 //!
 //! Tiles are independent and run in parallel. Memory is the source, the result, and a third of the source for the pyramid if the
 //! map shrinks.

@@ -3,7 +3,7 @@
 use super::image_warp::{ImageWarp, in_pixels};
 use super::rows::{self, TileMethod};
 use super::sample::{self, Pyramid, bytes};
-use super::tile::{BYTES, BitmapBytes, PixelArea, SMALLEST, SourceBlock, TILE, announce};
+use super::tile::{BYTES, BitmapBytes, MIN_TILE, PixelArea, SourceBlock, TILE, announce};
 use super::trace::{ChebyshevBasis, Trace};
 use crate::error::Error;
 use crate::pixmap::{for_each_chunk, new_pixmap};
@@ -18,7 +18,7 @@ use tiny_skia::Pixmap;
 /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result.
 pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let (width, height) = warp.size;
-    // The result may be as large in proportion to its source as any result to its input.
+    // Limit the size of the result in proportion to the source, as that of any result to its input.
     let limits = Limits::default().for_input(warp.source.data().len());
     let (width_px, height_px) = (f64::from(width), f64::from(height));
     let mut out = new_pixmap(width_px, height_px, &limits.for_pixels(width_px * height_px))?;
@@ -54,9 +54,9 @@ struct ImageBand<'a> {
     top: usize,
     stride: usize,
     rows: &'a mut [u8],
-    /// The part of the source that a tile reads; the memory is reused by the next tile.
+    /// The part of the source that a tile reads. The next tile reuses the memory.
     block: SourceBlock,
-    /// The inverse, or a memory of it.
+    /// The inverse, or a cache of it.
     inverse: &'a dyn Map,
 }
 
@@ -68,7 +68,7 @@ impl ImageBand<'_> {
     }
 }
 
-/// The data shared by all tiles.
+/// Data shared by all tiles.
 struct ImagePainter<'a> {
     warp: &'a ImageWarp<'a>,
     to_source: Affine,
@@ -79,7 +79,7 @@ struct ImagePainter<'a> {
 }
 
 impl<'a> ImagePainter<'a> {
-    /// A memory of what the inverse answers for these tiles.
+    /// Caches the values of the inverse for these tiles, computed in batches.
     fn memory(&self, tiles: Vec<PixelArea>) -> Gathered<'a> {
         let memory = Gathered::new(self.warp.inverse);
         announce(tiles, &self.basis, (self.warp.shown, self.to_source), &memory, |pixels| memory.prepare(&[], pixels));
@@ -90,21 +90,21 @@ impl<'a> ImagePainter<'a> {
     fn tile(&self, band: &mut ImageBand<'_>, area: PixelArea) {
         match area.trace(&self.basis, self.warp.shown, band.inverse, self.to_source) {
             Some(trace) => self.arch.dispatch(TracedTile { painter: self, band, area, trace }),
-            None if area.width.max(area.height) > SMALLEST => {
+            None if area.width.max(area.height) > MIN_TILE => {
                 area.quarters().for_each(|quarter| self.tile(band, quarter));
             }
             None => self.each_pixel(band, area),
         }
     }
 
-    /// Paints a small tile, asking the inverse for every pixel.
+    /// Paints a small tile, evaluating the inverse for every pixel.
     fn each_pixel(&self, band: &mut ImageBand<'_>, area: PixelArea) {
         let place = |i: isize, j: isize| {
             self.warp.shown * Point::new(area.left as f64 + i as f64 + 0.5, area.top as f64 + j as f64 + 0.5)
         };
         let here = |jet: &Jet| in_pixels(jet, self.to_source, self.warp.shown);
-        let mut places = [Point::ORIGIN; SMALLEST];
-        let mut jets = [[Jet::default(); SMALLEST]; SMALLEST];
+        let mut places = [Point::ORIGIN; MIN_TILE];
+        let mut jets = [[Jet::default(); MIN_TILE]; MIN_TILE];
         for (j, row) in jets[..area.height].iter_mut().enumerate() {
             for (i, p) in places[..area.width].iter_mut().enumerate() {
                 *p = place(i as isize, j as isize);
@@ -135,7 +135,7 @@ impl<'a> ImagePainter<'a> {
     }
 }
 
-/// A tile with a polynomial for the places of its pixels. It is a type instead of a closure because compiling all of it for the
+/// A tile with a polynomial for the places of its pixels. It is a type rather than a closure because compiling all of it for the
 /// available vector unit depends on inlining.
 struct TracedTile<'a, 'b> {
     painter: &'a ImagePainter<'a>,
@@ -178,8 +178,8 @@ impl pulp::WithSimd for TracedTile<'_, '_> {
     }
 }
 
-/// Extrapolates the jet of a neighbour to a pixel whose centre has no inverse, as is common outside the source. Returns it if the
-/// place is outside the source: pixels along the edge then get the share of it that they cover.
+/// Extrapolates the jet of a neighbour to a pixel whose centre has no inverse, as is common outside the source. Returns it if the place
+/// is outside the source, so that pixels along the edge are antialiased.
 fn extrapolated(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Option<Jet> {
     let (width, height) = (f64::from(source.width()), f64::from(source.height()));
     [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().find_map(|(di, dj)| {
@@ -190,11 +190,11 @@ fn extrapolated(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Opt
     })
 }
 
-/// Number of cells along a side of the picture.
+/// Cells along a side of the picture.
 const CELLS: usize = 192;
 
-/// The tiles of the result that the picture touches. Other tiles must not ask the inverse, which may have values for them: a
-/// projective inverse also maps points beyond the horizon.
+/// The tiles of the result that the picture touches. The inverse must not be evaluated in other tiles, where it may have values, too:
+/// a projective inverse also maps points beyond the horizon.
 pub(super) struct Reach {
     touched: Vec<bool>,
     columns: usize,
@@ -221,7 +221,7 @@ impl Reach {
         let b = defined.fold(Rect::from_origin_size(first, (0.0, 0.0)), |b, p| b.union_pt(p));
         // Allow for curved sides and for partly covered pixels at the edge.
         let b = b.inflate(2.0 + 0.5 * b.width(), 2.0 + 0.5 * b.height());
-        let index = |v: f64, most: usize| ((v / tile as f64).max(0.0) as usize).min(most);
+        let index = |v: f64, max: usize| ((v / tile as f64).max(0.0) as usize).min(max);
         if b.x1 < 0.0 || b.y1 < 0.0 || b.x0 > (self.columns * tile) as f64 || b.y0 > (rows * tile) as f64 {
             return;
         }

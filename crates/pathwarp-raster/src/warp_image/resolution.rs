@@ -1,7 +1,7 @@
 //! Chooses the resolution of a warped paint.
 //!
-//! Renderers interpolate between the pixels of a picture. A smooth gradient therefore needs only so many pixels that the
-//! interpolated colours are right; only jumps and kinks need as many as the screen has.
+//! Renderers interpolate between the pixels of a picture. A smooth gradient therefore needs only enough pixels for the interpolated
+//! colours to be right; only jumps and kinks need as many as the screen has.
 
 use super::grid_inverse::GridInverse;
 use super::image_warp::shown;
@@ -14,13 +14,13 @@ use tiny_skia::Pixmap;
 
 /// Margin around the target in pixels: renderers read up to two pixels on either side of a place.
 const MARGIN: f64 = 2.0;
-/// Reach of the paint around its source, in pixels: the cells around the margin, several times as wide where the map compresses.
+/// Reach of the paint around its source, in pixels: enough for the margin even where the map compresses it several times.
 const READ: f64 = 12.0;
 /// Largest reach as a fraction of the source's longer side.
-const FARTHEST: f64 = 0.3;
+const MAX_REACH: f64 = 0.3;
 /// Range of the growth of a side from one picture to the next.
 const GROWTH: (f64, f64) = (1.2, 4.0);
-/// Factor on the expected growth, to be sure of it.
+/// Safety factor on the expected growth.
 const SURE: f64 = 1.05;
 /// A side grows if it contributes more than this fraction to the error of interpolation.
 const GUILTY: f64 = 0.4;
@@ -34,15 +34,15 @@ pub struct SeenColor {
     pub color: [f64; 4],
 }
 
-/// Accepted differences between a picture, interpolated, and the exact colours, of 1.
+/// Accepted differences between an interpolated picture and the exact colours, where 1 is the range of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ShadeTolerance {
-    /// The largest difference that most places may have.
+    /// Largest difference at most places.
     pub usual: f64,
-    /// The share of the places that may exceed it.
+    /// Fraction of the places that may exceed it.
     pub share: f64,
-    /// The largest difference that any place may have.
+    /// Largest difference at any place.
     pub largest: f64,
 }
 
@@ -53,12 +53,12 @@ impl ShadeTolerance {
     pub const INVISIBLE: Self = Self { usual: 1.5 / 255.0, share: 0.0, largest: 1.5 / 255.0 };
 }
 
-/// A paint to be warped at the lowest sufficient resolution.
+/// A paint to warp at the lowest sufficient resolution.
 #[derive(Clone, Copy)]
 pub struct SmoothShade<'a> {
     /// The paint.
     pub colors: &'a Colors<'a>,
-    /// The part of the paint that is warped, in its coordinates.
+    /// The part of the paint to warp, in its coordinates.
     pub source: Rect,
     /// From the paint's coordinates to the plane of the map.
     pub placed: Affine,
@@ -66,9 +66,9 @@ pub struct SmoothShade<'a> {
     pub map: &'a dyn Map,
     /// From the plane of the map to that of the result.
     pub after: Affine,
-    /// The part of the result's plane to be painted.
+    /// The part of the result's plane to paint.
     pub target: Rect,
-    /// The shape that alone is seen; `None` if all of the target is.
+    /// The shape that limits the visible area; `None` if all of the target is visible.
     pub shape: Option<&'a BezPath>,
     /// Colours to compare with. Without any, the resolution is `finest`.
     pub seen: &'a [SeenColor],
@@ -87,7 +87,7 @@ impl fmt::Debug for SmoothShade<'_> {
 }
 
 impl SmoothShade<'_> {
-    /// Paints the target and two pixels around it. Returns the picture and its place in the plane.
+    /// Paints the target and two pixels around it. Returns the picture and its position in the plane.
     ///
     /// # Errors
     /// Those of [`shade`].
@@ -104,7 +104,7 @@ impl SmoothShade<'_> {
             let error = Interpolation { pixmap: &pixmap, area }.error(self.seen, &self.tolerance);
             let Some(grow) = error else { return Ok((pixmap, area)) };
             let next = limit(Vec2::new(inner.x * grow.x, inner.y * grow.y));
-            // The guilty side may have reached its limit.
+            // If the side to grow has reached its limit, finish at full resolution.
             inner = if next == inner { finest } else { next };
         }
     }
@@ -116,8 +116,8 @@ impl SmoothShade<'_> {
         let (columns, rows) = (pixels(inner.x), pixels(inner.y));
         let area = Rect::from_center_size(self.target.center(), (columns * wide, rows * high));
         let size = (columns as u32, rows as u32);
-        // Around the image of the source, the pixels that renderers read.
-        let reach = (READ / inner.x.min(inner.y)).min(FARTHEST) * self.source.width().max(self.source.height());
+        // Extend the paint to the pixels around its image that renderers read.
+        let reach = (READ / inner.x.min(inner.y)).min(MAX_REACH) * self.source.width().max(self.source.height());
         let side = (inner.x * inner.y).sqrt();
         let inverse = GridInverse::new(self.map, self.source, reach, self.placed, self.after, side);
         let (colors, shape) = (self.colors, self.shape);
@@ -154,8 +154,8 @@ impl Interpolation<'_> {
         // The error of interpolation falls with the square of the distance of the pixels, and at kinks in proportion to it.
         let grow = (usual / tolerance.usual).sqrt().max(largest / tolerance.largest);
         let grow = (SURE * grow).clamp(GROWTH.0, GROWTH.1);
-        let most = bends[0].max(bends[1]);
-        let factor = |bend: f64| if bend >= GUILTY * most { grow } else { 1.0 };
+        let largest = bends[0].max(bends[1]);
+        let factor = |bend: f64| if bend >= GUILTY * largest { grow } else { 1.0 };
         Some(Vec2::new(factor(bends[0]), factor(bends[1])))
     }
 

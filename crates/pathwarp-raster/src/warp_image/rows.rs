@@ -1,5 +1,5 @@
-//! Computes the pixels of a tile row by row, in loops that the compiler vectorises. Results do not depend on the vector width: the
-//! order of summation for each pixel is fixed.
+//! Computes the pixels of a tile row by row, in loops that the compiler vectorizes. The order of summation for each pixel is fixed, so
+//! results do not depend on the vector width.
 
 use super::sample::Footprint;
 use super::tile::{BYTES, ChannelOrder, Firsts, OUTSIDE, SourceBlock, TILE};
@@ -185,9 +185,9 @@ fn finish(colors: &[[f32; BYTES]; TILE], first: &Firsts, out: &mut [u8], mut oth
     const WHOLE: f32 = (1_u32 << 23) as f32;
     let mut bytes = [[0; BYTES]; TILE];
     for (bytes, color) in bytes.iter_mut().zip(colors) {
-        let alpha = least(most(color[3], 0.0), 255.0);
+        let alpha = min(max(color[3], 0.0), 255.0);
         for c in 0..BYTES {
-            bytes[c] = (least(most(color[c], 0.0), alpha) + WHOLE).to_bits() as u8;
+            bytes[c] = (min(max(color[c], 0.0), alpha) + WHOLE).to_bits() as u8;
         }
     }
     for ((i, pixel), bytes) in out.as_chunks_mut::<BYTES>().0.iter_mut().enumerate().zip(bytes) {
@@ -217,7 +217,7 @@ pub(super) fn skewed(
     for i in 0..TILE {
         let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
         let det = ix * iy - k * k;
-        let (wide, high) = (2.0 * least((iy + k.abs()) / det, MAX), 2.0 * least((ix + k.abs()) / det, MAX));
+        let (wide, high) = (2.0 * min((iy + k.abs()) / det, MAX), 2.0 * min((ix + k.abs()) / det, MAX));
         (left[i], top[i], bottom[i]) = ((x[i] - wide).ceil(), (y[i] - high).ceil(), y[i] + high);
     }
     let first = block.firsts(&left, &top, SIDE, ChannelOrder::Planar);
@@ -260,15 +260,15 @@ pub(super) fn skewed(
     finish(&colors, &first, out, other);
 }
 
-/// The smaller of two numbers; a single instruction, since neither is NaN.
+/// The smaller of two numbers that are not NaN, in a single instruction.
 #[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
+fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers.
+/// The larger of two numbers that are not NaN.
 #[inline(always)]
-fn most(a: f32, b: f32) -> f32 {
+fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
@@ -286,7 +286,7 @@ fn stretches(row: &TraceRow, coordinate: usize) -> [f32; TILE] {
     let mut out = [0.0; TILE];
     for (o, (a, b)) in out.iter_mut().zip(along.iter().zip(&down)) {
         // Tiles with a larger stretch use another method.
-        *o = least(most((a * a + b * b).sqrt(), 1.0), MAX_STRETCH as f32);
+        *o = min(max((a * a + b * b).sqrt(), 1.0), MAX_STRETCH as f32);
     }
     out
 }
@@ -330,8 +330,8 @@ fn kernels(places: &[f32; TILE], stretch: &[f32; TILE]) -> ([f32; TILE], [[f32; 
 /// (1 − t)²(2t − 1).
 #[inline(always)]
 fn catmull_rom(place: f32) -> f32 {
-    let t = least(place.abs(), 2.0);
-    let m = most(1.0 - t, 0.0);
+    let t = min(place.abs(), 2.0);
+    let m = max(1.0 - t, 0.0);
     ((2.5 - 0.5 * t) * t - 4.0) * t + 2.0 + m * m * (1.0 - 2.0 * m)
 }
 

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// Maximum aspect ratio of a footprint. Longer ones are widened, which blurs them.
-const LONGEST: f64 = 16.0;
+const MAX_ASPECT: f64 = 16.0;
 /// Minimum number of pixels of a pyramid level per pixel of the result, along each side; the maximum is twice as many.
 const MIN_SHRINK: f64 = 2.0;
 /// Stretches below this are rounding errors.
@@ -99,11 +99,11 @@ pub(super) struct Footprint {
     shortest: f64,
 }
 
-/// The whole numbers from `from` to `to`, as a range within 0..`size`. Conversions are used, as rounding is a call of a function on
-/// some processors.
+/// The integers from `from` to `to`, as a range within 0..`size`. Uses conversions, since rounding is a function call on some
+/// processors.
 #[inline]
 fn range(from: f64, to: f64, size: usize) -> (usize, usize) {
-    // Conversions take negative numbers for zero.
+    // Conversions map negative numbers to zero.
     let first = from as usize;
     let first = if (first as f64) < from { first.saturating_add(1) } else { first };
     (first, if to >= 0.0 { (to as usize).saturating_add(1).min(size) } else { 0 })
@@ -120,7 +120,7 @@ impl Footprint {
             return None;
         }
         let longest = (mean + apart).sqrt();
-        let shortest = (mean - apart).max(0.0).sqrt().max(1.0).max(longest / LONGEST);
+        let shortest = (mean - apart).max(0.0).sqrt().max(1.0).max(longest / MAX_ASPECT);
         // Take the eigenvector from the row of the matrix that does not suffer from cancellation.
         let axis = if a > c { [0.5 * (a - c) + apart, b] } else { [b, 0.5 * (c - a) + apart] };
         let length = axis[0].hypot(axis[1]);
@@ -195,7 +195,7 @@ impl Footprint {
                 }
             }
         }
-        // At least about a quarter of the weights is on the picture, since the place is.
+        // The place is on the picture, so about a quarter of the weights or more should be, too.
         if total <= 0.1 * (p * q) as f32 {
             return interpolated(level, x + 0.5, y + 0.5);
         }
@@ -204,7 +204,7 @@ impl Footprint {
 }
 
 /// Maximum width of an upright footprint: twice the radius of the cubic, which is two, times the largest stretch of a level.
-const COLUMNS: usize = (4.0 * 2.0 * MIN_SHRINK * LONGEST) as usize + 2;
+const COLUMNS: usize = (4.0 * 2.0 * MIN_SHRINK * MAX_ASPECT) as usize + 2;
 
 /// Solves |slope·d + rest| < 2 for d.
 #[inline]
@@ -303,7 +303,7 @@ pub(super) fn channels(p: PremultipliedColorU8) -> Channels {
 /// Rounds to the nearest valid colour, clipping the overshoots of the cubic.
 #[inline]
 pub(super) fn color(c: Channels) -> PremultipliedColorU8 {
-    let level = |v: f32, most: u8| ((v + 0.5) as u8).min(most);
+    let level = |v: f32, max: u8| ((v + 0.5) as u8).min(max);
     let alpha = level(c[3], 255);
     PremultipliedColorU8::from_rgba(level(c[0], alpha), level(c[1], alpha), level(c[2], alpha), alpha)
         .unwrap_or(PremultipliedColorU8::TRANSPARENT)

@@ -1,7 +1,7 @@
-//! Warps a paint: every pixel of the result asks the inverse map for its place in the paint, and the paint for its colour.
+//! Warps a paint: the inverse map gives every pixel of the result its place in the paint.
 
 use super::grid_inverse::GridInverse;
-use super::tile::{PixelArea, SMALLEST, TILE, announce};
+use super::tile::{MIN_TILE, PixelArea, TILE, announce};
 use super::trace::{ChebyshevBasis, MAX_ERROR};
 use crate::error::Error;
 use crate::pixmap::{for_each_chunk_pair, new_pixmap};
@@ -12,11 +12,12 @@ use pathwarp::outline::boundary;
 use std::fmt;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
-/// Largest error of a place in pixels if a tile is traced.
+/// Largest error of a place in a traced tile, in pixels.
 const MAX_OFF: f64 = 1.0 / 64.0;
-/// Side of a block in pixels, at most. Colours bear a larger [`MAX_OFF`] than the pixels of a bitmap, so a cubic reaches further.
+/// Largest side of a block in pixels. Smooth colours tolerate a larger [`MAX_OFF`] than the pixels of a bitmap, so a cubic covers a
+/// larger area.
 const BLOCK: usize = 2 * TILE;
-/// Pictures with fewer pixels are painted faster than threads start.
+/// Pictures with fewer pixels are painted faster on one thread.
 const WORTH_THREADS: usize = 1 << 17;
 
 /// The colours at points of a paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
@@ -33,7 +34,7 @@ pub struct Shade<'a> {
     pub shown: Affine,
     /// Width and height of the result in pixels.
     pub size: (u32, u32),
-    /// The shape in the plane that alone is seen, with two pixels around it; `None` if everything is.
+    /// The shape in the plane that limits the visible area, together with two pixels around it; `None` if everything is visible.
     pub shape: Option<&'a BezPath>,
 }
 
@@ -43,15 +44,15 @@ impl fmt::Debug for Shade<'_> {
     }
 }
 
-/// Warps a paint. Pixels without an inverse, and those far from the shape, have the colour of the nearest in their row, or else of the
-/// nearest row: a clip along the edge of the image shows no gap, and the file stays small.
+/// Warps a paint. Pixels without an inverse, and those far from the shape, take the colour of the nearest pixel in their row, or else of
+/// the nearest row, so that a clip along the edge of the image shows no gap and the file stays small.
 ///
 /// # Errors
 /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result; [`Error::NoInverse`] if no pixel has an inverse.
 pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     let (width, height) = shade.size;
     let mut out = new_pixmap(f64::from(width), f64::from(height), &Limits::default())?;
-    // Measured in the paint's coordinates, a pixel of the result has about this size.
+    // Estimate the size of a pixel of the result in the paint's coordinates.
     let centre = shade.shown * Point::new(0.5 * f64::from(width), 0.5 * f64::from(height));
     let det = (shade.inverse.jet(centre).det() * shade.shown.determinant()).abs();
     let unit = if det > 0.0 && det.is_finite() { det.sqrt() } else { shade.shown.determinant().abs().sqrt() };
@@ -102,27 +103,27 @@ struct ShadeBand<'a> {
     columns: usize,
     pixels: &'a mut [PremultipliedColorU8],
     known: &'a mut [bool],
-    /// The inverse, or a memory of it.
+    /// The inverse, or a cache of it.
     inverse: &'a dyn Map,
 }
 
-/// The data shared by all tiles.
+/// Data shared by all tiles.
 struct ShadePainter<'a> {
     shade: &'a Shade<'a>,
-    /// The part that is seen; `None` if everything is.
+    /// The visible part; `None` if everything is visible.
     cover: Option<Cover>,
     basis: ChebyshevBasis,
     to_pixels: Affine,
 }
 
 impl<'a> ShadePainter<'a> {
-    /// The part of an area that is seen. `None` if nothing is, or nothing has an inverse.
+    /// The visible part of an area. `None` if nothing is visible, or nothing has an inverse.
     fn seen(&self, area: PixelArea) -> Option<PixelArea> {
         let seen = self.cover.as_ref().map_or(Some(area), |cover| cover.seen(area));
         seen.filter(|seen| self.shade.inverse.touches(seen.covered(self.shade.shown)))
     }
 
-    /// A memory of what the inverse answers for these blocks.
+    /// Caches the values of the inverse for these blocks, computed in batches.
     fn memory(&self, blocks: Vec<PixelArea>) -> Gathered<'a> {
         let memory = Gathered::new(self.shade.inverse);
         announce(blocks, &self.basis, (self.shade.shown, self.to_pixels), &memory, |pixels| {
@@ -143,7 +144,7 @@ impl<'a> ShadePainter<'a> {
                     });
                 }
             }
-            None if area.width.max(area.height) > SMALLEST => {
+            None if area.width.max(area.height) > MIN_TILE => {
                 area.quarters().filter_map(|a| self.seen(a)).for_each(|quarter| self.block(band, quarter));
             }
             None => {
@@ -182,7 +183,7 @@ impl<'a> ShadePainter<'a> {
     }
 }
 
-/// Gives pixels that were not painted the colour of the nearest in their row, or else of the nearest row.
+/// Fills pixels that were not painted with the colour of the nearest one in their row, or else of the nearest row.
 fn extend(out: &mut Pixmap, known: &[bool]) {
     let width = out.width() as usize;
     let pixels = out.pixels_mut();
@@ -215,10 +216,10 @@ fn extend(out: &mut Pixmap, known: &[bool]) {
 const CELL: usize = 8;
 /// Flattening tolerance in pixels.
 const FLAT: f64 = 0.25;
-/// Reach of a pixel in pixels: renderers read up to two on either side of a place.
+/// Reach of a pixel in pixels, since renderers read up to two on either side of a place.
 const MARGIN: f64 = 2.0 + FLAT;
 
-/// For every cell, `true` if the shape touches it or comes near.
+/// The cells that a shape touches or comes near.
 pub(super) struct Cover {
     columns: usize,
     cells: Vec<bool>,
@@ -234,14 +235,14 @@ impl Cover {
             cover.touch(a, b, rows);
             wind(a, b, &mut windings, columns);
         });
-        // A cell without edges is all inside or all outside. Where windings cancel under the even-odd rule, too much is covered.
+        // A cell without edges is all inside or all outside. This covers too much for shapes with the even-odd rule.
         for (cell, winding) in cover.cells.iter_mut().zip(windings) {
             *cell |= winding != 0;
         }
         cover
     }
 
-    /// The smallest area within one that holds all of its cells that are seen. `None` if there are none.
+    /// Shrinks an area to its visible cells. `None` if there are none.
     pub(super) fn seen(&self, area: PixelArea) -> Option<PixelArea> {
         let cells = |from: usize, size: usize| from / CELL..(from + size).div_ceil(CELL);
         let (mut from, mut to) = ([usize::MAX; 2], [0; 2]);
@@ -281,7 +282,7 @@ impl Cover {
 fn wind(a: Point, b: Point, windings: &mut [i32], columns: usize) {
     let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
     let slope = (bottom.x - top.x) / (bottom.y - top.y);
-    // The first cell whose middle is not before a place.
+    // Index of the first cell whose middle is not before `v`.
     let first = |v: f64| (v / CELL as f64 - 0.5).ceil().max(0.0) as usize;
     for (j, row) in windings.chunks_mut(columns).enumerate().take(first(bottom.y)).skip(first(top.y)) {
         let y = (j as f64 + 0.5) * CELL as f64;

@@ -4,10 +4,10 @@ use super::trace::{ChebyshevBasis, SAMPLES, Trace};
 use kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
 
-/// Side of a tile in pixels; its part of the source fits into the cache.
+/// Side of a tile in pixels, such that its part of the source fits into the cache.
 pub(super) const TILE: usize = 32;
-/// Side down to which tiles are divided if the inverse is not close to a cubic. Below that every pixel asks the inverse.
-pub(super) const SMALLEST: usize = 8;
+/// Side of the smallest tiles. If the inverse is not close to a cubic even there, it is evaluated for every pixel.
+pub(super) const MIN_TILE: usize = 8;
 
 /// A rectangle of pixels of the result.
 #[derive(Clone, Copy)]
@@ -19,7 +19,7 @@ pub(super) struct PixelArea {
 }
 
 impl PixelArea {
-    /// The four quarters without empty ones.
+    /// The four quarters, without empty ones.
     pub(super) fn quarters(self) -> impl Iterator<Item = Self> {
         let (w, h) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let quarter = move |k: usize| {
@@ -34,7 +34,7 @@ impl PixelArea {
         (0..4).map(quarter).filter(|a| a.width > 0 && a.height > 0)
     }
 
-    /// Parts of the area that are no larger than a tile.
+    /// Divides the area into parts no larger than a tile.
     pub(super) fn tiles(self) -> impl Iterator<Item = Self> {
         let (right, bottom) = (self.left + self.width, self.top + self.height);
         let corners = (self.top..bottom)
@@ -63,9 +63,9 @@ impl PixelArea {
         basis.interpolate(&values, self.span())
     }
 
-    /// The distance between the centres of the first and the last column and row, or 1.
+    /// The distance between the centres of the first and the last column and row; 1 for a single one, so that there is a
+    /// derivative.
     fn span(self) -> (f64, f64) {
-        // Give a single column a width too, so that there is a derivative.
         ((self.width - 1).max(1) as f64, (self.height - 1).max(1) as f64)
     }
 
@@ -89,8 +89,8 @@ impl PixelArea {
     }
 }
 
-/// Announces to `inverse`, a memory, what the traces of `areas` and of their parts are going to ask, one size after the other; and,
-/// with `announce_pixels`, the pixels of the smallest ones that cannot be traced.
+/// Prepares `inverse`, a cache, for the traces of `areas` and of their parts, one size after the other. Calls `announce_pixels` with the
+/// pixels of the smallest parts that cannot be traced.
 pub(super) fn announce(
     mut areas: Vec<PixelArea>,
     basis: &ChebyshevBasis,
@@ -102,7 +102,7 @@ pub(super) fn announce(
         let samples: Vec<Point> = areas.iter().flat_map(|a| a.samples(basis, shown)).collect();
         inverse.prepare(&samples, &[]);
         areas.retain(|a| a.trace(basis, shown, inverse, last).is_none());
-        let (divided, smallest): (Vec<_>, Vec<_>) = areas.into_iter().partition(|a| a.width.max(a.height) > SMALLEST);
+        let (divided, smallest): (Vec<_>, Vec<_>) = areas.into_iter().partition(|a| a.width.max(a.height) > MIN_TILE);
         announce_pixels(&smallest.iter().flat_map(|a| a.pixels(shown)).collect::<Vec<_>>());
         areas = divided.into_iter().flat_map(PixelArea::quarters).collect();
     }
@@ -110,8 +110,8 @@ pub(super) fn announce(
 
 /// Bytes and channels per pixel.
 pub(super) const BYTES: usize = 4;
-/// Maximum side of a block in pixels.
-const MAX: usize = 160;
+/// Largest side of a block in pixels.
+const MAX_BLOCK: usize = 160;
 /// Sample points along a side of a tile for finding its part of the source.
 const PER_SIDE: usize = 5;
 
@@ -152,13 +152,13 @@ impl SourceBlock {
             low = [low[0].min(p.x), low[1].min(p.y)];
             high = [high[0].max(p.x), high[1].max(p.y)];
         }
-        for (k, most) in [source.width, source.height].into_iter().enumerate() {
-            let from = (low[k] - margin).floor().clamp(0.0, most as f64);
-            let to = (high[k] + margin).ceil().clamp(from, most as f64);
+        for (k, size) in [source.width, source.height].into_iter().enumerate() {
+            let from = (low[k] - margin).floor().clamp(0.0, size as f64);
+            let to = (high[k] + margin).ceil().clamp(from, size as f64);
             (self.corner[k], self.size[k]) = (from as usize, (to - from) as usize);
         }
         let [width, height] = self.size;
-        if width == 0 || height == 0 || width > MAX || height > MAX {
+        if width == 0 || height == 0 || width > MAX_BLOCK || height > MAX_BLOCK {
             return false;
         }
         self.values.resize(width * height * BYTES, 0.0);
@@ -189,13 +189,13 @@ impl SourceBlock {
     pub(super) fn firsts(&self, left: &[f32; TILE], top: &[f32; TILE], side: usize, layout: ChannelOrder) -> Firsts {
         // At this magnitude the last bit has the value 1, so the low bits hold the integer that was added.
         const WHOLE: f32 = (1_u32 << 23) as f32;
-        let [most_left, most_top] = self.size.map(|n| n as f32 - side as f32);
+        let [max_left, max_top] = self.size.map(|n| n as f32 - side as f32);
         let stride = (self.size[0] * BYTES) as u32;
         let step = if layout == ChannelOrder::Interleaved { BYTES as u32 } else { 1 };
         let mut out = [0; TILE];
         for i in 0..TILE {
             let whole = |v: f32| (v + WHOLE).to_bits() & 0xFFFF;
-            let inside = (left[i] >= 0.0) & (top[i] >= 0.0) & (left[i] <= most_left) & (top[i] <= most_top);
+            let inside = (left[i] >= 0.0) & (top[i] >= 0.0) & (left[i] <= max_left) & (top[i] <= max_top);
             let first = whole(top[i]) * stride + whole(left[i]) * step;
             out[i] = if inside { first } else { OUTSIDE };
         }

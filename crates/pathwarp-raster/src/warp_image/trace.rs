@@ -7,7 +7,7 @@
 use kurbo::{Point, Vec2};
 use pathwarp::map::Jet;
 
-/// Maximum error of a place in source pixels: a quarter of a level at the sharpest possible edge.
+/// Largest error of a place in source pixels: a quarter of a level at the sharpest possible edge.
 pub(super) const MAX_ERROR: f64 = 1.0 / 1024.0;
 /// Interpolation points along a side.
 const NODES: usize = 4;
@@ -65,7 +65,7 @@ impl ChebyshevBasis {
         }
         let out = Trace { coefficients, per_pixel: (1.0 / size.0, 1.0 / size.1) };
         let checks = self.places().zip(values).skip(NODES * NODES);
-        // The distance is NaN without an inverse.
+        // Without an inverse, the distance is NaN.
         let is_close = |((u, v), p): ((f64, f64), &Point)| (out.at(u, v).p - *p).hypot() <= MAX_ERROR;
         checks.into_iter().all(is_close).then_some(out)
     }
@@ -101,7 +101,7 @@ impl Trace {
         out
     }
 
-    /// TraceRow `j` of the tile.
+    /// Row `j` of the tile.
     pub(super) fn pixels(&self, j: usize) -> TraceRow {
         self.row(j as f64 * self.per_pixel.1)
     }

@@ -3,8 +3,8 @@
 //! Each leg of the skeleton's control polygon has two handles, s and t. A step of the algorithm is an affine map of all of space,
 //! p + u·(q − p) + v·s + w·t, instead of a point on a leg, so that F(u, v, w) = C(u) + v·S(u) + w·T(u), with C the Bézier curve
 //! of the control points and S and T those of the handles, one degree lower; handles of deeper levels add curves of still lower
-//! degree. (The paper: *Free-form deformations with a generalized de Casteljau algorithm*, equations 2 and 3.) Pieces of degree 1
-//! to 3, or the pieces of a B-spline, follow each other.
+//! degree (*Free-form deformations with a generalized de Casteljau algorithm*, equations 2 and 3). A skeleton consists of pieces of
+//! degree 1 to 3, or of those of a B-spline.
 //!
 //! Barr's twist, taper and bend have the same form with other curves C, S and T (A. H. Barr, *Global and local deformations of
 //! solid primitives*, SIGGRAPH 1984), and are exact here.
@@ -37,13 +37,13 @@ pub enum Spine3 {
 /// A handle of a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Handle3 {
-    /// Its level, from 1.
+    /// The level, from 1.
     pub level: usize,
-    /// Its number on that level, over all pieces, from 0.
+    /// The number on that level, over all pieces, from 0.
     pub index: usize,
-    /// The image of a unit along the first axis after the one that follows the skeleton, if it is set.
+    /// The image of a unit along the first axis after the one that follows the skeleton, if set.
     pub side: Option<DVec3>,
-    /// The image of a unit along the second.
+    /// The image of a unit along the second axis after it, if set.
     pub up: Option<DVec3>,
 }
 
@@ -68,7 +68,7 @@ pub struct Bend3 {
 }
 
 impl Bend3 {
-    /// Bends a model in this box, whose extent along x follows the curve.
+    /// Bends a model in this box. Its extent along x follows the curve.
     #[must_use]
     pub fn new(bounds: Box3, spine: Spine3) -> Self {
         Self { bounds, spine, axis: 0, through: None, handles: Vec::new() }
@@ -80,7 +80,7 @@ impl Bend3 {
         Self { axis: axis.min(2), ..self }
     }
 
-    /// Sets a point of the line that becomes the curve. Default: the middle of the box.
+    /// Sets a point of the line that becomes the curve. Defaults to the middle of the box.
     #[must_use]
     pub fn through(self, p: DVec3) -> Self {
         Self { through: Some(p), ..self }
@@ -132,7 +132,7 @@ impl Bend3 {
         match &self.spine {
             Spine3::Twist(angle) => Ok(vec![Strip::Twist { from, along, sides, angle: *angle }]),
             Spine3::Taper(factor) => Ok(vec![Strip::Taper { from, along, sides, factor: *factor }]),
-            // An arc that turns by nothing is straight.
+            // An arc with no turn is straight.
             Spine3::Arc(angle) if angle.abs() < 1e-12 => Ok(vec![Strip::Twist { from, along, sides, angle: 0.0 }]),
             Spine3::Arc(angle) => Ok(vec![Strip::Arc { from, along, sides, angle: *angle }]),
             Spine3::Bezier(points, degree) => self.ribbons(points, *degree),
@@ -154,7 +154,7 @@ impl Bend3 {
         }
     }
 
-    /// Bézier pieces with handles.
+    /// Makes Bézier pieces with handles.
     fn ribbons(&self, points: &[DVec3], degree: usize) -> Result<Vec<Strip>, Error> {
         let wrong = |problem: String| Error::usage("skeleton", "", problem);
         if points.len() < 2 || !(1..=3).contains(&degree) || !(points.len() - 1).is_multiple_of(degree) {
@@ -194,8 +194,8 @@ impl Bend3 {
         Ok((0..pieces).map(piece).collect())
     }
 
-    /// Handles perpendicular to their legs that turn as little as possible from leg to leg. The error ends a sentence about the
-    /// skeleton.
+    /// Makes handles perpendicular to their legs that turn as little as possible from leg to leg. The error completes a sentence
+    /// about the skeleton.
     fn turning_least(&self, points: &[DVec3]) -> Result<Vec<[DVec3; 2]>, String> {
         let mut out: Vec<[DVec3; 2]> = Vec::new();
         let mut previous = DVec3::AXES[self.axis];
@@ -220,10 +220,8 @@ fn param_of(h: &Handle3) -> &'static str {
     }
 }
 
-// The map: pieces one after another along an axis of the model.
-
-/// The model's coordinates on the skeleton: u runs along `axis` from 0 at `start` to the number of pieces at `start` + `length`;
-/// v and w are measured from `through` along the two axes that follow it in cyclic order.
+/// The map: pieces one after another along an axis of the model. On the skeleton, u runs along `axis` from 0 at `start` to the
+/// number of pieces at `start` + `length`; v and w are measured from `through` along the two axes that follow it in cyclic order.
 #[derive(Debug, Clone, PartialEq)]
 struct BendMap3 {
     pieces: Arc<[Strip]>,
@@ -231,7 +229,7 @@ struct BendMap3 {
     start: f64,
     length: f64,
     through: DVec3,
-    /// The curves of the only piece, if they are polynomials.
+    /// The curves of a single piece, if they are polynomials.
     swept: Option<Tensor<9>>,
 }
 
@@ -247,7 +245,7 @@ impl BendMap3 {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
     }
 
-    /// The piece for a whole box, if it is one.
+    /// The piece that applies to a whole box, if there is just one.
     fn piece_on(&self, on: &Box3) -> Option<usize> {
         let last = self.pieces.len() - 1;
         let place = |at: f64| (at - self.start) * self.pieces.len() as f64 / self.length;
@@ -255,16 +253,16 @@ impl BendMap3 {
         let slack = 1e-9 * (1.0 + place(on.max[self.axis]).abs());
         let from = ((place(on.min[self.axis]) + slack) as usize).min(last);
         let to = ((place(on.max[self.axis]) - slack) as usize).min(last);
-        // A flat box may lie in a joint, where both pieces agree.
+        // A flat box may lie in a joint, on which both pieces agree.
         (from >= to).then_some(from)
     }
 
-    /// The curves at a point, v, w, and the pieces per unit along the axis. The first and the last piece continue outside.
+    /// The curves at a point, v, w, and the number of pieces per unit along the axis. The first and the last piece extend outside.
     fn stand(&self, p: DVec3) -> (Stand, f64, f64, f64) {
         let n = self.pieces.len();
         let rate = n as f64 / self.length;
         let s = (p[self.axis] - self.start) * rate;
-        // A cast of a negative number gives 0.
+        // Casting a negative number gives 0.
         let i = (s as usize).min(n - 1);
         let [b, c] = self.sides();
         (self.pieces[i].stand(s - i as f64), p[b] - self.through[b], p[c] - self.through[c], rate)
@@ -286,7 +284,7 @@ impl Map3 for BendMap3 {
             ps.iter_mut().for_each(|p| *p = self.point(*p));
             return;
         };
-        // −1 to 1 along the axis; the other coordinates are lengths.
+        // The tensor's coordinate runs from −1 to 1 along the axis; the others are lengths.
         let (mut middle, mut scale) = (self.through, DVec3::ONE);
         middle[self.axis] = self.start + 0.5 * self.length;
         scale[self.axis] = 2.0 / self.length;
@@ -323,23 +321,22 @@ impl Map3 for BendMap3 {
     }
 }
 
-// A piece of a bend: F(u, v, w) = C(u) + v·S(u) + w·T(u).
-
-/// The curves C, S and T of a piece, u from 0 to 1.
+/// A piece of a bend, F(u, v, w) = C(u) + v·S(u) + w·T(u), with u from 0 to 1.
 #[derive(Debug, Clone, PartialEq)]
 enum Strip {
-    /// The generalised algorithm of de Casteljau: every step an affine map with the handles s and t of its level.
+    /// Evaluated by the generalised algorithm of de Casteljau, each step of which is an affine map with the handles s and t of its
+    /// level.
     Ribbon {
         /// Control points, two to four.
         points: Vec<DVec3>,
-        /// Pairs s, t of handles, level by level: n of the first, n − 1 of the second … The last levels may be omitted.
+        /// Pairs s, t of handles by level: n on the first, n − 1 on the second, and so on. The last levels may be omitted.
         levels: Vec<Vec<[DVec3; 2]>>,
     },
     /// A straight line `from` + u·`along` whose sides turn by `angle` (radians).
     Twist { from: DVec3, along: DVec3, sides: [DVec3; 2], angle: f64 },
     /// A straight line whose sides grow to `factor` times their length.
     Taper { from: DVec3, along: DVec3, sides: [DVec3; 2], factor: f64 },
-    /// A circular arc of the length of `along` that turns by `angle` (radians) towards the first side.
+    /// A circular arc as long as `along` that turns by `angle` (radians) towards the first side.
     Arc { from: DVec3, along: DVec3, sides: [DVec3; 2], angle: f64 },
 }
 
@@ -353,7 +350,7 @@ struct Stand {
 }
 
 impl Strip {
-    /// Bernstein coefficients of C, S and T, all of one degree; `None` if they are no polynomials.
+    /// Bernstein coefficients of C, S and T, all of the same degree; `None` if they are not polynomials.
     fn bernstein(&self) -> Option<Vec<[f64; 9]>> {
         let curves: [Vec<Vec<DVec3>>; 3] = match self {
             Self::Ribbon { points, levels } => {
@@ -378,7 +375,7 @@ impl Strip {
         Some(out)
     }
 
-    /// C, S and T as polynomials, with a polynomial for u; `None` if they are none.
+    /// C, S and T with a polynomial in place of u; `None` if they are not polynomials.
     fn polynomials(&self, u: &Poly3) -> Option<[[Poly3; 3]; 3]> {
         match self {
             Self::Ribbon { points, levels } => {
@@ -438,7 +435,7 @@ impl Strip {
     }
 }
 
-/// The same curve with `n` control points.
+/// Raises the degree of a curve until it has `n` control points.
 fn elevated(mut curve: Vec<DVec3>, n: usize) -> Vec<DVec3> {
     while curve.len() < n {
         let k = curve.len() as f64;
@@ -448,7 +445,7 @@ fn elevated(mut curve: Vec<DVec3>, n: usize) -> Vec<DVec3> {
     curve
 }
 
-/// A Bézier curve as polynomials, by de Casteljau's algorithm.
+/// Evaluates a Bézier curve at a polynomial, by de Casteljau's algorithm.
 fn bezier_polynomial(points: &[DVec3], u: &Poly3) -> [Poly3; 3] {
     [0, 1, 2].map(|a| {
         let mut row: Vec<Poly3> = points.iter().map(|p| Poly3::constant(p[a])).collect();
@@ -461,7 +458,7 @@ fn bezier_polynomial(points: &[DVec3], u: &Poly3) -> [Poly3; 3] {
     })
 }
 
-/// A Bézier curve of degree up to 3 and its derivative, by de Casteljau's algorithm.
+/// Evaluates a Bézier curve of degree up to 3 and its derivative, by de Casteljau's algorithm.
 fn bezier(points: impl Iterator<Item = DVec3>, u: f64) -> (DVec3, DVec3) {
     let mut row = [DVec3::ZERO; 4];
     let mut n = 0;
@@ -479,8 +476,7 @@ fn bezier(points: impl Iterator<Item = DVec3>, u: f64) -> (DVec3, DVec3) {
     (row[0], slope)
 }
 
-// The registry's entry: reads a [`Bend3`] from text.
-
+/// The entry of the registry, which reads a [`Bend3`] from text.
 pub(in crate::deform) struct Entry;
 
 /// The presets: Barr's deformations.
@@ -628,7 +624,7 @@ fn spine(s: &Settings3<'_>) -> Result<Spine3, Error> {
     if points.len() < 2 {
         return Err(Error::missing("skeleton", "two or more points X,Y,Z, unless there is a `preset`"));
     }
-    // The range is checked, so that the cast is exact.
+    // The range has been checked, so the cast is exact.
     let degree = s.flat().number_if("degree")?.map_or((points.len() - 1).min(3), |d| d as usize);
     Ok(if s.flat().flag("spline")? { Spine3::Spline(points, degree) } else { Spine3::Bezier(points, degree) })
 }

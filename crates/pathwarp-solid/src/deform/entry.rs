@@ -1,4 +1,4 @@
-//! A deformation of space as the registry sees it: the trait [`Deformation3`] and the data that describes one.
+//! The interface between deformations of space and the registry: the trait [`Deformation3`] and the data that describes one.
 
 use crate::map::Map3;
 use crate::settings::{Frame3, Settings3};
@@ -45,19 +45,19 @@ pub struct About3 {
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum Law3 {
-    /// With these values nothing moves.
+    /// With these values, nothing moves.
     Identity(Pairs),
     /// Both sets of values give the same map.
     Same(Pairs, Pairs),
-    /// With these values planes stay plane.
+    /// With these values, planes stay plane.
     KeepsPlanes(Pairs),
-    /// With these values straight lines in this direction stay straight.
+    /// With these values, straight lines in this direction stay straight.
     KeepsLinesAlong(Pairs, [f64; 3]),
-    /// With these values every point stays on its line through this one.
+    /// With these values, every point stays on its line through this one.
     KeepsRays(Pairs, [f64; 3]),
-    /// With these values nothing moves outside the box between two corners.
+    /// With these values, nothing moves outside the box between two corners.
     FixedOutside(Pairs, [[f64; 3]; 2]),
-    /// With these values every volume is multiplied by this factor.
+    /// With these values, every volume is multiplied by this factor.
     Volume(Pairs, f64),
 }
 
@@ -74,9 +74,7 @@ pub struct Case3 {
     pub tolerance: f64,
 }
 
-// The result of building a deformation of space: the map, and everything about it that is not a map.
-
-/// A deformation of space with its parameters settled.
+/// The result of building a deformation of space: the map, and notes about it.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct Built3 {
@@ -84,11 +82,11 @@ pub struct Built3 {
     pub map: Arc<dyn Map3>,
     /// Decisions made on the user's behalf.
     pub notes: Vec<String>,
-    /// Problems the user should know of.
+    /// Problems that the user should know about.
     pub warnings: Vec<String>,
-    /// Polylines that a preview draws: control nets, skeletons, rays.
+    /// Polylines for a preview: control nets, skeletons, rays.
     pub guides: Vec<Vec<DVec3>>,
-    /// The place from which a model looks unchanged.
+    /// The place from which a model looks unchanged, if there is one.
     pub eye: Option<DVec3>,
     /// Files requested by parameters of kind [`Save`](pathwarp::param::Kind::Save).
     pub saves: Vec<SavedFile>,

@@ -1,7 +1,7 @@
 //! Free-form deformation of space by a box of control points.
 //!
-//! See [`Lattice3`] for the formula. Pins are solved for as in W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of
-//! free-form deformations*, SIGGRAPH 1992.
+//! See [`Lattice3`] for the formula. Pins are solved as in W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of free-form
+//! deformations*, SIGGRAPH 1992.
 
 use super::entry::{About3, Built3, Case3, Deformation3, Law3};
 use crate::lattice::{Lattice3, LatticeMap3};
@@ -14,24 +14,24 @@ use pathwarp::solve::{misses, smallest_change};
 use serde::Deserialize;
 use std::sync::Arc;
 
-/// The highest degree of a lattice along an axis.
+/// Limit on the degree of a lattice along an axis.
 const MAX_DEGREE: usize = 10;
-/// The largest number of Bézier pieces along an axis.
+/// Limit on the number of Bézier pieces along an axis.
 const MAX_CELLS: usize = 16;
-/// Limit on pins: the work grows with the cube of their number.
+/// Limit on the number of pins, with whose cube the work grows.
 const MAX_PINS: usize = 256;
 
-/// Faces of a box, in the order of [`Ffd3::freeze`]: x, y, z, the lower one first.
+/// Faces of a box in the order of [`Ffd3::freeze`]: along x, y and z, with the lower one first.
 const FACES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
 
 /// A change of one control point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Change3 {
-    /// Put it here.
+    /// Moves it to this point.
     Place(DVec3),
-    /// Move it by so much.
+    /// Moves it by this vector.
     Shift(DVec3),
-    /// Set its weight: above 1 it pulls harder than the others.
+    /// Sets its weight. Above 1, it pulls harder than the others.
     Weight(f64),
 }
 
@@ -66,7 +66,7 @@ pub struct Ffd3 {
 }
 
 impl Ffd3 {
-    /// Starts from a lattice. Outside its box nothing moves, unless it is [extended](Self::extend).
+    /// Starts from a lattice. Nothing moves outside its box, unless it is [extended](Self::extend).
     #[must_use]
     pub fn new(lattice: Lattice3) -> Self {
         Self { lattice, changes: Vec::new(), pins: Vec::new(), frozen: [0; 6], extended: false }
@@ -79,22 +79,22 @@ impl Ffd3 {
         self
     }
 
-    /// Takes a point of the model to another; the control points that are not frozen follow with the smallest change. Pins are
-    /// solved for together, after all other changes. At most 256.
+    /// Moves a point of the model to another. The control points that are not frozen follow with the smallest change. All pins, at
+    /// most 256, are solved together after all other changes.
     #[must_use]
     pub fn pin(mut self, from: DVec3, to: DVec3) -> Self {
         self.pins.push((from, to));
         self
     }
 
-    /// Keeps so many layers of control points in place along the left, right, bottom, top, back and front face: 1 avoids a tear
-    /// at the face, k + 1 keeps k derivatives continuous.
+    /// Freezes layers of control points along the left, right, bottom, top, back and front face. One layer avoids a tear at the
+    /// face, and k + 1 layers keep k derivatives continuous.
     #[must_use]
     pub fn freeze(self, layers: [usize; 6]) -> Self {
         Self { frozen: layers, ..self }
     }
 
-    /// Lets the map continue outside the box.
+    /// Sets whether the map continues outside the box.
     #[must_use]
     pub fn extend(self, extended: bool) -> Self {
         Self { extended, ..self }
@@ -109,7 +109,7 @@ impl Ffd3 {
         Ok(self.build_with_lattice()?.0)
     }
 
-    /// Builds the map, and returns the changed lattice with it.
+    /// Builds the map, and returns it with the changed lattice.
     ///
     /// # Errors
     /// As [`Ffd3::build`].
@@ -151,7 +151,7 @@ impl Ffd3 {
         Ok((built, lattice))
     }
 
-    /// Returns `true` for a frozen control point.
+    /// Whether a control point is frozen.
     fn holds(&self, node: [usize; 3]) -> bool {
         let size = self.lattice.size();
         (0..3).any(|a| node[a] < self.frozen[2 * a] || node[a] + self.frozen[2 * a + 1] >= size[a])
@@ -218,16 +218,16 @@ impl Ffd3 {
 }
 
 fn names(nodes: &[[usize; 3]]) -> String {
-    /// A longer list would not be read.
-    const SHOWN: usize = 8;
-    let mut out = nodes.iter().take(SHOWN).map(|[i, j, k]| format!("{i},{j},{k}")).collect::<Vec<_>>().join(" ");
-    if nodes.len() > SHOWN {
-        out += &format!(" and {} more", nodes.len() - SHOWN);
+    /// Nobody would read a longer list.
+    const MAX_NAMES: usize = 8;
+    let mut out = nodes.iter().take(MAX_NAMES).map(|[i, j, k]| format!("{i},{j},{k}")).collect::<Vec<_>>().join(" ");
+    if nodes.len() > MAX_NAMES {
+        out += &format!(" and {} more", nodes.len() - MAX_NAMES);
     }
     out
 }
 
-/// Rows, columns and files of control points as polylines.
+/// Draws the lines of control points along all three axes as polylines.
 fn net(lattice: &Lattice3) -> Vec<Vec<DVec3>> {
     let size = lattice.size();
     let mut out = Vec::new();
@@ -244,24 +244,22 @@ fn net(lattice: &Lattice3) -> Vec<Vec<DVec3>> {
     out
 }
 
-// Lattices in space as JSON.
-//
-// ```json
-// {
-//   "degree": [1, 1, 1],
-//   "cells": [1, 1, 1],
-//   "region": [0, 0, 0, 10, 10, 10],
-//   "points": [
-//     [[[0, 0, 0], [10, 0, 0]], [[0, 10, 0], [10, 10, 0]]],
-//     [[[0, 0, 10], [10, 0, 10]], [[0, 10, 10], [12, 10, 10, 2]]]
-//   ]
-// }
-// ```
-//
-// `points` are layers from the back, each of rows from the bottom, each from left to right: x, y, z and, unless it is 1, the
-// weight. A row has degree + cells points. `region` is x, y, z, width, height and depth of the box; without it the box is the
-// model's.
-
+/// A lattice in space as JSON.
+///
+/// ```json
+/// {
+///   "degree": [1, 1, 1],
+///   "cells": [1, 1, 1],
+///   "region": [0, 0, 0, 10, 10, 10],
+///   "points": [
+///     [[[0, 0, 0], [10, 0, 0]], [[0, 10, 0], [10, 10, 0]]],
+///     [[[0, 0, 10], [10, 0, 10]], [[0, 10, 10], [12, 10, 10, 2]]]
+///   ]
+/// }
+/// ```
+///
+/// `points` holds layers from the back, each of rows from the bottom, each of points from left to right: x, y, z and, unless it is 1,
+/// the weight. A row has degree + cells points. `region` is x, y, z, width, height and depth of the box; it defaults to the model's box.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LatticeFile {
@@ -276,15 +274,15 @@ fn one() -> [usize; 3] {
     [1; 3]
 }
 
-/// Reads a lattice. The flag is `true` if the file names its region; otherwise the region is `frame`.
+/// Reads a lattice. The flag is `true` if the file specifies its region; otherwise the region is `frame`.
 fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, bool), Error> {
     let file: LatticeFile = serde_json::from_str(text).map_err(|e| {
         Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is not a lattice in space: {e}"))
     })?;
     let wrong = |what: String| Error::input(name, what);
-    for (what, numbers, most) in [("degrees", file.degree, MAX_DEGREE), ("cells", file.cells, MAX_CELLS)] {
-        if numbers.iter().any(|n| !(1..=most).contains(n)) {
-            return Err(wrong(format!("its {what} are {numbers:?}; each must be 1 to {most}")));
+    for (what, numbers, max) in [("degrees", file.degree, MAX_DEGREE), ("cells", file.cells, MAX_CELLS)] {
+        if numbers.iter().any(|n| !(1..=max).contains(n)) {
+            return Err(wrong(format!("its {what} are {numbers:?}; each must be 1 to {max}")));
         }
     }
     let region = match file.region {
@@ -319,7 +317,7 @@ fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, bool), Error> 
     Ok((lattice, file.region.is_some()))
 }
 
-/// Writes a lattice.
+/// Writes a lattice as JSON.
 fn write(lattice: &Lattice3) -> String {
     let numbers = |v: &[f64]| format!("[{}]", v.iter().map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(", "));
     let [nx, ny, nz] = lattice.size();
@@ -338,8 +336,7 @@ fn write(lattice: &Lattice3) -> String {
     )
 }
 
-// The registry's entry: reads an [`Ffd3`] from text.
-
+/// The entry of the registry, which reads an [`Ffd3`] from text.
 pub(in crate::deform) struct Entry;
 
 static ABOUT: About3 = About3 {
@@ -444,7 +441,7 @@ impl Deformation3 for Entry {
     }
 }
 
-/// Reads the initial lattice. The flag is `true` if a file gave it its region.
+/// Reads the initial lattice. The flag is `true` if a file specifies its region.
 fn lattice(s: &Settings3<'_>) -> Result<(Lattice3, bool), Error> {
     let region = s.box_if("region")?;
     let frame = s.bounds();

@@ -1,7 +1,7 @@
 //! Deformations of space, and the registry that builds them from text.
 //!
-//! Each is a type with a constructor, chainable setters and `build`, such as [`Ffd3`]. [`Registry3`] holds the same as entries
-//! that read their parameters from text, as the command line and recipes do.
+//! Each is a type with a constructor, chainable setters and `build`, such as [`Ffd3`]. [`Registry3`] holds the same deformations as
+//! entries that read their parameters from text, for the command line and recipes.
 
 mod anamorph;
 mod bend;
@@ -18,14 +18,7 @@ pub use entry::{About3, Built3, Case3, Deformation3, Law3};
 pub use ffd::{Change3, Ffd3};
 pub use wrap::Wrap3;
 
-/// The deformations of this crate, in the order of help.
-pub(crate) fn builtin() -> Vec<Arc<dyn Deformation3>> {
-    vec![Arc::new(ffd::Entry), Arc::new(anamorph::Entry), Arc::new(bend::Entry), Arc::new(wrap::Entry)]
-}
-
-// The registry: the deformations of space that a program knows, by name.
-
-/// The deformations of space that a program knows.
+/// The deformations of space that a program knows, by name.
 #[derive(Clone)]
 pub struct Registry3 {
     entries: Vec<Arc<dyn Deformation3>>,
@@ -41,10 +34,17 @@ impl Registry3 {
     /// Returns the deformations of this crate.
     #[must_use]
     pub fn builtin() -> Self {
-        Self { entries: builtin() }
+        Self {
+            entries: vec![
+                Arc::new(ffd::Entry),
+                Arc::new(anamorph::Entry),
+                Arc::new(bend::Entry),
+                Arc::new(wrap::Entry),
+            ],
+        }
     }
 
-    /// Adds an entry; an entry of the same name is replaced.
+    /// Adds an entry, replacing any of the same name.
     #[must_use]
     pub fn with(mut self, entry: impl Deformation3 + 'static) -> Self {
         self.entries.retain(|e| e.about().info.name != entry.about().info.name);

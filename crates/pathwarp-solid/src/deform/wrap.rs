@@ -1,16 +1,14 @@
-//! Wrapping round a cylinder or a cone: a mug, a bottle, a ring, a cup.
+//! Wraps models round a cylinder or a cone: a mug, a bottle, a ring, a cup.
 //!
-//! θ = (x − x₀)/R and ρ = R + (z − z₀) are the angle and the distance from the axis: (x₀ + ρ·sin θ, y, z₀ − R + ρ·cos θ). Lengths on
-//! the surface z = z₀ are kept, volumes grow by ρ/R. The inverse is in closed form.
+//! With θ = (x − x₀)/R, the angle, and ρ = R + (z − z₀), the distance from the axis, the image is
+//! (x₀ + ρ·sin θ, y, z₀ − R + ρ·cos θ). Lengths on the surface z = z₀ are kept, and volumes grow by ρ/R. The inverse has a closed form.
 //!
-//! For a cone the model is first turned by the slope β of its side, sin β = (R₁ − R₀)/H, about the middle of its back; R is the mean
-//! of both radii. Lengths along the side are kept, and lengths round it in the middle of the height; level lines stay level.
+//! For a cone, the model is first turned by the slope β of its side, sin β = (R₁ − R₀)/H, about the middle of its back; R is the mean
+//! of both radii. Lengths along the side are kept, as are lengths round it in the middle of its height; level lines stay level.
 
-use super::entry::{About3, Case3, Deformation3, Law3};
-use crate::deform::entry::Built3;
+use super::entry::{About3, Built3, Case3, Deformation3, Law3};
 use crate::map::{Chain3, Collineation, Creases3, Jet3, Map3};
-use crate::settings::Box3;
-use crate::settings::{Extent, Settings3};
+use crate::settings::{Box3, Extent, Settings3};
 use glam::{DMat3, DMat4, DVec3};
 use pathwarp::Error;
 use pathwarp::decimal::trimmed;
@@ -53,19 +51,20 @@ impl Wrap3 {
         Self { level, ..self }
     }
 
-    /// Sets the z at which lengths are kept: what is there comes to lie on the cylinder. Default: the back of the box.
+    /// Sets the z that comes to lie on the cylinder, where lengths are kept. Defaults to the back of the box.
     #[must_use]
     pub fn surface(self, z: f64) -> Self {
         Self { surface: Some(z), ..self }
     }
 
-    /// Wraps round a cone: `radius` is that at the bottom (at the left, if the axis is level), this one that at the top.
+    /// Wraps round a cone with this radius at the top. The one given to [`new`](Self::new) is that at the bottom (or at the left, if
+    /// the axis is level).
     #[must_use]
     pub fn cone(self, radius: f64) -> Self {
         Self { far: Some(radius), ..self }
     }
 
-    /// Builds the map. A model that is longer than the circumference gives a warning.
+    /// Builds the map. A model longer than the circumference gives a warning.
     ///
     /// # Errors
     /// [`Error::Usage`] for a radius that is not positive, or radii that differ by more than the model is high.
@@ -107,7 +106,7 @@ impl Wrap3 {
     }
 }
 
-/// The turn about the line through the middle of an axis of the model and its back that gives the axis the slope of a cone's side.
+/// Turns an axis of the model to the slope of a cone's side, about the line through the middle of that axis at the back.
 fn turn(axis: usize, middle: f64, surface: f64, sine: f64) -> DMat4 {
     let cosine = (1.0 - sine * sine).sqrt();
     let (side, depth) = (DVec3::AXES[axis], DVec3::Z);
@@ -119,7 +118,7 @@ fn turn(axis: usize, middle: f64, surface: f64, sine: f64) -> DMat4 {
     DMat4::from_translation(center) * turn * DMat4::from_translation(-center)
 }
 
-/// Round a cylinder.
+/// Wraps round a cylinder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cylinder {
     /// The axis along which the model is wrapped: 0 or 1.
@@ -160,7 +159,7 @@ impl Map3 for Cylinder {
     }
 }
 
-/// The inverse, for angles up to half a turn to both sides.
+/// The inverse, for angles up to half a turn to either side.
 #[derive(Debug, Clone, Copy)]
 struct Unwrapped(Cylinder);
 

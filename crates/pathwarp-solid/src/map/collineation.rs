@@ -4,8 +4,8 @@ use glam::{DMat4, DVec4};
 
 /// A collineation: (x, y, z, 1) times a matrix, divided by the last coordinate.
 ///
-/// It is defined where some linear forms are positive: its own last coordinate, and those of the collineations that it is
-/// composed of.
+/// It is defined where certain linear forms are positive: its own last coordinate, and those of the collineations of which it is
+/// composed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collineation {
     pub(super) matrix: DMat4,
@@ -17,7 +17,7 @@ impl Collineation {
     /// The collineation that moves nothing.
     pub const IDENTITY: Self = Self { matrix: DMat4::IDENTITY, positive: Vec::new() };
 
-    /// The collineation with this matrix, defined where the last coordinate is positive.
+    /// Makes a collineation from its matrix, defined where the last coordinate is positive.
     #[must_use]
     pub fn new(matrix: DMat4) -> Self {
         let last = matrix.row(3);
@@ -34,7 +34,7 @@ impl Collineation {
     /// The collineation that applies this one first, and then `next`.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
-        // A form that is positive at M·p is Mᵀ times as much at p.
+        // The form f at M·p is the form Mᵀ·f at p.
         let pulled = next.positive.iter().map(|f| self.matrix.transpose() * *f);
         Self { matrix: next.matrix * self.matrix, positive: self.positive.iter().copied().chain(pulled).collect() }
     }

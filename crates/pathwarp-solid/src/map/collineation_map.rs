@@ -1,9 +1,7 @@
-//! A collineation as a map: its value and Jacobian, its domain, and its inverse.
+//! Implements [`Map3`] for collineations.
 
 use super::collineation::Collineation;
-use crate::map::Creases3;
-use crate::map::Jet3;
-use crate::map::Map3;
+use crate::map::{Creases3, Jet3, Map3};
 use glam::{DMat3, DVec3, DVec4};
 use std::sync::Arc;
 
@@ -43,7 +41,7 @@ impl Map3 for Collineation {
         if !back.is_finite() {
             return None;
         }
-        // The image of the domain: forms f(p) become f(M⁻¹·q), and the last coordinate of M⁻¹·q is 1/W.
+        // In the image of the domain, forms f(p) become f(M⁻¹·q), and the last coordinate of M⁻¹·q is 1/W.
         let forms = self.positive.iter().map(|f| back.transpose() * *f);
         let last = back.row(3);
         let affine = last == DVec4::new(0.0, 0.0, 0.0, 1.0);

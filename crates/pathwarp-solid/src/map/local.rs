@@ -1,4 +1,4 @@
-//! Coordinates of a box, in which polynomials are stored.
+//! The coordinates of a box in which polynomials are stored.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ pub(crate) struct Local {
 }
 
 impl Local {
-    /// The coordinates of a batch of points.
+    /// Converts a batch of points.
     #[inline(always)]
     pub(crate) fn lanes(&self, p: &[Lane; 3]) -> [Lane; 3] {
         let (middle, scale) = (self.middle.to_array(), self.scale.to_array());
@@ -18,10 +18,8 @@ impl Local {
     }
 }
 
-// One number for each point of a batch.
-
-/// Points in a batch: two AVX registers of four, or four SSE2 registers of two.
+/// Number of points in a batch: two AVX registers of four, or four SSE2 registers of two.
 pub(crate) const WIDTH: usize = 8;
 
-/// A coordinate of each point of a batch.
+/// One coordinate for each point of a batch.
 pub(crate) type Lane = [f64; WIDTH];

@@ -1,7 +1,7 @@
 //! Maps of space: the result of a deformation once its parameters are known.
 //!
-//! A [`Map3`] takes every point of a model to a new place and knows its Jacobian there. Implement [`Map3::jet`]; the rest is
-//! speed and knowledge: batches, creases, the inverse, and whether planes stay planes. [`Chain3`] composes maps;
+//! A [`Map3`] takes every point of a model to a new place, with a Jacobian. Only [`Map3::jet`] is required; the other methods add
+//! speed and knowledge: batches, creases, the inverse, and whether planes stay planes. [`Chain3`] composes maps, and
 //! [`NewtonInverse3`] inverts any smooth map over a box.
 
 mod collineation;
@@ -26,14 +26,12 @@ pub(crate) use local::Local;
 pub(crate) use poly::Poly3;
 pub(crate) use tensor::{Displaced, Quotient, Radial, Swept, Tensor, for_all};
 
-// The trait that every map of space implements.
-
-/// A differentiable map of space: x right, y up, z towards the viewer.
+/// A differentiable map of space, in which x points right, y up and z towards the viewer.
 ///
-/// Only [`Map3::jet`] is required. [`point`](Map3::point), [`points`](Map3::points) and [`jets`](Map3::jets) are faster ways to
-/// the same values.
+/// Only [`Map3::jet`] is required. [`point`](Map3::point), [`points`](Map3::points) and [`jets`](Map3::jets) compute the same values
+/// faster.
 pub trait Map3: Send + Sync {
-    /// Value and Jacobian at `p`. On a crease, those of either side; outside the domain, not finite.
+    /// The value and the Jacobian at `p`. On a crease, they are those of either side; outside the domain, they are not finite.
     fn jet(&self, p: DVec3) -> Jet3;
 
     /// The value alone.
@@ -41,7 +39,7 @@ pub trait Map3: Send + Sync {
         self.jet(p).p
     }
 
-    /// The jets at `ps`. `out` has the length of `ps`.
+    /// Writes the jets at `ps` to `out`, which has the same length.
     fn jets(&self, ps: &[DVec3], out: &mut [Jet3]) {
         for (p, o) in ps.iter().zip(out) {
             *o = self.jet(*p);
@@ -55,19 +53,19 @@ pub trait Map3: Send + Sync {
         }
     }
 
-    /// The map as a collineation, if it is one: planes stay planes. Neighbours fold into one in a [`Chain3`].
+    /// The map as a collineation, which keeps planes plane, if it is one. A [`Chain3`] folds adjacent collineations into one.
     fn collineation(&self) -> Option<&Collineation> {
         None
     }
 
-    /// The map on a box as a quotient of polynomials of degree `most` or less, if it is one there: the images of rational surfaces
-    /// are then exact.
-    fn fraction(&self, _on: &Box3, _most: usize) -> Option<Fraction3> {
+    /// The map on a box as a quotient of polynomials of at most degree `max`, if it is one there. The images of rational surfaces are
+    /// then exact.
+    fn fraction(&self, _on: &Box3, _max: usize) -> Option<Fraction3> {
         None
     }
 
-    /// The smooth map that this one is on a box, if it is one there; it goes on beyond the box. A box that a crease only touches lies on
-    /// its own side of it, where the map itself may take the points of the crease to the other.
+    /// The smooth map that agrees with this one on a box and continues beyond it, if there is one. If a crease touches the box, the
+    /// result is that of the box's side even on the crease, where the map itself may have the values of the other side.
     fn branch(&self, _on: &Box3) -> Option<Arc<dyn Map3>> {
         None
     }
@@ -80,20 +78,20 @@ pub trait Map3: Send + Sync {
         None
     }
 
-    /// The cost of one evaluation, relative to that of a bend, for the [budget](pathwarp::budget). 1 or more.
+    /// The cost of one evaluation for the [budget](pathwarp::budget), relative to that of a bend. At least 1.
     fn work(&self) -> f64 {
         1.0
     }
 
-    /// The same map, whose searches spend from a budget what they take beyond [`work`](Map3::work), and find nothing once it is used up.
-    /// `None`: nothing is searched.
+    /// The same map, with searches that charge a budget for anything beyond [`work`](Map3::work), and find nothing once it is used up.
+    /// `None` if the map does not search.
     #[doc(hidden)]
     fn within(&self, _budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
         None
     }
 }
 
-/// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
+/// Forwards every method, since a method left to its default would silently lose the speed of the map behind the pointer.
 impl<M: Map3 + ?Sized> Map3 for Arc<M> {
     fn jet(&self, p: DVec3) -> Jet3 {
         (**self).jet(p)
@@ -110,8 +108,8 @@ impl<M: Map3 + ?Sized> Map3 for Arc<M> {
     fn collineation(&self) -> Option<&Collineation> {
         (**self).collineation()
     }
-    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
-        (**self).fraction(on, most)
+    fn fraction(&self, on: &Box3, max: usize) -> Option<Fraction3> {
+        (**self).fraction(on, max)
     }
     fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
         (**self).branch(on)
@@ -130,14 +128,12 @@ impl<M: Map3 + ?Sized> Map3 for Arc<M> {
     }
 }
 
-// The first-order behaviour of a map of space at a point.
-
-/// Value and Jacobian of a map of space at a point.
+/// The value and the Jacobian of a map of space at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Jet3 {
     /// The value F(x, y, z).
     pub p: DVec3,
-    /// The Jacobian: its columns are ∂F/∂x, ∂F/∂y and ∂F/∂z.
+    /// The Jacobian, with the columns ∂F/∂x, ∂F/∂y and ∂F/∂z.
     pub d: DMat3,
 }
 
@@ -171,19 +167,15 @@ impl Jet3 {
         b.cross(c) * n.x + c.cross(a) * n.y + a.cross(b) * n.z
     }
 
-    /// Returns `true` if all twelve numbers are finite.
+    /// Whether all twelve numbers are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.p.is_finite() && self.d.is_finite()
     }
 }
 
-// Creases: surfaces on which a map of space is not smooth, and the boundary of its domain.
-//
-// Both are level sets φ(x, y, z) = 0 in the source, so that a chain can pull the crease of a later map back through the earlier
-// maps, as φ ∘ F.
-
-/// A continuous function on space whose zero set is a crease.
+/// A continuous function φ on space whose zero set is a crease: a surface on which a map is not smooth, or the boundary of its domain.
+/// A chain can pull the crease of a later map back through the earlier maps, as φ ∘ F.
 pub type Level3 = Arc<dyn Fn(DVec3) -> f64 + Send + Sync>;
 
 /// A crease: a level set and the behaviour there.
@@ -229,22 +221,20 @@ impl Creases3 {
         &self.items
     }
 
-    /// Returns `true` if the map is defined at `p`.
+    /// Whether the map is defined at `p`.
     #[must_use]
     pub fn defined_at(&self, p: DVec3) -> bool {
         self.items.iter().all(|c| c.kind != CreaseKind::Edge || (c.level)(p) > 0.0)
     }
 
-    /// Returns `true` if a crease separates `p` and `q`, or passes through one of them.
+    /// Whether a crease separates `p` and `q`, or passes through one of them.
     #[must_use]
     pub fn separate(&self, p: DVec3, q: DVec3) -> bool {
         self.items.iter().any(|c| (c.level)(p) * (c.level)(q) <= 0.0)
     }
 }
 
-// Maps of space one after another.
-
-/// Maps one after another; the first is applied first. Neighbouring collineations are folded into one.
+/// Maps applied one after another. Adjacent collineations are folded into one.
 #[derive(Clone, Default)]
 pub struct Chain3 {
     steps: Vec<Arc<dyn Map3>>,

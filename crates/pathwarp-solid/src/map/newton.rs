@@ -1,4 +1,4 @@
-//! The inverse of any smooth map of space over a box, by Newton's method, with a test that each answer is a solution.
+//! Inverts any smooth map of space over a box by Newton's method, and proves that each answer is near a solution.
 //!
 //! A grid of starting points covers the box. To invert a point q, the cells whose images come near q are tried: damped Newton
 //! steps x ← x + J⁻¹(q − F(x)) run from the cell's centre until they stop changing x. The answer is accepted if the residual is
@@ -10,29 +10,26 @@
 //! If the map folds, a point can have several preimages. Those in the *core* of the box, the part that the map is designed for,
 //! take precedence; outside the core, only those with the orientation of the core's middle count, and of them the nearest.
 
-use crate::map::Jet3;
-use crate::map::Map3;
+use crate::map::{Jet3, Map3};
 use crate::settings::Box3;
 use glam::{DMat3, DVec3};
-use pathwarp::budget::Budget;
-use pathwarp::budget::{Search, is_over};
+use pathwarp::budget::{Budget, Search, is_over};
 use std::fmt;
 use std::sync::Arc;
 
-/// Fewest starting points along a side of the box.
+/// Minimum number of starting points along a side of the box.
 const MIN_STARTS: usize = 8;
-/// Most starting points along a side of the box.
+/// Maximum number of starting points along a side of the box.
 const MAX_STARTS: usize = 32;
 /// Starting points along a side for every piece of the map.
 const STARTS_PER_PIECE: usize = 3;
-/// Newton steps from one starting point.
+/// Limit on Newton steps from one starting point.
 const MAX_STEPS: usize = 40;
-/// A Newton step is halved down to this share before it is given up.
+/// A Newton step is halved down to this fraction before it is given up.
 const MIN_DAMPING: f64 = 1e-4;
-/// Starting points tried for one point.
+/// Limit on starting points tried for one point.
 const MAX_TRIES: usize = 12;
-/// Work of a point of the inverse, as a multiple of the map's: where there is a source. What a search takes beyond this it
-/// spends itself.
+/// Work of inverting a point that has a preimage, as a multiple of the map's. Searches charge for more themselves.
 const INVERSE_WORK: f64 = 5.0;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
@@ -53,9 +50,8 @@ pub struct NewtonInverse3 {
     lipschitz: f64,
     /// Rounding error of an image coordinate.
     rounding: f64,
-    /// The work of the map.
     map_work: f64,
-    /// What searches spend.
+    /// The budget that searches charge.
     budget: Option<Arc<Budget>>,
 }
 
@@ -66,8 +62,8 @@ impl fmt::Debug for NewtonInverse3 {
 }
 
 impl NewtonInverse3 {
-    /// The inverse of `map` over `domain`. Answers up to `reach` outside it count. `pieces` is the number of smooth pieces of
-    /// the map along each axis (1, 1, 1 for a single polynomial).
+    /// Inverts `map` over `domain`, accepting answers up to `reach` outside. `pieces` is the number of smooth pieces of the map along
+    /// each axis (1, 1, 1 for a single polynomial).
     #[must_use]
     pub fn new(map: Arc<dyn Map3>, domain: Box3, reach: f64, pieces: [usize; 3]) -> Self {
         Self::with_core(map, domain, domain, reach, pieces)
@@ -92,7 +88,7 @@ impl NewtonInverse3 {
                 lipschitz = if rate.is_finite() { lipschitz.max(rate) } else { lipschitz };
             }
         }
-        // Each starting point with a box around the image of its cell: the first-order image, enlarged by half.
+        // Bound the image of each starting point's cell by its first-order image, enlarged by half.
         let mut starts = Vec::with_capacity(centers.len());
         let mut boxes = Vec::with_capacity(centers.len());
         for (at, j) in centers.iter().zip(&jets).filter(|(_, j)| j.is_finite()) {
@@ -135,16 +131,16 @@ impl NewtonInverse3 {
         out
     }
 
-    /// The same inverse, whose searches spend from a budget.
+    /// The same inverse, with searches that charge a budget.
     pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
-        // The map may be an inverse itself.
+        // The map may itself be an inverse that searches.
         let map = self.map.within(budget).unwrap_or_else(|| Arc::clone(&self.map));
         Self { map, budget: Some(Arc::clone(budget)), ..self.clone() }
     }
 
     fn bucket(&self, q: DVec3) -> [usize; 3] {
         let t = (q - self.bounds.min) / self.bounds.size() * self.side as f64;
-        // A cast of a negative number or of NaN gives 0.
+        // Casting a negative number or NaN gives 0.
         t.to_array().map(|v| (v as usize).min(self.side - 1))
     }
 
@@ -158,7 +154,7 @@ impl NewtonInverse3 {
     }
 
     fn search(&self, q: DVec3, search: &mut Search) -> Option<Jet3> {
-        /// Looks at a starting point that it takes to find the nearest.
+        /// Number of times that selecting the nearest starting points examines each one.
         const SELECTING: usize = 30;
         if !q.is_finite() || is_over(self.budget.as_ref()) {
             return None;
@@ -195,12 +191,12 @@ impl NewtonInverse3 {
         best.map(|b| b.1)
     }
 
-    /// Distance from the core along the axis where it is largest; 0 inside.
+    /// The largest distance from the core along an axis; 0 inside.
     fn distance_from_core(&self, p: DVec3) -> f64 {
         (self.core.min - p).max(p - self.core.max).max_element().max(0.0)
     }
 
-    /// Newton's method from one starting point.
+    /// Runs Newton's method from one starting point.
     fn newton(&self, start: DVec3, q: DVec3, search: &mut Search) -> Option<Jet3> {
         let room = self.domain.inflate(0.25 * self.domain.size());
         let mut x = start;
@@ -212,7 +208,7 @@ impl NewtonInverse3 {
             if !step.is_finite() {
                 return None;
             }
-            // Halve the step until it reduces the residual. Stay near the box: the map may be undefined further away.
+            // Halve the step until it reduces the residual. Stay near the box, since the map may be undefined further away.
             let mut damping = 1.0;
             let (mut to, mut at, mut r) = (x, jet, residual);
             while damping > MIN_DAMPING {
@@ -237,7 +233,7 @@ impl NewtonInverse3 {
         None
     }
 
-    /// Checks the three conditions above.
+    /// Checks the three conditions for an answer (see the module).
     fn accepted(&self, x: DVec3, jet: &Jet3, residual: DVec3) -> Option<Jet3> {
         let back = jet.d.inverse();
         let eta = (back * residual).length();

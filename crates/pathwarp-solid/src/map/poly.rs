@@ -1,4 +1,4 @@
-//! Polynomials in three variables as lists of terms: the form in which maps say that they are polynomial or rational.
+//! Polynomials in three variables as lists of terms, by which maps describe themselves as polynomial or rational.
 
 use super::local::Local;
 use crate::settings::Box3;
@@ -10,21 +10,19 @@ use std::collections::BTreeMap;
 pub(crate) struct Poly3(BTreeMap<[usize; 3], f64>);
 
 impl Poly3 {
-    /// A constant.
     pub(crate) fn constant(v: f64) -> Self {
         let mut out = Self::default();
         out.add_term([0; 3], v);
         out
     }
 
-    /// Adds a term.
     pub(crate) fn add_term(&mut self, powers: [usize; 3], c: f64) {
         if c != 0.0 {
             *self.0.entry(powers).or_default() += c;
         }
     }
 
-    /// The terms: powers and coefficients.
+    /// Iterates over the terms, as powers and coefficients.
     pub(crate) fn terms(&self) -> impl Iterator<Item = (&[usize; 3], f64)> {
         self.0.iter().map(|(powers, c)| (powers, *c))
     }
@@ -34,7 +32,7 @@ impl Poly3 {
         self.0.keys().map(|p| p.iter().sum()).max().unwrap_or(0)
     }
 
-    /// Returns `true` if it is 1 everywhere.
+    /// Whether the polynomial is 1 everywhere.
     pub(crate) fn is_one(&self) -> bool {
         self.0.len() == 1 && self.0.get(&[0; 3]) == Some(&1.0)
     }
@@ -52,7 +50,6 @@ impl Poly3 {
         out
     }
 
-    /// The product.
     #[must_use]
     pub(crate) fn times(&self, other: &Self) -> Self {
         let mut out = Self::default();
@@ -74,7 +71,7 @@ impl Poly3 {
     }
 }
 
-/// Coordinates from −1 to 1 across a box, in which polynomials are well conditioned there.
+/// Coordinates from −1 to 1 across a box, in which polynomials over the box are well conditioned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chart {
     middle: DVec3,
@@ -85,10 +82,10 @@ impl Chart {
     /// The coordinates of a box.
     #[must_use]
     pub fn on(b: &Box3) -> Self {
-        // A flat box has no size along an axis; any scale serves there.
+        // Any scale will do along an axis on which the box is flat.
         let size = 0.5 * b.size();
-        let least = if size.max_element() > 0.0 { 1e-3 * size.max_element() } else { 1.0 };
-        Self { middle: b.center(), half: size.max(DVec3::splat(least)) }
+        let min = if size.max_element() > 0.0 { 1e-3 * size.max_element() } else { 1.0 };
+        Self { middle: b.center(), half: size.max(DVec3::splat(min)) }
     }
 
     /// The middle of the box.
@@ -112,12 +109,12 @@ impl Chart {
         out
     }
 
-    /// x, y and z as polynomials.
+    /// x, y and z as polynomials in the coordinates.
     pub(crate) fn place(&self) -> [Poly3; 3] {
         [0, 1, 2].map(|a| self.linear(DVec3::AXES[a].extend(0.0)))
     }
 
-    /// The coordinates of another box as polynomials.
+    /// The coordinates of another box as polynomials in these.
     pub(crate) fn local(&self, other: &Local) -> [Poly3; 3] {
         [0, 1, 2].map(|a| {
             let scale = other.scale[a];
@@ -149,7 +146,7 @@ impl Fraction3 {
         Self { chart, parts: [part(x, eye.x), part(y, eye.y), part(z, eye.z), divisor] }
     }
 
-    /// Returns `true` if nothing moves.
+    /// Whether nothing moves.
     #[must_use]
     pub fn is_identity(&self) -> bool {
         *self == Self::identity(self.chart)

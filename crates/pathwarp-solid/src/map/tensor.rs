@@ -1,7 +1,7 @@
 //! Polynomials in three variables as tensor products, in powers of coordinates that run from −1 to 1.
 //!
-//! Centred powers keep the conversion from Bernstein form accurate: at degree 10 the largest coefficient of a basis function is
-//! below 3, where powers from 0 to 1 would reach 10⁴.
+//! Centred powers keep the conversion from Bernstein form accurate. At degree 10, the largest coefficient of a basis function is below
+//! 3, whereas with coordinates from 0 to 1 it would reach 10⁴.
 
 use super::local::{Lane, Local, WIDTH};
 use super::poly::Poly3;
@@ -14,12 +14,12 @@ use pulp::{Arch, Simd, WithSimd};
 pub(crate) struct Tensor<const C: usize> {
     /// Numbers of powers along x, y and z.
     size: [usize; 3],
-    /// x runs fastest.
+    /// The coefficients, with x running fastest.
     c: Vec<[f64; C]>,
 }
 
 impl<const C: usize> Tensor<C> {
-    /// The polynomials with these Bernstein coefficients over [−1, 1]³, of degrees `size` − 1; x runs fastest.
+    /// Converts Bernstein coefficients over [−1, 1]³, with x running fastest. The degrees are `size` − 1.
     pub(crate) fn bernstein(size: [usize; 3], mut c: Vec<[f64; C]>) -> Self {
         let strides = [1, size[0], size[0] * size[1]];
         for (n, stride) in size.iter().zip(strides) {
@@ -36,7 +36,7 @@ impl<const C: usize> Tensor<C> {
         Self { size, c }
     }
 
-    /// Powers and coefficients.
+    /// Iterates over the terms, as powers and coefficients.
     pub(crate) fn terms(&self) -> impl Iterator<Item = ([usize; 3], &[f64; C])> {
         let [nx, ny, _] = self.size;
         self.c.iter().enumerate().map(move |(n, c)| ([n % nx, n / nx % ny, n / (nx * ny)], c))
@@ -53,7 +53,7 @@ impl<const C: usize> Tensor<C> {
         used.map(|(powers, _)| powers.iter().sum()).max().unwrap_or(0)
     }
 
-    /// The polynomials in other variables.
+    /// Substitutes polynomials for the variables.
     pub(crate) fn in_terms_of(&self, t: &[Poly3; 3]) -> [Poly3; C] {
         let powers = [0, 1, 2].map(|a| t[a].powers(self.size[a] - 1));
         let mut out = std::array::from_fn(|_| Poly3::default());
@@ -116,7 +116,7 @@ impl<const C: usize> Tensor<C> {
         z
     }
 
-    /// The values at a batch of points. Common sizes are compiled on their own, with all loops unrolled.
+    /// The values at a batch of points. Common sizes are compiled separately, with all loops unrolled.
     #[inline(always)]
     pub(crate) fn lanes(&self, t: &[Lane; 3]) -> [Lane; C] {
         match self.size {
@@ -154,7 +154,7 @@ impl<const C: usize> Tensor<C> {
     }
 }
 
-/// a·t + b.
+/// Computes a·t + b in place.
 #[inline(always)]
 fn times_plus(a: &mut Lane, t: &Lane, b: &Lane) {
     for ((a, t), b) in a.iter_mut().zip(t).zip(b) {
@@ -186,11 +186,8 @@ fn powers(n: usize) -> Vec<Vec<f64>> {
     out
 }
 
-// Batches of points on the processor's vector units, chosen at run time.
-//
-// The arithmetic is the same on all of them, to the last bit: products and sums are never fused.
-
-/// Work on points that the compiler turns into vector instructions.
+/// A computation on points for the processor's vector units, which are chosen at run time. Products and sums are never fused, so that
+/// results are the same on all of them, to the last bit.
 pub(crate) trait Kernel {
     /// Replaces a batch of coordinates by those of the images.
     fn lanes(&self, p: &mut [Lane; 3]);
@@ -259,7 +256,7 @@ impl Kernel for Matrix {
     }
 }
 
-/// Displacements by a tensor product: p + D(t).
+/// Displaces by a tensor product: p + D(t).
 pub(crate) struct Displaced<'a> {
     pub(crate) local: Local,
     pub(crate) tensor: &'a Tensor<3>,
@@ -277,7 +274,7 @@ impl Kernel for Displaced<'_> {
     }
 }
 
-/// A quotient of tensor products: N(t)/W(t).
+/// Divides tensor products: N(t)/W(t).
 pub(crate) struct Quotient<'a> {
     pub(crate) local: Local,
     pub(crate) tensor: &'a Tensor<4>,
@@ -295,7 +292,7 @@ impl Kernel for Quotient<'_> {
     }
 }
 
-/// A dilation about a point by a tensor product: O + (p − O)/δ(t).
+/// Dilates about a point by a tensor product: O + (p − O)/δ(t).
 pub(crate) struct Radial<'a> {
     pub(crate) local: Local,
     pub(crate) eye: DVec3,
@@ -314,7 +311,7 @@ impl Kernel for Radial<'_> {
     }
 }
 
-/// Three curves at a coordinate, C(u) + v·S(u) + w·T(u), where u, v and w are the coordinates from `axis` on in cyclic order.
+/// Sweeps along curves: C(u) + v·S(u) + w·T(u), where u, v and w are the coordinates from `axis` on in cyclic order.
 pub(crate) struct Swept<'a> {
     pub(crate) axis: usize,
     pub(crate) local: Local,

@@ -1,4 +1,4 @@
-//! A mesh under a map: vertices by value, normals by the cofactors of the Jacobian.
+//! Deforms meshes: maps vertices, turns normals by the cofactors of the Jacobian, and subdivides faces that the map bends.
 
 use super::{Corner, Mark, Mesh, MeshError, NONE, PolygonKind};
 use crate::map::{Creases3, Jet3, Map3};
@@ -9,41 +9,41 @@ use pathwarp::map::CreaseKind;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 
-/// Vertices that one thread takes at a time.
+/// Number of vertices in a chunk of parallel work.
 const CHUNK: usize = 1 << 14;
 
-/// What happened to a mesh.
+/// Statistics of a deformed mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Deformed {
-    /// Vertices that moved.
+    /// Number of vertices that moved.
     pub moved: usize,
-    /// Vertices at which the map turns space inside out.
+    /// Number of vertices at which the map turns space inside out.
     pub folded: usize,
-    /// The first of them, before the map.
+    /// The first such vertex, before the map.
     pub folded_at: Option<DVec3>,
-    /// Edges across which the map jumps: their faces are stretched over a gap.
+    /// Number of edges across which the map jumps, so that their faces are stretched over a gap.
     pub torn: usize,
-    /// A place on the first of them, before the map.
+    /// A point on the first such edge, before the map.
     pub torn_at: Option<DVec3>,
-    /// The largest distance between the middles of edges, which stay straight, and their exact images, among a few thousand edges.
+    /// The largest distance between the middle of an edge, which stays straight, and its exact image, among a few thousand edges.
     pub bulge: f64,
 }
 
 /// A vertex at which the map is not defined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Undefined3 {
-    /// Its index.
+    /// Index of the vertex.
     pub vertex: usize,
-    /// Its place before the map.
+    /// Position before the map.
     pub at: DVec3,
 }
 
 /// Maps a mesh in place.
 ///
-/// A normal that several vertices share becomes one for each of them, since the map turns it differently at each.
+/// A normal that several vertices share becomes a separate one for each, since the map turns it differently at each.
 ///
 /// # Errors
-/// The first vertex at which the map is not defined; the mesh is then unspecified.
+/// Returns the first vertex at which the map is not defined. The content of the mesh is then unspecified.
 pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
     let mut creases = Creases3::default();
     map.creases(&mut creases);
@@ -63,7 +63,7 @@ pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
     }
     let moved = before.par_iter().zip(&mesh.positions).filter(|(p, q)| p != q).count();
     let mut out = Deformed { moved, ..Deformed::default() };
-    // The determinant of a collineation's Jacobian has the sign of its matrix's.
+    // The determinant of a collineation's Jacobian has the sign of that of its matrix.
     if map.collineation().is_none_or(|c| c.matrix().determinant() < 0.0) {
         let folded: Vec<(usize, DVec3)> = before
             .par_chunks(CHUNK)
@@ -85,11 +85,11 @@ pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
     Ok(out)
 }
 
-/// The largest distance between the middle of an edge and its image, among edges all over the mesh.
+/// Finds the largest distance between the middle of an edge and its image, among edges sampled from the whole mesh.
 fn bulge(mesh: &Mesh, before: &[DVec3], map: &dyn Map3) -> f64 {
-    /// Polygons that are looked at.
-    const MOST: usize = 10_000;
-    let every = mesh.polygons.len().div_ceil(MOST).max(1);
+    /// Limit on the polygons to examine.
+    const MAX_POLYGONS: usize = 10_000;
+    let every = mesh.polygons.len().div_ceil(MAX_POLYGONS).max(1);
     let edges = mesh.polygons().step_by(every).flat_map(|(_, corners)| {
         (0..corners.len()).map(move |i| (corners[i].vertex as usize, corners[(i + 1) % corners.len()].vertex as usize))
     });
@@ -98,11 +98,11 @@ fn bulge(mesh: &Mesh, before: &[DVec3], map: &dyn Map3) -> f64 {
     off.filter(|d| d.is_finite()).fold(0.0, f64::max)
 }
 
-/// Counts the edges of polygons that cross a crease at which the map jumps, and finds a place of the first.
+/// Counts the edges of polygons that cross a crease at which the map jumps, and returns a point of the first.
 fn tears(mesh: &Mesh, before: &[DVec3], map: &dyn Map3, creases: &Creases3) -> (usize, Option<DVec3>) {
-    /// Jumps below this share of the model's size are rounding.
+    /// Smaller jumps, as a fraction of the model's size, are rounding.
     const VISIBLE: f64 = 1e-6;
-    /// The map is compared this far before and behind the crease, as a share of the edge.
+    /// Distance from the crease at which to compare the map, as a fraction of the edge.
     const BESIDE: f64 = 1e-9;
     let kinks: Vec<_> = creases.items().iter().filter(|c| c.kind == CreaseKind::Kink).take(64).collect();
     if kinks.is_empty() {
@@ -136,7 +136,7 @@ fn tears(mesh: &Mesh, before: &[DVec3], map: &dyn Map3, creases: &Creases3) -> (
 
 /// Turns the normals with the surface.
 fn turn_normals(mesh: &mut Mesh, before: &[DVec3], map: &dyn Map3) {
-    // One normal for each pair of a vertex and a normal. Most files pair them one to one.
+    // Make one normal for each pair of a vertex and a normal. Most files pair them one to one.
     let paired = mesh.corners.par_iter().all(|c| c.normal == NONE || c.normal == c.vertex);
     let pairs: Vec<(u32, u32)> = if paired && mesh.normals.len() <= before.len() {
         (0..u32::try_from(mesh.normals.len()).unwrap_or(NONE)).map(|n| (n, n)).collect()
@@ -158,7 +158,7 @@ fn turn_normals(mesh: &mut Mesh, before: &[DVec3], map: &dyn Map3) {
         map.jets(&ps, &mut jets);
         let turned = pairs.iter().zip(&jets).map(|((_, n), j)| {
             let n = mesh.normals[*n as usize];
-            // Without a tangent plane there is no better normal than the old one.
+            // Without a tangent plane, keep the old normal.
             j.normal(n).try_normalize().unwrap_or(n)
         });
         turned.collect()
@@ -166,25 +166,23 @@ fn turn_normals(mesh: &mut Mesh, before: &[DVec3], map: &dyn Map3) {
     mesh.normals = pairs.par_chunks(CHUNK).flat_map_iter(turn).collect();
 }
 
-// Subdivides a mesh until its faces follow their images under a map.
-//
-// An edge is halved while the map bends it away from its chord by more than the tolerance, at its quarters or its middle; a face
-// whose middle bulges gets all its edges halved. The decision depends on the places of an edge's ends alone, so that faces that
-// share them are split alike and the mesh has no cracks, even where a file repeats vertices along a seam. Faces without a
-// split edge stay as they are; others become triangles.
+/// Limit on rounds of halving, which divide an edge into at most 2¹⁶ parts.
+const MAX_ROUNDS: usize = 16;
 
-/// Most rounds of halving, which give at most 2¹⁶ parts of an edge.
-const MOST_ROUNDS: usize = 16;
-
-/// Subdivides a mesh so that its image under `map` is within `tolerance` of the exact image of its surface, as far as the edges'
-/// quarters and middles and the faces' middles tell.
+/// Subdivides a mesh so that its image under `map` is within `tolerance` of the exact image of its surface, judging by the quarters and
+/// middles of edges and the middles of faces.
+///
+/// An edge is halved while the map bends it away from its chord by more than the tolerance; a face whose middle bulges gets all its
+/// edges halved. The decision depends only on the positions of an edge's ends, so that faces that share them are split alike and the
+/// mesh has no cracks, even where a file repeats vertices along a seam. Faces without a split edge stay as they are; others become
+/// triangles.
 ///
 /// # Errors
-/// More evaluations of the map, or more edges, than the limits allow.
+/// The evaluations of the map or the number of edges exceed the limits.
 pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) -> Result<(), MeshError> {
     let mut work = Refining { images: mesh.positions.clone(), map, tolerance, budget, close: HashSet::new() };
     work.map.points(&mut work.images);
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let split = work.edges_to_split(mesh)?;
         if split.is_empty() {
             break;
@@ -195,12 +193,11 @@ pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) 
     Ok(())
 }
 
-/// Segments of the mesh for the side of a polygon that is halved: half of it, and one across the face, which are in turn looked at in the
-/// next round.
+/// Segments added when a side of a polygon is halved: half of it, and one across the face. The next round examines both.
 const PER_SPLIT: u64 = 2;
 
-/// The sides of polygons that are to be halved: an edge may belong to any number of them. A face that is cut becomes triangles, whose
-/// sides count as well.
+/// The number of sides of polygons to halve, since an edge may belong to any number of polygons. A face that is cut becomes triangles,
+/// whose sides count as well.
 fn halved(mesh: &Mesh, split: &HashSet<Edge>) -> u64 {
     let of = |corners: &[Corner]| {
         let next = corners.iter().cycle().skip(1);
@@ -223,7 +220,7 @@ struct Refining<'a> {
     map: &'a dyn Map3,
     tolerance: f64,
     budget: &'a Budget,
-    /// Edges that are known to be close enough.
+    /// Edges known to be close enough.
     close: HashSet<Edge>,
 }
 
@@ -249,7 +246,7 @@ impl Refining<'_> {
                 }
             }
         }
-        // A bulge matters only where no edge tells of it.
+        // A bulge only matters if no edge of the face is split anyway.
         let mut bulging = Vec::new();
         for corners in mesh.faces() {
             let edges = || (0..corners.len()).map(|i| edge(corners[i].vertex, corners[(i + 1) % corners.len()].vertex));
@@ -263,7 +260,7 @@ impl Refining<'_> {
 
     fn bends(&self, mesh: &Mesh, (i, j): Edge) -> Result<bool, MeshError> {
         let ends = [mesh.positions[i as usize], mesh.positions[j as usize]];
-        // The same order for every copy of the edge.
+        // Use the same order for every copy of the edge.
         let swap = ends[0].to_array().partial_cmp(&ends[1].to_array()) == Some(std::cmp::Ordering::Greater);
         let [a, b] = if swap { [ends[1], ends[0]] } else { ends };
         let [p, q] = (if swap { [j, i] } else { [i, j] }).map(|v| self.images[v as usize]);
@@ -327,7 +324,7 @@ impl Refining<'_> {
         *mesh = out;
     }
 
-    /// A face as triangles. A quad is cut along the diagonal that is shorter in the image.
+    /// Divides a face into triangles. A quad is cut along the diagonal that is shorter in the image.
     fn triangles(&self, corners: &[Corner]) -> Vec<[Corner; 3]> {
         let at = |i: usize| self.images[corners[i].vertex as usize];
         if let [a, b, c, d] = *corners
@@ -343,7 +340,7 @@ fn push_mark(mesh: &mut Mesh, mark: Mark) {
     mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), mark));
 }
 
-/// The middles of edges, made once for each pair of indices.
+/// Caches the middles of edges by pairs of indices.
 #[derive(Default)]
 struct Halves {
     vertices: HashMap<Edge, u32>,
@@ -391,9 +388,9 @@ fn push<T>(list: &mut Vec<T>, value: T) -> u32 {
     u32::try_from(list.len() - 1).unwrap_or(NONE)
 }
 
-/// Appends a triangle whose marked edges, each from a corner to the next, are halved.
+/// Appends a triangle with its marked edges, each from a corner to the next, halved.
 fn triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], marked: [bool; 3]) {
-    // Turn it until a lone marked edge is the first, and a lone unmarked one the last.
+    // Rotate the corners so that a lone marked edge is the first, and a lone unmarked one the last.
     let count = marked.iter().filter(|m| **m).count();
     let turn = match count {
         1 => marked.iter().position(|m| *m),

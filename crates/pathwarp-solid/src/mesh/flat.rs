@@ -1,5 +1,7 @@
-//! A shape in the plane as triangles, and its preparation for a solid: no two vertices in one place, and none at which the outline touches
-//! itself, since walls of the solid would meet there in one edge.
+//! Shapes in the plane as triangles, and their extrusion into solids.
+//!
+//! Before it is extruded, a shape is changed so that no two vertices coincide and the outline touches itself nowhere: walls of the solid
+//! would share an edge there.
 
 use super::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
@@ -8,7 +10,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 /// A shape in the plane, filled with triangles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FlatShape {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Vertices, y up.
     pub points: Vec<[f64; 2]>,
@@ -16,14 +18,14 @@ pub struct FlatShape {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Vertices that are closer, as a share of the largest coordinate, would be one in a file in single precision.
+/// Vertices closer than this fraction of the largest coordinate would coincide in a single-precision file.
 const SAME: f64 = 1e-6;
-/// They are drawn apart by this share.
+/// The fraction of the largest coordinate by which they are moved apart.
 const APART: f64 = 1e-5;
 
 impl FlatShape {
     /// Twice the area, negative if the triangles are clockwise.
-    pub(super) fn area(&self) -> f64 {
+    fn area(&self) -> f64 {
         let twice = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| self.at(i));
             (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
@@ -41,15 +43,15 @@ impl FlatShape {
     }
 
     /// Adds the vertices and triangles of another shape.
-    pub(super) fn append(&mut self, other: &Self) {
+    fn append(&mut self, other: &Self) {
         let first = u32::try_from(self.points.len()).unwrap_or(u32::MAX);
         self.points.extend_from_slice(&other.points);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| first.saturating_add(i))));
     }
 
-    /// The same shape, counter-clockwise, without triangles of fewer than three vertices. Those without area stay, as they keep the
-    /// shape together.
-    pub(super) fn turned(&self) -> Self {
+    /// The same shape, counter-clockwise, without triangles that repeat a vertex. Triangles without area stay: they hold the shape
+    /// together.
+    fn turned(&self) -> Self {
         let turned = self.area() < 0.0;
         let own = |[a, b, c]: [u32; 3]| if turned { [a, c, b] } else { [a, b, c] };
         let triangles =
@@ -57,12 +59,12 @@ impl FlatShape {
         Self { triangles, ..self.clone() }
     }
 
-    /// The same shape with vertices in one place drawn apart, each into the middle of its own triangles.
-    pub(super) fn separated(mut self) -> Self {
+    /// The same shape with coinciding vertices moved apart, each towards the middle of its own triangles.
+    fn separated(mut self) -> Self {
         let step = SAME * self.reach();
         let cell = |p: &[f64; 2]| p.map(|v| (v / step).floor() as i64);
         let mut first: HashMap<[i64; 2], u32> = HashMap::new();
-        // Vertices in one place with their numbers there, and their triangles.
+        // Each coinciding vertex, with its number at that place and its triangles.
         let mut crowded: BTreeMap<u32, (u32, Vec<usize>)> = BTreeMap::new();
         let mut counts: HashMap<u32, u32> = HashMap::new();
         for (i, p) in (0u32..).zip(&self.points) {
@@ -94,8 +96,8 @@ impl FlatShape {
         self
     }
 
-    /// The same shape with a vertex for each of the parts that meet in one only, drawn apart.
-    pub(super) fn unpinched(mut self) -> Self {
+    /// The same shape, in which parts that meet at a single vertex each get a vertex of their own, moved apart.
+    fn unpinched(mut self) -> Self {
         let all: HashSet<(u32, u32)> = sides(&self.triangles).collect();
         let mut starts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (a, b) in sides(&self.triangles).filter(|(a, b)| !all.contains(&(*b, *a))) {
@@ -135,11 +137,11 @@ pub(crate) fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> 
     triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
 }
 
-/// The triangles round a vertex from the side to `next` to the next side of the outline.
+/// The triangles round a vertex, from the side to `first` as far as the next side of the outline.
 fn fan(shape: &FlatShape, after: &HashMap<(u32, u32), usize>, vertex: u32, first: u32) -> Vec<usize> {
     let mut out: Vec<usize> = Vec::new();
     let mut next = first;
-    // Sides that several triangles claim could lead in circles.
+    // Where several triangles claim a side, this could go in circles.
     while let Some(n) = after.get(&(vertex, next)).filter(|_| out.len() < shape.triangles.len()) {
         let t = shape.triangles[*n];
         let corner = t.iter().position(|i| *i == vertex).unwrap_or_default();
@@ -152,7 +154,7 @@ fn fan(shape: &FlatShape, after: &HashMap<(u32, u32), usize>, vertex: u32, first
     out
 }
 
-/// A vertex, drawn into the middle of its triangles.
+/// A vertex, moved by `by` towards the middle of its triangles.
 fn drawn_back(shape: &FlatShape, vertex: u32, fan: &[usize], by: f64) -> [f64; 2] {
     let at = shape.at(vertex);
     let others = fan.iter().flat_map(|n| shape.triangles[*n]).filter(|i| *i != vertex);
@@ -165,10 +167,9 @@ fn drawn_back(shape: &FlatShape, vertex: u32, fan: &[usize], by: f64) -> [f64; 2
     if length > 0.0 { [0, 1].map(|a| at[a] + by * sum[a] / length) } else { at }
 }
 
-// Flat shapes as solids: a front, a back, and walls along the edges between them.
-
-/// Appends shapes as objects: flat at z = 0 if `depth` is 0, otherwise closed solids from there to z = `depth` above it. Solids that would
-/// touch, also themselves, in an edge or at a corner are drawn apart by a hundred-thousandth of the largest coordinate.
+/// Appends shapes as objects: flat at z = 0 if `depth` is 0, otherwise closed solids from z = 0 to `depth`, with a front, a back and walls
+/// between them. Solids that would touch themselves or each other in an edge or at a corner are moved apart by a hundred-thousandth of the
+/// largest coordinate.
 pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
     let mut all = FlatShape::default();
     let mut ends = Vec::with_capacity(shapes.len());
@@ -199,7 +200,7 @@ pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
             mesh.push(PolygonKind::Face, [*a, *c, *b].map(|i| corner(back, i)));
         }
         let own: HashSet<(u32, u32)> = sides(triangles).collect();
-        // An edge without an opposite one is on the outline, with the shape to its left.
+        // An edge that is not run along in reverse belongs to the outline, with the shape to its left.
         for (a, b) in sides(triangles).filter(|(a, b)| !own.contains(&(*b, *a))) {
             mesh.push(PolygonKind::Face, [corner(back, a), corner(back, b), corner(front, b), corner(front, a)]);
         }
@@ -211,7 +212,7 @@ mod tests {
     use super::*;
     use crate::mesh::{Mesh, topology};
 
-    /// Two squares that touch in a corner, one vertex there or two, and a slit in a third: each solid is one for itself.
+    /// Two squares that touch at a corner, with one vertex there or two, and a shape with a slit: every solid is closed.
     #[test]
     fn touching_parts_become_solids() {
         let points =

@@ -22,9 +22,7 @@ pub use flat::{FlatShape, extrude};
 pub(crate) use deform::{Edge, edge, from_chord};
 pub(crate) use flat::sides;
 
-// The mesh as data.
-
-/// An index that is not there.
+/// Stands for a missing index.
 pub const NONE: u32 = u32::MAX;
 
 /// A corner of a polygon: indices of its vertex, texture coordinates and normal. The last two may be [`NONE`].
@@ -52,13 +50,13 @@ pub enum PolygonKind {
 /// A face, polyline or list of points: the corners from the end of the previous polygon to `end`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Polygon {
-    /// Index after its last corner in [`Mesh::corners`].
+    /// Index in [`Mesh::corners`] after its last corner.
     pub end: u32,
-    /// Its kind.
+    /// Kind.
     pub kind: PolygonKind,
 }
 
-/// Something that holds from a polygon on.
+/// Something that holds from one polygon onwards.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Mark {
     /// An object begins.
@@ -78,26 +76,26 @@ pub enum Mark {
 pub struct Mesh {
     /// Vertices.
     pub positions: Vec<DVec3>,
-    /// Colours of the vertices, red, green, blue and opacity: none, or one for each vertex.
+    /// Colours of the vertices (red, green, blue, opacity): none, or one for each vertex.
     pub colors: Vec<[f64; 4]>,
     /// Normals.
     pub normals: Vec<DVec3>,
-    /// Texture coordinates; the third is 0 unless the file has it.
+    /// Texture coordinates; the third is 0 unless the file gives it.
     pub uvs: Vec<[f64; 3]>,
     /// The corners of all polygons.
     pub corners: Vec<Corner>,
     /// The polygons, in order.
     pub polygons: Vec<Polygon>,
-    /// Marks with the index of the first polygon that they hold for, in order.
+    /// Marks in order, each with the index of the first polygon it applies to.
     pub marks: Vec<(u32, Mark)>,
     /// Materials of a glTF file, to which the marks refer by name.
     pub assets: Option<Arc<Assets>>,
-    /// What was in the file and is not in the mesh, each a phrase for a warning.
+    /// What the file has and the mesh does not, each as a phrase for a warning.
     pub left_out: Vec<String>,
 }
 
 impl Mesh {
-    /// Returns `true` if vertices are translucent.
+    /// Whether any vertex is translucent.
     #[must_use]
     pub fn is_translucent(&self) -> bool {
         self.colors.iter().any(|c| c[3] != 1.0)
@@ -135,7 +133,7 @@ impl Mesh {
         self.faces().flat_map(|f| f.windows(2).skip(1).map(|w| [f[0], w[0], w[1]]))
     }
 
-    /// The name of the object or group that a polygon belongs to; empty if it has none.
+    /// The name of the object or group that a polygon belongs to; empty if there is none.
     #[must_use]
     pub fn name_of(&self, polygon: usize) -> &str {
         let before = self.marks.iter().take_while(|(first, _)| *first as usize <= polygon);
@@ -147,9 +145,7 @@ impl Mesh {
     }
 }
 
-// The topology of a mesh: whether its surface is closed and consistently oriented, its Euler number and volume.
-
-/// The topology and the measures of a mesh's faces.
+/// The topology of a mesh's faces, with their volume and area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Topology {
     /// Vertices that belong to a face. Vertices at the same place count as one.
@@ -158,24 +154,24 @@ pub struct Topology {
     pub edges: usize,
     /// Faces.
     pub faces: usize,
-    /// Edges of a single face.
+    /// Edges of only one face.
     pub open_edges: usize,
-    /// Edges of more than two faces, or of two that run along it in the same direction.
+    /// Edges of more than two faces, or of two faces that run along it in the same direction.
     pub bad_edges: usize,
-    /// Volume inside a closed, consistently oriented surface, positive if faces are counter-clockwise seen from outside.
+    /// Volume inside a closed, consistently oriented surface; positive if faces are counter-clockwise as seen from outside.
     pub volume: f64,
     /// Area of the surface.
     pub area: f64,
 }
 
 impl Topology {
-    /// Returns `true` if the surface has no boundary and every edge joins two faces of one orientation.
+    /// Whether the surface has no boundary and every edge joins two faces of the same orientation.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.faces > 0 && self.open_edges == 0 && self.bad_edges == 0
     }
 
-    /// V − E + F: 2 for every ball, 0 for every ring.
+    /// The Euler number V − E + F: 2 for a ball, 0 for a ring.
     #[must_use]
     pub fn euler(&self) -> i64 {
         let signed = |n: usize| i64::try_from(n).unwrap_or(i64::MAX);
@@ -183,10 +179,10 @@ impl Topology {
     }
 }
 
-/// Examines a mesh. Vertices at the same place are taken for one: many files repeat them along seams.
+/// Examines the faces of a mesh. Vertices at the same place count as one, as many files repeat vertices along seams.
 #[must_use]
 pub fn topology(mesh: &Mesh) -> Topology {
-    // Adding 0 makes −0 and 0 the same place.
+    // Adding 0 turns −0 into 0.
     let key = |p: &DVec3| (*p + 0.0).to_array().map(f64::to_bits);
     let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(mesh.positions.len());
     let place: Vec<u32> = mesh
@@ -198,7 +194,7 @@ pub fn topology(mesh: &Mesh) -> Topology {
         })
         .collect();
     let mut used = vec![false; places.len()];
-    // How often each edge is run along forwards and backwards.
+    // How often faces run along each edge forwards and backwards.
     let mut edges: HashMap<(u32, u32), [u32; 2]> = HashMap::new();
     let (mut faces, mut volume, mut area) = (0, 0.0, 0.0);
     let origin = mesh.bounds().map_or(DVec3::ZERO, |b| b.center());
@@ -229,15 +225,15 @@ pub fn topology(mesh: &Mesh) -> Topology {
     }
 }
 
-// One index for each corner, as PLY has it: a vertex with its texture coordinates and normal.
-
-/// The different corners of a mesh, and the number of each corner's.
+/// A mesh with one index per corner, as PLY has it.
 struct Unified {
+    /// The distinct corners.
     corners: Vec<Corner>,
+    /// For each corner of the mesh, its index among them.
     index: Vec<u32>,
 }
 
-/// Numbers the different corners. If every vertex has one, they are numbered like the vertices, also those without a polygon.
+/// Numbers the distinct corners. The first one of every vertex gets the number of the vertex; vertices without a polygon keep theirs too.
 fn unify(mesh: &Mesh) -> Unified {
     let bare = |v: usize| Corner { vertex: u32::try_from(v).unwrap_or(NONE), uv: NONE, normal: NONE };
     let mut corners: Vec<Corner> = (0..mesh.positions.len()).map(bare).collect();
@@ -249,7 +245,7 @@ fn unify(mesh: &Mesh) -> Unified {
         if !taken[v] && *c != bare(v) {
             (taken[v], corners[v]) = (true, *c);
         }
-        // A corner of a line has neither, and takes what its vertex has.
+        // Corners of lines have neither texture coordinates nor normal, and take those of their vertex.
         let is_bare = *c == bare(v);
         index.push(if is_bare || corners[v] == *c {
             c.vertex
@@ -263,31 +259,29 @@ fn unify(mesh: &Mesh) -> Unified {
     Unified { corners, index }
 }
 
-// The parts of a glTF file that a map leaves alone: materials, textures, samplers and pictures.
-
-/// Materials with all they refer to.
+/// The parts of a glTF file that a map leaves alone: materials, and all they refer to.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Assets {
-    /// The arrays `materials`, `textures`, `samplers`, `images` and `extensionsUsed`, as they were.
-    pub(crate) json: Map<String, Value>,
-    /// The names of the materials, made different.
-    pub(crate) materials: Vec<String>,
-    /// The bytes of pictures that were in a buffer, by the number of the picture.
-    pub(crate) pictures: Vec<(usize, Vec<u8>)>,
+    /// The arrays named in [`KEPT`], as they were.
+    json: Map<String, Value>,
+    /// The names of the materials, made unique.
+    materials: Vec<String>,
+    /// The bytes of pictures that were in a buffer, by the index of the picture.
+    pictures: Vec<(usize, Vec<u8>)>,
 }
 
-/// The arrays that are kept.
-pub(crate) const KEPT: [&str; 5] = ["materials", "textures", "samplers", "images", "extensionsUsed"];
+/// The arrays of a glTF file that are kept.
+const KEPT: [&str; 5] = ["materials", "textures", "samplers", "images", "extensionsUsed"];
 
 impl Assets {
-    /// Returns `true` if there are no materials.
+    /// Whether there are no materials.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.materials.is_empty()
     }
 
     /// Takes the assets from a file's JSON.
-    pub(crate) fn of(root: &Value) -> Self {
+    fn of(root: &Value) -> Self {
         let mut out = Self::default();
         for key in KEPT {
             if let Some(v) = root.get(key) {
@@ -305,25 +299,23 @@ impl Assets {
     }
 }
 
-// Errors of reading a mesh.
-
-/// The reason why a file is not a mesh, with its place.
+/// Why a file could not be read or written as a mesh, and where.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}{problem}", self.place())]
 pub struct MeshError {
-    /// The line, counted from 1, if the file has lines.
+    /// The line, counted from 1, if one is known.
     pub line: Option<usize>,
     /// The problem.
     pub problem: MeshFault,
 }
 
-/// A fault of a mesh file.
+/// A fault in a mesh file.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum MeshFault {
-    /// Text that says what is wrong.
+    /// What is wrong.
     Text(String),
-    /// More work than a limit allows.
+    /// Reading takes more work than a limit allows.
     Limit(Exceeded),
 }
 

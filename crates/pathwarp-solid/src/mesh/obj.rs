@@ -1,24 +1,22 @@
 //! Wavefront OBJ: polygons with groups, materials, texture coordinates and normals.
 //!
-//! Read and written here rather than by a crate: the crates that read OBJ give triangles by material, without groups, polylines
-//! or the order of objects, and a deformed file should differ from its source in the coordinates alone. Long files are read and
-//! written by all threads; the result does not depend on their number.
+//! A deformed file should differ from its source in coordinates only. Crates that read OBJ return triangles by material, without groups,
+//! polylines or the order of objects, so none is used here. Long files are read and written on all threads; the result does not depend on
+//! their number.
 
 use super::{Corner, Mark, Mesh, MeshError, NONE, Polygon, PolygonKind};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-// Reads OBJ: the text is cut at line ends, the parts are read by all threads, and joined.
-
-/// Bytes of a part.
+/// The text is cut at line ends into parts of about this many bytes, which are read in parallel and joined.
 const PART: usize = 1 << 20;
 
-/// Reads a mesh. Statements that are not polygons (free-form curves and surfaces, display settings) are counted in
+/// Reads a mesh. Statements that do not describe polygons (free-form curves and surfaces, display settings) are counted in
 /// [`Mesh::left_out`].
 ///
 /// # Errors
-/// A line that is damaged, or an index that is out of range.
+/// A line is damaged, or an index is out of range.
 pub fn read(text: &[u8]) -> Result<Mesh, MeshError> {
     let joined;
     let text = if has_continuation(text) {
@@ -48,9 +46,9 @@ pub fn read(text: &[u8]) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// Returns `true` if a line ends with a backslash.
+/// Whether any line ends with a backslash.
 fn has_continuation(text: &[u8]) -> bool {
-    // Files rarely hold a backslash at all, and looking for one byte is fast.
+    // Few files contain a backslash at all, and searching for a single byte is fast.
     text.contains(&b'\\') && text.split(|b| *b == b'\n').any(|line| line.trim_ascii_end().ends_with(b"\\"))
 }
 
@@ -86,13 +84,13 @@ fn split(mut text: &[u8]) -> Vec<&[u8]> {
 #[derive(Default)]
 struct Part {
     mesh: Mesh,
-    /// Indices that count back from the end: field of the corner (vertex, uv, normal), corner, index relative to the part's own
-    /// first vertex, uv or normal.
+    /// Indices that count back from the end: field (vertex, uv or normal), corner, and index relative to the part's first vertex, uv or
+    /// normal.
     relative: Vec<(usize, usize, i64)>,
     skipped: BTreeMap<String, usize>,
 }
 
-/// Reads a part. An error has the line within it, from 1.
+/// Reads a part. An error holds the line within the part, counted from 1.
 fn part(text: &[u8]) -> Result<Part, (usize, String)> {
     let mut out = Part::default();
     for (n, line) in text.split(|b| *b == b'\n').enumerate() {
@@ -110,7 +108,7 @@ fn statement(line: &[u8], out: &mut Part) -> Result<(), String> {
         b"v" => {
             mesh.positions.push(vector(&mut rest).ok_or_else(|| damaged("a vertex `v x y z` with finite numbers"))?);
             if let Some(color) = vector(&mut rest) {
-                // Vertices before the first colour are white.
+                // Vertices without a colour are white.
                 mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
                 mesh.colors.push(color.extend(1.0).to_array());
             }
@@ -142,10 +140,10 @@ fn text_after(line: &[u8], keyword: &[u8]) -> String {
     String::from_utf8_lossy(&line.trim_ascii()[keyword.len()..]).trim().to_owned()
 }
 
-/// Reads the corners `v`, `v/uv`, `v//n` or `v/uv/n`. The error says what the line should be.
+/// Reads a polygon of corners `v`, `v/uv`, `v//n` or `v/uv/n`. The error says what the line should be.
 fn polygon<'a>(
     kind: PolygonKind,
-    fewest: usize,
+    min: usize,
     words: impl Iterator<Item = &'a [u8]>,
     out: &mut Part,
 ) -> Result<(), String> {
@@ -168,8 +166,8 @@ fn polygon<'a>(
         let [vertex, uv, normal] = corner;
         out.mesh.corners.push(Corner { vertex, uv, normal });
     }
-    if out.mesh.corners.len() - first < fewest {
-        return Err(format!("a polygon of at least {fewest} corners"));
+    if out.mesh.corners.len() - first < min {
+        return Err(format!("a polygon of at least {min} corners"));
     }
     out.mesh.polygons.push(Polygon { end: u32::try_from(out.mesh.corners.len()).unwrap_or(NONE), kind });
     Ok(())
@@ -185,7 +183,7 @@ fn join(mesh: &mut Mesh, part: Part, skipped: &mut BTreeMap<String, usize>) {
         let c = &mut own.corners[corner];
         let slot = [&mut c.vertex, &mut c.uv, &mut c.normal];
         if let Some(slot) = slot.into_iter().nth(field) {
-            // One before the last index is out of range, and not the missing one.
+            // Out of range, but not the value for a missing index.
             *slot = u32::try_from(i).unwrap_or(NONE - 1);
         }
     }
@@ -226,34 +224,32 @@ fn check(mesh: &Mesh, text: &[u8]) -> Result<(), MeshError> {
     })
 }
 
-/// The line of a polygon.
+/// The line of a polygon, counted from 1.
 fn line_of(text: &[u8], polygon: usize) -> Option<usize> {
     let is_polygon = |line: &[u8]| matches!(words(line).next(), Some(b"f" | b"l" | b"p"));
     let mut lines = text.split(|b| *b == b'\n').enumerate().filter(|(_, line)| is_polygon(line));
     lines.nth(polygon).map(|(n, _)| n + 1)
 }
 
-// Words and numbers of an OBJ file's lines.
-
-/// The words of a line, without a comment.
+/// The words of a line, without its comment.
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     let end = line.iter().position(|b| *b == b'#').unwrap_or(line.len());
     line[..end].split(u8::is_ascii_whitespace).filter(|w| !w.is_empty())
 }
 
-/// A finite number, and not so large that its square overflows.
+/// A finite number that is not so large that its square overflows.
 fn number(word: &[u8]) -> Option<f64> {
     let v: f64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     (v.abs() < 1e100).then_some(v)
 }
 
-/// Three numbers and the words after them.
+/// A vector from the next three words.
 fn vector<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<DVec3> {
     let mut next = || number(words.next()?);
     Some(DVec3::new(next()?, next()?, next()?))
 }
 
-/// An index: from 1, or negative from the end.
+/// An index: counted from 1, or from the end if negative.
 fn index(word: &[u8]) -> Option<i64> {
     let (sign, digits) = match word.strip_prefix(b"-") {
         Some(rest) => (-1, rest),
@@ -272,21 +268,18 @@ fn index(word: &[u8]) -> Option<i64> {
     (n != 0).then_some(sign * n)
 }
 
-/// Text for messages, cut where it is long.
+/// The beginning of a text, for messages.
 fn shown(text: &[u8]) -> String {
-    /// A longer quotation would not be read.
-    const SHOWN: usize = 40;
-    String::from_utf8_lossy(text).trim().chars().take(SHOWN).collect()
+    const MAX_CHARS: usize = 40;
+    String::from_utf8_lossy(text).trim().chars().take(MAX_CHARS).collect()
 }
 
-// Writes OBJ: parts of the text by all threads, joined in order.
-
-/// Lines of a part.
+/// Text is written in parallel, in parts of this many lines.
 const LINES: usize = 1 << 14;
-/// The largest whole number up to which every one is a floating-point number.
+/// Up to here (2⁵³), every integer is a floating-point number.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// Writes a mesh with this many decimals.
+/// Writes a mesh; coordinates get `decimals` decimals.
 #[must_use]
 pub fn write(mesh: &Mesh, decimals: u8) -> Vec<u8> {
     let scale = 10f64.powi(i32::from(decimals));
@@ -321,7 +314,7 @@ pub fn write(mesh: &Mesh, decimals: u8) -> Vec<u8> {
     out
 }
 
-/// Colours to eight decimals, and texture coordinates and normals to nine: files in single precision hold seven figures.
+/// Eight decimals for colours, nine for texture coordinates and normals: single precision has seven significant digits.
 const COLORS: f64 = 1e8;
 const DIRECTIONS: f64 = 1e9;
 
@@ -380,13 +373,13 @@ fn mark_line(out: &mut Vec<u8>, mark: &Mark) {
         Mark::Smoothing(t) => ("s", t),
         Mark::Library(t) => ("mtllib", t),
     };
-    // A line break within a name would begin another statement.
+    // A line break in a name would start another statement.
     let text: String = text.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
     out.extend_from_slice(format!("{keyword} {text}").trim_end().as_bytes());
     out.push(b'\n');
 }
 
-/// Appends numbers in steps of 1/`scale`.
+/// Appends numbers, rounded to multiples of 1/`scale`.
 fn numbers(out: &mut Vec<u8>, values: &[f64], scale: f64) {
     for v in values {
         out.push(b' ');

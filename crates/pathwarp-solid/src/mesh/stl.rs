@@ -1,20 +1,19 @@
-//! STL, binary and as text, by the crate stl_io.
+//! STL, binary and text, by means of the crate stl_io.
 //!
-//! STL has triangles without shared vertices, in single precision; corners at the same place become one vertex. The numbers of
-//! a file are checked against its length before it is read.
+//! STL has triangles without shared vertices, in single precision; corners at the same place become one vertex. The number of triangles
+//! is checked against the length of the file before it is read.
 
-use crate::mesh::MeshError;
-use crate::mesh::{Corner, Mesh, NONE, PolygonKind};
+use super::{Corner, Mesh, MeshError, NONE, PolygonKind};
 use glam::DVec3;
 use std::io::Cursor;
 use stl_io::{Normal, Triangle, Vertex};
 
-/// Bytes before the triangles of a binary file: a header and their number.
+/// Bytes before the triangles of a binary file: a header and the number of triangles.
 const HEAD: usize = 84;
 /// Bytes of a triangle in a binary file.
 const TRIANGLE: usize = 50;
 
-/// Returns `true` if this is an STL file: binary of the right length, or text that begins like one.
+/// Whether this is an STL file: a binary one of the right length, or text that starts like one.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {
     announced(bytes).is_some_and(|n| bytes.len() == HEAD + n * TRIANGLE) || is_text(bytes)
@@ -35,7 +34,7 @@ fn is_text(bytes: &[u8]) -> bool {
 /// Reads a mesh.
 ///
 /// # Errors
-/// The file is damaged: a length that does not fit the number of triangles, or a number that is not finite.
+/// The file is damaged: its length does not fit the number of triangles, or a number is not finite.
 pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let binary = announced(bytes).is_some_and(|n| bytes.len() == HEAD + n * TRIANGLE);
     let mut own;
@@ -49,12 +48,12 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
         )));
     }
     if binary && bytes.starts_with(b"solid") {
-        // Some programs begin the header of binary files like a text file's.
+        // Some programs start the header of a binary file like a text file.
         own = bytes.to_vec();
         own[0] = b'S';
         bytes = &own[..];
     } else if !binary {
-        // stl_io knows keywords in small letters only.
+        // stl_io knows keywords in lower case only.
         own = bytes.to_ascii_lowercase();
         bytes = &own[..];
     }
@@ -81,7 +80,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
 /// Writes the faces as triangles, in binary.
 ///
 /// # Errors
-/// More triangles than the format can count.
+/// There are more triangles than the format can count.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let single = |p: DVec3| [p.x as f32, p.y as f32, p.z as f32];
     let triangle = |t: [Corner; 3]| {

@@ -1,16 +1,15 @@
-//! Bézier patches as text (`.bpt`), as programs of curve and surface design store Newell's teapot: the number of patches, then for
-//! each its two degrees and its control points `x y z`, (m + 1)·(n + 1) of them, one a line, the second index fastest.
+//! Bézier patches as text (`.bpt`), the form in which Newell's teapot is commonly stored: the number of patches, then for each patch its
+//! two degrees m and n and its (m + 1)·(n + 1) control points `x y z`, one per line, the second index fastest.
 
-use super::surface::Surface;
+use super::surface::{MAX_DEGREE, Surface};
 use crate::mesh::MeshError;
-use crate::patch::surface::MAX_DEGREE;
 use glam::DVec3;
 use std::fmt::Write as _;
 
-/// Reads patches. Lines that begin with `#` are comments.
+/// Reads patches. A `#` starts a comment.
 ///
 /// # Errors
-/// The line that is damaged, or fewer or more patches than announced.
+/// A line is damaged, or there are fewer or more patches than announced.
 pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     let text = std::str::from_utf8(text).map_err(|_| MeshError::whole("is not a patch file: it is not text"))?;
     let lines = text.lines().enumerate().map(|(n, l)| (n + 1, l.split('#').next().unwrap_or("")));
@@ -27,7 +26,7 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
         for _ in 0..rows * columns {
             points.push(point(lines.next(), n)?);
         }
-        // The first index runs fastest here.
+        // In [`Surface`], the first index runs fastest.
         let turned = (0..points.len()).map(|k| points[k % rows * columns + k / rows]).collect();
         out.push(Surface::bezier("", degree, turned));
     }
@@ -64,7 +63,7 @@ fn point(line: Option<(usize, &str)>, patch: usize) -> Result<DVec3, MeshError> 
 /// Writes surfaces; NURBS as their Bézier patches.
 ///
 /// # Errors
-/// A surface with weights or trimming curves, which the format has no room for.
+/// A surface has weights or trimming curves, which the format cannot express.
 pub fn write(surfaces: &[Surface]) -> Result<String, String> {
     let bad = |what: &str, s: &Surface| {
         let name = if s.name.is_empty() { String::new() } else { format!(" `{}`", s.name) };

@@ -1,24 +1,24 @@
-//! The curves on a patch along which the derivative of a map jumps, as graphs over u where they are graphs.
+//! The curves on a patch along which the derivative of a map jumps, as graphs over u where possible.
 
+use super::surface::BezierPatch;
 use crate::map::{Creases3, Jet3, Level3, Map3};
-use crate::patch::surface::BezierPatch;
 use glam::{DMat3, DVec3};
 use pathwarp::map::CreaseKind;
 
-/// Places along u and along v at which the side of a crease is looked at.
+/// Places along u and along v at which the side of a crease is determined.
 const PLACES: usize = 24;
-/// Half the distance, in the parameters, of two places on either side of a crease.
+/// Half the distance, in the parameters, between two places on either side of a crease.
 const BESIDE: f64 = 1e-6;
-/// A derivative that jumps by a smaller share of its size makes no crease that could be seen.
+/// A derivative that jumps by a smaller fraction of its size makes no visible crease.
 const JUMP: f64 = 1e-4;
-/// The steepest curve that is a graph.
-const STEEPEST: f64 = 6.0;
-/// The distance from a side, in the parameters, at which rounding does not decide about the side of a crease.
+/// The largest slope of a curve that counts as a graph.
+const MAX_SLOPE: f64 = 6.0;
+/// The distance from a side, in the parameters, beyond which rounding does not decide which side of a crease a place is on.
 const SIDE: f64 = 1e-9;
 /// A patch is not cut this close to its sides.
 const RIM: f64 = 0.02;
 
-/// The i-th place, inside the patch: curves that end on its sides do not cross it there.
+/// The i-th place. All are inside the patch, as curves may end on its sides without crossing it.
 fn place(i: usize) -> f64 {
     (i as f64 + 0.5) / PLACES as f64
 }
@@ -28,12 +28,12 @@ pub(super) fn levels(creases: &Creases3) -> Vec<Level3> {
     creases.items().iter().filter(|c| c.kind == CreaseKind::Kink).map(|c| c.level.clone()).collect()
 }
 
-/// The work of [`crossing`]: along a level set, both sides of some places are compared.
+/// The work of [`crossing`], which also compares both sides of each level set at some places.
 pub(super) fn work(levels: &[Level3]) -> f64 {
     (PLACES * (PLACES + 4 * levels.len()).min(9 * PLACES)) as f64
 }
 
-/// The level sets that cross the patch where the derivative really jumps.
+/// The level sets across which the derivative really jumps somewhere on the patch.
 pub(super) fn crossing(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Vec<Level3> {
     let grid: Vec<_> = (0..PLACES * PLACES).map(|k| patch.point(place(k % PLACES), place(k / PLACES))).collect();
     let mut out = Vec::new();
@@ -50,9 +50,9 @@ pub(super) fn crossing(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -
     out
 }
 
-/// A place at which the map itself jumps across a level set, among places of a coarse grid and its lines.
+/// A place at which the map itself jumps across a level set, searched for along the edges of a coarse grid.
 pub(super) fn tear(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Option<DVec3> {
-    /// Lines of the grid, with the sides.
+    /// Lines of the grid, including the sides.
     const LINES: usize = 8;
     let at = |k: usize| [k % LINES, k / LINES].map(|i| i as f64 / (LINES - 1) as f64);
     let point = |k: usize| patch.point(at(k)[0], at(k)[1]);
@@ -69,7 +69,7 @@ pub(super) fn tear(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Op
     })
 }
 
-/// The places on either side of a level set between two places that it separates.
+/// Two places close to a level set, one on either side, on the line between two places that it separates.
 fn beside(patch: &BezierPatch, level: &Level3, a: [f64; 2], b: [f64; 2]) -> [DVec3; 2] {
     let between = |t: f64| patch.point(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
     let t = bisected(|t| level(between(t)), 0.0, 1.0);
@@ -81,19 +81,19 @@ fn size(d: DMat3) -> f64 {
     d.to_cols_array().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
-/// Returns `true` if the images of two places, which are a little apart anyway, are far more so than the derivatives explain.
+/// Whether the images of two places, themselves `apart`, are much farther apart than the derivatives explain.
 fn moved_apart(p: &Jet3, q: &Jet3, apart: f64) -> bool {
     p.p.distance(q.p) > 10.0 * size(p.d).max(size(q.d)) * apart
 }
 
-/// Returns `true` if value or derivative jump at the level set between two places.
+/// Whether the value or the derivative jumps at the level set between two places.
 fn jumps(patch: &BezierPatch, map: &dyn Map3, level: &Level3, a: [f64; 2], b: [f64; 2]) -> bool {
     let [from, to] = beside(patch, level, a, b);
     let (p, q) = (map.jet(from), map.jet(to));
     size(p.d - q.d) > JUMP * size(p.d).max(size(q.d)) || moved_apart(&p, &q, from.distance(to))
 }
 
-/// A zero of a function with different signs at both ends, to the last bits.
+/// A zero of a function with different signs at `a` and `b`, to the last bits.
 fn bisected(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     let rises = f(b) > 0.0;
     for _ in 0..60 {
@@ -106,12 +106,12 @@ fn bisected(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
 /// Curves v = g(u) across a whole patch, one above the other.
 pub(super) struct Graphs<'a> {
     patch: &'a BezierPatch,
-    /// For each curve its level set, and its heights at the places.
+    /// For each curve its level set, and its height at every [`place`].
     curves: Vec<(Level3, Vec<f64>)>,
 }
 
 impl<'a> Graphs<'a> {
-    /// The curves, if every line u = const meets the same ones in the same order and none is steep.
+    /// The curves, if every line u = const meets the same ones in the same order, and none is too steep.
     pub(super) fn new(patch: &'a BezierPatch, levels: &[Level3]) -> Option<Self> {
         let mut curves: Vec<(usize, Vec<f64>)> = Vec::new();
         for i in 0..PLACES {
@@ -125,7 +125,7 @@ impl<'a> Graphs<'a> {
             }
             curves.iter_mut().zip(found).for_each(|(curve, (_, v))| curve.1.push(v));
         }
-        let steep = |heights: &[f64]| heights.windows(2).any(|w| (w[1] - w[0]).abs() * PLACES as f64 > STEEPEST);
+        let steep = |heights: &[f64]| heights.windows(2).any(|w| (w[1] - w[0]).abs() * PLACES as f64 > MAX_SLOPE);
         if curves.iter().any(|(_, heights)| steep(heights)) {
             return None;
         }
@@ -142,7 +142,7 @@ impl<'a> Graphs<'a> {
         self.curves.len()
     }
 
-    /// Height and slope of the lower and the upper side of a layer.
+    /// Height and slope of the lower and of the upper side of a layer, at `u`.
     pub(super) fn sides(&self, layer: usize, u: f64) -> [[f64; 2]; 2] {
         let low = if layer == 0 { [0.0, 0.0] } else { self.at(layer - 1, u) };
         if layer == self.count() {
@@ -152,14 +152,14 @@ impl<'a> Graphs<'a> {
         [low, [high[0].max(low[0]), high[1]]]
     }
 
-    /// Height and slope of a curve.
+    /// Height and slope of a curve at `u`.
     fn at(&self, curve: usize, u: f64) -> [f64; 2] {
-        /// Step of differences, in the parameters.
+        /// Step of difference quotients, in the parameters.
         const H: f64 = 1e-6;
         let Some((level, heights)) = self.curves.get(curve) else { return [f64::from(curve > 0), 0.0] };
         let f = |u: f64, v: f64| level(self.patch.point(u, v));
         let by_v = |v: f64| (f(u, v + H) - f(u, v - H)) / (2.0 * H);
-        // From the line through the neighbouring places, by Newton's method: no curve is steep, so the derivative is not small.
+        // Newton's method, starting on the line through the neighbouring places. No curve is steep, so the derivative is not small.
         let x = u * PLACES as f64 - 0.5;
         let i = (x.floor().max(0.0) as usize).min(PLACES - 2);
         let mut v = heights[i] + (x - i as f64) * (heights[i + 1] - heights[i]);
@@ -174,13 +174,13 @@ impl<'a> Graphs<'a> {
     }
 }
 
-/// The level sets that the line u = const meets, with the places, in order.
+/// The indices of the level sets that the line u = const meets, with the values of v there, in order.
 fn met(patch: &BezierPatch, levels: &[Level3], u: f64) -> Vec<(usize, f64)> {
     let mut out = Vec::new();
     for (n, level) in levels.iter().enumerate() {
         let f = |v: f64| level(patch.point(u, v));
         let values: Vec<bool> = (0..PLACES).map(|j| f(place(j)) > 0.0).collect();
-        // Beyond the first and the last place; a level set along the side itself is none that is met.
+        // Before the first place, and below after the last one. A level set along the side itself is not met.
         if (f(SIDE) > 0.0) != values[0] {
             out.push((n, bisected(f, SIDE, place(0))));
         }
@@ -197,8 +197,8 @@ fn met(patch: &BezierPatch, levels: &[Level3], u: f64) -> Vec<(usize, f64)> {
     out
 }
 
-/// A value of u at which a level set meets the sides v = 0 and v = 1, if one does well inside: left and right of it, curves are
-/// likelier to be graphs.
+/// A value of u, not too close to 0 or 1, at which a level set meets the side v = 0 or v = 1. To the left and right of it, curves are more
+/// likely to be graphs.
 pub(super) fn cut(patch: &BezierPatch, levels: &[Level3]) -> Option<f64> {
     let inside = RIM..=1.0 - RIM;
     for v in [0.0, 1.0] {

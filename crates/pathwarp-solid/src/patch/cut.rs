@@ -1,12 +1,12 @@
-//! Images of surfaces that are crossed by creases: cut into parts with a smooth image each.
+//! Images of surfaces that creases cross: they are cut into parts, each with a smooth image.
 //!
-//! Layers that follow the crease fit a part if the crease is a graph over u or v. Any other part is cut at a place where the crease
-//! meets its sides, or else in the middle, and the parts are looked at again. A part without crease keeps its exact image if it has one.
-//! Trimming loops are cut with the parts, and parts outside them are left out.
+//! If the crease is a graph over u or v, a part is fitted by layers that follow the crease. Otherwise the part is cut at a place where the
+//! crease meets its sides, or else in the middle, and the new parts are treated the same way. A part without a crease keeps its exact image
+//! if it has one. Trimming loops are cut along with the parts, and parts outside them are left out.
 
 use super::crossing::Graphs;
 use super::part::Sided;
-use super::refit::{Cells, Corner, INSIDE, MOST_CELLS};
+use super::refit::{Cells, Corner, INSIDE, MAX_CELLS};
 use super::surface::{BezierPatch, Surface};
 use super::trims::Trims;
 use super::{crossing, refit, surface};
@@ -14,18 +14,18 @@ use crate::map::{Chain3, Level3, Map3};
 use glam::{DVec3, Vec4Swizzles as _};
 use pathwarp::budget::{Budget, Exceeded};
 
-/// Cuts in the middle after which a part is fitted as it is.
-const DEEPEST: usize = 6;
-/// Cells along a part that may be cut instead of getting more of them.
+/// After this many successive cuts in the middle, a part is fitted as it is.
+const MAX_HALVINGS: usize = 6;
+/// After this many successive cuts of any kind, a part is fitted as it is.
+const MAX_CUTS: usize = 24;
+/// A part that may still be cut is cut rather than fitted with more cells along it than this.
 const ENOUGH: usize = 16;
-/// Cuts of any kind, in a row.
-const MOST_CUTS: usize = 24;
 
 /// The parts of a surface's image.
 #[derive(Default)]
 pub(super) struct Parts {
     pub(super) surfaces: Vec<Surface>,
-    /// The largest distance of those that are fitted.
+    /// The largest distance of a fitted part from the exact image.
     pub(super) distance: f64,
 }
 
@@ -38,11 +38,11 @@ pub(super) struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    /// The image of a surface, given with its patches and the parameters between them, in parts, if a crease crosses it or the map
-    /// tears it apart along a joint.
+    /// The image of a surface in parts, if a crease crosses it or the map tears it apart between two patches; otherwise `None`. `pieces` are
+    /// its patches, and `breaks` the parameters between them.
     ///
     /// # Errors
-    /// More evaluations than the limit allows.
+    /// It would take more evaluations than the limit allows.
     pub(super) fn image(
         &self,
         surface: &Surface,
@@ -78,7 +78,7 @@ impl Cutter<'_> {
         Ok(crossing::crossing(patch, self.map, levels))
     }
 
-    /// Returns `true` if the images of two neighbouring patches do not join.
+    /// Whether the images of any two neighbouring patches do not join.
     fn is_torn(&self, pieces: &[BezierPatch], across: usize) -> Result<bool, Exceeded> {
         const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
         if pieces.len() == 1 {
@@ -97,26 +97,26 @@ impl Cutter<'_> {
         }))
     }
 
-    /// The loops of a part.
+    /// The trimming loops of a part.
     fn trims_of(&self, trims: Option<&Trims>, from: [f64; 2], to: [f64; 2]) -> Result<Option<Trims>, Exceeded> {
-        /// Clipping a curve takes about as long as so many evaluations of a map.
+        /// Clipping a curve takes about as long as this many evaluations of a map.
         const WORK: usize = 16;
         let Some(trims) = trims else { return Ok(None) };
         self.budget.spend((WORK * trims.count()) as f64)?;
         Ok(trims.part(from, to))
     }
 
-    /// Adds the image of a part that these creases may cross, after so many cuts in the middle and of all kinds.
+    /// Adds the image of a part that these creases may cross. `cuts` counts the cuts in the middle, and all cuts, that led to it.
     fn part(&self, part: &Part, levels: &[Level3], cuts: [usize; 2], out: &mut Parts) -> Result<(), Exceeded> {
         if part.trims.as_ref().is_some_and(Trims::is_empty) {
             return Ok(());
         }
         let patch = &part.patch;
         let crossing = self.crossing(patch, levels)?;
-        let most = if cuts[0] < DEEPEST && cuts[1] < MOST_CUTS { ENOUGH } else { MOST_CELLS };
+        let max_cells = if cuts[0] < MAX_HALVINGS && cuts[1] < MAX_CUTS { ENOUGH } else { MAX_CELLS };
         let turned = part.transposed();
-        if let Some((surfaces, off)) = self.whole(part, &turned, &crossing, most)?
-            && (off <= self.tolerance || most == MOST_CELLS)
+        if let Some((surfaces, off)) = self.whole(part, &turned, &crossing, max_cells)?
+            && (off <= self.tolerance || max_cells == MAX_CELLS)
         {
             out.distance = out.distance.max(off);
             out.surfaces.extend(surfaces);
@@ -139,24 +139,24 @@ impl Cutter<'_> {
         Ok(())
     }
 
-    /// The image of a part that is not cut further, with `most` cells along a layer, and its distance. `None` if a crease crosses it
-    /// and is no graph, unless this is the end.
+    /// The image of a part without further cuts, with up to `max_cells` cells along a layer, and its distance from the exact image. `None` if
+    /// a crease crosses it that is not a graph, unless the part must not be cut further.
     fn whole(
         &self,
         part: &Part,
         turned: &Part,
         crossing: &[Level3],
-        most: usize,
+        max_cells: usize,
     ) -> Result<Option<(Vec<Surface>, f64)>, Exceeded> {
         if !crossing.is_empty() {
             if let Some(graphs) = Graphs::new(&part.patch, crossing) {
-                return self.layers(part, &graphs, self.map, most).map(Some);
+                return self.layers(part, &graphs, self.map, max_cells).map(Some);
             }
             if let Some(graphs) = Graphs::new(&turned.patch, crossing) {
-                let (images, off) = self.layers(turned, &graphs, self.map, most)?;
+                let (images, off) = self.layers(turned, &graphs, self.map, max_cells)?;
                 return Ok(Some((images.into_iter().map(transposed).collect(), off)));
             }
-            if most < MOST_CELLS {
+            if max_cells < MAX_CELLS {
                 return Ok(None);
             }
         }
@@ -171,16 +171,16 @@ impl Cutter<'_> {
             Some(image) => Ok(Some((vec![image], 0.0))),
             None => {
                 let side = Sided::new(&part.patch, self.map);
-                self.layers(part, &Graphs::none(&part.patch), &side.map, most).map(Some)
+                self.layers(part, &Graphs::none(&part.patch), &side.map, max_cells).map(Some)
             }
         }
     }
 
-    /// Layers as surfaces with their loops. They are not stacked: each has loops of its own.
+    /// Layers as surfaces with their trimming loops. Each layer has loops of its own, so they cannot be stacked.
     fn trimmed(&self, fits: &[Cells], n: usize, trims: &Trims, graphs: &Graphs<'_>) -> Result<Vec<Surface>, Exceeded> {
-        /// The share of the tolerance for the loops, which are fitted again where a layer's sides are curved.
-        const SHARE: f64 = 0.1;
-        /// Fitting a curve takes about as long as so many evaluations of a map.
+        /// The fraction of the tolerance left for the loops, which must be fitted too where the sides of a layer are curved.
+        const FRACTION: f64 = 0.1;
+        /// Fitting a curve takes about as long as this many evaluations of a map.
         const WORK: usize = 4096;
         let mut out = Vec::with_capacity(fits.len());
         for (k, cells) in fits.iter().enumerate() {
@@ -189,7 +189,7 @@ impl Cutter<'_> {
                 Some(trims.clone())
             } else {
                 self.budget.spend((WORK * trims.count()) as f64)?;
-                trims.layer(graphs, k, SHARE * self.tolerance / steepest(&surface, n))
+                trims.layer(graphs, k, FRACTION * self.tolerance / max_derivative(&surface, n))
             };
             if own.as_ref().is_some_and(Trims::is_empty) {
                 continue;
@@ -200,13 +200,13 @@ impl Cutter<'_> {
         Ok(out)
     }
 
-    /// The images of the layers of a part, fitted within the tolerance if that is reached, and their distance.
+    /// The images of the layers of a part, and their distance from the exact ones: within the tolerance if `max_cells` suffice.
     fn layers(
         &self,
         part: &Part,
         graphs: &Graphs<'_>,
         map: &dyn Map3,
-        most: usize,
+        max_cells: usize,
     ) -> Result<(Vec<Surface>, f64), Exceeded> {
         let layers = Layers { patch: &part.patch, graphs, map };
         let mut n = 1;
@@ -214,7 +214,7 @@ impl Cutter<'_> {
             self.budget.spend(layers.work(n) * (graphs.count() + 1) as f64)?;
             let fits: Vec<Cells> = (0..=graphs.count()).map(|k| layers.fit(k, n)).collect();
             let off = fits.iter().fold(0.0, |d: f64, c| d.max(c.distance));
-            if off <= self.tolerance || n >= most {
+            if off <= self.tolerance || n >= max_cells {
                 let surfaces = match &part.trims {
                     None => stacked(&fits, n, self.tolerance),
                     Some(trims) => self.trimmed(&fits, n, trims, graphs)?,
@@ -226,7 +226,7 @@ impl Cutter<'_> {
     }
 }
 
-/// A part of a surface over 0..1 × 0..1 of its own, with its loops if it is trimmed.
+/// A part of a surface with parameters 0..1 × 0..1, and with its loops if it is trimmed.
 struct Part {
     patch: BezierPatch,
     trims: Option<Trims>,
@@ -246,7 +246,7 @@ impl Part {
     }
 }
 
-/// Layers one above the other as one surface, or as several if the map tears them apart.
+/// Stacks layers into one surface, or into several if the map tears them apart.
 fn stacked(layers: &[Cells], n: usize, tolerance: f64) -> Vec<Surface> {
     let mut stacks: Vec<Vec<Vec<DVec3>>> = Vec::new();
     for layer in layers {
@@ -271,8 +271,8 @@ fn stacked(layers: &[Cells], n: usize, tolerance: f64) -> Vec<Surface> {
     stacks.into_iter().map(surface).collect()
 }
 
-/// The largest derivative of a bicubic surface of n × n cells, at most.
-fn steepest(surface: &Surface, n: usize) -> f64 {
+/// An upper bound for the derivatives of a bicubic surface of n × n cells.
+fn max_derivative(surface: &Surface, n: usize) -> f64 {
     let width = 3 * n + 1;
     let across = surface.points.chunks(width).flat_map(|row| row.windows(2).map(|w| w[0].distance(w[1])));
     let up = surface.points.iter().zip(surface.points.iter().skip(width)).map(|(p, q)| p.distance(*q));
@@ -288,19 +288,18 @@ fn transposed(mut surface: Surface) -> Surface {
     surface
 }
 
-// Images of patches that are cut by creases: bicubic cells that follow the curves instead of crossing them.
-//
-// Between two curves v = g(u) and v = h(u) the patch is P(s, g(s) + t·(h(s) − g(s))), which no crease crosses. Cells take over
-// position, tangents and twist at their corners, as in the grid of `refit`; derivatives beside a curve are those of its own side.
-
-/// The parts of a patch between the curves, from v = 0 upwards.
-pub(super) struct Layers<'a> {
-    pub(super) patch: &'a BezierPatch,
-    pub(super) graphs: &'a Graphs<'a>,
-    pub(super) map: &'a dyn Map3,
+/// The parts of a patch between crease curves, from v = 0 upwards.
+///
+/// Between two curves v = g(u) and v = h(u) the patch is P(s, g(s) + t·(h(s) − g(s))), which no crease crosses. It is fitted by bicubic
+/// cells, which have the position, tangents and twist of the image at their corners, as in `refit`; derivatives at a curve are taken on the
+/// layer's own side of it.
+struct Layers<'a> {
+    patch: &'a BezierPatch,
+    graphs: &'a Graphs<'a>,
+    map: &'a dyn Map3,
 }
 
-/// A line s = const of a layer: where it begins and ends, and how both change with s.
+/// A line s = const of a layer: height and slope of its lower and of its upper end.
 struct Rung {
     s: f64,
     low: [f64; 2],
@@ -309,12 +308,12 @@ struct Rung {
 
 impl Layers<'_> {
     /// The work of fitting n × n cells to a layer.
-    pub(super) fn work(&self, n: usize) -> f64 {
+    fn work(&self, n: usize) -> f64 {
         refit::work(self.patch, n) + 16.0 * (n * refit::PLACES) as f64
     }
 
     /// Fits n × n cells to a layer and measures their distance from the image.
-    pub(super) fn fit(&self, layer: usize, n: usize) -> Cells {
+    fn fit(&self, layer: usize, n: usize) -> Cells {
         let at = |i: usize| i as f64 / n as f64;
         let mut corners = Vec::with_capacity((n + 1) * (n + 1));
         let rungs: Vec<[Rung; 2]> =
@@ -338,7 +337,7 @@ impl Layers<'_> {
         self.patch.point(rung.s, rung.low[0] + t * (rung.high[0] - rung.low[0]))
     }
 
-    /// The image of a place and its derivatives by s and t.
+    /// The image of a place, and its derivatives by s and t.
     fn tangents(&self, rung: &Rung, t: f64) -> [DVec3; 3] {
         let v = rung.low[0] + t * (rung.high[0] - rung.low[0]);
         let [p, du, dv] = self.patch.jet(rung.s, v);

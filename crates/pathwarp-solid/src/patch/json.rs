@@ -1,8 +1,7 @@
-//! Rational patches and NURBS surfaces as JSON, with trimming curves; `docs/solid.md` describes it.
+//! Rational patches and NURBS surfaces as JSON, with trimming curves. `docs/solid.md` describes the format.
 
-use super::surface::{Surface, TrimCurve};
+use super::surface::{self, Surface, TrimCurve};
 use crate::mesh::MeshError;
-use crate::patch::surface;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -18,11 +17,11 @@ struct Entry {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     name: String,
     degree: [usize; 2],
-    /// Without them, a Bézier patch over 0..1.
+    /// By default those of a Bézier patch over 0..1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     knots: Option<[Vec<f64>; 2]>,
     points: Vec<[f64; 3]>,
-    /// Without them, all are 1.
+    /// By default 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -43,14 +42,14 @@ struct Curve {
 /// Reads surfaces.
 ///
 /// # Errors
-/// Returns the problem, with its place in the text or the number of the surface.
+/// The text is damaged. The error says where in the text, or in which surface.
 pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     let file: File =
         serde_json::from_slice(text).map_err(|e| MeshError::whole(format!("is not a file of surfaces: {e}")))?;
     let mut out = Vec::with_capacity(file.surfaces.len());
     for (n, entry) in file.surfaces.into_iter().enumerate() {
         let ones = |given: Option<Vec<f64>>, n: usize| given.unwrap_or_else(|| vec![1.0; n]);
-        // The degrees are checked below; here they must not overflow.
+        // Degrees are checked below, but must not overflow here.
         let default = |d: usize| surface::single(d.min(usize::from(u8::MAX)), [0.0, 1.0]);
         let curve = |c: Curve| TrimCurve {
             degree: c.degree,
@@ -77,10 +76,10 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     Ok(out)
 }
 
-/// Writes surfaces, every number exactly.
+/// Writes surfaces. Every number is exact.
 ///
 /// # Errors
-/// A number that JSON cannot hold.
+/// A number cannot be written as JSON.
 pub fn write(surfaces: &[Surface]) -> Result<String, String> {
     let weights = |w: &[f64]| w.iter().any(|w| *w != 1.0).then(|| w.to_vec());
     let curve = |c: &TrimCurve| Curve {

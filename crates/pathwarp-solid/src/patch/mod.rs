@@ -1,5 +1,5 @@
-//! Curved surfaces: Bézier patches and NURBS, rational or not, with trimming curves; their files, their exact images, and refitting
-//! where an exact image would be of too high a degree.
+//! Curved surfaces: Bézier patches and NURBS, rational or not, with trimming curves. Files, exact images, and approximate ones where the
+//! degree of an exact image would be too high.
 
 pub mod bpt;
 mod crossing;
@@ -16,34 +16,32 @@ use cut::Cutter;
 use glam::DVec3;
 use part::Sided;
 use pathwarp::budget::{Budget, Exceeded};
-use refit::{INSIDE, MOST_CELLS};
+use refit::{INSIDE, MAX_CELLS};
 use thiserror::Error;
 
 pub use surface::{BezierPatch, MAX_DEGREE, Surface, TrimCurve};
 pub use tessellate::{tessellate, tessellate_image};
 
-// Surfaces under a chain of maps: exactly where the degree allows it, otherwise refitted.
-
-/// Counts of deformed surfaces, and the largest error.
+/// What [`deform_patches`] did, with the largest error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DeformedPatches {
     /// Surfaces whose image is exact.
     pub exact: usize,
-    /// Surfaces that were refitted by bicubic patches.
+    /// Surfaces that were refitted with bicubic patches.
     pub refitted: usize,
-    /// Those of them that a crease crosses: they are replaced by parts, of which some are exact.
+    /// How many of the refitted ones were cut into parts because a crease crosses them; some of the parts may be exact.
     pub cut: usize,
-    /// The largest distance between those and their exact images that was measured.
+    /// The largest distance measured between refitted surfaces and their exact images.
     pub distance: f64,
     /// Places of a grid on the surfaces at which the map turns space inside out.
     pub folded: usize,
-    /// The first of them, before the map.
+    /// The first of those places, in the source.
     pub folded_at: Option<DVec3>,
-    /// A place on a surface at which the map jumps, before the map.
+    /// A place on a surface at which the map jumps, in the source.
     pub torn_at: Option<DVec3>,
 }
 
-/// The reason why surfaces have no image.
+/// Why surfaces have no image.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PatchError {
     /// The map is not defined at a point of a surface.
@@ -51,20 +49,20 @@ pub enum PatchError {
     Undefined {
         /// The surface's index.
         surface: usize,
-        /// The point, before the map.
+        /// The point, in the source.
         at: DVec3,
     },
-    /// More work than a limit allows.
+    /// The surfaces take more work than a limit allows.
     #[error("the surfaces take {0}")]
     Limit(#[from] Exceeded),
 }
 
-/// Replaces surfaces by their images. Those that are not exact are within `tolerance` of the image at equal parameters, if that
-/// is reached with 64 cells along a patch; [`DeformedPatches::distance`] tells. A surface that a crease crosses is replaced by its
-/// parts, cut along the crease.
+/// Replaces surfaces by their images. An image that is not exact is within `tolerance` of the exact one at equal parameters, unless that
+/// takes more than 64 cells along a patch; [`DeformedPatches::distance`] tells. A surface that a crease crosses is cut along it and replaced
+/// by its parts.
 ///
 /// # Errors
-/// A place without image on a grid of 8 × 8 points of a patch, or more evaluations than the limit allows.
+/// A point on a grid of 8 × 8 points of a patch has no image, or more evaluations would be needed than the limit allows.
 pub fn deform_patches(
     surfaces: &mut Vec<Surface>,
     map: &Chain3,
@@ -111,10 +109,11 @@ pub fn deform_patches(
     Ok(out)
 }
 
-/// A surface's index, its pieces with the map on each, and the parameters between them.
+/// A surface left to refit: its index, its pieces with the map on each, and the parameters between them.
 type Left = (usize, Vec<(Sided, BezierPatch)>, [Vec<f64>; 2]);
 
-/// Fits surfaces alike, with as many cells as the worst of them needs to come within the tolerance. Returns the largest distance.
+/// Fits all surfaces with the same number of cells, as many as the worst of them needs to get within the tolerance. Returns the largest
+/// distance.
 fn refitted(
     surfaces: &[Surface],
     left: &[Left],
@@ -122,7 +121,7 @@ fn refitted(
     images: &mut [Vec<Surface>],
     budget: &Budget,
 ) -> Result<f64, Exceeded> {
-    // A crease may lie along sides. Neighbours take derivatives at the same places.
+    // A crease may lie along sides. All surfaces take derivatives equally far inside, so that neighbours take them at the same places.
     let smooth = left.iter().flat_map(|(_, pieces, _)| pieces).all(|(side, _)| side.smooth);
     let inside = if smooth { 0.0 } else { INSIDE };
     let mut n = 1;
@@ -139,7 +138,7 @@ fn refitted(
             }
             fitted.push(cells);
         }
-        if distance <= tolerance || n >= MOST_CELLS {
+        if distance <= tolerance || n >= MAX_CELLS {
             for ((i, _, breaks), cells) in left.iter().zip(&fitted) {
                 images[*i] = vec![refit::joined(&surfaces[*i], breaks, cells)];
             }
@@ -149,7 +148,7 @@ fn refitted(
     }
 }
 
-/// Looks for places without image and folds on a grid.
+/// Looks for places without an image, and for folds, on a grid.
 fn examine(
     surface: usize,
     pieces: &[BezierPatch],

@@ -1,4 +1,4 @@
-//! Parts of a Bézier patch, which are Bézier patches again.
+//! Parts of a Bézier patch, as Bézier patches, and maps as they act on one patch.
 
 use super::surface::BezierPatch;
 use crate::map::{Chain3, Collineation, Creases3, Map3};
@@ -8,7 +8,7 @@ use pathwarp::map::CreaseKind;
 use std::sync::Arc;
 
 impl BezierPatch {
-    /// The part over `from[0]`..`to[0]` × `from[1]`..`to[1]`, over 0..1 × 0..1 again.
+    /// The part over `from[0]`..`to[0]` × `from[1]`..`to[1]`, with parameters 0..1 × 0..1.
     #[must_use]
     pub(super) fn part(&self, from: [f64; 2], to: [f64; 2]) -> Self {
         let rows = self.points.chunks(self.degree[0] + 1);
@@ -28,7 +28,7 @@ impl BezierPatch {
     }
 }
 
-/// The control points of a Bézier curve between two parameters: its polar form with every number of both.
+/// The control points of a Bézier curve between two parameters. The k-th is the polar form at `from`, n − k times, and `to`, k times.
 pub(super) fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
     let n = points.len().saturating_sub(1);
     let polar = |k: usize| {
@@ -44,12 +44,10 @@ pub(super) fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
     (0..=n).map(polar).collect()
 }
 
-// A map as it is on one patch: at sides that lie in a crease, the patch's own side of it counts.
-
-/// The map on a patch.
+/// A map as it acts on one patch: where a side of the patch lies in a crease, the branch on the patch's side applies.
 pub(super) struct Sided {
     pub(super) map: Chain3,
-    /// No crease of it crosses or touches the patch, as far as the patch's box tells.
+    /// Whether no crease crosses or touches the patch, as far as its bounding box tells.
     pub(super) smooth: bool,
 }
 
@@ -61,7 +59,7 @@ impl Sided {
             let own = on.and_then(|on| step.branch(&on));
             out.smooth &= own.is_some() || !has_kinks(&**step);
             let own = own.unwrap_or_else(|| Arc::clone(step));
-            // The images of other steps are not known as boxes.
+            // The box of the image is only computed for collineations.
             on = on.zip(own.collineation()).and_then(|(on, c)| image(&on, c));
             out.map.push(own);
         }
@@ -75,7 +73,7 @@ fn has_kinks(map: &dyn Map3) -> bool {
     creases.items().iter().any(|c| c.kind == CreaseKind::Kink)
 }
 
-/// The box of a box's image.
+/// The bounding box of a box's image, if the box is all in front of the vanishing plane.
 fn image(on: &Box3, map: &Collineation) -> Option<Box3> {
     let ahead = on.corners().iter().all(|p| map.matrix().row(3).dot(p.extend(1.0)) > 0.0);
     if ahead { Box3::around(on.corners().map(|p| map.point(p))) } else { None }

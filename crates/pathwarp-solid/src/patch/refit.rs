@@ -1,19 +1,22 @@
-//! Images that are not rational, or of too high a degree: bicubic patches within a tolerance.
+//! Images of surfaces: exact ones where the map is rational and the degree allows it, otherwise bicubic patches within a tolerance.
 //!
-//! Every Bézier patch is cut into n × n cells, with the same n for all patches of a model, so that patches with a common edge
-//! keep it. A cell takes over position, both tangents and the twist of the exact image at its corners; neighbours therefore join
-//! smoothly, and the error falls with n⁴. The distance is measured at equal parameters on a grid within each cell.
+//! For the latter, every Bézier patch is cut into n × n cells, with the same n for all patches of a model, so that patches that share an
+//! edge still do. A cell has the position, both tangents and the twist of the exact image at its corners; so neighbours join smoothly, and
+//! the error falls with n⁴. The distance is measured at equal parameters, on a grid within each cell.
+//!
+//! The exact image of a rational patch under a rational map is a rational patch. Under a collineation (degree 1), p̂ = p/δ and ŵ = w·δ for
+//! control points and weights, whatever the knots. Under a map of degree d, a patch of degree m × n becomes one of degree dm × dn, by
+//! products of Bernstein polynomials.
 
-use super::surface;
-use super::surface::{BezierPatch, MAX_DEGREE, Scaled, Surface};
+use super::surface::{self, BezierPatch, MAX_DEGREE, Scaled, Surface};
 use crate::map::{Collineation, Fraction3, Map3};
 use glam::{DVec3, DVec4, Vec4Swizzles as _};
 use pathwarp::budget::{Budget, Exceeded};
 use std::collections::BTreeMap;
 
-/// Cells along a side of a patch at most; more would mean a crease, at which they converge slowly.
-pub(super) const MOST_CELLS: usize = 64;
-/// Derivatives beside a crease are taken this far from it, in the parameters. A power of two, so that neighbours take the same place.
+/// The most cells along a side of a patch. Only at a crease, where cells converge slowly, would more be needed.
+pub(super) const MAX_CELLS: usize = 64;
+/// Derivatives at a crease are taken this far from it, in the parameters. A power of two, so that neighbours take them at the same place.
 pub(super) const INSIDE: f64 = 1.0 / 1_048_576.0;
 /// Places along each side of a cell at which the distance is measured.
 pub(super) const PLACES: usize = 4;
@@ -27,7 +30,7 @@ pub(super) struct Cells {
     pub(super) distance: f64,
 }
 
-/// The image of a point of the patch, its derivatives, and the mixed one.
+/// The image of a point of the patch, its derivatives by u and v, and the mixed one.
 pub(super) type Corner = [DVec3; 4];
 
 fn tangents(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64) -> [DVec3; 3] {
@@ -38,7 +41,7 @@ fn tangents(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64) -> [DVec3; 3] {
 
 fn corner(patch: &BezierPatch, map: &dyn Map3, [u, v]: [f64; 2], n: usize, inside: f64) -> Corner {
     let within = |t: f64| t.clamp(inside, 1.0 - inside);
-    // The twist by differences of tangents, to about this relative error: it moves one control point of a cell by a ninth.
+    // The twist is a difference quotient of tangents, with about this relative error. It moves only one control point of a cell, by a ninth.
     let h = 1e-4 / n as f64;
     let (before, after) = ((v - h).max(inside), (v + h).min(1.0 - inside));
     let [p, du, dv] = tangents(patch, map, u, v);
@@ -51,11 +54,12 @@ fn corner(patch: &BezierPatch, map: &dyn Map3, [u, v]: [f64; 2], n: usize, insid
     if is_torn(p, &own, inside) {
         return [own[0], own[1], own[2], twist];
     }
-    // Neighbours agree on the derivative along the side that they share, and each has its own across it.
+    // Neighbours agree on the derivative along a shared side, and each has its own across it.
     [p, across(v), tangents(patch, map, u, within(v))[2], twist]
 }
 
-/// Returns `true` if the map moves a place apart from its neighbour inside, given with its derivatives, by far more than those explain.
+/// Whether the image of a place is much farther from the image `beside` it, `inside` away in the parameters, than the derivatives there
+/// explain.
 pub(super) fn is_torn(at: DVec3, [beside, ds, dt]: &[DVec3; 3], inside: f64) -> bool {
     const FAR: f64 = 100.0;
     at.distance(*beside) > FAR * inside * (ds.length() + dt.length())
@@ -67,7 +71,7 @@ pub(super) fn work(patch: &BezierPatch, n: usize) -> f64 {
     (patch.work() * (3 * (n + 1) * (n + 1) + samples)) as f64
 }
 
-/// Fits n × n cells and measures their distance from the image. Derivatives at the sides are taken `inside` of them, in the parameters:
+/// Fits n × n cells and measures their distance from the image. Derivatives at the sides are taken `inside` from them, in the parameters:
 /// 0, or [`INSIDE`] if a crease may lie along a side.
 pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, inside: f64) -> Cells {
     let at = |i: usize| i as f64 / n as f64;
@@ -100,7 +104,7 @@ impl Cells {
         Self { n, points, distance: 0.0 }
     }
 
-    /// Measures the distance from the image of (u, v); the number of the column is passed along.
+    /// Measures the distance from an image, given as a function of the number of the column, u and v.
     pub(super) fn measure(&mut self, image: impl Fn(usize, f64, f64) -> DVec3) {
         let n = self.n;
         for j in 0..n * PLACES {
@@ -153,15 +157,10 @@ pub(super) fn joined(surface: &Surface, breaks: &[Vec<f64>; 2], pieces: &[Cells]
     }
 }
 
-// Exact images: a rational map of a rational patch is a rational patch.
-//
-// Under a collineation (degree 1) p̂ = p/δ and ŵ = w·δ for control points and weights, whatever the knots. Under a map of degree d
-// a patch of degree m × n becomes one of degree dm × dn, by products of Bernstein polynomials.
-
-/// The exact image under a map, if it is a surface with positive weights of a degree that is allowed.
+/// The exact image under a map, if it is a surface of allowed degree with positive weights.
 ///
 /// # Errors
-/// More work than the limit allows.
+/// It would take more work than the limit allows.
 pub(super) fn image(surface: &Surface, map: &dyn Map3, budget: &Budget) -> Result<Option<Surface>, Exceeded> {
     let out = match map.collineation() {
         Some(c) => Some(projected(surface, c)),
@@ -180,19 +179,19 @@ fn projected(surface: &Surface, map: &Collineation) -> Surface {
     out
 }
 
-/// The map on each piece.
+/// The map on each piece as a fraction of polynomials of degree `max` or less.
 fn fractions(
     pieces: &[BezierPatch],
     map: &dyn Map3,
-    most: usize,
+    max: usize,
     budget: &Budget,
 ) -> Result<Option<Vec<Fraction3>>, Exceeded> {
     let mut out: Vec<Fraction3> = Vec::with_capacity(pieces.len());
     for piece in pieces {
-        // About as much work as so many evaluations of the map; the first piece tells for the others.
-        let d = out.last().map_or(most, Fraction3::degree) + 1;
+        // It takes about as much work as this many evaluations of the map. Pieces are assumed to have the degree of the one before.
+        let d = out.last().map_or(max, Fraction3::degree) + 1;
         budget.spend(d.pow(4) as f64)?;
-        match piece.bounds().and_then(|b| map.fraction(&b, most)) {
+        match piece.bounds().and_then(|b| map.fraction(&b, max)) {
             Some(fraction) => out.push(fraction),
             None => return Ok(None),
         }
@@ -202,8 +201,8 @@ fn fractions(
 
 fn composed(surface: &Surface, map: &dyn Map3, budget: &Budget) -> Result<Option<Surface>, Exceeded> {
     let (pieces, breaks) = surface.pieces();
-    let most = MAX_DEGREE / surface.degree[0].max(surface.degree[1]);
-    let all = fractions(&pieces, map, most, budget)?;
+    let max = MAX_DEGREE / surface.degree[0].max(surface.degree[1]);
+    let all = fractions(&pieces, map, max, budget)?;
     Ok(all.and_then(|fractions| joined_exactly(surface, &pieces, &breaks, &fractions)))
 }
 
@@ -213,7 +212,7 @@ fn joined_exactly(
     breaks: &[Vec<f64>; 2],
     fractions: &[Fraction3],
 ) -> Option<Surface> {
-    /// Control points that two pieces share agree within this share of the surface's size, unless the map tears them apart.
+    /// Control points shared by two pieces agree within this fraction of the surface's size, unless the map tears them apart.
     const SAME: f64 = 1e-9;
     if fractions.iter().all(Fraction3::is_identity) {
         return Some(surface.clone());
@@ -247,13 +246,13 @@ fn joined_exactly(
         degree,
         knots: [0, 1].map(|a| surface::joined(degree[a], &breaks[a])),
         points: all.iter().map(|p| p.xyz() / p.w).collect(),
-        // Products round the weights of a polynomial surface, which are known.
+        // The weights of a polynomial surface are known, and would be rounded in products.
         weights: all.iter().map(|p| if polynomial { 1.0 } else { p.w }).collect(),
         trims: surface.trims.clone(),
     })
 }
 
-/// The control points of a map of a patch, made homogeneous of degree `d`.
+/// The homogeneous control points of a patch's image under a map, raised to degree `d`.
 fn substituted(piece: &BezierPatch, fraction: &Fraction3, d: usize) -> Vec<DVec4> {
     let (middle, half) = (fraction.chart.middle(), fraction.chart.half());
     let scaled = |f: &dyn Fn(&DVec4) -> f64| Scaled::new(piece.degree, piece.points.iter().map(f)).powers(d);

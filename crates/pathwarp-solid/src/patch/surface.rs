@@ -1,4 +1,4 @@
-//! A surface as data: a NURBS surface in general, a Bézier patch if it has one span.
+//! NURBS surfaces, and the Bézier patches they consist of.
 
 use crate::settings::Box3;
 use glam::{DVec3, DVec4, Vec4Swizzles as _};
@@ -6,9 +6,9 @@ use glam::{DVec3, DVec4, Vec4Swizzles as _};
 /// A NURBS surface.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Surface {
-    /// Its name; may be empty.
+    /// Name; may be empty.
     pub name: String,
-    /// Degrees in u and v, 1 to [`MAX_DEGREE`].
+    /// Degrees in u and v, from 1 to [`MAX_DEGREE`].
     pub degree: [usize; 2],
     /// Clamped knots in u and v.
     pub knots: [Vec<f64>; 2],
@@ -16,15 +16,15 @@ pub struct Surface {
     pub points: Vec<DVec3>,
     /// A positive weight for each control point.
     pub weights: Vec<f64>,
-    /// Closed loops of curves in the plane of u and v. A point belongs to the surface if an odd number of them surrounds it, or if
-    /// there are none.
+    /// Closed loops of curves in the plane of u and v. A point belongs to the surface if an odd number of loops surrounds it, or if there
+    /// are none.
     pub trims: Vec<Vec<TrimCurve>>,
 }
 
 /// A NURBS curve in the plane of u and v.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TrimCurve {
-    /// Its degree.
+    /// Degree.
     pub degree: usize,
     /// Clamped knots.
     pub knots: Vec<f64>,
@@ -35,7 +35,7 @@ pub struct TrimCurve {
 }
 
 impl Surface {
-    /// A Bézier patch over 0..1 × 0..1 with weights 1; `points` must be (`degree[0]` + 1)·(`degree[1]` + 1).
+    /// A Bézier patch over 0..1 × 0..1 with weights 1. There must be (`degree[0]` + 1)·(`degree[1]` + 1) points.
     #[must_use]
     pub fn bezier(name: &str, degree: [usize; 2], points: Vec<DVec3>) -> Self {
         let weights = vec![1.0; points.len()];
@@ -43,31 +43,31 @@ impl Surface {
         Self { name: name.to_owned(), degree, knots, points, weights, trims: Vec::new() }
     }
 
-    /// Numbers of control points in u and v.
+    /// The numbers of control points in u and v.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         [0, 1].map(|a| self.knots[a].len().saturating_sub(self.degree[a] + 1))
     }
 
-    /// Returns `true` if weights differ.
+    /// Whether weights differ.
     #[must_use]
     pub fn is_rational(&self) -> bool {
         self.weights.windows(2).any(|w| w[0] != w[1])
     }
 
-    /// Returns `true` if it is a single Bézier patch.
+    /// Whether the surface is a single Bézier patch.
     #[must_use]
     pub fn is_bezier(&self) -> bool {
         self.size() == self.degree.map(|d| d + 1)
     }
 
-    /// The box of the control points, which holds the surface.
+    /// The bounding box of the control points, which contains the surface.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {
         Box3::around(self.points.iter().copied())
     }
 
-    /// Says what is wrong with the numbers, if anything is.
+    /// What is wrong with the numbers, if anything.
     #[must_use]
     pub fn fault(&self) -> Option<String> {
         let names = ["u", "v"];
@@ -124,9 +124,7 @@ fn faulty_weights(weights: &[f64], points: usize) -> Option<String> {
     Some(format!("weight {} is not a positive number", bad + 1))
 }
 
-// A rational Bézier patch in homogeneous coordinates.
-
-/// Highest degree of a surface, read or made by exact composition.
+/// The highest degree of a surface, whether read or made by exact composition.
 pub const MAX_DEGREE: usize = 12;
 
 /// A rational Bézier patch over 0..1 × 0..1.
@@ -139,12 +137,12 @@ pub struct BezierPatch {
 }
 
 impl BezierPatch {
-    /// Work of a point, in evaluations of a map.
+    /// The work of computing a point, in evaluations of a map.
     pub(super) fn work(&self) -> usize {
         2 + (self.degree[0] + 1) * (self.degree[1] + 1) / 2
     }
 
-    /// The value in homogeneous coordinates and its derivatives by u and v.
+    /// The value in homogeneous coordinates, and its derivatives by u and v.
     #[must_use]
     pub fn homogeneous(&self, u: f64, v: f64) -> [DVec4; 3] {
         let rows = self.points.chunks(self.degree[0] + 1).map(|row| curve(row.iter().copied(), u));
@@ -157,14 +155,14 @@ impl BezierPatch {
         [value, curve(slope[..n].iter().copied(), v).0, dv]
     }
 
-    /// The point.
+    /// The point at u and v.
     #[must_use]
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         let [p, ..] = self.homogeneous(u, v);
         p.xyz() / p.w
     }
 
-    /// The point and its derivatives by u and v.
+    /// The point at u and v, and its derivatives by u and v.
     #[must_use]
     pub fn jet(&self, u: f64, v: f64) -> [DVec3; 3] {
         let [p, du, dv] = self.homogeneous(u, v);
@@ -172,15 +170,15 @@ impl BezierPatch {
         [at, (du.xyz() - at * du.w) / p.w, (dv.xyz() - at * dv.w) / p.w]
     }
 
-    /// The box of the control points.
+    /// The bounding box of the control points.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {
         Box3::around(self.points.iter().map(|p| p.xyz() / p.w))
     }
 }
 
-/// A Bézier curve and its derivative. The same arithmetic runs from both ends, so that patches with a common edge agree on it to
-/// the last bit at parameters t and 1 − t.
+/// A point of a Bézier curve, and the derivative. The arithmetic is the same from both ends, so patches with a common edge agree on it to the
+/// last bit at parameters t and 1 − t.
 pub(super) fn curve(points: impl Iterator<Item = DVec4>, t: f64) -> (DVec4, DVec4) {
     let mut row = [DVec4::ZERO; MAX_DEGREE + 1];
     let mut n = 0;
@@ -198,9 +196,8 @@ pub(super) fn curve(points: impl Iterator<Item = DVec4>, t: f64) -> (DVec4, DVec
     (row[0], slope)
 }
 
-// Polynomials in two variables in scaled Bernstein form, Σ c[i,j]·uⁱ(1−u)ᵐ⁻ⁱvʲ(1−v)ⁿ⁻ʲ, in which products are convolutions.
-
-/// A polynomial; its coefficients are Bernstein coefficients times binomial coefficients, u fastest.
+/// A polynomial in two variables in scaled Bernstein form, Σ c[i,j]·uⁱ(1−u)ᵐ⁻ⁱvʲ(1−v)ⁿ⁻ʲ, in which products are convolutions. The
+/// coefficients are Bernstein coefficients times binomial coefficients, u fastest.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scaled {
     degree: [usize; 2],
@@ -217,17 +214,16 @@ fn binomials(n: usize) -> Vec<f64> {
 }
 
 impl Scaled {
-    /// A constant.
-    pub(super) fn constant(v: f64) -> Self {
+    fn constant(v: f64) -> Self {
         Self { degree: [0, 0], c: vec![v] }
     }
 
-    /// The zero of some degree.
+    /// Zero, as a polynomial of some degree.
     pub(super) fn zero(degree: [usize; 2]) -> Self {
         Self { degree, c: vec![0.0; (degree[0] + 1) * (degree[1] + 1)] }
     }
 
-    /// From Bernstein coefficients.
+    /// The polynomial with these Bernstein coefficients.
     pub(super) fn new(degree: [usize; 2], c: impl Iterator<Item = f64>) -> Self {
         let [a, b] = degree.map(binomials);
         let factor = b.iter().flat_map(|b| a.iter().map(move |a| a * b));
@@ -241,7 +237,6 @@ impl Scaled {
         self.c.iter().zip(factor).map(|(c, f)| c / f).collect()
     }
 
-    /// The product.
     pub(super) fn times(&self, other: &Self) -> Self {
         let mut out = Self::zero([0, 1].map(|a| self.degree[a] + other.degree[a]));
         let width = out.degree[0] + 1;
@@ -260,7 +255,7 @@ impl Scaled {
         self.c.iter_mut().zip(&other.c).for_each(|(a, b)| *a += k * b);
     }
 
-    /// The powers 0 to `n`.
+    /// The powers from 0 to `n`.
     pub(super) fn powers(&self, n: usize) -> Vec<Self> {
         let mut out = vec![Self::constant(1.0)];
         for k in 0..n {
@@ -270,22 +265,20 @@ impl Scaled {
     }
 }
 
-// Knots, and the Bézier patches of a NURBS surface by their polar forms.
-
 /// The knots of a single Bézier span.
 pub(super) fn single(degree: usize, [from, to]: [f64; 2]) -> Vec<f64> {
     joined(degree, &[from, to])
 }
 
-/// Knots that join Bézier spans at these places.
+/// The knots of Bézier spans joined at these parameters.
 pub(super) fn joined(degree: usize, breaks: &[f64]) -> Vec<f64> {
     let last = breaks.len().saturating_sub(1);
     let times = |i: usize| if i == 0 || i == last { degree + 1 } else { degree };
     breaks.iter().enumerate().flat_map(|(i, b)| std::iter::repeat_n(*b, times(i))).collect()
 }
 
-/// Says what is wrong with knots, if anything is.
-pub(super) fn fault(degree: usize, knots: &[f64]) -> Option<String> {
+/// What is wrong with knots, if anything.
+fn fault(degree: usize, knots: &[f64]) -> Option<String> {
     let n = knots.len();
     if n < 2 * (degree + 1) {
         return Some(format!("has {n} knots; degree {degree} takes {} or more", 2 * (degree + 1)));
@@ -306,14 +299,14 @@ pub(super) fn fault(degree: usize, knots: &[f64]) -> Option<String> {
     })
 }
 
-/// The different knots.
+/// The distinct knots.
 fn breaks(knots: &[f64]) -> Vec<f64> {
     let mut out = knots.to_vec();
     out.dedup();
     out
 }
 
-/// The control points of all Bézier spans of a curve, which share their ends.
+/// The control points of the Bézier spans of a curve; neighbouring spans share an end point.
 pub(super) fn bezier_row(degree: usize, knots: &[f64], points: &[DVec4]) -> Vec<DVec4> {
     let mut out = points[..1].to_vec();
     for span in degree..points.len() {
@@ -329,7 +322,7 @@ pub(super) fn bezier_row(degree: usize, knots: &[f64], points: &[DVec4]) -> Vec<
     out
 }
 
-/// The polar form of a span, by de Boor's algorithm with an argument for each step.
+/// The polar form of a span, by de Boor's algorithm with a different argument in each step.
 fn polar(degree: usize, knots: &[f64], points: &[DVec4], span: usize, arguments: impl Iterator<Item = f64>) -> DVec4 {
     let mut row = points[span - degree..=span].to_vec();
     for (r, t) in arguments.enumerate() {
@@ -343,7 +336,7 @@ fn polar(degree: usize, knots: &[f64], points: &[DVec4], span: usize, arguments:
 }
 
 /// The Bézier patches of a surface, u fastest, and the values of u and v between them.
-pub(super) fn pieces(
+fn pieces(
     degree: [usize; 2],
     knots: &[Vec<f64>; 2],
     [nu, _]: [usize; 2],
@@ -371,7 +364,7 @@ pub(super) fn pieces(
 mod tests {
     use super::*;
 
-    /// A quarter of a cylinder: a circle to the last bits, and derivatives as by differences.
+    /// A quarter of a cylinder: the circle is exact to the last bits, and derivatives agree with difference quotients.
     #[test]
     fn a_quarter_of_a_cylinder() {
         let h = 0.5f64.sqrt();

@@ -1,32 +1,31 @@
 //! Surfaces as meshes of quads.
 
-use super::surface::Surface;
+use super::surface::{BezierPatch, Surface};
 use crate::map::{Chain3, Map3};
 use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind};
-use crate::patch::surface::BezierPatch;
 use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded};
 use std::collections::HashMap;
 
 /// Quads along a side of a patch if no distance is given.
-const DEFAULT: usize = 8;
-/// And at most.
-const MOST: usize = 256;
+const DEFAULT_SIDE: usize = 8;
+/// The most quads along a side of a patch.
+const MAX_SIDE: usize = 256;
 
-/// The surfaces as a mesh of quads within `within` of them, measured at the middles of edges and quads, or of 8 × 8 quads a patch.
-/// Patches that share an edge share its vertices. Trimming curves are not followed.
+/// Turns surfaces into a mesh of quads no farther than `within` from them, as measured at the middles of edges and quads; without `within`,
+/// into 8 × 8 quads per patch. Patches that share an edge share its vertices. Trimming curves are ignored.
 ///
 /// # Errors
-/// More evaluations than the limit allows.
+/// It would take more evaluations than the limit allows.
 pub fn tessellate(surfaces: &[Surface], within: Option<f64>, budget: &Budget) -> Result<Mesh, Exceeded> {
     tessellate_image(surfaces, &Chain3::default(), within, budget)
 }
 
-/// The images of surfaces under a map as a mesh of quads, as [`tessellate`] makes them: every vertex is an exact image, and surfaces
-/// that share an edge still do, which those refitted one by one share within the tolerance only.
+/// Turns the images of surfaces under a map into a mesh of quads, as [`tessellate`] does. Every vertex is an exact image, and surfaces that
+/// share an edge still do; refitted surfaces only share it within the tolerance.
 ///
 /// # Errors
-/// More evaluations than the limit allows.
+/// As for [`tessellate`].
 pub fn tessellate_image(
     surfaces: &[Surface],
     map: &dyn Map3,
@@ -36,10 +35,10 @@ pub fn tessellate_image(
     let patches: Vec<(usize, BezierPatch)> =
         surfaces.iter().enumerate().flat_map(|(n, s)| s.pieces().0.into_iter().map(move |p| (n, p))).collect();
     let work: usize = patches.iter().map(|(_, p)| p.work()).sum();
-    let mut side = if within.is_some() { 1 } else { DEFAULT };
+    let mut side = if within.is_some() { 1 } else { DEFAULT_SIDE };
     if let Some(within) = within {
-        // A power of two, so that parameters from both ends of an edge are the same numbers.
-        while side < MOST {
+        // Powers of two, so that parameters counted from either end of an edge are the same numbers.
+        while side < MAX_SIDE {
             budget.spend((work * 4 * side * side) as f64)?;
             if patches.iter().all(|(_, p)| is_close(p, map, side, within)) {
                 break;
@@ -65,7 +64,7 @@ pub fn tessellate_image(
 fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPatch, map: &dyn Map3, side: usize) {
     let at = |i: usize| i as f64 / side as f64;
     let mut vertex = |p: DVec3| {
-        // Adding 0 makes −0 and 0 the same place.
+        // Adding 0 turns −0 into 0.
         *places.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert_with(|| {
             mesh.positions.push(p);
             u32::try_from(mesh.positions.len() - 1).unwrap_or(NONE)
@@ -79,7 +78,7 @@ fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPat
         for i in 0..side {
             let k = j * (side + 1) + i;
             let mut corners = vec![grid[k], grid[k + 1], grid[k + side + 2], grid[k + side + 1]];
-            // At a pole an edge has no length.
+            // At a pole, an edge has no length.
             corners.dedup();
             if corners.len() > 1 && corners.first() == corners.last() {
                 corners.pop();
@@ -94,7 +93,7 @@ fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPat
     }
 }
 
-/// Returns `true` if the middles of edges and quads are close to the surface.
+/// Whether the middles of all edges and quads are close to the surface.
 fn is_close(patch: &BezierPatch, map: &dyn Map3, side: usize, within: f64) -> bool {
     let at = |i: usize, j: usize| map.point(patch.point(i as f64 / (2 * side) as f64, j as f64 / (2 * side) as f64));
     let mean = |p: DVec3, q: DVec3| 0.5 * (p + q);

@@ -1,26 +1,25 @@
-//! Trimming loops of the parts of a surface: cut at the part's sides, in the coordinates of the part.
+//! Trimming loops of the parts of a surface: clipped at the part's sides, in the coordinates of the part.
 //!
-//! A loop is clipped as a polygon is (I. E. Sutherland, G. W. Hodgman, *Reentrant polygon clipping*, CACM 17, 1974): what lies beyond a
-//! side is left out, and the ends are joined along the side. Clipped loops may run along a side to and fro, which does not change the
-//! points that an odd number of loops surrounds.
+//! A loop is clipped like a polygon (I. E. Sutherland, G. W. Hodgman, *Reentrant polygon clipping*, CACM 17, 1974): what lies beyond a side
+//! is left out, and the ends are joined along the side. Clipped loops may run along a side to and fro; that does not change which points an
+//! odd number of loops surrounds.
 
 use super::crossing::Graphs;
 use super::part::section;
-use super::surface::{Surface, TrimCurve};
-use crate::patch::surface;
+use super::surface::{self, Surface, TrimCurve};
 use glam::DVec4;
 
 /// A Bézier curve in homogeneous coordinates (u·w, v·w, 0, w).
 type Curve = Vec<DVec4>;
 
-/// Parameters this close to a side are on it; a loop around less area is none.
+/// Parameters this close to a side are on it, and loops with no more area than this are left out.
 const ROUNDING: f64 = 1e-12;
-/// Parts of a curve at whose ends the sides of a layer are looked at.
-const LOOKS: usize = 48;
-/// Most halvings of a curve that is fitted.
-const DEEPEST: usize = 8;
+/// The parts of a curve between which crossings of a layer's sides are searched for.
+const STEPS: usize = 48;
+/// A curve is halved at most this often to fit it.
+const MAX_HALVINGS: usize = 8;
 
-/// The loops of a part over 0..1 × 0..1. A point belongs to it if an odd number of them surrounds it.
+/// The loops of a part over 0..1 × 0..1. A point belongs to the surface if an odd number of loops surrounds it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Trims(Vec<Vec<Curve>>);
 
@@ -36,7 +35,7 @@ impl Trims {
         (!loops.is_empty()).then_some(Self(loops))
     }
 
-    /// Returns `true` if nothing is left of the part.
+    /// Whether no point of the part belongs to the surface.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -66,12 +65,12 @@ impl Trims {
         Self(self.0.iter().map(|l| l.iter().map(turn).collect()).collect())
     }
 
-    /// The loops of a layer between two graphs, in whose coordinates the graphs are t = 0 and t = 1, by cubics within `off` of them;
-    /// `None` if all of it belongs to the surface.
+    /// The loops of a layer between two graphs, as cubics within `off` of the exact ones; `None` if all of the layer belongs to the surface. In
+    /// the coordinates of the layer, the graphs are t = 0 and t = 1.
     pub(super) fn layer(&self, graphs: &Graphs<'_>, layer: usize, off: f64) -> Option<Self> {
         let place = |p: [f64; 2]| {
             let [low, high] = graphs.sides(layer, p[0]).map(|side| side[0]);
-            // Where the sides meet, a place is below or above both.
+            // Where the sides meet, a place is below both or above both.
             [p[0], (p[1] - low) / (high - low).max(ROUNDING)]
         };
         let own = |curves: &Vec<Curve>| {
@@ -86,7 +85,7 @@ impl Trims {
         Self(self.0.iter().map(own).collect()).reduced()
     }
 
-    /// The loops as curves of a surface.
+    /// The loops as trimming curves of a surface.
     pub(super) fn curves(&self) -> Vec<Vec<TrimCurve>> {
         let curve = |c: &Curve| TrimCurve {
             degree: c.len() - 1,
@@ -97,9 +96,10 @@ impl Trims {
         self.0.iter().map(|l| l.iter().map(curve).collect()).collect()
     }
 
-    /// Without loops around nothing, and without pairs of loops around all of it. `None` if one of those is all that is left.
+    /// The same part without loops around nothing, and without pairs of loops around the whole part. `None` if a single loop around the whole
+    /// part is left.
     fn reduced(self) -> Option<Self> {
-        /// As a share of the part.
+        /// A loop around this fraction of the part surrounds all of it.
         const ALL: f64 = 1.0 - 1e-9;
         let with_area = self.0.into_iter().map(|l| (area(&l), l)).filter(|(a, _)| *a > ROUNDING);
         let (mut whole, some): (Vec<_>, Vec<_>) = with_area.partition(|(a, _)| *a >= ALL);
@@ -114,7 +114,7 @@ impl Trims {
 /// Parameters of a fitted loop this close to a side are on it.
 const SAME: f64 = 1e-9;
 
-/// The side beyond which a place of a layer is; `None` inside.
+/// The side beyond which a place is, `true` for t = 1; `None` inside the layer.
 fn side_of(t: f64) -> Option<bool> {
     if (-SAME..=1.0 + SAME).contains(&t) { None } else { Some(t > 0.5) }
 }
@@ -142,7 +142,7 @@ fn line([a, b]: [[f64; 2]; 2]) -> Curve {
     [a, b].map(|[u, v]| DVec4::new(u, v, 0.0, 1.0)).to_vec()
 }
 
-/// The area inside a loop, by a polygon with many corners on each curve; exact if all curves are straight.
+/// The area inside a loop, approximately: that of a polygon with many corners on each curve. Exact if all curves are straight.
 fn area(curves: &[Curve]) -> f64 {
     const CORNERS: usize = 16;
     let on = |c: &Curve| (0..CORNERS).map(|i| point(c, i as f64 / CORNERS as f64)).collect::<Vec<_>>();
@@ -151,7 +151,7 @@ fn area(curves: &[Curve]) -> f64 {
     0.5 * corners.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>().abs()
 }
 
-/// The curves of a loop that are left, joined by straight lines where some are left out between them.
+/// The curves of a loop that are kept, joined by straight lines where others are left out.
 #[derive(Default)]
 struct Kept {
     curves: Vec<Curve>,
@@ -188,22 +188,22 @@ impl Kept {
     }
 }
 
-/// A loop on its way through a layer.
+/// Follows a loop through a layer.
 ///
-/// Where the sides of the layer meet, all heights t are one place, and the loop may pass them at once. In the coordinates of the layer it
-/// runs along a line across it there.
+/// Where the sides of the layer meet, all heights t are one place, and the loop may pass all of them at once. In the coordinates of the layer,
+/// it then runs along a line across the layer.
 #[derive(Default)]
 struct InLayer {
     kept: Kept,
-    /// The side beyond which the loop is; `None` inside.
+    /// The side beyond which the loop is, as from [`side_of`].
     beyond: Option<bool>,
-    /// The last position.
+    /// Where the loop is.
     last: [f64; 2],
     off: f64,
 }
 
 impl InLayer {
-    /// Follows a curve between two of its parameters, all of it inside the layer or beyond one side.
+    /// Follows a curve between two of its parameters, where it is all inside the layer or all beyond one side.
     fn follow(&mut self, at: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2]) {
         let height = |side: bool| f64::from(u8::from(side));
         let (start, side) = (on_sides(at(from)), side_of(at(0.5 * (from + to))[1]));
@@ -216,7 +216,7 @@ impl InLayer {
         if side.is_some() {
             self.kept.leave_out();
         } else {
-            let curves = fitted(&|t| on_sides(at(t)), [from, to], self.off, DEEPEST);
+            let curves = fitted(&|t| on_sides(at(t)), [from, to], self.off, MAX_HALVINGS);
             curves.into_iter().for_each(|c| self.kept.add(c));
         }
         (self.beyond, self.last) = (side, on_sides(at(to)));
@@ -229,7 +229,7 @@ impl InLayer {
     }
 }
 
-/// A loop without its parts at which a linear form in (u, v, 0, 1) is negative.
+/// Clips a loop: leaves out the parts where a linear form in (u, v, 0, 1) is negative.
 fn clipped(curves: &[Curve], side: DVec4) -> Vec<Curve> {
     let mut kept = Kept::default();
     for curve in curves {
@@ -249,15 +249,15 @@ fn clipped(curves: &[Curve], side: DVec4) -> Vec<Curve> {
     kept.closed()
 }
 
-/// A form at a point, 0 if it is on the side.
+/// The value of a linear form at a point; 0 if the point is on the side.
 fn above(side: DVec4, p: DVec4) -> f64 {
     let v = side.dot(p);
     if v.abs() <= ROUNDING * p.w { 0.0 } else { v }
 }
 
-/// Appends the places inside an interval at which a polynomial with these Bernstein coefficients changes its sign, in order.
+/// Appends the places inside an interval where the polynomial with these Bernstein coefficients changes its sign, in order.
 fn roots(c: &[f64], from: f64, to: f64, out: &mut Vec<f64>) {
-    /// Rounding of a parameter.
+    /// An interval of this length is a single place.
     const NARROW: f64 = 1e-15;
     let mut signs = c.iter().filter(|v| **v != 0.0).map(|v| *v > 0.0);
     let first = signs.next();
@@ -281,10 +281,10 @@ fn roots(c: &[f64], from: f64, to: f64, out: &mut Vec<f64>) {
     roots(&right, middle, to, out);
 }
 
-/// The parts of 0..1 between the places at which the second coordinate passes 0 or 1.
+/// The parts of 0..1 between the places where the second coordinate passes 0 or 1.
 fn spans(at: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
-    let place = |i: usize| i as f64 / LOOKS as f64;
-    let values: Vec<f64> = (0..=LOOKS).map(|i| at(place(i))[1]).collect();
+    let place = |i: usize| i as f64 / STEPS as f64;
+    let values: Vec<f64> = (0..=STEPS).map(|i| at(place(i))[1]).collect();
     let mut cuts = vec![0.0, 1.0];
     for level in [0.0, 1.0] {
         let beyond = |t: f64| at(t)[1] > level;
@@ -296,15 +296,15 @@ fn spans(at: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
             }
             cuts.push(b);
         };
-        for i in 0..LOOKS {
+        for i in 0..STEPS {
             if (values[i] > level) != (values[i + 1] > level) {
                 pass(place(i), place(i + 1));
             } else if i > 0 && (values[i - 1] > level) == (values[i] > level) {
-                // It may pass the level twice, where it is nearest to it.
+                // Near its extremum, it may pass the level twice.
                 let off = |k: usize| (values[k] - level).abs();
                 if off(i) <= off(i - 1).min(off(i + 1)) {
                     let sign = if values[i] > level { 1.0 } else { -1.0 };
-                    let turn = least(&|t| sign * (at(t)[1] - level), place(i - 1), place(i + 1));
+                    let turn = minimum(&|t| sign * (at(t)[1] - level), place(i - 1), place(i + 1));
                     if beyond(turn) != (values[i] > level) {
                         pass(place(i - 1), turn);
                         pass(turn, place(i + 1));
@@ -317,8 +317,8 @@ fn spans(at: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     cuts.windows(2).filter(|w| w[1] - w[0] > ROUNDING).map(|w| [w[0], w[1]]).collect()
 }
 
-/// The place in an interval at which a function with one minimum is least, by sections in thirds.
-fn least(f: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+/// Where in an interval a function with a single minimum has it, by ternary search.
+fn minimum(f: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     for _ in 0..40 {
         let third = (b - a) / 3.0;
         if f(a + third) < f(b - third) { b -= third } else { a += third }
@@ -326,7 +326,7 @@ fn least(f: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     0.5 * (a + b)
 }
 
-/// Cubics through four places each of a curve, within `off` of it at three others.
+/// Cubics through four points of a curve each, and within `off` of it at three others.
 fn fitted(at: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2], off: f64, depth: usize) -> Vec<Curve> {
     let place = |t: f64| at(from + t * (to - from));
     let [a, p, q, d] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(place);
@@ -394,7 +394,7 @@ mod tests {
 
     #[test]
     fn signs_change_where_they_change() {
-        // (t − 0.2)(t − 0.5)(t − 0.9), a double root (where a cut does no harm), and a side along which the curve runs.
+        // (t − 0.2)(t − 0.5)(t − 0.9), a double root (where a cut does no harm), a side along which the curve runs, and a line.
         for (c, truth) in [
             (vec![-0.09, 0.46 / 3.0, -0.41 / 3.0, 0.04], vec![0.2, 0.5, 0.9]),
             (vec![0.25, -0.25, 0.25], vec![0.5]),

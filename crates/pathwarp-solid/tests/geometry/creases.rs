@@ -1,4 +1,4 @@
-//! Surfaces that the end of a region crosses: their images are cut along it, and both sides are right up to the cut.
+//! Surfaces that the boundary of a region crosses: their images are cut along it, and are right on both sides up to the cut.
 
 use pathwarp::budget::{Budget, Limits};
 use pathwarp::param::Args;
@@ -44,8 +44,8 @@ fn along(p: DVec3, [a, b, c, d]: [DVec3; 4]) -> f64 {
     normal.dot(p - a) / normal.dot(d - a)
 }
 
-/// The image's source, from p̂ = O + (p − O)/δ with δ linear: 1 on the plane and 1/1.5 at the fourth corner. Without the region's end,
-/// points beyond the plane only.
+/// The source of an image, from p̂ = O + (p − O)/δ with linear δ: 1 on the plane and 1/1.5 at the fourth corner. Right only for points beyond
+/// the plane.
 fn source(q: DVec3, corners: [DVec3; 4]) -> DVec3 {
     let along = |p: DVec3| along(p, corners);
     let slope = 1.0 / PUSH - 1.0;
@@ -56,7 +56,7 @@ fn source(q: DVec3, corners: [DVec3; 4]) -> DVec3 {
     if along(p) > 0.0 { p } else { q }
 }
 
-/// The map that pushes the fourth corner away and holds the face of the others.
+/// The map that pushes the fourth corner away and keeps the face of the other corners in place.
 fn local(corners: [DVec3; 4]) -> Chain3 {
     let show = |p: &DVec3| format!("{},{},{}", p.x, p.y, p.z);
     let reference = corners.iter().map(show).collect::<Vec<_>>().join(" ");
@@ -110,7 +110,7 @@ fn images_follow_the_end_of_a_region() {
     }
 }
 
-/// Six flat patches that are a box, across the end of a region: as polygons they stay closed.
+/// Six flat patches make a box across the boundary of a region; as polygons they stay closed.
 #[test]
 fn closed_surfaces_give_closed_polygons() {
     let corner = |k: usize| DVec3::new((k & 1) as f64, (k >> 1 & 1) as f64, (k >> 2 & 1) as f64) * 48.0 + 4.0;
@@ -138,7 +138,7 @@ fn closed_surfaces_give_closed_polygons() {
     }
 }
 
-/// The end of the region lies along the joint of two patches: each side has its own derivatives, and both stay joined.
+/// The boundary of the region lies along the joint of two patches: each side has its own derivatives, and they stay joined.
 #[test]
 fn a_crease_along_a_joint() {
     let hills = hills();
@@ -156,7 +156,7 @@ fn a_crease_along_a_joint() {
             })
             .collect(),
     );
-    // A twist before, so that no image is exact.
+    // A twist comes first, so that no image is exact.
     let mut map = local(beyond(DVec3::new(48.0, 30.0, 20.0), DVec3::X));
     let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(64.0)));
     let twist = Args::from_pairs(&[("preset", "twist"), ("along", "y"), ("angle", "60")]);
@@ -175,7 +175,7 @@ fn a_crease_along_a_joint() {
     }
 }
 
-/// Nothing holds the face of this box: the surface is torn there, which is told.
+/// Nothing keeps the face of this box in place: the surface is torn there, and a place is reported.
 #[test]
 fn tears_are_found() {
     let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(64.0)));
@@ -196,7 +196,7 @@ fn lattice(pairs: &[(&str, &str)]) -> Chain3 {
     map
 }
 
-/// The map jumps at the plane x = 0, in which patches of the teapot meet, also at the tip of its lid: each follows its own side.
+/// The map jumps at the plane x = 0, in which patches of the teapot meet, also at the tip of its lid. Each patch follows its own side.
 #[test]
 fn a_jump_at_joints() {
     let teapot = bpt::read(include_bytes!("../../../../samples/solid/newell.bpt")).unwrap();
@@ -226,7 +226,7 @@ fn a_jump_at_joints() {
     }
 }
 
-/// A surface whose own joint lies where the map jumps falls apart there, into exact halves.
+/// A surface with a joint where the map jumps falls apart there into exact halves.
 #[test]
 fn a_jump_at_a_joint_of_one_surface() {
     let row = |y: f64| (0..5).map(move |i| DVec3::new(8.0 + 12.0 * f64::from(i), y, 30.0 + f64::from(i * i)));
@@ -273,7 +273,7 @@ fn on_curve(c: &TrimCurve, t: f64) -> [f64; 2] {
     [sum(&|i| c.points[i][0]) / sum(&|_| 1.0), sum(&|i| c.points[i][1]) / sum(&|_| 1.0)]
 }
 
-/// Returns `true` if an odd number of loops surrounds a place.
+/// Whether an odd number of loops surrounds a place.
 fn surrounded(loops: &[Vec<[f64; 2]>], [u, v]: [f64; 2]) -> bool {
     let crosses =
         |p: &[f64; 2], q: &[f64; 2]| (p[1] > v) != (q[1] > v) && u < p[0] + (v - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
@@ -281,7 +281,7 @@ fn surrounded(loops: &[Vec<[f64; 2]>], [u, v]: [f64; 2]) -> bool {
     loops.iter().map(count).sum::<usize>() % 2 == 1
 }
 
-/// A ring is cut out of the hills: the parts' loops leave the same ring, whatever the crease does.
+/// A ring is cut out of the hills. The loops of the parts leave the same ring, whatever the crease does.
 #[test]
 fn trimmed_surfaces_are_cut() {
     let mut ring = hills();
@@ -301,7 +301,7 @@ fn trimmed_surfaces_are_cut() {
             done.cut == 1 && done.distance <= tolerance && parts.iter().all(|s| s.fault().is_none()),
             "{name}: {done:?}"
         );
-        // A tolerance in space, in the parameters of the source: 40 and 44 wide.
+        // A tolerance in space, converted to parameters of the source, which is 40 and 44 wide.
         let near = 4.0 * tolerance / 40.0;
         let from_middle = |q: DVec3| {
             let p = source(q, corners);
@@ -337,7 +337,7 @@ fn trimmed_surfaces_are_cut() {
                 let [s, t] = [k % side, k / side].map(|i| (f64::from(i) + 0.4) / f64::from(side));
                 let inside = loops.is_empty() || surrounded(&loops, [s, t]);
                 let (at, r) = from_middle(image(s, t));
-                // Polygons of 40 corners for a quarter of a circle or less.
+                // A quarter of a circle or less becomes a polygon of 40 corners.
                 let margin = near + 1e-3;
                 if inside {
                     assert!(r > 0.15 - margin && r < 0.4 + margin, "{name}: {at:?} is not on the ring");

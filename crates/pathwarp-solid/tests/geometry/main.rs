@@ -1,4 +1,4 @@
-//! Deforming solids, tested from outside against formulas written again and exact fractions.
+//! Tests deformations of solids from outside, against independent formulas and in exact arithmetic.
 
 #![allow(clippy::unwrap_used)]
 

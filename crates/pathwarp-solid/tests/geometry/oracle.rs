@@ -1,5 +1,5 @@
-//! An independent oracle: the formulas written again from their definitions, in plain arrays, and compared with the maps to 1e-9
-//! relative; inverses there and back; rays and planes to 1e-12.
+//! An independent oracle: formulas written again from their definitions, with plain arrays. Maps must agree with them up to a relative error
+//! of 1e-9, inverses must lead back, and rays and planes must stay such up to 1e-12.
 
 use glam::DVec3;
 use pathwarp::param::Args;
@@ -30,7 +30,7 @@ fn points() -> Vec<P> {
     (0..400).map(|_| std::array::from_fn(|a| BOX[0][a] + random() * (BOX[1][a] - BOX[0][a]))).collect()
 }
 
-/// Compares a map with a formula, single and in batches, and its inverse there and back.
+/// Compares a map, for single points and batches, with a formula, and checks that its inverse leads back.
 fn compare(map: &Arc<dyn Map3>, truth: impl Fn(P) -> P) {
     let ps = points();
     let mut batch: Vec<DVec3> = ps.iter().copied().map(DVec3::from_array).collect();
@@ -45,12 +45,12 @@ fn compare(map: &Arc<dyn Map3>, truth: impl Fn(P) -> P) {
         let size = want.length() + 1.0;
         for got in [*q, map.point(p), map.jet(p).p] {
             assert!(got.distance(want) <= 1e-9 * size, "{p}: {got}, not {want}");
-            // The stated bound is 1e-9; what is reached is rounding.
+            // The stated bound is 1e-9; the actual error is only rounding.
             assert!(got.distance(want) <= 1e-12 * size, "{p}: off by {:e}", got.distance(want));
         }
         let returned = back.point(want);
         assert!(returned.distance(p) <= 1e-9 * (p.length() + 1.0), "{p} comes back as {returned}");
-        // The Jacobian, by differences of the formula.
+        // The Jacobian against difference quotients of the formula.
         const H: f64 = 1e-4;
         for (axis, e) in DVec3::AXES.into_iter().enumerate() {
             let at = |h: f64| DVec3::from_array(truth((p + e * h).to_array()));
@@ -82,7 +82,7 @@ fn b_spline(degree: usize, cells: usize, i: usize, x: f64) -> f64 {
     basis(&knot, i, degree, x)
 }
 
-/// Σ N·w·P / Σ N·w over a lattice with these changed points and weights.
+/// Σ N·w·P / Σ N·w over a lattice in which these points and weights are changed.
 fn lattice(
     p: P,
     counts: [usize; 3],
@@ -153,7 +153,7 @@ fn spline_lattices() {
         &[("degree", "2x3x1"), ("cells", "3x2x2"), ("move", "2,2,1:3,-2,1.5 1,3,2:-1,2,1"), ("weight", "2,2,1:2")],
     );
     let inverse = map.inverse().unwrap();
-    // The Jacobian jumps at z-joints of degree 1, so values only.
+    // The Jacobian jumps at joints of degree 1 along z, so compare values only.
     for p in points() {
         let want = lattice(p, counts, |a, i, t| b_spline(degree[a], cells[a], i, t), greville, &changed);
         let (got, want) = (map.point(DVec3::from_array(p)), DVec3::from_array(want));
@@ -209,7 +209,7 @@ fn tetrahedra_of_degree_one_and_two() {
         ],
     );
     compare(&map, |p| {
-        // De Casteljau's algorithm: the values on the six edges' ends and middles, by twice the same affine combination.
+        // De Casteljau's algorithm: the same affine combination applied twice, to values at the ends and middles of the six edges.
         let u = barycentric(p, CORNERS);
         let delta = |i: usize, j: usize| match (i.min(j), i.max(j)) {
             (1, 3) => 1.0 / 1.25,
@@ -230,7 +230,7 @@ fn cuboids_and_sheets() {
         let b = |i, j, k| bernstein(3, i, t[0]) * bernstein(1, j, t[1]) * bernstein(2, k, t[2]);
         radial(EYE, p, 1.0 + (1.0 / 1.2 - 1.0) * b(1, 1, 1) + (1.0 / 0.7 - 1.0) * b(3, 0, 2))
     });
-    // A rectangle in the plane z = 10: the point's place on it along the ray.
+    // A rectangle in the plane z = 10, on which a point's place is found along its ray.
     let map = build(
         "anamorph",
         &[("eye", "20,30,300"), ("reference", "-20,0,10 60,50,10"), ("degree", "2x1x1"), ("push", "1,1,0:1.5")],
@@ -258,7 +258,7 @@ fn cuboids_and_sheets() {
     });
 }
 
-/// Every image lies on its ray, and a collineation keeps planes, to 1e-12.
+/// Every image lies on its ray, and a collineation maps planes to planes, up to 1e-12.
 #[test]
 fn rays_and_planes() {
     let eye = DVec3::from_array(EYE);
@@ -281,7 +281,7 @@ fn rays_and_planes() {
     }
 }
 
-/// The algorithm itself: every level an affine map of space with its handles.
+/// The algorithm itself, in which every level is an affine map of space with its handles.
 fn casteljau(points: &[P], handles: impl Fn(usize, usize) -> [P; 2], u: f64, v: f64, w: f64) -> P {
     let mut row = points.to_vec();
     for level in 1..points.len() {
@@ -339,8 +339,8 @@ fn barr() {
     });
 }
 
-/// A cone of radius 90 at the bottom and 110 at the top, whose side is 40 long: distance and height of a point of the side, and a step
-/// away from it.
+/// For a cone of radius 90 at the bottom and 110 at the top, whose side is 40 long: distance and height of a point on the side, and of a
+/// step away from it.
 #[test]
 fn cones_and_cylinders() {
     for (pairs, [bottom, top]) in
@@ -357,7 +357,7 @@ fn cones_and_cylinders() {
     }
 }
 
-/// One pin: of all changes that reach it the smallest is d·Bᵢ(p)/ΣBⱼ(p)², and frozen layers take no part.
+/// One pin: the smallest of all changes that satisfy it is d·Bᵢ(p)/ΣBⱼ(p)², and frozen layers take no part.
 #[test]
 fn pins_are_reached_with_the_smallest_change() {
     let (pin, d) = ([14.0, 29.0, 41.0], [6.0, -5.0, 8.0]);
@@ -383,7 +383,7 @@ fn pins_are_reached_with_the_smallest_change() {
     }
 }
 
-/// The paper's δ₃ = 1 + (δ − 1)/u₃ takes a point to its place; what is outside the tetrahedron stays, and the held face too.
+/// The paper's δ₃ = 1 + (δ − 1)/u₃ takes a point to its place. The outside of the tetrahedron stays, and so does the held face.
 #[test]
 fn a_prescribed_point_of_a_local_tetrahedron() {
     let at = [22.0, 27.0, 60.0];
@@ -404,11 +404,11 @@ fn a_prescribed_point_of_a_local_tetrahedron() {
         let got = map.point(DVec3::from_array(p));
         assert!(got.distance(DVec3::from_array(want)) <= 1e-9 * (1.0 + got.length()), "{p:?}: {got}, not {want:?}");
         let back = map.inverse().unwrap().point(got);
-        // Images from inside may cover points that stay, so that either is a source.
+        // Images from inside may cover points that stay, so either may be the source.
         assert!(map.point(back).distance(got) <= 1e-9 * (1.0 + got.length()), "{p:?} comes back as {back}");
     }
     assert!(inside > 20 && outside > 20);
-    // A point of the held face.
+    // A point on the held face.
     let face: P = std::array::from_fn(|k| 0.2 * CORNERS[0][k] + 0.3 * CORNERS[1][k] + 0.5 * CORNERS[2][k]);
     assert!(map.point(DVec3::from_array(face)).distance(DVec3::from_array(face)) < 1e-12);
 }

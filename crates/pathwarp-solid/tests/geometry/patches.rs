@@ -1,5 +1,5 @@
-//! Images of rational surfaces against their definitions in exact arithmetic: every floating-point number is a fraction, so the
-//! source surface, the formula of the map (written again) and the resulting surface are evaluated without rounding.
+//! Checks images of rational surfaces in exact arithmetic. Every floating-point number is a fraction, so the source surface, the formula of
+//! the map (written again here) and the resulting surface are evaluated without rounding.
 
 mod exact;
 
@@ -17,7 +17,7 @@ fn budget() -> Budget {
     Budget::new(Limits::default())
 }
 
-/// A map over the box 0..64 on all axes: powers of two keep the parameters exact.
+/// A map over the box 0..64 on all axes. Powers of two keep the parameters exact.
 fn chain(name: &str, pairs: &[(&str, &str)]) -> Chain3 {
     let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(64.0)));
     let mut chain = Chain3::default();
@@ -25,7 +25,7 @@ fn chain(name: &str, pairs: &[(&str, &str)]) -> Chain3 {
     chain
 }
 
-/// A bicubic patch (or of another degree) inside the box, with weights if `rational`.
+/// A patch inside the box, with weights if `rational`.
 fn patch(degree: [usize; 2], rational: bool) -> Surface {
     let [m, n] = degree;
     let points = (0..(m + 1) * (n + 1)).map(|k| {
@@ -46,7 +46,7 @@ fn patch(degree: [usize; 2], rational: bool) -> Surface {
     s
 }
 
-/// Compares the image with the formula at a grid of parameters, exactly up to `within` relative.
+/// Compares the image with the formula at a grid of parameters; the relative error must not exceed `within`.
 fn compare(source: &Surface, map: &Chain3, degree: [usize; 2], within: f64, truth: impl Fn([Q; 3]) -> [Q; 3]) {
     let mut images = vec![source.clone()];
     let done = deform_patches(&mut images, map, 1e-3, &budget()).unwrap();
@@ -67,7 +67,7 @@ fn compare(source: &Surface, map: &Chain3, degree: [usize; 2], within: f64, trut
 
 #[test]
 fn collineations_keep_degree_knots_and_trims() {
-    // Every δ is a power of two at the control points of the first, so that not even rounding happens.
+    // At the control points of the first surface, every δ is a power of two, so nothing is rounded.
     let matrix = DMat4::from_cols(
         DVec4::new(1.0, 0.0, 0.0, 0.0),
         DVec4::new(0.0, 1.0, 0.0, 0.0),
@@ -96,7 +96,7 @@ fn collineations_keep_degree_knots_and_trims() {
     compare(&nurbs, &map, [2, 3], 1e-15, truth);
 }
 
-/// A lattice of degree 1 in space, some of whose corners move, with weights.
+/// A lattice of degree 1 with weights, some of whose corners move.
 fn trilinear([x, y, z]: [Q; 3], moved: &[([usize; 3], [f64; 3], f64)]) -> [Q; 3] {
     let t = [x, y, z].map(|v| v / q(64.0));
     let (mut sum, mut weights) = ([Q::ZERO, Q::ZERO, Q::ZERO], Q::ZERO);
@@ -142,7 +142,7 @@ fn anamorphoses_over_every_reference() {
     compare(&patch([3, 3], true), &map, [6, 6], 1e-13, |p| {
         let [u, v, w] = p.clone().map(|c| c / q(128.0));
         let rest = Q::ONE - &u - &v - &w;
-        // The control points between the second and the fourth corner, and at the first.
+        // The control points between the second and fourth corners, and at the first corner.
         let delta = Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * q(2.0) * u * w + (Q::ONE / q(0.8) - Q::ONE) * &rest * &rest;
         radial(&p, eye, &delta)
     });
@@ -203,7 +203,7 @@ fn skeletons_and_tapers() {
         let r = Q::ONE - q(0.75) * &z / q(64.0);
         [q(32.0) + &r * (x - q(32.0)), q(32.0) + r * (y - q(32.0)), z]
     });
-    // One after the other: degrees multiply.
+    // In a chain of maps, degrees multiply.
     let mut both = chain("bend", &[("preset", "taper"), ("along", "z"), ("factor", "0.25")]);
     both.push(Arc::clone(&chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]).steps()[0]));
     compare(&patch([2, 1], false), &both, [12, 6], 1e-12, |[x, y, z]| {
@@ -213,7 +213,7 @@ fn skeletons_and_tapers() {
     });
 }
 
-/// A joint of a spline lattice at a joint of the surface: composed piece by piece. A patch outside stays as it is.
+/// If a joint of a spline lattice is at a joint of the surface, they are composed piece by piece. A patch outside stays as it is.
 #[test]
 fn pieces_within_cells_are_exact_and_others_are_refitted() {
     let map = chain("ffd", &[("degree", "1"), ("cells", "2x1x1"), ("move", "1,1,1:4,8,0")]);
@@ -237,7 +237,7 @@ fn pieces_within_cells_are_exact_and_others_are_refitted() {
     assert_eq!(outside[0], patch([3, 3], true));
 }
 
-/// A cubic lattice and a twist: within the tolerance by a finer grid than that of the fit, and neighbours stay joined.
+/// Images under a cubic lattice and a twist are within the tolerance, also on a finer grid than that of the fit, and neighbours stay joined.
 #[test]
 fn refitted_surfaces_are_within_the_tolerance_and_watertight() {
     let turned = |s: &Surface| {
@@ -295,7 +295,7 @@ fn infinity_and_endless_work_are_refused() {
     assert!(mesh.polygons.len() > 64 && mesh.name_of(0) == "s");
 }
 
-/// Long NURBS and high degrees in a small file: linear, or refused.
+/// Long NURBS and high degrees in a small file take linear time, or are refused.
 #[test]
 fn long_surfaces_take_linear_time() {
     let n = 20_000;
@@ -309,7 +309,7 @@ fn long_surfaces_take_linear_time() {
     let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]);
     let small = Budget::new(Limits::default().with(Limit::Work, 1e6));
     assert!(deform_patches(&mut vec![long], &map, 0.1, &small).unwrap_err().to_string().contains("`work`"));
-    // Of too high a degree to be composed: known before any product.
+    // The degree is too high for a composition, which must be found before any product is computed.
     let high = chain("ffd", &[("degree", "10"), ("move", "5,5,5:4,0,0")]);
     let done = deform_patches(&mut vec![patch([3, 3], false)], &high, 0.5, &budget()).unwrap();
     assert!(done.refitted == 1 && begun.elapsed() < std::time::Duration::from_secs(20));

@@ -1,4 +1,4 @@
-//! The maps of a drawing, each with the part of the drawing that it bends.
+//! The maps that bend a drawing, each with the part that it bends.
 
 use super::options::{Edit, WarpOptions};
 use crate::scene::drawing::Drawing;
@@ -11,7 +11,7 @@ use pathwarp::kurbo::Affine;
 use pathwarp::map::{AffineMap, Class, Map, Undeclared};
 use std::ops::Range;
 
-/// A map with the options for what it bends.
+/// A map with the options for its part of the drawing.
 #[derive(Clone)]
 pub(crate) struct Bend<'a> {
     pub(crate) map: &'a dyn Map,
@@ -28,7 +28,7 @@ impl<'a> Bend<'a> {
         Self { map, options }
     }
 
-    /// Returns `true` if nothing moves.
+    /// Whether nothing moves.
     pub(crate) fn is_identity(&self) -> bool {
         let WarpOptions { edit, copies, letters, .. } = &self.options;
         edit.is_none()
@@ -38,15 +38,15 @@ impl<'a> Bend<'a> {
     }
 }
 
-/// The maps of a drawing. What two of them select, the first bends.
+/// The maps of a drawing. If several select an element, the first bends it.
 #[derive(Clone)]
 pub(crate) struct Bends<'a> {
     pub(crate) each: Vec<Bend<'a>>,
-    /// The options for the document; their selection is all that is bent.
+    /// The options for the document. Their selection is the union of all.
     pub(crate) options: WarpOptions,
-    /// For every element, the index of what bends it.
+    /// For every element, the index of its bend.
     of_element: Vec<Option<usize>>,
-    /// The map that bends everything, parts without an element as well.
+    /// The index of a bend that selects everything, including parts without an element.
     everything: Option<usize>,
 }
 
@@ -66,12 +66,12 @@ impl<'a> Bends<'a> {
         Self { each, options, of_element, everything }
     }
 
-    /// Returns `true` if nothing moves.
+    /// Whether nothing moves.
     pub(crate) fn is_identity(&self) -> bool {
         self.each.iter().all(Bend::is_identity)
     }
 
-    /// The index of what bends an element.
+    /// The index of an element's bend.
     pub(crate) fn of(&self, e: Option<ElementId>) -> Option<usize> {
         e.map_or(self.everything, |e| self.of_element.get(e).copied().flatten())
     }
@@ -80,7 +80,7 @@ impl<'a> Bends<'a> {
         self.everything.or_else(|| all.iter().find_map(|r| r.owner.or(r.element).and_then(|e| self.of(Some(e)))))
     }
 
-    /// The drawing with its own clip paths and masks for what each map bends, if some are shared.
+    /// If maps share clip paths or masks, resolves the drawing again with one copy of them for each map.
     pub(crate) fn divided(&self, drawing: &Drawing) -> Result<Option<Drawing>, Error> {
         let Scene { clips, masks, .. } = drawing.scene();
         let mut all = clips.iter().map(|c| &c.referrers).chain(masks.iter().map(|m| &m.referrers));
@@ -90,7 +90,7 @@ impl<'a> Bends<'a> {
         divides.then(|| drawing.divided(self.of_element.clone())).transpose()
     }
 
-    /// For every part of the drawing, the index of what bends it. Clip paths and masks follow the elements that refer to them.
+    /// For every part of the drawing, the index of its bend. Clip paths and masks follow the elements that refer to them.
     pub(crate) fn of_parts(&self, drawing: &Drawing) -> Vec<Option<usize>> {
         let (scene, far) = (drawing.scene(), drawing.far());
         let mut of: Vec<Option<usize>> = scene.parts.iter().map(|p| self.of(p.element())).collect();

@@ -1,4 +1,4 @@
-//! The image of a drawing: all parts, in parallel, with slots and bitmaps.
+//! Bends a whole drawing: all parts, in parallel, with slots and bitmaps.
 
 use super::bends::{Bend, Bends};
 use super::fits::{self, EmbeddedImage, PlacedSlot, written};
@@ -20,8 +20,8 @@ use pathwarp::{Error, GeometryError, Outline};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Width of a hairline in millimetres: a quarter of a point is 0.088 mm, and laser and plotter programs take lines up to 0.1 mm for
-/// paths to follow. There is room for the rounding of the page's size and the width.
+/// Width of a hairline in millimetres. A quarter of a point is 0.088 mm, and laser and plotter programs treat lines up to 0.1 mm as
+/// paths to follow. The excess allows for rounding of the page's size and the width.
 const HAIRLINE: f64 = 0.1001;
 
 /// The image of a drawing.
@@ -32,7 +32,7 @@ pub(crate) struct BentDrawing {
     pub(crate) images: Vec<EmbeddedImage>,
     /// One for each slot.
     pub(crate) slots: Vec<PlacedSlot>,
-    /// For each part, the index of what bends it.
+    /// For each part, the index of its bend.
     pub(crate) of: Vec<Option<usize>>,
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     let slots = fits::place(drawing, bends, &of);
     let results = warp_parts(drawing, bends, &of, &slots);
     let mut outcomes = Vec::with_capacity(scene.parts.len());
-    // Index of each element's report: tiles and markers may come between the parts of an element.
+    // Index each element's report, since tiles and markers may come between the parts of an element.
     let mut reports: HashMap<ElementId, usize> = HashMap::new();
     for (i, r) in results.into_iter().enumerate() {
         let part = &scene.parts[i];
@@ -65,7 +65,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
                 reports.extend(element.map(|e| (e, report)));
                 if stays { PartOutcome::Kept } else { PartOutcome::Warped(Box::new(warped)) }
             }
-            // Tiles extend past their shape, possibly out of the map's domain. The pattern then follows as a whole.
+            // Tiles extend past their shape and may leave the map's domain. The pattern then follows as a whole.
             Some(Err(e)) if part.in_tile && !matches!(e, GeometryError::Limit(_)) => PartOutcome::Kept,
             Some(Err(e)) => {
                 let id = &drawing.shapes()[i].id;
@@ -86,7 +86,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     Ok(BentDrawing { outcomes, images, slots, of })
 }
 
-/// Warps the parts that are bent, by the maps of these indices; `None` for the others.
+/// Warps every part by the bend whose index `of` gives; `None` for parts that are not bent.
 fn warp_parts(
     drawing: &Drawing,
     bends: &Bends<'_>,
@@ -128,13 +128,13 @@ fn warp_parts(
     }
 }
 
-/// The outlines that bend `k` bends.
+/// The outlines to which bend `k` applies.
 fn bent<'a>(drawing: &'a Drawing, of: &[Option<usize>], k: usize) -> impl Iterator<Item = &'a Outline> {
     drawing.shapes().iter().zip(of).filter(move |(_, of)| **of == Some(k)).map(|(s, _)| &*s.outline)
 }
 
-/// A bend that knows the edges that shapes under it share: these keep their own pieces. An edge that another map bends on its other
-/// side is not shared. With the tolerances of the contours of every part.
+/// Adds to a bend the edges that its shapes share, which keep their own pieces. An edge with another map on its other side is not
+/// shared. Also returns the tolerances of the contours of every part.
 fn shared<'a>(
     drawing: &Drawing,
     bend: &Bend<'a>,
@@ -156,7 +156,7 @@ fn shared<'a>(
     (bend, contours)
 }
 
-/// The shapes that come again from one part to the next.
+/// The shapes that recur in several parts.
 fn known_shapes(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usize) -> KnownShapes {
     if bend.is_identity() {
         return KnownShapes::default();
@@ -167,7 +167,7 @@ fn known_shapes(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usi
     KnownShapes::among(bent(drawing, of, k), bend.map, &finer)
 }
 
-/// Number of gradients on a part.
+/// The number of gradients on a part.
 fn gradients(p: &Part) -> usize {
     let is_gradient = |p: &usvg::Paint| usize::from(Shading::of(p).is_some());
     p.fill.as_ref().map_or(0, |f| is_gradient(f.paint())) + p.stroke.as_ref().map_or(0, |s| is_gradient(s.paint()))

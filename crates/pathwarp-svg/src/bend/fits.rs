@@ -1,4 +1,4 @@
-//! What follows a map by the best affine fit: paints, filtered groups, and the bitmaps and patterns that are not bent.
+//! The best affine fit of a map, for paints, filtered groups, and bitmaps and patterns that are not bent.
 
 use super::bends::{Bend, Bends};
 use super::options::{Patterns, Strokes};
@@ -103,7 +103,7 @@ pub(crate) fn fit_copies(
 }
 
 impl PaintFit {
-    /// Returns `true` if the fit moves no corner of `area` by more than 1e-9 of its diagonal.
+    /// Whether the fit moves no corner of `area` by more than 1e-9 of its diagonal.
     pub(crate) fn is_identity(&self, area: Rect) -> bool {
         let size = area.width().hypot(area.height());
         let corners = [(area.x0, area.y0), (area.x1, area.y0), (area.x1, area.y1), (area.x0, area.y1)];
@@ -120,13 +120,13 @@ fn grid(r: Rect) -> impl Iterator<Item = Point> {
 /// A slot under a map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlacedSlot {
-    /// Factor of the slot's transform.
+    /// Applied to the slot's transform.
     pub(crate) fit: Affine,
     /// From the slot's coordinates to root user space, as written.
     write: Affine,
 }
 
-/// Maps a frame to the result: inside a slot, it moves along.
+/// The frame of something in the result, which moves along with its slot.
 pub(crate) fn written(scene: &Scene, placed: &[PlacedSlot], slot: Option<usize>, frame: Affine) -> Affine {
     match slot.and_then(|s| Some((placed.get(s)?, scene.slots.get(s)?))) {
         Some((p, s)) if p.write != s.frame => p.write * s.frame.inverse() * frame,
@@ -134,8 +134,8 @@ pub(crate) fn written(scene: &Scene, placed: &[PlacedSlot], slot: Option<usize>,
     }
 }
 
-/// Places filtered groups and images by the affine fit over each of the map that bends all of it. `of` has the index of what bends
-/// each part.
+/// Places filtered groups and images by the affine fit of their map. A group whose parts have different bends stays in place. `of` has
+/// the index of each part's bend.
 pub(super) fn place(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) -> Vec<PlacedSlot> {
     let scene = drawing.scene();
     let mut out: Vec<PlacedSlot> = Vec::with_capacity(scene.slots.len());
@@ -164,14 +164,14 @@ pub(crate) enum EmbeddedImage {
     Placed,
     /// Placed approximately, with the reason.
     Approximate(String),
-    /// Bent, in the user space outside of its placing transform.
+    /// Bent, in the user space outside its placing transform.
     Bent(BentImage),
 }
 
 /// An affine fit with a relative residual below this is exact.
 const EXACT: f64 = 1e-6;
 
-/// Bends a bitmap, if anything bends it.
+/// Bends a bitmap, if a bend applies to it.
 pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option<&Bend<'_>>) -> EmbeddedImage {
     let Some(Bend { map, options }) = bend else { return EmbeddedImage::Placed };
     let pixels = b.image.size();

@@ -12,12 +12,12 @@ use pathwarp::outline::boundary;
 use usvg::{FillRule, Paint, SpreadMethod};
 
 /// Smallest visible difference: more than one of 255 levels.
-const SMALLEST: f64 = 1.5 / 255.0;
-/// Smallest difference that is noticed without a comparison.
-const NOTICED: f64 = 8.0 / 255.0;
-/// The fraction of the shape on which it must be exceeded. Less are edges between hard stops, which move a little.
-const NOTICED_SHARE: f64 = 0.01;
-/// The largest error of an affine fit over a shape, relative to that at the places where it was measured.
+const VISIBLE: f64 = 1.5 / 255.0;
+/// Smallest difference that is noticeable without a comparison.
+const NOTICEABLE: f64 = 8.0 / 255.0;
+/// Fraction of the shape on which a difference must be noticeable. Edges between hard stops, which shift a little, cover less.
+const NOTICEABLE_SHARE: f64 = 0.01;
+/// Bound on the ratio of an affine fit's largest error over a shape to that at the samples.
 const BETWEEN: f64 = 1.25;
 
 /// A gradient that an affine fit would show wrong.
@@ -30,7 +30,7 @@ pub(super) enum BentGradient {
 /// A gradient that must become a picture to look right.
 pub(super) struct PaintedGradient {
     shading: Shading,
-    /// The box on which it is painted, in the part's user space.
+    /// The box to paint, in the part's user space.
     area: Rect,
     seen: Vec<SeenColor>,
     strict: bool,
@@ -49,12 +49,12 @@ impl BentGradient {
         }
         let shading = Shading::of(paint)?;
         let strict = matches!(options.gradients, Gradients::Exact(_));
-        let (least, share) = if strict { (SMALLEST, 0.0) } else { (NOTICED, NOTICED_SHARE) };
+        let (least, share) = if strict { (VISIBLE, 0.0) } else { (NOTICEABLE, NOTICEABLE_SHARE) };
         let fill = p.fill.as_ref().filter(|f| std::ptr::eq(f.paint(), paint));
         let width = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get()));
         let opacity = fill.map(usvg::Fill::opacity).or(p.stroke.as_ref().map(usvg::Stroke::opacity));
         let opacity = opacity.map_or(1.0, |o| f64::from(o.get()));
-        // Colours change at most this much over the largest error of the fit.
+        // A bound on the colour's error under the fit.
         let off = |f: PaintFit| opacity * shading.steepest() * f.miss * stretch(f.affine.inverse()) * BETWEEN;
         if fit.is_some_and(|f| off(f) <= least) {
             return None;
@@ -72,7 +72,7 @@ impl BentGradient {
             return None;
         }
         // An edge between hard stops must lie right: a gradient with one is taken only if it is right everywhere.
-        let sharp = shading.jumps(places.iter().copied(), NOTICED);
+        let sharp = shading.jumps(places.iter().copied(), NOTICEABLE);
         let look = Look { share: if sharp { 0.0 } else { share }, ..look };
         let near = || nearest(&shading, fitted.as_ref(), &moved, |s| look.off(s, &seen) / least);
         if t.options().refit.budget.spend(SEARCH).is_ok()
@@ -145,8 +145,8 @@ fn moved(t: &PartTask<'_>, places: &[Point]) -> Vec<Moved> {
     places.iter().zip(images).map(|(p, q)| (*p, t.back * q)).filter(|(_, q)| q.is_finite()).collect()
 }
 
-/// Places whose colours are computed together.
-const TOGETHER: usize = 32;
+/// Number of points whose colours are computed together.
+const BATCH: usize = 32;
 
 /// A gradient as a function of the plane.
 #[derive(Debug, Clone)]
@@ -165,8 +165,8 @@ pub(crate) struct Stop {
     pub(crate) color: [f64; 4],
 }
 
-/// The colours between two neighbouring stops, or before the first or beyond the last: `color` at the parameter `from`, changing by
-/// `rate`. The default holds no parameter.
+/// The colours between two neighbouring stops, before the first or beyond the last: `color` at the parameter `from`, changing at
+/// `rate`. The default is empty.
 #[derive(Debug, Clone, Copy, Default)]
 struct Band {
     from: f64,
@@ -266,7 +266,7 @@ impl Shading {
         t[0]
     }
 
-    /// Parameter of a radial gradient at a point of its space. Returns `None` outside of the cone of a focal one.
+    /// Parameter of a radial gradient at a point of its space. Returns `None` outside the cone of a focal one.
     fn cone(&self, p: Point) -> Option<f64> {
         match self.kind {
             GradientShape::Linear { .. } => None,
@@ -289,8 +289,8 @@ impl Shading {
 
     /// Colours at points of user space: red, green, blue, alpha, not premultiplied.
     pub(super) fn colors(&self, places: &[Point], out: &mut [[f64; 4]]) {
-        let (mut along, mut band) = ([0.0; TOGETHER], Band::default());
-        for (places, out) in places.chunks(TOGETHER).zip(out.chunks_mut(TOGETHER)) {
+        let (mut along, mut band) = ([0.0; BATCH], Band::default());
+        for (places, out) in places.chunks(BATCH).zip(out.chunks_mut(BATCH)) {
             self.along(places, &mut along);
             for (color, t) in out.iter_mut().zip(along) {
                 *color = self.color(t, &mut band);
@@ -298,7 +298,7 @@ impl Shading {
         }
     }
 
-    /// The colour at a parameter. `band` is that of the parameter before: neighbours are mostly between the same stops.
+    /// The colour at a parameter. `band` caches the stops of the previous parameter, since neighbours mostly share them.
     #[inline]
     fn color(&self, t: f64, band: &mut Band) -> [f64; 4] {
         let t = match self.spread {
@@ -335,8 +335,7 @@ impl Shading {
         premultiplied(self.color(self.along_one(p), &mut Band::default()))
     }
 
-    /// Upper bound on the change of a premultiplied channel per unit of user space; infinite if colours jump or the bound is not
-    /// known.
+    /// An upper bound on the change of a premultiplied channel per unit of user space; infinite if colours jump or no bound is known.
     fn steepest(&self) -> f64 {
         let along = match self.kind {
             GradientShape::Linear { slope, .. } => slope.hypot(),
@@ -348,11 +347,11 @@ impl Shading {
         self.steps().map(|(_, rate, _)| rate).fold(0.0, f64::max) * along * stretch(self.inside)
     }
 
-    /// Returns `true` if the colour jumps by more than `least` between stops that the places show.
+    /// Whether the colour jumps by more than `least` between stops in the range of the given points.
     fn jumps(&self, places: impl Iterator<Item = Point>, least: f64) -> bool {
-        /// Stops nearer than this are at one place; usvg moves them apart by a rounding error.
+        /// Stops closer than this coincide; usvg moves them apart by a rounding error.
         const SAME: f64 = 1e-4;
-        /// Places are spread over the shape with gaps between.
+        /// Margin for the gaps between points, as a fraction of the range.
         const BETWEEN: f64 = 0.05;
         let range = places
             .map(|p| self.along_one(p))
@@ -388,27 +387,26 @@ pub(super) fn premultiplied([r, g, b, a]: [f64; 4]) -> [f64; 4] {
     [r * a, g * a, b * a, a]
 }
 
-/// Number of places tried over the box of a fill; a Fibonacci number, for which the lattice is most even.
-const TRIED: usize = 610;
-/// The same where every place counts, and for thin shapes, which few of the first meet.
-const TRIED_DENSELY: usize = 6765;
-/// Fewer places than these are too few to judge by.
+/// Number of lattice points over the box of a fill. The lattice is most even for Fibonacci numbers.
+const POINTS: usize = 610;
+/// The same if every point counts, and for thin shapes, which contain few of the first lattice.
+const DENSE_POINTS: usize = 6765;
+/// Fewer points inside are too few to judge by.
 const FEW: usize = 128;
-/// Number of places along a stroke.
+/// Number of points along a stroke.
 const ALONG: usize = 377;
 /// Flattening tolerance, relative to the box.
 const FLATNESS: f64 = 1e-3;
 
-/// Places inside an outline, spread evenly over its area: no two have a coordinate in common, so that bands of any direction are
-/// met.
+/// Points spread evenly inside an outline. No two share a coordinate, so that bands in any direction contain some.
 pub(super) fn inside(outline: &Outline, rule: FillRule, densely: bool) -> Vec<Point> {
     let Some(bounds) = outline.bounding_box() else { return Vec::new() };
     let lines = lines(outline, bounds);
-    let found = if densely { Vec::new() } else { lattice(&lines, bounds, rule, TRIED) };
-    if found.len() >= FEW { found } else { lattice(&lines, bounds, rule, TRIED_DENSELY) }
+    let found = if densely { Vec::new() } else { lattice(&lines, bounds, rule, POINTS) };
+    if found.len() >= FEW { found } else { lattice(&lines, bounds, rule, DENSE_POINTS) }
 }
 
-/// Places on a stroke of the given width around an outline, without caps and dashes.
+/// Points on a stroke of the given width around an outline, without caps and dashes.
 pub(super) fn along(outline: &Outline, width: f64) -> Vec<Point> {
     let Some(bounds) = outline.bounding_box() else { return Vec::new() };
     let path = flat(outline, bounds);
@@ -548,7 +546,7 @@ pub(super) mod tests {
                     if rule == FillRule::EvenOdd { w % 2 != 0 } else { w != 0 }
                 };
                 let bounds = outline.bounding_box().unwrap();
-                let every = lattice(&[], bounds, rule, TRIED);
+                let every = lattice(&[], bounds, rule, POINTS);
                 assert!(every.is_empty());
                 let found = inside(&outline, rule, false);
                 let wrong = found.iter().filter(|p| !filled(**p)).count();
@@ -563,7 +561,7 @@ pub(super) mod tests {
                         )
                 };
                 let area = f64::from((0..fine).filter(|k| filled(at(*k))).count() as u32) / f64::from(fine);
-                let share = found.len() as f64 / TRIED as f64;
+                let share = found.len() as f64 / POINTS as f64;
                 assert!((share - area).abs() < 0.02, "{data}: {share} for {area}");
             }
         }

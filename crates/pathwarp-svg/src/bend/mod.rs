@@ -1,4 +1,4 @@
-//! The drawing under a map: images of outlines, strokes, gradients and bitmaps.
+//! Bends a drawing by its maps: outlines, strokes, gradients and bitmaps.
 
 pub(crate) mod bends;
 pub(crate) mod drawing;

@@ -75,7 +75,7 @@ pub enum Gradients {
     /// Replace a gradient by a picture, bent pixel by pixel, if the affine fit would look wrong: if its colour is off by more
     /// than 3 % over more than 1 % of the shape.
     Auto(Arc<dyn GradientPainter>),
-    /// The same if the colour would be off by more than 0.6 % anywhere.
+    /// As [`Auto`](Self::Auto), but replace a gradient if its colour is off by more than 0.6 % anywhere.
     Exact(Arc<dyn GradientPainter>),
     /// Leave them unchanged.
     Keep,
@@ -109,17 +109,17 @@ pub enum PageFit {
     /// Leave it unchanged.
     #[default]
     None,
-    /// If artwork that lay on it leaves it, extend it to hold that, outwards to whole user units; if nothing is left on it, set it to
-    /// the bounding box of the warped artwork with the margin of the original, outwards to whole user units.
+    /// If artwork on the page leaves it, extend the page to hold that artwork, outwards to whole user units. If nothing is left on
+    /// the page, set it to the bounding box of the warped artwork with the margin of the original, outwards to whole user units.
     Auto,
-    /// Extend it to hold all of the warped artwork.
+    /// Extend the page to hold all of the warped artwork.
     Grow,
-    /// Set it to the bounding box of the warped artwork.
+    /// Set the page to the bounding box of the warped artwork.
     Page,
-    /// Set it to the bounding box of the warped artwork and the margin of the original around it: the least distance between
-    /// the original artwork and the edge of its page.
+    /// Set the page to the bounding box of the warped artwork with the margin of the original: the smallest distance between the
+    /// original artwork and the edge of its page.
     PageWithMargin,
-    /// Set it to an area of its size at the origin.
+    /// Move the page to the origin, with its size unchanged.
     Origin,
 }
 
@@ -165,14 +165,14 @@ pub enum Clones {
 pub struct WarpOptions {
     /// Options for refitting paths; the tolerance is in root user units.
     pub refit: refit::Options,
-    /// Number of decimals in written coordinates. `None`: as many as keep rounding below a hundredth of the tolerance, or a tenth of that
-    /// of a small contour, and smooth joints smooth.
+    /// Number of decimals in written coordinates. `None` takes enough to keep rounding below a hundredth of the tolerance, or a
+    /// tenth of a small contour's own tolerance, and smooth joints smooth.
     pub precision: Option<u8>,
-    /// What is done to the shapes instead of bending them by the map, which then says nothing.
+    /// An edit to apply to the shapes in place of the map, which is ignored.
     pub edit: Option<Edit>,
     /// Treatment of strokes.
     pub strokes: Strokes,
-    /// Outlines of strokes become simple: they cross neither themselves nor each other within one path.
+    /// Simplify the outlines of strokes so that they cross neither themselves nor each other within one path.
     pub union: bool,
     /// Treatment of text.
     pub text: TextMode,
@@ -186,21 +186,22 @@ pub struct WarpOptions {
     pub gradients: Gradients,
     /// Treatment of patterns.
     pub patterns: Patterns,
-    /// Treatment of the page: viewBox, width and height. Lengths in percent of it become numbers, except in style sheets.
+    /// Treatment of the page: viewBox, width and height. If it changes, lengths in percent of it become numbers, except in style
+    /// sheets.
     pub page: PageFit,
-    /// Transforms to the copies of every shape before the warp, in root user space, the original included. A shape and its
-    /// copies become one path, also in clip paths and masks. Empty: the shape alone.
+    /// Transforms to the copies of every shape before the warp, in root user space, including the original. A shape and its
+    /// copies become one path, also in clip paths and masks. If empty, there is just the shape.
     pub copies: Vec<Affine>,
-    /// Letters that are placed one by one.
+    /// Letters to place one by one.
     pub letters: LetterPlaces,
     /// Treatment of bitmaps.
     pub images: Images,
     /// Treatment of `use` elements that are not warped themselves but show something that is.
     pub clones: Clones,
-    /// Leave viewBox, width and height as they are, for a look at the result on the page of the source;
-    /// [`WarpedDocument::page`](crate::WarpedDocument::page) tells what the page would be.
+    /// Leave viewBox, width and height as they are, to show the result on the page of the source.
+    /// [`WarpedDocument::page`](crate::WarpedDocument::page) still reports the new page.
     pub same_view: bool,
-    /// Measure how far the result extends past its page, and what has come onto it. That takes a look at every path.
+    /// Measure how far the result extends past its page, and list artwork that has moved onto it. This examines every path.
     pub overhang: bool,
 }
 
@@ -230,7 +231,7 @@ impl WarpOptions {
         }
     }
 
-    /// Options for an edit instead of a warp: what it does not ask for stays as it is.
+    /// Options for an edit in place of a warp. Everything that the edit doesn't concern stays as it is.
     #[must_use]
     pub fn editing(self, edit: Edit) -> Self {
         let options = self.with_edit(Some(edit)).with_images(Images::Keep).with_overhang(false);
@@ -246,7 +247,7 @@ impl WarpOptions {
         }
     }
 
-    /// Returns `true` if paint servers of this kind follow the map.
+    /// Whether paint servers of this kind follow the map.
     pub(crate) fn moves(&self, paint: &usvg::Paint) -> bool {
         match paint {
             usvg::Paint::Color(_) => false,
@@ -255,12 +256,12 @@ impl WarpOptions {
         }
     }
 
-    /// Returns `true` if text stays as it is.
+    /// Whether text stays as it is.
     pub(crate) fn skips_text(&self) -> bool {
         self.text == TextMode::Skip
     }
 
-    /// Returns `true` if `gradients` allows for pictures.
+    /// Whether gradients may become pictures.
     pub(crate) fn paints_gradients(&self) -> bool {
         matches!(self.gradients, Gradients::Exact(_) | Gradients::Auto(_))
     }
@@ -287,25 +288,25 @@ setters! { WarpOptions,
     overhang: bool, with_overhang;
 }
 
-/// What is done to the selected shapes instead of bending them.
+/// An edit of the selected shapes, in place of a warp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Edit {
-    /// Paths get the fewest nodes within the tolerance. A path that would not get fewer stays as it is written.
+    /// Reduces paths to the fewest nodes within the tolerance. A path that would not get fewer stays as it is written.
     Simplify {
         /// Joints that turn by more than this, in radians, stay corners.
         corner: f64,
-        /// Contours of straight lines become curves through their vertices.
+        /// Replaces contours of straight lines by curves through their vertices.
         polylines: bool,
     },
-    /// Strokes and text become filled outlines.
+    /// Converts strokes and text to filled outlines.
     Outline,
-    /// Areas grow or shrink, and open paths run beside themselves. Areas follow the rule of the fill.
+    /// Grows or shrinks areas, by the rule of their fill, and moves open paths sideways.
     Offset(Offset),
 }
 
 impl Edit {
-    /// The same edit of a part.
+    /// The edit with the fill rule of a part.
     pub(super) fn of(self, part: &Part) -> Self {
         match self {
             Self::Offset(offset) => {
@@ -316,7 +317,7 @@ impl Edit {
         }
     }
 
-    /// The outline in a way that is no map; `None` if the outline is refitted.
+    /// Edits an outline. Returns `None` if refitting the outline is all there is to do.
     pub(super) fn edited(
         self,
         outline: &Outline,
@@ -330,11 +331,11 @@ impl Edit {
         }
     }
 
-    /// Returns `true` if a part may change.
+    /// Whether a part may change.
     pub(super) fn concerns(self, part: &Part, source: &SourceText) -> bool {
         let tag = |e: Option<ElementId>| e.map_or("", |e| &*source.elements[e].tag);
         match self {
-            // Of other elements, none has fewer nodes as a path.
+            // No other element would have fewer nodes as a path.
             Self::Simplify { .. } => {
                 part.owner.is_none() && matches!(tag(part.source), "path" | "polygon" | "polyline")
             }
@@ -347,10 +348,10 @@ impl Edit {
 /// Placement of letters one by one.
 #[derive(Clone, Default)]
 pub struct LetterPlaces {
-    /// Affine maps to the copies of each letter of [`Lettering::letters`](crate::Lettering::letters). Empty: the letters are
-    /// bent like everything else.
+    /// Affine maps to the copies of each letter of [`Lettering::letters`](crate::Lettering::letters). If empty, letters are bent
+    /// like everything else.
     pub places: Vec<Vec<Affine>>,
-    /// The selection whose letters those are. `None`: what is bent.
+    /// The selection that contains these letters. `None` stands for that of the warp.
     pub of: Option<Selection>,
     /// Map applied to the placed letters: the remaining steps.
     pub after: Chain,

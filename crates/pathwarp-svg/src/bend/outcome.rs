@@ -1,4 +1,4 @@
-//! Results of warping: per part for the writers, per shape for the report.
+//! Results of warping, by part for the writers and by shape for the report.
 
 use super::fits::PaintFit;
 use super::gradients::Shading;
@@ -14,7 +14,7 @@ use std::fmt::{self, Display};
 #[non_exhaustive]
 #[must_use]
 pub struct WarpedDocument {
-    /// Text of the file.
+    /// The text of the file.
     pub svg: String,
     /// Report on every warped shape, in painting order.
     pub shapes: Vec<ShapeReport>,
@@ -22,12 +22,12 @@ pub struct WarpedDocument {
     pub skipped: Vec<Skipped>,
     /// Warnings for the user.
     pub warnings: Vec<Warning>,
-    /// Distance by which the artwork extends past the page. `None` if it does not, the original does as well, or the page is
+    /// Distance by which the artwork extends past the page. `None` if it does not, or no farther than the original, or the page is
     /// adapted (see [`PageFit`](crate::PageFit)).
     pub overhang: Option<Overhang>,
     /// The visible area before and after, in root user units, if the page is adapted.
     pub page: Option<[Rect; 2]>,
-    /// Nothing of the result lies on its page.
+    /// Whether nothing of the result lies on its page.
     pub blank: bool,
 }
 
@@ -35,28 +35,28 @@ pub struct WarpedDocument {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ShapeReport {
-    /// Id in the source, or else name and position such as `path at 12:5`.
+    /// Id in the source, or else tag and position such as `path at 12:5`.
     pub id: String,
     /// Number of copies in the result.
     pub copies: usize,
-    /// The curves: segments before, with copies, and after, with those of outlined strokes, tiles and letters; errors with the
-    /// rounding of the text.
+    /// Report on the curves. Segments before include copies, segments after include outlined strokes, tiles and letters, and errors
+    /// include the rounding of the text.
     pub path: PathReport,
-    /// Largest distance between the map and the affine fit of the shape's gradients or patterns, in root user units; infinite
-    /// if no affine map comes near. `None` if there are no such paints, or they were kept or replaced.
+    /// Largest distance between the map and the affine fit of the shape's gradients or patterns, in root user units; infinite if no
+    /// affine map is close. `None` if there are no such paints, or they were kept or replaced.
     pub paint_residual: Option<f64>,
     /// Number of gradients that became pictures.
     pub pictures: usize,
-    /// Largest distance between a stroke that is still a stroke and the exact one, as painted areas, in root user units;
-    /// infinite if it is unknown. An estimate for dashes, which shift along the path: one that ends beside a corner or at the
-    /// end of the path may gain or lose a piece there. `None` if there is no such stroke, or its width is kept on request.
+    /// Largest distance between a stroke that remains a stroke and the exact one, as painted areas, in root user units; infinite if
+    /// it is unknown. An estimate for dashes, which shift along the path: one that ends beside a corner or at the end of the path may
+    /// gain or lose a piece there. `None` if there is no such stroke, or its width is kept on request.
     pub stroke_error: Option<f64>,
     /// Number of strokes that became outlines.
     pub outlined_strokes: usize,
 }
 
 impl ShapeReport {
-    /// The report of a shape without paints and strokes that need one.
+    /// Reports on a shape whose paints and strokes need no remark.
     #[must_use]
     pub fn new(id: &str, copies: usize, path: PathReport) -> Self {
         let (paint_residual, stroke_error) = (None, None);
@@ -65,13 +65,13 @@ impl ShapeReport {
 
     /// Adds another part of the same shape.
     fn add(&mut self, part: Self) {
-        let most = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::max);
+        let larger = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::max);
         self.path.segments_in += part.path.segments_in;
         self.path.segments_out += part.path.segments_out;
         self.path.add(part.path);
         self.pictures += part.pictures;
-        self.paint_residual = most(self.paint_residual, part.paint_residual);
-        self.stroke_error = most(self.stroke_error, part.stroke_error);
+        self.paint_residual = larger(self.paint_residual, part.paint_residual);
+        self.stroke_error = larger(self.stroke_error, part.stroke_error);
         self.outlined_strokes += part.outlined_strokes;
     }
 }
@@ -79,7 +79,7 @@ impl ShapeReport {
 /// An element that was not warped. It is unchanged, or left out of flattened output if it cannot be included.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Skipped {
-    /// Id in the source, or else name and position.
+    /// Id in the source, or else tag and position.
     pub id: String,
     /// The reason.
     pub why: String,
@@ -127,7 +127,7 @@ impl Notes {
         self.0.entry(text).or_default().insert(name.to_owned());
     }
 
-    /// What the reader noted, in words.
+    /// Words the notes of the reader for people.
     pub(crate) fn in_words(read: &BTreeSet<(&'static str, String)>) -> Vec<String> {
         let mut notes = Self::default();
         read.iter().for_each(|(text, name)| notes.add(text, name));
@@ -164,15 +164,15 @@ pub(crate) struct WarpedPart {
     /// too. Empty if there is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
-    /// Short handles may have more decimals.
+    /// Whether short handles may have more decimals.
     pub(crate) smooth: bool,
-    /// The text of `path`, if it has been written already: if it has arcs, which `path` approximates, and a large drawing's on the
-    /// threads that bend it.
+    /// The text of `path`, if already written: either it has arcs, which `path` approximates, or a large drawing was bent on several
+    /// threads, which also write the text.
     pub(crate) data: Option<String>,
     pub(crate) stroke: StrokeOutcome,
     /// Largest distance between a scaled stroke and the exact one, in root user units.
     pub(super) stroke_error: Option<f64>,
-    /// The stroke is scaled because the map is not defined around it.
+    /// Whether the stroke is scaled because the map is not defined around it.
     pub(super) stroke_refused: bool,
     /// Fit to be applied to gradients and patterns; `None` if they are unchanged.
     pub(crate) fit: Option<PaintFit>,
@@ -192,12 +192,12 @@ pub(crate) struct WarpedPart {
 }
 
 impl WarpedPart {
-    /// Returns `true` unless nothing is left of the part.
+    /// Whether anything is left of the part.
     pub(crate) fn draws(&self) -> bool {
         !self.path.is_empty() || self.stroke.outline().is_some()
     }
 
-    /// Returns `true` for a part that got no fewer segments, and reports it as it was.
+    /// Resets the report and returns `true` if the part got no fewer segments, so that it stays as it was.
     pub(super) fn stays(&mut self) -> bool {
         let r = &mut self.report;
         let stays = r.segments_out >= r.segments_in;
@@ -209,12 +209,12 @@ impl WarpedPart {
         stays
     }
 
-    /// The text of a path of the part.
+    /// Writes a path of the part as text.
     pub(crate) fn text(&self, path: &BezPath) -> String {
         path_data_by(path, self.smooth, |_| [self.decimals; 2])
     }
 
-    /// Writes the text of the path.
+    /// Writes `data`, if it is missing.
     pub(super) fn with_data(mut self) -> Self {
         self.data = Some(self.data.take().unwrap_or_else(|| self.text(&self.path)));
         self
@@ -249,21 +249,20 @@ impl StrokeOutcome {
 
 /// A warning for the user about a warped drawing. [`Display`] writes it as a sentence without a full stop.
 ///
-/// Elements are named by their id in the source, or else by name and position, as in
-/// [`ShapeReport::id`](crate::ShapeReport::id).
+/// Elements are named as in [`ShapeReport::id`](crate::ShapeReport::id).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
     /// The structure of the file could not be kept, for this reason: the result is flattened.
     Flattened(String),
-    /// A gradient follows the best affine fit of the map only.
+    /// A gradient only follows the best affine fit of the map.
     FittedGradient {
         /// The shape that it paints.
         id: String,
         /// The reason why it did not become a picture.
         why: String,
     },
-    /// A stroke that should have become an outline is still a stroke, as the map is undefined beside it.
+    /// A stroke that should have become an outline remains a stroke, as the map is undefined beside it.
     SingleWidth {
         /// The shape.
         id: String,
@@ -326,13 +325,13 @@ impl Display for Warning {
 
 /// Writes the names that a warning is about.
 fn write_names(f: &mut fmt::Formatter<'_>, names: &[String]) -> fmt::Result {
-    /// Number of names listed; a few are enough to find the place.
-    const NAMED: usize = 4;
+    /// A few names are enough to find the place.
+    const MAX_NAMES: usize = 4;
     if let Some((first, others)) = names.split_first() {
         write!(f, ": {first}")?;
-        others.iter().take(NAMED - 1).try_for_each(|name| write!(f, ", {name}"))?;
+        others.iter().take(MAX_NAMES - 1).try_for_each(|name| write!(f, ", {name}"))?;
     }
-    if names.len() > NAMED { write!(f, " and {} more", names.len() - NAMED) } else { Ok(()) }
+    if names.len() > MAX_NAMES { write!(f, " and {} more", names.len() - MAX_NAMES) } else { Ok(()) }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The image of a part: path, fill, stroke, and paints.
+//! Bends a part: its path, fill, stroke, and paints.
 
 use super::fits::{self, PaintFit};
 use super::gradients::{BentGradient, PaintedGradient, Shading};
@@ -18,7 +18,7 @@ use usvg::{Paint, Stroke};
 /// Warps a part.
 pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let p = t.part;
-    // The centre line of an outlined stroke is not written.
+    // The centre line of an outlined stroke is not written, so a draft will do.
     let draft = p.fill.is_none() && p.stroke.as_ref().is_some_and(|s| expands(t, s)) && !p.in_tile;
     let bent = if draft { t.draft()? } else { t.bend(&t.outline, &t.contours)? };
     let fit = paint_fit(t, &bent.path);
@@ -33,7 +33,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         (path, data, report) = (refitted.path, refitted.data, [Some(refitted.report), None]);
     }
     let error = report[0].as_ref().map_or(0.0, |r| r.max_error);
-    // Count what is written: the path is not if only its expanded stroke is painted.
+    // Report only what is written. If only the expanded stroke is painted, the path is not.
     let mut written = written(p, &bent.outcome, report, fill.is_some());
     written.extend(bent.report);
     let report = combined(centre, written);
@@ -113,18 +113,18 @@ struct Filled {
     data: Option<String>,
     /// The filled outline if it is separate.
     fill: Option<BezPath>,
-    /// Reports of both; of the path, then of the fill.
+    /// Reports on the path and on the fill.
     report: [Option<PathReport>; 2],
 }
 
-/// Reports of what is written of a path and its fill.
+/// The reports on those of a path and its fill that are written.
 fn written(p: &Part, stroke: &StrokeOutcome, reports: [Option<PathReport>; 2], separate: bool) -> Vec<PathReport> {
     let [path, fill] = reports;
     let hidden = stroke.outline().is_some() && !p.in_tile && (p.fill.is_none() || separate);
     path.filter(|_| !hidden).into_iter().chain(fill).collect()
 }
 
-/// One report for several outlines of a source with `segments_in` segments.
+/// Combines the reports on several outlines of a source with `segments_in` segments.
 fn combined(segments_in: usize, all: Vec<PathReport>) -> PathReport {
     let mut none = PathReport::default();
     none.segments_in = segments_in;
@@ -139,7 +139,7 @@ fn combined(segments_in: usize, all: Vec<PathReport>) -> PathReport {
 fn filled(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
     let BentPath { path, data, report } = bent;
     let stroked = t.part.stroke.is_some() && t.part.role != PartRole::Clip;
-    // With `Strokes::Keep`, each centre line is to stay one path, so only fills without a stroke are closed.
+    // With `Strokes::Keep`, each centre line has to stay one path, so only close fills without a stroke.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
     let area = filled_area(t, t.finest).filter(|(a, _)| closes || a.is_empty());
     let report = Some(report);
@@ -157,12 +157,12 @@ fn filled(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
     })
 }
 
-/// Closes the subpaths of a fill if the map bends one of the closing lines, which are not drawn. Subpaths that enclose nothing
-/// are dropped. Returns `None` if the fill equals the outline, else the fill with the tolerances of its contours.
+/// Closes the subpaths of a fill if the map bends one of the closing lines, which are not drawn. Drops subpaths that enclose
+/// nothing. Returns `None` if the fill equals the outline, else the fill with the tolerances of its contours.
 fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> {
     /// Samples along a line.
     const SAMPLES: u32 = 16;
-    /// Share of the tolerance that a line may bend at the samples; between them it may be more.
+    /// Fraction of the tolerance by which a line may bend at the samples, since it may bend more between them.
     const STRAIGHT: f64 = 0.95;
     let (p, outline, map) = (t.part, &t.outline, t.map);
     let on_line = |a: Point, b: Point, i: u32| a.lerp(b, f64::from(i) / f64::from(SAMPLES));

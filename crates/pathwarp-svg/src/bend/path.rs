@@ -1,4 +1,4 @@
-//! The image of an outline as path data: arcs that stay arcs, decimals, closing lines that come from rounding.
+//! Bends an outline and writes it as path data: keeps arcs, chooses decimals, drops closing lines that come from rounding.
 
 use super::options::Edit;
 use crate::source::number::{MAX_DECIMALS, arcs_data, path_data, path_data_by};
@@ -95,16 +95,16 @@ pub fn warp_path(
     Ok(WarpedPath { data, path: warped.path, report })
 }
 
-/// Largest sweep of a written arc. The centre of a longer one depends on its rounded ends too much: without bound at half a turn.
-const LONGEST: f64 = 2.0 / 3.0 * PI;
+/// Largest sweep of a written arc. The centre of a longer one is too sensitive to rounding of its ends, without bound at half a turn.
+const MAX_SWEEP: f64 = 2.0 / 3.0 * PI;
 
 /// Largest distance of an image from its circle, as a fraction of the radius; rounding is below a thousandth of that.
 const ROUND: f64 = 1e-10;
 
 /// Largest radius of an image, in lengths of its chord. Flatter ones are better written as curves.
-const FLATTEST: f64 = 1e4;
+const MAX_RADIUS: f64 = 1e4;
 
-/// The image of an outline in which arcs stay arcs, in root user space. Returns `None` if there are none.
+/// Bends an outline and keeps its arcs where their images are arcs, in root user space. Returns `None` if there are none.
 pub(super) fn with_arcs(
     map: &dyn Map,
     outline: &Outline,
@@ -117,7 +117,7 @@ pub(super) fn with_arcs(
     let image = if let Class::Affine(m) = map.class() {
         outline.transformed(m)
     } else if options.certify {
-        // The test for circles is no proof.
+        // The test for circles only samples, so it certifies nothing.
         return Ok(None);
     } else {
         if map.prefers_batches() {
@@ -147,16 +147,16 @@ pub(super) fn with_arcs(
     Ok(Some((image, report)))
 }
 
-/// Places compared with the circle.
+/// Number of intervals at whose ends an image is compared with its circle.
 const SAMPLES: u32 = 24;
 
-/// The places of an arc that are compared with a circle; none of other segments.
+/// The points of an arc whose images are compared with a circle; none for other segments.
 fn on_circle(g: &Seg) -> Vec<Point> {
     let Seg::Arc(arc) = g else { return Vec::new() };
     (0..=SAMPLES).map(|i| arc.eval(f64::from(i) / f64::from(SAMPLES))).collect()
 }
 
-/// The image of an arc of a circle, if that is one, too.
+/// The image of a circular arc, if it is a circular arc, too.
 fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
     let Seg::Arc(arc) = g else { return None };
     let r = arc.a.hypot();
@@ -167,7 +167,7 @@ fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
     let (first, last) = (image(0), image(SAMPLES));
     let center = center(first, image(SAMPLES / 3), image(2 * SAMPLES / 3))?;
     let radius = first.distance(center);
-    if radius > FLATTEST * first.distance(image(SAMPLES / 2)) {
+    if radius > MAX_RADIUS * first.distance(image(SAMPLES / 2)) {
         return None;
     }
     let (mut sweep, mut before) = (0.0, first - center);
@@ -188,7 +188,7 @@ fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
     Some(EllipticArc { p0: first, p1: last, center, a, b, start, sweep })
 }
 
-/// Centre of the circle through three points.
+/// The centre of the circle through three points.
 fn center(p: Point, q: Point, r: Point) -> Option<Point> {
     let (u, v) = (q - p, r - p);
     let d = 2.0 * u.cross(v);
@@ -196,8 +196,8 @@ fn center(p: Point, q: Point, r: Point) -> Option<Point> {
     (p + to).is_finite().then_some(p + to)
 }
 
-/// The image of a subpath with the images of its arcs. What lies between them is refitted. `first` is the index of its first segment in
-/// the outline, `ends` are the ends of the spans.
+/// Bends a subpath, given the images of its arcs; the segments between them are refitted. `first` is the index of its first segment in
+/// the outline, and `ends` are the ends of the spans.
 fn subpath(
     (s, first): (&Subpath, usize),
     arcs: &[Option<EllipticArc>],
@@ -227,7 +227,7 @@ fn subpath(
     Ok(out)
 }
 
-/// The spans of some of the segments. `ends` are the ends of all spans.
+/// The spans within a range of segments. `ends` are the ends of all spans.
 fn within(spans: &[Span], ends: &[usize], segments: Range<usize>) -> Vec<Span> {
     let first = ends.partition_point(|end| *end <= segments.start);
     let own = spans[first..].iter().zip(&ends[first..]).take_while(|(s, end)| **end - s.segments < segments.end);
@@ -243,7 +243,7 @@ fn short_arcs(s: Subpath) -> Subpath {
     let divided = |g: Seg| -> Vec<Seg> {
         match g {
             Seg::Arc(a) => {
-                let n = (a.sweep.abs() / LONGEST).ceil().max(1.0);
+                let n = (a.sweep.abs() / MAX_SWEEP).ceil().max(1.0);
                 (0..n as u32).map(|i| Seg::Arc(a.subsegment(f64::from(i) / n, f64::from(i + 1) / n))).collect()
             }
             other => vec![other],
@@ -255,7 +255,7 @@ fn short_arcs(s: Subpath) -> Subpath {
 /// The fraction of the tolerance that rounding may use.
 pub(super) const ROUNDING: f64 = 0.01;
 
-/// The number of decimals of coordinates: as given, or enough for [`ROUNDING`]. A unit as written is `size` units of root user
+/// The number of decimals of coordinates: the given one, or enough for [`ROUNDING`]. A unit as written is `size` units of root user
 /// space.
 pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
     given.unwrap_or_else(|| {
@@ -264,37 +264,37 @@ pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
     })
 }
 
-/// Largest error from rounding to `decimals`, in root user units: half the diagonal of a unit of the last, and a third of that unit for
-/// cubics written as quadratics.
+/// Largest error from rounding to `decimals`, in root user units: half the diagonal of a unit of the last decimal, and a third of that
+/// unit for cubics written as quadratics.
 pub(super) fn rounding(size: f64, decimals: u8) -> f64 {
     size * (std::f64::consts::FRAC_1_SQRT_2 + 0.3) * 0.1_f64.powi(i32::from(decimals))
 }
 
-/// The tolerance less the room for rounding.
+/// The tolerance that remains after rounding.
 pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
     (tolerance - rounding).max(0.5 * tolerance)
 }
 
-/// Space and decimals of what is written.
+/// Determines the decimals of written coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Digits {
-    /// A unit as written, in root user units.
+    /// The length of a unit as written, in root user units.
     pub(super) size: f64,
-    /// Decimals on request.
+    /// The requested number of decimals, if any.
     pub(super) given: Option<u8>,
     /// The tolerance of the drawing.
     pub(super) whole: f64,
 }
 
 impl Digits {
-    /// As many as the whole drawing has, unless their rounding is more than a tenth of this tolerance.
+    /// The decimals for a contour: those of the whole drawing, unless their rounding exceeds a tenth of the contour's tolerance.
     pub(super) fn decimals(self, tolerance: f64) -> u8 {
-        /// Tolerances whose hundredth is a tenth of the one given.
+        /// Turns [`ROUNDING`] into a tenth.
         const COARSE: f64 = 10.0;
         decimals(self.size, self.whole.min(COARSE * tolerance), self.given)
     }
 
-    /// Decimals that an arc may have beside these.
+    /// The number of additional decimals that an arc may have.
     pub(super) fn more(self) -> u8 {
         if self.given.is_none() { 4 } else { 0 }
     }
@@ -303,19 +303,19 @@ impl Digits {
         rounding(self.size, self.decimals(tolerance))
     }
 
-    /// The same spans, less the room for rounding.
+    /// The spans with the tolerances that remain after rounding.
     pub(super) fn allowed(self, spans: &[Span]) -> Vec<Span> {
         let less = |s: &Span| Span { tolerance: allowed(s.tolerance, self.rounding(s.tolerance)), ..*s };
         spans.iter().map(less).collect()
     }
 
-    /// The largest error of the spans with rounding, and the largest as a share of the span's tolerance.
+    /// The largest error of the spans, including rounding, and the largest as a fraction of the span's tolerance.
     pub(super) fn errors(self, spans: &[Span], reports: &[SpanReport]) -> [f64; 2] {
         let each = spans.iter().zip(reports).map(|(s, r)| (r.max_error + self.rounding(s.tolerance), s.tolerance));
-        each.fold([0.0, 0.0], |[most, share], (e, t)| [f64::max(most, e), f64::max(share, e / t)])
+        each.fold([0.0, 0.0], |[error, share], (e, t)| [f64::max(error, e), f64::max(share, e / t)])
     }
 
-    /// The text of the image of `outline`, in which every span has its own decimals.
+    /// Writes `path`, the image of `outline`, with decimals for each span.
     pub(super) fn path_data(self, path: &BezPath, outline: &Outline, spans: &[Span], reports: &[SpanReport]) -> String {
         let mut each: Vec<[u8; 2]> = Vec::with_capacity(path.elements().len());
         let mut spans = spans.iter().zip(reports).map(|(s, r)| (s, r.pieces)).peekable();
@@ -324,7 +324,7 @@ impl Digits {
         for el in path.elements() {
             each.push(match el {
                 PathEl::MoveTo(_) => {
-                    // The closing lines before are not written.
+                    // Skip the closing lines of the previous subpath, which are not written.
                     while left > 0 {
                         left -= spans.next().map_or(left, |(s, _)| s.segments);
                     }
@@ -353,7 +353,7 @@ impl Digits {
     }
 }
 
-/// Returns `true` if a subpath is closed by a line not longer than `shortest`, after other segments.
+/// Whether a subpath ends with a closing line not longer than `shortest`, after other segments.
 pub(super) fn has_closing_stub(s: &Subpath, shortest: f64) -> bool {
     matches!(s.segs.as_slice(), [.., _, Seg::Line(stub)] if s.closed && stub.p0.distance(stub.p1) <= shortest)
 }
@@ -368,7 +368,6 @@ pub(super) fn drop_closing_stub(s: &mut Subpath, shortest: f64) {
     }
 }
 
-/// The end of a segment.
 fn end(s: &mut Seg) -> &mut Point {
     match s {
         Seg::Line(l) => &mut l.p1,

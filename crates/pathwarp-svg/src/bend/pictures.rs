@@ -1,4 +1,4 @@
-//! Pictures made by the program around this library: bent bitmaps and gradients.
+//! Interfaces to programs that make pictures for this library: bent bitmaps and gradients.
 
 use pathwarp::kurbo::{Affine, BezPath, Point, Rect};
 use pathwarp::map::Map;
@@ -55,9 +55,9 @@ pub struct ImageRequest<'a> {
     pub data: &'a [u8],
     /// From pixels to root user space.
     pub placed: Affine,
-    /// The pixels that are shown, if not all. The drawing cuts the result there; what lies beyond need not be bent.
+    /// The visible pixels, if not all are visible. The drawing clips the result to them, so the others need not be bent.
     pub crop: Option<Rect>,
-    /// Pixels are shown as squares, however large.
+    /// Whether pixels are shown as squares, however large.
     pub pixelated: bool,
     /// The map of root user space.
     pub map: &'a dyn Map,
@@ -127,17 +127,17 @@ pub struct GradientRequest<'a> {
     pub after: Affine,
     /// Bounding box of the bent shape in the user space of the result.
     pub target: Rect,
-    /// The bent shape in the user space of the result. Only what it covers is seen.
+    /// The bent shape in the user space of the result. Only the area that it covers is visible.
     pub shape: &'a BezPath,
     /// Root user space to px, to choose a resolution.
     pub to_px: Affine,
     /// Upper bound on the number of gradients in the drawing, which share a budget of pixels.
     pub among: usize,
-    /// Exact colours at places spread over the shape, to judge a resolution by.
+    /// Exact colours at points spread over the shape, for choosing a resolution.
     pub seen: &'a [SeenColor],
-    /// No difference may be visible; otherwise, none may be noticed.
+    /// Whether no difference may be visible. If `false`, none may be noticeable.
     pub strict: bool,
-    /// Colours jump, so that only the highest resolution shows them right.
+    /// Whether colours jump, so that only the highest resolution shows them well.
     pub sharp: bool,
 }
 
@@ -150,7 +150,7 @@ impl fmt::Debug for GradientRequest<'_> {
 /// A colour of a bent gradient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenColor {
-    /// Place in the user space of the result.
+    /// Point in the user space of the result.
     pub at: Point,
     /// Red, green, blue and alpha, 0 to 1, premultiplied.
     pub color: [f64; 4],

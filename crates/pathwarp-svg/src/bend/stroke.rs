@@ -1,4 +1,4 @@
-//! Strokes under a map: scaled, or expanded to outlines that are bent.
+//! Bends strokes: scales their width, or expands them to outlines.
 
 use super::options::Strokes;
 use super::outcome::StrokeOutcome;
@@ -11,22 +11,23 @@ use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
 use pathwarp::{GeometryError, Outline, fit};
 use usvg::Stroke;
 
-/// Shares of the tolerance for the sides of a stroke, and for gaps between them, half of it from either side. The rest is for refitting the
-/// outline.
+/// Fraction of the tolerance for the sides of a stroke.
 const SIDES: f64 = 0.15;
+/// Fraction of the tolerance for gaps between sides, of which half counts from either side.
 const GAPS: f64 = 0.3;
+/// Fraction of the tolerance for expanding the stroke. The rest is for refitting the outline.
 const EXPANSION: f64 = SIDES + 0.5 * GAPS;
 
-/// Share of the tolerance for outlines that become simple.
+/// Fraction of the tolerance for making outlines simple.
 const UNION: f64 = 0.1;
 
-/// Share of the tolerance that an expansion may take before it is repeated.
+/// Fraction of the tolerance that an expansion may take before it is repeated.
 const MISSED: f64 = 0.5;
 
-/// Finest expansion, in user units: rounding is coarser.
+/// Finest tolerance of an expansion, in user units. Rounding is coarser.
 const FINEST: f64 = 1e-9;
 
-/// Stands for the drawing where contours have indices.
+/// Index that stands for the whole drawing in place of a contour.
 const DRAWING: usize = usize::MAX;
 
 /// The image of a stroke.
@@ -34,11 +35,11 @@ pub(super) struct BentStroke {
     pub(super) outcome: StrokeOutcome,
     /// Report on the outline.
     pub(super) report: Option<PathReport>,
-    /// For a stroke that is scaled: the largest distance from the exact one, in root user units, if the path is exact.
+    /// Largest distance of a scaled stroke from the exact one, in root user units, as if the path were exact.
     pub(super) error: Option<f64>,
-    /// Factor for the path's error.
+    /// Factor by which the path's error adds to `error`.
     pub(super) leverage: f64,
-    /// The stroke should be outlined, but the map is not defined around it.
+    /// Whether the stroke should be outlined, but the map is not defined around it.
     pub(super) refused: bool,
 }
 
@@ -62,8 +63,7 @@ impl BentStroke {
     }
 }
 
-/// Returns `true` for a hairline, which is drawn to show where its centre is: thinner than the tolerance, or than the width of a
-/// hairline in print.
+/// Whether a stroke is a hairline, which only marks its centre line: thinner than the tolerance, or than a hairline in print.
 pub(super) fn is_hairline(t: &PartTask<'_>, s: &Stroke) -> bool {
     let width = f64::from(s.width().get()) * stretch(t.part.frame);
     // usvg keeps widths in single precision.
@@ -83,7 +83,7 @@ pub(super) fn stroke(
         return Ok(BentStroke::outlined(path.clone(), None));
     }
     let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(BentStroke::scaled(1.0, None)) };
-    // The box of a stroke that stays one is measured with its dashes.
+    // Even a stroke that remains one is expanded with its dashes, to measure its box.
     spend_dashes(&p.local, s, &t.options().refit.budget).map_err(GeometryError::Limit)?;
     let mode = t.options().strokes;
     if mode == Strokes::Keep {
@@ -108,13 +108,13 @@ pub(super) fn stroke(
     match outlined(t, s, stretched(t, width.as_ref())) {
         Ok((path, report)) => Ok(BentStroke::outlined(path, Some(report))),
         Err(e @ GeometryError::Limit(_)) => Err(e),
-        // The outline may reach outside of the map's domain; then scale the width.
+        // The outline may leave the map's domain; scale the width instead.
         Err(_) if mode == Strokes::Auto => Ok(BentStroke { refused: true, ..mean() }),
         Err(e) => Err(e),
     }
 }
 
-/// Factor by which lengths are stretched on a path, from its user space to root user space.
+/// The factor by which the map stretches lengths on a path, from its user space to root user space.
 fn stretched(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
     let known = width.map(StrokeWidth::stretch).filter(|s| *s > 0.0 && s.is_finite());
     known.unwrap_or_else(|| stretch(t.part.frame))
@@ -125,7 +125,7 @@ fn stretched(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
 fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathReport), GeometryError> {
     let (p, options) = (t.part, t.options());
     spend_stroke(&p.local, s, &options.refit.budget).map_err(GeometryError::Limit)?;
-    // Every contour's outline, with its index among those of the part.
+    // The outline of every contour, with the contour's index in the part.
     let expanded = |fine: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
         let one = |local: &Outline, places: &[Affine], first: usize| {
             let each = stroke_outlines(local, s, |i| [SIDES, GAPS].map(|share| share / EXPANSION * fine(first + i)));
@@ -163,9 +163,9 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
     }
     let warped = refit::warp_path(&whole, t.map, &refit)?;
     let mut report = warped.report;
-    let most = contours.iter().map(|i| expansion(*i)).fold(0.0, f64::max);
-    report.max_error += united + if t.own.is_empty() { expansion(DRAWING) } else { most };
-    // Shares add up to the whole but for rounding.
+    let largest = contours.iter().map(|i| expansion(*i)).fold(0.0, f64::max);
+    report.max_error += united + if t.own.is_empty() { expansion(DRAWING) } else { largest };
+    // Hide that the fractions add up to a little more than the whole after rounding.
     if (allowed..allowed * (1.0 + 1e-12)).contains(&report.max_error) {
         report.max_error = allowed;
     }
@@ -174,7 +174,7 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
     Ok((t.to_local(path), report))
 }
 
-/// Largest factor by which lengths are stretched at the nodes of an expanded stroke, from the part's user space to root user
+/// The largest factor by which the map stretches lengths at the nodes of an expanded stroke, from the part's user space to root user
 /// space.
 fn largest_stretch(t: &PartTask<'_>, outline: &Outline) -> f64 {
     let frame = stretch(t.part.frame);

@@ -1,4 +1,4 @@
-//! A part to be warped, with everything that determines its image.
+//! A part to warp, with everything that determines its image.
 
 use super::bends::Bend;
 use super::options::WarpOptions;
@@ -16,12 +16,12 @@ use pathwarp::{GeometryError, Outline};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The surroundings of a part.
+/// Settings that the parts under one map share.
 #[derive(Clone, Copy)]
 pub(super) struct PartContext<'a> {
     pub(super) map: &'a dyn Map,
     pub(super) options: &'a WarpOptions,
-    /// Shapes that come again in the drawing.
+    /// Shapes that recur in the drawing.
     pub(super) known: &'a KnownShapes,
     /// Root user space to px.
     pub(super) to_px: Affine,
@@ -39,7 +39,7 @@ pub(super) struct BentPath {
     pub(super) report: PathReport,
 }
 
-/// A part to be warped.
+/// A part to warp.
 pub(super) struct PartTask<'a> {
     pub(super) part: &'a Part,
     pub(super) context: &'a PartContext<'a>,
@@ -53,10 +53,11 @@ pub(super) struct PartTask<'a> {
     pub(super) whole: Arc<Outline>,
     /// The outline to bend: all copies, or the placed letters.
     pub(super) outline: Arc<Outline>,
-    /// The tolerances of its contours, and of those of `whole`; none if they are that of the drawing.
+    /// The tolerances of the contours of `outline`; empty if they all have that of the drawing.
     pub(super) contours: Vec<f64>,
+    /// The same for the contours of `whole`.
     pub(super) own: &'a [f64],
-    /// The smallest of them.
+    /// The smallest tolerance.
     pub(super) finest: f64,
     /// The map that bends `outline`.
     pub(super) map: &'a dyn Map,
@@ -143,7 +144,7 @@ impl<'a> PartTask<'a> {
         Ok(BentPath { path, data: Some(data), report })
     }
 
-    /// Bends the part's outline for measures of it. Merging would take most of the time.
+    /// Bends the part's outline just to measure it, without merging, which would take most of the time.
     pub(super) fn draft(&self) -> Result<BentPath, GeometryError> {
         let options = self.refit(allowed(self.finest, self.rounding)).with_merge(false).with_certify(false);
         let warped = self.context.known.warp_path(&self.outline, self.map, &options)?;
@@ -155,7 +156,7 @@ impl<'a> PartTask<'a> {
         self.options().refit.clone().with_tolerance(tolerance).with_suited(false)
     }
 
-    /// The tolerance of the drawing, or of a contour of `whole`, less the room for rounding.
+    /// The tolerance that remains after rounding, for a contour of `whole`, or for the drawing if there is no such contour.
     pub(super) fn allowed_of(&self, contour: usize) -> f64 {
         let tolerance = self.own.get(contour).copied().unwrap_or(self.options().refit.tolerance);
         allowed(tolerance, self.digits.rounding(tolerance))
@@ -174,7 +175,7 @@ impl<'a> PartTask<'a> {
     }
 }
 
-/// The tolerances of the contours of every part, one for each subpath; none for parts that are held to that of the drawing.
+/// The tolerances of the contours of every part, one for each subpath; empty for parts with that of the drawing.
 pub(super) fn of_parts(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usize) -> Vec<Vec<f64>> {
     let (parts, shapes) = (&drawing.scene().parts, drawing.shapes());
     let tolerance = bend.options.refit.tolerance;
@@ -192,7 +193,7 @@ pub(super) fn of_parts(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>],
 }
 
 fn of_part(outline: &Outline, reach: f64, is_text: bool, tolerance: f64) -> Vec<f64> {
-    // Finer than its numbers, nothing can be followed.
+    // A tolerance below the resolution of the numbers cannot be met.
     let finest = (4.0 * RESOLUTION * outline.extent()).min(tolerance);
     let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
     let size = |b: Rect| b.size().to_vec2().hypot();
@@ -203,7 +204,7 @@ fn of_part(outline: &Outline, reach: f64, is_text: bool, tolerance: f64) -> Vec<
     (0..boxes.len()).map(own).collect()
 }
 
-/// The box of the letter that a subpath of a text belongs to: its own, or that of a neighbour whose hole it is.
+/// The box of the letter that a subpath of a text belongs to: its own, or if it is a hole, that of the neighbour around it.
 fn letter(boxes: &[Rect], i: usize) -> Rect {
     /// Letters have at most a few holes.
     const NEIGHBOURS: usize = 4;
@@ -212,7 +213,7 @@ fn letter(boxes: &[Rect], i: usize) -> Rect {
     near.iter().filter(holds).copied().fold(boxes[i], |a, b| if b.area() > a.area() { b } else { a })
 }
 
-/// The outline that is bent of a part: all copies, or the placed letters; with the tolerances of its contours.
+/// The outline of a part to bend, which consists of all copies, or of the placed letters, with the tolerances of its contours.
 pub(super) fn placed_outline(
     whole: &Arc<Outline>,
     contours: &[f64],
@@ -244,7 +245,7 @@ impl LetterPiece {
         self.range.start
     }
 
-    /// What holds for the letter's subpaths of `whole`, for each of its places.
+    /// Repeats the values of the letter's subpaths in `whole` for each of its places.
     pub(crate) fn repeated(&self, whole: &[f64]) -> Vec<f64> {
         whole.get(self.range.clone()).unwrap_or_default().repeat(self.places.len())
     }

@@ -1,4 +1,4 @@
-//! The width of a stroke under a map: the factor that scales it, and the distance of the scaled stroke from the exact one.
+//! Computes the factor that scales a stroke under a map, and the distance of the scaled stroke from the exact one.
 //!
 //! Let h be half the width. To first order the map turns the circle of radius h about a point of the path into an ellipse. Along
 //! the tangent and normal of the path and of its image, the derivative is
@@ -20,8 +20,8 @@ use pathwarp::{Outline, Seg};
 use std::sync::Arc;
 use usvg::{LineCap, LineJoin, Stroke};
 
-/// Largest relative error of a width that hardly varies: edges off by a hundredth of the width. Widths of lines side by side must
-/// differ by about a twentieth to be told apart.
+/// Largest relative error of a width that hardly varies: edges off by a hundredth of the width. The eye tells lines side by side
+/// apart if their widths differ by about a twentieth.
 const WIDTH_ERROR: f64 = 0.02;
 
 /// Factor for errors between samples. At [`TURN`] between samples, a sinusoid over half a turn is missed by at most 1 − cos(π/8).
@@ -30,11 +30,11 @@ const BETWEEN: f64 = 1.08;
 /// Largest turn of a path between samples, in radians: an eighth of the period in which widths under an affine map vary.
 const TURN: f64 = std::f64::consts::PI / 8.0;
 
-/// Smallest turn of a corner, in radians: at smaller ones, joins do not extend past the edges by more than a millionth.
+/// Smallest turn of a corner, in radians. At smaller ones, joins don't extend past the edges by more than a millionth.
 const CORNER: f64 = 2e-3;
 
-/// Share of half the width by which an edge point may lie ahead of its point on the path before a nearer one is looked up; the
-/// distance is then right within 0.2 %.
+/// How far an edge point may lie ahead of its point on the path, as a fraction of half the width, before a nearer point is found.
+/// The distance is then right within 0.2 %.
 const AHEAD: f64 = 0.05;
 
 /// A corner of a dashed path.
@@ -43,11 +43,11 @@ struct DashedCorner {
     /// Lengths of the path and of its image up to the corner.
     source: f64,
     image: f64,
-    /// Extent of the join, for the factor 1.
+    /// Extent of the join at the factor 1.
     reach: f64,
 }
 
-/// Widths of a stroke along a path.
+/// Samples of a stroke's width along a path.
 #[derive(Debug)]
 pub(super) struct StrokeWidth<'a> {
     stroke: &'a Stroke,
@@ -56,7 +56,7 @@ pub(super) struct StrokeWidth<'a> {
     read: Affine,
     /// From root user space to the stroke's user space in the result.
     after: Affine,
-    /// Root units per unit of that space, at most.
+    /// Largest number of root units per unit of that space.
     unit: f64,
     pairs: Vec<Pair>,
     /// Local scale integrated along the path, and the path's length.
@@ -66,7 +66,7 @@ pub(super) struct StrokeWidth<'a> {
     /// longer than the path.
     lengths: Vec<[f64; 3]>,
     corners: Vec<DashedCorner>,
-    /// Part of the edge is outside of the map's domain.
+    /// Whether part of the edge lies outside the map's domain.
     open: bool,
     /// Largest factor by which lengths are stretched on the path, from the stroke's user space to root user space.
     stretch: f64,
@@ -84,7 +84,7 @@ struct Node {
 }
 
 impl<'a> StrokeWidth<'a> {
-    /// Samples the stroke of a part, over all placed letters. `pieces` is the number of segments that the bent path needed.
+    /// Samples the stroke of a part, over all placed letters. `pieces` is the number of segments of the bent path.
     /// Returns `None` if the map's derivative is not finite on the path.
     pub(super) fn of(t: &PartTask<'_>, stroke: &'a Stroke, pieces: usize) -> Option<Self> {
         let mut out = Self {
@@ -123,28 +123,28 @@ impl<'a> StrokeWidth<'a> {
         if self.length > 0.0 { self.area / self.length } else { self.middle() }
     }
 
-    /// The middle of all local scales, whose largest error is nearly the least.
+    /// The middle of the range of local scales, which nearly minimizes the largest error.
     pub(super) fn middle(&self) -> f64 {
         let scales = self.pairs.iter().map(|p| p.exact.dot(p.drawn) / p.drawn.hypot2());
         let (low, high) = scales.fold((f64::INFINITY, 0.0_f64), |(low, high), s| (low.min(s), high.max(s)));
         if low <= high { 0.5 * (low + high) } else { 1.0 }
     }
 
-    /// Largest distance between the stroke scaled by `s` and the exact one, in root user units, if the path is exact.
+    /// Largest distance between the stroke scaled by `s` and the exact one, in root user units, as if the path were exact.
     pub(super) fn error(&self, s: f64) -> f64 {
         let edges = self.pairs.iter().map(|p| (p.exact - p.drawn * s).hypot2()).fold(0.0, f64::max).sqrt();
         BETWEEN * (edges * self.half + self.drift(s)) * self.unit
     }
 
-    /// Factor by which an error of the bent path moves the corners of dashes. A cubic fitted to sixth order swings about the curve
-    /// with three waves, so an error ε on a piece of length l tilts it by up to 6π·ε/l, and on a path that turns by θ it changes the
-    /// length by up to ε·θ. The ends of the path are not tilted.
+    /// Factor by which an error of the bent path moves the corners of dashes. A cubic fitted to sixth order oscillates about the
+    /// curve in three waves, so an error ε on a piece of length l tilts it by up to 6π·ε/l, and on a path that turns by θ it changes
+    /// the length by up to ε·θ. The ends of the path are not tilted.
     pub(super) fn leverage(&self, pieces: usize) -> f64 {
         let tilt = 3.0 * std::f64::consts::TAU * pieces as f64 / self.length;
         if self.stroke.dasharray().is_some() && self.length > 0.0 { 1.0 + self.half * tilt + self.turns } else { 1.0 }
     }
 
-    /// Returns `true` if the stroke scaled by `s` is right: its edges are within `tolerance`, or its width hardly varies.
+    /// Whether the stroke scaled by `s` is right: its edges are within `tolerance`, or its width hardly varies.
     pub(super) fn is_right(&self, s: f64, tolerance: f64) -> bool {
         let off = |p: &Pair| (p.exact - p.drawn * s).hypot() <= WIDTH_ERROR * s * p.drawn.hypot();
         !self.open && (self.error(s) <= tolerance || self.pairs.iter().all(off))
@@ -175,12 +175,13 @@ impl<'a> StrokeWidth<'a> {
     }
 
     fn add(&mut self, outline: &Outline, map: &dyn Map, pieces: usize) -> Option<()> {
-        /// Segments of a path up to which each has at least four, and two, intervals. Longer paths need fewer.
+        /// Up to this many segments, each gets at least four intervals.
         const FEW: usize = 64;
+        /// Up to this many segments, each gets at least two intervals. Longer paths need fewer.
         const MANY: usize = 4096;
         let segments = outline.segs().count();
         let least = if segments <= FEW { 4 } else { 2 * usize::from(segments <= MANY) };
-        // Two samples for each fitted piece, each of which turns by less than half a period of anything the map does.
+        // Take two samples for each fitted piece, which covers less than half a period of any variation of the map.
         let more = if segments <= MANY { 2 * pieces / segments.max(1) } else { 0 };
         for sub in &outline.subpaths {
             if sub.segs.iter().all(|s| is_point(s, sub.start)) {
@@ -192,7 +193,7 @@ impl<'a> StrokeWidth<'a> {
         Some(())
     }
 
-    /// A subpath of zero length shows its caps, which extend in all directions.
+    /// Adds the caps of a subpath of zero length, which extend in all directions.
     fn dot(&mut self, sub: &Subpath, jet: &Jet) {
         let [x, y] = columns(jet, self.read, self.after);
         if !(x.is_finite() && y.is_finite()) || sub.segs.is_empty() && !sub.closed {
@@ -216,7 +217,7 @@ impl<'a> StrokeWidth<'a> {
             let start = run;
             let spots = self.segment(seg, map, least)?;
             let &[(t0, first), .., (_, last)] = spots.as_slice() else {
-                // One sample, in the middle of a segment among very many.
+                // Segments among very many have one sample, in the middle.
                 if let [(_, s)] = spots.as_slice() {
                     self.integrate(s, s, 1.0, &mut run);
                 }
@@ -265,7 +266,7 @@ impl<'a> StrokeWidth<'a> {
 
     /// Samples a segment and its edges.
     fn segment(&mut self, seg: &Seg, map: &dyn Map, least: usize) -> Option<Vec<(f64, Spot)>> {
-        // Shifts of dashes are integrals.
+        // Shifts of dashes are integrals, which need more samples.
         let finer = if self.stroke.dasharray().is_some() { 4 } else { 1 };
         let n = if least == 0 { 0 } else { finer * least.max((turn(seg) / TURN).ceil() as usize) };
         let ts: Vec<f64> = if n == 0 { vec![0.5] } else { (0..=n).map(|i| i as f64 / n as f64).collect() };
@@ -280,7 +281,7 @@ impl<'a> StrokeWidth<'a> {
             if !(jet.det().is_finite() && jet.push(v).is_finite()) {
                 return None;
             }
-            // At a cusp, the samples beside it count.
+            // Skip cusps; there are samples beside them.
             let Some(spot) = Spot::new(jet, v, self.read, self.after) else { continue };
             let reach = linear(self.read, spot.normal * self.half);
             edges.extend([*p + reach, *p - reach]);
@@ -379,7 +380,7 @@ struct Pair {
 /// A point of a path and its image, in the stroke's user space before and after.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
-    /// Image of the user unit vectors.
+    /// Images of the unit vectors of user space.
     columns: [Vec2; 2],
     /// Unit tangent and normal.
     tangent: Vec2,
@@ -401,7 +402,7 @@ fn perpendicular(v: Vec2) -> Vec2 {
 }
 
 impl Spot {
-    /// `None` where the path or its image stands still.
+    /// Returns `None` where the path or its image stands still.
     fn new(jet: &Jet, v: Vec2, read: Affine, after: Affine) -> Option<Self> {
         let (before, columns) = (linear(read.inverse(), v), columns(jet, read, after));
         let push = |v: Vec2| columns[0] * v.x + columns[1] * v.y;
@@ -433,7 +434,7 @@ fn columns(jet: &Jet, read: Affine, after: Affine) -> [Vec2; 2] {
     [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)].map(|e| linear(after, jet.push(linear(read, e))))
 }
 
-/// The singular values of a matrix with these columns, against a circle.
+/// Pairs the semi-axes of the ellipse that a matrix with these columns makes of the unit circle with that circle.
 fn ellipse([x, y]: [Vec2; 2]) -> [Pair; 2] {
     let long = stretch(Affine::new([x.x, x.y, y.x, y.y, 0.0, 0.0]));
     let short = if long > 0.0 { x.cross(y).abs() / long } else { 0.0 };
@@ -449,7 +450,7 @@ fn tip(a: Vec2, b: Vec2, limit: f64) -> (Vec2, bool) {
     (if mitered { bisector * (2.0 / bisector.hypot2()) } else { bisector * 0.5 }, mitered)
 }
 
-/// Turn of a segment's control polygon, in radians, an upper bound of the segment's own.
+/// The turn of a segment's control polygon in radians, an upper bound on that of the segment.
 fn turn(seg: &Seg) -> f64 {
     let angle = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b)).abs();
     match seg {

@@ -1,4 +1,4 @@
-//! The areas that parts of a drawing cover: what is seen, strokes, filters.
+//! Computes the areas that visible parts, strokes and filters of a drawing cover.
 
 use super::geometry::{rect, stretch};
 use super::model::{Bitmap, Group, Node, Part, PartRole, Scene};
@@ -11,31 +11,31 @@ use usvg::filter::{
 };
 use usvg::{LineCap, LineJoin, Stroke};
 
-/// What counts: flags of parts and of bitmaps.
+/// Flags for the parts and bitmaps to include in a box.
 pub(crate) struct Counted {
     pub(crate) parts: Vec<bool>,
     pub(crate) bitmaps: Vec<bool>,
-    /// Strokes count by half their width.
+    /// Whether strokes extend the box by half their width.
     pub(crate) strokes: bool,
 }
 
-/// Bounding box of what is seen of what counts. `page` is the visible area, if there is one.
+/// Bounding box of the visible part of what `counted` includes. `page` is the visible area, if there is one.
 pub(crate) fn seen_box(scene: &Scene, page: Option<Rect>, counted: &Counted) -> Option<Rect> {
     in_group(scene, &scene.root, page, counted, &|_| true)
 }
 
-/// The same, with what of it lies off the page.
+/// As [`seen_box`], but shapes that touch the page count as a whole.
 pub(crate) fn uncut_box(scene: &Scene, page: Rect, counted: &Counted) -> Option<Rect> {
     in_group(scene, &scene.root, None, counted, &|b| overlap(b, page).is_some())
 }
 
-/// The place of a bitmap in root user space. `None` if it is hidden, or stands for one that was not read.
+/// Bounding box of a bitmap in root user space. `None` if it is hidden or was not read.
 pub(crate) fn picture_box(b: &Bitmap) -> Option<Rect> {
     let [p, q, r, s] = picture_corners(b)?;
     Some(Rect::from_points(p, q).union(Rect::from_points(r, s)))
 }
 
-/// The corners of a bitmap in root user space, likewise.
+/// The corners of a bitmap in root user space. `None` if it is hidden or was not read.
 pub(crate) fn picture_corners(b: &Bitmap) -> Option<[Point; 4]> {
     let size = b.image.size();
     let all = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
@@ -44,7 +44,7 @@ pub(crate) fn picture_corners(b: &Bitmap) -> Option<[Point; 4]> {
     (b.image.is_visible() && !b.is_unread()).then_some(corners).filter(|c| c.iter().all(|p| p.is_finite()))
 }
 
-/// Bounding box of what `room` leaves of what counts, as far as the box of each is `kept`.
+/// Bounding box of what `counted` includes of a group, clipped to `room`. Includes only content whose own box is `kept`.
 fn in_group(
     scene: &Scene,
     g: &Group,
@@ -74,14 +74,14 @@ pub(crate) fn reach(p: &Part, to_px: Affine) -> f64 {
     p.stroke.as_ref().filter(|_| !p.in_tile).map_or(0.0, |s| 0.5 * f64::from(s.width().get()) * stretch(space))
 }
 
-/// Returns `true` if a part is visible and has a paint that is not transparent.
+/// Whether a part is visible and has a paint that is not transparent.
 pub(crate) fn is_seen(p: &Part) -> bool {
     let fill = p.fill.as_ref().is_some_and(|f| f.opacity().get() > 0.0);
     let stroke = p.stroke.as_ref().is_some_and(|s| s.opacity().get() > 0.0);
     p.visible && (fill || stroke)
 }
 
-/// The room that a group leaves its content: `Some(None)` if it is unbounded, `None` if the group hides everything.
+/// The area to which a group clips its content: `Some(None)` if it is unbounded, `None` if the group hides everything.
 fn room_in(scene: &Scene, g: &Group, room: Option<Rect>) -> Option<Option<Rect>> {
     if g.opacity <= 0.0 {
         return None;
@@ -117,32 +117,34 @@ pub(crate) fn clip_box(scene: &Scene, i: usize, part_box: &dyn Fn(usize) -> Opti
     }
 }
 
-/// Bounding box of a mask in root user space, whatever its brightness.
+/// Bounding box of a mask in root user space, regardless of its brightness.
 fn mask_box(scene: &Scene, i: usize) -> Rect {
     let m = &scene.masks[i];
     m.frame.transform_rect_bbox(overlap(m.rect, m.content).unwrap_or_default())
 }
 
-/// The common part of two areas, which may be lines or points.
+/// The intersection of two areas, which may be lines or points.
 pub(crate) fn overlap(a: Rect, b: Rect) -> Option<Rect> {
     let (x0, x1) = (a.x0.max(b.x0), a.x1.min(b.x1));
     let (y0, y1) = (a.y0.max(b.y0), a.y1.min(b.y1));
     (x0 <= x1 && y0 <= y1).then(|| Rect::new(x0, y0, x1, y1))
 }
 
-/// The work of one of the segments below: there are fewer, and fitting them is counted, too.
+/// Work of each segment below. It is less than that of an ordinary one, since the numbers are upper bounds, and fitting them is
+/// charged separately.
 const EXPANDED: f64 = 15.0;
 
-/// Segments of the outline of a dash or a subpath with its caps, and of a segment with its join. All are held three times: expanded,
-/// bent, and as they are written.
+/// Segments of the outline of a dash or a subpath with its caps. Each segment is held three times: expanded, bent, and as written.
 const PER_DASH: f64 = 3.0 * 8.0;
+/// Segments of the outline of a segment with its join.
 const PER_SEGMENT: f64 = 3.0 * 2.0;
+/// The same for round joins.
 const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 
-/// Segments whose work that of expanding a dash is.
+/// Work of expanding a dash, in segments.
 const MEASURED: f64 = 2.0;
 
-/// Share of the tolerance for gaps between sides that are closed without a join.
+/// Fraction of the tolerance for gaps between sides that are closed without a join.
 const GAP: f64 = 0.3;
 
 /// Expands the stroke of `local` to a filled outline in the same user space, within `tolerance` there.
@@ -151,7 +153,7 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
     Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() }
 }
 
-/// Expands the stroke of each subpath, given by its index, within a tolerance and with gaps of its own.
+/// Expands the stroke of each subpath. `fine` gives the tolerance and the largest gap for a subpath by its index.
 pub(crate) fn stroke_outlines(
     local: &Outline,
     stroke: &Stroke,
@@ -161,13 +163,13 @@ pub(crate) fn stroke_outlines(
     let clipped = stroke.linejoin() == LineJoin::MiterClip;
     let outline = |(i, s): (usize, &Subpath)| {
         let one = Outline { subpaths: vec![s.clone()] };
-        // What is not finite is refused when the path itself is bent.
+        // Bending the path itself reports coordinates that are not finite.
         (i, one.stroked(&style, clipped, fine(i)).unwrap_or_default())
     };
     local.subpaths.iter().enumerate().map(outline).collect()
 }
 
-/// A stroke's style as kurbo's.
+/// Converts a stroke's style to kurbo's.
 fn style(stroke: &Stroke, is_dashed: bool) -> kurbo::Stroke {
     let cap = match stroke.linecap() {
         LineCap::Butt => Cap::Butt,
@@ -189,11 +191,11 @@ fn style(stroke: &Stroke, is_dashed: bool) -> kurbo::Stroke {
     }
 }
 
-/// The area that a part's stroke covers in root user space, to be filled by the nonzero rule, within `tolerance` there. `to_px` leads from
-/// root user space to px.
+/// The area that a part's stroke covers in root user space, within `tolerance` there, for the nonzero rule. `to_px` maps root user
+/// space to px.
 ///
 /// # Errors
-/// More segments than the limit allows.
+/// The stroke has more segments than the limit allows.
 pub(crate) fn stroked(
     part: &Part,
     to_px: Affine,
@@ -205,7 +207,7 @@ pub(crate) fn stroked(
         return Ok(Some(Outline::clone(&part.outline())));
     }
     spend_stroke(&part.local, stroke, budget)?;
-    // The space in which the width counts, as seen from root user space.
+    // Maps the space in which the width is measured to root user space.
     let frame = if part.fixed_width { to_px.inverse() } else { part.frame };
     let scale = stretch(frame);
     if !(scale > 0.0 && scale.is_finite()) {
@@ -215,21 +217,21 @@ pub(crate) fn stroked(
     Ok(Some(stroke_outline(&path, stroke, tolerance / scale).transformed(frame)))
 }
 
-/// Returns `true` if the whole segment is the point `at`.
+/// Whether a segment is just the point `at`.
 pub(crate) fn is_point(s: &Seg, at: Point) -> bool {
     let c = s.to_cubic();
     [c.p0, c.p1, c.p2, c.p3].iter().all(|p| *p == at)
 }
 
-/// The work of expanding the dashes of a stroke, in segments. They are held only until the stroke is measured.
+/// Charges for expanding the dashes of a stroke only to measure it.
 pub(crate) fn spend_dashes(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
     budget.spend(EXPANDED * MEASURED * drawn_dashes(local, stroke))
 }
 
-/// Counts a bound for the segments into which a stroke is expanded.
+/// Charges for an upper bound on the segments into which a stroke is expanded.
 ///
 /// # Errors
-/// It is more work than the limit allows.
+/// The work exceeds the budget.
 pub(crate) fn spend_stroke(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
     let dashes = drawn_dashes(local, stroke);
     let each = if stroke.linejoin() == LineJoin::Round { PER_ROUND_SEGMENT } else { PER_SEGMENT };
@@ -237,7 +239,7 @@ pub(crate) fn spend_stroke(local: &Outline, stroke: &Stroke, budget: &Budget) ->
     budget.spend(EXPANDED * segments)
 }
 
-/// A bound for the number of dashes that are drawn of a stroke.
+/// An upper bound on the number of dashes drawn for a stroke.
 fn drawn_dashes(local: &Outline, stroke: &Stroke) -> f64 {
     let pattern: Vec<f64> = stroke.dasharray().into_iter().flatten().map(|d| f64::from(*d)).collect();
     local.drawn_dashes(&pattern)
@@ -246,7 +248,8 @@ fn drawn_dashes(local: &Outline, stroke: &Stroke) -> f64 {
 /// Extent of a Gaussian in standard deviations; a renderer's three box blurs end there as well (Filter Effects Module Level 1, §9.14).
 const BLUR_REACH: f64 = 3.0;
 
-/// Bounds what `filter` paints from `content` with `region` in place of its own, all in the filter's user space. `None`: nothing.
+/// Bounds the area that `filter` paints from `content`, with `region` in place of its own region, all in the filter's user space.
+/// Returns `None` if it paints nothing.
 pub(crate) fn painted(filter: &Filter, region: Rect, content: Rect) -> Option<Rect> {
     let mut results: HashMap<&str, Option<Rect>> = HashMap::new();
     let mut last = overlap(content, region);
@@ -310,7 +313,7 @@ fn primitive(kind: &Kind, of: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> 
     }
 }
 
-/// Returns `true` if transparent pixels stay so.
+/// Whether transparent pixels stay transparent.
 fn keeps_transparent(alpha: &TransferFunction) -> bool {
     match alpha {
         TransferFunction::Identity => true,
@@ -320,7 +323,7 @@ fn keeps_transparent(alpha: &TransferFunction) -> bool {
     }
 }
 
-/// The region of a primitive, which is the filter's unless it has one itself, if the filter's is `region`.
+/// The region of a primitive: its own if it has one, else `region`, that of the filter.
 pub(crate) fn part(filter: &Filter, p: &Primitive, region: Rect) -> Rect {
     if p.rect() == filter.rect() { region } else { rect(p.rect().to_rect()) }
 }

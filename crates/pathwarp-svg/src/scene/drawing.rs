@@ -36,7 +36,7 @@ pub(crate) struct Drawing {
     shallow: bool,
     pub(crate) tree: Arc<usvg::Tree>,
     letters: Arc<lettering::Owners>,
-    /// For every element, the index of what bends it, if clip paths and masks are there once for each.
+    /// For every element, the index of the bend that applies to it. Clip paths and masks are resolved once for each bend.
     division: Vec<Option<usize>>,
     dpi: f64,
     /// Counts the work that the drawing causes.
@@ -87,13 +87,13 @@ impl Drawing {
         self.resolved_again(Some(tiling), self.division.clone())
     }
 
-    /// Resolves the drawing again, with clip paths and masks for each of the bends that their users have.
+    /// Resolves the drawing again, with clip paths and masks once for each bend of the elements that refer to them.
     pub(crate) fn divided(&self, division: Vec<Option<usize>>) -> Result<Self, Error> {
         self.resolved_again(None, division)
     }
 
-    /// The drawing in which the shapes that `use` elements show are those that they copy, once each: the largest copy stands for all.
-    /// Shapes that are drawn themselves as well are no copies. `None` if there are no copies.
+    /// Resolves the drawing with each shape that only `use` elements show in place of its copies; the largest copy stands for all.
+    /// Shapes that are also drawn themselves are not replaced. Returns `None` if no `use` shows anything.
     pub(crate) fn at_originals(&self) -> Result<Option<Self>, Error> {
         let is_use = |p: &Part| p.owner.is_some_and(|e| self.source.elements[e].tag == "use");
         if !self.scene().parts.iter().any(is_use) {
@@ -147,7 +147,7 @@ impl Drawing {
         })
     }
 
-    /// Runs `f`, which walks the drawing, with enough stack. `f` must not wait for other threads: a caller on a thread pool
+    /// Runs `f`, which walks the drawing, with enough stack. `f` must not wait for other threads, or a caller on a thread pool
     /// would wait for itself.
     pub(crate) fn with_stack<T: Send>(&self, f: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
         if self.shallow { f() } else { with_stack(&self.name, f) }
@@ -163,13 +163,13 @@ impl Drawing {
         if let Some(shapes) = self.shapes.get() {
             return shapes;
         }
-        // Not inside of `get_or_init`: while a thread of a pool waits for others, it may run a task that needs the shapes, too.
+        // Don't read inside `get_or_init`: a thread waiting for others may run a task that needs the shapes, too.
         read_outlines(self.scene(), &self.source);
         self.shapes.get_or_init(|| shapes(self.scene(), &self.source))
     }
 
-    /// The lines of lettering, each with its letters: those of texts, then those of outlines. Computed on first use, because it
-    /// takes longer than reading the drawing, and few deformations ask for it.
+    /// The lines of lettering with their letters: those of texts, then those of outlines. Computed on first use, because it takes
+    /// longer than reading the drawing, and few deformations need it.
     pub(crate) fn lines(&self) -> &[TextLine] {
         self.lines.get_or_init(|| lettering::lines(&self.tree, &self.reader(), self.scene()))
     }
@@ -229,23 +229,22 @@ impl Drawing {
         if let Some(far) = self.far.get() {
             return far;
         }
-        // As for the shapes.
+        // Don't compute this inside `get_or_init`, for the same reason as the shapes.
         let far = Far::of(&self.source, self.scene(), self.shapes());
         self.far.get_or_init(|| far)
     }
 }
 
-/// The parts that are out of range, and the reasons.
+/// Parts that are out of range, with the reasons.
 #[derive(Debug, Default)]
 pub(crate) struct Far {
-    /// One for each part; empty if there are none.
+    /// One flag for each part; empty if none is out of range.
     parts: Vec<bool>,
-    /// Names of elements, each with the reason.
+    /// Names of elements with the reasons.
     pub(crate) reasons: Vec<(String, String)>,
 }
 
 impl Far {
-    /// Finds the parts.
     pub(super) fn of(source: &SourceText, scene: &Scene, shapes: &[Shape]) -> Self {
         let reach: Vec<bool> = shapes.iter().map(|s| !is_near(&s.outline)).collect();
         if source.far.is_empty() && !reach.contains(&true) {
@@ -272,27 +271,27 @@ impl Far {
         Self { parts, reasons }
     }
 
-    /// Returns `true` if part `i` is out of range.
+    /// Whether part `i` is out of range.
     pub(crate) fn holds(&self, i: usize) -> bool {
         self.parts.get(i).is_some_and(|far| *far)
     }
 }
 
-/// Returns `true` if all points of an outline are in range.
+/// Whether all points of an outline are in range.
 fn is_near(o: &Outline) -> bool {
     o.segs().all(|s| {
         let [a, b] = [s.start(), s.end()];
-        // The middle stands for control points. What is not a number is not in range, either.
+        // The middle stands in for the control points. NaN fails the comparison, too.
         let m = s.eval(0.5);
         [a.x, a.y, b.x, b.y, m.x, m.y].iter().all(|v| v.abs() < LARGEST)
     })
 }
 
-/// A shape that is painted, clips or masks.
+/// A shape that is painted, or that clips or masks.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Shape {
-    /// Id in the source, or else name and position such as `path at 12:5`. The parts of a text or `use` share it.
+    /// Id in the source, or else tag and position such as `path at 12:5`. The parts of a text or `use` share it.
     pub id: String,
     /// Source element, e.g. `circle`.
     pub element: String,
@@ -312,7 +311,7 @@ pub struct Shape {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct NamedPath {
-    /// Id in the source, or else name and position such as `path at 12:5`.
+    /// Id in the source, or else tag and position such as `path at 12:5`.
     pub id: String,
     /// Inkscape's label.
     pub label: Option<String>,
@@ -355,7 +354,7 @@ pub(super) fn shapes(scene: &Scene, source: &SourceText) -> Vec<Shape> {
 
 /// Describes a shape element, painted or not. Returns `None` if it has no outline.
 pub(crate) fn named_path(scene: &Scene, reader: &GeometryReader<'_>, e: ElementId) -> Option<NamedPath> {
-    // Prefer the painted outline; an element that is not painted is read from the source.
+    // Prefer the painted outline; read an element that is not painted from the source.
     let parts = scene.by_source.get(&e).map_or(&[][..], Vec::as_slice);
     let painted = parts.iter().map(|&i| &scene.parts[i]).find(|p| p.role == PartRole::Paint);
     let outline = match painted {
@@ -393,7 +392,7 @@ impl UnreadImages {
         Self { unreadable: unreadable.collect(), outside: missed.outside.clone() }
     }
 
-    /// Returns `true` if every image was read.
+    /// Whether every image was read.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.unreadable.is_empty() && self.outside.is_empty()

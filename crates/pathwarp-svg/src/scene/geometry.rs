@@ -1,7 +1,7 @@
-//! Geometry read from the source in f64 and with true arcs: outlines of shapes, transforms, viewports.
+//! Reads outlines of shapes, transforms and viewports from the source, in f64 and with true arcs.
 //!
-//! usvg works in f32 and approximates arcs by cubics within 0.1 units. Its result is authoritative (it knows CSS, fonts and
-//! units); geometry from the source is used if it agrees with usvg's up to f32 rounding.
+//! usvg works in f32 and approximates arcs by cubics within 0.1 units. Its result is authoritative, since it resolves CSS, fonts and
+//! units; geometry from the source is used if it agrees with usvg's up to f32 rounding.
 
 use crate::source::elements::ElementId;
 use crate::source::text::SourceText;
@@ -30,7 +30,7 @@ pub(crate) enum Dimension {
 }
 
 impl Dimension {
-    /// 100 % of a viewport.
+    /// The length of 100 % in a viewport.
     pub(crate) fn of(self, view: Size) -> f64 {
         match self {
             Self::Width => view.width,
@@ -281,19 +281,19 @@ pub(crate) fn affine(t: usvg::Transform) -> Affine {
     Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
 }
 
-/// Returns `true` if `m` is finite and can be inverted.
+/// Whether `m` is finite and can be inverted.
 pub(crate) fn is_invertible(m: Affine) -> bool {
     m.is_finite() && m.determinant() != 0.0 && m.inverse().is_finite()
 }
 
-/// Returns the largest factor by which `m` stretches a length: the larger singular value.
+/// The largest factor by which `m` stretches a length, its larger singular value.
 pub(crate) fn stretch(m: Affine) -> f64 {
     let [a, b, c, d, ..] = m.as_coeffs();
     let (s, t) = ((a + d).hypot(b - c), (a - d).hypot(b + c));
     (s + t) / 2.0
 }
 
-/// Returns `true` if the transforms agree up to f32 rounding of a short product.
+/// Whether two transforms agree up to f32 rounding of a short product.
 pub(crate) fn is_near(a: Affine, b: Affine) -> bool {
     let (a, b) = (a.as_coeffs(), b.as_coeffs());
     let linear = a[..4].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -307,12 +307,12 @@ pub(crate) fn linear_part(m: Affine) -> Affine {
     Affine::new([a, b, c, d, 0.0, 0.0])
 }
 
-/// Bit pattern, for use as a key.
+/// The bit pattern, for use as a key.
 pub(crate) fn bits(m: Affine) -> [u64; 6] {
     m.as_coeffs().map(f64::to_bits)
 }
 
-/// Bit pattern in f32, for use as a key.
+/// The bit pattern in f32, for use as a key.
 pub(crate) fn f32_bits(m: Affine) -> [u32; 6] {
     // Adding zero maps -0 to 0.
     m.as_coeffs().map(|v| (v as f32 + 0.0).to_bits())
@@ -334,7 +334,7 @@ pub(crate) fn from_usvg(path: &ts::Path) -> Outline {
     b.finish()
 }
 
-/// Returns `true` if usvg's path is `outline` in f32: the same subpaths with the same anchors, and cubics in place of arcs.
+/// Whether usvg's path is `outline` in f32: the same subpaths with the same anchors, and cubics in place of arcs.
 pub(crate) fn same_path(outline: &Outline, path: &ts::Path) -> bool {
     let b = path.bounds();
     let size = [b.left(), b.right(), b.top(), b.bottom()].iter().fold(0.0_f32, |m, v| m.max(v.abs()));
@@ -354,10 +354,10 @@ fn same_subpath(ours: &Subpath, theirs: &Subpath, tolerance: f64) -> bool {
         let c = s.to_cubic();
         [c.p1, c.p2, c.p3]
     };
-    // Rounding makes and drops segments without extent.
+    // Rounding can add and drop segments without extent.
     let is_point = |s: &Seg| !matches!(s, Seg::Arc(_)) && handles(s).iter().all(|p| close(*p, s.start()));
     let mut rest: VecDeque<&Seg> = theirs.segs.iter().filter(|s| !is_point(s)).collect();
-    // usvg draws an arc to the point where it is as a whole ellipse if the points differ in f32.
+    // usvg draws an arc to the current point as a whole ellipse if the two points differ in f32.
     let skip_turn = |rest: &mut VecDeque<&Seg>, at: Point| {
         if rest.front().is_some_and(|s| close(s.start(), at) && matches!(s, Seg::Cubic(_)))
             && let Some(last) = rest.iter().position(|s| close(s.end(), at))

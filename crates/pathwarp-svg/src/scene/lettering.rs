@@ -50,7 +50,7 @@ pub(super) fn lines(tree: &usvg::Tree, reader: &GeometryReader<'_>, scene: &Scen
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PlacedLetter {
     pub(crate) name: String,
-    /// Root user space.
+    /// In root user space.
     pub(crate) origin: Point,
     pub(crate) advance: f64,
     /// Parts, with the range of their subpaths.
@@ -75,7 +75,7 @@ pub(crate) struct TextLine {
     pub(crate) owner: Option<ElementId>,
     pub(crate) start: Point,
     pub(crate) end: Point,
-    /// Root user units.
+    /// In root user units.
     pub(crate) heights: Heights,
     /// `true` if the baseline is horizontal and runs to the right, with upright letters.
     pub(crate) level: bool,
@@ -103,7 +103,7 @@ impl TextLine {
     }
 }
 
-/// All texts of a drawing and of the drawings shown in it as images, by their address. Nesting takes no stack.
+/// All texts of a drawing and of the drawings shown in it as images, by address. Nesting takes no stack.
 fn texts_by_address(tree: &usvg::Tree) -> HashMap<usize, &usvg::Text> {
     let mut out = HashMap::new();
     let mut groups = vec![tree.root()];
@@ -243,9 +243,9 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
 
 /// A glyph's metrics from its font.
 struct Metrics {
-    /// Font units.
+    /// In font units.
     advance: f64,
-    /// The text's user units.
+    /// In the text's user units.
     heights: Heights,
 }
 
@@ -382,10 +382,11 @@ fn numbers<const N: usize>(reader: &GeometryReader<'_>, e: ElementId, name: &str
     values?.try_into().ok()
 }
 
-/// For each text element, the source elements of its outlines' nodes, in order.
+/// The source element of each outline of a text, by the text's element.
 pub(crate) type Owners = HashMap<ElementId, Vec<ElementId>>;
 
-/// Finds the owners of the letters of all texts with names inside.
+/// Finds the owners of all letters in texts that contain named elements. To do so, it has usvg resolve the drawing again with every
+/// element of these texts in a colour of its own.
 pub(crate) fn owners(source: &SourceText, name: &str, options: &ReadOptions) -> Result<Owners, Error> {
     let mut out = Owners::new();
     if source.unpatchable.is_some() {
@@ -404,12 +405,12 @@ pub(crate) fn owners(source: &SourceText, name: &str, options: &ReadOptions) -> 
     Ok(out)
 }
 
-/// Encodes an element's number as a colour.
+/// Encodes an element's index as a colour.
 fn colour(e: ElementId) -> Option<String> {
     (e < 1 << 24).then(|| format!("#{e:06x}"))
 }
 
-/// Decodes a colour.
+/// Decodes an element's index from a colour.
 fn element(c: Color) -> ElementId {
     usize::from(c.red) << 16 | usize::from(c.green) << 8 | usize::from(c.blue)
 }
@@ -445,14 +446,14 @@ pub(crate) fn inside(source: &SourceText, text: ElementId) -> impl Iterator<Item
     source.descendants(text).filter(|&e| matches!(source.elements[e].tag.as_ref(), "tspan" | "textPath" | "tref" | "a"))
 }
 
-/// Returns `true` for attributes that identify an element: id, class, data and ARIA attributes, and Inkscape's.
+/// Whether an attribute identifies an element: id, class, data and ARIA attributes, and Inkscape's.
 pub(crate) fn is_naming(a: &Attr, text: &str) -> bool {
     let name = a.name(text);
     let plain = name == "id" || name == "class" || name.starts_with("data-") || name.starts_with("aria-");
     plain && a.namespace == Namespace::None || a.namespace == Namespace::Inkscape
 }
 
-/// Returns `true` if an element has a title or an identifying attribute.
+/// Whether an element has a title or an identifying attribute.
 pub(crate) fn is_named(source: &SourceText, e: ElementId) -> bool {
     let el = &source.elements[e];
     el.title.is_some() || el.attrs.iter().any(|a| is_naming(a, &source.text))

@@ -1,4 +1,4 @@
-//! The drawing as it is painted: every shape with its outline, its transform and its source element.
+//! The drawing as it is painted, with the outline, transform and source element of every shape.
 
 pub(crate) mod areas;
 pub(crate) mod drawing;

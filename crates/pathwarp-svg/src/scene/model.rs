@@ -1,5 +1,5 @@
-//! The drawing as it is painted: usvg's tree in f64. Each shape has its source element, its exact outline and its transform to
-//! root user space, the coordinate system inside the root `<svg>` (viewBox units).
+//! The data model of a drawing as it is painted: usvg's tree in f64. Each shape has its source element, its exact outline and its
+//! transform to root user space, the coordinate system inside the root `<svg>` (viewBox units).
 
 use crate::source::elements::{ElementId, Unpatchable};
 use crate::source::images::is_unread;
@@ -40,10 +40,10 @@ pub(crate) struct Part {
     pub(crate) paint_order: PaintOrder,
     pub(crate) rendering: ShapeRendering,
     pub(crate) visible: bool,
-    /// The stroke width is in px regardless of the transform (`vector-effect`).
+    /// Whether the stroke width is in px regardless of the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
     pub(crate) slot: Option<usize>,
-    /// Address of usvg's path (which the document keeps alive); 0 if there is none.
+    /// Address of usvg's path, which the document keeps alive; 0 if there is none.
     #[cfg_attr(not(feature = "usvg"), expect(dead_code, reason = "for the module of that feature"))]
     pub(crate) path: usize,
     /// `true` for parts of laid-out pattern tiles. If such a part has a stroke, `local` is the outline of that stroke.
@@ -77,7 +77,7 @@ impl Part {
         }
     }
 
-    /// Returns `true` if the part is visible and has a fill or a stroke.
+    /// Whether the part is visible and has a fill or a stroke.
     pub(crate) fn painted(&self) -> bool {
         self.visible && (self.fill.is_some() || self.stroke.is_some())
     }
@@ -214,12 +214,12 @@ pub(crate) struct Bitmap {
     pub(crate) owner: Option<ElementId>,
     /// `false` for images in tiles and filters, which are never bent.
     pub(crate) bends: bool,
-    /// The pixels that `preserveAspectRatio="… slice"` leaves. A clip path cuts the image there, too.
+    /// The visible pixels with `preserveAspectRatio="… slice"`. A clip path cuts off the others, too.
     pub(crate) crop: Option<Rect>,
 }
 
 impl Bitmap {
-    /// Whether it stands for a picture that was not read.
+    /// Whether it is the placeholder for a picture that was not read.
     pub(crate) fn is_unread(&self) -> bool {
         is_unread(self.image.kind())
     }
@@ -233,7 +233,7 @@ pub(crate) struct Clip {
     pub(crate) clip: Option<usize>,
     pub(crate) root: Group,
     pub(crate) referrers: Vec<Referrer>,
-    /// Of a divided drawing, the index of what bends those who refer to it.
+    /// In a divided drawing, the index of the bend of the referrers.
     pub(crate) bend: Option<usize>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,
@@ -269,7 +269,7 @@ pub(crate) struct Mask {
     pub(crate) frame: Affine,
     pub(crate) slot: Option<usize>,
     pub(crate) referrers: Vec<Referrer>,
-    /// Of a divided drawing, the index of what bends those who refer to it.
+    /// In a divided drawing, the index of the bend of the referrers.
     pub(crate) bend: Option<usize>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,
@@ -291,11 +291,11 @@ pub(crate) struct PatternTile {
 pub(crate) struct Referrer {
     /// The element with the property, if known.
     pub(crate) element: Option<ElementId>,
-    /// The element around it that is replaced as a whole.
+    /// The enclosing element that is replaced as a whole.
     pub(crate) owner: Option<ElementId>,
 }
 
-/// A remark on something that could not be resolved as requested, with the name of what it concerns.
+/// A remark on something that could not be resolved as requested, with the name of the thing.
 #[derive(Debug, Clone)]
 pub(crate) struct SceneNote {
     pub(crate) text: &'static str,
@@ -311,7 +311,7 @@ pub(crate) struct PlacedText {
     pub(crate) owner: Option<ElementId>,
     /// Maps the text to root user space.
     pub(crate) frame: Affine,
-    /// Its first part.
+    /// Index of its first part.
     pub(crate) first: usize,
 }
 
@@ -322,13 +322,12 @@ pub(crate) struct Scene {
     pub(crate) clips: Vec<Clip>,
     pub(crate) masks: Vec<Mask>,
     pub(crate) tiles: Vec<PatternTile>,
-    /// Content of `feImage`s by the address of usvg's group (which the document keeps alive).
+    /// Content of `feImage`s by the address of usvg's group, which the document keeps alive.
     pub(crate) pictures: HashMap<usize, Group>,
     pub(crate) bitmaps: Vec<Bitmap>,
     /// Addresses of gradients and filters that the source does not define.
     pub(crate) foreign: HashSet<usize>,
     pub(crate) slots: Vec<Slot>,
-    /// Painted texts.
     pub(crate) texts: Vec<PlacedText>,
     /// Parts by source element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
@@ -340,7 +339,6 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// A scene with nothing in it.
     pub(crate) fn empty(unpatchable: Option<Unpatchable>) -> Self {
         Self {
             root: Group::plain(None, Affine::IDENTITY, Vec::new()),

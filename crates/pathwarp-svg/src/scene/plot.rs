@@ -1,4 +1,4 @@
-//! A drawing as outlines for a plotter or cutter: every outline once, with its layer and colour.
+//! Lists the outlines of a drawing for a plotter or cutter, each once, with its layer and colour.
 //!
 //! A plotter knows neither areas nor transparency, so an outline is drawn whether it is filled, stroked or both. Strokes are
 //! drawn along their centre lines.
@@ -70,7 +70,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Adds what is in a group. `room` is the box that clip paths leave.
+    /// Adds the content of a group. `room` is the area that clip paths leave visible.
     fn group(&mut self, g: &Group, room: Option<Rect>) {
         if g.opacity <= 0.0 {
             return;
@@ -104,7 +104,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The rectangle that a clip path is, if it is one.
+    /// The area of a clip path that is a rectangle. `None` for others.
     fn clip_area(&self, clip: usize) -> Option<Rect> {
         let clip = &self.scene.clips[clip];
         let mut parts = clip.parts.clone().map(|i| self.scene.parts[i].outline());
@@ -183,7 +183,7 @@ fn rectangle(o: &Outline) -> Option<Rect> {
         let Seg::Line(l) = seg else { return None };
         area += l.p0.to_vec2().cross(l.p1.to_vec2()) / 2.0;
     }
-    // An outline that is not closed is closed when it clips.
+    // Clipping closes open outlines.
     area += only.end().to_vec2().cross(only.start.to_vec2()) / 2.0;
     ((area.abs() - bounds.area()).abs() <= SLACK * bounds.area()).then_some(bounds)
 }
@@ -241,7 +241,7 @@ fn is_group(tag: &str) -> bool {
     matches!(tag, "g" | "a" | "svg" | "switch")
 }
 
-/// Returns `true` for elements that are drawn where they stand.
+/// Whether elements of this name are drawn where they stand.
 fn is_drawn(tag: &str) -> bool {
     is_group(tag) || crate::source::elements::is_shape(tag) || matches!(tag, "use" | "text" | "image")
 }

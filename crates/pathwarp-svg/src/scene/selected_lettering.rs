@@ -1,4 +1,4 @@
-//! The selected lettering of a drawing, and frames around it.
+//! Finds the selected lettering of a drawing, and makes frames around it.
 
 use super::drawing::Drawing;
 use super::lettering::{Heights, PlacedLetter, TextLine};
@@ -61,21 +61,21 @@ impl Lettering {
         &self.letters
     }
 
-    /// Returns `true` if there is lettering and every baseline is horizontal, so that frames can be made.
+    /// Whether there is lettering and every baseline is horizontal, so that frames can be made.
     #[must_use]
     pub fn is_level(&self) -> bool {
         !self.lines.is_empty() && self.lines.iter().all(|l| l.level)
     }
 
-    /// Returns `true` if the selected artwork consists of lettering only.
+    /// Whether the selected artwork consists of lettering only.
     #[must_use]
     pub fn is_all(&self) -> bool {
         self.is_all
     }
 
-    /// Makes a frame around the lettering: horizontally from the leftmost start to the rightmost end of a line, vertically by
-    /// `kind` over all lines, so for [`BaselineAscent`](LetteringFrame::BaselineAscent) from the lowest baseline to the highest
-    /// ascent.
+    /// Makes a frame around the lettering. Horizontally, it extends from the leftmost start to the rightmost end of a line;
+    /// vertically, by `kind` over all lines. For [`BaselineAscent`](LetteringFrame::BaselineAscent), that is from the lowest baseline
+    /// to the highest ascent.
     ///
     /// # Errors
     /// Returns the reason why there is no such frame.
@@ -86,15 +86,15 @@ impl Lettering {
         if let Some(l) = self.lines.iter().find(|l| !l.level) {
             return Err(LetteringFrameError::NotLevel { line: l.name.clone() });
         }
-        let least = |of: &dyn Fn(&TextLine) -> f64| self.lines.iter().map(of).fold(f64::INFINITY, f64::min);
-        let most = |of: &dyn Fn(&TextLine) -> f64| -least(&|l| -of(l));
-        let baseline = most(&|l| l.start.y);
-        let above = |of: fn(&Heights) -> f64| least(&|l| l.start.y - of(&l.heights));
+        let min = |of: &dyn Fn(&TextLine) -> f64| self.lines.iter().map(of).fold(f64::INFINITY, f64::min);
+        let max = |of: &dyn Fn(&TextLine) -> f64| -min(&|l| -of(l));
+        let baseline = max(&|l| l.start.y);
+        let above = |of: fn(&Heights) -> f64| min(&|l| l.start.y - of(&l.heights));
         let (top, bottom) = match kind {
             LetteringFrame::BaselineAscent => (above(|h| h.ascent), baseline),
             LetteringFrame::BaselineCapHeight => (above(|h| h.cap_height), baseline),
             LetteringFrame::BaselineXHeight => (above(|h| h.x_height), baseline),
-            LetteringFrame::AscentDescent => (above(|h| h.ascent), most(&|l| l.start.y + l.heights.descent)),
+            LetteringFrame::AscentDescent => (above(|h| h.ascent), max(&|l| l.start.y + l.heights.descent)),
             LetteringFrame::Ink => {
                 let boxes = self.letters.iter().filter_map(|l| l.outline.bounding_box());
                 let ink = boxes.reduce(|a, b| a.union(b)).ok_or(LetteringFrameError::NoOutlines)?;
@@ -104,7 +104,7 @@ impl Lettering {
         if bottom - top <= 0.0 {
             return Err(LetteringFrameError::NoHeight);
         }
-        Ok(Frame::new(Rect::new(least(&|l| l.start.x), top, most(&|l| l.end.x), bottom)).on_baseline(baseline))
+        Ok(Frame::new(Rect::new(min(&|l| l.start.x), top, max(&|l| l.end.x), bottom)).on_baseline(baseline))
     }
 }
 
@@ -157,7 +157,7 @@ fn selected_lines(drawing: &Drawing, selected: &[bool]) -> Vec<TextLine> {
     lines.filter(|l| !l.letters.is_empty()).collect()
 }
 
-/// Lists for every part the letters in it.
+/// Lists the letters in every part.
 pub(crate) fn letters_by_part(drawing: &Drawing, selection: &Selection) -> Vec<Vec<LetterSubpaths>> {
     let mut out = vec![Vec::new(); drawing.scene().parts.len()];
     let lines = selected_lines(drawing, &drawing.selected_parts(selection));

@@ -1,4 +1,4 @@
-//! The check of a drawing before it is resolved: everything that references, style sheets and text make of it is counted.
+//! Bounds the size of a drawing before usvg resolves it, including everything that references, style sheets and text add to it.
 
 use super::elements::is_shape;
 use memchr::{memchr2, memmem};
@@ -9,7 +9,7 @@ use simplecss::DeclarationTokenizer;
 use std::collections::HashMap;
 use usvg::roxmltree::{self, Node, NodeId};
 
-/// Features of a drawing that decide about fonts, images and limits.
+/// Features of a drawing that determine whether to load fonts and images, and what to count.
 #[derive(Default)]
 pub(super) struct Features {
     pub(super) text: bool,
@@ -57,9 +57,9 @@ pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget
     Ok(features)
 }
 
-/// Deepest nesting of references and elements after expansion. The stack of 128 MiB allows several times as much, but
+/// Limit on the nesting of references and elements after expansion. The stack of 128 MiB allows several times as much, but
 /// usvg needs quadratic time for markers on markers.
-const DEEPEST: usize = 2_000;
+const MAX_DEPTH: usize = 2_000;
 /// Drawings with at most this many references cannot expand to much.
 const FEW: usize = 16;
 /// Below this many bytes, vertices times one marker stays small.
@@ -67,8 +67,8 @@ const SMALL: usize = 4096;
 /// Below this many bytes times references, a drawing cannot expand to much.
 const LARGE: usize = 1 << 22;
 
-/// Returns `true` if a drawing could expand to a large number of elements: it has more than a few references, and either
-/// markers, which are drawn at every vertex, or other elements that show what they refer to (`referring`).
+/// Whether a drawing could expand to a large number of elements: it has more than a few references, and either markers, which
+/// are drawn at every vertex, or other elements that show what they refer to (`referring`).
 fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) -> bool {
     let text = doc.input_text();
     // Entities may contain references.
@@ -77,7 +77,7 @@ fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) 
     markers > 1 || markers == 1 && text.len() > SMALL || (referring || markers > 0) && large(references())
 }
 
-/// Counts a drawing that cannot expand to much, and returns its segments.
+/// Counts a drawing that cannot expand to much, and returns the number of its segments.
 ///
 /// # Errors
 /// Returns [`Error::Input`] if it exceeds the budget as it is.
@@ -89,10 +89,10 @@ fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Re
     Ok(sum.segments)
 }
 
-/// Rejects a drawing that expands to too much, or returns its segments. `name` identifies the drawing in the error.
+/// Counts a drawing after expansion, and returns the number of its segments. `name` identifies the drawing in errors.
 ///
 /// # Errors
-/// Returns [`Error::Input`] that names the element.
+/// Returns [`Error::Input`] with the element that expands to too much.
 pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
     let (size, _) = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
@@ -107,7 +107,7 @@ pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) 
             }
             TooMuch::Depth => {
                 let problem =
-                    format!("the content of {which} nests deeper than {DEEPEST} levels, through references to");
+                    format!("the content of {which} nests deeper than {MAX_DEPTH} levels, through references to");
                 Error::input(place, format!("{problem} references; replace some of them by plain shapes"))
             }
         }
@@ -162,7 +162,7 @@ impl Size {
         cost::ELEMENT * elements as f64 + cost::SEGMENT * segments as f64 + cost::LETTER * letters as f64
     }
 
-    /// Compares with the limits, whatever is used of them.
+    /// Compares with the limits, regardless of what has been used of them.
     fn exceeded(self, budget: &Budget) -> Result<(), Exceeded> {
         budget.check(Limit::Elements, self.elements as f64)?;
         budget.check(Limit::Work, self.work()).map_err(Exceeded::cut_short)
@@ -174,13 +174,13 @@ impl Size {
     }
 }
 
-/// Properties that may refer to an element to be shown.
+/// Properties that may refer to an element to show.
 const PROPERTIES: [&str; 7] = ["fill", "stroke", "marker-start", "marker-mid", "marker-end", "clip-path", "mask"];
 /// The first two are paints; paints and markers are inherited.
 const PAINTS: usize = 2;
 const INHERITED: usize = 5;
 
-/// A property's value, as far as it concerns references.
+/// The reference in a property's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Reference {
     /// Not set, or `inherit`.
@@ -196,11 +196,11 @@ enum Reference {
 /// Targets of the inherited properties.
 type Inherited = [Option<NodeId>; INHERITED];
 
-/// A subtree to be shown, with everything that affects its content.
+/// A subtree to show, with everything that affects its content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Body {
     node: NodeId,
-    /// Inherited values; `None` means those at the element's own position in the file.
+    /// Inherited values; `None` stands for those at the element's own position in the file.
     inherited: Option<Inherited>,
     /// Paints of the context element.
     context: [Option<NodeId>; PAINTS],
@@ -210,14 +210,14 @@ struct Body {
 struct Inside {
     size: Size,
     depth: usize,
-    /// Bodies shown inside: how many times, at which depth.
+    /// Bodies shown inside, with how many times and at which depth.
     shown: Vec<(Body, u64, usize)>,
 }
 
 struct Unfolding<'a, 'i> {
     doc: &'a roxmltree::Document<'i>,
     by_id: HashMap<&'a str, Node<'a, 'i>>,
-    /// Number of elements and depth by body; `None` while the body is being counted.
+    /// Size and depth by body; `None` while the body is being counted.
     known: HashMap<Body, Option<(Size, usize)>>,
 }
 
@@ -232,11 +232,11 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         Self { doc, by_id, known: HashMap::new() }
     }
 
-    /// Sums up everything with repetitions, and finds the deepest nesting.
+    /// Adds up everything with repetitions, and finds the deepest nesting.
     fn count(&mut self, budget: &Budget) -> Result<(Size, usize), (Node<'a, 'i>, TooMuch)> {
         let root = Body { node: self.doc.root_element().id(), inherited: None, context: [None; PAINTS] };
         let first = self.inside(root);
-        // Visiting elements takes time, too, so it is bounded as well.
+        // Visiting elements takes time, too, so bound it as well.
         let mut visited = first.size;
         let mut open = vec![(root, first)];
         self.known.insert(root, None);
@@ -249,7 +249,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                         inside.size = inside.size.plus(size.times(times));
                         inside.depth = inside.depth.max(at + depth);
                     }
-                    // A cycle: usvg cuts it here.
+                    // usvg breaks the cycle here.
                     Some(None) => {}
                     None => {
                         inside.shown.push(next);
@@ -269,11 +269,11 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                 first_over.get_or_insert(node);
             }
             visited.exceeded(budget).map_err(|e| (node, TooMuch::Work(e.cut_short())))?;
-            if last.1.max(open.len()) > DEEPEST {
+            if last.1.max(open.len()) > MAX_DEPTH {
                 return Err((node, TooMuch::Depth));
             }
         }
-        // The message tells what the whole drawing takes.
+        // Report the size of the whole drawing, but name the first element that exceeds the limits.
         let counted = last.0.exceeded(budget);
         counted.map(|()| last).map_err(|e| (first_over.unwrap_or(self.doc.root_element()), TooMuch::Work(e)))
     }
@@ -395,17 +395,17 @@ impl<'a, 'i> Unfolding<'a, 'i> {
     }
 }
 
-/// The letters of a piece of text; none of an element.
+/// The number of letters of a text node; 0 for other nodes.
 pub(super) fn letters(n: Node<'_, '_>) -> u64 {
     n.text().filter(|_| n.is_text()).map_or(0, |t| t.chars().count()) as u64
 }
 
-/// Returns `true` for elements that are drawn only by reference.
+/// Whether elements of this name are drawn only by reference.
 fn is_defined(tag: &str) -> bool {
     matches!(tag, "pattern" | "marker" | "clipPath" | "mask" | "filter" | "symbol" | "defs" | "style" | "metadata")
 }
 
-/// Returns `true` for elements with a fill and a stroke.
+/// Whether elements of this name have a fill and a stroke.
 fn is_painted(tag: &str) -> bool {
     is_shape(tag) || matches!(tag, "text" | "tspan" | "textPath")
 }
@@ -418,23 +418,20 @@ fn urls(value: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Bounds the number of vertices of a path, polyline or polygon from above by its numbers and commands.
+/// An upper bound on the number of vertices of a path, polyline or polygon, from its numbers and commands.
 fn vertices(node: Node<'_, '_>) -> u64 {
     let text = node.attribute("d").or_else(|| node.attribute("points")).unwrap_or("");
-    // Compared with its neighbour, a byte needs no state, and many are counted at a time.
+    // Comparing adjacent bytes needs no state, so the compiler vectorizes it.
     let starts = |before: u8, b: u8| u64::from(b.is_ascii_digit() & !before.is_ascii_digit() | (b | 0x20 == b'z'));
     let bytes = text.as_bytes();
     let first = bytes.first().map_or(0, |b| starts(b' ', *b));
     first + bytes.windows(2).map(|w| starts(w[0], w[1])).sum::<u64>() + 2
 }
 
-#[cfg(test)]
-mod tests;
-
-/// Counts the segments along which texts are laid out: each text measures its whole path.
+/// Charges for the segments of paths that carry text. Each text measures the whole of its path.
 fn text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    /// Fewest bytes of path data for a curve, whose length takes the time. A line takes less in fewer bytes.
-    const CURVE: usize = 12;
+    /// Fewest bytes of path data for a curve. Lines can be shorter, but measuring them takes hardly any time.
+    const MIN_CURVE: usize = 12;
     let links = || xml.descendants().filter(|n| n.tag_name().name() == "textPath").filter_map(href);
     if links().next().is_none() {
         return Ok(());
@@ -442,28 +439,30 @@ fn text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exce
     let data = |n: Node<'_, '_>| Some((n.attribute("id")?.to_owned(), n.attribute("d")?.len()));
     let lengths: HashMap<String, usize> = xml.descendants().filter_map(data).collect();
     links().try_for_each(|id| {
-        let segments = lengths.get(id).map_or(0, |length| length / CURVE);
+        let segments = lengths.get(id).map_or(0, |length| length / MIN_CURVE);
         budget.spend(cost::SEGMENT * segments as f64)
     })
 }
 
-/// The id that a link leads to.
+/// The id that a link refers to.
 fn href<'a>(n: Node<'a, '_>) -> Option<&'a str> {
     let link = n.attributes().find(|a| a.name() == "href")?.value();
     link.trim().strip_prefix('#')
 }
 
-/// Counts what arcs become whose ellipses are much wider than any page, such as those with one small radius that have to be enlarged to
-/// reach their ends. usvg turns an arc into cubics whose number grows with the radius, and the time with its square.
+/// Charges for arcs whose ellipses are much wider than any page, such as those that have to be enlarged to reach their ends while
+/// keeping the ratio of a small radius to a large one. usvg turns an arc into cubics; their number grows with the radius, and the
+/// time with the square of their number.
 fn wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget) -> Result<(), Exceeded> {
-    /// Radii of fewer cubics take no time.
+    /// Smaller radii take no time worth counting.
     const WIDE: f64 = 1e8;
-    /// A cubic's error times the sixth power of their number in a turn, for the radius 1, and the error that usvg allows.
+    /// The error of n cubics that approximate the unit circle, times n⁶.
     const ERROR: f64 = 1.1163;
+    /// The error that usvg allows.
     const ALLOWED: f64 = 0.1;
-    /// Comparisons for an arc, by the square of its cubics.
+    /// Comparisons for an arc, divided by the square of the number of its cubics.
     const MOVED: f64 = 0.0125;
-    // Path data is parsed once more only where its numbers may amount to such an arc.
+    // Only parse path data again if its numbers may amount to such an arc.
     let arcs = |d: &str| {
         let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && is_uneven(d);
         suspected.then(|| Outline::from_svg_lossy(d))
@@ -476,11 +475,11 @@ fn wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget) -> R
         return Ok(());
     }
     let cubics = (ERROR * radius / ALLOWED).powf(1.0 / 6.0);
-    // Each of them may be as wide.
+    // Any segment may be such an arc.
     budget.spend(cost::COMPARISON * segments as f64 * MOVED * cubics * cubics)
 }
 
-/// Returns `false` if all numbers of path data are certainly below 10⁴ and, unless they are zero, at least 10⁻³: no exponent, no five
+/// Returns `false` if all numbers of path data are certainly below 10⁴ and either zero or at least 10⁻³: no exponent, no five
 /// digits before a point, no three zeros after it.
 fn is_uneven(data: &str) -> bool {
     let (mut digits, mut zeros, mut fraction) = (0, 0, false);
@@ -489,7 +488,7 @@ fn is_uneven(data: &str) -> bool {
             b'e' | b'E' => return true,
             b'.' => (zeros, fraction) = (0, true),
             b'0' if fraction => zeros += 1,
-            // The digits after the first one that is not zero do not count.
+            // Zeros after the first other digit don't count.
             b'0'..=b'9' if fraction => zeros = i32::MIN,
             b'0'..=b'9' => digits += 1,
             _ => (digits, fraction) = (0, false),
@@ -501,12 +500,12 @@ fn is_uneven(data: &str) -> bool {
     false
 }
 
-/// Counts the shapes of a drawing with strokes so wide that single precision fails the renderer when it outlines them for their
-/// boxes: the time grows with the width.
+/// Charges for strokes so wide that single precision fails usvg when it outlines them to find their boxes. The time grows with the
+/// width.
 fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    /// Narrower strokes take no time.
+    /// Narrower strokes take no time worth counting.
     const WIDE: f64 = 2e6;
-    /// Comparisons for a shape and a unit of its width.
+    /// Comparisons for each shape and unit of width.
     const UNIT: f64 = 350e-6;
     let text = xml.input_text();
     let widths = memmem::find_iter(text.as_bytes(), "stroke-width").filter_map(|at| {
@@ -522,8 +521,9 @@ fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Ex
     budget.spend(cost::COMPARISON * shapes as f64 * width * UNIT)
 }
 
-/// Counts the letters that are compared with every span of their text.
+/// Charges for texts: every letter is compared with every span, and with every other letter.
 pub(super) fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    /// Letters that are compared in the time of one comparison.
     const AT_A_TIME: f64 = 64.0;
     let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
     for text in texts {
@@ -534,8 +534,11 @@ pub(super) fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<()
             }
             all_letters += letters(n) as f64;
         }
-        // The text itself is no span. Its letters are also compared with each other, some at a time.
+        // The text itself is no span.
         budget.spend(cost::COMPARISON * ((spans - 1.0) * all_letters + all_letters * all_letters / AT_A_TIME))?;
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,8 +1,7 @@
-//! Edits to the source text: attributes, style properties, tags and whole elements. Everything else stays as it is, byte for
+//! Edits attributes, style properties, tags and whole elements of the source text. Everything else stays as it is, byte for
 //! byte.
 
-use super::elements::{Attr, ElementId, Namespace};
-use super::elements::{declared, with_declaration};
+use super::elements::{Attr, ElementId, Namespace, declared, with_declaration};
 use super::text::SourceText;
 use pathwarp_reader::xml::escape;
 use std::collections::BTreeMap;
@@ -14,7 +13,7 @@ struct Change {
     /// New values; `None` removes the attribute.
     attrs: Vec<(&'static str, Option<String>)>,
     properties: Vec<(&'static str, String)>,
-    /// Ranges of attributes to remove, whatever their namespace.
+    /// Ranges of attributes to remove.
     removed: Vec<Range<usize>>,
     tag: Option<&'static str>,
     /// Replaces the content.
@@ -29,7 +28,7 @@ struct Change {
 }
 
 impl Change {
-    /// Whether the change decides about an attribute. With path data, it may decide about their property, too.
+    /// Whether the change determines an attribute. If path data is also declared (`has_data`), setting `d` changes `style`, too.
     fn sets(&self, name: &str, has_data: bool) -> bool {
         let styled = !self.properties.is_empty() || has_data && self.attrs.iter().any(|a| a.0 == "d" && a.1.is_some());
         self.attrs.iter().any(|a| a.0 == name) || name == "style" && styled
@@ -121,8 +120,8 @@ impl<'a> Edits<'a> {
         properties.push((name, value));
     }
 
-    /// Applies all edits to the text. Edits inside a replaced element are dropped. Returns where elements begin that are not
-    /// replaced, too.
+    /// Applies all edits and returns the new text. Edits inside a replaced element are dropped. Also returns the elements that
+    /// were not replaced, with the positions where they begin in the new text.
     pub(crate) fn apply(self) -> (String, Vec<(ElementId, usize)>) {
         let source = self.source;
         let mut patches: Vec<(usize, usize, String)> = Vec::new();
@@ -136,7 +135,7 @@ impl<'a> Edits<'a> {
         for (e, c) in self.changes {
             patch(source, e, c, &mut patches);
         }
-        // After new content, which may begin at the same position.
+        // These come after new content, which may begin at the same position.
         patches.extend(kept);
         // The sort is stable, so insertions at one position keep their order. An insertion precedes a replacement that starts
         // at the same position, and an outer replacement precedes an inner one.
@@ -162,7 +161,7 @@ impl<'a> Edits<'a> {
     }
 }
 
-/// Declares new path data where a declaration would override the attribute.
+/// Declares new path data if a declaration would override the attribute.
 fn declare_data(source: &SourceText, e: ElementId, c: &mut Change) {
     if let Some((_, Some(data))) = c.attrs.iter().find(|a| a.0 == "d")
         && (source.css_declares("d") || declared(&source.written_style(e), "d").is_some())
@@ -249,7 +248,7 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
     }
 }
 
-/// Removes an attribute with the space before it.
+/// The patch that removes an attribute with the space before it.
 fn removal(text: &str, attr: &Range<usize>) -> (usize, usize, String) {
     (text[..attr.start].trim_end().len(), attr.end, String::new())
 }

@@ -1,4 +1,4 @@
-//! The elements of the source, with the positions of their tags and attributes in the text.
+//! The elements of a document, with the positions of their tags and attributes in the source text.
 
 use memchr::memrchr;
 use std::borrow::Cow;
@@ -9,10 +9,10 @@ pub(crate) const SVG: &str = "http://www.w3.org/2000/svg";
 pub(crate) const XLINK: &str = "http://www.w3.org/1999/xlink";
 pub(crate) const XML: &str = "http://www.w3.org/XML/1998/namespace";
 pub(crate) const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
-/// The namespace of what pathwarp stores in a file.
+/// The namespace of the attributes that pathwarp stores in files.
 pub(crate) const PATHWARP: &str = "https://github.com/pathwarp/pathwarp/ns/1";
 
-/// Returns `true` for the namespace of Sodipodi, whose host has changed over the years.
+/// Whether a URI is Sodipodi's namespace, whose host has changed over the years.
 pub(crate) fn is_sodipodi(uri: &str) -> bool {
     uri.ends_with("/DTD/sodipodi-0.dtd")
 }
@@ -33,7 +33,6 @@ pub(crate) enum Namespace {
 }
 
 impl Namespace {
-    /// The namespace with the given URI.
     pub(crate) fn of(uri: Option<&str>) -> Self {
         match uri {
             None => Self::None,
@@ -47,17 +46,16 @@ impl Namespace {
     }
 }
 
-/// Returns `true` for the basic shapes and `path`.
+/// Whether a tag is that of a basic shape or a `path`.
 pub(crate) fn is_shape(tag: &str) -> bool {
     matches!(tag, "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon")
 }
 
-/// Returns `true` for elements whose ids usvg keeps in its tree.
+/// Whether usvg keeps the ids of elements with this tag in its tree.
 pub(crate) fn is_tracked(tag: &str) -> bool {
     is_shape(tag) || matches!(tag, "g" | "a" | "use" | "text" | "image" | "svg" | "switch")
 }
 
-/// Returns `true` for animation elements.
 pub(crate) fn is_animation(tag: &str) -> bool {
     matches!(tag, "animate" | "set" | "animateTransform" | "animateMotion" | "animateColor")
 }
@@ -123,7 +121,7 @@ impl Element {
     }
 }
 
-/// Such attributes in Sodipodi's namespace: the kind of shape and its parameters, and the kinds of a path's nodes.
+/// Live attributes (see [`is_live`]) in Sodipodi's namespace: the kind of shape and its parameters, and the kinds of a path's nodes.
 const LIVE_SODIPODI: [&str; 23] = [
     "type",
     "cx",
@@ -150,7 +148,7 @@ const LIVE_SODIPODI: [&str; 23] = [
     "linespacing",
 ];
 
-/// The same in Inkscape's namespace.
+/// Live attributes in Inkscape's namespace.
 const LIVE_INKSCAPE: [&str; 12] = [
     "flatsided",
     "rounded",
@@ -166,10 +164,10 @@ const LIVE_INKSCAPE: [&str; 12] = [
     "corner7",
 ];
 
-/// Beginnings of further ones in Inkscape's namespace: connectors, centres of rotation, and the places of tiled clones.
+/// Prefixes of further ones in Inkscape's namespace: connectors, centres of rotation, and the positions of tiled clones.
 const LIVE_FAMILIES: [&str; 5] = ["connector-", "connection-", "transform-center-", "tiled-clone-", "tile-"];
 
-/// Returns `true` for an attribute that is out of date once its element has been warped.
+/// Whether an attribute is out of date once its element has been warped.
 pub(crate) fn is_live(a: &Attr, text: &str) -> bool {
     let name = a.name(text);
     match a.namespace {
@@ -241,7 +239,7 @@ fn element(text: &str, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>)
     let qname = range.start + 1..range.start + 1 + len;
     let name = node.tag_name();
     let local = name.name();
-    // The name may have a prefix.
+    // Only a prefix may precede the local name.
     let before = rest.get(..len)?.strip_suffix(local.as_bytes())?;
     if !matches!(before.last(), None | Some(b':')) {
         return None;
@@ -314,7 +312,7 @@ fn known(tag: &str) -> Option<&'static str> {
     })
 }
 
-/// Finds the end of an opening tag: after the first `>` outside of quotes.
+/// Finds the end of an opening tag, after the first `>` outside quotes.
 pub(crate) fn tag_end(text: &str, from: usize, to: usize) -> Option<usize> {
     let mut quote = None;
     for (i, b) in text.as_bytes().get(from..to)?.iter().enumerate() {
@@ -347,7 +345,7 @@ pub(crate) enum Unpatchable {
     EmptyRoot,
 }
 
-/// Splits a style attribute, or the block of a rule, into declarations.
+/// Splits a style attribute or the block of a rule into declarations.
 pub(crate) fn declarations(style: &str) -> impl Iterator<Item = (&str, &str)> {
     // Quoted strings and url(data:…;base64,…) may contain semicolons.
     let mut parts = Vec::new();
@@ -374,7 +372,7 @@ pub(crate) fn declared<'a>(style: &'a str, name: &str) -> Option<&'a str> {
     declarations(style).filter(|(n, _)| n.eq_ignore_ascii_case(name)).last().map(|d| d.1)
 }
 
-/// Sets a property in a style attribute, at the position of the existing declaration if there is one.
+/// Sets a property in a style attribute, in place of an existing declaration if there is one.
 pub(crate) fn with_declaration(style: &str, name: &str, value: &str) -> String {
     let mut out: Vec<String> = Vec::new();
     let mut set = false;

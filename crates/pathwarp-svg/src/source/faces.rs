@@ -1,4 +1,4 @@
-//! Faces by the names that drawings give them: families, generic families, full and PostScript names.
+//! Finds faces by the names that drawings use: families, generic families, full names and PostScript names.
 
 use usvg::FontFamily;
 use usvg::fontdb::{self, Database, Family, ID, Source};
@@ -27,7 +27,7 @@ pub fn bundled_font() -> &'static [u8] {
     BUNDLED
 }
 
-/// How the letters of a family should look.
+/// The weight, stretch and style that a drawing asks for.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     pub(super) weight: fontdb::Weight,
@@ -41,8 +41,8 @@ impl Look {
         db.query(&fontdb::Query { families: &[Family::Name(family)], weight, stretch, style })
     }
 
-    /// The face of a family whose name is written otherwise, in upper or lower case, or of a face that goes by its full or its
-    /// PostScript name, as Illustrator writes it. What such a name says of the look applies where the drawing says nothing.
+    /// Finds a face by a family name in different case, or by its full or PostScript name, as Illustrator writes. The look of a
+    /// face so named applies where the drawing specifies none.
     pub(super) fn face_called(self, name: &str, db: &Database) -> Option<ID> {
         let family =
             |f: &fontdb::FaceInfo| f.families.iter().find(|(n, _)| n.to_lowercase() == name.to_lowercase()).cloned();
@@ -54,15 +54,15 @@ impl Look {
         self.or(face.weight, face.style, face.stretch).face_of(&face.families.first()?.0, db)
     }
 
-    /// The face of a family whose letters are as wide as those of a missing one.
+    /// Finds a face of a family whose letters are as wide as those of a missing one.
     pub(super) fn face_with_metrics_of(self, missing: &str, db: &Database) -> Option<ID> {
         let (families, weight, style) = named(&METRIC_COMPATIBLE, missing)?;
         let look = self.or(weight, style, fontdb::Stretch::Normal);
         families.iter().find_map(|f| look.face_of(f, db))
     }
 
-    /// The face that Chromium takes where no family is there or asked for: its standard one or one with its metrics, else one
-    /// without serifs.
+    /// Finds the face that Chromium uses if no family is found or specified: its standard one or one with the same metrics, else
+    /// a sans-serif.
     pub(super) fn standard_face(self, set: &GenericFamilies, db: &Database) -> Option<ID> {
         const STANDARD: &str = "Times New Roman";
         let configured = set.serif.as_deref().and_then(|name| self.face_of(name, db));
@@ -71,7 +71,7 @@ impl Look {
         found.or_else(|| self.face_of_kind(&FontFamily::SansSerif, set, db))
     }
 
-    /// The face of a family like a missing one, or of its kind, for the first of which one is known.
+    /// Finds a face of a family similar to one of the missing families, or of the same generic family.
     pub(super) fn face_like(self, missing: &[String], set: &GenericFamilies, db: &Database) -> Option<ID> {
         let alike = |name: &String| {
             let (families, weight, style) = named(&ALIKE, name)?;
@@ -88,7 +88,7 @@ impl Look {
         missing.iter().find_map(|name| alike(name).or_else(|| of_kind(name)))
     }
 
-    /// The same, with another weight, style or stretch where this one's is normal.
+    /// Replaces each of weight, style and stretch that is normal.
     fn or(self, weight: fontdb::Weight, style: fontdb::Style, stretch: fontdb::Stretch) -> Self {
         Self {
             weight: if self.weight == fontdb::Weight::NORMAL { weight } else { self.weight },
@@ -97,7 +97,7 @@ impl Look {
         }
     }
 
-    /// The face of a generic family: of the configured one, else of a common one that is installed, else of the bundled one.
+    /// Finds a face of a generic family: the configured one, else a common one that is installed, else the bundled one.
     pub(super) fn face_of_kind(self, kind: &FontFamily, set: &GenericFamilies, db: &Database) -> Option<ID> {
         let common: &[&str] = match kind {
             FontFamily::Serif => SERIFS,
@@ -107,7 +107,7 @@ impl Look {
             FontFamily::Monospace => MONOSPACED,
             FontFamily::Named(_) => return None,
         };
-        // Where there is none, Chromium's is without serifs.
+        // Chromium falls back to a sans-serif.
         let last = if matches!(kind, FontFamily::Cursive | FontFamily::Fantasy) { SANS_SERIFS } else { &[] };
         // The bundled family has a single weight.
         let installed = |name: &&str| self.face_of(name, db).filter(|id| !is_bundled(*id, db));
@@ -118,7 +118,7 @@ impl Look {
     }
 }
 
-/// The fonts that browsers take for the generic families, the usual ones first, then what has their metrics, then what Linux has.
+/// Fonts that browsers use for the generic families: the usual ones, then those with the same metrics, then those of Linux.
 const SERIFS: &[&str] =
     &["Times New Roman", "Liberation Serif", "Tinos", "Times", "Nimbus Roman", "Noto Serif", "DejaVu Serif"];
 const SANS_SERIFS: &[&str] =
@@ -134,7 +134,7 @@ const MONOSPACED: &[&str] = &[
     "Courier New",
 ];
 
-/// Beginnings of the names of families, by plain names, of one kind (fontconfig's `45-latin.conf`, and what names say).
+/// Prefixes of family names, as [`plain`] writes them, by generic family (fontconfig's `45-latin.conf`, and others whose names tell).
 const KINDS: [(FontFamily, &[&str]); 4] = [
     (
         FontFamily::Monospace,
@@ -228,10 +228,10 @@ const KINDS: [(FontFamily, &[&str]); 4] = [
     ),
 ];
 
-/// The kind of a missing family, by its name.
+/// Guesses the generic family of a missing one from its name.
 fn kind_of(missing: &str) -> Option<FontFamily> {
     let name = plain(missing);
-    // What the whole name says is more than its beginning.
+    // A word anywhere in the name counts for more than a known prefix.
     let said = [
         ("mono", FontFamily::Monospace),
         ("typewriter", FontFamily::Monospace),
@@ -249,15 +249,15 @@ fn kind_of(missing: &str) -> Option<FontFamily> {
     specific.or_else(by_word).or_else(|| known.map(|k| k.0.clone()))
 }
 
-/// A name in small letters and digits, without the style that most fonts have.
+/// Reduces a name to lowercase letters and digits, without `regular` at its end.
 fn plain(name: &str) -> String {
     let mut letters: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
     letters.truncate(letters.strip_suffix("regular").unwrap_or(&letters).len());
     letters
 }
 
-/// Families whose letters are as wide as those of others (fontconfig's `30-metric-aliases.conf`), by plain names. Chromium takes them
-/// for the missing ones, before other families of a list.
+/// Families with the same widths as others (fontconfig's `30-metric-aliases.conf`), by plain name. Chromium substitutes them before it
+/// tries the next family of a list.
 const METRIC_COMPATIBLE: [(&str, &[&str]); 13] = [
     ("arial", &["Liberation Sans", "Arimo", "Helvetica", "Nimbus Sans"]),
     ("helvetica", &["Nimbus Sans", "Arial", "Liberation Sans", "Arimo"]),
@@ -274,7 +274,7 @@ const METRIC_COMPATIBLE: [(&str, &[&str]); 13] = [
     ("itcavantgardegothic", &["URW Gothic", "TeX Gyre Adventor"]),
 ];
 
-/// Families that look like others, by plain names: where no other family follows.
+/// Families that look like others, by plain name. They stand in only if no other family of the list is found.
 const ALIKE: [(&str, &[&str]); 4] = [
     ("verdana", &["DejaVu Sans", "Bitstream Vera Sans"]),
     ("segoeui", &["Selawik", "Open Sans"]),
@@ -282,7 +282,7 @@ const ALIKE: [(&str, &[&str]); 4] = [
     ("menlo", &["DejaVu Sans Mono"]),
 ];
 
-/// The families that can stand for a missing one, which may be named by a PostScript name, and the look that its name says.
+/// Looks up the substitutes of a missing family, with the weight and style that its name, perhaps a PostScript name, implies.
 fn named(
     table: &[(&str, &'static [&'static str])],
     missing: &str,
@@ -308,7 +308,7 @@ fn is_bundled(face: ID, db: &Database) -> bool {
     db.face(face).is_some_and(|f| matches!(&f.source, Source::Binary(data) if data.as_ref().as_ref() == BUNDLED))
 }
 
-/// The kind of a font of the system's interface (CSS Fonts 4, section 2.1.3).
+/// The generic family of a system interface font (CSS Fonts 4, section 2.1.3).
 pub(super) fn of_interface(name: &str) -> Option<FontFamily> {
     Some(match name {
         "system-ui" | "ui-sans-serif" | "ui-rounded" | "-apple-system" | "BlinkMacSystemFont" => FontFamily::SansSerif,
@@ -318,7 +318,7 @@ pub(super) fn of_interface(name: &str) -> Option<FontFamily> {
     })
 }
 
-/// The name of a family; of a generic one, the name configured for it.
+/// The name of a family, or the name configured for a generic one.
 pub(super) fn asked_for<'a>(family: &'a FontFamily, set: &'a GenericFamilies) -> Option<&'a String> {
     match family {
         FontFamily::Named(name) => Some(name),

@@ -1,4 +1,4 @@
-//! Fonts embedded in a drawing: `@font-face` rules in its style sheets (CSS Fonts 4, section 4) with a `data:` URL of a
+//! Loads fonts embedded in a drawing: `@font-face` rules in its style sheets (CSS Fonts 4, section 4) with a `data:` URL of a
 //! TrueType, OpenType or WOFF 1.0 font.
 
 use super::elements::declarations;
@@ -24,7 +24,7 @@ struct Face {
 /// Adds a drawing's embedded fonts. They replace other fonts of the same name.
 ///
 /// # Errors
-/// Unpacked, or with the letters of the text, the fonts exceed the budget.
+/// The fonts exceed the budget, unpacked or with the letters of the text.
 pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) -> Result<Arc<Database>, Exceeded> {
     let faces = faces(xml.input_text(), budget)?;
     if faces.is_empty() {
@@ -57,7 +57,7 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
     Ok(db)
 }
 
-/// Counts the outlines of all letters of the text in each of the fonts.
+/// Checks the work of outlining all letters of the text in each font.
 fn count_letters(xml: &Document<'_>, faces: &[Face], budget: &Budget) -> Result<(), Exceeded> {
     let mut letters: BTreeMap<char, u64> = BTreeMap::new();
     let shown = xml.descendants().filter(|n| n.is_element() && n.tag_name().name() == "text");
@@ -83,7 +83,7 @@ fn faces(text: &str, budget: &Budget) -> Result<Vec<Face>, Exceeded> {
     Ok(out)
 }
 
-/// The font of a rule; `None` if it has none that can be read.
+/// Reads the font of a rule. Returns `None` if it has none in a supported format.
 fn face(block: &str, budget: &Budget) -> Result<Option<Face>, Exceeded> {
     let declarations: Vec<_> = declarations(block).collect();
     let of = |name: &str| declarations.iter().rfind(|d| d.0.eq_ignore_ascii_case(name)).map(|d| d.1);
@@ -99,7 +99,7 @@ fn face(block: &str, budget: &Budget) -> Result<Option<Face>, Exceeded> {
         "bold" => Some(Weight::BOLD),
         v => v.parse().ok().map(Weight),
     });
-    // Base64 has no colon.
+    // Base64 contains no colon, so this cannot split within the data.
     for url in src.split("data:").skip(1) {
         if let Some(data) = font(url, budget)? {
             return Ok(Some(Face { family, style, weight, data }));
@@ -108,7 +108,7 @@ fn face(block: &str, budget: &Budget) -> Result<Option<Face>, Exceeded> {
     Ok(None)
 }
 
-/// Decodes the font in a `data:` URL, from the colon on, to an sfnt file.
+/// Decodes the font in a `data:` URL, given from after the colon, to an sfnt file.
 fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
     let Some(data) = decoded(url) else { return Ok(None) };
     match data.get(..4) {
@@ -127,7 +127,7 @@ fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
     }
 }
 
-/// The data of a `data:` URL in base64.
+/// Decodes the base64 of a `data:` URL.
 fn decoded(url: &str) -> Option<Vec<u8>> {
     let (head, rest) = url.split_once(',')?;
     if !head.trim_end().ends_with(";base64") {
@@ -138,11 +138,11 @@ fn decoded(url: &str) -> Option<Vec<u8>> {
     base64::engine::general_purpose::STANDARD.decode(encoded).ok()
 }
 
-/// Sizes of the header of a WOFF and of an entry of its directory.
+/// Sizes in bytes of a WOFF's header and of an entry in its table directory.
 const HEADER: usize = 44;
 const ENTRY: usize = 20;
 
-/// The number at a byte of a WOFF.
+/// Reads a 32-bit number of a WOFF.
 fn long(woff: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_be_bytes(woff.get(at..at.checked_add(4)?)?.try_into().ok()?))
 }
@@ -152,7 +152,7 @@ fn table_count(woff: &[u8]) -> Option<u16> {
     Some(u16::from_be_bytes(woff.get(12..14)?.try_into().ok()?))
 }
 
-/// The size of all tables, unpacked, as announced.
+/// The unpacked size of all tables, as the directory states it.
 fn unpacked_size(woff: &[u8]) -> Option<u64> {
     let count = usize::from(table_count(woff)?);
     (0..count).map(|i| long(woff, HEADER + i * ENTRY + 12).map(u64::from)).sum()

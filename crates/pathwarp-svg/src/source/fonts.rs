@@ -1,10 +1,10 @@
-//! Fonts for text: installed ones if wanted, given files, and a bundled fallback.
+//! Fonts for text: installed ones on request, given files, and a bundled fallback.
 
 use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of_interface};
 use super::images::{self, Missing, Rejected};
 use super::read::ReadOptions;
 use pathwarp::Error;
-use pathwarp_text::{GlyphWork, MOST_WORK};
+use pathwarp_text::{GlyphWork, MAX_WORK};
 use skrifa::raw::{FileRef, TableProvider as _};
 use skrifa::{FontRef, MetadataProvider as _, Tag};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, ID, Source};
 use usvg::{FontFamily, FontResolver};
 
-/// The given files and folders whose fonts were loaded last: a batch reads them once.
+/// The files and folders last loaded, with their fonts, so that a batch reads them once.
 type Loaded = (bool, Vec<PathBuf>, Arc<Database>);
 
 /// Loads the fonts. The installed ones are read once per process.
@@ -79,7 +79,7 @@ pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Loads a font without names, as subsets are, by a name from elsewhere. `None` for what is no font.
+/// Loads a font without names, as subsets often are, under the name `family`. Returns `None` if it is not a font.
 pub(super) fn load_unnamed(db: &mut Database, data: &Bytes, family: String) -> Option<ID> {
     let font = FontRef::new(data.as_ref().as_ref()).ok()?;
     let about = font.attributes();
@@ -104,7 +104,7 @@ pub(super) fn load_unnamed(db: &mut Database, data: &Bytes, family: String) -> O
     }))
 }
 
-/// Finds fonts like usvg's own resolver, but always returns one, and records the families that were not found.
+/// Finds fonts as usvg's own resolver does, but always returns one, and records missing families.
 pub(super) fn resolver(generic: GenericFamilies, missing: Missing, guard: FontGuard) -> FontResolver<'static> {
     let held = Arc::new((Held::default(), guard));
     let also_held = held.clone();
@@ -127,8 +127,8 @@ pub(super) fn resolver(generic: GenericFamilies, missing: Missing, guard: FontGu
     }
 }
 
-/// The font for a letter that the fonts `used` so far lack: one that looks like the first of them, if there is one. usvg's own choice
-/// may be bold in a text that is not. `absent` are the letters that no font has: there may be hundreds of fonts to ask.
+/// Finds a font for a letter that the fonts `used` so far lack, preferably one that looks like the first of them; usvg's own choice
+/// may be bold in a regular text. `absent` caches the letters that no font has, since there may be hundreds of fonts to search.
 fn fallback(letter: char, used: &[ID], db: &Database, absent: &Mutex<HashSet<char>>) -> Option<ID> {
     let mut absent = absent.lock().unwrap_or_else(PoisonError::into_inner);
     if absent.contains(&letter) {
@@ -139,7 +139,7 @@ fn fallback(letter: char, used: &[ID], db: &Database, absent: &Mutex<HashSet<cha
         (f.style != first.style, f.stretch != first.stretch, f.weight.0.abs_diff(first.weight.0))
     };
     let mut others: Vec<_> = db.faces().filter(|f| !used.contains(&f.id)).map(|f| (off(f), f.id)).collect();
-    // The sort is stable: of equals, the first counts.
+    // The sort is stable, so the first of several equals wins.
     others.sort_by_key(|(off, _)| *off);
     let found = others.into_iter().map(|(_, id)| id).find(|id| has_letter(*id, letter, db));
     if found.is_none() && !used.iter().any(|id| has_letter(*id, letter, db)) {
@@ -148,7 +148,7 @@ fn fallback(letter: char, used: &[ID], db: &Database, absent: &Mutex<HashSet<cha
     found
 }
 
-/// Ranges of the letters that a font has, in order.
+/// The letters of a font, as sorted ranges.
 type Letters = Vec<RangeInclusive<u32>>;
 
 fn has_letter(face: ID, letter: char, db: &Database) -> bool {
@@ -163,7 +163,8 @@ fn has_letter(face: ID, letter: char, db: &Database) -> bool {
     }
 }
 
-/// What `read` finds in a font file: a drawing may ask all fonts for thousands of letters, and opening a file takes longer than asking.
+/// Caches the letters that `read` finds in a font file. A drawing may look for thousands of letters in all fonts, and opening a file
+/// takes longer than the search.
 fn letters_of(path: &Path, index: u32, read: impl FnOnce() -> Letters) -> Arc<Letters> {
     static KNOWN: Mutex<BTreeMap<(PathBuf, u32), Arc<Letters>>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -187,13 +188,13 @@ fn letters_in(data: &[u8], index: u32) -> Letters {
 /// Bytes of a font.
 type Bytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
 
-/// Font files in memory, with their faces in the database that was used last; pictures have databases besides the drawing's. From a file,
-/// usvg would read each letter up to four times.
+/// Font files held in memory, since usvg would read the file up to four times for each letter. Each has its faces in the database
+/// used last; pictures have databases besides the drawing's.
 #[derive(Default)]
 struct Held(Mutex<HashMap<PathBuf, (Bytes, Vec<ID>)>>);
 
 impl Held {
-    /// The face in memory, or the given one if it cannot be read.
+    /// Replaces a face by one in memory. Returns the given face if its file cannot be read.
     fn face(&self, id: ID, db: &mut Arc<Database>) -> ID {
         let Some((Source::File(path), index)) = db.face(id).map(|f| (f.source.clone(), f.index)) else { return id };
         let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -214,10 +215,10 @@ impl Held {
     }
 }
 
-/// Stands for the family of text that asks for none.
+/// Placeholder for the family of text that specifies none.
 pub(super) const NO_FAMILY: &str = "a family";
 
-/// The face for a font of the drawing.
+/// Finds the face for a font of the drawing.
 fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: &Missing) -> Option<ID> {
     let style = match font.style() {
         usvg::FontStyle::Normal => fontdb::Style::Normal,
@@ -279,7 +280,7 @@ pub struct FontFile {
 }
 
 /// Finds the installed or bundled font of a family that is nearest to `weight` (100 to 900; 400 is regular). `family` may be
-/// a generic family of CSS. `read` says which fonts there are.
+/// a generic family of CSS. `read` determines the available fonts.
 ///
 /// # Errors
 /// Returns [`Error::Usage`] if there is no such family, with suggestions of similar names.
@@ -346,8 +347,7 @@ pub fn check_fonts(paths: &[PathBuf]) -> Result<(), Error> {
 fn similar(family: &str, db: &Database) -> String {
     /// Jaro–Winkler similarity (1 is equal) of words that differ by a letter or two; unrelated words rarely reach it.
     const ALIKE: f64 = 0.85;
-    /// Longest list of suggestions.
-    const SHOWN: usize = 6;
+    const MAX_SUGGESTIONS: usize = 6;
     let wanted: Vec<String> = family.split_whitespace().map(str::to_lowercase).collect();
     let likeness = |name: &str| {
         let name = name.to_lowercase();
@@ -363,13 +363,14 @@ fn similar(family: &str, db: &Database) -> String {
     if names.is_empty() {
         return "the bundled family is Noto Sans".into();
     }
-    let names: Vec<&str> = names.iter().take(SHOWN).map(|(_, n)| *n).collect();
+    let names: Vec<&str> = names.iter().take(MAX_SUGGESTIONS).map(|(_, n)| *n).collect();
     format!("similar families: {}", names.join(", "))
 }
 
-/// What the faces of a font file take to be listed, in bytes: they may be thousands that share one long list of names.
-pub(super) fn listing(data: &[u8], most: u64) -> u64 {
-    /// A face without names.
+/// The memory needed to list the faces of a font file, in bytes. Counts no further than `max`. A file may have thousands of faces
+/// that share one long list of names.
+pub(super) fn listing(data: &[u8], max: u64) -> u64 {
+    /// Bytes of a face without names.
     const FACE: u64 = 1000;
     let names = |font: &FontRef<'_>| {
         let Ok(names) = font.name() else { return 0 };
@@ -383,7 +384,7 @@ pub(super) fn listing(data: &[u8], most: u64) -> u64 {
     let mut total = 0;
     for index in 0..all.len() {
         total += FACE + all.get(index).map_or(0, |font| names(&font));
-        if total > most {
+        if total > max {
             break;
         }
     }
@@ -402,12 +403,12 @@ impl FontGuard {
         Self { options: options.clone(), rejected: rejected.clone(), known: Mutex::default() }
     }
 
-    /// The face has been found good under another number.
+    /// Marks a face as good that was checked under another id.
     fn trust(&self, face: ID) {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).insert(face, true);
     }
 
-    /// Returns `true` if a face may be used. Else it is the error of the drawing.
+    /// Whether a face may be used. If not, records why as the drawing's error.
     fn admits(&self, face: ID, db: &Database) -> bool {
         if let Some(known) = self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&face) {
             return *known;
@@ -437,10 +438,10 @@ impl FontGuard {
         }
         let place = format!("the font {name}");
         if let Some(glyph) = GlyphWork::new(data, index).and_then(|mut all| all.endless()) {
-            let problem = format!("glyph {glyph} takes {MOST_WORK} points or more, with all of its parts and layers");
+            let problem = format!("glyph {glyph} takes {MAX_WORK} points or more, with all of its parts and layers");
             return Err(Error::input(place, problem + "; use another font"));
         }
-        // Glyphs may be drawings themselves.
+        // Glyphs may be SVG drawings.
         let Some(svg) = FontRef::from_index(data, index).ok().and_then(|f| f.svg().ok()) else { return Ok(()) };
         let Ok(list) = svg.svg_document_list() else { return Ok(()) };
         let options = self.options.begin(data.len());
@@ -457,15 +458,16 @@ impl FontGuard {
     }
 }
 
-/// The thickness of lines, in parts of the font size, and how far their middle is below the baseline: half a thickness lies between.
+/// Thickness of lines, as a fraction of the font size.
 const THICKNESS: f64 = 0.1;
+/// Distance of an underline's middle below the baseline, as a fraction of the font size.
 const BELOW: f64 = 0.1;
-/// How far lines through letters are above the baseline, in parts of the ascent.
+/// Height of a strike-through line above the baseline, as a fraction of the ascent.
 const THROUGH: f64 = 1.0 / 3.0;
-/// How far subscripts and superscripts are shifted, in parts of the line.
+/// Shift of subscripts and superscripts, as a fraction of the line's height.
 const SHIFT: f64 = 0.5;
 
-/// Changes these measures in a font file, for the face with an index.
+/// Sets these metrics in a font file to those of browsers, for the face at `index`.
 pub(super) fn adjust(data: &mut [u8], index: u32) {
     for (at, value) in changes(data, index).unwrap_or_default() {
         if let Some(place) = data.get_mut(at..at + 2) {
@@ -474,7 +476,7 @@ pub(super) fn adjust(data: &mut [u8], index: u32) {
     }
 }
 
-/// Places in the file, each with its number.
+/// Lists the numbers to write, with their positions in the file.
 fn changes(data: &[u8], index: u32) -> Option<Vec<(usize, i16)>> {
     let font = FontRef::from_index(data, index).ok()?;
     let em = f64::from(font.head().ok()?.units_per_em());
@@ -489,9 +491,10 @@ fn changes(data: &[u8], index: u32) -> Option<Vec<(usize, i16)>> {
     let (thickness, below) = (rounded(THICKNESS * em), rounded(-BELOW * em));
     let shift = rounded(SHIFT * (ascent - descent));
     let mut out = Vec::new();
-    // Fields of OpenType's tables.
+    // `post`: underlinePosition and underlineThickness.
     out.extend(table(b"post").into_iter().flat_map(|at| [(at + 8, below), (at + 10, thickness)]));
     out.extend(
+        // `OS/2`: ySubscriptYOffset, ySuperscriptYOffset and yStrikeoutPosition.
         table(b"OS/2")
             .into_iter()
             .flat_map(|at| [(at + 16, shift), (at + 24, shift), (at + 28, rounded(THROUGH * ascent))]),

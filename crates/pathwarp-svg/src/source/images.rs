@@ -1,5 +1,5 @@
-//! Images in a drawing: embedded and linked ones, bitmaps and drawings. All of them share the budget of the drawing, and links
-//! are followed only where the user allows it.
+//! Loads images of a drawing: embedded and linked ones, bitmaps and drawings. All share the budget of the drawing, and links are
+//! followed only where the user allows it.
 
 use super::check;
 use super::read::{self, ReadOptions};
@@ -21,32 +21,32 @@ use std::sync::{Arc, Mutex};
 const DATA: &str = "data:";
 const BASE64: &str = ";base64,";
 
-/// Bytes of a pixel as it is held: files of pictures that are no larger are counted by their pixels.
+/// Bytes of a decoded pixel. Only the part of a file that exceeds its pixels is charged as bytes.
 const PIXEL: f64 = 4.0;
 
-/// Names that were asked for and not found.
+/// Names that were requested and not found.
 pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
 
-/// The links that were not followed.
+/// Links that were not followed.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Unread {
     pub(super) images: Missing,
-    /// Those of them that lead out of the folder.
+    /// The links out of the folder.
     pub(super) outside: Missing,
 }
 
 /// Media type of data whose format is detected from its content.
 const ANY: &str = "text/plain";
-/// The same in the drawing itself.
+/// The same for embedded data, which has to declare its type if it is a drawing.
 const EMBEDDED: &str = "";
 
-/// Stands for a picture that was not read, so that its place moves along: one transparent pixel.
+/// A transparent pixel in place of a picture that was not read, so that the element itself is still warped.
 const NOTHING: &[u8] =
     b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\x08\x06\x00\x00\
     \x00\x1f\x15\xc4\x89\x00\x00\x00\x0b\x49\x44\x41\x54\x78\xda\x63\x60\x00\x02\x00\x00\x05\x00\x01\xe9\xfa\xdc\xd8\
     \x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";
 
-/// Whether an image stands for one that was not read.
+/// Whether an image is the placeholder for one that was not read.
 pub(crate) fn is_unread(image: &usvg::ImageKind) -> bool {
     matches!(image, usvg::ImageKind::PNG(data) if data.as_slice() == NOTHING)
 }
@@ -75,7 +75,7 @@ pub(super) fn resolver<'a>(
     let decode = usvg::ImageHrefResolver::default_data_resolver();
     let load = Arc::new(move |mime: &str, data: Arc<Vec<u8>>, what: &str, usvg: &usvg::Options<'_>| {
         match checked(mime, data, &format!("{name}: {what}"), options) {
-            // What a picture is, its content says, as in browsers.
+            // As in browsers, the content decides about the format.
             Ok(data) => decode(if mime == SVG { mime } else { ANY }, data?, usvg),
             Err(e) => {
                 if let Ok(mut r) = rejected.lock() {
@@ -88,9 +88,8 @@ pub(super) fn resolver<'a>(
     let load_file = load.clone();
     usvg::ImageHrefResolver {
         resolve_data: Box::new(move |mime, data, usvg| {
-            // A drawing has to say that it is one.
             let known = if mime == ANY { EMBEDDED } else { mime };
-            // Browsers unpack no drawing in the drawing itself.
+            // Browsers do not decompress embedded drawings.
             let packed = data.starts_with(read::GZIP);
             let image = if packed { None } else { load(known, data.clone(), "the picture in an image", usvg) };
             image.or_else(|| {
@@ -116,8 +115,7 @@ pub(super) fn resolver<'a>(
 /// Media type of drawings.
 pub(super) const SVG: &str = "image/svg+xml";
 
-/// Counts an image in the budget. A drawing among them is returned as usvg may read it: unpacked, with numbers in range. Returns
-/// `None` for damaged images.
+/// Charges an image to the budget, and returns it. A drawing is resolved for usvg first. Returns `None` for damaged images.
 pub(super) fn checked(
     mime: &str,
     data: Arc<Vec<u8>>,
@@ -161,7 +159,7 @@ pub(super) fn checked(
     }
 }
 
-/// Returns `true` for a PNG that does not begin with its header, where a size would be read from other bytes.
+/// Whether a PNG does not begin with its header, so that a size would be read from other bytes.
 fn is_png_without_header(data: &[u8]) -> bool {
     data.starts_with(b"\x89PNG") && data.get(12..16) != Some(b"IHDR")
 }
@@ -179,20 +177,20 @@ fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
 /// Target of a link.
 enum Place {
     Inside(PathBuf),
-    /// To a file that must not be read.
+    /// A file that must not be read.
     Outside,
     Nowhere,
 }
 
-/// Finds the file that a link names. It must be in the base folder or below it, symbolic links followed. Without a base folder,
-/// links are not followed at all.
+/// Finds the file that a link names. After symbolic links are resolved, it must be in the base folder or below. Without a base
+/// folder, links are not followed at all.
 fn allowed(link: &Path, options: &ReadOptions) -> Place {
     let Some(base) = &options.base_dir else { return Place::Nowhere };
     let file = base.join(link);
     if options.external {
         return Place::Inside(file);
     }
-    // A path that leads elsewhere is refused without a look at the file system.
+    // Refuse a path that leads elsewhere without touching the file system.
     if link.has_root() || link.is_absolute() || leaves(link) {
         return Place::Outside;
     }
@@ -205,7 +203,7 @@ fn allowed(link: &Path, options: &ReadOptions) -> Place {
     }
 }
 
-/// Returns `true` if a relative link passes a symbolic link.
+/// Whether a relative link passes through a symbolic link.
 fn is_through_symlink(base: &Path, link: &Path) -> bool {
     let mut places = link.components().scan(base.to_owned(), |at, c| {
         at.push(c);
@@ -214,7 +212,7 @@ fn is_through_symlink(base: &Path, link: &Path) -> bool {
     places.any(|m| m.is_ok_and(|m| m.is_symlink()))
 }
 
-/// Returns `true` if a relative link goes above the folder where it starts.
+/// Whether a relative link goes above the folder where it starts.
 fn leaves(link: &Path) -> bool {
     let mut depth = 0_i32;
     link.components().any(|c| {
@@ -227,12 +225,12 @@ fn leaves(link: &Path) -> bool {
     })
 }
 
-/// The link that embeds these data.
+/// Embeds data in a link.
 fn embedded(mime: &str, data: &[u8]) -> String {
     format!("{DATA}{mime}{BASE64}{}", STANDARD.encode(data))
 }
 
-/// Returns `true` if a link of the source is the one that was recorded: embedded data may hold spaces.
+/// Whether a link of the source is the one that was recorded. Embedded data may contain spaces.
 pub(crate) fn is_same_link(own: &str, recorded: &str) -> bool {
     if own == recorded {
         return true;
@@ -240,12 +238,12 @@ pub(crate) fn is_same_link(own: &str, recorded: &str) -> bool {
     let Some((head, _)) = recorded.split_once(BASE64).filter(|_| recorded.starts_with(DATA)) else { return false };
     match own.contains(BASE64) {
         true => own.split_ascii_whitespace().collect::<String>() == recorded,
-        // Other encodings have many forms, so the type has to do.
+        // Other encodings have many forms, so compare only the type.
         false => own.starts_with(head) && !head.ends_with(SVG),
     }
 }
 
-/// A link as it is shown: of embedded data only the type.
+/// Shortens a link for messages: embedded data to its type.
 pub(crate) fn shown(link: &str) -> &str {
     link.split_once(BASE64).filter(|_| link.starts_with(DATA)).map_or(link, |(head, _)| head)
 }
@@ -259,12 +257,11 @@ const CHECKSUM: usize = 4;
 struct Chunk<'a> {
     name: [u8; 4],
     content: &'a [u8],
-    /// As the file states it; `None` if the file ends before the chunk does.
+    /// As stored; `None` if the file ends before the chunk does.
     checksum: Option<u32>,
 }
 
 impl Chunk<'_> {
-    /// Returns `true` if the content is as it was written.
     fn is_intact(&self) -> bool {
         let mut computed = Crc::new();
         computed.update(&self.name);
@@ -285,20 +282,21 @@ fn chunks(png: &[u8]) -> impl Iterator<Item = Chunk<'_>> {
     })
 }
 
-/// The bytes of the colour profile of a PNG, unpacked up to one byte more than `most`. Decoders unpack it whenever they open the file.
-pub(super) fn unpacked_profile(png: &[u8], most: u64) -> u64 {
+/// The unpacked size of a PNG's colour profile in bytes, counted up to one more than `max`. Decoders unpack the profile whenever they
+/// open the file.
+pub(super) fn unpacked_profile(png: &[u8], max: u64) -> u64 {
     let mut before_pixels = chunks(png).take_while(|c| &c.name != b"IDAT");
     let Some(Chunk { content, .. }) = before_pixels.find(|c| &c.name == b"iCCP") else { return 0 };
-    // A name that ends with a zero, and the method.
+    // The name, a zero byte and the compression method precede the data.
     let Some(end) = content.iter().position(|b| *b == 0) else { return 0 };
     let packed = content.get(end + 2..).unwrap_or_default();
     let mut counted = Counted(0);
-    let _ = io::copy(&mut ZlibDecoder::new(packed).take(most.saturating_add(1)), &mut counted);
+    let _ = io::copy(&mut ZlibDecoder::new(packed).take(max.saturating_add(1)), &mut counted);
     counted.0
 }
 
-/// Returns `true` for a PNG that is damaged or lacks pixels, and for a GIF whose first frame is larger than its page: the renderer shows
-/// nothing of them, and does not say so. Takes time in proportion to the pixels that the header announces.
+/// Whether a PNG is damaged or lacks pixels, or the first frame of a GIF is larger than its page. The renderer silently shows
+/// nothing of these. Takes time in proportion to the number of pixels that the header states.
 pub(super) fn is_unreadable(data: &[u8]) -> bool {
     let is_damaged = || chunks(data).any(|c| matches!(&c.name, b"IHDR" | b"PLTE" | b"IDAT") && !c.is_intact());
     let lacks_pixels = || pixel_bytes(data).is_some_and(|needed| unpacked_pixels(data, needed) < needed);
@@ -306,14 +304,14 @@ pub(super) fn is_unreadable(data: &[u8]) -> bool {
         || is_beyond_page(data).unwrap_or(false)
 }
 
-/// Returns `true` if the palette that the pixels refer to ends within a colour. The decoder (png 0.18) panics at it.
+/// Whether the palette that the pixels refer to ends within a colour, which makes the decoder (png 0.18) panic.
 fn cuts_colors(png: &[u8]) -> bool {
     let find = |name: &[u8; 4]| chunks(png).find(|c| &c.name == name).map(|c| c.content);
     let is_indexed = find(b"IHDR").is_some_and(|header| header.get(9) == Some(&3));
     is_indexed && find(b"PLTE").is_some_and(|colors| colors.len() % 3 != 0)
 }
 
-/// The bytes that the pixels of a PNG take at least, without the filters of the rows; `None` if its header is none.
+/// A lower bound on the size of a PNG's pixels in bytes, without the filter bytes of rows. `None` if the header is invalid.
 fn pixel_bytes(png: &[u8]) -> Option<u64> {
     let header = chunks(png).find(|c| &c.name == b"IHDR")?.content;
     let (width, rest) = header.split_first_chunk::<4>()?;
@@ -330,15 +328,15 @@ fn pixel_bytes(png: &[u8]) -> Option<u64> {
     Some(width.checked_mul(height)?.checked_mul(u64::from(depth) * channels)? / 8)
 }
 
-/// The bytes of a PNG's pixels that can be unpacked, up to `most`.
-fn unpacked_pixels(png: &[u8], most: u64) -> u64 {
+/// The number of bytes of a PNG's pixels that can be unpacked, up to `max`.
+fn unpacked_pixels(png: &[u8], max: u64) -> u64 {
     let packed: Vec<u8> = chunks(png).filter(|c| &c.name == b"IDAT").flat_map(|c| c.content).copied().collect();
     let mut counted = Counted(0);
-    let _ = io::copy(&mut ZlibDecoder::new(&packed[..]).take(most), &mut counted);
+    let _ = io::copy(&mut ZlibDecoder::new(&packed[..]).take(max), &mut counted);
     counted.0
 }
 
-/// `None` for other files, and where the first frame is not found.
+/// Whether the first frame of a GIF is larger than its page. `None` for other files, and if there is no frame.
 fn is_beyond_page(gif: &[u8]) -> Option<bool> {
     let size = |at: &[u8]| Some([0, 2].map(|i| u16::from_le_bytes([at[i], at[i + 1]]))).filter(|_| at.len() >= 4);
     let (head, mut rest) = gif.strip_prefix(b"GIF8")?.get(2..)?.split_at_checked(7)?;
@@ -358,7 +356,7 @@ fn is_beyond_page(gif: &[u8]) -> Option<bool> {
     Some(frame[0] > page[0] || frame[1] > page[1])
 }
 
-/// Counts what is written, also before an error.
+/// Counts the bytes written, even if an error follows.
 struct Counted(u64);
 
 impl io::Write for Counted {

@@ -1,4 +1,4 @@
-//! Numbers and path data as text: rounded once, in the shortest form.
+//! Writes numbers and path data, rounded once and in the shortest form.
 
 use pathwarp::decimal::push_trimmed;
 use pathwarp::kurbo::{Affine, BezPath, CubicBez, PathEl, Point, Vec2};
@@ -19,7 +19,7 @@ pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
     }
 }
 
-/// Does the same for a text that is checked as a whole.
+/// As [`push`], for bytes whose encoding is checked once at the end.
 fn push_bytes(out: &mut Vec<u8>, v: f64, decimals: u8) {
     let decimals = usize::from(decimals.min(MAX_DECIMALS));
     match Digits::new().write(v, decimals) {
@@ -40,12 +40,12 @@ impl Digits {
         Self([b'0'; 32])
     }
 
-    /// Writes `v` rounded to `decimals`. `None` if it does not fit an integer that is exact in f64; integers are much faster to
-    /// write than decimals.
+    /// Writes `v` rounded to `decimals`, by way of an integer, which is much faster than decimals. Returns `None` if the integer
+    /// would not be exact in f64.
     fn write(&mut self, v: f64, decimals: usize) -> Option<&[u8]> {
-        const WHOLE: f64 = 9e15;
+        const MAX_EXACT: f64 = 9e15;
         let scaled = (v * POWERS[decimals]).abs();
-        if scaled.is_nan() || scaled >= WHOLE - 1.0 {
+        if scaled.is_nan() || scaled >= MAX_EXACT - 1.0 {
             return None;
         }
         // Round half away from zero; the difference is exact.
@@ -103,7 +103,7 @@ impl Digits {
     }
 }
 
-/// The numbers from 00 to 99.
+/// The digits of the numbers from 00 to 99.
 const PAIRS: [u8; 200] = {
     let mut out = [b'0'; 200];
     let mut n = 0;
@@ -128,7 +128,7 @@ const UNITS: [u64; MAX_DECIMALS as usize + 1] = {
 const POWERS: [f64; MAX_DECIMALS as usize + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
 
-/// Formats `v` with nine significant digits: for lengths, offsets and matrices.
+/// Formats `v` with nine significant digits, for lengths, offsets and matrices.
 pub(crate) fn short(v: f64) -> String {
     significant(v, 9)
 }
@@ -179,8 +179,8 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
     path_data_by(path, false, |_| [decimals; 2])
 }
 
-/// The same with decimals for the handles and the end of each element, given by its index. If `smooth`, handles that are so short that
-/// rounding would turn them have more, so that smooth joints stay smooth.
+/// As [`path_data`], with the numbers of decimals for the handles and the end of each element, given by its index. If `smooth`, handles
+/// so short that rounding would turn them get more decimals, so that smooth joints stay smooth.
 pub(crate) fn path_data_by(path: &BezPath, smooth: bool, decimals: impl Fn(usize) -> [u8; 2]) -> String {
     let mut out: Vec<u8> = Vec::with_capacity(path.elements().len() * 48);
     let point = |out: &mut Vec<u8>, p: Point, decimals: u8| {
@@ -211,7 +211,7 @@ pub(crate) fn path_data_by(path: &BezPath, smooth: bool, decimals: impl Fn(usize
                 point(&mut out, p, node);
             }
             PathEl::CurveTo(a, b, p) => {
-                // A quadratic, if it differs by less than the rounding and has the same directions.
+                // Write a quadratic if it differs by less than the rounding and has the same directions.
                 let near = NEAR * POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
                 let quad = quadratic(at, a, b, p).filter(|(_, off)| *off < near).map(|(q, _)| q).filter(|q| {
                     let q = rounded(*q, handle);
@@ -233,35 +233,36 @@ pub(crate) fn path_data_by(path: &BezPath, smooth: bool, decimals: impl Fn(usize
         }
         (at, from) = (el.end_point().unwrap_or(at), to);
     }
-    // ASCII only, so this cannot fail.
+    // The bytes are ASCII, so this cannot fail.
     String::from_utf8(out).unwrap_or_default()
 }
 
-/// Decimals in which a quadratic's handle may differ, seen from its two ends; the curves differ by a tenth of that.
+/// Distance allowed between a quadratic's handles seen from its two ends, in units of the last decimal. The curves differ by a tenth
+/// of it.
 const NEAR: f64 = 3.0;
 
-/// A point as its text will be read.
+/// The point that will be read from a point's text.
 fn rounded(p: Point, decimals: u8) -> Point {
     let unit = POWERS[usize::from(decimals.min(MAX_DECIMALS))];
     Point::new((p.x * unit).round() / unit, (p.y * unit).round() / unit)
 }
 
-/// Returns `true` if `v` has the direction of `exact` within 0.2°, so that two handles at a joint turn by less than half a degree.
+/// Whether `v` has the direction of `exact` within 0.2°, so that two handles at a joint turn by less than half a degree.
 fn is_kept(exact: Vec2, v: Vec2) -> bool {
     const TURN: f64 = 0.0035;
     let along = exact.dot(v);
     exact == Vec2::ZERO || along > 0.0 && exact.cross(v).abs() <= TURN * along
 }
 
-/// A handle at a node, which is given with what is written for it; with the decimals that keep the handle's direction.
+/// Chooses enough decimals to keep the direction of a handle at a node. `written` is the node as it is written.
 fn kept(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point, u8) {
-    /// Shorter handles are below what can be seen by a factor of a million.
-    const MORE: u8 = 6;
+    /// Handles that would need more are a million times shorter than what is visible.
+    const MAX_MORE: u8 = 6;
     let v = handle - node;
     if is_kept(v, rounded(handle, decimals) - written) {
         return (handle, decimals);
     }
-    let more = (1..=MORE).map(|n| decimals.saturating_add(n).min(MAX_DECIMALS));
+    let more = (1..=MAX_MORE).map(|n| decimals.saturating_add(n).min(MAX_DECIMALS));
     let fine = more.into_iter().find(|d| is_kept(v, rounded(written + v, *d) - written));
     fine.map_or((handle, decimals), |d| (written + v, d))
 }
@@ -269,13 +270,13 @@ fn kept(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point,
 /// Appends `v` in the shortest form that reads back unchanged; as an f32 if `v` is one.
 fn push_exact(out: &mut String, v: f64) {
     let single = v as f32;
-    // A number with few digits is the unique shortest form; find it without the general algorithm.
+    // A number with few digits is its own shortest form; avoid the general algorithm.
     const DECIMALS: u8 = 3;
-    const LARGEST: f64 = 1e6;
+    const MAX: f64 = 1e6;
     let scale = POWERS[usize::from(DECIMALS)];
     let n = (v * scale).round();
     let near = n / scale;
-    if n != 0.0 && n.abs() < LARGEST && (near == v || f64::from(single) == v && near as f32 == single) {
+    if n != 0.0 && n.abs() < MAX && (near == v || f64::from(single) == v && near as f32 == single) {
         return push(out, near, DECIMALS);
     }
     // Writing to a String cannot fail.
@@ -309,7 +310,8 @@ fn flag(yes: bool) -> f64 {
     f64::from(u8::from(yes))
 }
 
-/// Lists the commands of a subpath with their numbers. `arc` gives the numbers of an arc, or else it becomes cubics within `fine`.
+/// Lists the commands of a subpath with their numbers. `arc` gives the numbers of an arc; if it returns `None`, the arc becomes cubics
+/// within `fine`.
 fn commands(
     s: &Subpath,
     add: &mut impl FnMut(char, &[f64]),
@@ -337,9 +339,9 @@ fn commands(
     }
 }
 
-/// Formats an outline with arcs as a `d` attribute, as accurately as [`path_data`] does with that number of decimals, which
-/// `decimals` gives for each subpath. The centre of an arc follows from its ends and radii, and needs more: one, or as many as a flat
-/// ellipse asks for, up to `more`. Where no number of decimals is enough, an arc is written as cubics.
+/// Formats an outline with arcs as a `d` attribute, as accurately as [`path_data`] does with the number of decimals that `decimals`
+/// gives for each subpath. The centre of an arc follows from its ends and radii, which takes more decimals: one more, or, for flat
+/// ellipses, up to `more`. Where that is not enough, an arc is written as cubics.
 pub(crate) fn arcs_data(outline: &Outline, more: u8, decimals: impl Fn(usize) -> u8) -> String {
     let mut out = String::new();
     for (i, s) in outline.subpaths.iter().enumerate() {
@@ -360,7 +362,7 @@ fn subpath_with_arcs(
     nominal: f64,
     holds: impl Fn(&EllipticArc, Point, u8) -> bool,
 ) {
-    // Of an arc: its radii and turn, two flags, and its end.
+    // The numbers of an arc are its radii and turn, two flags, and its end.
     let of_arc = |i: usize| match i {
         0..3 => finer(decimals),
         3..5 => 0,
@@ -391,7 +393,7 @@ fn finer(decimals: u8) -> u8 {
     decimals.saturating_add(2).min(MAX_DECIMALS)
 }
 
-/// What is written for an arc.
+/// The numbers to write for an arc.
 struct ArcText {
     radii: [f64; 2],
     /// In degrees.
@@ -411,7 +413,7 @@ impl ArcText {
         Self { radii, turn, large, sweep, to: rounded(a.p1, decimals), finer }
     }
 
-    /// A bound for the distance between the arc and what is read for it after the point `from`.
+    /// Estimates the distance between the arc and the one that will be read if it starts at `from`.
     fn error(&self, a: &EllipticArc, from: Point) -> f64 {
         const SAMPLES: u32 = 16;
         let round = |v: f64| rounded(Point::new(v, 0.0), self.finer).x;
@@ -425,7 +427,7 @@ impl ArcText {
     }
 }
 
-/// The semi-axes of an arc's ellipse and the direction of the first in degrees: the singular values of (a b).
+/// The semi-axes of an arc's ellipse, which are the singular values of (a b), and the direction of the first in degrees.
 fn axes(a: &EllipticArc) -> ([f64; 2], f64) {
     let (u, v) = (a.a, a.b);
     let sum = Vec2::new(0.5 * (u.x + v.y), 0.5 * (u.y - v.x));
@@ -440,11 +442,11 @@ fn axes(a: &EllipticArc) -> ([f64; 2], f64) {
     ([q + r, (q - r).abs()], turn.to_degrees())
 }
 
-/// Relative tolerance of the cubics that replace an arc without principal axes; far below a pixel.
+/// Tolerance of the cubics that replace an arc without principal axes, relative to its major semi-axis; far below a pixel.
 const FINE: f64 = 1e-5;
 
-/// Returns the radii of an arc and the rotation of its ellipse in degrees, as the `A` command takes them. Returns `None` for
-/// a sheared or mirrored arc, and for one that ends at its start.
+/// The radii of an arc and the rotation of its ellipse in degrees, as the `A` command takes them. `None` for a sheared or mirrored
+/// arc, and for one that ends at its start.
 fn radii(a: &EllipticArc) -> Option<[f64; 3]> {
     let (rx, ry) = (a.a.hypot(), a.b.hypot());
     let right = a.a.dot(a.b).abs() <= 1e-12 * rx * ry && a.a.cross(a.b) > 0.0;

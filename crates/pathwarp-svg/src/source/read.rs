@@ -1,4 +1,4 @@
-//! File content to text and back: encoding, compression, limits.
+//! Decodes, decompresses and compresses files, within limits.
 
 use super::faces::GenericFamilies;
 use base64::Engine as _;
@@ -36,11 +36,11 @@ pub struct ReadOptions {
     pub generic_families: GenericFamilies,
     /// Resolution in px per inch.
     pub dpi: f32,
-    /// Limits on the work to read and warp the drawing; those that are not set grow with the size of the file.
+    /// Limits on the work of reading and warping the drawing. Defaults grow with the size of the file.
     pub limits: Limits,
     /// Follow links out of [`base_dir`](Self::base_dir): absolute ones, `..`, and symbolic links.
     pub external: bool,
-    /// The budget of the file that is being read.
+    /// The budget of the file being read.
     pub(crate) budget: Arc<Budget>,
 }
 
@@ -60,17 +60,17 @@ impl Default for ReadOptions {
 }
 
 impl ReadOptions {
-    /// The options for a file of `bytes`, with a budget of which nothing is used.
+    /// The options for a file of `bytes`, with a new budget.
     pub(crate) fn begin(&self, bytes: usize) -> Self {
         Self { budget: Arc::new(Budget::new(self.limits.for_input(bytes))), ..self.clone() }
     }
 
-    /// The same options with a budget of which nothing is used.
+    /// The same options with a new budget.
     pub(crate) fn begin_again(&self) -> Self {
         Self { budget: Arc::new(Budget::new(self.budget.limits())), ..self.clone() }
     }
 
-    /// Sets the limit on the text, in bytes, before and after decompression.
+    /// Sets the limit on the size of the file in bytes, before and after decompression.
     #[must_use]
     pub fn with_max_size(self, max_size: usize) -> Self {
         let limits = self.limits.with(Limit::Bytes, max_size as f64);
@@ -101,7 +101,7 @@ pub(crate) fn text(data: &[u8], name: &str, budget: &Budget) -> Result<String, E
     decoded(bytes).map_err(|(at, problem)| Error::input(format!("{name}: byte {at}"), problem))
 }
 
-/// What gzip data begins with.
+/// The signature of gzip data.
 pub(super) const GZIP: &[u8] = &[0x1f, 0x8b];
 
 /// Unpacks gzip data. Returns `None` for other data. `name` identifies it in errors.
@@ -114,19 +114,19 @@ fn unpacked(data: &[u8], name: &str, budget: &Budget) -> Result<Option<Vec<u8>>,
     let limit = (budget.room(Limit::Bytes) as u64).saturating_add(1);
     let read = flate2::read::GzDecoder::new(data).take(limit).read_to_end(&mut out);
     read.map_err(|e| Error::input(name, format!("the compressed data is damaged: {e}")))?;
-    // Unpacking stopped at the limit.
+    // Unpacking stopped at the limit, so more may have followed.
     let counted = budget.take(Limit::Bytes, out.len() as f64).map_err(Exceeded::cut_short);
     counted.map_err(|e| Error::limit(name, "unpacked, it takes", e))?;
     Ok(Some(out))
 }
 
-/// Packs data for an attribute or an element: gzip and base64.
+/// Packs data with gzip and base64, for an attribute or an element.
 pub(crate) fn packed(data: &[u8]) -> Result<String, Error> {
     let failed = |e: std::io::Error| Error::input("the source", format!("cannot be packed: {e}"));
     Ok(STANDARD.encode(gzipped(data).map_err(failed)?))
 }
 
-/// Unpacks such data, whose base64 may have white space in it. `name` identifies it in errors.
+/// Reverses [`packed`]. The base64 may contain white space. `name` identifies the data in errors.
 pub(crate) fn unpacked_text(packed: &str, name: &str, budget: &Budget) -> Result<Vec<u8>, Error> {
     let damaged = |e: &dyn std::fmt::Display| Error::input(name, format!("is damaged: {e}"));
     let packed: String = packed.split_ascii_whitespace().collect();
@@ -134,7 +134,7 @@ pub(crate) fn unpacked_text(packed: &str, name: &str, budget: &Budget) -> Result
     unpacked(&bytes, name, budget)?.ok_or_else(|| damaged(&"it is not compressed"))
 }
 
-/// Compresses an SVG file to an svgz file: gzip without time and name, so that equal texts give equal files.
+/// Compresses an SVG file to an svgz file. The header of the gzip data has no time or name, so that equal texts give equal files.
 ///
 /// # Errors
 /// Passes on errors of the compressor, which writes to memory.
@@ -148,13 +148,13 @@ fn gzipped(data: &[u8]) -> std::io::Result<Vec<u8>> {
     out.finish()
 }
 
-/// Bytes of the file among which the XML declaration must end.
+/// The XML declaration must end within this many bytes.
 const DECLARATION: usize = 256;
 
-/// Decodes `bytes`. In the text of another encoding than UTF-8, the declaration names UTF-8.
+/// Decodes `bytes`. If they are not UTF-8, the declaration in the text is changed to say UTF-8.
 ///
 /// # Errors
-/// The position of the first byte that is wrong, and what is wrong with it.
+/// Returns the position of the first malformed byte, and a message.
 pub(super) fn decoded(bytes: Cow<'_, [u8]>) -> Result<String, (usize, String)> {
     let Some(encoding) = foreign_encoding(&bytes)? else {
         return String::from_utf8(bytes.into_owned()).map_err(|e| {
@@ -176,7 +176,7 @@ pub(super) fn decoded(bytes: Cow<'_, [u8]>) -> Result<String, (usize, String)> {
     Ok(text)
 }
 
-/// The encoding of a file that is not UTF-8: by its first bytes, or by the XML declaration.
+/// Determines the encoding of a file from its first bytes or the XML declaration. Returns `None` for UTF-8.
 fn foreign_encoding(bytes: &[u8]) -> Result<Option<&'static Encoding>, (usize, String)> {
     match bytes {
         [0xff, 0xfe, ..] | [b'<', 0, ..] => return Ok(Some(UTF_16LE)),
@@ -188,11 +188,11 @@ fn foreign_encoding(bytes: &[u8]) -> Result<Option<&'static Encoding>, (usize, S
     let encoding = Encoding::for_label(label).ok_or_else(|| {
         (range.start, format!("the encoding `{}` is unknown; save the file as UTF-8", String::from_utf8_lossy(label)))
     })?;
-    // A declaration that can be read as single bytes is not UTF-16; drawing programs have saved such files.
+    // A declaration in single bytes cannot be UTF-16, even if it says so, as some drawing programs write.
     Ok(Some(encoding).filter(|e| ![UTF_8, UTF_16LE, UTF_16BE].contains(e)))
 }
 
-/// The place of the encoding's name in the XML declaration.
+/// The range of the encoding's name in the XML declaration.
 fn declared(bytes: &[u8]) -> Option<Range<usize>> {
     let head = &bytes[..bytes.len().min(DECLARATION)];
     let start = head.strip_prefix(b"\xef\xbb\xbf").map_or(0, |_| 3);

@@ -1,4 +1,4 @@
-//! Selection of a part of a drawing: selectors, exclusions, guides, and names.
+//! Selects parts of a drawing by selectors, exclusions, guides, and names.
 
 use super::elements::ElementId;
 use super::text::SourceText;
@@ -9,13 +9,13 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {
     /// Elements to warp with all they contain, each as `#id`, `.class`, `tag` or a name (id, Inkscape label or title, or the place of an
-    /// element without an id, as reports have it: `path at 12:5`); `[id=ID]` is the id alone. Empty: all.
+    /// element without an id, as in reports: `path at 12:5`); `[id=ID]` matches the id alone. If empty, everything is selected.
     pub select: Vec<String>,
     /// Elements to leave unchanged with all they contain, in the same form.
     pub exclude: Vec<String>,
     /// Names of cages, bases and targets. They are left unchanged and do not count as artwork.
     pub guides: Vec<String>,
-    /// The elements themselves, of [`Document::divide`](crate::Document::divide): `select` and `exclude` do not count then.
+    /// A set of elements, as [`Document::divide`](crate::Document::divide) returns, which replaces `select` and `exclude`.
     pub part: Option<Elements>,
 }
 
@@ -23,7 +23,7 @@ pub struct Selection {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Elements(Arc<[bool]>);
 
-/// A part of a document that the same ones of several selections hold.
+/// A part of a document that belongs to the same subset of several selections.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Division {
     /// The indices of those selections.
@@ -32,7 +32,7 @@ pub struct Division {
     pub selection: Selection,
 }
 
-/// Divides a document by selections. What none of them holds is in no part.
+/// Divides a document by selections. Elements in none of them belong to no part.
 pub(crate) fn divide(source: &SourceText, selections: &[Selection]) -> Vec<Division> {
     let each: Vec<Vec<bool>> = selections.iter().map(|s| s.resolve(source)).collect();
     let among = |e: ElementId| -> Vec<usize> { (0..each.len()).filter(|&i| each[i][e]).collect() };
@@ -53,13 +53,13 @@ pub(crate) fn divide(source: &SourceText, selections: &[Selection]) -> Vec<Divis
 }
 
 impl Selection {
-    /// Returns `true` if everything is selected.
+    /// Whether everything is selected.
     #[must_use]
     pub fn is_everything(&self) -> bool {
         self.part.is_none() && self.select.is_empty() && self.exclude.is_empty() && self.guides.is_empty()
     }
 
-    /// The elements of all these selections.
+    /// The union of several selections.
     pub(crate) fn union<'a>(source: &SourceText, all: impl Iterator<Item = &'a Self>) -> Self {
         let mut sum = Self { part: Some(Elements(vec![false; source.elements.len()].into())), ..Self::default() };
         for one in all {
@@ -88,12 +88,12 @@ impl Selection {
     }
 }
 
-/// Returns `true` if a selector matches an element.
+/// Whether a selector matches any element.
 pub(crate) fn matches_any(source: &SourceText, selector: &str) -> bool {
     (0..source.elements.len()).any(|e| matches(source, e, selector))
 }
 
-/// The names that a selector of this kind can match, in document order: classes for `.class`, else ids, labels and titles.
+/// Lists the names that a selector of the same kind can match, in document order: classes for `.class`, else ids, labels and titles.
 pub(crate) fn candidates(source: &SourceText, selector: &str) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for e in 0..source.elements.len() {
@@ -126,7 +126,7 @@ fn matches(source: &SourceText, e: ElementId, selector: &str) -> bool {
     }
 }
 
-/// Returns `true` if the element's id, Inkscape label or title is `name`.
+/// Whether an element's id, Inkscape label or title is `name`.
 pub(crate) fn is_named(source: &SourceText, e: ElementId, name: &str) -> bool {
     let name = name.strip_prefix('#').unwrap_or(name);
     source.attr(e, "id").is_some_and(|v| v == name)

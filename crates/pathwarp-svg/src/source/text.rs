@@ -1,8 +1,7 @@
-//! The source text with its table of elements: names and attributes are looked up here, and patches refer to it.
+//! The source text with its elements, for looking up names and attributes. Patches refer to positions in it.
 
-use super::elements::declared;
 use super::elements::{
-    Attr, Element, ElementId, INKSCAPE, Namespace, SVG, Table, Unpatchable, XLINK, is_animation, is_tracked,
+    Attr, Element, ElementId, INKSCAPE, Namespace, SVG, Table, Unpatchable, XLINK, declared, is_animation, is_tracked,
 };
 use super::threads::{both, map_parallel};
 use pathwarp::budget::Budget;
@@ -16,7 +15,7 @@ use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use usvg::roxmltree;
 
-/// Limit on prefixes to declare. Each costs one parse.
+/// Limit on missing prefixes to declare. Each costs one parse.
 const MAX_PREFIXES: usize = 16;
 
 /// The text and its elements.
@@ -32,24 +31,24 @@ pub(crate) struct SourceText {
     pub(crate) animated: bool,
     /// Reason why the text cannot be patched in place.
     pub(crate) unpatchable: Option<Unpatchable>,
-    /// Namespace prefixes that the file did not declare; the text does.
+    /// Namespace prefixes that the file did not declare; `text` does.
     pub(crate) undeclared: Vec<String>,
-    /// How the text differs from the file's, in its order: it is what usvg reads as browsers read the file.
+    /// Differences of `text` from the file, in order. `text` is resolved so that usvg reads it as browsers read the file.
     pub(crate) originals: Vec<Change>,
-    /// The elements with numbers out of range, each with the first of them.
+    /// Elements whose numbers are out of range, each with the first such number.
     pub(crate) far: Vec<(ElementId, String)>,
     /// Unsupported style: the element, or `None` for style sheets, and a message.
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
-    /// What browsers show a little otherwise: a sentence, and what it is about.
+    /// Small differences from what browsers show: a sentence, and the element or name it is about.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
     marks: Marks,
-    /// Outlines of `path` elements. A large drawing has them.
+    /// Outlines of `path` elements, read ahead for large drawings.
     pub(crate) ahead: Ahead,
     // The rest is computed on first use.
     by_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     by_tree_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     line_starts: OnceLock<Vec<usize>>,
-    /// Numbers of characters before evenly spaced places.
+    /// Numbers of characters before evenly spaced positions.
     characters: OnceLock<Vec<usize>>,
 }
 
@@ -101,11 +100,11 @@ impl SourceText {
         Ok(Self { text, elements, css, animated, unpatchable, ..Self::default() })
     }
 
-    /// Returns `true` if any stack is deep enough for the drawing and nothing in it could make its readers panic. References
-    /// multiply the depth, as their targets may hold further references.
+    /// Whether any stack is deep enough for the drawing and nothing in it could make its readers panic. References multiply the
+    /// depth, as their targets may hold further references.
     pub(crate) fn is_shallow(&self) -> bool {
-        /// Limit on depth times references. A level takes a few kilobytes.
-        const SHALLOW: usize = 80;
+        /// Limit on depth times references. A level takes a few kilobytes of stack.
+        const MAX_LEVELS: usize = 80;
         let mut depths: Vec<usize> = Vec::with_capacity(self.elements.len());
         let mut references = 1;
         for e in &self.elements {
@@ -117,23 +116,23 @@ impl SourceText {
         // An embedded font may be crafted to make its reader panic, which only `with_stack` catches.
         self.unpatchable.is_none()
             && !self.css.contains("@font-face")
-            && depths.iter().max().is_none_or(|d| d * references <= SHALLOW)
+            && depths.iter().max().is_none_or(|d| d * references <= MAX_LEVELS)
     }
 
-    /// Calls `f`, and on another thread reads the outlines of a large drawing.
+    /// Calls `f`, and meanwhile reads the outlines of a large drawing on another thread.
     pub(crate) fn reading_ahead<T: Send>(&self, f: impl FnOnce() -> T + Send) -> T {
         if self.text.len() < WORTH_THREADS {
             return f();
         }
         let read = || {
-            // Not inside of `get_or_init`: a thread that waits for others may run a task that needs the outlines, too.
+            // Don't read inside `get_or_init`: a thread waiting for others may run a task that needs the outlines, too.
             let outlines = read(&self.text, &self.elements);
             let _ = self.ahead.set(outlines);
         };
         both(f, read).0
     }
 
-    /// The style attribute that a result has if nothing changes it.
+    /// The style attribute that results get if nothing changes it.
     pub(crate) fn written_style(&self, e: ElementId) -> String {
         let first = self.originals.partition_point(|o| o.element < e);
         let own = self.originals[first..].iter().take_while(|o| o.element == e).find(|o| o.name == "style");
@@ -141,12 +140,12 @@ impl SourceText {
         value.unwrap_or_default()
     }
 
-    /// The text with the style of the file.
+    /// The text as it is in the file.
     pub(crate) fn as_in_file(&self) -> Cow<'_, str> {
         self.part_in_file(0..self.text.len())
     }
 
-    /// A part of the text with the style of the file.
+    /// A part of the text as it is in the file.
     pub(crate) fn part_in_file(&self, range: Range<usize>) -> Cow<'_, str> {
         let first = self.originals.partition_point(|o| o.range.start < range.start);
         let inside = self.originals[first..].iter().take_while(|o| o.range.end <= range.end);
@@ -192,7 +191,7 @@ impl SourceText {
         })
     }
 
-    /// Line and column (in characters), counted from 1.
+    /// The line and column (in characters) of a position, both from 1.
     pub(crate) fn line_column(&self, at: usize) -> (usize, usize) {
         let starts = self
             .line_starts
@@ -202,11 +201,11 @@ impl SourceText {
         (line, self.characters(at) - self.characters(start) + 1)
     }
 
-    /// Number of characters before `at`. A text of a single line is not counted from its start for each place.
+    /// Number of characters before `at`. Checkpoints avoid counting from the start of a text that is a single line.
     fn characters(&self, at: usize) -> usize {
-        /// Bytes between two known numbers.
+        /// Bytes between checkpoints.
         const STEP: usize = 1 << 12;
-        // Bytes that begin a character.
+        // Count the bytes that begin a character.
         let count = |from: usize, to: usize| {
             self.text.as_bytes()[from.min(to)..to].iter().filter(|b| (**b as i8) >= -0x40).count()
         };
@@ -228,7 +227,7 @@ impl SourceText {
         self.elements.get(e)?.attr(&self.text, name)
     }
 
-    /// The value of a property that an element declares. Nothing is inherited.
+    /// The value of a property that an element itself declares.
     pub(crate) fn property(&self, e: ElementId, name: &str) -> Option<Cow<'_, str>> {
         let style = self.attr(e, "style");
         let declared = style.as_deref().and_then(|s| declared(s, name)).map(|v| v.to_owned().into());
@@ -246,21 +245,20 @@ impl SourceText {
         self.link(e)?.trim().strip_prefix('#').map(ToOwned::to_owned)
     }
 
-    /// The element that `href` or `xlink:href` refers to. Of several with one id, the last counts.
+    /// The element that `href` or `xlink:href` refers to. The last of several with the same id wins.
     pub(crate) fn target(&self, e: ElementId) -> Option<ElementId> {
         self.by_id().get(&self.href(e)?)?.last().copied()
     }
 
-    /// Whether an attribute such as `filterUnits` puts lengths in user space, on the element itself or on one that it refers to. `None`
-    /// if it is not given.
+    /// Whether an attribute such as `filterUnits`, on the element or on one that it refers to, specifies user space. `None` if it is
+    /// not given.
     pub(crate) fn in_user_space(&self, e: ElementId, units: &str) -> Option<bool> {
-        /// Longest chain of references followed.
-        const LINKS: usize = 16;
-        let mut chain = std::iter::successors(Some(e), |&e| self.target(e)).take(LINKS);
+        const MAX_LINKS: usize = 16;
+        let mut chain = std::iter::successors(Some(e), |&e| self.target(e)).take(MAX_LINKS);
         chain.find_map(|e| self.attr(e, units)).map(|u| u.trim() == "userSpaceOnUse")
     }
 
-    /// Value of `href` or `xlink:href`.
+    /// The value of `href` or `xlink:href`.
     pub(crate) fn link(&self, e: ElementId) -> Option<Cow<'_, str>> {
         self.attr_in(e, Namespace::None, "href").or_else(|| self.attr_in(e, Namespace::Xlink, "href"))
     }
@@ -281,12 +279,13 @@ impl SourceText {
         self.ancestors(e).skip(1).find(|&a| self.elements[a].tag == "svg")
     }
 
-    /// Inkscape's label.
+    /// The label that Inkscape shows.
     pub(crate) fn label(&self, e: ElementId) -> Option<Cow<'_, str>> {
         self.attr_in(e, Namespace::Inkscape, "label")
     }
 
-    /// The id, or else the element's name and position, such as `path at 12:5`, with the letter of a glyph: `path “G” at 12:5`.
+    /// Names an element in messages: its id, or else its tag and position, such as `path at 12:5`, with the letter of a glyph:
+    /// `path “G” at 12:5`.
     pub(crate) fn display_name(&self, e: ElementId) -> String {
         match self.attr(e, "id") {
             Some(id) if !id.is_empty() => id.into_owned(),
@@ -319,24 +318,23 @@ impl SourceText {
         out
     }
 
-    /// Returns `true` if there are style sheets.
     pub(crate) fn has_css(&self) -> bool {
         !self.css.trim().is_empty()
     }
 
-    /// Returns `true` if the style sheets declare a property.
+    /// Whether the style sheets declare a property.
     pub(crate) fn css_declares(&self, property: &str) -> bool {
         self.declared.contains(property)
     }
 
-    /// Prefix of SVG elements with its colon; usually empty.
+    /// The namespace prefix of SVG elements with its colon; usually empty.
     pub(crate) fn prefix(&self) -> &str {
         let Some(root) = self.elements.first() else { return "" };
         let name = self.text.get(root.qname.clone()).unwrap_or("");
         name.find(':').map_or("", |i| &name[..=i])
     }
 
-    /// Inserts a temporary id into every element that usvg tracks and that has no unique id, and adds declarations to style attributes.
+    /// Gives every element that usvg tracks and that has no unique id a temporary one. Also appends `styles` to style attributes.
     pub(crate) fn instrumented(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (String, Marks) {
         let mut marks = Marks { stem: stem(&self.text), elements: Vec::new() };
         let links = links(&self.text);
@@ -368,7 +366,7 @@ impl SourceText {
         let mut out = String::with_capacity(self.text.len() + patches.len() * 16);
         let mut done = 0;
         for (at, new) in patches {
-            // Elements from the same entity share their positions; mark only the first.
+            // Elements from the same entity share a position; mark only the first.
             if at.start >= done {
                 out.push_str(&self.text[done..at.start]);
                 out.push_str(&new);
@@ -380,7 +378,8 @@ impl SourceText {
     }
 }
 
-/// Resolves a drawing into plain SVG. Prefixes that it does not declare are added to `undeclared`, or else are an error.
+/// Resolves a drawing into plain SVG. Undeclared prefixes are declared and added to `undeclared`; if that is `None`, they are an
+/// error.
 pub(super) fn plain(
     mut text: String,
     name: &str,
@@ -406,7 +405,7 @@ pub(super) fn plain(
     }
 }
 
-/// The elements with a temporary id, which is the stem followed by the element's number.
+/// The elements with a temporary id, which is the stem followed by the element's index.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Marks {
     stem: String,
@@ -433,7 +432,7 @@ pub(crate) fn links(text: &str) -> HashSet<&str> {
         .collect()
 }
 
-/// Prefixes as Inkscape reads them.
+/// Prefixes that Inkscape knows without a declaration.
 const KNOWN: [(&str, &str); 8] = [
     ("inkscape", INKSCAPE),
     ("sodipodi", "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd"),
@@ -454,7 +453,7 @@ fn with_prefix(text: &str, prefix: &str) -> Option<String> {
     Some(format!("{before} xmlns:{prefix}=\"{uri}\"{after}"))
 }
 
-/// Position after the name in the first opening tag.
+/// The position after the name in the first opening tag.
 fn root_name_end(text: &str) -> Option<usize> {
     let mut at = 0;
     loop {
@@ -469,7 +468,7 @@ fn root_name_end(text: &str) -> Option<usize> {
     }
 }
 
-/// Position of the `>` that ends a DOCTYPE with or without a subset.
+/// The position of the `>` that ends a DOCTYPE, with or without a subset.
 fn doctype_end(text: &str) -> Option<usize> {
     let close = text.find('>')?;
     match text.find('[').filter(|&open| open < close) {
@@ -481,10 +480,10 @@ fn doctype_end(text: &str) -> Option<usize> {
     }
 }
 
-/// The outlines, once they are read.
+/// Outlines by element, once they have been read.
 type Ahead = Arc<OnceLock<HashMap<ElementId, Arc<Outline>>>>;
 
-/// Bytes of source text below which starting threads takes longer than reading the outlines.
+/// For shorter texts, starting threads takes longer than reading the outlines. In bytes.
 pub(crate) const WORTH_THREADS: usize = 200_000;
 
 /// Reads the outlines of all `path` elements.

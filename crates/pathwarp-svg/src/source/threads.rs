@@ -1,4 +1,4 @@
-//! Work on several threads, and with a large stack.
+//! Runs work on several threads, or with a large stack.
 
 use pathwarp::Error;
 

@@ -1,4 +1,4 @@
-//! usvg's tree of a drawing: its fonts and images, and limits on its size.
+//! Resolves a drawing with usvg, with its fonts and images, within limits on its size.
 
 use super::check;
 use super::elements::ElementId;
@@ -15,22 +15,22 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use usvg::roxmltree;
 
-/// Fonts and images that a drawing asks for and that are missing, and other gaps.
+/// Missing fonts and images of a drawing, and other gaps.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Missed {
-    /// Font families.
+    /// Missing font families.
     pub(crate) fonts: Vec<String>,
-    /// Links to images.
+    /// Links to images that were not read.
     pub(crate) images: Vec<String>,
-    /// Those of them that lead out of the folder of the drawing.
+    /// The links among `images` that lead out of the folder of the drawing.
     pub(crate) outside: Vec<String>,
-    /// What else a picture of it lacks, in words; of drawings that are read by [`parse`].
+    /// Content and style that are not drawn, worded for people. Only [`parse`] fills this in.
     pub(crate) undrawn: Vec<String>,
-    /// What browsers show a little otherwise, as the reader notes it; of the same drawings.
+    /// Small differences from what browsers show, as the reader notes them. Only [`parse`] fills this in.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
 }
 
-/// Font size where a drawing gives none, in px: that of browsers.
+/// The initial font size, in px, as in browsers.
 const MEDIUM: f32 = 16.0;
 
 /// Resolves a drawing with usvg. `name` identifies it in errors.
@@ -41,7 +41,7 @@ pub(crate) fn tree(
 ) -> Result<(usvg::Tree, Missed), Error> {
     let features = check::drawing(xml, name, &options.budget)?;
     let (missing, unread, rejected) = (Missing::default(), Unread::default(), Rejected::default());
-    // Reading the installed fonts takes longer than most drawings do.
+    // Reading the installed fonts takes longer than most drawings, so do it only for text.
     let base = if features.text {
         let installed = fonts::database(options.system_fonts, &options.fonts);
         let fontdb = fontface::add(installed, xml, &options.budget)
@@ -90,7 +90,7 @@ pub(crate) fn parse(data: &[u8], name: &str, options: &ReadOptions) -> Result<(A
     parse_counted(data, name, &options.begin(data.len()))
 }
 
-/// The same, with what is left of the options' budget.
+/// As [`parse`], with what is left of the options' budget.
 pub(crate) fn parse_counted(
     data: &[u8],
     name: &str,
@@ -109,14 +109,14 @@ pub(crate) fn parse_counted(
     Ok((Arc::new(tree), missed))
 }
 
-/// Content that usvg does not know.
+/// Content that usvg does not support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Unknown {
-    /// Text in a frame, of Inkscape.
+    /// Inkscape's text that flows in a frame.
     FlowedText,
     /// HTML.
     Foreign,
-    /// An element, a path or a text of another file.
+    /// A reference to another file.
     Elsewhere,
 }
 
@@ -124,7 +124,7 @@ pub(crate) enum Unknown {
 pub(crate) fn unknown(source: &SourceText, e: ElementId) -> Option<Unknown> {
     match source.elements[e].tag.as_ref() {
         "flowRoot" => Some(Unknown::FlowedText),
-        // Private data of an editor is not shown.
+        // Browsers don't show the private data of editors.
         "foreignObject" if source.attr(e, "requiredExtensions").is_none() => Some(Unknown::Foreign),
         "use" | "textPath" | "tref" if source.link(e).is_some_and(|link| is_elsewhere(&link)) => {
             Some(Unknown::Elsewhere)
@@ -133,18 +133,18 @@ pub(crate) fn unknown(source: &SourceText, e: ElementId) -> Option<Unknown> {
     }
 }
 
-/// Returns `true` if an element is in `<defs>`: rendered only where it is referenced.
+/// Whether an element is in `<defs>`, so that it is only drawn where it is referenced.
 pub(crate) fn is_definition(source: &SourceText, e: ElementId) -> bool {
     source.ancestors(e).any(|a| source.elements[a].tag == "defs")
 }
 
-/// Returns `true` if a link leads to another file.
+/// Whether a link leads to another file.
 fn is_elsewhere(link: &str) -> bool {
     let link = link.trim_start();
     !link.is_empty() && !link.starts_with('#')
 }
 
-/// Lists what a picture of the drawing lacks: content, and style.
+/// Lists the content and style that a picture of the drawing lacks, worded for people.
 pub(crate) fn undrawn(source: &SourceText) -> Vec<String> {
     let shown = |e: &ElementId| !is_definition(source, *e);
     let content = (0..source.elements.len()).filter(shown).filter_map(|e| {

@@ -1,42 +1,42 @@
-//! How far two pictures are apart.
+//! How much two pictures differ.
 
 use pathwarp_raster::Pixmap;
 use std::f64::consts::TAU;
 
-/// A channel differs when it lies outside what the other picture has within [`REACH`] pixels by more than this: edges move, and letters
-/// are drawn at parts of pixels.
+/// A pixel differs if a channel is outside the range that the other picture has within [`REACH`] pixels by more than this. Edges may move,
+/// and letters are drawn at fractions of pixels.
 const VISIBLE: u8 = 40;
 const REACH: usize = 3;
-/// What comes in at the page's edge is not measured, nor is antialiasing beside it.
+/// Pixels this close to the edge of the page are not compared: they depend on what is off the page, and on antialiasing.
 const EDGE: usize = 8;
-/// Of what is painted, this share must not differ, however small it is on its page.
-const MOST_OF_INK: f64 = 0.25;
-/// Pixels of a difference that is no accident of antialiasing.
-const FEWEST: usize = 12;
-/// The curved map: its amplitude and its wavelength as shares of the picture's larger side. Lengths change by a fifth at most.
+/// The largest fraction of the painted pixels that may differ, however small the drawing is on its page.
+const MAX_OF_INK: f64 = 0.25;
+/// Fewer differing pixels than this may be an accident of antialiasing.
+const MIN_PIXELS: usize = 12;
+/// Amplitude and wavelength of the curved map, as fractions of the picture's larger side. Lengths change by at most a fifth.
 const AMPLITUDE: f64 = 0.025;
 const WAVELENGTH: f64 = 0.8;
 
-/// A picture of four channels, with premultiplied alpha: so white shows on the transparent page as every other colour does.
+/// A picture in RGBA with premultiplied alpha, so that white stands out from the transparent page like every other colour.
 pub(super) struct Picture {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) data: Vec<u8>,
 }
 
-/// What a comparison finds.
+/// How many pixels differ.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gap {
-    /// The differing pixels, as a share of the page.
-    pub(super) share: f64,
-    /// The same as a share of the painted pixels.
+    /// As a fraction of the page.
+    pub(super) of_page: f64,
+    /// As a fraction of the painted pixels.
     pub(super) of_ink: f64,
 }
 
 impl Gap {
-    /// Whether people see other drawings.
-    pub(super) fn differs(self, worst: f64) -> bool {
-        self.share > worst || self.of_ink > MOST_OF_INK
+    /// Whether people would see a difference.
+    pub(super) fn differs(self, max_of_page: f64) -> bool {
+        self.of_page > max_of_page || self.of_ink > MAX_OF_INK
     }
 }
 
@@ -47,12 +47,12 @@ pub(super) struct ToPixels {
     pub(super) offset: [f64; 2],
 }
 
-/// A map that every element takes the whole road through, and whose exact picture is known.
+/// A map for which no element takes a shortcut, and whose exact inverse is known.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Bend {
-    /// To the right by so many pixels. It is affine to within a billionth of a unit, but not to the program.
+    /// To the right by this many pixels. It differs from a translation by a billionth of a unit, enough for the program not to treat it as one.
     Shift(usize),
-    /// X = x + a sin(k y), Y = y + a sin(k X): two shears, one after the other, and so y = Y − a sin(k X), x = X − a sin(k y).
+    /// X = x + a sin(k y), Y = y + a sin(k X): two shears, one after the other. So y = Y − a sin(k X) and x = X − a sin(k y).
     Curve {
         /// a, in pixels.
         amplitude: f64,
@@ -67,7 +67,7 @@ impl Bend {
         Self::Curve { amplitude: AMPLITUDE * side, wave: TAU / (WAVELENGTH * side) }
     }
 
-    /// The options of `pathwarp expr`, in user units.
+    /// The formulas for `pathwarp expr`, in user units.
     pub(super) fn formulas(self, ToPixels { scale: [a, d], offset: [e, f] }: ToPixels) -> [String; 2] {
         match self {
             Self::Shift(by) => [format!("x + {:e} + 1e-9*sin(x)", by as f64 / a), "y + 1e-9*sin(y)".into()]
@@ -80,7 +80,7 @@ impl Bend {
         }
     }
 
-    /// The pixel whose image is this one.
+    /// The pixel that is mapped to this one.
     fn source(self, x: usize, y: usize) -> Option<(usize, usize)> {
         match self {
             Self::Shift(by) => Some((x.checked_sub(by)?, y)),
@@ -99,7 +99,7 @@ impl Picture {
         Self { width: pixmap.width() as usize, height: pixmap.height() as usize, data: pixmap.data().to_vec() }
     }
 
-    /// The mean of nine pixels: a line of one pixel has the same strength wherever it lies between the pixels.
+    /// Replaces each pixel by the mean of 3 × 3, so that a line one pixel wide looks the same wherever it falls between pixels.
     fn softened(&self) -> Self {
         let (w, h) = (self.width, self.height);
         let mean = |data: &[u8], step: usize, at: usize, first: bool, last: bool| {
@@ -113,7 +113,8 @@ impl Picture {
         Self { width: w, height: h, data }
     }
 
-    /// What the picture becomes under a map. Where there is no source on the page, so `found` shows what it likes.
+    /// The image of the picture under a map, and which of its pixels are to be compared. Where the source is off the page, the image is that of
+    /// `found`.
     fn bent(&self, bend: Bend, page: [usize; 2], found: &Self) -> (Self, Vec<bool>) {
         let mut data = found.data.clone();
         let mut known = vec![false; self.width * self.height];
@@ -126,7 +127,7 @@ impl Picture {
             if let Some((from_x, from_y)) = bend.source(x, y).filter(|(x, y)| inside(*x, *y, 0)) {
                 let from = 4 * (from_y * self.width + from_x);
                 data[4 * i..4 * i + 4].copy_from_slice(&self.data[from..from + 4]);
-                // A shift moves nothing across the upper and the lower edge; what was hidden by the left one may be seen.
+                // A shift moves nothing across the upper and lower edges, but may bring in what was hidden beyond the left one.
                 *is_known = match bend {
                     Bend::Shift(by) => x >= 2 * by + EDGE && x + EDGE < page[0],
                     Bend::Curve { .. } => inside(x, y, EDGE) && inside(from_x, from_y, EDGE),
@@ -136,27 +137,27 @@ impl Picture {
         (Self { width: self.width, height: self.height, data }, known)
     }
 
-    /// Whether the pixel lies outside what `other` has near it.
+    /// Whether a pixel is outside the range of colours that `other` has near it.
     fn stands_out(&self, other: &Self, at: usize) -> bool {
         let (x, y) = (at % self.width, at / self.width);
         let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(self.height);
         let columns = x.saturating_sub(REACH)..(x + REACH + 1).min(self.width);
-        let (mut least, mut most) = ([255; 4], [0; 4]);
+        let (mut min, mut max) = ([255; 4], [0; 4]);
         for near in rows.flat_map(|y| columns.clone().map(move |x| 4 * (y * self.width + x))) {
             for k in 0..4 {
-                least[k] = least[k].min(other.data[near + k]);
-                most[k] = most[k].max(other.data[near + k]);
+                min[k] = min[k].min(other.data[near + k]);
+                max[k] = max[k].max(other.data[near + k]);
             }
         }
         (0..4).any(|k| {
             let own = self.data[4 * at + k];
-            own > most[k].saturating_add(VISIBLE) || own.saturating_add(VISIBLE) < least[k]
+            own > max[k].saturating_add(VISIBLE) || own.saturating_add(VISIBLE) < min[k]
         })
     }
 }
 
-/// Compares the picture of a result with that of its original under the map; `page` is the extent of the drawing's page. Returns the
-/// differing pixels, too, by which a mark can be put on each.
+/// Compares the picture of a result with the image of the original picture under the map. `page` is the extent of the drawing's page. Also
+/// returns, for every pixel, whether it differs.
 pub(super) fn compare(original: &Picture, found: &Picture, bend: Bend, page: [usize; 2]) -> (Gap, Vec<bool>) {
     let page = [page[0].min(found.width), page[1].min(found.height)];
     let soft = matches!(bend, Bend::Curve { .. }).then(|| [original.softened(), found.softened()]);
@@ -169,6 +170,6 @@ pub(super) fn compare(original: &Picture, found: &Picture, bend: Bend, page: [us
     let differing = marks.iter().filter(|m| **m).count();
     let painted = |i: usize| expected.data[4 * i + 3] > VISIBLE || found.data[4 * i + 3] > VISIBLE;
     let ink = (0..known.len()).filter(|i| known[*i] && painted(*i)).count();
-    let of_ink = if differing < FEWEST { 0.0 } else { differing as f64 / ink.max(1) as f64 };
-    (Gap { share: differing as f64 / (found.width * found.height) as f64, of_ink }, marks)
+    let of_ink = if differing < MIN_PIXELS { 0.0 } else { differing as f64 / ink.max(1) as f64 };
+    (Gap { of_page: differing as f64 / (found.width * found.height) as f64, of_ink }, marks)
 }

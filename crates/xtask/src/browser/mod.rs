@@ -1,10 +1,11 @@
-//! `cargo xtask browser FOLDER…`: compares drawings with their results as Chromium shows both, under maps whose exact picture is known.
+//! `cargo xtask browser FOLDER…`: compares Chromium's rendering of drawings with its rendering of pathwarp's results.
 //!
-//! Every drawing is warped by [`Bend`]: a shift that is not affine to the program, so that each element goes the whole road, with strokes as
-//! they come and outlined; and a curved map with an exact inverse, through which the picture of the original is looked up. What was read
-//! otherwise than browsers read it shows, and so does what was left unbent. A drawing that Chromium cannot parse does not count.
+//! Every drawing is warped by each [`Bend`]: a shift that the program does not recognise as one, so that no element takes a shortcut, with
+//! strokes kept where possible and then with outlined strokes; and a curved map. Both have exact inverses, so the picture of a result can be
+//! computed from the picture of the original. Comparing the two reveals anything that pathwarp reads differently from browsers, and anything
+//! left unbent. A drawing that Chromium cannot parse does not count.
 //!
-//! Not seen: the frame, how sharp bitmaps are, what is outside of the page.
+//! Not compared: the frame, the sharpness of bitmaps, and anything off the page.
 
 use crate::chore::{Chore, ChoreError, at, path_option, program_option, workspace};
 use crate::shell;
@@ -29,22 +30,21 @@ mod measure;
 #[cfg(test)]
 mod tests;
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
-/// The share of a page's pixels that may differ.
-const WORST: f64 = 1e-3;
-/// The larger side of the pictures in pixels, however large a drawing says it is; a page of few px is not magnified further than this.
+/// The largest fraction of a page's pixels that may differ.
+const MAX_OF_PAGE: f64 = 1e-3;
+/// The larger side of the pictures in pixels, whatever the size of the drawing, unless that takes a scale of more than [`MAX_SCALE`].
 const SIDE: f64 = 1200.0;
-const MOST_MAGNIFIED: f64 = 64.0;
+const MAX_SCALE: f64 = 64.0;
 /// The largest page, in px, that is shown whole.
-const LARGEST_PAGE: f64 = 8000.0;
-/// How far the shift goes, as a share of the page's width.
+const MAX_PAGE: f64 = 8000.0;
+/// How far the shift goes, as a fraction of the page's width.
 const SHIFT: f64 = 0.04;
-/// The seconds that the program has for a drawing, of any machine.
-const PATIENCE: &str = "60";
+/// How many seconds the program may take for a drawing.
+const MAX_SECONDS: &str = "60";
 
-/// The ways in which a drawing is tried: a name, and the options of the program beside the map.
+/// The ways in which a drawing is tried: a name, and the value of `--strokes`.
 const WAYS: [(&str, &str); 3] = [("shift", "auto"), ("outline", "outline"), ("curve", "auto")];
 
 fn command() -> Command {
@@ -83,28 +83,28 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     if found.iter().any(Finding::differs) { Err(report) } else { Ok(report) }
 }
 
-/// What was found for a drawing tried in one way.
+/// The outcome of trying a drawing in one way.
 struct Finding {
     file: PathBuf,
     way: &'static str,
     /// The exit code of the program; `None` if it was killed.
     code: Option<i32>,
-    /// Its first message.
+    /// The program's first message.
     said: String,
-    /// How far the pictures are apart, or why there are none. A drawing that Chromium cannot parse has neither.
+    /// How much the pictures differ, or why they could not be compared. `None` if Chromium cannot parse the drawing.
     gap: Option<Result<Gap, String>>,
-    /// The picture of the difference.
+    /// The file name of a picture of the difference.
     picture: Option<String>,
 }
 
 impl Finding {
     fn differs(&self) -> bool {
-        self.gap.as_ref().is_some_and(|gap| gap.as_ref().map_or(true, |gap| gap.differs(WORST)))
+        self.gap.as_ref().is_some_and(|gap| gap.as_ref().map_or(true, |gap| gap.differs(MAX_OF_PAGE)))
     }
 
     fn line(&self) -> String {
         let share = match &self.gap {
-            Some(Ok(gap)) => format!("{:.2} %", 100.0 * gap.share),
+            Some(Ok(gap)) => format!("{:.2} %", 100.0 * gap.of_page),
             Some(Err(why)) => why.clone(),
             None => "not XML".into(),
         };
@@ -116,7 +116,7 @@ impl Finding {
         let gap = self.gap.as_ref().and_then(|g| g.as_ref().ok());
         serde_json::json!({
             "file": self.file.display().to_string(), "way": self.way, "exit": self.code, "said": self.said,
-            "counts": self.gap.is_some(), "differs": self.differs(), "share": gap.map(|g| g.share), "ofInk": gap.map(|g| g.of_ink),
+            "counts": self.gap.is_some(), "differs": self.differs(), "share": gap.map(|g| g.of_page), "ofInk": gap.map(|g| g.of_ink),
             "problem": self.gap.as_ref().and_then(|g| g.as_ref().err()), "picture": self.picture,
         })
     }
@@ -140,10 +140,10 @@ fn report(found: &[Finding]) -> String {
 struct Judge {
     program: PathBuf,
     ways: Vec<(&'static str, &'static str)>,
-    /// Where pictures of what differs go.
+    /// The folder for pictures of differences.
     sheet: Option<PathBuf>,
     browsers: Browsers,
-    /// Copies of the drawings' folders: links work there, and nothing is written beside the originals.
+    /// Copies of the drawings' folders, so that links work and nothing is written beside the originals.
     scratch: TempDir,
     copies: Mutex<HashMap<PathBuf, PathBuf>>,
     count: AtomicUsize,
@@ -163,7 +163,7 @@ impl Judge {
         Ok(Self { program, ways, sheet, browsers, scratch, copies: Mutex::default(), count: AtomicUsize::new(0) })
     }
 
-    /// Tries all drawings of files and folders.
+    /// Tries all drawings among files and folders.
     fn all(&self, inputs: &[PathBuf]) -> Result<Vec<Finding>, ChoreError> {
         let mut drawings = Vec::new();
         for input in inputs {
@@ -180,7 +180,7 @@ impl Judge {
         Ok(found.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     }
 
-    /// The drawing in a copy of its folder. Folders `images` and `resources` beside it come along.
+    /// Returns the drawing in a copy of its folder. Folders `images` and `resources` beside that folder are copied too.
     fn copied(&self, file: &Path) -> Result<PathBuf, ChoreError> {
         let file = file.canonicalize().map_err(at(file))?;
         let (folder, name) = file.parent().zip(file.file_name()).ok_or("a drawing has a name and a folder")?;
@@ -190,10 +190,10 @@ impl Judge {
         }
         let around = self.scratch.path().join(copies.len().to_string());
         let copy = around.join(folder.file_name().unwrap_or_default());
-        copy_folder(folder, &copy)?;
+        shell::copy_folder(folder, &copy)?;
         for beside in ["images", "resources"] {
             if let Some(from) = folder.parent().map(|p| p.join(beside)).filter(|p| p.is_dir()) {
-                copy_folder(&from, &around.join(beside))?;
+                shell::copy_folder(&from, &around.join(beside))?;
             }
         }
         copies.insert(folder.to_owned(), copy.clone());
@@ -206,9 +206,9 @@ impl Judge {
         let finding =
             |way, gap| Finding { file: original.to_owned(), way, code: None, said: String::new(), gap, picture: None };
         let shown = self.browsers.show(&file, None).and_then(|size| {
-            let pages = |length: f64| if length > 0.0 { length.ceil().min(LARGEST_PAGE) } else { 600.0 };
+            let pages = |length: f64| if length > 0.0 { length.ceil().min(MAX_PAGE) } else { 600.0 };
             let size_px = [pages(size.right), pages(size.bottom)];
-            let scale = (SIDE / size_px[0].max(size_px[1])).min(MOST_MAGNIFIED);
+            let scale = (SIDE / size_px[0].max(size_px[1])).min(MAX_SCALE);
             Ok((size.broken, size_px, scale, self.browsers.show(&file, Some((size_px, scale)))?))
         });
         let (broken, size, scale, before) = match shown {
@@ -237,7 +237,7 @@ impl Judge {
         finding: &mut Finding,
     ) -> Result<Gap, String> {
         let original = before.picture.as_ref().ok_or("there is no picture")?;
-        // A root without a matrix from user units, or a turned one, can only be left where it is.
+        // Without a matrix from user units, or with one that turns, the drawing can only stay where it is.
         let upright = before.matrix.filter(|[a, b, c, d, ..]| *a > 0.0 && *d > 0.0 && *b == 0.0 && *c == 0.0);
         let [a, _, _, d, e, f] = upright.unwrap_or([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
         let to_pixels = ToPixels { scale: [a * scale, d * scale], offset: [e * scale, f * scale] };
@@ -255,7 +255,7 @@ impl Judge {
             .arg(file)
             .args(["--x", &x, "--y", &y, "--strokes", strokes, "--fit", "none", "-o"])
             .arg(&result);
-        let out = command.args(["--limit", &format!("seconds={PATIENCE}")]).output().map_err(at(&self.program))?;
+        let out = command.args(["--limit", &format!("seconds={MAX_SECONDS}")]).output().map_err(at(&self.program))?;
         finding.code = out.status.code();
         let said = String::from_utf8_lossy(&out.stderr).replace(&file.display().to_string(), "");
         finding.said = said.lines().find(|l| !l.is_empty()).unwrap_or_default().chars().take(150).collect();
@@ -274,7 +274,7 @@ impl Judge {
         }
         let page = [before.right, before.bottom].map(|c| if c > 0.0 { (c * scale) as usize } else { usize::MAX });
         let (gap, marks) = compare(original, &picture, bend, page);
-        if let Some(folder) = self.sheet.as_ref().filter(|_| gap.differs(WORST)) {
+        if let Some(folder) = self.sheet.as_ref().filter(|_| gap.differs(MAX_OF_PAGE)) {
             let stem = finding.file.file_stem().unwrap_or_default().to_string_lossy();
             let name = format!("{stem}-{}-{number}.png", finding.way);
             let to = folder.join(&name);
@@ -284,7 +284,7 @@ impl Judge {
         Ok(gap)
     }
 
-    /// Writes a page with everything that differs, and its picture.
+    /// Writes a page that shows everything that differs, and a picture of the page.
     fn contact_sheet(&self, folder: &Path, found: &[Finding]) -> Result<(), ChoreError> {
         let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;");
         let mut page = "<!doctype html><meta charset=utf-8><title>What differs</title><style>body{font:13px sans-serif;width:1180px}\
@@ -298,23 +298,14 @@ impl Judge {
         let (html, png) = (folder.join("index.html"), folder.join("sheet.png"));
         fs::write(&html, page).map_err(at(&html))?;
         let height = self.browsers.show(&html, None)?.bottom;
-        // Browsers draw no taller pictures.
+        // Browsers do not draw taller pictures.
         let shown = self.browsers.show(&html, Some(([1200.0, height.ceil().clamp(100.0, 16_000.0)], 1.0)))?;
         let picture = shown.picture.ok_or("there is no sheet")?;
         fs::write(&png, encode_png(&picture.pixmap()?).map_err(|e| e.to_string())?).map_err(at(&png))
     }
 }
 
-fn copy_folder(from: &Path, to: &Path) -> Result<(), ChoreError> {
-    for file in shell::files_below(from, |_| true)? {
-        let copy = to.join(file.strip_prefix(from).unwrap_or(&file));
-        fs::create_dir_all(copy.parent().unwrap_or(to)).map_err(at(to))?;
-        fs::copy(&file, &copy).map_err(at(&file))?;
-    }
-    Ok(())
-}
-
-/// Before, after and difference on grey, at half their size.
+/// Before and after on grey, and the difference, side by side at half their size, as PNG.
 fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec<u8>, ChoreError> {
     let (w, h) = (before.width.div_ceil(2), before.height.div_ceil(2));
     let mut out = Pixmap::new(3 * w as u32, h as u32).ok_or("there is no picture")?;
@@ -328,13 +319,8 @@ fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec
         let [r, g, b] = match column {
             0 => ground(&before.data),
             1 => ground(&after.data),
-            _ => {
-                if near.iter().any(|i| marks[*i]) {
-                    [200, 0, 0]
-                } else {
-                    [255; 3]
-                }
-            }
+            _ if near.iter().any(|i| marks[*i]) => [200, 0, 0],
+            _ => [255; 3],
         };
         *pixel = PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap_or(*pixel);
     }
@@ -344,15 +330,15 @@ fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec
 /// What Chromium shows of a drawing.
 #[derive(Deserialize)]
 struct Shown {
-    /// It is not well-formed XML.
-    pub(super) broken: bool,
+    /// Whether the drawing is not well-formed XML.
+    broken: bool,
     /// The page's extent in px.
-    pub(super) right: f64,
-    pub(super) bottom: f64,
+    right: f64,
+    bottom: f64,
     /// From user units to px.
-    pub(super) matrix: Option<[f64; 6]>,
+    matrix: Option<[f64; 6]>,
     #[serde(default, rename = "png", deserialize_with = "decoded")]
-    pub(super) picture: Option<Picture>,
+    picture: Option<Picture>,
 }
 
 fn decoded<'a, D: serde::Deserializer<'a>>(d: D) -> Result<Option<Picture>, D::Error> {
@@ -362,13 +348,13 @@ fn decoded<'a, D: serde::Deserializer<'a>>(d: D) -> Result<Option<Picture>, D::E
 }
 
 impl Picture {
-    pub(super) fn pixmap(&self) -> Result<Pixmap, String> {
+    fn pixmap(&self) -> Result<Pixmap, String> {
         let size = IntSize::from_wh(self.width as u32, self.height as u32).ok_or("an empty picture")?;
         Pixmap::from_vec(self.data.clone(), size).ok_or_else(|| "a picture of a wrong size".to_owned())
     }
 }
 
-/// As many browsers as are used at the same time; the next drawing takes one that is free.
+/// The browsers that are free. A new one is started if there is none.
 #[derive(Default)]
 struct Browsers(Mutex<Vec<Browser>>);
 
@@ -379,8 +365,8 @@ struct Browser {
 }
 
 impl Browsers {
-    /// Shows a file on a page of this size in px, each so many pixels wide; without one, only asks for its size.
-    pub(super) fn show(&self, file: &Path, size: Option<([f64; 2], f64)>) -> Result<Shown, String> {
+    /// Shows a file on a page of this size in px, at this many pixels per px. Without a size, only asks for that of the file.
+    fn show(&self, file: &Path, size: Option<([f64; 2], f64)>) -> Result<Shown, String> {
         let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut browser = free.map_or_else(Browser::start, Ok)?;
         let mut request = serde_json::json!({ "file": file });
@@ -419,7 +405,7 @@ impl Browser {
 }
 
 impl Drop for Browser {
-    /// Chromium ends with node.
+    /// Ends node, and Chromium with it.
     fn drop(&mut self) {
         let _ = self.node.kill();
         let _ = self.node.wait();

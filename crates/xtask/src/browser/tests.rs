@@ -1,7 +1,7 @@
-//! The measure itself, and the project's own drawings in `tests/browser`.
+//! Tests of the comparison, and of the drawings in `tests/browser`.
 
 use super::measure::{Bend, Picture, ToPixels, compare};
-use super::{Finding, Judge, WAYS, WORST};
+use super::{Finding, Judge, MAX_OF_PAGE, WAYS};
 use crate::chore::workspace;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
@@ -15,7 +15,7 @@ use std::process::Command;
 const SIDE: usize = 400;
 const SAMPLES: usize = 4;
 
-/// A picture with the coverage of a shape, averaged over samples: of a disc, and of a line of one pixel.
+/// A picture of a disc and a line about one pixel wide, antialiased by averaging samples.
 fn painted(color: [u8; 3], bend: impl Fn(f64, f64) -> (f64, f64)) -> Picture {
     let covers = |x: f64, y: f64| (x - 150.0).hypot(y - 220.0) < 60.0 || (x + y / 3.0 - 300.0).abs() < 0.7;
     let mut data = Vec::new();
@@ -34,7 +34,7 @@ fn painted(color: [u8; 3], bend: impl Fn(f64, f64) -> (f64, f64)) -> Picture {
 }
 
 fn differs(original: &Picture, found: &Picture, bend: Bend) -> bool {
-    compare(original, found, bend, [SIDE, SIDE]).0.differs(WORST)
+    compare(original, found, bend, [SIDE, SIDE]).0.differs(MAX_OF_PAGE)
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn right_results_pass_and_wrong_ones_do_not() {
     }
 }
 
-/// What is emptied is seen however small it is on its page: 20 of 160,000 pixels.
+/// A drawing that vanishes counts however small it is on its page: 20 of 160,000 pixels.
 #[test]
 fn small_things_count() {
     let mut original = Picture { width: SIDE, height: SIDE, data: vec![0; 4 * SIDE * SIDE] };
@@ -71,7 +71,7 @@ fn small_things_count() {
     assert!(differs(&original, &nothing, Bend::Shift(16)) && differs(&original, &nothing, Bend::curve(SIDE, SIDE)));
 }
 
-/// The program's map has the inverse that the pictures are looked up through.
+/// The program's map has the inverse that is used for the pictures.
 #[test]
 fn formulas_are_the_map_of_the_pictures() {
     let to_pixels = ToPixels { scale: [2.5, 4.0], offset: [-30.0, 7.0] };
@@ -98,7 +98,8 @@ fn formulas_are_the_map_of_the_pictures() {
     }
 }
 
-/// Whether node, playwright and Chromium are there; else says so past the captured output, as the gate lists such lines.
+/// Whether node, playwright and Chromium are installed. If not, says so directly on standard error, which tests do not capture, because the
+/// gate lists such lines.
 fn can_show() -> bool {
     let node = Command::new("node").arg("--version").output().is_ok_and(|o| o.status.success());
     let playwright = workspace().join("crates/pathwarp-editor/web/node_modules/playwright-core").is_dir();
@@ -115,7 +116,7 @@ fn judged(program: PathBuf, folder: &Path) -> Vec<Finding> {
     Judge::new(program, WAYS.to_vec(), None).unwrap().all(&[folder.to_owned()]).unwrap()
 }
 
-/// Programs that empty a drawing, or leave it as it is.
+/// Tries programs that empty a drawing, leave it as it is, or write no result.
 #[cfg(unix)]
 #[test]
 fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
@@ -136,7 +137,7 @@ fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
         }
     }
     fs::write(art.join("broken.svg"), "<svg xmlns='http://www.w3.org/2000/svg'><g></svg>").unwrap();
-    // The words are: expr FILE … -o RESULT --limit ….
+    // The arguments are: expr FILE … -o RESULT --limit ….
     let loop_ = "in=$2; while [ \"$1\" != -o ]; do shift; done\n";
     for (name, body) in
         [("emptied", "sed 's/<path[^>]*>//' \"$in\" >\"$2\""), ("unbent", "cp \"$in\" \"$2\""), ("none", ":")]
@@ -151,8 +152,8 @@ fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
     }
 }
 
-/// `tests/browser` holds a small drawing for each kind of thing that programs read in different ways. None may differ, in any way that is
-/// tried, with the fonts of any machine. To add one is to put it there.
+/// `tests/browser` holds a small drawing for each kind of thing that programs read in different ways. None may differ in any of the ways
+/// tried, whatever fonts a machine has. To add a drawing, put it there.
 #[test]
 fn own_drawings_are_what_chromium_shows() {
     if !can_show() {
@@ -160,7 +161,7 @@ fn own_drawings_are_what_chromium_shows() {
     }
     let profile = std::env::current_exe().unwrap().parent().unwrap().parent().unwrap().to_owned();
     let mut build = Command::new(env!("CARGO"));
-    // With the features of the whole workspace, nothing is built again.
+    // Building with the features of the whole workspace reuses what is already built.
     build.args(["build", "--quiet", "--workspace", "--bin", "pathwarp", "--target-dir"]).arg(profile.parent().unwrap());
     if profile.ends_with("release") {
         build.arg("--release");

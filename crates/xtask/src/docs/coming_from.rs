@@ -1,4 +1,4 @@
-//! `docs/coming-from.md`: the words of other programs, with the command to use here and its picture.
+//! `docs/coming-from.md`: terms of other programs, each with the pathwarp command to use and its picture.
 
 use crate::chore::{ChoreError, at};
 use crate::shell;

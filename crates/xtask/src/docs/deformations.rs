@@ -1,4 +1,4 @@
-//! The pages of `docs/deformations`: one per deformation, generated from its table and illustrated by its first example.
+//! The pages of `docs/deformations`: one per deformation, generated from its [`Info`] and illustrated by its first example.
 
 use crate::chore::{ChoreError, at};
 use crate::shell;
@@ -33,7 +33,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
     Ok(())
 }
 
-/// File name and text of every page.
+/// The file name and text of every page.
 fn pages() -> Vec<(String, String)> {
     let registry = Registry::builtin();
     let infos: Vec<&Info> = registry.entries().iter().map(|e| e.info()).collect();

@@ -1,4 +1,4 @@
-//! Pictures of the guides: pages written by hand, each picture drawn by the command below it.
+//! The pictures of the guides. Guides are written by hand, and each picture is drawn by the command below it.
 
 use crate::chore::{ChoreError, at};
 use crate::shell::{self, pipe, stages, words};
@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The guides, whose pictures are named relative to them.
+/// The guides. They name their pictures by relative paths.
 const GUIDES: [&str; 6] = [
     "README.md",
     "docs/lettering.md",
@@ -18,9 +18,9 @@ const GUIDES: [&str; 6] = [
 ];
 /// Guides whose pictures show the artwork beside the result.
 const COOKBOOKS: [&str; 2] = ["docs/cookbook.md", "docs/lettering-on-paths.md"];
-/// In the command of a picture of a model.
+/// Marks the command of a picture of a model.
 const PREVIEW: &str = "--preview out.png";
-/// In a command on a folder of drawings.
+/// Marks a command on a folder of drawings.
 const INTO: &str = "--out-dir";
 /// Width of a picture in pixels.
 const WIDTH: &str = "800";
@@ -57,9 +57,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             for stage in stages(command) {
                 drawing = pipe(root, program, &stage, &drawing)?;
             }
-            let file = png.display().to_string();
-            let render = ["render", "-", "--width", WIDTH, "--background", "white", "-o", &file].map(str::to_owned);
-            pipe(root, program, &render, &drawing)?;
+            shell::render(root, program, &drawing, WIDTH, &png)?;
         }
     }
     Ok(())
@@ -70,9 +68,9 @@ fn folder_of(root: &Path, guide: &str) -> PathBuf {
     root.join(guide).parent().map_or_else(|| root.to_owned(), Path::to_owned)
 }
 
-/// The picture of a command on a folder of drawings: the drawings in a row, and below them their results.
+/// Draws the picture for a command on a folder of drawings: the drawings in a row, and below them their results.
 fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
-    /// Side of a drawing on the sheet, and the space between two.
+    /// The side of a drawing on the sheet, and the space between drawings.
     const SIDE: usize = 100;
     const GAP: usize = 20;
     let bent = tempfile::tempdir().map_err(|e| e.to_string())?;
@@ -89,7 +87,7 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
         for (column, file) in files.iter().enumerate() {
             let drawing = fs::read_to_string(file).map_err(at(file))?;
             let start = drawing.find("<svg ").ok_or("no drawing")? + "<svg ".len();
-            // Places the whole drawing as a picture in this one.
+            // Nest the whole drawing in the sheet, with a new place and size.
             let inner =
                 drawing[start..].replacen(" width=", " data-width=", 1).replacen(" height=", " data-height=", 1);
             let [x, y] = [column, row].map(|i| GAP + i * (SIDE + GAP));
@@ -98,14 +96,12 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     }
     let [width, height] = [columns, 2].map(|n| GAP + n * (SIDE + GAP));
     let sheet = format!("<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}'>{sheet}</svg>");
-    let file = png.display().to_string();
-    let render = ["render", "-", "--width", WIDTH, "--background", "white", "-o", &file].map(str::to_owned);
-    pipe(root, program, &render, sheet.as_bytes()).map(drop)
+    shell::render(root, program, sheet.as_bytes(), WIDTH, png)
 }
 
-/// The picture of a command that makes nodes fewer: the drawing before and after, with its nodes.
+/// Draws the picture for a command that reduces the number of nodes: the drawing before and after, with its nodes.
 fn nodes(root: &Path, program: &Path, png: &Path, (source, command): (&str, &str)) -> Result<(), ChoreError> {
-    /// Radius of a node, and what one drawing is moved down by, in shares of its height.
+    /// The radius of a node, and how far down the second drawing is moved, as fractions of a drawing's height.
     const NODE: f64 = 0.008;
     const DOWN: f64 = 1.05;
     let before = fs::read_to_string(root.join(source)).map_err(at(&root.join(source)))?;
@@ -127,25 +123,23 @@ fn nodes(root: &Path, program: &Path, png: &Path, (source, command): (&str, &str
         sheet.push_str("</g>");
     }
     let open = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {}'>", (1.0 + DOWN) * height);
-    let file = png.display().to_string();
-    let render = ["render", "-", "--width", WIDTH, "--background", "white", "-o", &file].map(str::to_owned);
-    pipe(root, program, &render, format!("{open}{sheet}</svg>").as_bytes()).map(drop)
+    shell::render(root, program, format!("{open}{sheet}</svg>").as_bytes(), WIDTH, png)
 }
 
-/// The picture of a command that draws one itself, and whose result is a model.
+/// Draws the picture for a command on a model, which writes it itself.
 fn preview(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
     let folder = std::env::temp_dir().join(format!("pathwarp-docs-{}", std::process::id()));
     fs::create_dir_all(&folder).map_err(at(&folder))?;
     let drawn = format!("--preview {}", png.display());
     let command = command.replace(PREVIEW, &drawn).replace(" -o out.", &format!(" -o {}/out.", folder.display()));
-    // The extension of the output says what it is.
+    // The output needs a real name: its extension gives the format.
     let words = words(&command);
     let done = pipe(root, program, words.get(1..).unwrap_or_default(), &[]).map(drop);
     let _ = fs::remove_dir_all(&folder);
     done
 }
 
-/// Every picture of a page with the command that draws it: the next line that begins with `pathwarp`.
+/// Every picture of a page, with the command that draws it: the next line that starts with `pathwarp`.
 fn pictures(page: &str) -> Vec<(&str, &str)> {
     let mut out = Vec::new();
     let mut pending = None;
@@ -164,14 +158,14 @@ mod tests {
     use super::*;
     use crate::chore::workspace;
 
-    /// Every picture of a guide exists and is drawn by a command, and its folder holds no others.
+    /// Every picture of a guide exists and is drawn by a command, and there are no other files in the folder.
     #[test]
     fn guides_have_their_pictures() {
         let root = workspace();
         for guide in GUIDES {
             let page = fs::read_to_string(root.join(guide)).unwrap();
             let all = pictures(&page);
-            // The first command of the README is for cargo.
+            // The first command of the README is one of cargo, not of pathwarp.
             let first = usize::from(guide == "README.md");
             assert_eq!(all.len(), page.matches("![").count() - first, "{guide}");
             let mut expected: Vec<String> = all.iter().map(|(png, _)| (*png).to_owned()).collect();

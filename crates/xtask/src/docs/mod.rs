@@ -1,4 +1,4 @@
-//! `cargo xtask docs`: the generated pages and every picture of the documentation.
+//! `cargo xtask docs`: writes the generated pages and all pictures of the documentation.
 
 mod coming_from;
 mod deformations;
@@ -9,14 +9,13 @@ use crate::chore::{Chore, ChoreError, program_option, workspace};
 use crate::shell;
 use clap::{ArgMatches, Command};
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
-/// The picture of docs/gimp.md and the README, and the command that draws it.
+/// The picture in docs/gimp.md and the README, and the command that draws it.
 const GIMP_PICTURE: &str = "docs/images/gimp-paper.png";
 const GIMP_EXAMPLE: &str = "shaper samples/paper.xcf --base '#Base' --target '#Target' --shaper '#Shaper'";
 
-/// The sheet of styles that the README shows, and its artwork.
+/// The sheet of styles in the README, and its artwork.
 const SHEET: &str = "docs/images/styles.png";
 const SHEET_ARTWORK: &str = "samples/logo.svg";
 

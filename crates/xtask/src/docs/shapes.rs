@@ -1,7 +1,7 @@
-//! docs/shapes.md: words and a logo in every shape of the samples, as pictures and as figures.
+//! `docs/shapes.md`: words and a logo in every sample shape, with pictures and figures.
 
 use crate::chore::{ChoreError, at};
-use crate::shell::pipe;
+use crate::shell::{pipe, render};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use pathwarp::Outline;
@@ -12,23 +12,22 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-/// The page, and the folder of its pictures.
 const PAGE: &str = "docs/shapes.md";
 const PICTURES: &str = "docs/images/shapes";
-/// The shapes.
+/// The drawing of all shapes.
 const SAMPLE: &str = "samples/shapes.svg";
-/// What is put into them: a name, and the command that writes it to standard output, or a drawing.
+/// The artwork put into the shapes: a name, and the command that writes it to standard output.
 const ARTWORK: [(&str, &[&str]); 3] = [
     ("word", &["text", "OPEN", "-o", "-"]),
     ("lines", &["text", "LOVE", "MUSIC", "--align", "fill", "--gap", "6%", "-o", "-"]),
     ("logo", &["affine", "samples/logo.svg", "-o", "-"]),
 ];
-/// The box that the figures are for: that of a short word.
+/// The box that the figures are computed for, of the size of a short word.
 const FRAME: Rect = Rect::new(0.0, 0.0, 300.0, 100.0);
-/// Places along an axis of that box.
+/// Places along each axis of that box.
 const PLACES: u32 = 41;
 
-/// The shapes: an id and path data.
+/// The id and path data of every shape.
 fn shapes(root: &Path) -> Result<Vec<(String, String)>, ChoreError> {
     let file = root.join(SAMPLE);
     let text = fs::read_to_string(&file).map_err(at(&file))?;
@@ -36,14 +35,15 @@ fn shapes(root: &Path) -> Result<Vec<(String, String)>, ChoreError> {
     Ok(text.lines().filter_map(|l| Some((attribute(l, "<path id=\"")?, attribute(l, " d=\"")?))).collect())
 }
 
-/// Figures of a word in a shape.
+/// How a word looks in a shape.
 struct Figures {
+    /// Whether the shape is filled in columns.
     columns: bool,
-    /// The share of places that are mirrored.
+    /// The fraction of places where the map mirrors.
     folded: f64,
-    /// Degrees.
+    /// The largest lean of a stem, in degrees.
     lean: f64,
-    /// The 95th percentile of the ratio of the largest and the smallest stretch, beside the mean stretches along both axes.
+    /// The 95th percentile of the ratio of the largest to the smallest stretch, relative to the mean stretches along both axes.
     uneven: f64,
 }
 
@@ -52,8 +52,8 @@ impl Figures {
         let outline = Outline::from_svg(path).map_err(|e| e.to_string())?;
         let built = Envelope::new(FRAME, &outline).lettering(true).build().map_err(|e| e.to_string())?;
         let place = |k: u32| {
-            let share = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES);
-            Point::new(FRAME.x0 + share(k % PLACES) * FRAME.width(), FRAME.y0 + share(k / PLACES) * FRAME.height())
+            let part = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES);
+            Point::new(FRAME.x0 + part(k % PLACES) * FRAME.width(), FRAME.y0 + part(k / PLACES) * FRAME.height())
         };
         let jets: Vec<Jet> = (0..PLACES * PLACES).map(|k| built.map.jet(place(k))).collect();
         let count = jets.len() as f64;
@@ -79,7 +79,7 @@ impl Figures {
     }
 }
 
-/// The page's text.
+/// The text of the page.
 fn text(root: &Path) -> Result<String, ChoreError> {
     let mut out = String::from(
         "# A word in a shape\n\n<!-- Written by `cargo xtask docs`; edit crates/xtask/src/docs/shapes.rs. -->\n\n\
@@ -128,17 +128,15 @@ pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
             sheet.push_str("\"/>");
         }
         sheet.push_str("</svg>");
-        let png = folder.join(format!("{name}.png")).display().to_string();
-        let render = ["render", "-", "--width", "1440", "--background", "white", "-o", &png].map(str::to_owned);
-        pipe(root, program, &render, sheet.as_bytes())?;
+        render(root, program, sheet.as_bytes(), "1440", &folder.join(format!("{name}.png")))?;
     }
     Ok(())
 }
 
-/// The page of the samples.
+/// The page size of the drawing of all shapes.
 const WHOLE: &str = "width=\"1440\" height=\"960\"";
 
-/// Gives a drawing the page of the samples.
+/// Gives a drawing the page of the drawing of all shapes.
 fn on_the_sheet(drawing: &str) -> String {
     let Some((before, rest)) = drawing.split_once("<svg ") else { return drawing.to_owned() };
     let (tag, content) = rest.split_once('>').unwrap_or((rest, ""));
@@ -152,7 +150,7 @@ mod tests {
     use super::*;
     use crate::chore::workspace;
 
-    /// Every shape is filled without folds; in columns stems are upright.
+    /// Every shape is filled without folds; in columns, stems are upright.
     #[test]
     fn shapes_are_filled_well() {
         let all = shapes(&workspace()).unwrap();

@@ -1,4 +1,4 @@
-//! The files of a package, laid out as they will be installed below `/`.
+//! The files of a package, in the layout they are installed in below `/`.
 
 use crate::chore::{ChoreError, at};
 use crate::shell;
@@ -9,18 +9,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Completion scripts: the shell, and the file.
+/// The shells with completion scripts, and the files of those.
 const COMPLETIONS: [(&str, &str); 3] = [
     ("bash", "usr/share/bash-completion/completions/pathwarp"),
     ("zsh", "usr/share/zsh/vendor-completions/_pathwarp"),
     ("fish", "usr/share/fish/vendor_completions.d/pathwarp.fish"),
 ];
-/// Sizes of the icon as a picture, for desktops that do not draw SVG.
+/// Sizes of the icon as a bitmap, for desktops that do not draw SVG.
 const ICON_SIZES: [u32; 3] = [48, 128, 256];
-/// Documentation; the README's relative links to it stay valid.
+/// The folder of the documentation, laid out so that relative links in the README stay valid.
 const DOCS: &str = "usr/share/doc/pathwarp";
 
-/// A folder laid out as below `/`.
+/// A folder with the layout of `/`.
 pub(super) struct Tree {
     /// The workspace.
     root: PathBuf,
@@ -29,7 +29,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Writes all files to `folder`, which is emptied first. `program` writes those that follow from its options.
+    /// Writes all files to `folder`, after emptying it. Manual pages, completions and plug-ins are written by `program` itself.
     pub(super) fn lay_out(root: &Path, program: &Path, folder: &Path) -> Result<Self, ChoreError> {
         if folder.exists() {
             fs::remove_dir_all(folder).map_err(at(folder))?;
@@ -47,7 +47,7 @@ impl Tree {
         Ok(tree)
     }
 
-    /// The icon, and the entry that opens a drawing in the editor.
+    /// Adds the icon, and the desktop entry that opens a drawing in the editor.
     fn desktop(&self) -> Result<(), ChoreError> {
         const ICONS: &str = "usr/share/icons/hicolor";
         let icon = self.root.join("packaging/pathwarp.svg");
@@ -60,7 +60,7 @@ impl Tree {
         self.copy(&self.root.join("packaging/pathwarp.desktop"), "usr/share/applications/pathwarp.desktop")
     }
 
-    /// The plug-ins for other programs, where these look for what is installed for all users. They find the program on the PATH.
+    /// Adds the plug-ins for other programs, in the folders for plug-ins of all users. They find the program on the PATH.
     fn plug_ins(&self) -> Result<(), ChoreError> {
         let gimp = self.at(&format!("usr/lib/{}-linux-gnu/gimp/3.0/plug-ins", std::env::consts::ARCH))?;
         self.run(&["install", "gimp", "--dir", &gimp.display().to_string()])?;
@@ -83,7 +83,7 @@ impl Tree {
         self.write(&format!("{DOCS}/copyright"), licences_text(&self.root)?.as_bytes())
     }
 
-    /// A file of the tree; its folder is made.
+    /// The path of a file in the tree. Creates its folder.
     fn at(&self, file: &str) -> Result<PathBuf, ChoreError> {
         let path = self.folder.join(file);
         let folder = path.parent().unwrap_or(&self.folder);
@@ -110,13 +110,13 @@ impl Tree {
     }
 }
 
-/// How the names of files with licences and copyright notices begin.
+/// How the names of files with licences and copyright notices start.
 const NAMES: [&str; 6] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"];
 /// The licence of the bundled font.
 const FONT: &str = "crates/pathwarp-svg/fonts/OFL.txt";
 const RULE: &str = "------------------------------------------------------------------------";
 
-/// Returns the text.
+/// The licences and copyright notices of the program and of everything linked into it.
 fn licences_text(root: &Path) -> Result<String, ChoreError> {
     let metadata = metadata(root)?;
     let mut out = String::from("pathwarp is licensed under MIT or Apache-2.0, at your option.\n\n");
@@ -125,7 +125,7 @@ fn licences_text(root: &Path) -> Result<String, ChoreError> {
     }
     let _ = writeln!(out, "{RULE}\nNoto Sans, the fallback font inside the program:\n\n{}", read(&root.join(FONT))?);
     out += "These crates are linked into the program:\n\n";
-    // Texts, each with the crates that have it.
+    // Each text, with the crates that include it.
     let mut texts: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for package in linked(&metadata)? {
         let field = |name: &str| package[name].as_str().unwrap_or_default();
@@ -155,7 +155,7 @@ fn metadata(root: &Path) -> Result<Value, ChoreError> {
     serde_json::from_slice(&out.stdout).map_err(|e| e.to_string())
 }
 
-/// The packages of others that the program contains, by name: not what only builds or tests need, and no procedural macros.
+/// The third-party packages linked into the program, by name: without dependencies of builds or tests only, and without procedural macros.
 fn linked(metadata: &Value) -> Result<Vec<&Value>, ChoreError> {
     let packages: BTreeMap<&str, &Value> =
         array(&metadata["packages"]).filter_map(|p| Some((p["id"].as_str()?, p))).collect();
@@ -183,7 +183,7 @@ fn array(value: &Value) -> impl Iterator<Item = &Value> {
     value.as_array().into_iter().flatten()
 }
 
-/// The files in a folder that state a licence. Of a choice of licences, the text of Apache-2.0 is left out.
+/// The licence files in a folder. Where there is a choice of licences, the text of Apache-2.0 is left out.
 fn licences(folder: &Path) -> Result<Vec<PathBuf>, ChoreError> {
     let upper = |p: &Path| p.file_name().map(|n| n.to_string_lossy().to_uppercase()).unwrap_or_default();
     let mut files = Vec::new();

@@ -1,6 +1,7 @@
-//! `cargo xtask package`: what a release hands out. The program writes its own manual pages, completions and plug-ins into
-//! `target/package/`; cargo-deb packs them, and `tar` packs them with a static program. `cargo xtask reproducible` builds all of it twice,
-//! from copies of the sources in two folders, and compares the bytes.
+//! `cargo xtask package`: makes the packages of a release. The program writes its own manual pages, completions and plug-ins to
+//! `target/package/`; cargo-deb packs them for Debian, and `tar` packs them with a statically linked program.
+//!
+//! `cargo xtask reproducible` builds and packs two copies of the sources, in different folders, and compares the bytes.
 
 use crate::chore::{Chore, ChoreError, at, hex, path_option, workspace};
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -12,7 +13,6 @@ use std::{fs, process};
 
 mod contents;
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
 fn command() -> Command {
@@ -38,7 +38,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     Ok(format!("wrote {}", packed.display()))
 }
 
-/// Lays the files out in `TARGET/package/` and packs them. Returns the package.
+/// Lays out the files in `TARGET/package/` and packs them. Returns the path of the package.
 fn pack(build: &Build<'_>, program: &Path) -> Result<PathBuf, ChoreError> {
     let folder = build.target.join("package");
     fs::create_dir_all(&folder).map_err(at(&folder))?;
@@ -46,7 +46,7 @@ fn pack(build: &Build<'_>, program: &Path) -> Result<PathBuf, ChoreError> {
     if build.linked_statically { archive(build, &tree, &folder) } else { debian(build, &folder) }
 }
 
-/// Packs the tree with cargo-deb. Cargo.toml of pathwarp-cli describes the package.
+/// Packs the tree with cargo-deb, as described in the Cargo.toml of pathwarp-cli.
 fn debian(build: &Build<'_>, folder: &Path) -> Result<PathBuf, ChoreError> {
     let output = folder.join("pathwarp.deb");
     let mut deb = process::Command::new(env!("CARGO"));
@@ -57,7 +57,7 @@ fn debian(build: &Build<'_>, folder: &Path) -> Result<PathBuf, ChoreError> {
     Ok(output)
 }
 
-/// Packs the tree as an archive, with the same order, owner and time of all files in every run.
+/// Packs the tree as an archive in which order, owners and times of files are always the same.
 fn archive(build: &Build<'_>, tree: &Tree, folder: &Path) -> Result<PathBuf, ChoreError> {
     let name = format!("pathwarp-{}-{}-linux", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH);
     let output = folder.join(format!("{name}.tar.gz"));
@@ -69,14 +69,14 @@ fn archive(build: &Build<'_>, tree: &Tree, folder: &Path) -> Result<PathBuf, Cho
     Ok(output)
 }
 
-/// Runs a command to its end.
+/// Runs a command, which must succeed.
 fn succeed(command: &mut process::Command, advice: &str) -> Result<(), ChoreError> {
     let name = command.get_program().to_string_lossy().into_owned();
     let status = command.status().map_err(|e| format!("{name}: {e}; {advice}"))?;
     if status.success() { Ok(()) } else { Err(format!("{name} ended with {status}; if it is missing, {advice}")) }
 }
 
-/// Separates flags in `CARGO_ENCODED_RUSTFLAGS`, so that they may contain spaces.
+/// Separates flags in `CARGO_ENCODED_RUSTFLAGS`, where they may contain spaces.
 const SEPARATOR: &str = "\x1f";
 
 /// A build of the program.
@@ -85,9 +85,9 @@ struct Build<'a> {
     root: &'a Path,
     /// The target folder.
     target: &'a Path,
-    /// The program needs no library at run time, not even the system's C library.
+    /// Whether the program is to need no library at run time, not even the C library.
     linked_statically: bool,
-    /// The time that packages bear, in seconds since 1970.
+    /// The time stamp of packages, in seconds since 1970.
     time: &'a str,
 }
 
@@ -106,7 +106,7 @@ impl Build<'_> {
         Ok(folder.join("pathwarp").with_extension(std::env::consts::EXE_EXTENSION))
     }
 
-    /// Compiler flags. Messages of panics contain the paths of source files: paths of this machine are replaced.
+    /// Compiler flags. They replace paths of this machine, since panic messages contain paths of source files.
     fn flags(&self) -> Result<Vec<String>, ChoreError> {
         let crates = cargo_home()?.join("registry/src");
         let renamed = |from: &Path, to: &str| format!("--remap-path-prefix={}={to}", from.display());
@@ -119,13 +119,13 @@ impl Build<'_> {
     }
 }
 
-/// Cargo's folder, which has the sources of the crates.
+/// Cargo's home folder, which holds the sources of the crates.
 fn cargo_home() -> Result<PathBuf, ChoreError> {
     let own = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     own.or_else(|| Some(std::env::home_dir()?.join(".cargo"))).ok_or_else(|| "set CARGO_HOME".into())
 }
 
-/// The time that packages bear: `SOURCE_DATE_EPOCH`, or else that of the last commit.
+/// The time stamp of packages: `SOURCE_DATE_EPOCH`, or else the time of the last commit.
 fn time(root: &Path) -> Result<String, ChoreError> {
     if let Ok(time) = std::env::var("SOURCE_DATE_EPOCH") {
         return Ok(time);
@@ -135,10 +135,9 @@ fn time(root: &Path) -> Result<String, ChoreError> {
     if time.is_empty() { Err("this is no git repository: set SOURCE_DATE_EPOCH".into()) } else { Ok(time) }
 }
 
-/// See the module.
 pub(crate) const REPRODUCIBLE: Chore = Chore { command: reproducible_command, run: reproducible };
 
-/// The folders of the copies. Their lengths differ, so that a path that is left in the program would move what follows it.
+/// The folders of the copies. Their names differ in length, so that a path left in the program would shift what follows it.
 const COPIES: [&str; 2] = ["one", "a-second-folder/with a space"];
 
 fn reproducible_command() -> Command {
@@ -179,7 +178,7 @@ fn reproducible(arguments: &ArgMatches) -> Result<String, ChoreError> {
     if sums[0] == sums[1] { Ok(said + "the same bytes") } else { Err(said + "the bytes differ") }
 }
 
-/// Writes the files of the last commit to a folder.
+/// Exports the files of the last commit to a folder.
 fn export(root: &Path, to: &Path) -> Result<(), ChoreError> {
     fs::create_dir_all(to).map_err(at(to))?;
     let git = |args: &[&str]| {

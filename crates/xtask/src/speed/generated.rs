@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 
 /// Width of the page.
 const SIZE: f64 = 1000.0;
-/// Segments of one petal.
+/// Segments per petal.
 const PER_PETAL: f64 = 12.0;
-/// Start of the pseudorandom numbers.
+/// Seed of the pseudorandom numbers.
 const SEED: u64 = 20_261_122;
 
 /// Numbers in [0, 1) by a linear congruential generator (Knuth's MMIX).
@@ -20,7 +20,7 @@ impl Random {
     }
 }
 
-/// A drawing of `n` smooth cubic segments, `each` to a path: flowers r(φ) = R·(1 + a·cos(kφ + p)) with a and p at random.
+/// A drawing of `n` smooth cubic segments, `each` to a path: flowers r(φ) = R·(1 + a·cos(kφ + p)) with random a and p.
 pub(super) fn flowers(n: usize, each: usize) -> String {
     let mut random = Random(SEED);
     let paths = n.div_ceil(each.max(1));
@@ -52,7 +52,7 @@ pub(super) fn flowers(n: usize, each: usize) -> String {
     out + "</svg>\n"
 }
 
-/// A page of `paragraphs`, each of [`LETTERS`] letters in words of two to nine.
+/// A page of `paragraphs` paragraphs, each of [`LETTERS`] letters in words of two to nine.
 pub(super) fn page(paragraphs: usize, font: &str) -> String {
     let mut random = Random(SEED);
     let mut out = format!(
@@ -73,7 +73,7 @@ pub(super) fn page(paragraphs: usize, font: &str) -> String {
     out + "</svg>\n"
 }
 
-/// Letters of a paragraph.
+/// Letters per paragraph.
 pub(super) const LETTERS: usize = 250;
 
 #[cfg(test)]
@@ -101,7 +101,7 @@ mod tests {
         assert!(usvg::Tree::from_str(&text, &usvg::Options::default()).is_ok());
     }
 
-    /// The joints are smooth: handles before and after a node are parallel.
+    /// The handles before and after a node are parallel.
     #[test]
     fn joints_are_smooth() {
         let svg = flowers(120, 120);

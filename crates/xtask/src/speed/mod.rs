@@ -1,7 +1,7 @@
 //! `cargo xtask speed`: times the program as people run it, and prints a table for `docs/benchmarks.md`.
 //!
-//! The yardstick is `usvg IN OUT` on the same file, which reads, resolves and writes a drawing without bending it. Both run as whole
-//! processes, in turn. Unless a row says otherwise, it compares CPU times and gives the median of paired runs.
+//! The yardstick is `usvg IN OUT` on the same file, which reads, resolves and writes a drawing without bending it. Both run alternately, as
+//! whole processes. Unless a row says otherwise, it compares CPU times and gives the median of paired runs.
 
 use crate::chore::{Chore, ChoreError, at, count_option, path_option, paths, program_option, workspace};
 use crate::process::{Job, Usage, paired};
@@ -14,7 +14,6 @@ use std::path::{Path, PathBuf};
 
 pub(crate) mod generated;
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
 fn command() -> Command {
@@ -70,7 +69,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     Ok(table)
 }
 
-/// Refuses a usvg that does not run.
+/// Fails if usvg does not run.
 fn check(usvg: &Path) -> Result<(), ChoreError> {
     match Job::new(usvg, ["--version"]).run() {
         Ok(Some(_)) => Ok(()),
@@ -81,7 +80,7 @@ fn check(usvg: &Path) -> Result<(), ChoreError> {
     }
 }
 
-/// Everything that the rows need.
+/// Everything needed to measure.
 struct Bench {
     program: PathBuf,
     usvg: PathBuf,
@@ -89,14 +88,14 @@ struct Bench {
     rounds: usize,
     largest: usize,
     font: String,
-    /// For generated drawings and results.
+    /// The folder for generated drawings and results.
     folder: PathBuf,
 }
 
-/// Measures and adds rows.
+/// Measures something and adds rows to the table.
 type Part = fn(&Bench, &mut String) -> Result<(), ChoreError>;
 
-/// The parts of the table by name.
+/// The parts of the table, by name.
 const PARTS: [(&str, Part); 7] = [
     ("drawings", drawings),
     ("deformations", deformations),
@@ -107,9 +106,9 @@ const PARTS: [(&str, Part); 7] = [
     ("files", files),
 ];
 
-/// The default run: what the README shows first.
+/// The run that is measured by default: what the README shows first.
 const WARP: [&str; 5] = ["warp", "--style", "flag", "--bend", "40%"];
-/// Every deformation that bends, as its help suggests it.
+/// Every deformation that bends, as its help suggests using it.
 const DEFORMATIONS: [&[&str]; 20] = [
     &["shaper", "--shaper", "M0,120 Q60,90 120,120 L110,0 Q60,30 10,0 Z"],
     &["envelope", "--bottom", "M0,160 C120,100 260,220 400,150", "--height", "90"],
@@ -132,17 +131,17 @@ const DEFORMATIONS: [&[&str]; 20] = [
     &["mobius"],
     &["expr", "--x", "x + w/40*sin(y/h*9)"],
 ];
-/// Segments of the large generated path.
+/// Segments of the large generated drawings.
 const LARGE: usize = 30_000;
-/// Segments of the drawing for several threads.
+/// Segments of the drawings for several threads.
 const THREADED: usize = 100_000;
-/// Segments of a path in drawings of many paths.
+/// Segments per path in drawings of many paths.
 const EACH: usize = 60;
-/// Files of a batch.
+/// Files in a batch.
 const BATCH: usize = 3000;
-/// Paragraphs of the page of text.
+/// Paragraphs on the page of text.
 const PARAGRAPHS: usize = 85;
-/// Memory of the program itself in bytes; only what goes beyond is compared with the size of the input.
+/// The memory of the program itself in bytes. Only what it takes beyond this is compared with the size of the input.
 const FIXED: f64 = 15e6;
 
 impl Bench {
@@ -170,7 +169,7 @@ impl Bench {
         paired(a, b, self.rounds)?.ok_or_else(|| "a generated drawing was refused".into())
     }
 
-    /// Compares two jobs over all drawings: ratio of the sums, median and largest ratio.
+    /// Compares two jobs on all drawings: the ratio of the sums of CPU times, and the median and the largest ratio.
     fn compare(&self, a: impl Fn(&Path) -> Job, b: impl Fn(&Path) -> Job) -> Result<String, ChoreError> {
         let mut timed = Vec::with_capacity(self.drawings.len());
         for file in &self.drawings {
@@ -198,12 +197,12 @@ fn row(out: &mut String, what: &str, measured: &str) {
     let _ = writeln!(out, "| {what} | {measured} |");
 }
 
-/// A ratio of CPU times with both of them.
+/// The ratio of two CPU times, and both of them.
 fn ratio((a, b): (Usage, Usage)) -> String {
     format!("{:.2} ({:.0} and {:.0} ms)", a.cpu / b.cpu, a.cpu * 1e3, b.cpu * 1e3)
 }
 
-/// Peak memory beyond the fixed part, in multiples of the input.
+/// Peak memory beyond [`FIXED`], in multiples of the size of the input.
 fn memory(usage: &Usage, file: &Path) -> Result<f64, ChoreError> {
     let size = fs::metadata(file).map_err(at(file))?.len();
     Ok((usage.peak as f64 - FIXED).max(0.0) / size as f64)
@@ -258,14 +257,14 @@ fn text(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     Ok(())
 }
 
-/// CPU time from 10³ segments on, in steps of ten, and memory at the largest.
+/// Growth of the CPU time from 10³ segments in steps of ten, and memory for the largest drawing.
 fn growth(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     let start = b.warp(&b.generate("small.svg", &generated::flowers(10, 10))?).median(b.rounds, |u| u.cpu)?;
     for (kind, each) in [("one path", usize::MAX), ("paths of 60", EACH)] {
         let (mut times, mut n, mut peak) = (Vec::new(), 1000, String::new());
         while n <= b.largest {
             let file = b.generate("growth.svg", &generated::flowers(n, each.min(n)))?;
-            // The largest take long enough to be measured well in one run.
+            // The largest ones take long enough to be measured well in one run.
             let rounds = if n > THREADED { 1 } else { b.rounds };
             let used = b.warp(&file).median(rounds, |u| u.cpu)?;
             times.push((n as f64, used.cpu - start.cpu));
@@ -290,19 +289,19 @@ fn threads(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     Ok(())
 }
 
-/// Elapsed time with one thread by that with two.
+/// The ratio of elapsed times with one thread and with two.
 fn speedup(b: &Bench, job: &Job) -> Result<String, ChoreError> {
     let with = |jobs: &str| job.with(&["--jobs", jobs]).median(b.rounds, |u| u.wall);
     let (one, two) = (with("1")?, with("2")?);
     Ok(format!("{:.2} ({:.0} and {:.0} ms)", one.wall / two.wall, one.wall * 1e3, two.wall * 1e3))
 }
 
-/// A batch of files in one process, against usvg's crate. Both read every file and write another one, ours first under a temporary
-/// name.
+/// A batch of files in one process, compared with the usvg crate. Both read every file and write another; pathwarp writes it under a temporary
+/// name first.
 fn files(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     let (from, to) = (b.folder.join("batch"), b.folder.join("batch-warped"));
     fs::create_dir_all(&from).map_err(at(&from))?;
-    // Drawings that both accept, repeated.
+    // Drawings that usvg accepts, repeated.
     let accepted: Vec<&PathBuf> = b.drawings.iter().filter(|f| resolved(f).is_some()).collect();
     let mut batch = Vec::with_capacity(BATCH);
     for (i, file) in accepted.iter().cycle().take(BATCH).enumerate() {
@@ -332,7 +331,7 @@ fn files(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     Ok(())
 }
 
-/// A file's text as usvg's crate writes it; `None` if it refuses the file, or needs fonts for it.
+/// A file as the usvg crate writes it; `None` if it refuses the file or would need fonts.
 fn resolved(file: &Path) -> Option<String> {
     let text = fs::read_to_string(file).ok()?;
     if text.contains("<text") {

@@ -1,4 +1,4 @@
-//! δ, the factor by which a point comes closer to the eye: a polynomial over a reference.
+//! Computes δ, the factor by which a point comes closer to the eye, a polynomial over a reference.
 //!
 //! Over a tetrahedron δ(u) = Σ δᵢ·n!/(i!j!k!l!)·u₀ⁱu₁ʲu₂ᵏu₃ˡ in barycentric coordinates, over a box the tensor product of
 //! Bernstein polynomials. A *sheet*, a triangle or a rectangle, gives every point the δ of its ray: the barycentric coordinates of
@@ -41,7 +41,7 @@ impl Simplex {
         Self { degree, terms: values.map(|(node, delta)| (node, delta * coefficient(&node))).collect() }
     }
 
-    /// The polynomial with polynomials for the barycentric coordinates.
+    /// Substitutes polynomials for the barycentric coordinates.
     fn in_terms_of(&self, u: &[Poly3; 4]) -> Poly3 {
         let powers = u.each_ref().map(|u| u.powers(self.degree));
         let term = |node: &[usize; 4]| {
@@ -74,7 +74,7 @@ impl Simplex {
 }
 
 impl Dilation3 {
-    /// δ over a reference with these values at its control points, in the order of its nodes.
+    /// Makes δ over a reference from its values at the control points, in the order of the reference's nodes.
     pub(super) fn new(reference: &Reference3, eye: DVec3, values: &[f64]) -> Self {
         let simplex = |n: usize| Simplex::new(n, reference.nodes().into_iter().zip(values.iter().copied()));
         let tensor = |size: [usize; 3]| Tensor::bernstein(size, values.iter().map(|v| [*v]).collect());
@@ -167,7 +167,7 @@ impl Dilation3 {
                 (delta, Poly3::constant(1.0))
             }
             Self::Rectangle { eye, axis, at, local, tensor } => {
-                // A ray's coordinates on the plane are O + (p − O)·d/(p − O)ₐ: made homogeneous by the depth (p − O)ₐ.
+                // A ray meets the plane at O + (p − O)·d/(p − O)ₐ. Multiplying by the depth (p − O)ₐ makes this homogeneous.
                 let depth = chart.linear(DVec3::AXES[*axis].extend(-eye[*axis]));
                 let d = at - eye[*axis];
                 let coordinate = |a: usize| {
@@ -197,7 +197,7 @@ impl Dilation3 {
         }
     }
 
-    /// Linear forms in (x, y, z, 1) that are not negative inside the reference, or inside the pyramid of a sheet's rays.
+    /// Linear forms in (x, y, z, 1) that are nonnegative inside the reference, or inside the pyramid of a sheet's rays.
     pub(super) fn sides(&self, reference: &Reference3) -> Vec<DVec4> {
         match self {
             Self::Tetrahedron { forms, .. } => forms.to_vec(),
@@ -223,7 +223,7 @@ impl Dilation3 {
         }
     }
 
-    /// δ as a linear form in (x, y, z, 1), if it is one by its degree.
+    /// δ as a linear form in (x, y, z, 1), if its degree makes it one.
     pub(super) fn linear(&self) -> Option<DVec4> {
         match self {
             Self::Tetrahedron { forms, terms } if terms.degree == 1 => {
@@ -236,12 +236,12 @@ impl Dilation3 {
         }
     }
 
-    /// Returns `true` if δ is the same all along a ray.
+    /// Whether δ is constant along rays.
     pub(super) fn is_sheet(&self) -> bool {
         matches!(self, Self::Triangle { .. } | Self::Rectangle { .. })
     }
 
-    /// Adds the boundary of the domain: δ > 0.
+    /// Adds the boundary of the domain, which is where δ > 0.
     pub(super) fn edge(&self, out: &mut Creases3) {
         let own = self.clone();
         out.edge(move |p| {

@@ -1,10 +1,11 @@
-//! Anamorphosis in space: models that look unchanged from one place.
+//! Anamorphosis in space: deforms models so that they look unchanged from one place.
 //!
 //! Every point moves along its ray through the eye O: p̂ = O + (p − O)/δ(p). Control points bᵢ of a reference are moved along their
 //! rays to O + (bᵢ − O)/δᵢ, and δ interpolates ([`dilation`]). Over a tetrahedron of degree 1 the map is a perspective collineation
 //! with centre O, in coordinates about O the matrix [I 0; d d₀] with δ(p) = d·p + d₀; its axis, the plane δ = 1, stays in place.
 //!
-//! A point p prescribed to go to p/δ sets one control point, δᵢ + (δ − δ(p))/Bᵢ(p), from rest the paper's δ₃ = 1 + (δ − 1)/u₃.
+//! To prescribe δ at a point p, one control point is set to δᵢ + (δ − δ(p))/Bᵢ(p), which from rest is the paper's
+//! δ₃ = 1 + (δ − 1)/u₃.
 //!
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016); D. Hansford, D. Collins, *Anamorphic 3D
 //! geometry*, Computing 79 (2007).
@@ -27,13 +28,13 @@ pub use reference::Reference3;
 /// A push of a control point, or of a point of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Push3 {
-    /// To this many times its distance from the eye.
+    /// Moves a control point to a multiple of its distance from the eye.
     By([usize; 4], f64),
-    /// This much further from the eye.
+    /// Moves a control point this much further from the eye.
     Away([usize; 4], f64),
-    /// To the point of its ray nearest to this one.
+    /// Moves a control point to the point on its ray nearest to this one.
     To([usize; 4], DVec3),
-    /// So that this point goes to this many times its distance from the eye.
+    /// Moves a point of the model to a multiple of its distance from the eye.
     Prescribe(DVec3, f64),
 }
 
@@ -80,7 +81,7 @@ pub struct Anamorph3 {
 }
 
 impl Anamorph3 {
-    /// Starts with nothing moved.
+    /// Makes an anamorphosis that moves nothing yet.
     #[must_use]
     pub fn new(eye: DVec3, reference: Reference3) -> Self {
         Self { eye, reference, pushes: Vec::new(), local: false }
@@ -169,8 +170,8 @@ impl Anamorph3 {
                     Dilation3::new(&self.reference, self.eye, &unit).at(p)
                 };
                 let free = (0..nodes.len()).filter(|i| !self.reference.held(nodes[*i], self.local));
-                let most = free.map(|i| (i, influence(i))).max_by(|a, b| a.1.total_cmp(&b.1));
-                let (i, b) = most.filter(|(_, b)| *b > 1e-9).ok_or_else(|| {
+                let strongest = free.map(|i| (i, influence(i))).max_by(|a, b| a.1.total_cmp(&b.1));
+                let (i, b) = strongest.filter(|(_, b)| *b > 1e-9).ok_or_else(|| {
                     wrong("is on a fixed face, or no control point is free to move; raise `degree` or choose another `reference`".into())
                 })?;
                 values[i] = sound(values[i] + (wanted - here) / b)?;
@@ -194,10 +195,10 @@ fn perspective(eye: DVec3, delta: DVec4) -> DMat4 {
 
 // The map p̂ = O + (p − O)/δ(p), and its inverse along each ray.
 
-/// Points this close to a side of the moved region, relative to the coordinates, are on it.
+/// Points this close to a side of the moved region, relative to the coordinates, count as on it.
 const ROUNDING: f64 = 1e-12;
 
-/// A form in (x, y, z, 1) at a point, 0 on a side of the moved region.
+/// Evaluates a form in (x, y, z, 1) that is 0 on a side of the moved region.
 fn beyond(form: &DVec4, p: DVec3) -> f64 {
     let q = p.extend(1.0);
     let v = form.dot(q);
@@ -209,22 +210,22 @@ fn beyond(form: &DVec4, p: DVec3) -> f64 {
 struct RadialMap {
     eye: DVec3,
     dilation: Dilation3,
-    /// If the map is local: forms in (x, y, z, 1) of which none is negative where points move.
+    /// For a local map, forms in (x, y, z, 1) that are all nonnegative where points move.
     within: Option<Arc<[DVec4]>>,
-    /// The least and the largest δ of a control point.
+    /// The smallest and the largest δ of a control point.
     range: (f64, f64),
 }
 
 impl RadialMap {
-    /// Returns `true` if the point may move.
+    /// Whether a point may move.
     fn moves(&self, p: DVec3) -> bool {
         self.within.as_deref().is_none_or(|forms| forms.iter().all(|f| beyond(f, p) >= 0.0))
     }
 
-    /// Returns whether a box moves or stays; `None` if the end of the moved region may cross it.
+    /// Whether a box may move. `None` if a side of the moved region may cross it.
     fn moves_on(&self, on: &Box3) -> Option<bool> {
         let corners = on.corners();
-        // The moved region is convex: a box is inside if its corners are, and outside if one side has all of them behind it.
+        // The moved region is convex, so a box is inside if its corners are, and outside if they are all behind one side.
         if corners.iter().all(|p| self.moves(*p)) {
             return Some(true);
         }
@@ -295,15 +296,15 @@ impl Map3 for RadialMap {
     }
 }
 
-/// The inverse: on the ray of q = O + r the point O + s·r with s = δ(O + s·r).
+/// The inverse. It takes q = O + r to the point O + s·r on the same ray with s = δ(O + s·r).
 #[derive(Debug, Clone)]
 struct RadialInverse(RadialMap);
 
-/// Steps of Newton's method along a ray.
-const STEPS: usize = 50;
-/// Places along a ray at which a root is looked for if Newton's method finds none.
-const PLACES: u32 = 96;
-/// The range in which they lie exceeds that of the control points' δ by this factor.
+/// Limit on the steps of Newton's method along a ray.
+const MAX_STEPS: usize = 50;
+/// Number of intervals along a ray to search for a root if Newton's method finds none.
+const INTERVALS: u32 = 96;
+/// Factor by which the searched range exceeds that of the control points' δ.
 const BEYOND: f64 = 8.0;
 
 impl RadialInverse {
@@ -313,9 +314,9 @@ impl RadialInverse {
         (delta - s, slope.dot(r) - 1.0)
     }
 
-    /// The root near `s`. Where the map keeps the order of points along the ray, the slope is negative.
+    /// Finds the root near `s`. The slope must be negative, which means that the map keeps the order of points along the ray.
     fn newton(&self, r: DVec3, mut s: f64) -> Option<f64> {
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             let (off, slope) = self.off(r, s);
             let next = s - off / slope;
             if !(next > 0.0 && next.is_finite()) {
@@ -336,16 +337,16 @@ impl RadialInverse {
         if self.0.dilation.is_sheet() {
             return Some(self.0.dilation.at(q)).filter(|d| *d > 0.0);
         }
-        let (least, most) = (self.0.range.0 / BEYOND, self.0.range.1 * BEYOND);
-        let found = self.newton(r, 1.0).filter(|s| (least..=most).contains(s));
+        let (min, max) = (self.0.range.0 / BEYOND, self.0.range.1 * BEYOND);
+        let found = self.newton(r, 1.0).filter(|s| (min..=max).contains(s));
         found.or_else(|| {
-            let place = |i: u32| least * (most / least).powf(f64::from(i) / f64::from(PLACES));
+            let place = |i: u32| min * (max / min).powf(f64::from(i) / f64::from(INTERVALS));
             let falls = |i: &u32| self.off(r, place(*i)).0 >= 0.0 && self.off(r, place(i + 1)).0 < 0.0;
-            (0..PLACES).filter(falls).find_map(|i| self.bisected(r, place(i), place(i + 1)))
+            (0..INTERVALS).filter(falls).find_map(|i| self.bisected(r, place(i), place(i + 1)))
         })
     }
 
-    /// The root between a place where the difference is positive and one where it is negative.
+    /// Bisects between `a`, where the difference is positive, and `b`, where it is negative.
     fn bisected(&self, r: DVec3, mut a: f64, mut b: f64) -> Option<f64> {
         for _ in 0..64 {
             let m = 0.5 * (a + b);
@@ -357,7 +358,7 @@ impl RadialInverse {
 
     fn source(&self, q: DVec3) -> Option<DVec3> {
         let source = self.factor(q).map(|s| self.0.eye + (q - self.0.eye) * s).filter(|p| self.0.moves(*p));
-        // Outside points stay where they are, unless points from inside are there.
+        // Outside points stay where they are, unless inside points have moved there.
         source.or_else(|| (!self.0.moves(q)).then_some(q))
     }
 }
@@ -376,8 +377,7 @@ impl Map3 for RadialInverse {
     }
 }
 
-// The registry's entry: reads an [`Anamorph3`] from text.
-
+/// The entry of the registry, which reads an [`Anamorph3`] from text.
 pub(in crate::deform) struct Entry;
 
 /// A tetrahedron in the frame of laws and cases, with its eye.
@@ -505,7 +505,7 @@ impl Deformation3 for Entry {
     }
 }
 
-/// Reads the pushes: control points first, then points.
+/// Reads the pushes of control points, then those of points.
 fn pushes(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>, Error> {
     let mut out = Vec::new();
     for name in ["push", "away", "at"] {

@@ -1,10 +1,10 @@
-//! The reference: a regular net of control points, before it is moved.
+//! The reference of an anamorphosis.
 
 use crate::settings::Box3;
 use glam::DVec3;
 use pathwarp::Error;
 
-/// A regular net of control points.
+/// A regular net of control points, before any is moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reference3 {
     /// Points (i·A + j·B + k·C + l·D)/n with i + j + k + l = n.
@@ -13,15 +13,15 @@ pub enum Reference3 {
     Triangle([DVec3; 3], usize),
     /// Points i, j, k of a box, with degrees along the axes.
     Cuboid(Box3, [usize; 3]),
-    /// A sheet: a box that is flat along the given axis, where its points have the number 0.
+    /// A sheet: a box that is flat along the given axis, along which all points have the number 0.
     Rectangle(Box3, usize, [usize; 3]),
 }
 
-/// Thinner than this share of its size is flat.
+/// A reference thinner than this fraction of its size counts as flat.
 const FLAT: f64 = 1e-9;
 
 impl Reference3 {
-    /// The reference with these points (four corners of a tetrahedron, three of a triangle, two of a box) for an eye.
+    /// Makes a reference from its points (four corners of a tetrahedron, three of a triangle, two of a box) for an eye.
     ///
     /// # Errors
     /// The points do not span such a reference, or the eye lies in the plane of a sheet.
@@ -74,7 +74,7 @@ impl Reference3 {
         }
     }
 
-    /// The control points' numbers. Only a tetrahedron's have a fourth.
+    /// Lists the numbers of the control points. Only those of a tetrahedron have a fourth.
     #[must_use]
     pub fn nodes(&self) -> Vec<[usize; 4]> {
         match *self {
@@ -90,7 +90,7 @@ impl Reference3 {
         }
     }
 
-    /// A control point.
+    /// Returns a control point.
     #[must_use]
     pub fn point(&self, node: [usize; 4]) -> DVec3 {
         let weighted = |corners: &[DVec3], n: usize| {
@@ -106,7 +106,7 @@ impl Reference3 {
         }
     }
 
-    /// Describes the numbers of its control points.
+    /// Describes the numbers of the control points.
     #[must_use]
     pub fn numbers(&self) -> String {
         match self {
@@ -118,8 +118,8 @@ impl Reference3 {
         }
     }
 
-    /// Returns `true` for control points that a prescribed point must not move: the face ABC of a tetrahedron, the side AB of a
-    /// triangle, and if `local` the boundary of a box or rectangle.
+    /// Whether a prescribed point must not move a control point: those on the face ABC of a tetrahedron, the side AB of a triangle,
+    /// and, if `local`, the boundary of a box or rectangle.
     #[must_use]
     pub(super) fn held(&self, node: [usize; 4], local: bool) -> bool {
         match self {

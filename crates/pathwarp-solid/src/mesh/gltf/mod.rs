@@ -1,4 +1,4 @@
-//! glTF 2.0, `.glb` and `.gltf`, read by the crate gltf.
+//! glTF 2.0, `.glb` and `.gltf`, read by means of the crate gltf.
 //!
 //! Every node with a mesh becomes an object in the scene's coordinates. Materials, textures and pictures are carried along as they are.
 //! Nothing outside the file is opened. Lengths there are metres, and millimetres here.
@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// Millimetres in glTF's unit of length.
 const METRE: f64 = 1000.0;
 
-// Reads glTF.
+
 
 /// Returns `true` if the file begins like binary glTF, or is JSON that says it is glTF.
 #[must_use]
@@ -35,7 +35,7 @@ pub fn sniff(bytes: &[u8]) -> bool {
 /// Reads the meshes of the default scene, or of the first, in its coordinates as millimetres.
 ///
 /// # Errors
-/// The file is damaged or refers to buffers outside itself, or shows more than the limits allow.
+/// The file is damaged, refers to buffers outside itself, or shows more than the limits allow.
 pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     let damaged =
         |e: String| MeshError::whole(format!("is a damaged glTF file: {}", e.chars().take(200).collect::<String>()));
@@ -59,7 +59,7 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     let mut open: Vec<(Node<'_>, DMat4)> = scene.nodes().map(|n| (n, DMat4::from_scale(DVec3::splat(METRE)))).collect();
     open.reverse();
     while let Some((node, parent)) = open.pop() {
-        // Children that are their own parents' parents go on for ever.
+        // Without a limit, a node that is its own descendant would go on for ever.
         budget.take(Limit::Elements, 1.0)?;
         let own = node.transform().matrix().map(|column| column.map(f64::from));
         let to_scene = parent * DMat4::from_cols_array_2d(&own);
@@ -70,9 +70,9 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     if mesh.positions.is_empty() {
         return Err(MeshError::whole("shows no mesh with positions"));
     }
-    for (key, name) in [("animations", "animations"), ("cameras", "cameras"), ("skins", "skins")] {
+    for key in ["animations", "cameras", "skins"] {
         if root.get(key).and_then(Value::as_array).is_some_and(|a| !a.is_empty()) {
-            lost.insert(name.into());
+            lost.insert(key.into());
         }
     }
     mesh.left_out.extend(lost);
@@ -80,10 +80,10 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// A file whose references have been checked.
+/// Parses a file and checks its references.
 fn checked(bytes: &[u8]) -> Result<Gltf, String> {
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|e| e.to_string())?;
-    // gltf 1.4.1 panics while it checks a primitive whose positions are not among the accessors.
+    // When it checks a primitive whose positions are not among the accessors, gltf 1.4.1 panics.
     let root = document.into_json();
     let mut attributes = root.meshes.iter().flat_map(|m| &m.primitives).flat_map(|p| p.attributes.values());
     if let Some(index) = attributes.find(|i| i.value() >= root.accessors.len()) {
@@ -109,17 +109,17 @@ fn object(
     mark(mesh, Mark::Object(name));
     for p in shape.primitives() {
         let material = p.material().index().and_then(|i| assets.materials.get(i));
-        // Without a name, the material of the object before would go on.
+        // Without this mark, the material of the previous object would still hold.
         mark(mesh, Mark::Material(material.cloned().unwrap_or_else(|| "none".into())));
         append(mesh, &p, to_scene, buffers, lost)?;
-        // A node may show a mesh again and again: each of its vertices is then one more point to map.
+        // Many nodes may show the same mesh: each time, its vertices are more points to map.
         let count = |a: Option<Accessor<'_>>| a.map_or(0, |a| a.count()) as f64;
         budget.spend(count(p.get(&Semantic::Positions)) + count(p.indices()))?;
     }
     Ok(())
 }
 
-/// The JSON as it is, also of binary files.
+/// The JSON of a text or binary file.
 fn json(bytes: &[u8]) -> Option<Value> {
     if bytes.starts_with(b"glTF") {
         serde_json::from_slice(&Glb::from_slice(bytes).ok()?.json).ok()
@@ -128,9 +128,7 @@ fn json(bytes: &[u8]) -> Option<Value> {
     }
 }
 
-// A primitive of a glTF mesh: its vertices in the scene's coordinates, its faces, lines or points.
-
-/// Appends a primitive. `lost` collects what is left out.
+/// Appends a primitive with its vertices in scene coordinates. `lost` collects what is left out.
 fn append(
     mesh: &mut Mesh,
     primitive: &Primitive<'_>,
@@ -175,7 +173,8 @@ fn append(
     Ok(())
 }
 
-/// Appends normals, texture coordinates and colours of the vertices that were added last, and returns the places of the first two.
+/// Appends normals, texture coordinates and colours of the vertices added last. Returns the indices of the first normal and of the first
+/// texture coordinates.
 fn attributes(
     mesh: &mut Mesh,
     primitive: &Primitive<'_>,
@@ -196,7 +195,7 @@ fn attributes(
                 same(accessor.count(), "normals")?;
                 normals = Some(mesh.normals.len());
                 let m = DMat3::from_mat4(*to_scene);
-                // The cofactors have the direction of the inverse transpose, or the opposite one if the node mirrors.
+                // The cofactor matrix is the inverse transpose up to a factor, which is negative if the node mirrors.
                 let side = 1f64.copysign(m.determinant());
                 let cofactors = [m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)];
                 let turned = DMat3::from_cols(cofactors[0], cofactors[1], cofactors[2]) * side;
@@ -206,7 +205,7 @@ fn attributes(
             Semantic::TexCoords(0) => {
                 same(accessor.count(), "texture coordinates")?;
                 uvs = Some(mesh.uvs.len());
-                // Counted from the top there, from the bottom here.
+                // glTF counts v from the top, [`Mesh`] from the bottom.
                 mesh.uvs.extend(buffers.floats::<2>(&accessor)?.into_iter().map(|[u, v]| [u, 1.0 - v, 0.0]));
             }
             Semantic::Colors(0) => {
@@ -232,7 +231,7 @@ fn attributes(
     Ok([normals, uvs])
 }
 
-/// Appends the polygons; a mirroring turns triangles over.
+/// Appends the polygons; mirrored triangles are turned over.
 fn polygons(mesh: &mut Mesh, mode: Mode, indices: &[u32], mirrored: bool, corner: impl Fn(&u32) -> Corner) {
     let mut triangle = |[a, b, c]: [&u32; 3]| {
         let t = if mirrored { [a, c, b] } else { [a, b, c] };
@@ -258,14 +257,12 @@ fn polygons(mesh: &mut Mesh, mode: Mode, indices: &[u32], mirrored: bool, corner
     }
 }
 
-// Numbers in the buffers of a glTF file, every access checked.
-
-/// The bytes of all buffers.
+/// The bytes of all buffers. Every access is checked.
 struct Buffers(Vec<Vec<u8>>);
 
 impl Buffers {
     /// # Errors
-    /// A buffer outside the file, or one that is shorter than announced.
+    /// A buffer is outside the file, or shorter than announced.
     fn of(file: &mut Gltf) -> Result<Self, MeshError> {
         let mut blob = file.blob.take();
         let mut out = Vec::new();
@@ -289,7 +286,7 @@ impl Buffers {
         self.0.get(view.buffer().index())?.get(view.offset()..end)
     }
 
-    /// The numbers of an accessor, `N` at a time; fewer components are followed by zeros.
+    /// The numbers of an accessor, `N` at a time; missing components are 0.
     fn floats<const N: usize>(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; N]>, MeshError> {
         let normalized = accessor.normalized();
         let mut out = Vec::new();
@@ -325,7 +322,7 @@ impl Buffers {
         };
         let (kind, size) = (accessor.data_type(), accessor.size());
         let stride = view.stride().unwrap_or(size).max(size);
-        // The last item ends within the view.
+        // The last item must end within the view.
         let last = accessor.count().checked_sub(1).and_then(|n| n.checked_mul(stride));
         let end = last.and_then(|n| n.checked_add(accessor.offset())).and_then(|n| n.checked_add(size));
         if accessor.count() > 0 && end.is_none_or(|end| end > bytes.len()) {
@@ -367,7 +364,7 @@ impl Number {
         })
     }
 
-    /// The value; normalized whole numbers are shares of their largest.
+    /// The value; normalized integers are fractions of the largest one.
     fn float(self, normalized: bool) -> f64 {
         let (value, largest) = match self {
             Self::I8(v) => (f64::from(v), f64::from(i8::MAX)),
@@ -380,7 +377,7 @@ impl Number {
         if normalized { (value / largest).max(-1.0) } else { value }
     }
 
-    /// The value as an index; one that is none is out of range.
+    /// The value as an index; out of range if the type is not one for indices.
     fn index(&self) -> u32 {
         match self {
             Self::U8(v) => u32::from(*v),
@@ -400,13 +397,11 @@ fn inside(uri: &str) -> Result<Vec<u8>, String> {
     STANDARD.decode(data).map_err(|e| format!("is damaged: {e}"))
 }
 
-// Writes glTF: one node with a mesh for each object, one primitive for each material and kind of polygon. Polygons become triangles,
-// coordinates single precision.
-
-/// Writes the binary form, `.glb`.
+/// Writes the binary form, `.glb`: a node with a mesh for each object, and a primitive for each material and kind of polygon. Faces are
+/// split into triangles, and coordinates are stored in single precision.
 ///
 /// # Errors
-/// More bytes than the format can count.
+/// There are more bytes than the format can count.
 pub fn write_binary(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let (root, bin) = build(mesh, None);
     let text = serde_json::to_vec(&root).map_err(|e| MeshError::whole(e.to_string()))?;
@@ -415,7 +410,7 @@ pub fn write_binary(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     glb.to_vec().map_err(|e| MeshError::whole(e.to_string()))
 }
 
-/// Writes the text form, `.gltf`, with its buffer inside.
+/// Writes the text form, `.gltf`, with its buffer embedded.
 ///
 /// # Errors
 /// As [`write_binary`].
@@ -445,7 +440,7 @@ impl Part {
     }
 }
 
-/// The objects by name, each with its parts, and the names of materials that the file did not have.
+/// The objects in order, each with its name and parts, and the names of materials that `assets` lacks.
 fn parts(mesh: &Mesh, assets: &Assets) -> (Vec<(String, Vec<Part>)>, Vec<String>) {
     let mut objects: Vec<(String, Vec<Part>)> = Vec::new();
     let mut added: Vec<String> = Vec::new();
@@ -497,13 +492,13 @@ struct Store {
     accessors: Vec<Value>,
 }
 
-/// glTF's numbers for the types that are written.
+/// Codes of the component types that are written.
 const FLOAT: u32 = 5126;
 const UNSIGNED: u32 = 5125;
 
 impl Store {
     fn view(&mut self, bytes: &[u8]) -> usize {
-        // Every component starts at a multiple of its size.
+        // Every component must start at a multiple of its size.
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         self.views.push(json!({"buffer": 0, "byteOffset": self.bin.len(), "byteLength": bytes.len()}));
         self.bin.extend_from_slice(bytes);
@@ -546,7 +541,7 @@ fn primitive(mesh: &Mesh, part: &Part, store: &mut Store) -> Value {
         attributes.insert("NORMAL".into(), json!(store.floats(normals, false)));
     }
     if corners().all(|c| (c.uv as usize) < mesh.uvs.len()) {
-        // Counted from the top there, from the bottom here.
+        // glTF counts v from the top, [`Mesh`] from the bottom.
         let uvs = corners().map(|c| mesh.uvs[c.uv as usize]).map(|[u, v, _]| [u, 1.0 - v]);
         attributes.insert("TEXCOORD_0".into(), json!(store.floats(uvs, false)));
     }

@@ -1,4 +1,4 @@
-//! PLY, as text and binary, by the crate ply-rs-bw. Faces keep their corners.
+//! PLY, text and binary, by means of the crate ply-rs-bw. Faces are not split into triangles.
 
 #[cfg(test)]
 mod tests;
@@ -12,9 +12,7 @@ use ply_rs_bw::ply::{
 };
 use ply_rs_bw::writer::Writer;
 
-// A vertex, face or edge of a PLY file.
-
-/// Numbers that a vertex may have, in the order of [`Element::values`]; several names mean the same.
+/// The names of a vertex's numbers, in the order of [`Element::values`]; each number may go by several names.
 const NAMES: [&[&str]; 12] = [
     &["x"],
     &["y"],
@@ -29,25 +27,25 @@ const NAMES: [&[&str]; 12] = [
     &["s", "u", "texture_u"],
     &["t", "v", "texture_v"],
 ];
-/// The places of normals, colours, opacity and texture coordinates among them.
+/// Where normals, colours, opacity and texture coordinates start among them.
 const NORMAL: usize = 3;
 const COLOR: usize = 6;
 const ALPHA: usize = 9;
 const UV: usize = 10;
 
-/// The names of the lists of a face's vertices.
+/// The names of the list of a face's vertices.
 const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
-/// And of its texture coordinates.
+/// The name of the list of a face's texture coordinates.
 const TEXTURE: &str = "texcoord";
-/// The ends of an edge.
+/// The names of the ends of an edge.
 const ENDS: [&str; 2] = ["vertex1", "vertex2"];
 
-/// The place of a vertex's property among the values.
+/// The index of a vertex property in [`Element::values`].
 fn place(name: &str) -> Option<usize> {
     NAMES.iter().position(|all| all.contains(&name))
 }
 
-/// An element of any kind.
+/// A vertex, face or edge.
 #[derive(Debug, Default)]
 struct Element {
     /// The numbers of a vertex.
@@ -56,7 +54,7 @@ struct Element {
     indices: Vec<u32>,
     /// u and v for each corner of a face.
     uvs: Vec<f32>,
-    /// An index is negative or no whole number.
+    /// Whether an index is negative or not a whole number.
     damaged: bool,
 }
 
@@ -78,12 +76,12 @@ impl PropertyAccess for Element {
             _ => None,
         };
         if let (Some(v), Some(i)) = (single, place(name)) {
-            // Whole numbers of eight bits are shares of 255.
-            let share = (COLOR..UV).contains(&i) && matches!(property, Property::UChar(_));
-            self.values[i] = if share { v / 255.0 } else { v };
+            // Colours in single bytes go up to 255.
+            let is_byte = (COLOR..UV).contains(&i) && matches!(property, Property::UChar(_));
+            self.values[i] = if is_byte { v / 255.0 } else { v };
         } else if let (Some(v), true) = (single, ENDS.contains(&name)) {
             self.damaged |= v < 0.0 || v.fract() != 0.0;
-            // A cast of a number that is too large gives the largest index, which is out of range.
+            // Casting a number that is too large gives `u32::MAX`, which is out of range.
             self.indices.push(v as u32);
         } else if INDICES.contains(&name) {
             self.set_indices(property);
@@ -108,7 +106,7 @@ impl PropertyAccess for Element {
     }
 
     fn get_uchar(&self, name: &str) -> Option<u8> {
-        // A cast saturates.
+        // The cast saturates.
         place(name).map(|i| (self.values[i] * 255.0).round() as u8)
     }
 
@@ -141,19 +139,16 @@ impl Element {
     }
 }
 
-// Reads PLY.
-
-/// Returns `true` if the file begins like PLY.
+/// Whether the file starts like PLY.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r")
 }
 
-/// Reads a mesh: vertices with normals, colours and texture coordinates, faces and edges. What else there is, is named in
-/// [`Mesh::left_out`].
+/// Reads a mesh: vertices with normals, colours and texture coordinates, faces, and edges. Anything else is named in [`Mesh::left_out`].
 ///
 /// # Errors
-/// The file is damaged: more announced than there is, an index out of range, a number that is not finite.
+/// The file is damaged: it announces more than it holds, an index is out of range, or a number is not finite.
 pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let damaged = |e: ParseError| {
         let text: String = e.to_string().lines().next().unwrap_or_default().chars().take(200).collect();
@@ -180,7 +175,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// Checks that so many elements fit into the rest of the file, before it is read.
+/// Checks, before elements are read, that as many as announced fit into the `left` bytes of the file.
 fn check_announced(element: &ElementDef, header: &Header, left: usize) -> Result<(), MeshError> {
     let bytes = |t: &ScalarType| match t {
         ScalarType::Char | ScalarType::UChar => 1,
@@ -188,7 +183,7 @@ fn check_announced(element: &ElementDef, header: &Header, left: usize) -> Result
         ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
         ScalarType::Double => 8,
     };
-    let least: usize = match header.encoding {
+    let min_size: usize = match header.encoding {
         // A digit and a space or line end for each.
         Encoding::Ascii => 2 * element.properties.len(),
         _ => element
@@ -200,18 +195,18 @@ fn check_announced(element: &ElementDef, header: &Header, left: usize) -> Result
             .sum(),
     };
     let name = &element.name;
-    if least == 0 && element.count > 0 {
+    if min_size == 0 && element.count > 0 {
         return Err(MeshError::whole(format!("announces elements `{name}` without properties")));
     }
-    // The last line may lack its end.
-    if element.count.saturating_mul(least) > left + 1 {
+    // The last line may lack its line break.
+    if element.count.saturating_mul(min_size) > left + 1 {
         let n = element.count;
         return Err(MeshError::whole(format!("announces {n} elements `{name}`, and {left} bytes are left for them")));
     }
     Ok(())
 }
 
-/// Properties that are not read.
+/// Names properties that are not read.
 fn unknown(element: &ElementDef) -> Option<String> {
     let known = |name: &str| match element.name.as_str() {
         "vertex" => place(name).is_some(),
@@ -307,13 +302,13 @@ fn check_indices(mesh: &Mesh, e: &Element, kind: &str, i: usize) -> Result<(), M
     Ok(())
 }
 
-// Writes PLY, binary, with coordinates in double precision.
+
 
 /// Writes a mesh. A vertex becomes several if its corners differ in texture coordinates or normals. Faces of different sizes become
 /// triangles.
 ///
 /// # Errors
-/// The crate's.
+/// As for the crate's writer.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let unified = unify(mesh);
     let colored = mesh.colors.len() == mesh.positions.len() && !mesh.colors.is_empty();
@@ -343,7 +338,7 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
         match kind {
             PolygonKind::Face => faces.push(element(own)),
             PolygonKind::Line => edges.extend(own.windows(2).map(element)),
-            // Vertices without a face are points by themselves.
+            // A vertex without a face is a point anyway.
             PolygonKind::Points => {}
         }
     }

@@ -6,7 +6,7 @@ use pathwarp_solid::patch::Surface;
 /// A fraction of big integers.
 pub(crate) type Q = RBig;
 
-/// A floating-point number exactly.
+/// The exact value of a floating-point number.
 pub(crate) fn q(v: f64) -> Q {
     Q::try_from(v).unwrap()
 }

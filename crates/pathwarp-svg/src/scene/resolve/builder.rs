@@ -11,7 +11,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use usvg::tiny_skia_path as ts;
 
-/// Key of a definition in one frame: its address, the frame, the slot, and what bends those who refer to it.
+/// Key of a definition in one frame: its address, the frame, the slot, and the bend of its referrers.
 type DefKey = (usize, [u64; 6], Option<usize>, Option<usize>);
 
 /// A scene under construction.
@@ -21,7 +21,7 @@ pub(super) struct SceneBuilder<'a> {
     pub(super) letters: &'a Owners,
     /// The patterns to lay out as geometry, if any.
     pub(super) tiling: Option<Tiling<'a>>,
-    /// For every element, the index of what bends it; empty if the drawing is not divided.
+    /// For every element, the index of its bend; empty if the drawing is not divided.
     division: &'a [Option<usize>],
     /// Source elements by their id in usvg's tree.
     ids: &'a HashMap<String, Vec<ElementId>>,
@@ -41,7 +41,7 @@ pub(super) struct SceneBuilder<'a> {
     pub(super) top: Option<*const usvg::Group>,
     /// Nesting depth in drawings shown as images, whose ids are not the source's.
     pub(super) foreign_depth: usize,
-    /// Transforms of markers, by the addresses of their groups; none for those that are not shown.
+    /// Transforms of markers by the addresses of their groups; `None` for those that are not shown.
     pub(super) markers: HashMap<usize, Option<Affine>>,
     /// Elements with `vector-effect: non-scaling-stroke`.
     pub(super) fixed_widths: HashSet<ElementId>,
@@ -55,14 +55,14 @@ pub(super) struct Context {
     pub(super) slot: Option<usize>,
     /// The enclosing `image` element.
     pub(super) image: Option<ElementId>,
-    /// The viewport that cuts the image inside, in the coordinates of the group around it.
+    /// The viewport that clips an image inside, in the coordinates of the enclosing group.
     pub(super) viewport: Option<Rect>,
-    /// In a definition, the index of what bends those who refer to it.
+    /// In a definition, the index of the bend of its referrers.
     pub(super) bend: Option<usize>,
 }
 
 impl Context {
-    /// Outside of owners, slots and images.
+    /// The context outside all owners, slots and images.
     pub(super) fn top(role: PartRole) -> Self {
         Self { owner: None, role, slot: None, image: None, viewport: None, bend: None }
     }
@@ -97,7 +97,7 @@ impl<'a> SceneBuilder<'a> {
         }
     }
 
-    /// The index of what bends a reference: that of its element, or in a definition that of those who refer to it.
+    /// The index of the bend that applies to a referrer: its element's, or within a definition, that of the definition's referrers.
     pub(super) fn bend_of(&self, referrer: Referrer, context: Context) -> Option<usize> {
         if matches!(context.role, PartRole::Clip | PartRole::Mask) {
             return context.bend;
@@ -118,7 +118,7 @@ impl<'a> SceneBuilder<'a> {
         }
     }
 
-    /// The definition with the given id and tag; the last one counts.
+    /// The last definition with the given id and tag.
     pub(super) fn definition(&self, id: &str, tag: &str) -> Option<ElementId> {
         let all = self.reader.source.by_id().get(id).filter(|_| self.foreign_depth == 0)?;
         all.iter().copied().rfind(|&e| self.tag(e) == tag)
@@ -128,19 +128,19 @@ impl<'a> SceneBuilder<'a> {
         &self.reader.source.elements[e].tag
     }
 
-    /// Returns `true` if anything inside a group has an id of the source.
+    /// Whether anything inside a group has an id of the source.
     pub(super) fn has_ids(&self, g: &usvg::Group) -> bool {
         g.children().iter().any(|c| {
             self.ids.contains_key(c.id()) && !c.id().is_empty() || matches!(c, usvg::Node::Group(g) if self.has_ids(g))
         })
     }
 
-    /// Returns `true` for the group whose content is in root user space.
+    /// Whether a group is the one whose content is in root user space.
     pub(super) fn is_top(&self, g: &usvg::Group) -> bool {
         self.top.is_some_and(|t| std::ptr::eq(t, g))
     }
 
-    /// A group's transform in f64: its element's, or else the only one in the source with the same value in f32.
+    /// A group's transform in f64: that of its element, or else the only one in the source with the same value in f32.
     pub(super) fn exact_transform(&self, t: usvg::Transform, element: Option<ElementId>) -> Affine {
         let rounded = affine(t);
         if t.is_identity() {
@@ -154,7 +154,7 @@ impl<'a> SceneBuilder<'a> {
         self.exact.get(&f32_bits(rounded)).copied().flatten().unwrap_or(rounded)
     }
 
-    /// Records that the source cannot be patched in place. The first reason counts.
+    /// Records that the source cannot be patched in place. The first reason wins.
     pub(super) fn unpatchable(&mut self, why: Unpatchable) {
         self.scene.unpatchable.get_or_insert(why);
     }
@@ -186,10 +186,10 @@ fn exact_transforms(reader: &GeometryReader<'_>) -> HashMap<[u32; 6], Option<Aff
     out
 }
 
-/// Total number of segments in the tiles of a drawing; more would make the result slow to open.
+/// Limit on the segments in all tiles of a drawing. More would make the result slow to open.
 const MAX_SEGMENTS: usize = 250_000;
 
-/// Decides which patterns are laid out as geometry, and how much of it there may be.
+/// Decides which patterns to lay out as geometry, within a limit on its size.
 pub(crate) struct Tiling<'a> {
     /// Returns `true` if the pattern over an area must be laid out. The arguments are the element that is painted, the area in its
     /// user space, and the transform from there to root user space.
@@ -202,11 +202,11 @@ pub(crate) struct Tiling<'a> {
     pub(super) notes: Vec<SceneNote>,
 }
 
-/// What is painted with a pattern.
+/// The object that a pattern paints.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Painted {
     Element(Option<ElementId>),
-    /// Content of a mask, with the index of what bends those who refer to it, if the drawing is divided.
+    /// Content of a mask, with the index of the bend of its referrers if the drawing is divided.
     Mask(Option<usize>),
 }
 
@@ -276,8 +276,8 @@ fn copy_of(b: &mut SceneBuilder<'_>, path: &ts::Path) -> Option<(ElementId, Outl
     fn cell(p: Point) -> [i64; 2] {
         [p.x, p.y].map(|v| (v * 16.0).floor() as i64)
     }
-    /// Limit on comparisons, so that a million equal copies take no quadratic time.
-    const TRIES: usize = 64;
+    /// Limit on comparisons, so that a million equal copies don't take quadratic time.
+    const MAX_TRIES: usize = 64;
     if b.starts.is_none() {
         let mut starts: HashMap<_, Vec<_>> = HashMap::new();
         for (e, el) in b.reader.source.elements.iter().enumerate() {
@@ -298,7 +298,7 @@ fn copy_of(b: &mut SceneBuilder<'_>, path: &ts::Path) -> Option<(ElementId, Outl
     around
         .filter_map(|c| starts.get(&c))
         .flatten()
-        .take(TRIES)
+        .take(MAX_TRIES)
         .filter_map(|e| Some((*e, b.outlines.get(e)?)))
         .find(|(_, o)| same_path(o, path))
         .map(|(e, o)| (e, o.clone()))
@@ -311,7 +311,7 @@ pub(super) struct GroupAt<'g> {
     pub(super) source: Option<ElementId>,
     /// That element, or else the only shape or text that the group was made for.
     pub(super) element: Option<ElementId>,
-    /// From outside of the group to root user space.
+    /// From outside the group to root user space.
     pub(super) parent: Affine,
     /// From inside the group to root user space.
     pub(super) frame: Affine,
@@ -352,7 +352,7 @@ pub(super) fn slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Context)
     Some(b.scene.slots.len() - 1)
 }
 
-/// Returns `true` if the fit can be written to the `transform` of the group's element.
+/// Whether the fit can be written to the `transform` of the group's element.
 fn takes_fit(b: &SceneBuilder<'_>, at: &GroupAt<'_>, is_image: bool) -> bool {
     let source = b.reader.source;
     let only_transform_attribute = |e: ElementId| {
@@ -368,7 +368,7 @@ fn takes_fit(b: &SceneBuilder<'_>, at: &GroupAt<'_>, is_image: bool) -> bool {
     })
 }
 
-/// Returns `true` if the group's only content is a drawing shown as an image.
+/// Whether a group's only content is a drawing shown as an image.
 pub(super) fn holds_drawing(g: &usvg::Group) -> bool {
     match g.children() {
         [usvg::Node::Image(i)] => matches!(i.kind(), usvg::ImageKind::SVG(_)),

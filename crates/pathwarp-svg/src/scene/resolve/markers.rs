@@ -1,4 +1,4 @@
-//! Shapes with markers in usvg's tree.
+//! Finds shapes with markers in usvg's tree, and places the markers as browsers do.
 
 use super::builder::SceneBuilder;
 use crate::scene::geometry::affine;
@@ -38,8 +38,8 @@ pub(super) fn marked_children(b: &SceneBuilder<'_>, g: &usvg::Group) -> Vec<(usi
     out
 }
 
-/// Where the markers of a shape are, as browsers place them. usvg gives a start and an end that meet the directions of open ends, and
-/// arcs markers inside.
+/// Places the markers of shapes as browsers do. usvg orients those where a closed subpath starts and ends as if it were open, and
+/// adds markers within arcs.
 pub(super) fn place_markers(b: &mut SceneBuilder<'_>, g: &usvg::Group, marked: &[(usize, ElementId)]) {
     for &(i, e) in marked {
         let Some(usvg::Node::Group(instances)) = g.children().get(i) else { continue };
@@ -61,7 +61,8 @@ fn group_of(n: &usvg::Node) -> Option<&usvg::Group> {
     }
 }
 
-/// The transform of each marker, or `None` where browsers show none. `None` if the markers are not those expected.
+/// Computes the transform of each marker, with `None` for those that browsers don't show. Returns `None` if the markers are not the
+/// expected ones.
 fn places(b: &SceneBuilder<'_>, e: ElementId, data: &Path, instances: &[&usvg::Group]) -> Option<Vec<Option<Affine>>> {
     let outline = b.reader.outline(e)?;
     let steps = steps(&outline, data);
@@ -108,7 +109,7 @@ enum Element {
     Close,
 }
 
-/// The elements of usvg's path with their ends, and the number of the step that ends there; none inside of an arc.
+/// The elements of usvg's path with their ends and the index of the step that ends there, which is `None` within an arc.
 fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Element, Point, Option<usize>)>> {
     let mut expected = steps.iter().flatten().enumerate().peekable();
     let (mut out, mut start) = (Vec::new(), Point::ZERO);
@@ -136,17 +137,17 @@ fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Element, Point,
     (expected.next().is_none() && !out.is_empty()).then_some(out)
 }
 
-/// Difference of numbers of single precision, as a share.
+/// Relative difference of numbers that are equal up to single precision.
 const NEAR: f64 = 1e-5;
 
 fn point(p: usvg::tiny_skia_path::Point) -> Point {
     Point::new(f64::from(p.x), f64::from(p.y))
 }
 
-/// An element of path data, and what it draws.
+/// An element of path data, and the segment that it draws.
 type Step<'a> = (Element, Option<&'a Seg>);
 
-/// The elements of path data, subpath by subpath. An outline has no closing lines without length, which are in `data`.
+/// The elements of path data by subpath. An outline lacks closing lines without length, so these come from `data`.
 fn steps<'a>(outline: &'a Outline, data: &Path) -> Vec<Vec<Step<'a>>> {
     let (mut explicit, mut start, mut last) = (Vec::new(), None, None);
     for segment in data.segments() {
@@ -173,15 +174,15 @@ fn steps<'a>(outline: &'a Outline, data: &Path) -> Vec<Vec<Step<'a>>> {
     all.collect()
 }
 
-/// The direction of a marker at the end of every step (SVG 2, section 13.7.4): along open ends, and between the directions of what
-/// meets elsewhere, also where a subpath closes.
+/// The direction of a marker at the end of every step (SVG 2, section 13.7.4): that of the path at open ends, and the bisector of the
+/// two directions elsewhere, also where a subpath closes.
 fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
-    /// How far from its end the direction of a curve is looked at; handles may lie on their nodes.
+    /// Parameter distance over which to measure the direction at an end, since handles may coincide with their nodes.
     const STEP: f64 = 1e-4;
     let angle = |v: Vec2| v.y.atan2(v.x);
     let between = |a: Vec2, b: Vec2| {
         let (a, b) = (angle(a), angle(b));
-        // Half a turn is taken to the left.
+        // A half turn goes to the left.
         a.midpoint(a + (b - a + PI).rem_euclid(2.0 * PI) - PI)
     };
     let mut out = Vec::new();
@@ -198,7 +199,7 @@ fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
         let closed = subpath.last().is_some_and(|s| s.0 == Element::Close);
         let at_start = if closed { between(last[1], first[0]) } else { angle(first[0]) };
         out.push(at_start);
-        // A close without length leaves as the subpath begins.
+        // A closing line without length has the direction in which the subpath begins.
         let out_of = |v: Vec2| if v == Vec2::ZERO { first[0] } else { v };
         out.extend(ends.windows(2).map(|w| between(w[0][1], out_of(w[1][0]))));
         out.push(if closed { at_start } else { angle(last[1]) });

@@ -21,8 +21,8 @@ use usvg::{Fill, Stroke};
 
 pub(crate) use builder::{Painted, Tiling};
 
-/// Resolves the drawing. Patterns become geometry as far as `tiling` asks for it. Clip paths and masks
-/// are there once for each of the bends in `division` that those who refer to them have.
+/// Resolves the drawing. Patterns become geometry where `tiling` requests it. Clip paths and masks are resolved once for each bend in
+/// `division` that their referrers have.
 pub(crate) fn build(
     tree: &usvg::Tree,
     source: &SourceText,
@@ -67,7 +67,7 @@ fn root_group<'t>(b: &SceneBuilder<'_>, tree: &'t usvg::Tree, page: Size) -> (&'
     }
     let t = affine(g.transform());
     let (u, v) = (by_source.as_coeffs(), t.as_coeffs());
-    // usvg centres the drawing in f32, where numbers of the page's size cancel, and moves it there, however far.
+    // usvg centres the drawing in f32, where numbers of the page's size cancel, and shifts it by any distance.
     let slack = 1e-6 * (page.width + page.height + 1.0) + 3e-7 * u[4].abs().max(u[5].abs());
     let agree =
         is_near(linear_part(by_source), linear_part(t)) && (u[4] - v[4]).abs() <= slack && (u[5] - v[5]).abs() <= slack;
@@ -80,7 +80,7 @@ fn root_group<'t>(b: &SceneBuilder<'_>, tree: &'t usvg::Tree, page: Size) -> (&'
     (g, if agree { by_source } else { t })
 }
 
-/// Resolves a group. `parent` leads from outside of it to root user space.
+/// Resolves a group. `parent` maps the space around it to root user space.
 fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context: Context) -> Group {
     let source = b.element(g.id());
     let element = source.or_else(|| only_child(b, g));
@@ -126,7 +126,7 @@ fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context:
     if let Some(s) = slot {
         b.scene.slots[s].parts.end = b.scene.parts.len();
     }
-    // The element has one clip path for both: its own one and the edge of its viewport.
+    // Chain the element's own clip path to that of its viewport's edge: the element can refer to only one.
     if let ([usvg::Node::Group(c)], [Node::Group(edge)]) = (g.children(), children.as_slice())
         && let (Some(_), Some(edge)) = (sliced_viewport(c), edge.clip)
         && b.scene.clips[edge].clip.is_none()
@@ -148,7 +148,7 @@ fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context:
     }
 }
 
-/// The viewport of an image that covers more than it: usvg puts the image into a group of its own, in a group with a clip path.
+/// The viewport of an image that extends past it (`slice`). usvg puts such an image into a group within a group with a clip path.
 fn sliced_viewport(g: &usvg::Group) -> Option<Rect> {
     let [usvg::Node::Group(inner)] = g.children() else { return None };
     let [usvg::Node::Image(_)] = inner.children() else { return None };
@@ -233,7 +233,7 @@ fn part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Contex
 /// Transforms of an image's group.
 #[derive(Clone, Copy)]
 struct Placing {
-    /// From pixels to outside of the group.
+    /// From pixels to outside the group.
     transform: Affine,
     /// From pixels to root user space.
     frame: Affine,

@@ -1,7 +1,7 @@
-//! Patterns as geometry: the content of a tile, repeated over a shape so that it can be warped like anything else.
+//! Lays out patterns as geometry: repeats the content of a tile over a shape so that it can be warped like anything else.
 //!
-//! A tile shows nothing outside of its cell. A path in a plain colour can therefore become one path over all cells: adjacent
-//! cells leave no seam, and the file stays small. Paths with a gradient or a pattern are repeated cell by cell.
+//! A tile shows nothing outside its cell. A path in a plain colour can therefore become one path over all cells: adjacent cells
+//! leave no seam, and the file stays small. Paths with a gradient or a pattern are repeated cell by cell.
 
 use super::builder::{Context, Painted, SceneBuilder, known_outline};
 use crate::scene::areas::stroke_outline;
@@ -15,7 +15,7 @@ use pathwarp::outline::{Seg, Subpath};
 use std::sync::Arc;
 use usvg::{BlendMode, Paint, PaintOrder};
 
-/// Cells over one shape. More are a texture in which single tiles cannot be seen.
+/// Limit on the cells over one shape. More make a texture in which single tiles cannot be told apart.
 const MAX_CELLS: f64 = 5_000.0;
 /// Tolerance for clipped arcs and expanded strokes, as a fraction of a tile's side.
 const FINE: f64 = 1e-6;
@@ -49,8 +49,8 @@ struct Layout<'l> {
 }
 
 impl Layout<'_> {
-    /// Repeats an outline over all cells, as one outline in the shape's user space. With this order of steps, coincident
-    /// corners stay coincident to the last bit.
+    /// Repeats an outline over all cells, as one outline in the shape's user space. This order of operations keeps coincident
+    /// corners coincident to the last bit.
     fn everywhere(&self, outline: &Outline) -> Outline {
         let inside = within(outline, self.cell, FINE * self.cell.width());
         let all =
@@ -224,7 +224,7 @@ fn tile_path(b: &mut SceneBuilder<'_>, p: &usvg::Path, to_cell: Affine, layout: 
 struct TilePaint<'p> {
     path: &'p usvg::Path,
     of: PaintOf,
-    /// Painted in one colour, so that one path serves all cells.
+    /// Whether it is a single colour, so that one path serves all cells.
     plain: bool,
 }
 
@@ -296,12 +296,12 @@ fn weight(g: &usvg::Group) -> Result<usize, &'static str> {
     Ok(sum)
 }
 
-/// Returns `true` if anything in a group blends with its backdrop.
+/// Whether anything in a group blends with its backdrop.
 pub(super) fn blends(g: &usvg::Group) -> bool {
     g.children().iter().any(|c| matches!(c, usvg::Node::Group(g) if g.blend_mode() != BlendMode::Normal || blends(g)))
 }
 
-/// The owner of a shape's tiles: the one around it, or else the shape's own element.
+/// The context of a shape's tiles. Their owner is the enclosing one, or else the shape's own element.
 pub(super) fn tile_context(context: Context, element: Option<ElementId>) -> Context {
     Context { owner: context.owner.or(element), ..context }
 }
@@ -339,7 +339,7 @@ struct Border {
     /// 0 for a vertical border at an x, 1 for a horizontal one at a y.
     across: usize,
     at: f64,
-    /// 1 to keep larger coordinates, -1 to keep smaller ones.
+    /// 1 to keep larger coordinates, −1 to keep smaller ones.
     side: f64,
 }
 
