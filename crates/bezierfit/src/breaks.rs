@@ -9,11 +9,9 @@
 //! has a much smaller error. So fewer pieces than the difficulty predicts are tried first, and near the limit single break
 //! points are moved by bisection.
 
-use crate::limits::{
-    BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE, REPORT_MARGIN,
-};
-use crate::report::{Assurance, Piece, Report};
-use crate::sample::{CHECKED, FITTED, Lanes, larger, spaced};
+use crate::limits::{BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE};
+use crate::report::{Assurance, Piece, REPORT_MARGIN, Report};
+use crate::sample::{CHECKED, FITTED, larger, spaced};
 use crate::source::{BreakPoint, NotFinite, Source};
 use crate::stretch::{FitOutcome, StretchFitter};
 
@@ -37,21 +35,9 @@ impl<S: Source> StretchFitter<'_, S> {
         out: &mut Vec<Piece>,
         report: &mut Report,
     ) -> Result<(), NotFinite> {
-        // As `attempt`, but the Hermite cubic, with which most segments end, is written without a detour through `FitOutcome`.
-        let mut g = Lanes::default();
-        let mut request = self.start(from, to, &mut g)?;
-        let first = match self.line(&request)? {
-            Some(line) => line,
-            None => {
-                if let Some(error) = self.hermite_error(&mut request)? {
-                    self.accept(Piece::Cubic(request.hermite()), error, out, report);
-                    return Ok(());
-                }
-                self.improve(&mut request)?
-            }
-        };
-        if let FitOutcome::Fits { piece, error, .. } = first {
-            self.accept(piece, error, out, report);
+        let first = self.attempt(from, to)?;
+        if first.fits(self.tolerance) {
+            self.accept(&first, out, report);
             return Ok(());
         }
         self.divide(from, to, first, out, report)
@@ -73,21 +59,18 @@ impl<S: Source> StretchFitter<'_, S> {
                 Some(o) => o,
                 None => self.attempt(&from, &to)?,
             };
-            let (piece, error, cusp) = match outcome {
-                FitOutcome::Fits { piece, error, .. } => {
-                    self.accept(piece, error, out, report);
-                    continue;
-                }
-                FitOutcome::Misses { piece, error, cusp, .. } => (piece, error, cusp),
-            };
+            if outcome.fits(self.tolerance) {
+                self.accept(&outcome, out, report);
+                continue;
+            }
             let h = to.t - from.t;
             if self.is_spent() || h < MIN_STRETCH {
                 report.unresolved.push(self.source.place(0.5 * (from.t + to.t)));
-                report.add_error(error, Assurance::Checked);
-                out.push(piece);
+                report.add_error(outcome.error, Assurance::Checked);
+                out.push(outcome.piece);
                 continue;
             }
-            if let Some(t) = self.slow.inside(from.t, to.t).or(cusp) {
+            if let Some(t) = self.slow.inside(from.t, to.t) {
                 let mid = self.source.end(t)?;
                 stack.push((mid, to, None));
                 stack.push((from, mid, None));
@@ -99,7 +82,8 @@ impl<S: Source> StretchFitter<'_, S> {
     }
 
     #[inline(always)]
-    fn accept(&self, piece: Piece, error: f64, out: &mut Vec<Piece>, report: &mut Report) {
+    fn accept(&self, outcome: &FitOutcome, out: &mut Vec<Piece>, report: &mut Report) {
+        let error = outcome.error;
         if self.form.is_some() {
             report.add_error(error, Assurance::Certified);
         } else {
@@ -107,7 +91,7 @@ impl<S: Source> StretchFitter<'_, S> {
             let bound = larger(error, if bound < self.tolerance { bound } else { self.tolerance });
             report.add_error(bound, Assurance::Checked);
         }
-        out.push(piece);
+        out.push(outcome.piece);
     }
 
     /// Divides a stretch that one piece does not fit into parts of equal difficulty, and puts them on the stack. Not all of
@@ -144,12 +128,10 @@ impl<S: Source> StretchFitter<'_, S> {
                 plan.outcomes[i] = Some(outcome);
                 total += outcome.difficulty(tol);
                 sums[i + 1] = total;
-                fits &= outcome.fits();
+                fits &= outcome.fits(tol);
             }
             placements += 1;
-            let has_cusp = |o: &FitOutcome| matches!(o, FitOutcome::Misses { cusp: Some(_), .. });
-            let cusp = plan.outcomes[..n].iter().flatten().any(has_cusp);
-            if fits || cusp || self.is_spent() {
+            if fits || self.is_spent() {
                 break;
             }
             let mut next = n;
@@ -212,7 +194,8 @@ impl<S: Source> StretchFitter<'_, S> {
     /// Moves break points between a piece that misses and a neighbour that fits until both fit: near its limit a piece's
     /// error is no smooth function of its length, and no quantile finds the place. Returns `true` if all pieces fit now.
     fn repair(&mut self, plan: &mut Plan) -> Result<bool, NotFinite> {
-        let fits = |o: &Option<FitOutcome>| o.is_some_and(|o| o.fits());
+        let tol = self.tolerance;
+        let fits = |o: &Option<FitOutcome>| o.is_some_and(|o| o.fits(tol));
         let (ends, outcomes) = (&mut plan.ends[..=plan.n], &mut plan.outcomes[..plan.n]);
         for i in 0..outcomes.len() {
             for k in i.saturating_sub(1)..=i {
@@ -236,7 +219,7 @@ impl<S: Source> StretchFitter<'_, S> {
         let mut now = [a, b];
         for _ in 0..BISECTIONS {
             // The piece that fits may grow.
-            if now[0].fits() {
+            if now[0].fits(tol) {
                 lo = t;
             } else {
                 hi = t;
@@ -251,7 +234,7 @@ impl<S: Source> StretchFitter<'_, S> {
             self.announce(from.t, &std::iter::once(t), to.t);
             let mid = self.source.end(t)?;
             now = [self.attempt(&from, &mid)?, self.attempt(&mid, &to)?];
-            match now.map(|o| o.fits()) {
+            match now.map(|o| o.fits(tol)) {
                 [false, false] => return Ok(()),
                 [true, true] => {
                     ends[1] = mid;

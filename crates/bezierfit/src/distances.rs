@@ -1,16 +1,15 @@
 //! The check of a cubic over several segments: the error is smooth along each segment, and may have corners at the joints.
 
-use crate::limits::{
-    COARSE_CHECK, FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR, SEGMENTS_PER_BATCH, SHARP_TURN, SHORT_FACTOR, SHORT_PART,
-};
+use crate::fit::FOOT_ROUNDING;
+use crate::limits::{COARSE_CHECK, PEAK_FACTOR, PEAK_NEAR, SHARP_TURN, SHORT_FACTOR, SHORT_PART};
 use crate::proof;
 use crate::report::Piece;
+use crate::run::RunCubic;
 use crate::run::SegmentRun;
 use crate::sample::{
     ALL, Evenly, Lane, Lanes, extreme, larger, largest, parabola_peak, predicted_end_peak, predicted_peak, turns_little,
 };
 use crate::source::{NotFinite, Source};
-use crate::trial::RunCubic;
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveDeriv, ParamCurveNearest, Point, Vec2};
 
 /// Distances and foot points of all samples under a cubic.
@@ -182,7 +181,7 @@ impl Distances {
         let [first, last] = c.samples;
         let [c1, c2, c3] = c.frame.power(c.a, c.b);
         let n = run.per_segment;
-        let count = (last - first).div_ceil(SEGMENTS_PER_BATCH * n);
+        let count = (last - first).div_ceil(4 * n);
         let batch = |b: usize| {
             let chosen: [usize; 8] = std::array::from_fn(|i| (8 * b + i + 1) * (last - first) / (8 * count + 1));
             let at = chosen.map(|k| ((first + k) / n, ((first + k) % n) as f64 / n as f64));

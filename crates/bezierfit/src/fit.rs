@@ -24,13 +24,23 @@
 //! > C(s) = P₀(B₀+B₁) + P₃(B₂+B₃) + a·T₀·B₁ − b·T₁·B₂
 //!
 //! Everything here is relative to P₀, so C(0) = 0 and C(1) = q = P₃−P₀.
+//!
+//! Minimax fit of the two handle lengths: the largest of sixteen residuals as small as possible.
+//!
+//! Gauss–Newton for the uniform norm. To first order the normal residuals are nᵢ + δa·aᵢ + δb·bᵢ, and the step is their best uniform
+//! approximation by zero. It is levelled on three of the samples, a *reference* (E. Stiefel, *Über diskrete und lineare
+//! Tschebyscheff-Approximationen*, Numer. Math. 1, 1959):
+//!
+//! > λᵢ = (aⱼ, bⱼ) × (aₖ, bₖ), and so on in turn; h = Σλᵢnᵢ / Σ|λᵢ|; nᵢ + δa·aᵢ + δb·bᵢ = h·sgn λᵢ
+//!
+//! |h| is the least error that three residuals allow, and over four it is the largest |h| of any three. So the sample with the
+//! largest residual replaces the one of the reference that leaves the largest |h|, until no residual exceeds |h|.
 
 use crate::limits::{
-    DAMPING, FAR_MISS, FOOT_DRIFT, GIVE_UP, MAX_EVALUATIONS, MIN_GAIN, PROMISE_AFTER, PROMISE_GAIN, RESTART_LONGER,
-    RESTART_SHORTER, RESTART_TURN, RESTART_WITHIN, RESTART_WITHIN_TURNED, RUN_EVALUATIONS, RUN_TRUST_RADIUS,
-    TRUST_RADIUS,
+    GIVE_UP, GOOD_ENOUGH, MAX_EVALUATIONS, MIN_GAIN, MINIMAX_HOPE, MINIMAX_WITHIN, PROMISE_AFTER, RESTART_FACTOR,
+    RESTART_WITHIN, RUN_EVALUATIONS, TRUST_RADIUS,
 };
-use crate::sample::{Lane, Lanes, clamp_unit, fma, largest, norm_squared, residual_at};
+use crate::sample::{Lane, Lanes, clamp_unit, fma, larger, largest, norm_squared, residual_at};
 use crate::source::{BreakPoint, NotFinite, Source, images};
 use kurbo::{CubicBez, Point, Vec2};
 
@@ -62,28 +72,15 @@ pub(crate) struct Effort {
 pub(crate) const USUAL: Effort = Effort { evaluations: MAX_EVALUATIONS, trust_radius: TRUST_RADIUS, gives_up: true };
 
 /// For several segments under one cubic: it may turn much, so that the handles to start from are far off.
-pub(crate) const THOROUGH: Effort =
-    Effort { evaluations: RUN_EVALUATIONS, trust_radius: RUN_TRUST_RADIUS, gives_up: false };
+pub(crate) const THOROUGH: Effort = Effort { evaluations: RUN_EVALUATIONS, trust_radius: 1.0, gives_up: false };
 
 /// Fits from `start` until the largest residual is at most `enough` or stops improving. If it stays far above `wanted`, a
 /// rough fit suffices: it only has to predict the number of pieces.
 ///
 /// The foot points of `start` must be within a Newton step of the right places; see [`ChordFrame::settle`].
-#[inline(always)]
-pub(crate) fn fit(frame: &ChordFrame, g: &Lanes, start: FitState, wanted: [f64; 2]) -> Fit {
-    fit_with(&USUAL, frame, g, start, wanted)
-}
-
-/// As [`fit`], with another effort.
 #[inline(never)]
-pub(crate) fn fit_with(
-    effort: &Effort,
-    frame: &ChordFrame,
-    g: &Lanes,
-    start: FitState,
-    [enough, wanted]: [f64; 2],
-) -> Fit {
-    let (enough, far, beyond) = (enough * enough, (FAR_MISS * wanted).powi(2), (GIVE_UP * wanted).powi(2));
+pub(crate) fn fit(effort: &Effort, frame: &ChordFrame, g: &Lanes, start: FitState, [enough, wanted]: [f64; 2]) -> Fit {
+    let (enough, beyond) = (enough * enough, (GIVE_UP * wanted).powi(2));
     // The best state so far and the trial state alternate between two slots. Errors are squared in this function.
     let mut z = [start, start];
     let mut r = [Residuals::NONE; 2];
@@ -109,15 +106,14 @@ pub(crate) fn fit_with(
         } else {
             trust = 0.25 * length;
         }
-        if k == effort.evaluations || error <= enough || (effort.gives_up && k > 4 && error > far) {
+        if k == effort.evaluations || error <= enough {
             break;
         }
         let Some((newton, gain)) = gauss_newton(&sums) else { break };
         if k > 1 && gain < MIN_GAIN * squares {
             break;
         }
-        let predictable = effort.gives_up && (k > PROMISE_AFTER || k == PROMISE_AFTER && gain < PROMISE_GAIN * squares);
-        if predictable && error * (squares - gain) > beyond * squares {
+        if effort.gives_up && k > PROMISE_AFTER && error * (squares - gain) > beyond * squares {
             left = 1.0 - gain / squares;
             break;
         }
@@ -146,6 +142,14 @@ pub struct ChordFrame {
 }
 
 impl ChordFrame {
+    /// From a chord, unit tangents at the ends, size, and Hermite's handles. A handle that vanishes there starts tiny and may grow. One
+    /// that differs from it by the size counts like a residual of a twentieth of the tolerance.
+    #[inline(always)]
+    pub(crate) fn new(q: Vec2, [t0, t1]: [Vec2; 2], size: f64, home: [f64; 2], tolerance: f64) -> Self {
+        let floor = home.map(|a| if a > 0.0 { a.min(1e-3 * size) } else { 1e-5 * size });
+        Self { q, t0, t1, floor, size, home, pull: (0.05 * tolerance / size).powi(2) }
+    }
+
     /// The cubic with handles `a`, `b` in the power basis without its constant term: C(s) = ((c₃s + c₂)s + c₁)s.
     #[inline(always)]
     pub fn power(&self, a: f64, b: f64) -> [Vec2; 3] {
@@ -200,13 +204,6 @@ impl ChordFrame {
             out[i] = squares[i].sqrt().copysign(fma(rx, dy, -(ry * dx)));
         }
         out
-    }
-
-    /// The second handle with which a cubic of first handle `to` has the same area as the one with handles `a`, `b`.
-    pub(crate) fn slide(&self, a: f64, b: f64, to: f64) -> f64 {
-        let k2 = 0.5 * self.t1.cross(self.t0);
-        let (k0, k1) = (self.q.cross(self.t0), self.t1.cross(self.q));
-        (k0 * a + k1 * b - k2 * a * b - k0 * to) / (k1 - k2 * to)
     }
 }
 
@@ -352,8 +349,7 @@ impl ChordFrame {
     pub(crate) fn bent(&self, [mut da, mut db]: [f64; 2], z: &FitState, most: f64) -> (f64, f64, f64) {
         let longest = da.abs().max(db.abs());
         if longest > most {
-            // Out of line: the division is rarely needed and would delay everything after it.
-            [da, db] = shortened([da, db], most / longest);
+            [da, db] = [da, db].map(|d| d * (most / longest));
         }
         let k2 = 0.5 * self.t1.cross(self.t0);
         let (ga, gb) = (self.q.cross(self.t0) - k2 * z.b, self.t1.cross(self.q) - k2 * z.a);
@@ -373,37 +369,20 @@ impl ChordFrame {
 /// determine a step.
 #[inline(always)]
 pub(crate) fn gauss_newton(sums: &[f64; 5]) -> Option<([f64; 2], f64)> {
-    let [mut aa, ab, mut bb, an, bn] = *sums;
-    aa += aa * DAMPING;
-    bb += bb * DAMPING;
+    let [aa, ab, bb, an, bn] = *sums;
     let det = aa * bb - ab * ab;
     let k = 1.0 / det;
     let (da, db) = ((ab * bn - bb * an) * k, (ab * an - aa * bn) * k);
     (det > 0.0 && k.is_finite()).then_some(([da, db], -(da * an + db * bn)))
 }
 
-#[cold]
-#[inline(never)]
-fn shortened([da, db]: [f64; 2], by: f64) -> [f64; 2] {
-    [da * by, db * by]
-}
-
 impl ChordFrame {
-    /// Factors for the first handle to start again with, or `None` if that would not help. Only near misses profit; and on
-    /// pieces that turn much, only very near ones. The first factor makes the handles more even, which more often succeeds.
-    #[inline(always)]
-    pub(crate) fn restarts(&self, z: &FitState, error: f64, tolerance: f64) -> Option<[f64; 2]> {
-        let within = if self.t0.dot(self.t1) > RESTART_TURN { RESTART_WITHIN } else { RESTART_WITHIN_TURNED };
-        let near = error > tolerance && error < within * tolerance;
-        let longer_first = [RESTART_LONGER, RESTART_SHORTER];
-        near.then(|| if z.a < z.b { longer_first } else { [longer_first[1], longer_first[0]] })
-    }
-
     /// The state with the first handle `factor` times as long and the same area, if its handles are possible.
     #[inline(always)]
     pub(crate) fn along_valley(&self, g: &Lanes, z: &FitState, factor: f64) -> Option<FitState> {
+        let (k0, k1, k2) = (self.q.cross(self.t0), self.t1.cross(self.q), 0.5 * self.t1.cross(self.t0));
         let a = z.a * factor;
-        let b = self.slide(z.a, z.b, a);
+        let b = (k0 * z.a + k1 * z.b - k2 * z.a * z.b - k0 * a) / (k1 - k2 * a);
         if !(b > self.floor[1] && b < self.size) {
             return None;
         }
@@ -422,8 +401,6 @@ pub(crate) struct FitRequest<'a> {
     pub(crate) g: &'a Lanes,
     /// Images at the checked samples; taken on demand.
     pub(crate) check: Option<Lanes>,
-    /// Newton steps of the foot points on the Hermite cubic.
-    pub(crate) ds: Lane,
     /// Forces a dense check.
     pub(crate) careful: bool,
 }
@@ -437,13 +414,6 @@ impl FitRequest<'_> {
     /// A state as checks and proofs want it.
     pub(crate) fn candidate(&self, z: &FitState) -> Candidate {
         Candidate { t0: self.from.t, t1: self.to.t, p0: self.from.p, frame: self.frame, a: z.a, b: z.b }
-    }
-
-    /// The Hermite cubic.
-    #[inline(always)]
-    pub(crate) fn hermite(&self) -> CubicBez {
-        let [a, b] = self.frame.home;
-        self.frame.cubic(self.from.p, self.to.p, a, b)
     }
 }
 
@@ -487,6 +457,13 @@ impl Candidate {
     }
 }
 
+/// Foot points this close count as in order.
+pub const FOOT_ROUNDING: f64 = 1e-9;
+
+/// A normal residual is the distance up to κδ²/2, with δ the way that the foot point still has to go. Below this share of the
+/// tolerance the difference is ignored, with κ taken as the inverse of the piece's size and δ as a share of it.
+pub(crate) const DRIFT: f64 = 0.02;
+
 /// A state with foot points and squared distances of the fitted samples.
 pub(crate) struct Measured<'a> {
     pub(crate) z: &'a FitState,
@@ -495,8 +472,7 @@ pub(crate) struct Measured<'a> {
     pub(crate) error: f64,
 }
 
-/// Moves the foot points by the Newton step that is left to do. A normal residual is the distance up to κδ²/2, with δ the rest
-/// of the way; if that is too much, measures the distances anew.
+/// Moves the foot points by the Newton step that is left to do. If they drift too far, measures the distances anew.
 #[inline(always)]
 pub(crate) fn settled<'f>(frame: &ChordFrame, g: &Lanes, fit: &'f Fit, tolerance: f64) -> Measured<'f> {
     let z = &fit.z;
@@ -508,10 +484,323 @@ pub(crate) fn settled<'f>(frame: &ChordFrame, g: &Lanes, fit: &'f Fit, tolerance
     }
     let drift = largest(&drift);
     let (mut error, mut squares) = (fit.error, fit.squares);
-    if drift * drift * frame.size > FOOT_DRIFT * tolerance {
+    if drift * drift * frame.size > DRIFT * tolerance {
         s = z.s;
         squares = frame.distances(g, z.a, z.b, &mut s, 2);
         error = largest(&squares).sqrt();
     }
     Measured { z, s, squares, error }
+}
+
+/// Normal residuals at eight samples, with their derivatives.
+struct Normals {
+    n: Lane,
+    /// By the handles.
+    na: Lane,
+    nb: Lane,
+    /// Newton step of the foot points, and its derivatives by the handles.
+    ds: Lane,
+    sa: Lane,
+    sb: Lane,
+}
+
+impl Normals {
+    const NONE: Self = Self { n: [0.0; 8], na: [0.0; 8], nb: [0.0; 8], ds: [0.0; 8], sa: [0.0; 8], sb: [0.0; 8] };
+}
+
+impl ChordFrame {
+    /// Not inlined: alone, the loop is vectorised.
+    #[inline(never)]
+    fn normals(&self, g: &Lanes, z: &FitState, out: &mut Normals) {
+        let c = self.power(z.a, z.b);
+        for i in 0..8 {
+            let r = SampleResidual::new(&c, [self.t0, self.t1], z.s[i], [g.x[i], g.y[i]]);
+            let unit = r.k.sqrt();
+            (out.n[i], out.na[i], out.nb[i]) = (r.n * unit, r.na * unit, r.nb * unit);
+            (out.ds[i], out.sa[i], out.sb[i]) = (r.ds, r.sa, r.sb);
+        }
+    }
+}
+
+/// Fits all sixteen samples from `start`, whose halves have the same handles, until the largest residual is at most `wanted`. Ends
+/// early where the next step would still leave it clearly above `tolerance`. Returns the best state of both halves, and its largest
+/// residual.
+pub(crate) fn minimax(
+    frame: &ChordFrame,
+    g: [&Lanes; 2],
+    start: [FitState; 2],
+    [wanted, tolerance]: [f64; 2],
+) -> ([FitState; 2], f64) {
+    let mut z = start;
+    let mut best = (start, f64::INFINITY);
+    let mut r = [Normals::NONE; 2];
+    for k in 0..=STEPS {
+        for h in 0..2 {
+            frame.normals(g[h], &z[h], &mut r[h]);
+        }
+        let error = larger(largest(&r[0].n.map(f64::abs)), largest(&r[1].n.map(f64::abs)));
+        let gains = error < best.1;
+        if gains {
+            best = (z, error);
+        }
+        if !gains || error <= wanted || k == STEPS {
+            break;
+        }
+        let Some((step, level)) = levelled(&r) else { break };
+        if level > MINIMAX_HOPE * tolerance {
+            break;
+        }
+        let (da, db, _) = frame.bent(step, &z[0], TRUST_RADIUS * frame.size);
+        for h in 0..2 {
+            z[h].a += da;
+            z[h].b += db;
+            for i in 0..8 {
+                z[h].s[i] = clamp_unit(z[h].s[i] + fma(da, r[h].sa[i], fma(db, r[h].sb[i], r[h].ds[i])));
+            }
+        }
+    }
+    best
+}
+
+/// Steps, which converge quadratically.
+const STEPS: usize = 3;
+
+/// Exchanges of one sample in a step, which usually ends by itself after two or three.
+const EXCHANGES: usize = 8;
+
+/// The samples of the first reference: those next to a fifth, a half and four fifths, where the leading form of the residual,
+/// s²(1−s)²((s−½)²−c), has its extremes.
+const EXTREMES: [usize; 3] = [1, 11, 14];
+
+/// The step that makes the largest of the linearised residuals as small as possible, and that residual. `None` if the samples do not
+/// determine a step.
+fn levelled(r: &[Normals; 2]) -> Option<([f64; 2], f64)> {
+    let row = |i: usize| -> [f64; 3] {
+        let (h, j) = (&r[i / 8], i % 8);
+        [h.n[j], h.na[j], h.nb[j]]
+    };
+    let mut reference = EXTREMES;
+    let mut rows = reference.map(row);
+    let mut found = None;
+    for _ in 0..EXCHANGES {
+        let Some((step, level)) = Level::of(&rows).step(&rows) else { break };
+        found = Some((step, level));
+        let mut residuals = [0.0; 16];
+        for (half, r) in residuals.chunks_exact_mut(8).zip(r) {
+            for i in 0..8 {
+                half[i] = fma(step[0], r.na[i], fma(step[1], r.nb[i], r.n[i])).abs();
+            }
+        }
+        let most = (0..16).fold(0, |m, i| if residuals[i] > residuals[m] { i } else { m });
+        // Rounding may leave the reference's own residuals a little above the level.
+        if residuals[most] <= LEVELLED * level || reference.contains(&most) {
+            break;
+        }
+        let new = row(most);
+        let mut highest = (0, -1.0);
+        for k in 0..3 {
+            let mut other = rows;
+            other[k] = new;
+            let level = Level::of(&other).height().abs();
+            if level > highest.1 {
+                highest = (k, level);
+            }
+        }
+        rows[highest.0] = new;
+        reference[highest.0] = most;
+    }
+    found
+}
+
+/// Residuals that exceed the level by less than a thousandth are level: the step is only of first order.
+const LEVELLED: f64 = 1.001;
+
+/// Three residuals levelled: λ and Σλᵢnᵢ.
+struct Level {
+    weights: [f64; 3],
+    sum: f64,
+}
+
+impl Level {
+    fn of([p, q, r]: &[[f64; 3]; 3]) -> Self {
+        let cross = |u: &[f64; 3], v: &[f64; 3]| u[1] * v[2] - u[2] * v[1];
+        let weights = [cross(q, r), cross(r, p), cross(p, q)];
+        Self { weights, sum: weights[0] * p[0] + weights[1] * q[0] + weights[2] * r[0] }
+    }
+
+    /// h; 0 if the derivatives of all three are parallel.
+    fn height(&self) -> f64 {
+        let size: f64 = self.weights.iter().map(|w| w.abs()).sum();
+        if size > 0.0 { self.sum / size } else { 0.0 }
+    }
+
+    /// The step that levels the three rows, from the two that are furthest from parallel; and |h|.
+    fn step(&self, rows: &[[f64; 3]; 3]) -> Option<([f64; 2], f64)> {
+        let height = self.height();
+        let k = (0..3).fold(0, |m, i| if self.weights[i].abs() > self.weights[m].abs() { i } else { m });
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let wanted = |i: usize| height * self.weights[i].signum() - rows[i][0];
+        let (u, v) = (wanted(i), wanted(j));
+        let scale = 1.0 / self.weights[k];
+        let step = [(u * rows[j][2] - v * rows[i][2]) * scale, (v * rows[i][1] - u * rows[j][1]) * scale];
+        (step[0].is_finite() && step[1].is_finite()).then_some((step, height.abs()))
+    }
+}
+
+/// Samples of a piece, and the judge of its fits.
+pub(crate) trait Fitting {
+    /// What a judgement finds besides the error.
+    type Mark: Default;
+
+    /// The frame and the fitted samples.
+    fn samples(&self) -> (&ChordFrame, &Lanes);
+
+    /// The samples between those.
+    fn checked(&mut self) -> Result<Lanes, NotFinite>;
+
+    /// Their foot points, interpolated.
+    fn between(&self, s: &Lane) -> Lane;
+
+    /// The error of a fit that comes within the tolerance; above the tolerance if it must be rejected.
+    fn judge(&mut self, fit: &Fit) -> Result<(f64, Self::Mark), NotFinite>;
+}
+
+/// The best fit so far, and its error: judged if its fit came within the tolerance, else what that would have reached.
+pub(crate) struct BestFit<M> {
+    pub(crate) fit: Fit,
+    pub(crate) error: f64,
+    pub(crate) mark: M,
+}
+
+impl<M: Default> BestFit<M> {
+    #[inline(always)]
+    pub(crate) fn of(fit: Fit, on: &mut impl Fitting<Mark = M>, tolerance: f64) -> Result<Self, NotFinite> {
+        let (error, mark) = if fit.reach <= tolerance { on.judge(&fit)? } else { (fit.reach, M::default()) };
+        Ok(Self { fit, error, mark })
+    }
+
+    /// Minimax on all sixteen samples until the error is at most `wanted`.
+    pub(crate) fn minimised(
+        &mut self,
+        on: &mut impl Fitting<Mark = M>,
+        [wanted, tolerance]: [f64; 2],
+    ) -> Result<(), NotFinite> {
+        let (z, check) = (self.fit.z, on.checked()?);
+        let other = FitState { s: on.between(&z.s), ..z };
+        let (frame, g) = on.samples();
+        let (z, error) = minimax(frame, [g, &check], [z, other], [wanted, tolerance]);
+        if error < self.error {
+            let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
+            *self = Self::of(fit, on, tolerance)?;
+            self.error = larger(self.error, error);
+        }
+        Ok(())
+    }
+}
+
+/// The best fit from `start` on. Each further attempt is made only if the ones before it have failed.
+#[inline(always)]
+pub(crate) fn improved<F: Fitting>(
+    on: &mut F,
+    effort: &Effort,
+    start: FitState,
+    tolerance: f64,
+) -> Result<BestFit<F::Mark>, NotFinite> {
+    let fitted = |on: &F, start: FitState, enough: f64| {
+        let (frame, g) = on.samples();
+        fit(effort, frame, g, start, [enough * tolerance, tolerance])
+    };
+    let mut best = BestFit::of(fitted(on, start, GOOD_ENOUGH), on, tolerance)?;
+    if best.error <= tolerance {
+        return Ok(best);
+    }
+    // Iterate to convergence a fit that stopped early but was rejected.
+    if best.fit.error <= GOOD_ENOUGH * tolerance {
+        let (mut start, (frame, g)) = (best.fit.z, on.samples());
+        frame.settle(g, start.a, start.b, &mut start.s);
+        best = BestFit::of(fitted(on, start, 0.0), on, tolerance)?;
+    }
+    // Start again farther along the valley of equal area, from more even handles first, which more often succeeds.
+    let even = if best.fit.z.a < best.fit.z.b { RESTART_FACTOR } else { 1.0 / RESTART_FACTOR };
+    let near = best.error < RESTART_WITHIN * tolerance;
+    for factor in [even, 1.0 / even] {
+        if !near || best.error <= tolerance {
+            break;
+        }
+        let (frame, g) = on.samples();
+        let Some(start) = frame.along_valley(g, &best.fit.z, factor) else { continue };
+        let other = fitted(on, start, GOOD_ENOUGH);
+        if other.reach < best.error {
+            let other = BestFit::of(other, on, tolerance)?;
+            if other.error < best.error {
+                best = other;
+            }
+        }
+    }
+    if best.error > tolerance && best.error <= MINIMAX_WITHIN * tolerance {
+        best.minimised(on, [0.0, tolerance])?;
+    }
+    Ok(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows from smooth functions like those of a fit, with phases at random.
+    fn rows(seed: u64) -> [Normals; 2] {
+        let mut state = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let (p, q, skew) = (random(), random(), random());
+        let mut r = [Normals::NONE, Normals::NONE];
+        for (h, half) in r.iter_mut().enumerate() {
+            for i in 0..8 {
+                let s = (2 * i + h + 1) as f64 / 17.0;
+                let u = 1.0 - s;
+                half.n[i] = s * s * u * u * ((s - 0.5 + 0.2 * p) * (s - 0.5 + 0.3 * q) - 0.1) + 0.001 * random();
+                (half.na[i], half.nb[i]) = (s * u * u * (1.0 + skew * s), s * s * u * (1.0 - p * s));
+            }
+        }
+        r
+    }
+
+    fn row(r: &[Normals; 2], i: usize) -> [f64; 3] {
+        [r[i / 8].n[i % 8], r[i / 8].na[i % 8], r[i / 8].nb[i % 8]]
+    }
+
+    /// By duality the least possible maximum is the largest level of any three residuals (de la Vallée Poussin).
+    #[test]
+    fn the_step_is_the_best_uniform_approximation() {
+        for seed in 0..200 {
+            let r = rows(seed);
+            let (step, level) = levelled(&r).unwrap();
+            let mut least = 0.0f64;
+            for i in 0..16 {
+                for j in 0..i {
+                    for k in 0..j {
+                        least = least.max(Level::of(&[row(&r, i), row(&r, j), row(&r, k)]).height().abs());
+                    }
+                }
+            }
+            let reached = (0..16).map(|i| row(&r, i)).map(|[n, a, b]| (n + step[0] * a + step[1] * b).abs());
+            let reached = reached.fold(0.0, f64::max);
+            assert!(
+                level <= least * (1.0 + 1e-12) && reached >= least * (1.0 - 1e-12),
+                "{seed}: {level} {least} {reached}"
+            );
+            assert!(reached <= LEVELLED * least, "{seed}: {reached} above {least}");
+        }
+    }
+
+    #[test]
+    fn parallel_derivatives_determine_no_step() {
+        let mut r = rows(1);
+        for half in &mut r {
+            half.nb = half.na.map(|a| 2.0 * a);
+        }
+        assert!(levelled(&r).is_none());
+    }
 }

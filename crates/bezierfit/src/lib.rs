@@ -3,18 +3,18 @@
 //! Let g(t) be the curve, a [`Source`].
 //!
 //! 1. **Samples** (`sample`). g is evaluated at eight parameters in one batch, at eight more in between when needed, and with its
-//!    derivative at the break points. A curve that is a line to rounding ends here (`quick`).
-//! 2. **Fit** (`fit`). A piece keeps end points and end tangents (G¹). Its two handle lengths minimise the normal residuals: Gauss–Newton
-//!    by variable projection, each step bent along the valley of equal area. The error is of sixth order in the piece's length. The
-//!    Hermite cubic, with the curve's end derivatives, is tried first (`quick`).
-//! 3. **Further attempts** (`stretch`): converge, restart elsewhere in the valley, minimax by exchange (`minimax`).
+//!    derivative at the break points.
+//! 2. **Quick outcomes** (`stretch`). A line, if the curve is one to rounding, or the Hermite cubic, with the curve's end derivatives.
+//! 3. **Fit** (`fit`). A piece keeps end points and end tangents (G¹). Its two handle lengths minimise the normal residuals: Gauss–Newton
+//!    by variable projection, each step bent along the valley of equal area. The error is of sixth order in the piece's length. Where
+//!    that does not suffice: converge, restart elsewhere in the valley, minimax by exchange.
 //! 4. **Acceptance** (`judge`). A fit is judged by the cheapest test that can decide: eight samples; sixteen, with the peaks
-//!    predicted between them; samples halfway beside doubtful ones; a dense check (`check`); or, if asked for, a proof by polynomial
+//!    predicted between them; samples halfway beside doubtful ones; a dense check; or, if asked for, a proof by polynomial
 //!    bounds (`proof`, `sampled`).
 //! 5. **Break points** (`breaks`). The sixth root of error ÷ tolerance measures difficulty. Break points go to its quantiles,
 //!    with fewer pieces tried first and single break points bisected, until every piece fits.
-//! 6. **Merging** (`run`, `trial`, `distances`, `merge`), if asked for: the fewest cubics across smooth joints of several curves.
-//! 7. **Quadratics** (`spline`) instead of cubics, and a given number of pieces (`pieces`), which is a search for the tolerance.
+//! 6. **Merging** (`run`, `distances`, `merge`), if asked for: the fewest cubics across smooth joints of several curves.
+//! 7. **Quadratics** (`spline`) instead of cubics, and a given number of pieces (`path`), which is a search for the tolerance.
 //!
 //! `limits` holds every threshold of these stages, with the reason for its value.
 
@@ -25,22 +25,16 @@
 #![allow(missing_debug_implementations)]
 
 mod breaks;
-mod chebyshev;
-mod check;
 mod distances;
-mod error;
 mod fit;
 mod judge;
 mod limits;
 mod merge;
-mod minimax;
 mod offset;
 mod options;
 mod path;
-mod pieces;
 mod points;
 mod proof;
-mod quick;
 #[cfg(feature = "area")]
 mod region;
 mod report;
@@ -51,17 +45,14 @@ mod source;
 mod spline;
 mod stretch;
 mod stroke;
-mod tables;
-mod trial;
 
-pub use error::Error;
 pub use offset::Offset;
-pub use options::{Degree, Options, Pieces};
-pub use path::{Fitted, MAX_EVALUATIONS, PathSource, Segment, fit, simplify};
+pub use options::{Degree, Error, Options, Pieces};
+pub use path::{MAX_EVALUATIONS, PathSource, Segment, fit, simplify};
 pub use points::fit_points;
 #[cfg(feature = "area")]
 pub use region::{offset, union, union_even_odd};
-pub use report::{Assurance, Piece, PieceReport, Report};
+pub use report::{Assurance, Fitted, Piece, PieceReport, Report};
 pub use sample::{Lane, Lanes};
 pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
 pub use stroke::stroke;
@@ -70,15 +61,14 @@ pub use stroke::stroke;
 #[doc(hidden)]
 pub mod parts {
     pub use crate::distances::{MarkBatch, MarkedCubic};
-    pub use crate::fit::ChordFrame;
-    pub use crate::limits::{
-        FOOT_ROUNDING, MERGE_GRID, MERGE_SHARE, SMOOTH_JOINT, STRAIGHT_TOLERANCE, STRAIGHT_TURN, SURE_CORNER,
-        VANISHING_DERIVATIVE,
-    };
+    pub use crate::fit::{ChordFrame, FOOT_ROUNDING};
+    pub use crate::limits::{ACCEPTED, MERGE_GRID, SMOOTH_JOINT, STRAIGHT};
     pub use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, refined};
+    pub use crate::path::append;
     pub use crate::run::{RunSegment, SegmentRun, per_segment, sample_lanes};
     pub use crate::sample::{CHECKED, FITTED, fma, spaced};
-    pub use crate::source::tangent_beside;
+    pub use crate::source::{VANISHING_DERIVATIVE, tangent_beside};
+    pub use crate::stretch::STRAIGHT_TURN;
     pub use crate::stretch::StretchFitter;
     pub use crate::stroke::{Edge, EdgeCurve, contours, drawn_dashes};
 }

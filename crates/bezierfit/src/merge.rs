@@ -5,14 +5,11 @@
 //! the segments' own pieces, which lead from joint to joint.
 
 use crate::distances::{Distances, MarkedCubic, proven};
-use crate::limits::{
-    BETWEEN_TARGET, CARRY_BELOW, FEW_PLACES, FINEST_STEP, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, MERGE_GRID,
-    MERGE_SHARE, REACH_TARGET, REFUSED_ERROR, SMALLEST_REACH_ERROR,
-};
+use crate::limits::{ACCEPTED, BETWEEN_TARGET, CARRY_BELOW, FINEST_STEP, JUMP_ERROR, MERGE_GRID, REACH_TARGET};
 use crate::report::{Assurance, Piece, Report};
 use crate::run::SegmentRun;
+use crate::run::{RunCubic, Stretch, Trial};
 use crate::source::{BreakPoint, NotFinite, Source};
-use crate::trial::{RunCubic, Stretch, Trial};
 use std::collections::VecDeque;
 
 /// A cubic that was tried from one place to another.
@@ -92,7 +89,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         settings: MergeSettings,
         memory: &'r mut ReachMemory,
     ) -> Self {
-        let tolerance = MERGE_SHARE * settings.tolerance;
+        let tolerance = ACCEPTED * settings.tolerance;
         own.grid = run.grid;
         let places = run.last_place() + 1;
         memory.ends.clear();
@@ -139,16 +136,6 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(end)
     }
 
-    /// Returns `true` if one cubic fits from place `k` to `m`, as far as its samples show.
-    fn fits(&mut self, k: usize, m: usize) -> Result<bool, NotFinite> {
-        Ok(m > k && self.error(k, m)? <= 1.0)
-    }
-
-    /// Returns `true` if one cubic from place `k` to `m` passes its check.
-    fn passes(&mut self, k: usize, m: usize) -> Result<bool, NotFinite> {
-        Ok(self.fits(k, m)? && self.piece(k, m)?.is_some())
-    }
-
     /// The piece from place `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
     fn piece(&mut self, k: usize, m: usize) -> Result<Option<(Piece, f64)>, NotFinite> {
         let i = self.entry(k, m)?;
@@ -156,7 +143,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             let passed = self.checked(*cubic, k, m)?.map(Box::new);
             let tried = &mut self.memory.tried[i];
             if passed.is_none() {
-                tried.error = REFUSED_ERROR;
+                // A miss, but a near one.
+                tried.error = 1.2;
             }
             tried.passed = passed;
         }
@@ -178,7 +166,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         if found.as_ref().is_some_and(|f| f.error <= enough) {
             return Ok(found);
         }
-        let closer = match self.stretch(k, m)?.fitted_closely(&cubic).cubic {
+        let closer = match self.stretch(k, m)?.fitted_closely(&cubic)?.cubic {
             Some(closer) => self.within(&closer)?,
             None => None,
         };
@@ -222,8 +210,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             return Ok(i);
         }
         let stretch = self.stretch(k, m)?;
-        let Trial { error, cubic } = stretch.fitted();
-        let relative = error / stretch.tolerance;
+        let Trial { error, cubic } = stretch.fitted()?;
+        let relative = error / self.tolerance;
         let error = if cubic.is_some() { relative.min(1.0) } else { relative.max(1.0 + f64::EPSILON) };
         let memory = &mut *self.memory;
         let cubic = cubic.map(Box::new);
@@ -297,7 +285,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         let (mut below, mut above) = (None, None);
         let mut probe = (joint + self.run.grid / 2).max(k + self.memory.last_reach).min(limit);
         for round in 0.. {
-            let error = self.error(k, probe)?.max(SMALLEST_REACH_ERROR);
+            // Smaller errors are rounding to the guess, which then grows at most fivefold.
+            let error = self.error(k, probe)?.max(1e-4);
             if error <= 1.0 {
                 (low, below) = (probe, Some(error));
             } else {
@@ -313,34 +302,12 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             let wanted = match (below, above) {
                 (Some(below), None) => l * (REACH_TARGET / below).powf(1.0 / 6.0),
                 (None, Some(above)) => h * above.powf(-1.0 / 6.0),
-                (Some(below), Some(above)) if round < INTERPOLATIONS => {
+                (Some(below), Some(above)) if round < 6 => {
                     l * (h / l).powf(((BETWEEN_TARGET / below).ln() / (above / below).ln()).clamp(0.0, 1.0))
                 }
                 _ => 0.5 * (l + h),
             };
             probe = self.run.place_before(start + wanted, [low + 1, high - 1]);
-        }
-        self.leap(k, low, limit)
-    }
-
-    /// Tries the places just beyond a near miss: a few longer stretches fit although the next one does not.
-    fn leap(&mut self, k: usize, mut low: usize, limit: usize) -> Result<usize, NotFinite> {
-        'further: while low < limit {
-            let step = step(k, low);
-            if low + step > limit || self.error(k, low + step)? > LEAP_WITHIN {
-                break;
-            }
-            for m in (low + 2 * step..=(low + (1 + LEAPS) * step).min(limit)).step_by(step) {
-                let error = self.error(k, m)?;
-                if error <= 1.0 {
-                    low = m;
-                    continue 'further;
-                }
-                if error > LEAP_WITHIN {
-                    break;
-                }
-            }
-            break;
         }
         Ok(low)
     }
@@ -415,7 +382,7 @@ impl<F: FitOwn> OwnPieces<F> {
     fn append_segment(&mut self, i: usize, out: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
         let (from, to, own) = self.fitted(i)?;
         let (from, to) = (*from, *to);
-        report.add_part(own);
+        report.add(own);
         out.extend_from_slice(&self.pieces[from..to]);
         Ok(())
     }
@@ -490,7 +457,7 @@ pub fn refined<S: Source + Clone, F: FitOwn>(
     memory: &mut ReachMemory,
 ) -> Result<(OwnPieces<F>, Option<Vec<PassedLeg>>), NotFinite> {
     let pieces = own.count_of(legs.as_deref())?;
-    let by = (FEW_PLACES * pieces / run.last_place()).next_power_of_two().min(MOST_REFINED);
+    let by = (24 * pieces / run.last_place()).next_power_of_two().min(MOST_REFINED);
     if by == 1 {
         return Ok((own, legs));
     }
@@ -530,18 +497,15 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
         let Furthest { place: k, leg } = furthest[count];
         let joint = k - k % grid;
         let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
-        if let Some((from, true)) = leg
-            && let Some(place) = beyond(reaches, [from, joint, k], best.place)?
-        {
-            best = Furthest { place, leg: Some((joint, true)) };
-        }
         // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
         let at_joint = best.place <= joint + grid
             && best.place < last
             && joint < last
             && (joint == k
                 || match leg {
-                    Some((from, true)) if from < joint => reaches.passes(from, joint)?,
+                    Some((from, true)) if from < joint => {
+                        reaches.error(from, joint)? <= 1.0 && reaches.piece(from, joint)?.is_some()
+                    }
                     _ => false,
                 });
         if at_joint {
@@ -559,29 +523,6 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
         }
     }
     Ok(None)
-}
-
-/// The place that a cubic from `joint` reaches beyond `best`, if it does. The joint lies before `k`, and the cubic that begins at `from`
-/// can be shortened to it: its tangent may suit what follows better.
-fn beyond(
-    reaches: &mut Reaches<'_, impl Source, impl FitOwn>,
-    [from, joint, k]: [usize; 3],
-    best: usize,
-) -> Result<Option<usize>, NotFinite> {
-    let limit = reaches.limit(joint);
-    // A long cubic is searched for too coarsely to gain from a place so near.
-    let possible = from < joint && joint < k && best < limit && step(joint, best) == 1;
-    if !(possible && reaches.fits(joint, best + 1)? && reaches.passes(from, joint)?) {
-        return Ok(None);
-    }
-    let mut place = best + 1;
-    while place < limit && reaches.fits(joint, place + 1)? {
-        place += 1;
-    }
-    while place > best && !reaches.passes(joint, place)? {
-        place -= 1;
-    }
-    Ok((place > best).then_some(place))
 }
 
 /// The number of places that a search may leave open at place `m` after `k`: a long cubic need not end at the last possible one.

@@ -1,9 +1,9 @@
 //! Curves through points.
 
-use crate::error::Error;
 use crate::limits::LONG_EDGE;
-use crate::options::Options;
-use crate::path::{Fitted, simplify};
+use crate::options::{Error, Options};
+use crate::path::simplify;
+use crate::report::Fitted;
 use crate::source::NotFinite;
 use kurbo::{Affine, BezPath, Point, Vec2};
 

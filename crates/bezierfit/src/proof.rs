@@ -31,49 +31,33 @@
 //! holds for its component in any direction, hence for its length.
 //!
 //! **Few nodes, then many.** The cost goes with the number of nodes, the loss with their scarcity. A bound from few nodes with
-//! a simple φ comes first ([`quick`]); if it is not good enough, many nodes follow ([`bound`]).
+//! a simple φ comes first; if it is not good enough, many nodes follow.
 //!
 //! Rounding of the samples (some 1e-14 of the coordinates) is added to the bound.
 
-use crate::chebyshev::{ChebyshevTables, FEET, SAMPLES, SharedTables};
 use crate::fit::{Candidate, ChordFrame};
-use crate::limits::{LONG_PROOF_ERROR, LONG_PROOF_WITHIN, MAX_DENOMINATOR_VARIATION, PROOF_ROUNDING};
 use crate::sample::{CHECKED, FITTED, Lane, Lanes, fma, largest, sum};
-use crate::sampled::SampledProof;
+use crate::sampled::{MAX_VARIATION, ROUNDING, SampledProof, inverse};
 use crate::source::{BreakPoint, NotFinite, Quotient, Source, images};
-use kurbo::{CubicBez, Vec2};
+use kurbo::{CubicBez, Point, Vec2};
+use std::f64::consts::PI;
+use std::sync::OnceLock;
 
-/// Coefficients of V in the quick proof.
-pub(crate) const QUICK_CLEARING: usize = 4;
-
-/// A bound for the distance between candidate and image, both ways; infinite if none was found. `feet` approximate the foot
-/// points of the samples j/17.
-pub(crate) fn bound(
+/// A bound for the distance between candidate and image, both ways; infinite if none was found. From few nodes first, from more if that
+/// is above the tolerance. `feet` approximate the foot points of the samples j/17.
+fn by_nodes(
     source: &impl Source,
     form: &Quotient,
     c: &Candidate,
     feet: &[f64; FEET],
+    tolerance: f64,
 ) -> Result<f64, NotFinite> {
-    with_nodes::<NODES, PHI, CLEARING>(source, form, c, feet)
+    const V: usize = 4;
+    let quick = if form.total(4, V) < 24 { with_nodes::<24, 4, V>(source, form, c, feet)? } else { f64::INFINITY };
+    if quick <= tolerance { Ok(quick) } else { with_nodes::<NODES, PHI, CLEARING>(source, form, c, feet) }
 }
 
-/// A looser bound from fewer nodes.
-pub(crate) fn quick(
-    source: &impl Source,
-    form: &Quotient,
-    c: &Candidate,
-    feet: &[f64; FEET],
-) -> Result<f64, NotFinite> {
-    const V: usize = QUICK_CLEARING;
-    match form.total(4, V) {
-        _ if form.below == 0 && form.total(5, V) < 24 => with_nodes::<24, 5, V>(source, form, c, feet),
-        ..24 => with_nodes::<24, 4, V>(source, form, c, feet),
-        _ if form.total(5, V) < 40 => with_nodes::<40, 5, V>(source, form, c, feet),
-        _ => Ok(f64::INFINITY),
-    }
-}
-
-/// A bound as by [`bound`] for any cubic over the stretch `t` of the source; the ends need not coincide.
+/// A bound for any cubic over the stretch `t` of the source; the ends need not coincide.
 pub(crate) fn stretch(
     source: &impl Source,
     form: &Quotient,
@@ -99,8 +83,7 @@ pub(crate) fn stretch(
         frame.distances(&g, a, b, &mut s, 4);
         out.copy_from_slice(&s);
     }
-    let first = quick(source, form, &c, &feet)?;
-    if first <= tolerance { Ok(first) } else { bound(source, form, &c, &feet) }
+    by_nodes(source, form, &c, &feet, tolerance)
 }
 
 /// The bound with N nodes, P coefficients in p, V in V.
@@ -161,7 +144,7 @@ where
         let k = (0..N).find(|&k| !(x[k] + y[k]).is_finite());
         return k.map_or(Ok(f64::INFINITY), |k| Err(NotFinite { t: t[k], at: source.place(t[k]) }));
     }
-    Ok(tables.supremum(&x, &y, largest(&most).sqrt(), form.total(P, V)) / share + rounding(c))
+    Ok(tables.supremum(&x, &y, largest(&most).sqrt(), form.total(P, V)) / share + rounding(c.p0, c.frame.size))
 }
 
 /// The coefficients of p by least squares from the foot points. `None` if φ leaves [0, 1].
@@ -214,8 +197,8 @@ fn subtract<const N: usize>(g: &mut [f64; N], f: &[f64; N], [c0, c1, c2, c3]: [f
 }
 
 /// A bound for the rounding of the samples.
-pub(crate) fn rounding(c: &Candidate) -> f64 {
-    PROOF_ROUNDING * (c.p0.x.abs() + c.p0.y.abs() + c.frame.size)
+fn rounding(p0: Point, size: f64) -> f64 {
+    ROUNDING * (p0.x.abs() + p0.y.abs() + size)
 }
 
 /// Replaces W by V·W and returns a bound for |VW − 1|, a polynomial of degree `degree`. `None` if W is not positive or
@@ -240,7 +223,7 @@ pub(crate) fn cleared<const N: usize, const P: usize, const V: usize>(
         most = if off > most { off } else { most };
     }
     let e = tables.between_nodes(most, degree);
-    (e < MAX_DENOMINATOR_VARIATION).then_some(e)
+    (e < MAX_VARIATION).then_some(e)
 }
 
 /// Chebyshev nodes of the longest proof: more than the degree of D for a bicubic map of a cubic (max(18, 3·9)) and for a
@@ -264,16 +247,16 @@ impl Quotient {
 }
 
 /// A bound for the distance between candidate and image: at most the tolerance if one of the proofs succeeds; otherwise a
-/// larger one, or infinity. `g` and `feet` are those of the fitted and the checked samples, at which `error` was measured.
+/// larger one, or infinity. `g` and `feet` are those of the fitted and the checked samples.
 pub(crate) fn piece(
     source: &impl Source,
     form: &Quotient,
     c: &Candidate,
     g: [&Lanes; 2],
     feet: [&Lane; 2],
-    [error, tolerance]: [f64; 2],
+    tolerance: f64,
 ) -> Result<f64, NotFinite> {
-    let mut sampled = SampledProof::new(source, form, c, g, tolerance);
+    let sampled = SampledProof::new(source, form, c, g, tolerance);
     let identity = sampled.identity()?;
     if identity <= tolerance {
         return Ok(identity);
@@ -289,9 +272,8 @@ pub(crate) fn piece(
     if thirty_two <= tolerance {
         return Ok(thirty_two);
     }
-    let polynomial = form.below == 0;
-    let hopeless = thirty_two > LONG_PROOF_WITHIN * tolerance || error > LONG_PROOF_ERROR * tolerance;
-    if polynomial && thirty_two.is_finite() && hopeless {
+    // More nodes prove little more of a polynomial, and smaller pieces cost less.
+    if form.below == 0 && thirty_two.is_finite() {
         return Ok(thirty_two);
     }
     let mut feet = [0.0; 16];
@@ -299,13 +281,7 @@ pub(crate) fn piece(
         feet[FITTED[i] as usize - 1] = s0[i];
         feet[CHECKED[i] as usize - 1] = s1[i];
     }
-    if !polynomial {
-        let quick = quick(source, form, c, &feet)?;
-        if quick <= tolerance {
-            return Ok(quick);
-        }
-    }
-    bound(source, form, c, &feet)
+    by_nodes(source, form, c, &feet, tolerance)
 }
 
 /// A bound for the distance between the image and the line between two break points: the component of D across the line, if
@@ -317,36 +293,15 @@ pub(crate) fn line(
     from: &BreakPoint,
     to: &BreakPoint,
     size: f64,
-    tolerance: f64,
 ) -> Result<f64, NotFinite> {
     let q = to.p - from.p;
     let length = q.hypot();
     let unit = if length > 0.0 { q / length } else { Vec2::ZERO };
-    let third = length / 3.0;
-    let frame = ChordFrame { q, t0: unit, t1: unit, floor: [0.0; 2], size, home: [third; 2], pull: 0.0 };
-    let c = Candidate { t0: from.t, t1: to.t, p0: from.p, frame, a: third, b: third };
-    if form.degree + form.below < 24 && form.total(4, QUICK_CLEARING) < 24 {
-        let quick = line_with_nodes::<24, 4, QUICK_CLEARING>(source, form, &c)?;
-        if quick <= tolerance {
-            return Ok(quick);
-        }
-    }
-    line_with_nodes::<NODES, PHI, CLEARING>(source, form, &c)
-}
-
-fn line_with_nodes<const N: usize, const P: usize, const V: usize>(
-    source: &impl Source,
-    form: &Quotient,
-    c: &Candidate,
-) -> Result<f64, NotFinite>
-where
-    ChebyshevTables<N, P>: SharedTables,
-{
-    let tables = ChebyshevTables::<N, P>::shared();
-    let unit = c.frame.t0;
+    const N: usize = NODES;
+    let tables = ChebyshevTables::<N, PHI>::shared();
     let (mut across, mut pace, mut w) = ([0.0; N], [0.0; N], [1.0; N]);
     for b in (0..N).step_by(8) {
-        let t: Lane = std::array::from_fn(|i| c.t0 + (c.t1 - c.t0) * tables.tau[b + i]);
+        let t: Lane = std::array::from_fn(|i| from.t + (to.t - from.t) * tables.tau[b + i]);
         if form.below > 0 {
             w[b..b + 8].copy_from_slice(&form.denominators(source, &t));
         }
@@ -356,14 +311,16 @@ where
                 return Err(NotFinite { t: t[i], at: source.place(t[i]) });
             }
             let k = b + i;
-            across[k] = (p - c.p0).cross(unit);
+            across[k] = (p - from.p).cross(unit);
             // W²·g' = G'W − GW' is a polynomial and has the sign of g'.
             pace[k] = d.dot(unit) * (w[k] * w[k]);
         }
     }
     let mut share = 1.0;
     if form.below > 0 {
-        let Some(e) = cleared::<N, P, V>(tables, &mut w, form.below + V - 1) else { return Ok(f64::INFINITY) };
+        let Some(e) = cleared::<N, PHI, CLEARING>(tables, &mut w, form.below + CLEARING - 1) else {
+            return Ok(f64::INFINITY);
+        };
         for k in 0..N {
             across[k] *= w[k];
         }
@@ -374,5 +331,209 @@ where
         return Ok(f64::INFINITY);
     }
     let most = across.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    Ok(tables.supremum(&across, &[0.0; N], most, form.total(P, V)) / share + rounding(c))
+    Ok(tables.supremum(&across, &[0.0; N], most, form.total(PHI, CLEARING)) / share + rounding(from.p, size))
+}
+
+/// Number of samples with foot points, at j/17.
+pub(crate) const FEET: usize = 16;
+
+/// Coefficients are computed in fours, even and odd ones apart: the largest number of fours of one parity.
+const MOST_QUARTERS: usize = 6;
+
+/// Tables for all proofs with N nodes and P coefficients of p; see [`super::nodes`].
+pub(crate) struct ChebyshevTables<const N: usize, const P: usize> {
+    /// The nodes on [0, 1].
+    pub(crate) tau: [f64; N],
+    /// The Chebyshev polynomials of degree less than P at the nodes.
+    pub(crate) t: [[f64; N]; P],
+    /// Row k: contributions of the value at node k to the coefficients 0, 2, 4…, and 1, 3, 5…
+    even: [[f64; N]; N],
+    odd: [[f64; N]; N],
+    /// 1 / cos(πd/2N).
+    stretch: [f64; N],
+    /// Row i: contributions of the foot point of sample i to the coefficients of p (P of the eight), by least squares.
+    pub(crate) feet: [[f64; 8]; FEET],
+}
+
+/// Tables that exist once per process.
+pub(crate) trait SharedTables: Sized + 'static {
+    /// Returns the tables, computing them on first use.
+    fn shared() -> &'static Self;
+}
+
+macro_rules! shared {
+    ($($n:literal, $p:literal;)*) => {$(
+        impl SharedTables for ChebyshevTables<$n, $p> {
+            fn shared() -> &'static Self {
+                static TABLES: OnceLock<Box<ChebyshevTables<$n, $p>>> = OnceLock::new();
+                TABLES.get_or_init(|| Box::new(ChebyshevTables::new()))
+            }
+        }
+    )*};
+}
+
+shared! {
+    24, 4;
+    48, 8;
+}
+
+impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
+    fn new() -> Self {
+        let angle = |k: usize| PI * (k as f64 + 0.5) / N as f64;
+        let part = |k: usize, d: usize| (if d == 0 { 1.0 } else { 2.0 }) / N as f64 * (d as f64 * angle(k)).cos();
+        Self {
+            tau: std::array::from_fn(|k| 0.5 + 0.5 * angle(k).cos()),
+            t: std::array::from_fn(|j| std::array::from_fn(|k| (j as f64 * angle(k)).cos())),
+            even: std::array::from_fn(|k| std::array::from_fn(|i| part(k, 2 * i))),
+            odd: std::array::from_fn(|k| std::array::from_fn(|i| part(k, 2 * i + 1))),
+            stretch: std::array::from_fn(|d| 1.0 / (PI * d as f64 / (2 * N) as f64).cos()),
+            feet: least_squares::<P>().map(|row| std::array::from_fn(|k| if k < P { row[k] } else { 0.0 })),
+        }
+    }
+
+    /// The first V Chebyshev coefficients of the function with these values.
+    pub(crate) fn first<const V: usize>(&self, f: &[f64; N]) -> [f64; V] {
+        let mut out = [0.0; V];
+        for k in 0..N {
+            for d in 0..V {
+                out[d] += (if d % 2 == 0 { self.even[k][d / 2] } else { self.odd[k][d / 2] }) * f[k];
+            }
+        }
+        out
+    }
+
+    /// A bound for a polynomial of the given degree whose values at the nodes are at most `most` in size.
+    pub(crate) fn between_nodes(&self, most: f64, degree: usize) -> f64 {
+        most * self.stretch[degree]
+    }
+
+    /// A bound for the length of the vector polynomial with these values at the nodes, of which `most` is the longest: the
+    /// least, over d, of the theorem's bound for the part up to degree d plus the sum of the coefficients beyond.
+    pub(crate) fn supremum(&self, x: &[f64; N], y: &[f64; N], most: f64, degree: usize) -> f64 {
+        // Even and odd coefficients of x and y. The values at a node and at its mirror image contribute equally to the even
+        // ones and oppositely to the odd ones.
+        let mut c = [[[0.0; 4]; 4]; MOST_QUARTERS];
+        let quarters = N / 8;
+        for k in 0..N / 2 {
+            let m = N - 1 - k;
+            let f = [x[k] + x[m], y[k] + y[m], x[k] - x[m], y[k] - y[m]];
+            let (even, odd) = (&self.even[k], &self.odd[k]);
+            for q in 0..quarters {
+                for i in 0..4 {
+                    let (e, o) = (even[4 * q + i], odd[4 * q + i]);
+                    c[q][0][i] = fma(e, f[0], c[q][0][i]);
+                    c[q][1][i] = fma(e, f[1], c[q][1][i]);
+                    c[q][2][i] = fma(o, f[2], c[q][2][i]);
+                    c[q][3][i] = fma(o, f[3], c[q][3][i]);
+                }
+            }
+        }
+        let mut size = [0.0; N];
+        for q in 0..quarters {
+            let (mut even, mut odd) = ([0.0; 4], [0.0; 4]);
+            for i in 0..4 {
+                even[i] = fma(c[q][0][i], c[q][0][i], c[q][1][i] * c[q][1][i]).sqrt();
+                odd[i] = fma(c[q][2][i], c[q][2][i], c[q][3][i] * c[q][3][i]).sqrt();
+            }
+            for i in 0..4 {
+                size[8 * q + 2 * i] = even[i];
+                size[8 * q + 2 * i + 1] = odd[i];
+            }
+        }
+        let mut tail = 0.0;
+        let mut best = f64::INFINITY;
+        for d in (0..=degree).rev() {
+            let limit = (most + tail) * self.stretch[d] + tail;
+            if limit < best {
+                best = limit;
+            }
+            // Coefficient d joins the tail. Once the tail alone exceeds the best bound, smaller d cannot help.
+            tail += size[d];
+            if tail > best {
+                break;
+            }
+        }
+        best
+    }
+
+    /// A lower bound for a polynomial of the given degree from its values at the nodes, by an upper bound for its distance
+    /// from their midrange.
+    pub(crate) fn least(&self, f: &[f64; N], degree: usize) -> f64 {
+        let lo = f.iter().copied().fold(f64::INFINITY, f64::min);
+        let hi = f.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mid = 0.5 * (lo + hi);
+        mid - self.supremum(&f.map(|v| v - mid), &[0.0; N], hi - mid, degree)
+    }
+}
+
+/// Rows of the pseudo-inverse of `A[i][j]` = τᵢ(1−τᵢ) times the j-th Chebyshev polynomial at 2τᵢ−1: normal
+/// equations, well conditioned for sixteen samples and degree seven.
+fn least_squares<const P: usize>() -> [[f64; P]; FEET] {
+    let a: [[f64; P]; FEET] = std::array::from_fn(|i| {
+        let tau = SAMPLES[i];
+        let u: f64 = 2.0 * tau - 1.0;
+        std::array::from_fn(|j| tau * (1.0 - tau) * (j as f64 * u.acos()).cos())
+    });
+    let gram = inverse(std::array::from_fn::<[f64; P], P, _>(|r| {
+        std::array::from_fn(|c| a.iter().map(|row| row[r] * row[c]).sum())
+    }));
+    a.map(|row| std::array::from_fn(|k| (0..P).map(|j| gram[k][j] * row[j]).sum()))
+}
+
+/// Places of the samples with foot points.
+pub(crate) const SAMPLES: [f64; FEET] = {
+    let mut out = [0.0; FEET];
+    let mut i = 0;
+    while i < FEET {
+        out[i] = (i as f64 + 1.0) / (FEET as f64 + 1.0);
+        i += 1;
+    }
+    out
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kurbo::Vec2;
+
+    fn the_bound_holds_with<const N: usize, const P: usize>(worst: f64)
+    where
+        ChebyshevTables<N, P>: SharedTables,
+    {
+        // A polynomial of degree 9, whose maximum is found by sampling.
+        let f = |t: f64| {
+            let u = 2.0 * t - 1.0;
+            let v = (9.0 * u.acos()).cos() * 0.01 + (4.0 * u.acos()).cos() + 0.3 * u;
+            Vec2::new(v, 0.5 * v)
+        };
+        let t = ChebyshevTables::<N, P>::shared();
+        let (x, y) = (t.tau.map(|t| f(t).x), t.tau.map(|t| f(t).y));
+        let most = (0..N).map(|k| x[k].hypot(y[k])).fold(0.0, f64::max);
+        let truth = (0..=10_000).map(|i| f(f64::from(i) / 10_000.0).hypot()).fold(0.0, f64::max);
+        let b = t.supremum(&x, &y, most, N - 1);
+        assert!(b >= truth && b < worst * truth, "{N}: {b} {truth}");
+    }
+
+    #[test]
+    fn the_bound_holds_and_is_not_far_off() {
+        the_bound_holds_with::<48, 8>(1.06);
+        the_bound_holds_with::<24, 4>(1.13);
+    }
+
+    #[test]
+    fn phi_goes_through_feet_it_can_represent() {
+        let rows: [[f64; 8]; FEET] = least_squares();
+        let want = [0.1, -0.05, 0.02, 0.0, 0.003, 0.0, 0.0, -0.001];
+        let lead: Vec<f64> = (0..FEET)
+            .map(|i| {
+                let tau = SAMPLES[i];
+                let u: f64 = 2.0 * tau - 1.0;
+                tau * (1.0 - tau) * (0..8).map(|j| want[j] * (j as f64 * u.acos()).cos()).sum::<f64>()
+            })
+            .collect();
+        for k in 0..8 {
+            let got: f64 = rows.iter().zip(&lead).map(|(r, f)| r[k] * f).sum();
+            assert!((got - want[k]).abs() < 1e-12);
+        }
+    }
 }

@@ -1,9 +1,9 @@
 //! Areas: what outlines cover together, and areas that grow or shrink. linesweeper finds how their edges cross.
 
-use crate::error::Error;
-use crate::options::Options;
-use crate::path::{Fitted, simplify, subpaths};
-use crate::report::{Assurance, Report};
+use crate::limits::{CROSSINGS, EDGES, SIMPLIFIED};
+use crate::options::{Error, Options};
+use crate::path::{simplify, subpaths};
+use crate::report::{Assurance, Fitted, Report};
 use crate::source::NotFinite;
 use crate::stroke::{beside_path, stroke};
 use kurbo::{
@@ -11,12 +11,6 @@ use kurbo::{
 };
 use linesweeper::topology::{BinaryWindingNumber, Topology};
 use std::panic::{self, AssertUnwindSafe};
-
-/// Share of the tolerance for crossings.
-const CROSSINGS: f64 = 0.02;
-
-/// Share of the tolerance for the edges of an area before fewer pieces are looked for.
-const EDGES: f64 = 0.3;
 
 /// Angles by which paths are turned before the sweep, in radians, one after the other until it succeeds. linesweeper 0.5 fails most where
 /// edges lie along the axes, as they do in drawings: of 14,553 offsets of the paths of drawings it panics on 12 as they lie, and on none
@@ -84,7 +78,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
     }
     let style = Stroke::new(2.0 * distance.abs()).with_join(join).with_caps(Cap::Round).with_miter_limit(MITER_LIMIT);
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
-    let rest = Options { tolerance: (1.0 - EDGES - CROSSINGS) * options.tolerance, ..*options };
+    let rest = Options { tolerance: SIMPLIFIED * options.tolerance, ..*options };
     let mut area = BezPath::new();
     for subpath in subpaths(path) {
         if matches!(subpath.elements().last(), Some(PathEl::ClosePath)) {
@@ -119,7 +113,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
 /// Adds a part with the report of its edges.
 fn add(out: &mut Fitted, part: &Fitted, edges: Report, (distance, options): (f64, &Options)) {
     out.path.extend(&part.path);
-    out.report.add(part.report.clone());
+    out.report.add(&part.report);
     // What lies further from the result than the distance has no part in it.
     let reach = (distance + options.tolerance).powi(2);
     let edge = |p: &Point| part.path.segments().any(|s| s.nearest(*p, options.tolerance).distance_sq <= reach);

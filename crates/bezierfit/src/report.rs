@@ -33,6 +33,9 @@ pub enum Assurance {
     Exact,
 }
 
+/// Factor from a checked error to the one reported, up to the tolerance, for errors between samples. It decides no acceptance.
+pub(crate) const REPORT_MARGIN: f64 = 1.05;
+
 /// What is known of the error of a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PieceReport {
@@ -81,14 +84,7 @@ impl Report {
     }
 
     /// Adds the report of another part.
-    pub fn add(&mut self, part: Self) {
-        self.add_bound(part.max_error, part.assurance);
-        self.unresolved.extend(part.unresolved);
-        self.pieces.extend(part.pieces);
-    }
-
-    /// The same, of a report that stays.
-    pub(crate) fn add_part(&mut self, part: &Self) {
+    pub fn add(&mut self, part: &Self) {
         self.add_bound(part.max_error, part.assurance);
         self.unresolved.extend(&part.unresolved);
         self.pieces.extend(&part.pieces);

@@ -31,10 +31,16 @@
 mod tests;
 
 use crate::fit::Candidate;
-use crate::limits::{MAX_DENOMINATOR_VARIATION, PROOF_ROUNDING, RANGE_ROUNDING, STOPPING_COST};
-use crate::sample::{Lane, Lanes, UNIT, fma, largest, sum};
+use crate::sample::{CHECKED, FITTED, Lane, Lanes, UNIT, fma, largest, sum};
 use crate::source::{NotFinite, Quotient, Source, images_into};
-use crate::tables::{CLEARING, CLEARING_LESS, FINE, FREE, SampleExpansion, SampleTables};
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// Largest |VW − 1| of a cleared denominator; the bound is divided by one minus this.
+pub(crate) const MAX_VARIATION: f64 = 0.5;
+
+/// Rounding of samples, ends and slopes relative to their coordinates: 45 units in the last place. Added to every bound.
+pub(crate) const ROUNDING: f64 = 1e-14;
 
 /// Degrees of D that sixteen and thirty-two samples determine.
 const DETERMINED: [usize; 2] = [19, 35];
@@ -42,8 +48,6 @@ const DETERMINED: [usize; 2] = [19, 35];
 const BELOW_GROWTH: f64 = 12.0;
 /// Highest degree of VW.
 const BELOW: usize = 16;
-/// The largest value of τ(1−τ)².
-const SLOPE_GROWTH: f64 = 4.0 / 27.0;
 /// Rounding of basis functions and of sums of them.
 const ARITHMETIC: f64 = 1.0 + 1e-9;
 
@@ -56,23 +60,19 @@ pub(crate) struct SampledProof<'a, S> {
     /// Images at the fitted and the checked samples, relative to the first point.
     g: [&'a Lanes; 2],
     enough: f64,
-    /// The derivative of C∘φ left over at the ends where the image stops and C nearly does.
-    left: [f64; 2],
-    /// Degree of V.
-    clearing: usize,
 }
 
 impl<'a, S: Source> SampledProof<'a, S> {
     #[inline(always)]
     pub(crate) fn new(source: &'a S, form: &'a Quotient, c: &'a Candidate, g: [&'a Lanes; 2], enough: f64) -> Self {
-        Self { source, form, c, g, enough, left: [0.0; 2], clearing: CLEARING }
+        Self { source, form, c, g, enough }
     }
 
     /// Degree of D, or of VW·D, with φ of degree p.
     #[inline(always)]
     fn degree(&self, p: usize) -> usize {
         let below = self.form.below;
-        self.form.degree.max(below + 3 * p) + if below > 0 { self.clearing } else { 0 }
+        self.form.degree.max(below + 3 * p) + if below > 0 { CLEARING } else { 0 }
     }
 
     /// The bound for the Hermite cubic with φ = τ, from sixteen samples.
@@ -82,64 +82,24 @@ impl<'a, S: Source> SampledProof<'a, S> {
     }
 
     /// The bound from sixteen samples, with approximate foot points.
-    pub(crate) fn sixteen(&mut self, feet: [&Lane; 2]) -> Result<f64, NotFinite> {
+    pub(crate) fn sixteen(&self, feet: [&Lane; 2]) -> Result<f64, NotFinite> {
         self.through::<3>(feet, DETERMINED[0])
     }
 
     /// The bound from thirty-two samples; the foot points should be accurate.
-    pub(crate) fn thirty_two(&mut self, feet: [&Lane; 2]) -> Result<f64, NotFinite> {
-        // If the denominator varies little, a V of low degree leaves room for a φ of higher degree.
-        if self.form.below >= 8 {
-            self.clearing = CLEARING_LESS;
-            let less = self.through::<FREE>(feet, DETERMINED[1])?;
-            self.clearing = CLEARING;
-            if less <= self.enough {
-                return Ok(less);
-            }
-        }
+    pub(crate) fn thirty_two(&self, feet: [&Lane; 2]) -> Result<f64, NotFinite> {
         self.through::<FREE>(feet, DETERMINED[1])
     }
 
     #[inline(always)]
-    fn through<const F: usize>(&mut self, feet: [&Lane; 2], most: usize) -> Result<f64, NotFinite> {
+    fn through<const F: usize>(&self, feet: [&Lane; 2], most: usize) -> Result<f64, NotFinite> {
         // The highest degree of φ that so many samples allow.
         let Some(p) = (5..=F + 3).rev().find(|p| self.degree(*p) <= most) else { return Ok(f64::INFINITY) };
         let [h0, h1] = self.c.frame.home;
-        let mut slopes = [h0 / self.c.a, h1 / self.c.b];
-        if h0 == 0.0 || h1 == 0.0 {
-            self.stopping(feet, &mut slopes);
-        }
+        let slopes = [h0 / self.c.a, h1 / self.c.b];
         match through::<F>(SampleTables::shared(), feet, slopes, p) {
             Some(phi) => self.with(&phi, p, most),
             None => Ok(f64::INFINITY),
-        }
-    }
-
-    /// If the image stops at an end, D′ vanishes there only if φ′ or C′ does. If C nearly stops too, φ continues as the foot
-    /// points do, and the rest of D′ is subtracted as a cubic with that slope.
-    #[cold]
-    fn stopping(&mut self, feet: [&Lane; 2], slopes: &mut [f64; 2]) {
-        let handles = [self.c.a, self.c.b];
-        // Parabolas through the first and the last two foot points.
-        let along = [2.0 * feet[0][0] - 0.5 * feet[1][0], 2.0 * (1.0 - feet[0][7]) - 0.5 * (1.0 - feet[1][7])];
-        for k in 0..2 {
-            if self.c.frame.home[k] == 0.0 {
-                let left = 3.0 * handles[k] * along[k] / UNIT;
-                let slow = along[k] >= 0.0 && left * SLOPE_GROWTH <= STOPPING_COST * self.enough;
-                (slopes[k], self.left[k]) = if slow { (along[k] / UNIT, left) } else { (0.0, 0.0) };
-            }
-        }
-    }
-
-    /// Subtracts that cubic from D.
-    #[cold]
-    fn subtract_slopes(&self, b: usize, d: &mut Lanes) {
-        let tables = SampleTables::shared();
-        let (t0, t1) = (self.c.frame.t0 * self.left[0], self.c.frame.t1 * self.left[1]);
-        for i in 0..8 {
-            let (l, r) = (tables.phi[0][b][i], tables.phi[1][b][i]);
-            d.x[i] += t0.x * l - t1.x * r;
-            d.y[i] += t0.y * l - t1.y * r;
         }
     }
 
@@ -160,17 +120,9 @@ impl<'a, S: Source> SampledProof<'a, S> {
             return Ok(most);
         }
         let noise = noise(self.form, c);
-        let left = self.left[0] + self.left[1];
-        if left > 0.0 {
-            self.subtract_slopes(0, &mut d[0]);
-            self.subtract_slopes(1, &mut d[1]);
-        }
-        let cost = SLOPE_GROWTH * left;
         let few = limit == DETERMINED[0];
-        let data = ProofData { proof: self, noise, top: n.max(4) - 4, few, enough: self.enough - cost };
-        let most = most + cost;
-        let rest = if self.form.below == 0 && few { data.by_sixteen(&d, most) } else { data.by_more(phi, d)? };
-        Ok(rest + cost)
+        let data = ProofData { proof: self, noise, top: n.max(4) - 4, few, enough: self.enough };
+        if self.form.below == 0 && few { Ok(data.by_sixteen(&d, most)) } else { data.by_more(phi, d) }
     }
 }
 
@@ -222,7 +174,6 @@ impl<S: Source> ProofData<'_, S> {
                     g.y[i] -= c.p0.y;
                 }
                 difference(tables, b, c, phi, &g, &mut d[b]);
-                self.proof.subtract_slopes(b, &mut d[b]);
             }
         }
         let mut off = 0.0;
@@ -234,8 +185,8 @@ impl<S: Source> ProofData<'_, S> {
             if w.iter().flatten().any(|v| v.is_nan() || *v <= 0.0) {
                 return Ok(f64::INFINITY);
             }
-            off = BELOW_GROWTH * clear(tables, &mut w, self.proof.clearing);
-            if off.is_nan() || off >= MAX_DENOMINATOR_VARIATION {
+            off = BELOW_GROWTH * clear(tables, &mut w);
+            if off.is_nan() || off >= MAX_VARIATION {
                 return Ok(f64::INFINITY);
             }
             for (d, w) in d.iter_mut().zip(&w) {
@@ -280,7 +231,7 @@ fn amplification(coefficients: f64) -> f64 {
 #[inline(always)]
 fn noise(form: &Quotient, c: &Candidate) -> f64 {
     let speeds = 3.0 * (c.frame.home[0] + c.frame.home[1]) / (c.t1 - c.t0);
-    let one = PROOF_ROUNDING * (c.p0.x.abs() + c.p0.y.abs() + c.frame.size + speeds) + form.blur;
+    let one = ROUNDING * (c.p0.x.abs() + c.p0.y.abs() + c.frame.size + speeds) + form.blur;
     // Its own, and that of the cubic through the ends' errors: one for the place of either end, 4/27 for either slope.
     one * (1.0 + 1.0 + 8.0 / 27.0)
 }
@@ -326,7 +277,7 @@ pub(crate) fn through<const F: usize>(
         outside = if off > outside { off } else { outside };
     }
     let slopes_inside = slopes.iter().all(|s| (0.0..11.0).contains(s));
-    (slopes_inside && outside < 0.5 - RANGE_ROUNDING && sum(&parts[0]).is_finite()).then_some((ends, c))
+    (slopes_inside && outside < 0.5 - 1e-9 && sum(&parts[0]).is_finite()).then_some((ends, c))
 }
 
 /// Degrees d of L that are tried.
@@ -372,14 +323,13 @@ pub(crate) fn difference<const F: usize>(
 
 /// Replaces the values of W by those of VW, and returns the largest |VW − 1| of the first twenty-four.
 #[inline(never)]
-pub(crate) fn clear(tables: &SampleTables, w: &mut [Lane; 4], degree: usize) -> f64 {
-    let inverse = &tables.inverse[usize::from(degree == CLEARING_LESS)];
+pub(crate) fn clear(tables: &SampleTables, w: &mut [Lane; 4]) -> f64 {
     let mut parts = [[0.0; 8]; CLEARING + 1];
     for b in 0..2 {
         for i in 0..8 {
             let v = 1.0 / w[b][i];
             for k in 0..=CLEARING {
-                parts[k][i] = fma(inverse[k][b][i], v, parts[k][i]);
+                parts[k][i] = fma(tables.inverse[k][b][i], v, parts[k][i]);
             }
         }
     }
@@ -478,4 +428,201 @@ pub(crate) fn supremum<const H: usize>(tables: &SampleTables, c: &[[f64; H]; 4],
         best = if limit < best { limit } else { best };
     }
     best
+}
+
+/// Half of the further samples of the longer proof, in seventeenths; the others mirror them. Together with the sixteen even
+/// ones, they have nearly the largest determinant in the basis that sixteen more can have.
+const EXTRA: [[f64; 4]; 2] = [[0.15, 0.35, 0.62, 1.4], [2.4, 3.44, 4.54, 7.47]];
+/// Coefficients of either parity of L on the fine grid.
+pub(crate) const FINE: usize = 3;
+/// Degree of V.
+pub(crate) const CLEARING: usize = 4;
+/// Largest number of free coefficients of φ, and of all but that of τ.
+pub(crate) const FREE: usize = 8;
+const PHI: usize = FREE + 2;
+
+/// Tables of the proofs from samples.
+pub(crate) struct SampleTables {
+    /// τ, v and u of the batches.
+    pub(crate) places: [[Lane; 3]; 4],
+    pub(crate) few: SampleExpansion<8>,
+    pub(crate) many: SampleExpansion<16>,
+    /// Basis functions 0, 2, 4 and 1, 3, 5 in the left half of the fine grid.
+    pub(crate) fine: [[[f64; 16]; FINE]; 2],
+    /// v(1−τ), vτ, and v² times the polynomials that are orthonormal under v⁴ at the sixteen samples, in the batches.
+    pub(crate) phi: [[Lane; 4]; PHI],
+    /// Their products with each other and with τ, summed over the sixteen samples.
+    pub(crate) products: [[f64; 3]; FREE],
+    /// Their Bernstein coefficients of degree eleven, and those of τ.
+    pub(crate) bernstein: [[f64; 12]; PHI],
+    pub(crate) line: [f64; 12],
+    /// Rows: the power coefficients of V from the values of 1/W at the sixteen samples.
+    pub(crate) inverse: [[Lane; 2]; CLEARING + 1],
+}
+
+impl SampleTables {
+    pub(crate) fn shared() -> &'static Self {
+        static TABLES: OnceLock<Box<SampleTables>> = OnceLock::new();
+        TABLES.get_or_init(|| Box::new(Self::new()))
+    }
+
+    fn new() -> Self {
+        let mirrored = |h: [f64; 4]| -> Lane { std::array::from_fn(|i| if i < 4 { h[i] } else { 17.0 - h[7 - i] }) };
+        let sets = [FITTED, CHECKED, mirrored(EXTRA[0]), mirrored(EXTRA[1])];
+        let places = sets.map(|s| {
+            let tau = s.map(|j| j * UNIT);
+            [tau, tau.map(|t| t * (1.0 - t)), tau.map(|t| 2.0 * t - 1.0)]
+        });
+        let basis = GegenbauerBasis::new();
+        let half = std::array::from_fn(|i| basis.at(places[i / 4][0][i % 4]));
+        let mut grid = (2..26).filter(|j| j % 3 != 0).map(|j| f64::from(j) / 51.0);
+        let grid: [_; 16] = std::array::from_fn(|_| basis.at(grid.next().unwrap_or(0.5)));
+        let (phi, products, bernstein) = phi_tables(&places);
+        let power = |u: f64| -> [f64; CLEARING + 1] { std::array::from_fn(|k| u.powi(k as i32)) };
+        let rows: [[f64; CLEARING + 1]; 16] = std::array::from_fn(|i| power(places[i / 8][2][i % 8]));
+        let gram = inverse(std::array::from_fn::<[f64; CLEARING + 1], { CLEARING + 1 }, _>(|r| {
+            std::array::from_fn(|c| rows.iter().map(|p| p[r] * p[c]).sum())
+        }));
+        let at = |k: usize, i: usize| -> f64 { (0..=CLEARING).map(|c| gram[k][c] * rows[i][c]).sum() };
+        let inverse = std::array::from_fn(|k| std::array::from_fn(|b| std::array::from_fn(|i| at(k, 8 * b + i))));
+        Self {
+            places,
+            few: SampleExpansion::new(&half),
+            many: SampleExpansion::new(&half),
+            fine: std::array::from_fn(|odd| std::array::from_fn(|k| grid.map(|b| b[2 * k + odd]))),
+            phi,
+            products,
+            bernstein,
+            line: std::array::from_fn(|j| j as f64 / 11.0),
+            inverse,
+        }
+    }
+}
+
+/// See [`SampleTables`].
+type PhiTables = ([[Lane; 4]; PHI], [[f64; 3]; FREE], [[f64; 12]; PHI]);
+
+fn phi_tables(places: &[[Lane; 3]; 4]) -> PhiTables {
+    let tau = |i: usize| places[i / 8][0][i % 8];
+    let v = |t: f64| t * (1.0 - t);
+    // Values at the samples, then at the nodes from which the Bernstein coefficients are interpolated.
+    const AT: usize = 32 + 12;
+    let at: [f64; AT] = std::array::from_fn(|i| if i < 32 { tau(i) } else { (i - 32) as f64 / 11.0 });
+    let dot = |a: &[f64; AT], b: &[f64; AT]| -> f64 { (0..16).map(|i| a[i] * b[i]).sum() };
+    let mut q = [[0.0; AT]; PHI];
+    q[0] = at.map(|t| v(t) * (1.0 - t));
+    q[1] = at.map(|t| v(t) * t);
+    for k in 2..PHI {
+        let last = q[k - 1];
+        let mut next =
+            if k == 2 { at.map(|t| v(t) * v(t)) } else { std::array::from_fn(|i| (2.0 * at[i] - 1.0) * last[i]) };
+        // Gram–Schmidt, twice because of rounding.
+        for _ in 0..2 {
+            for base in &q[2..k] {
+                let f = dot(&next, base);
+                next = std::array::from_fn(|i| next[i] - f * base[i]);
+            }
+        }
+        let size = dot(&next, &next).sqrt();
+        q[k] = next.map(|v| v / size);
+    }
+    let choose = |j: usize| (0..j).fold(1.0, |c, i| c * (11 - i) as f64 / (i + 1) as f64);
+    let collocation: [[f64; 12]; 12] = std::array::from_fn(|i| {
+        let t = at[32 + i];
+        std::array::from_fn(|j| choose(j) * t.powi(j as i32) * (1.0 - t).powi(11 - j as i32))
+    });
+    let solved = inverse(collocation);
+    (
+        q.map(|q| std::array::from_fn(|b| std::array::from_fn(|i| q[8 * b + i]))),
+        std::array::from_fn(|k| [dot(&q[k + 2], &at), dot(&q[k + 2], &q[0]), dot(&q[k + 2], &q[1])]),
+        q.map(|q| std::array::from_fn(|j| (0..12).map(|i| solved[j][i] * q[32 + i]).sum())),
+    )
+}
+
+/// Matrices from samples to coefficients. Batches hold mirror images: the i-th and the (7−i)-th sample.
+pub(crate) struct SampleExpansion<const H: usize> {
+    /// Row i: contributions of the sum (`odd`: difference) of the i-th sample and its mirror image to the coefficients 0, 2, 4…
+    /// (1, 3, 5…).
+    pub(crate) even: [[f64; H]; H],
+    pub(crate) odd: [[f64; H]; H],
+    /// A bound for the change of the first k+1 coefficients together if no sample changes by more than one.
+    pub(crate) noise: [[f64; 2]; H],
+}
+
+/// The functions Bₖ: their divisors.
+pub(crate) struct GegenbauerBasis(pub(crate) [f64; GegenbauerBasis::COUNT]);
+
+impl GegenbauerBasis {
+    /// One for each of thirty-two samples.
+    pub(crate) const COUNT: usize = 32;
+
+    pub(crate) fn new() -> Self {
+        /// Nodes; a polynomial of degree n exceeds its largest value there by 1/cos(πn/2N) at most.
+        const N: usize = 512;
+        let mut largest = [0.0f64; Self::COUNT];
+        for i in 0..N / 2 {
+            let at = Self([1.0; Self::COUNT]).at(0.5 + 0.5 * (PI * (i as f64 + 0.5) / N as f64).cos());
+            for (l, v) in largest.iter_mut().zip(at) {
+                *l = l.max(v.abs());
+            }
+        }
+        Self(std::array::from_fn(|k| largest[k] / (PI * (k + 4) as f64 / (2 * N) as f64).cos()))
+    }
+
+    /// Their values at `tau`.
+    pub(crate) fn at(&self, tau: f64) -> [f64; Self::COUNT] {
+        let (u, v) = (2.0 * tau - 1.0, tau * (1.0 - tau));
+        // Gegenbauer polynomials of index 4 (DLMF 18.9.1).
+        let (mut last, mut c) = (0.0, 1.0);
+        std::array::from_fn(|k| {
+            let out = v * v * c / self.0[k];
+            let n = k as f64;
+            (last, c) = (c, (2.0 * (n + 4.0) * u * c - (n + 7.0) * last) / (n + 1.0));
+            out
+        })
+    }
+}
+
+impl<const H: usize> SampleExpansion<H> {
+    /// From the basis at the first halves of the batches.
+    pub(crate) fn new(basis: &[[f64; GegenbauerBasis::COUNT]; 16]) -> Self {
+        // A sum of mirror images is twice the even part.
+        let rows = |odd: usize| -> [[f64; H]; H] {
+            inverse(std::array::from_fn(|i| std::array::from_fn(|k| 2.0 * basis[i][2 * k + odd])))
+        };
+        let (even, odd) = (rows(0), rows(1));
+        let row = |m: &[[f64; H]; H], k: usize| 2.0 * m[k].iter().map(|v| v.abs()).sum::<f64>();
+        let mut noise = [[0.0; 2]; H];
+        let mut all = 0.0;
+        for k in 0..H {
+            let e = all + row(&even, k);
+            all = e + row(&odd, k);
+            noise[k] = [e, all];
+        }
+        let turned = |m: [[f64; H]; H]| std::array::from_fn(|i| std::array::from_fn(|k| m[k][i]));
+        Self { even: turned(even), odd: turned(odd), noise }
+    }
+}
+
+/// The inverse of a matrix, by Gauss–Jordan elimination with pivots.
+pub(crate) fn inverse<const N: usize>(mut a: [[f64; N]; N]) -> [[f64; N]; N] {
+    let mut b: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
+    for c in 0..N {
+        let pivot = (c..N).max_by(|i, j| a[*i][c].abs().total_cmp(&a[*j][c].abs())).unwrap_or(c);
+        a.swap(c, pivot);
+        b.swap(c, pivot);
+        let k = 1.0 / a[c][c];
+        a[c] = a[c].map(|v| v * k);
+        b[c] = b[c].map(|v| v * k);
+        for r in 0..N {
+            if r != c {
+                let f = a[r][c];
+                for j in 0..N {
+                    a[r][j] -= f * a[c][j];
+                    b[r][j] -= f * b[c][j];
+                }
+            }
+        }
+    }
+    b
 }

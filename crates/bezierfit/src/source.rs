@@ -1,8 +1,15 @@
 //! What can be fitted: a curve that gives points and derivatives, and whatever else it knows about itself.
 
-use crate::limits::{ONE_SIDED_STEP, SLOW_MARGIN, SLOW_SPEED, VANISHING_DERIVATIVE};
+use crate::limits::SLOW_SPEED;
 use crate::sample::{Lane, Lanes, sum};
 use kurbo::{CubicBez, Point, QuadBez, Vec2, common::solve_cubic};
+
+/// Below this share of its usual size a derivative is rounding and gives no direction.
+pub const VANISHING_DERIVATIVE: f64 = 1e-9;
+
+/// Distance, as a share of the segment, at which a one-sided tangent is taken where all derivatives vanish. Far above rounding;
+/// the direction is off by about the same number of radians, a five-hundredth of the 0.01° to which joints are kept smooth.
+pub(crate) const ONE_SIDED_STEP: f64 = 3e-7;
 
 /// A curve with a parameter from 0 to 1. A closure from a parameter to a point and a derivative is one.
 ///
@@ -245,7 +252,7 @@ impl SlowSpots {
 
     /// The spot well inside (t0, t1) that is nearest to the middle.
     pub(crate) fn inside(&self, t0: f64, t1: f64) -> Option<f64> {
-        let m = SLOW_MARGIN * (t1 - t0);
+        let m = 1e-6 * (t1 - t0);
         let off = |t: f64| (t - 0.5 * (t0 + t1)).abs();
         self.all().iter().copied().filter(|t| *t > t0 + m && *t < t1 - m).min_by(|a, b| off(*a).total_cmp(&off(*b)))
     }

@@ -5,13 +5,13 @@
 //! grow with the residual (Lawson) bring the largest one down. The least n whose spline passes its check is taken. A single piece has no
 //! freedom: its control point is where the end tangents meet.
 
-use crate::limits::{
-    REPORT_MARGIN, SPLINE_ACCEPTED, SPLINE_ROUNDS, SPLINE_SAMPLES, SPLINE_WEIGHTED, STRAIGHT_TOLERANCE,
-};
-use crate::report::{Assurance, Report};
+use crate::limits::{ACCEPTED, SPLINE_SAMPLES, STRAIGHT};
+use crate::report::{Assurance, REPORT_MARGIN, Report};
 use crate::source::{BreakPoint, NotFinite, Source};
 use kurbo::{BezPath, Point, Vec2};
 
+/// Rounds of a fit, the first five of which are plain least squares.
+const ROUNDS: usize = 30;
 /// Control points of a spline, at most: a longer run is divided.
 const MOST: usize = 48;
 /// Stretches shorter than this share of a curve are not divided, nor are any after so many.
@@ -119,7 +119,7 @@ impl<S: Source> Run<'_, S> {
             stretches += 1;
             let [t0, t1] = span.t;
             let mut samples = self.samples(&[span], 2 * SPLINE_SAMPLES, &ends)?;
-            if let Some(error) = samples.straight(STRAIGHT_TOLERANCE * self.tolerance) {
+            if let Some(error) = samples.straight(STRAIGHT * self.tolerance) {
                 out.push(Covered { spans: vec![span], ends, spline: None, error, resolved: true });
                 continue;
             }
@@ -194,7 +194,7 @@ impl<S: Source> Run<'_, S> {
                 u[k] + (u[(k + 1).min(u.len() - 1)] - u[k]) * part
             })
             .collect();
-        let error = spline.checked(&closer, &mut feet).filter(|e| *e <= SPLINE_ACCEPTED * self.tolerance);
+        let error = spline.checked(&closer, &mut feet).filter(|e| *e <= ACCEPTED * self.tolerance);
         Ok(error.map(|e| (spline, e)).ok_or(MISSED * self.tolerance))
     }
 
@@ -250,23 +250,10 @@ impl Samples {
         ((advances || limit == f64::INFINITY) && worst <= limit).then_some(worst)
     }
 
-    /// Shares along which pieces are laid out to begin with: by what the curves need alone, the length, and the turn to the power that makes pieces
-    /// of circles of different radii equally hard.
-    fn layouts(&self) -> [Vec<f64>; 3] {
-        let n = self.p.len();
-        let mut turned = vec![0.0; n];
-        for i in 1..n {
-            let step = self.length[i] - self.length[i - 1];
-            let turn = if i + 1 < n {
-                let (u, v) = (self.p[i] - self.p[i - 1], self.p[i + 1] - self.p[i]);
-                u.cross(v).atan2(u.dot(v)).abs()
-            } else {
-                0.0
-            };
-            turned[i] = turned[i - 1] + step.powf(0.25) * turn.powf(0.75) + 1e-3 * step.powf(0.25);
-        }
-        let shares = |v: &[f64]| v.iter().map(|x| x / v[n - 1].max(f64::MIN_POSITIVE)).collect();
-        [self.share.clone(), shares(&self.length), shares(&turned)]
+    /// Shares along which pieces are laid out to begin with: by what the curves need alone, and by length.
+    fn layouts(&self) -> [Vec<f64>; 2] {
+        let whole = self.length[self.p.len() - 1].max(f64::MIN_POSITIVE);
+        [self.share.clone(), self.length.iter().map(|x| x / whole).collect()]
     }
 }
 
@@ -320,9 +307,9 @@ impl Spline {
             let mut u: Vec<f64> = layout.iter().map(|s| s * n as f64).collect();
             let Some((spline, error)) = Self::fitted(n, samples, ends, &mut u, tolerance) else { continue };
             least = least.min(error);
-            if error <= SPLINE_ACCEPTED * tolerance
+            if error <= ACCEPTED * tolerance
                 && let Some(checked) = spline.checked(samples, &mut u)
-                && checked <= SPLINE_ACCEPTED * tolerance
+                && checked <= ACCEPTED * tolerance
             {
                 return Ok((spline, checked, u));
             }
@@ -358,7 +345,7 @@ impl Spline {
         let mut normals = tangents(samples);
         let mut best: Option<(Self, f64, Vec<f64>)> = None;
         let mut errors = vec![0.0; u.len()];
-        for round in 0..SPLINE_ROUNDS {
+        for round in 0..ROUNDS {
             let Some(spline) = solve(n, samples, ends, u, &weights, &normals) else { break };
             let mut worst = 0.0f64;
             for (i, p) in samples.p.iter().enumerate() {
@@ -374,10 +361,10 @@ impl Spline {
                 best = Some((spline, worst, u.to_vec()));
             }
             let least = best.as_ref().map_or(f64::INFINITY, |b| b.1);
-            if least <= SPLINE_ACCEPTED * 0.98 * tolerance || (round >= SPLINE_WEIGHTED && least > 4.0 * tolerance) {
+            if least <= ACCEPTED * 0.98 * tolerance || (round >= 5 && least > 4.0 * tolerance) {
                 break;
             }
-            if round >= SPLINE_WEIGHTED {
+            if round >= 5 {
                 weights.iter_mut().zip(&errors).for_each(|(w, e)| *w *= 0.02 + e / worst);
                 let most = weights.iter().copied().fold(0.0, f64::max);
                 weights.iter_mut().for_each(|w| *w = (*w / most).max(1e-6));

@@ -1,20 +1,19 @@
-//! One piece for one stretch of a curve: its samples, the quick outcomes, and the attempts after them.
+//! One piece for one stretch of a curve: its samples, a line if they are on one, or the best cubic found.
 
-use crate::check::THOROUGH_WORK;
-use crate::fit::{ChordFrame, Fit, FitRequest, FitState, fit};
-use crate::limits::{
-    CUSP_MARGIN, CUSP_SPEED, EIGHT_ACCEPTED, EIGHT_GROWTH, FOOT_DRIFT, GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_FLOOR_STOPPED,
-    HANDLE_PULL, MAX_ATTEMPTS, MAX_DIFFICULTY, MIN_RELATIVE_ERROR, MINIMAX_WITHIN, RESTART_GAIN, SHARP_PACE,
-    SMALL_ERROR,
-};
-use crate::minimax::minimax;
+use crate::fit::{ChordFrame, Fit, FitRequest, FitState, Fitting, USUAL, improved};
+use crate::limits::{MAX_ATTEMPTS, MAX_PLANNED, STRAIGHT};
 use crate::proof;
-use crate::quick::{HermiteResiduals, straight};
 use crate::report::Piece;
-use crate::sample::{CHECKED, FITTED, Lane, Lanes, UNIT, between, clamp_unit, larger, spaced};
+use crate::sample::{CHECKED, FITTED, Lane, Lanes, UNIT, between, larger, spaced};
 use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images_into};
 use kurbo::{Line, Vec2};
 use std::cell::Cell;
+
+/// Evaluations of the source for a thorough check: its own, and its search.
+pub(crate) const THOROUGH_WORK: usize = 800;
+
+/// Factor from the error at eight samples to the one reported.
+pub(crate) const EIGHT_GROWTH: f64 = 1.1;
 
 /// Evaluations of the source for an attempt at a piece with its usual checks.
 const EVALUATIONS: usize = 32;
@@ -97,83 +96,23 @@ impl<S: Source> StretchFitter<'_, S> {
         // A vanishing Hermite handle starts tiny and may grow.
         let third = h * (1.0 / 3.0);
         let home = [from.speed * third, to.speed * third];
-        let floor = home.map(|a| if a > 0.0 { a.min(HANDLE_FLOOR * size) } else { HANDLE_FLOOR_STOPPED * size });
-        let pull = (HANDLE_PULL * tol / size).powi(2);
-        let frame = ChordFrame { q, t0: from.away, t1: to.into, floor, size, home, pull };
+        let frame = ChordFrame::new(q, [from.away, to.into], size, home, tol);
         let careful = !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
-        Ok(FitRequest { from, to, frame, g, check: None, ds: [0.0; 8], careful })
-    }
-
-    /// The error of the Hermite cubic, if it fits and nothing more needs to be looked at.
-    #[inline(always)]
-    pub(crate) fn hermite_error(&self, request: &mut FitRequest<'_>) -> Result<Option<f64>, NotFinite> {
-        let (tol, size) = (self.tolerance, request.frame.size);
-        let first = request.hermite_at_fitted();
-        request.ds = first.ds;
-        let [a, b] = request.frame.home;
-        let within = |worst: f64, share: f64| worst <= (share * tol).powi(2) && a > 0.0 && b > 0.0 && !request.careful;
-        let settled = |drift: f64| drift * drift * size <= FOOT_DRIFT * tol;
-        if !(within(first.worst, SMALL_ERROR) && settled(first.drift) && first.resolved(None)) {
-            return Ok(None);
-        }
-        let low_degree = self.simple && self.form.is_none();
-        if within(first.worst, EIGHT_ACCEPTED) && first.even() && low_degree {
-            return Ok(Some(EIGHT_GROWTH * first.worst.sqrt()));
-        }
-        self.hermite_error_at_sixteen(request, &first)
-    }
-
-    #[inline(never)]
-    fn hermite_error_at_sixteen(
-        &self,
-        request: &mut FitRequest<'_>,
-        first: &HermiteResiduals,
-    ) -> Result<Option<f64>, NotFinite> {
-        let (tol, size) = (self.tolerance, request.frame.size);
-        let check = *self.checked(request)?;
-        let second = request.hermite_at_checked(&check);
-        let worst = larger(first.worst, second.worst).sqrt();
-        let settled = second.drift * second.drift * size <= FOOT_DRIFT * tol;
-        if !(worst <= SMALL_ERROR * tol && settled && first.resolved(Some(&second))) {
-            return Ok(None);
-        }
-        if self.form.is_none() {
-            return Ok(Some(worst));
-        }
-        let [a, b] = request.frame.home;
-        let (mut s0, mut s1) = ([0.0; 8], [0.0; 8]);
-        for i in 0..8 {
-            s0[i] = clamp_unit(FITTED[i] * UNIT + first.ds[i]);
-            s1[i] = clamp_unit(CHECKED[i] * UNIT + second.ds[i]);
-        }
-        let error = self.proven(request, &FitState { a, b, s: s0 }, [&s0, &s1], worst)?;
-        Ok((error <= tol).then_some(error))
+        Ok(FitRequest { from, to, frame, g, check: None, careful })
     }
 
     /// The outcome, if the image is straight to rounding.
     #[inline(always)]
     pub(crate) fn line(&self, request: &FitRequest<'_>) -> Result<Option<FitOutcome>, NotFinite> {
         let size = request.frame.size;
-        match straight(request.g, request.from, request.to, size, self.tolerance) {
-            None => Ok(None),
-            Some(line) => self.line_outcome(request, line).map(Some),
-        }
-    }
-
-    #[cold]
-    fn line_outcome(&self, request: &FitRequest<'_>, (line, off): (Line, f64)) -> Result<FitOutcome, NotFinite> {
-        let piece = Piece::Line(line);
-        if self.form.is_none() || request.frame.size == 0.0 {
-            return Ok(FitOutcome::Fits { piece, error: off, reach: off });
-        }
-        let error = match &self.form {
-            None => 0.0,
-            Some(form) => proof::line(self.source, form, request.from, request.to, request.frame.size, self.tolerance)?,
+        let Some((line, off)) = straight(request.g, request.from, request.to, size, self.tolerance) else {
+            return Ok(None);
         };
-        if error <= self.tolerance {
-            return Ok(FitOutcome::Fits { piece, error, reach: error });
-        }
-        Ok(FitOutcome::Misses { piece, error, reach: error, cusp: None })
+        let error = match &self.form {
+            Some(form) if size > 0.0 => proof::line(self.source, form, request.from, request.to, size)?,
+            _ => off,
+        };
+        Ok(Some(FitOutcome { piece: Piece::Line(line), error, reach: error }))
     }
 
     /// The checked samples, taken on first use.
@@ -199,7 +138,7 @@ impl<S: Source> StretchFitter<'_, S> {
     ) -> Result<f64, NotFinite> {
         let Some(form) = &self.form else { return Ok(error) };
         let check = *self.checked(request)?;
-        proof::piece(self.source, form, &request.candidate(z), [request.g, &check], feet, [error, self.tolerance])
+        proof::piece(self.source, form, &request.candidate(z), [request.g, &check], feet, self.tolerance)
     }
 
     /// Images at the samples `set` of a stretch of length `h`, relative to its first point.
@@ -216,53 +155,58 @@ impl<S: Source> StretchFitter<'_, S> {
 
 /// The outcome of fitting one piece to a stretch.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum FitOutcome {
-    /// The piece is within the tolerance.
-    Fits {
-        piece: Piece,
-        /// Proven, where a proof is wanted and possible.
-        error: f64,
-        /// Error at the fitted samples, to be compared with that of other pieces.
-        reach: f64,
-    },
-    /// No piece within the tolerance was found.
-    Misses {
-        /// The best one, for use if the budget ends here.
-        piece: Piece,
-        error: f64,
-        /// An estimate of the error that more iterations would reach: it predicts the number of pieces.
-        reach: f64,
-        /// A parameter at which the image nearly stops.
-        cusp: Option<f64>,
-    },
+pub(crate) struct FitOutcome {
+    /// The best piece found.
+    pub(crate) piece: Piece,
+    /// Its error, proven where a proof is wanted and possible.
+    pub(crate) error: f64,
+    /// Error at the fitted samples, or what more iterations would reach: it predicts the number of pieces.
+    pub(crate) reach: f64,
 }
 
 impl FitOutcome {
-    pub(crate) fn fits(&self) -> bool {
-        matches!(self, Self::Fits { .. })
+    pub(crate) fn fits(&self, tolerance: f64) -> bool {
+        self.error <= tolerance
     }
 
     /// The share of one piece's capacity that the stretch takes: the sixth root of error ÷ tolerance.
     pub(crate) fn difficulty(&self, tolerance: f64) -> f64 {
-        let (Self::Fits { reach, .. } | Self::Misses { reach, .. }) = self;
-        sixth_root((reach / tolerance).clamp(MIN_RELATIVE_ERROR, MAX_DIFFICULTY))
+        // No piece counts as free, nor as more than can be planned at once.
+        (self.reach / tolerance).clamp(1e-3, (MAX_PLANNED as f64).powi(6)).powf(1.0 / 6.0)
     }
 }
 
-/// x^(1/6) to a relative 1e-4: a sixth of the exponent as a start, then two Newton steps.
-fn sixth_root(x: f64) -> f64 {
-    /// Five sixths of the bits of 1.0, which hold the exponent's bias.
-    const BIAS: u64 = 0x3FF0_0000_0000_0000 / 6 * 5;
-    let mut y = f64::from_bits(x.to_bits() / 6 + BIAS);
-    for _ in 0..2 {
-        let y2 = y * y;
-        y = (5.0 * y + x / (y2 * y2 * y)) * (1.0 / 6.0);
+/// A stretch with the fitter that judges its fits.
+struct Attempt<'f, 'r, 'a, S> {
+    fitter: &'f StretchFitter<'a, S>,
+    request: FitRequest<'r>,
+}
+
+impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
+    type Mark = ();
+
+    #[inline(always)]
+    fn samples(&self) -> (&ChordFrame, &Lanes) {
+        (&self.request.frame, self.request.g)
     }
-    y
+
+    fn checked(&mut self) -> Result<Lanes, NotFinite> {
+        self.fitter.checked(&mut self.request).copied()
+    }
+
+    fn between(&self, s: &Lane) -> Lane {
+        between(s)
+    }
+
+    #[inline(always)]
+    fn judge(&mut self, fit: &Fit) -> Result<(f64, ()), NotFinite> {
+        Ok((self.fitter.judge(&mut self.request, fit)?, ()))
+    }
 }
 
 impl<S: Source> StretchFitter<'_, S> {
-    /// Fits one piece to a stretch: a line, the Hermite cubic, or the best cubic that [`improve`](Self::improve) finds.
+    /// Fits one piece to a stretch: a line, or the best cubic found from the Hermite cubic on, which has the curve's end derivatives and
+    /// often suffices itself.
     #[inline(never)]
     pub(crate) fn attempt(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome, NotFinite> {
         let mut g = Lanes::default();
@@ -270,234 +214,93 @@ impl<S: Source> StretchFitter<'_, S> {
         if let Some(line) = self.line(&request)? {
             return Ok(line);
         }
-        if let Some(error) = self.hermite_error(&mut request)? {
-            return Ok(FitOutcome::Fits { piece: Piece::Cubic(request.hermite()), error, reach: error });
-        }
-        self.improve(&mut request)
-    }
-}
-
-/// The best fit so far, and its error: judged if its fit came within the tolerance, else what that would have reached.
-struct BestFit {
-    fit: Fit,
-    error: f64,
-}
-
-impl<S: Source> StretchFitter<'_, S> {
-    /// Fits a cubic where the Hermite cubic does not fit. Each attempt starts only if the ones before it have failed.
-    #[inline(never)]
-    pub(crate) fn improve(&mut self, request: &mut FitRequest<'_>) -> Result<FitOutcome, NotFinite> {
-        if let Some(outcome) = self.exact_hermite(request)? {
+        let frame = request.frame;
+        let [a, b] = frame.home;
+        if (request.careful || a == 0.0 || b == 0.0)
+            && let Some(outcome) = self.exact_hermite(&mut request)?
+        {
             return Ok(outcome);
         }
-        let fit = self.fit_from_hermite(request);
-        let error = self.judged(request, &fit)?;
-        let mut best = BestFit { fit, error };
-        self.converge(request, &mut best)?;
-        self.restart_along_valley(request, &mut best)?;
-        self.minimax(request, &mut best)?;
-        Ok(self.outcome(request, &best))
-    }
-
-    /// The Hermite cubic itself, where the image is that to rounding but slow spots or vanishing handles made it fail the
-    /// tests for an early exit.
-    #[inline(always)]
-    fn exact_hermite(&self, request: &mut FitRequest<'_>) -> Result<Option<FitOutcome>, NotFinite> {
-        let [a, b] = request.frame.home;
-        if !(request.careful || a == 0.0 || b == 0.0) {
-            return Ok(None);
-        }
-        let check = *self.checked(request)?;
-        if !request.hermite_is_exact(&check) {
-            return Ok(None);
-        }
         let s = FITTED.map(|j| j * UNIT);
-        let z = FitState { a, b, s };
-        let error = self.proven(request, &z, [&s, &CHECKED.map(|j| j * UNIT)], 0.0)?;
-        let piece = Piece::Cubic(request.cubic(&z));
-        Ok((error <= self.tolerance).then_some(FitOutcome::Fits { piece, error, reach: error }))
+        let mut start = FitState { a: larger(a, frame.floor[0]), b: larger(b, frame.floor[1]), s };
+        frame.settle(request.g, start.a, start.b, &mut start.s);
+        let mut attempt = Attempt { fitter: self, request };
+        let best = improved(&mut attempt, &USUAL, start, self.tolerance)?;
+        let (piece, fits) = (Piece::Cubic(attempt.request.cubic(&best.fit.z)), best.error <= self.tolerance);
+        let (least, predicted) = (best.fit.error, best.error);
+        Ok(if fits {
+            FitOutcome { piece, error: predicted, reach: least }
+        } else {
+            FitOutcome { piece, error: predicted.max(least), reach: predicted }
+        })
     }
 
-    /// Least squares from the Hermite cubic, until the error is clearly below the tolerance.
-    #[inline(always)]
-    fn fit_from_hermite(&self, request: &FitRequest<'_>) -> Fit {
-        let frame = &request.frame;
-        let [a, b] = frame.home;
-        let mut z = FitState { a: larger(a, frame.floor[0]), b: larger(b, frame.floor[1]), s: [0.0; 8] };
-        for i in 0..8 {
-            z.s[i] = clamp_unit(FITTED[i] * UNIT + request.ds[i]);
-        }
-        fit(frame, request.g, z, [GOOD_ENOUGH * self.tolerance, self.tolerance])
-    }
-
-    /// Iterates to convergence a fit that stopped early but was rejected when judged.
-    #[inline(always)]
-    fn converge(&self, request: &mut FitRequest<'_>, best: &mut BestFit) -> Result<(), NotFinite> {
-        if best.error > self.tolerance && best.fit.error <= GOOD_ENOUGH * self.tolerance {
-            let mut start = best.fit.z;
-            request.frame.settle(request.g, start.a, start.b, &mut start.s);
-            best.fit = fit(&request.frame, request.g, start, [0.0, self.tolerance]);
-            best.error = self.judged(request, &best.fit)?;
-        }
-        Ok(())
-    }
-
-    /// Starts again farther along the valley of equal area.
-    #[inline(always)]
-    fn restart_along_valley(&self, request: &mut FitRequest<'_>, best: &mut BestFit) -> Result<(), NotFinite> {
-        let tol = self.tolerance;
-        let frame = request.frame;
-        for factor in frame.restarts(&best.fit.z, best.error, tol).into_iter().flatten() {
-            let Some(start) = frame.along_valley(request.g, &best.fit.z, factor) else { continue };
-            let other = fit(&frame, request.g, start, [GOOD_ENOUGH * tol, tol]);
-            if other.reach < RESTART_GAIN * best.error {
-                let error = self.judged(request, &other)?;
-                if error < best.error {
-                    *best = BestFit { fit: other, error };
-                }
-                if best.error <= tol {
-                    break;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Minimax on all sixteen samples, where that may bring the error below the tolerance.
-    #[inline(always)]
-    fn minimax(&self, request: &mut FitRequest<'_>, best: &mut BestFit) -> Result<(), NotFinite> {
-        let tol = self.tolerance;
-        if !(best.error > tol && best.error <= MINIMAX_WITHIN * tol) {
-            return Ok(());
-        }
-        let z = best.fit.z;
-        let other = FitState { s: between(&z.s), ..z };
-        let check = *self.checked(request)?;
-        let (z, error) = minimax(&request.frame, [request.g, &check], [z, other], [0.0, tol]);
-        if error < best.error {
-            let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
-            *best = BestFit { fit, error };
-            if error <= tol {
-                best.error = self.judge(request, &best.fit)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The error of a fit: judged if it comes within the tolerance, else predicted.
-    #[inline(always)]
-    fn judged(&self, request: &mut FitRequest<'_>, fit: &Fit) -> Result<f64, NotFinite> {
-        if fit.reach <= self.tolerance { self.judge(request, fit) } else { Ok(fit.reach) }
-    }
-
-    #[inline(always)]
-    fn outcome(&self, request: &FitRequest<'_>, best: &BestFit) -> FitOutcome {
-        let (fit, error) = (&best.fit, best.error);
-        let piece = Piece::Cubic(request.cubic(&fit.z));
-        if error <= self.tolerance {
-            return FitOutcome::Fits { piece, error, reach: fit.error };
-        }
-        let polygon = SamplePolygon::new(request.g, request.frame.q);
-        let cusp = if polygon.sharp { self.cusp(request.from, request.to, polygon.length) } else { None };
-        FitOutcome::Misses { piece, error: error.max(fit.error), reach: error, cusp }
-    }
-}
-
-/// The polygon through the fitted samples.
-pub(crate) struct SamplePolygon {
-    pub(crate) length: f64,
-    /// The polygon turns by more than 60° at a sample, or its speed varies more than [`SHARP_PACE`] times.
-    pub(crate) sharp: bool,
-}
-
-impl SamplePolygon {
-    /// From the fitted samples and the chord.
-    #[inline(always)]
-    pub(crate) fn new(g: &Lanes, q: Vec2) -> Self {
-        let mut dx = [0.0; 9];
-        let mut dy = [0.0; 9];
-        dx[0] = g.x[0];
-        dy[0] = g.y[0];
-        for i in 1..8 {
-            dx[i] = g.x[i] - g.x[i - 1];
-            dy[i] = g.y[i] - g.y[i - 1];
-        }
-        dx[8] = q.x - g.x[7];
-        dy[8] = q.y - g.y[7];
-        let mut l = [0.0; 9];
-        for i in 0..9 {
-            l[i] = dx[i] * dx[i] + dy[i] * dy[i];
-        }
-        let mut bent = [false; 8];
-        for i in 0..8 {
-            let dot = dx[i] * dx[i + 1] + dy[i] * dy[i + 1];
-            bent[i] = dot <= 0.0 || 4.0 * dot * dot < l[i] * l[i + 1];
-        }
-        let mut length = 0.0;
-        let (mut least, mut most) = ((0, f64::INFINITY), 0.0f64);
-        for (i, l2) in l.iter().enumerate() {
-            let l = l2.sqrt();
-            length += l;
-            // Length per unit of the parameter: the end stretches are half as long, the middle one half as long again.
-            let pace = l * [2.0, 1.0, 1.0, 1.0, 2.0 / 3.0, 1.0, 1.0, 1.0, 2.0][i];
-            if pace < least.1 {
-                least = (i, pace);
-            }
-            most = most.max(pace);
-        }
-        // At the ends the image slows down because of a short handle, which is no cusp.
-        let slows = SHARP_PACE * least.1 < most && (1..8).contains(&least.0);
-        Self { length, sharp: bent.iter().any(|b| *b) || slows }
-    }
-}
-
-/// Samples of the search; golden sections then close in on the minimum.
-const SAMPLES: usize = 48;
-const SECTIONS: usize = 60;
-
-/// Work of an evaluation that is not one of a batch.
-const SINGLY: usize = 2;
-
-impl<S: Source> StretchFitter<'_, S> {
-    /// The parameter at which the image is slowest within the stretch of the given length, if it nearly stops there.
+    /// The Hermite cubic itself, where the image is that to rounding: maps that change little then return cusps and coincident handles as
+    /// they were.
     #[cold]
-    pub(crate) fn cusp(&self, from: &BreakPoint, to: &BreakPoint, length: f64) -> Option<f64> {
-        self.extra.set(self.extra.get() + SINGLY * SAMPLES);
-        let h = to.t - from.t;
-        let speed = |tau: f64| self.source.eval(from.t + h * tau).1.hypot() * h;
-        let mut best = (0, f64::INFINITY);
-        for i in 1..SAMPLES {
-            let v = speed(i as f64 / SAMPLES as f64);
-            if v < best.1 {
-                best = (i, v);
-            }
+    fn exact_hermite(&self, request: &mut FitRequest<'_>) -> Result<Option<FitOutcome>, NotFinite> {
+        let check = *self.checked(request)?;
+        let [a, b] = request.frame.home;
+        let [c1, c2, c3] = request.frame.power(a, b);
+        let is_near = |s: f64, x: f64, y: f64| {
+            ((c1 + (c2 + c3 * s) * s) * s - Vec2::new(x, y)).hypot() <= 1e-11 * request.frame.size
+        };
+        let [s0, s1] = [FITTED, CHECKED].map(|set| set.map(|j| j * UNIT));
+        if !(0..8).all(|i| is_near(s0[i], request.g.x[i], request.g.y[i]) && is_near(s1[i], check.x[i], check.y[i])) {
+            return Ok(None);
         }
-        // Towards a cusp the speed falls linearly: half a sample away it is already far below this.
-        if best.1 > 2.0 * CUSP_SPEED * length {
+        let z = FitState { a, b, s: s0 };
+        let error = self.proven(request, &z, [&s0, &s1], 0.0)?;
+        let piece = Piece::Cubic(request.cubic(&z));
+        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error }))
+    }
+}
+
+/// Tangents within this many radians of the chord make no corner with it: far below the 0.01° to which joints are kept smooth.
+pub const STRAIGHT_TURN: f64 = 1e-6;
+
+/// Returns the line between the ends and the largest distance of the samples from it, if the image is that line to within
+/// an invisible distance, runs along it in one direction, and leaves and enters it without a corner.
+#[inline(always)]
+pub(crate) fn straight(
+    g: &Lanes,
+    from: &BreakPoint,
+    to: &BreakPoint,
+    size: f64,
+    tolerance: f64,
+) -> Option<(Line, f64)> {
+    let q = to.p - from.p;
+    let from_origin = larger(from.p.x.abs() + from.p.y.abs(), to.p.x.abs() + to.p.y.abs());
+    // Of some twenty operations on coordinates, and of differences between samples.
+    let (rounding, of_samples) = (4e-15 * from_origin, 1e-12 * size);
+    // Invisible at any scale.
+    let (by_size, by_tolerance) = (1e-9 * size, STRAIGHT * tolerance);
+    let limit = larger(if by_size < by_tolerance { by_size } else { by_tolerance }, of_samples) + rounding;
+    // One sample rejects nearly all curved pieces.
+    if (g.x[2] * q.y - g.y[2] * q.x).abs() > size * limit {
+        return None;
+    }
+    all_on_line(g, from, to, limit, if size <= rounding { rounding } else { 0.0 })
+}
+
+/// `point` is the largest extent of a piece that is a single point to rounding; zero for all other pieces.
+#[inline(never)]
+fn all_on_line(g: &Lanes, from: &BreakPoint, to: &BreakPoint, limit: f64, point: f64) -> Option<(Line, f64)> {
+    let (q, line) = (to.p - from.p, Line::new(from.p, to.p));
+    if point > 0.0 {
+        return g.x.iter().chain(&g.y).all(|v| v.abs() <= point).then_some((line, 0.0));
+    }
+    let length = q.hypot();
+    let (mut last, mut worst) = (0.0, 0.0);
+    for i in 0..8 {
+        let along = g.x[i] * q.x + g.y[i] * q.y;
+        let off = (g.x[i] * q.y - g.y[i] * q.x).abs();
+        if along <= last || off > length * limit {
             return None;
         }
-        let (mut lo, mut hi) = ((best.0 as f64 - 1.0) / SAMPLES as f64, (best.0 as f64 + 1.0) / SAMPLES as f64);
-        self.extra.set(self.extra.get() + SINGLY * 2 * SECTIONS);
-        const GOLD: f64 = 0.381_966_011_250_105;
-        for _ in 0..SECTIONS {
-            let (a, b) = (lo + GOLD * (hi - lo), hi - GOLD * (hi - lo));
-            if speed(a) <= speed(b) { hi = b } else { lo = a }
-        }
-        let tau = 0.5 * (lo + hi);
-        let inside = tau > CUSP_MARGIN && tau < 1.0 - CUSP_MARGIN;
-        (speed(tau) < CUSP_SPEED * length && inside).then_some(from.t + h * tau)
+        last = along;
+        worst = if off > worst { off } else { worst };
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sixth_roots_are_near() {
-        for x in [1e-3, 0.5, 1.0, 7.0, 64.0, 2.6e5] {
-            let y = sixth_root(x);
-            assert!((y / f64::powf(x, 1.0 / 6.0) - 1.0).abs() < 2e-4, "{x}: {y}");
-        }
-    }
+    let turns = |t: Vec2| t.cross(q).abs() > STRAIGHT_TURN * length || t.dot(q) <= 0.0;
+    (last < q.hypot2() && !turns(from.away) && !turns(to.into)).then(|| (line, worst / length))
 }

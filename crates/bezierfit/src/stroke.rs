@@ -4,12 +4,12 @@
 //! they cross; where they are too short for that, they are linked by way of the corner. All parts of the outline then turn around what
 //! they cover in one direction, so that nothing inside is bare under the nonzero rule.
 
-use crate::error::Error;
+use crate::limits::{GAPS, POINTS, STROKED};
 use crate::merge::{OwnPieces, ReachMemory};
 use crate::offset::Offset;
-use crate::options::Options;
-use crate::path::{Fitted, append, fewest, subpaths};
-use crate::report::{Assurance, Piece, Report};
+use crate::options::{Error, Options};
+use crate::path::{append, fewest, subpaths};
+use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::source::{BreakPoint, NotFinite, SlowSpots, Source};
 use crate::stretch::StretchFitter;
@@ -17,12 +17,6 @@ use kurbo::{
     Arc, BezPath, Cap, CubicBez, Join, Line, ParamCurve, PathEl, PathSeg, Point, Stroke, Vec2, common::solve_quadratic,
 };
 use std::f64::consts::PI;
-
-/// Share of the tolerance for gaps between sides that are closed without a join, half of it from either side.
-const GAP_SHARE: f64 = 0.3;
-
-/// What is a point, as a share of those gaps: a path that comes back to its start but for this is closed there.
-const POINT: f64 = 0.07;
 
 /// Length of a dash that stands for a dot, as a fraction of the width.
 const DOT: f64 = 1e-5;
@@ -45,11 +39,11 @@ const MOST_DASHES: f64 = 20_000.0;
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitted, Error> {
-    let gap = GAP_SHARE * options.tolerance;
+    let gap = GAPS * options.tolerance;
     let contours = contours(path, style, false, gap)?;
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
-    let inner = Options { tolerance: options.tolerance - (0.5 + POINT) * gap, ..*options };
+    let inner = Options { tolerance: STROKED * options.tolerance, ..*options };
     for contour in contours {
         let pieces = fitted(&contour, &inner, &mut memory, &mut out.report)?;
         append(&mut out.path, contour[0].p0, &pieces, true);
@@ -68,8 +62,8 @@ pub(crate) fn beside_path(
     distance: f64,
     options: &Options,
 ) -> Result<BezPath, NotFinite> {
-    let gap = GAP_SHARE * options.tolerance;
-    let pen = Pen { style, clipped: false, half: distance.abs(), gap, point: POINT * gap };
+    let gap = GAPS * options.tolerance;
+    let pen = Pen { style, clipped: false, half: distance.abs(), gap, point: POINTS * gap };
     let mut out = BezPath::new();
     let (stretches, corners) = pen.course(path, false);
     if stretches.is_empty() {
@@ -241,7 +235,7 @@ pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Resu
     if !(half > 0.0 && half.is_finite()) {
         return Ok(out);
     }
-    let pen = Pen { style, clipped, half, gap, point: POINT * gap };
+    let pen = Pen { style, clipped, half, gap, point: POINTS * gap };
     let mut dashes = style.dash_pattern.to_vec();
     if style.start_cap != Cap::Butt || style.end_cap != Cap::Butt {
         // kurbo drops dashes of zero length, which show their caps.

@@ -1,11 +1,9 @@
 //! Tests of the proofs from samples, against brute force.
 
 use super::*;
-use crate::chebyshev::SAMPLES;
 use crate::fit::ChordFrame;
-use crate::sample::{CHECKED, FITTED, between};
+use crate::sample::{CHECKED, FITTED, UNIT, between};
 use crate::source::images;
-use crate::tables::GegenbauerBasis;
 use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
 
 /// Pseudo-random numbers in [−1, 1].
@@ -152,7 +150,7 @@ fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
         let real = truth(&source, &c);
         // The tolerance is near the true error, so that every stage occurs.
         let enough = real * [1.03, 1.1, 1.6, 5.0][round % 4 / 2 * 2 + round / 4 % 2] + 1e-9;
-        let mut proof = SampledProof::new(&source, &form, &c, [&g[0], &g[1]], enough);
+        let proof = SampledProof::new(&source, &form, &c, [&g[0], &g[1]], enough);
         let feet = [&s0, &s1];
         for (k, bound) in [proof.identity(), proof.sixteen(feet), proof.thirty_two(feet)].into_iter().enumerate() {
             let Ok(bound) = bound else { continue };
@@ -246,15 +244,20 @@ fn swing_bounds(source: &Swing) -> ([f64; 2], f64) {
     let places = [FITTED, CHECKED].map(|set| set.map(|j| j * UNIT));
     let g = places.map(|t| images(source, &t).unwrap());
     let most = g.iter().flat_map(|g| g.y).fold(0.0, |m: f64, y| m.max(y.abs()));
-    let mut proof = SampledProof::new(source, &form, &c, [&g[0], &g[1]], 1.0);
+    let proof = SampledProof::new(source, &form, &c, [&g[0], &g[1]], 1.0);
     let feet = [&places[0], &places[1]];
     ([proof.sixteen(feet).unwrap(), proof.thirty_two(feet).unwrap()], most)
 }
 
 /// An error of the highest degree that nearly vanishes at the samples shows only in its coefficients.
+/// The places of the sixteen samples.
+fn evenly() -> Vec<f64> {
+    (1..17).map(|j| f64::from(j) * UNIT).collect()
+}
+
 #[test]
 fn errors_hidden_between_samples_are_bounded() {
-    let all: Vec<f64> = SAMPLES.to_vec();
+    let all: Vec<f64> = evenly();
     let mut hidden = 0;
     for i in 0..16 {
         for j in 0..i {
@@ -270,6 +273,6 @@ fn errors_hidden_between_samples_are_bounded() {
 /// An error of higher degree than sixteen samples determine may vanish at all of them: then they must prove nothing.
 #[test]
 fn degrees_too_high_for_sixteen_samples_need_thirty_two() {
-    let ([few, many], most) = swing_bounds(&Swing::new(SAMPLES.to_vec()));
+    let ([few, many], most) = swing_bounds(&Swing::new(evenly()));
     assert!(most < 1e-15 && few == f64::INFINITY && many >= 0.01, "{most} {few} {many}");
 }

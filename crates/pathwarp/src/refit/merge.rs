@@ -3,18 +3,17 @@
 //! A drawing often has more nodes than its shape needs. Smoothly joined segments are one curve to the fitter, which searches for the
 //! fewest cubics that cover it. They are used only if they are fewer than the segments' own pieces and every one has passed its check.
 
-use super::carry::{Carried, Site};
 use super::limits::{CLEAR_DERIVATIVE, MAX_SHAPE};
 use super::options::Options;
-use super::repeats::{CarriedWay, Repeats, Shapes, Way};
+use super::repeats::{Carried, CarriedWay, Repeats, Shapes, Site, Way};
 use super::segment::{Part, SegmentFitter};
+use super::source;
 use super::source::SourceCurve;
-use super::split;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use bezierfit::parts::{
-    FitOwn, Leg, MERGE_GRID, MERGE_SHARE, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, RunSegment,
-    SMOOTH_JOINT, STRAIGHT_TOLERANCE, STRAIGHT_TURN, SURE_CORNER, SegmentRun, per_segment, refined, sample_lanes,
+    ACCEPTED, FitOwn, Leg, MERGE_GRID, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, RunSegment, STRAIGHT,
+    STRAIGHT_TURN, SegmentRun, per_segment, refined, sample_lanes,
 };
 use bezierfit::{Assurance, NotFinite, Piece, Quotient, Report, Source};
 use kurbo::Vec2;
@@ -67,12 +66,7 @@ fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2], corner: f64) -> bo
         d.hypot2() > scale * seg.end().distance_squared(seg.start())
     };
     let (dot, cross) = (into.dot(away), into.cross(away).abs());
-    dot > 0.0 && cross <= sure_corner(corner) * dot || !clear(into, jets[0], before) || !clear(away, jets[1], after)
-}
-
-/// The tangent of a turn that is certainly a corner where turns of up to `corner` radians are smooth.
-fn sure_corner(corner: f64) -> f64 {
-    SURE_CORNER / SMOOTH_JOINT.tan() * corner.tan()
+    dot > 0.0 && cross <= 1.03 * corner.tan() * dot || !clear(into, jets[0], before) || !clear(away, jets[1], after)
 }
 
 /// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
@@ -165,7 +159,7 @@ impl<'a> Merger<'a> {
         for (way, other) in self.memory.repeats.nearest(shape, jet) {
             // The curves differ by at most √2 of this before the map, which may magnify more further on.
             let unlike = 2.0 * magnified * (off + other);
-            let tolerance = MERGE_SHARE * self.fitter.options.tolerance - unlike;
+            let tolerance = ACCEPTED * self.fitter.options.tolerance - unlike;
             let site = self.site(start, start + way.segments);
             if site.parts.iter().any(|p| self.fitter.options.shared.contains(&p.seg)) {
                 continue;
@@ -208,7 +202,7 @@ impl<'a> Merger<'a> {
         }
         let source = part.source(self.fitter, &part.seg);
         let form = if options.certify { source.quotient().and_then(Quotient::provable) } else { None };
-        if source.size() == 0.0 || !split::slow_spots(&part.seg).all().is_empty() {
+        if source.size() == 0.0 || !source::slow_spots(&part.seg).all().is_empty() {
             return None;
         }
         let [first, last] = &part.jets;
@@ -217,7 +211,7 @@ impl<'a> Merger<'a> {
             let q = ends[1].p - ends[0].p;
             let along = |v: Vec2| v.cross(q).abs() <= STRAIGHT_TURN * q.hypot() && v.dot(q) > 0.0;
             let off = |t: f64| (source.eval(t).0 - ends[0].p).cross(q).abs();
-            let limit = STRAIGHT_TOLERANCE * options.tolerance * q.hypot();
+            let limit = STRAIGHT * options.tolerance * q.hypot();
             along(ends[0].away) && along(ends[1].into) && [0.27, 0.5, 0.81].into_iter().all(|t| off(t) <= limit)
         };
         let is_line = matches!(part.seg, Seg::Line(_));

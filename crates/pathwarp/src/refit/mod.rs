@@ -1,36 +1,33 @@
 //! Refits the image of a path under a map with lines and cubics, within a given Hausdorff distance.
 //!
 //! [`warp_path`] works segment by segment. Affine maps move control points; projective maps keep lines (`path`). Each other segment is
-//! taken in a canonical direction (`split`), so that shared edges come out identical, and cut where the map has creases (`segment`).
-//! The image of each part is a source (`source`) for the crate `bezierfit`, which fits it. If asked for, fewer pieces are looked for
-//! across smooth joints (`merge`); those of shapes that come again are carried from one place to the next (`carry`, `repeats`).
+//! taken in a canonical direction (`source`), so that shared edges come out identical, and cut where the map has creases (`segment`).
+//! The image of each part is a source for the crate `bezierfit`, which fits it. If asked for, fewer pieces are looked for
+//! across smooth joints (`merge`); those of shapes that come again are carried from one place to the next (`repeats`).
 //!
 //! `docs/refitting.md` derives the method.
 
-mod carry;
-mod gather;
-mod known;
 mod limits;
 mod merge;
 mod options;
-mod parallel;
 mod path;
 mod repeats;
 mod report;
 mod segment;
 mod shared;
 mod source;
-mod split;
 
 pub use bezierfit::Assurance;
-pub use known::KnownShapes;
 pub use options::{Options, suited};
 pub use report::{PathReport, RESOLUTION, RefittedPath, SpanReport};
 pub use shared::{SharedEdges, Span};
 
 use crate::error::GeometryError;
-use crate::map::Map;
+use crate::map::{Class, Creases, Gathered, Map};
 use crate::outline::Outline;
+use merge::MergeMemory;
+use repeats::Shapes;
+use std::sync::Arc;
 
 /// Returns the image of `outline` under `map`, within `options.tolerance`, or what the options say of its parts.
 ///
@@ -73,4 +70,93 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
         options
     };
     KnownShapes::default().warp_path(outline, map, options)
+}
+
+/// Shapes that come again in a drawing, with the cubics that merge them. Paths that are refitted with this knowledge need not search
+/// for those again, and none waits for another.
+///
+/// It saves time alone: every path keeps its tolerance, and has the same image whatever the number of threads.
+///
+/// ```
+/// use pathwarp::{Outline, map::Formula, map::Real, refit::{KnownShapes, Options}};
+///
+/// struct Square;
+/// impl Formula for Square {
+///     fn f<S: Real>(&self, x: S, y: S) -> (S, S) { (x, y + x * x * 0.01) }
+/// }
+/// let ring = |x: f64| Outline::from_svg(&format!("M{x} 0A5 5 0 0 1 {} 0A5 5 0 0 1 {x} 0Z", x + 10.0)).unwrap();
+/// let drawing: Vec<Outline> = (0..400).map(|i| ring(f64::from(i) / 10.0)).collect();
+/// let options = Options::new(0.1).with_merge(true);
+/// let known = KnownShapes::among(&drawing, &Square, &options);
+/// assert!(known.warp_path(&drawing[7], &Square, &options).unwrap().report.max_error <= 0.1);
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct KnownShapes(Arc<Shapes>);
+
+impl KnownShapes {
+    /// The shapes of one outline among many: of the largest that has at most a share of 1/32 of all segments. None are known if
+    /// there is no such outline, if it is small, or if nothing is to be merged.
+    #[must_use]
+    pub fn among<'a>(outlines: impl IntoIterator<Item = &'a Outline>, map: &dyn Map, options: &Options) -> Self {
+        /// The share of all work that this may take once more.
+        const SHARE: usize = 32;
+        /// Fewer segments are not worth it: a line of text.
+        const LEAST: usize = 400;
+        if !options.merge || map.prefers_batches() || matches!(map.class(), Class::Affine(_)) {
+            return Self::default();
+        }
+        let sized: Vec<(usize, &Outline)> = outlines.into_iter().map(|o| (o.segs().count(), o)).collect();
+        let all: usize = sized.iter().map(|(n, _)| n).sum();
+        let candidates = sized.into_iter().filter(|(n, _)| *n >= LEAST && n * SHARE <= all);
+        // The first of equals, whatever follows.
+        let Some((_, outline)) = candidates.reduce(|a, b| if b.0 > a.0 { b } else { a }) else {
+            return Self::default();
+        };
+        // A path that cannot be refitted says so when it is its turn.
+        let mut memory = MergeMemory::default();
+        let _ = refit(outline, map, options, &mut memory);
+        Self(Arc::new(memory.into_shapes()))
+    }
+
+    /// As [`warp_path`](warp_path), with this knowledge.
+    ///
+    /// # Errors
+    /// See there.
+    pub fn warp_path(
+        &self,
+        outline: &Outline,
+        map: &dyn Map,
+        options: &Options,
+    ) -> Result<RefittedPath, GeometryError> {
+        refit(outline, map, options, &mut MergeMemory::new(Arc::clone(&self.0)))
+    }
+}
+
+fn refit(
+    outline: &Outline,
+    map: &dyn Map,
+    options: &Options,
+    memory: &mut MergeMemory,
+) -> Result<RefittedPath, GeometryError> {
+    options.check()?;
+    let mut out = RefittedPath::default();
+    let counted = map.within(&options.budget);
+    let map = counted.as_deref().unwrap_or(map);
+    let gathered = map.cost().batches.is_some_and(|b| !b.remembers()).then(|| Gathered::new(map));
+    if let Class::Affine(m) = map.class() {
+        path::affine(outline, m, options, &mut out)?;
+    } else {
+        let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
+        let mut creases = Creases::default();
+        map.creases(&mut creases);
+        let announced = path::announce_short(outline, map, &creases, options);
+        for sub in &outline.subpaths {
+            // A map that searches is undefined once nothing is left.
+            let limit = |e| options.budget.exceeded().map_or(e, GeometryError::Limit);
+            path::subpath(sub, map, &creases, (options, announced), memory, &mut out).map_err(limit)?;
+        }
+    }
+    out.report.segments_in = outline.segs().count();
+    out.report.account_for_rounding(outline, report::extent(&out.path), options.tolerance);
+    Ok(out)
 }

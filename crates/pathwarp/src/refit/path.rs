@@ -1,17 +1,25 @@
-//! Whole paths, subpath by subpath.
+//! Whole paths, subpath by subpath, long ones in chunks on several threads.
+//!
+//! **Announced samples.** For maps of which each call is expensive, such as those of another program: the fitter asks for eight values or
+//! one jet at a time, but most of its questions are known long before: the jets at all nodes and sixteen samples of each segment, the samples of
+//! a run to be merged, and those of all parts of a stretch once its break points are placed. They are announced to the memory in front of the
+//! map (`map::Gathered`), which asks for them in one batch. The points are the ones that the fitter asks for, bit by bit, so that the result
+//! is the same as without; what was not announced is asked singly.
 
-use super::gather;
+#[cfg(feature = "parallel")]
+use super::limits::WORTH_THREADS;
 use super::limits::{CHUNK, CHUNK_CORNER, MANY_NODES};
 use super::merge::{self, MergeMemory, Merger};
 use super::options::Options;
-use super::parallel::in_parallel;
-use super::report::{PathReport, PathWriter, SUMMED, SpanReport, reverse};
+use super::report::{PathReport, RefittedPath, SUMMED, SpanReport, reverse};
 use super::segment::{Part, SegmentFitter};
 use super::shared::Span;
-use super::split;
+use super::source;
+use super::source::SourceCurve;
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
+use bezierfit::parts::{CHECKED, FITTED, spaced};
 use bezierfit::{Assurance, NotFinite, Piece, Report};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
@@ -21,7 +29,7 @@ pub(super) fn affine(
     outline: &Outline,
     m: Affine,
     options: &Options,
-    out: &mut PathWriter,
+    out: &mut RefittedPath,
 ) -> Result<(), GeometryError> {
     outline.segs().try_for_each(finite)?;
     for sub in &outline.subpaths {
@@ -59,7 +67,7 @@ fn affine_segment(
     match image {
         Seg::Line(l) => pieces.push(Piece::Line(l)),
         Seg::Arc(a) => {
-            let (canonical, flipped) = split::canonical(seg);
+            let (canonical, flipped) = source::canonical(seg);
             let start = pieces.len();
             if let Seg::Arc(c) = canonical.transformed(m) {
                 pieces.extend(c.to_cubics(tolerance).map(Piece::Cubic));
@@ -75,7 +83,7 @@ fn affine_segment(
 }
 
 /// The options' spans of the next subpath to be written.
-fn spans_of(sub: &Subpath, options: &Options, out: &PathWriter) -> Vec<Span> {
+fn spans_of(sub: &Subpath, options: &Options, out: &RefittedPath) -> Vec<Span> {
     let mut left = sub.segs.len();
     let own = options.spans.iter().skip(out.spans.len()).take_while(|s| {
         let some = left > 0;
@@ -112,7 +120,7 @@ pub(super) fn subpath(
     creases: &Creases,
     (options, announced): (&Options, bool),
     memory: &mut MergeMemory,
-    out: &mut PathWriter,
+    out: &mut RefittedPath,
 ) -> Result<(), GeometryError> {
     sub.segs.first().map_or(Ok(()), finite)?;
     let start = map.jet(sub.start);
@@ -192,7 +200,7 @@ pub(super) fn announce_short(outline: &Outline, map: &dyn Map, creases: &Creases
 
 /// Announces what the refit of these runs of segments is going to ask, to a map that prefers batches.
 fn announce(runs: &[&[Seg]], map: &dyn Map, creases: &Creases, options: &Options) {
-    gather::announce_segments(runs.iter().copied().flatten(), map, options);
+    announce_segments(runs.iter().copied().flatten(), map, options);
     if options.merge && creases.items().iter().all(|c| c.kind == CreaseKind::Edge) {
         merge::announce(runs, map, options);
     }
@@ -307,4 +315,33 @@ fn lost(e: NotFinite) -> GeometryError {
 
 fn infinity(at: Point) -> GeometryError {
     GeometryError::Infinity { shape: PATH.into(), at }
+}
+
+/// Announces the nodes and the sixteen samples of every segment.
+pub(super) fn announce_segments<'a>(segs: impl Iterator<Item = &'a Seg>, map: &dyn Map, options: &Options) {
+    let degree = map.rational_degree();
+    let (mut points, mut jets) = (Vec::new(), Vec::new());
+    for seg in segs.filter(|s| s.is_finite()) {
+        jets.extend([seg.start(), seg.end()]);
+        let (canonical, _) = source::canonical(seg);
+        let source = SourceCurve::for_proof(&canonical, map, degree, options.certify);
+        points.extend([&FITTED, &CHECKED].iter().flat_map(|set| source.sampled(&spaced(0.0, 1.0, set))));
+    }
+    // Each segment begins where the one before ends.
+    jets.dedup();
+    map.prepare(&points, &jets);
+}
+
+/// Applies `f` to each chunk with the index of its first item; the first error in their order ends it.
+pub(super) fn in_parallel<T: Sync, R: Send, E: Send>(
+    chunks: &[(usize, &[T])],
+    f: impl Fn(usize, &[T]) -> Result<R, E> + Sync,
+) -> Result<Vec<R>, E> {
+    #[cfg(feature = "parallel")]
+    if chunks.iter().map(|(_, c)| c.len()).sum::<usize>() >= WORTH_THREADS {
+        use rayon::prelude::*;
+        let results: Vec<Result<R, E>> = chunks.par_iter().map(|(i, c)| f(*i, c)).collect();
+        return results.into_iter().collect();
+    }
+    chunks.iter().map(|(i, c)| f(*i, c)).collect()
 }

@@ -1,6 +1,7 @@
 //! The result of a refit: the path, its error, and how far that error can be trusted.
 
 use crate::outline::Outline;
+use bezierfit::parts::append;
 use bezierfit::{Assurance, Piece, Report};
 use kurbo::{BezPath, PathEl, Point};
 
@@ -100,7 +101,7 @@ pub(super) fn extent(path: &BezPath) -> f64 {
 }
 
 /// The image of a path.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 #[must_use]
 pub struct RefittedPath {
@@ -121,33 +122,11 @@ pub struct SpanReport {
     pub max_error: f64,
 }
 
-/// Collects the output, subpath by subpath.
-#[derive(Debug, Default)]
-pub(super) struct PathWriter {
-    path: BezPath,
-    pub(super) report: PathReport,
-    pub(super) spans: Vec<SpanReport>,
-}
-
-impl PathWriter {
+impl RefittedPath {
     /// Writes a subpath. In a closed one, a last line is left to the close command.
     pub(super) fn subpath(&mut self, start: Point, pieces: &[Piece], closed: bool) {
         self.report.segments_out += pieces.len();
-        self.path.move_to(start);
-        let by_close = closed && matches!(pieces.last(), Some(Piece::Line(_)));
-        for p in &pieces[..pieces.len() - usize::from(by_close)] {
-            match p {
-                Piece::Line(l) => self.path.line_to(l.p1),
-                Piece::Cubic(c) => self.path.curve_to(c.p1, c.p2, c.p3),
-            }
-        }
-        if closed {
-            self.path.close_path();
-        }
-    }
-
-    pub(super) fn finish(self) -> RefittedPath {
-        RefittedPath { path: self.path, spans: self.spans, report: self.report }
+        append(&mut self.path, start, pieces, closed);
     }
 }
 

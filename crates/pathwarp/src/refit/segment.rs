@@ -3,8 +3,8 @@
 use super::limits::{MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
 use super::options::Options;
 use super::report::reverse;
+use super::source;
 use super::source::SourceCurve;
-use super::split;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use bezierfit::parts::StretchFitter;
@@ -42,7 +42,7 @@ impl SegmentFitter<'_> {
             return Ok(());
         }
         let reversed;
-        let flipped = split::is_backwards(seg);
+        let flipped = source::is_backwards(seg);
         let canonical = if flipped {
             reversed = seg.reversed();
             &reversed
@@ -89,7 +89,7 @@ impl SegmentFitter<'_> {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
             return Ok(());
         }
-        let mut slow = split::slow_spots(seg);
+        let mut slow = source::slow_spots(seg);
         if source.is_rational() {
             slow = slow.map(|t| source.param(t));
         }
@@ -132,7 +132,7 @@ impl SegmentFitter<'_> {
                 other => Piece::Cubic(CubicBez { p0: first.p, p3: last.p, ..other.to_cubic() }),
             });
         } else {
-            let (canonical, flipped) = split::canonical(&part.seg);
+            let (canonical, flipped) = source::canonical(&part.seg);
             let start = pieces.len();
             let source = part.source(self, &canonical);
             let jets = if flipped { [last, first] } else { [first, last] };
@@ -152,7 +152,7 @@ impl SegmentFitter<'_> {
             out.push(Part::whole(*seg, jets));
             return Ok(());
         }
-        let (canonical, flipped) = split::canonical(seg);
+        let (canonical, flipped) = source::canonical(seg);
         let parts = self.cut(&canonical, if flipped { [jets[1], jets[0]] } else { jets })?;
         if flipped {
             out.extend(parts.into_iter().rev().map(Part::reversed));

@@ -3,7 +3,7 @@
 //! A merged piece continues into the segments after an edge, and those differ on its two sides. The pieces of the edge alone
 //! are the same for both.
 
-use super::split;
+use super::source;
 use crate::outline::{Outline, Seg};
 use kurbo::Point;
 use std::collections::HashSet;
@@ -108,7 +108,7 @@ fn found(sorted: &[(u64, f64)], key: u64) -> Option<f64> {
 
 /// A hash of the coordinates of a segment in its canonical direction, bit by bit, and of their number.
 fn fingerprint(seg: &Seg) -> u64 {
-    let backwards = split::is_backwards(seg);
+    let backwards = source::is_backwards(seg);
     let ends = |p: Point, q: Point| if backwards { [q, p] } else { [p, q] };
     match seg {
         Seg::Line(s) => mixed(&ends(s.p0, s.p1)),
@@ -123,7 +123,7 @@ fn fingerprint(seg: &Seg) -> u64 {
         Seg::Arc(s) => {
             // The middle distinguishes arcs between the same ends. It is rounded, since the two directions compute it
             // differently.
-            let (canonical, _) = split::canonical(seg);
+            let (canonical, _) = source::canonical(seg);
             let m = canonical.eval(0.5);
             let [p, q] = ends(s.p0, s.p1);
             mixed(&[p, q, Point::new(f64::from(m.x as f32), f64::from(m.y as f32))])
