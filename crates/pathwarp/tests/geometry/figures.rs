@@ -160,20 +160,20 @@ fn single(seg: Seg) -> Outline {
 fn pieces_and_work_stay_at_their_figures() {
     let outlines: Vec<Outline> = segments().into_iter().map(single).collect();
     let found = figures(&outlines, Options::new);
-    stay_at("checked", found, [[1496, 28081], [2064, 35793], [2894, 46879], [4131, 65432]]);
+    stay_at("checked", found, [[1495, 11788], [2059, 19610], [2882, 31163], [4107, 50042]]);
 }
 
 #[test]
 fn proven_pieces_and_work_stay_at_their_figures() {
     let outlines: Vec<Outline> = segments().into_iter().map(single).collect();
     let found = figures(&outlines, |t| Options::new(t).with_certify(true));
-    stay_at("certified", found, [[1585, 28828], [2186, 40306], [3119, 56433], [4400, 81751]]);
+    stay_at("certified", found, [[1557, 11600], [2176, 20745], [3054, 37053], [4262, 63902]]);
 }
 
 #[test]
 fn merged_pieces_and_work_stay_at_their_figures() {
     let found = figures(&runs(), |t| Options::new(t).with_merge(true));
-    stay_at("merged", found, [[250, 3769], [402, 6824], [629, 10746], [888, 13634]]);
+    stay_at("merged", found, [[251, 3652], [405, 5887], [627, 9744], [885, 12731]]);
 }
 
 #[test]
