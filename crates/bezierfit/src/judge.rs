@@ -682,10 +682,10 @@ mod tests {
         let c = Candidate { t0: 0.0, t1: 1.0, p0: Point::ZERO, frame, a: third[0], b: third[1] };
         let feet = std::array::from_fn(|j| j as f64 / 17.0);
         // One sample above the limit; the error halfway beside it is `beside` of the tolerance.
-        let mut errors = [0.65; ALL];
+        let mut errors = [0.55; ALL];
         (errors[0], errors[8], errors[ALL - 1]) = (0.0, 0.75, 0.0);
         let found = |beside: f64| halfway(&Beside(beside), &c, &feet, &errors, 1.0).unwrap();
         assert!(found(0.7).is_some_and(|e| (0.7..1.0).contains(&e)), "{:?}", found(0.7));
-        assert!(found(0.45).is_some() && found(0.35).is_none());
+        assert!(found(0.4).is_some() && found(0.3).is_none());
     }
 }
