@@ -1,10 +1,13 @@
-//! One piece for one stretch of a curve: its samples, a line if they are on one, or the best cubic found.
+//! One piece for one stretch of a curve: its samples, a line if they are on one, the Hermite cubic if that fits, or the best cubic found.
 
-use crate::fit::{ChordFrame, Fit, FitRequest, FitState, Fitting, USUAL, improved};
-use crate::limits::{MAX_ATTEMPTS, MAX_PLANNED, STRAIGHT};
+use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, improved};
+use crate::limits::{MAX_ATTEMPTS, MAX_PLANNED, PACE_EIGHT, PACE_SIXTEEN, SMALL_ERROR, STRAIGHT};
 use crate::proof;
 use crate::report::Piece;
-use crate::sample::{CHECKED, FITTED, Lane, Lanes, UNIT, between, larger, spaced};
+use crate::sample::{
+    CHECKED, FITTED, Lane, Lanes, SIDE, UNIT, between, clamp_unit, fma, larger, largest, neighbours, norm_squared,
+    residual_at, spaced,
+};
 use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images_into};
 use kurbo::{Line, Vec2};
 use std::cell::Cell;
@@ -205,8 +208,7 @@ impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
 }
 
 impl<S: Source> StretchFitter<'_, S> {
-    /// Fits one piece to a stretch: a line, or the best cubic found from the Hermite cubic on, which has the curve's end derivatives and
-    /// often suffices itself.
+    /// Fits one piece to a stretch: a line, the Hermite cubic, or the best cubic found from that on.
     #[inline(never)]
     pub(crate) fn attempt(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome, NotFinite> {
         let mut g = Lanes::default();
@@ -216,14 +218,16 @@ impl<S: Source> StretchFitter<'_, S> {
         }
         let frame = request.frame;
         let [a, b] = frame.home;
-        if (request.careful || a == 0.0 || b == 0.0)
-            && let Some(outcome) = self.exact_hermite(&mut request)?
-        {
+        let first = HermiteResiduals::at_fitted(&request);
+        let hermite = if request.careful || a == 0.0 || b == 0.0 {
+            self.exact_hermite(&mut request)?
+        } else {
+            self.hermite(&mut request, &first)?
+        };
+        if let Some(outcome) = hermite {
             return Ok(outcome);
         }
-        let s = FITTED.map(|j| j * UNIT);
-        let mut start = FitState { a: larger(a, frame.floor[0]), b: larger(b, frame.floor[1]), s };
-        frame.settle(request.g, start.a, start.b, &mut start.s);
+        let start = FitState { a: larger(a, frame.floor[0]), b: larger(b, frame.floor[1]), s: first.feet(&FITTED) };
         let mut attempt = Attempt { fitter: self, request };
         let best = improved(&mut attempt, &USUAL, start, self.tolerance)?;
         let (piece, fits) = (Piece::Cubic(attempt.request.cubic(&best.fit.z)), best.error <= self.tolerance);
@@ -233,6 +237,40 @@ impl<S: Source> StretchFitter<'_, S> {
         } else {
             FitOutcome { piece, error: predicted.max(least), reach: predicted }
         })
+    }
+
+    /// The Hermite cubic, if it fits and nothing more needs to be looked at.
+    #[inline(always)]
+    fn hermite(&self, request: &mut FitRequest<'_>, first: &HermiteResiduals) -> Result<Option<FitOutcome>, NotFinite> {
+        if !first.suffice(request.frame.size, self.tolerance, PACE_SIXTEEN) {
+            return Ok(None);
+        }
+        let of_low_degree = self.simple && self.form.is_none();
+        let error = if of_low_degree && first.suffice(request.frame.size, self.tolerance, PACE_EIGHT) {
+            EIGHT_GROWTH * first.worst.sqrt()
+        } else {
+            self.hermite_error_at_sixteen(request, first)?
+        };
+        let [a, b] = request.frame.home;
+        let piece = Piece::Cubic(request.frame.cubic(request.from.p, request.to.p, a, b));
+        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error }))
+    }
+
+    /// Infinite if sixteen samples leave the error in doubt.
+    #[inline(never)]
+    fn hermite_error_at_sixteen(
+        &self,
+        request: &mut FitRequest<'_>,
+        first: &HermiteResiduals,
+    ) -> Result<f64, NotFinite> {
+        let check = *self.checked(request)?;
+        let second = HermiteResiduals::at_checked(request, &check);
+        let both = first.and(&second);
+        if !both.suffice(request.frame.size, self.tolerance, PACE_SIXTEEN) {
+            return Ok(f64::INFINITY);
+        }
+        let ([a, b], s) = (request.frame.home, first.feet(&FITTED));
+        self.proven(request, &FitState { a, b, s }, [&s, &second.feet(&CHECKED)], both.worst.sqrt())
     }
 
     /// The Hermite cubic itself, where the image is that to rounding: maps that change little then return cusps and coincident handles as
@@ -253,6 +291,97 @@ impl<S: Source> StretchFitter<'_, S> {
         let error = self.proven(request, &z, [&s0, &s1], 0.0)?;
         let piece = Piece::Cubic(request.cubic(&z));
         Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error }))
+    }
+}
+
+/// Residuals of the Hermite cubic, which has the curve's end derivatives, at eight samples. Most pieces of a gentle curve end with it, so
+/// this is the hot path: foot points are the samples' own parameters, and one reduction serves each test.
+struct HermiteResiduals {
+    /// Square of the largest normal residual.
+    worst: f64,
+    /// Newton step of each foot point, and the longest of them.
+    ds: Lane,
+    drift: f64,
+    /// Squares of the least and the largest distance between neighbouring samples.
+    paces: [f64; 2],
+    /// The cubic's direction at every sample is within 45° of that to the neighbouring sample.
+    along: bool,
+}
+
+impl HermiteResiduals {
+    #[inline(always)]
+    fn at_fitted(request: &FitRequest<'_>) -> Self {
+        let next = Lanes { x: neighbours(&request.g.x), y: neighbours(&request.g.y) };
+        Self::at(&request.frame, &FITTED, request.g, &next, 1.0)
+    }
+
+    fn at_checked(request: &FitRequest<'_>, check: &Lanes) -> Self {
+        Self::at(&request.frame, &CHECKED, check, request.g, -1.0)
+    }
+
+    /// At the samples `g` of the places `set`. `next` are their neighbours: following in the first half and preceding in the second if
+    /// `side` is 1, the other way round if it is −1.
+    #[inline(always)]
+    fn at(frame: &ChordFrame, set: &Lane, g: &Lanes, next: &Lanes, side: f64) -> Self {
+        let power = frame.power(frame.home[0], frame.home[1]);
+        let (mut worst, mut drift, mut ds) = ([0.0; 8], [0.0; 8], [0.0; 8]);
+        let (mut margin, mut pace, mut slowness) = ([0.0; 8], [0.0; 8], [0.0; 8]);
+        for i in 0..8 {
+            let (rx, ry, dx, dy) = residual_at(&power, set[i] * UNIT, g.x[i], g.y[i]);
+            let d2 = norm_squared(dx, dy);
+            let k = 1.0 / d2;
+            let n = fma(rx, dy, -(ry * dx));
+            worst[i] = n * n * k;
+            ds[i] = -fma(rx, dx, ry * dy) * k;
+            drift[i] = ds[i].abs();
+            let (x, y) = (next.x[i] - g.x[i], next.y[i] - g.y[i]);
+            let l2 = fma(x, x, y * y);
+            let along = fma(dx, x, dy * y) * (SIDE[i] * side);
+            let straight = fma(2.0 * along, along, -(d2 * l2));
+            margin[i] = -(if along < straight { along } else { straight });
+            pace[i] = l2;
+            slowness[i] = -l2;
+        }
+        Self {
+            worst: largest(&worst),
+            ds,
+            drift: largest(&drift),
+            paces: [-largest(&slowness), largest(&pace)],
+            along: largest(&margin) < 0.0,
+        }
+    }
+
+    /// The two together, with the Newton steps of the first.
+    fn and(&self, other: &Self) -> Self {
+        Self {
+            worst: larger(self.worst, other.worst),
+            ds: self.ds,
+            drift: larger(self.drift, other.drift),
+            paces: [-larger(-self.paces[0], -other.paces[0]), larger(self.paces[1], other.paces[1])],
+            along: self.along && other.along,
+        }
+    }
+
+    /// Returns `true` if the residuals are small, and the samples resolve both the cubic and an image whose speeds squared differ less
+    /// than `pace` times.
+    #[inline(always)]
+    fn suffice(&self, size: f64, tolerance: f64, pace: f64) -> bool {
+        // Foot points that move by less than half the spacing each cannot change order.
+        self.worst <= (SMALL_ERROR * tolerance).powi(2)
+            && self.drift * self.drift * size <= DRIFT * tolerance
+            && self.along
+            && self.drift < 0.5 * UNIT
+            && self.paces[1] < pace * self.paces[0]
+    }
+
+    /// The foot points after their Newton steps.
+    #[inline(always)]
+    fn feet(&self, set: &Lane) -> Lane {
+        let mut s = [0.0; 8];
+        for i in 0..8 {
+            s[i] = clamp_unit(set[i] * UNIT + self.ds[i]);
+        }
+        s
     }
 }
 
