@@ -19,12 +19,15 @@ pub(crate) const POINTS: f64 = 0.07;
 pub(crate) const STROKED: f64 = 1.0 - (0.5 + POINTS) * GAPS;
 
 /// For the places at which edges of an area cross.
+#[cfg(feature = "area")]
 pub(crate) const CROSSINGS: f64 = 0.02;
 
 /// For the edges of an area before fewer pieces are looked for.
+#[cfg(feature = "area")]
 pub(crate) const EDGES: f64 = 0.3;
 
 /// For those pieces.
+#[cfg(feature = "area")]
 pub(crate) const SIMPLIFIED: f64 = 1.0 - CROSSINGS - EDGES;
 
 /// For the cubics that a long run becomes before it is covered with quadratics, which have the rest.
