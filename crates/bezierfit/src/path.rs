@@ -41,7 +41,7 @@ const ONE_ROUND: usize = 200_000;
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn fit<S: Source>(source: &S, options: &Options) -> Result<Fitted, Error> {
-    limited(options, |options| Ok(fitted(source, options)?))
+    limited(options, &|options| Ok(fitted(source, options)?))
 }
 
 fn fitted<S: Source>(source: &S, options: &Options) -> Result<Fitted, NotFinite> {
@@ -270,7 +270,7 @@ fn splines<S: Source>(parts: &[Part<'_, S>], options: &Options, out: &mut Fitted
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, Error> {
-    limited(options, |options| Ok(simplified(path, options)?))
+    limited(options, &|options| Ok(simplified(path, options)?))
 }
 
 fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
@@ -569,7 +569,7 @@ const CLOSER: f64 = 0.96;
 const MISSES: i32 = 4;
 
 /// Fits with the tolerance of the options, or with the one that leads to the wanted number of pieces.
-pub(crate) fn limited(options: &Options, fit: impl Fn(&Options) -> Result<Fitted, Error>) -> Result<Fitted, Error> {
+pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted, Error>) -> Result<Fitted, Error> {
     options.checked()?;
     let with = |tolerance: f64| fit(&Options { tolerance, pieces: Pieces::Fewest, ..*options });
     let first = with(options.tolerance)?;
@@ -629,6 +629,12 @@ pub(crate) fn limited(options: &Options, fit: impl Fn(&Options) -> Result<Fitted
         }
     }
     let Some(mut best) = best else { return Err(Error::TooFewPieces { allowed, least }) };
+    // A search for the fewer pieces found takes other tolerances, and may come closer.
+    if !exactly && count(&best) < allowed {
+        let pieces = Pieces::AtMost(count(&best));
+        let fewer = limited(&Options { pieces, ..*options }, fit).ok();
+        best = fewer.filter(|f| f.report.max_error < best.report.max_error).unwrap_or(best);
+    }
     if exactly {
         divide(&mut best, allowed);
     } else if best.report.max_error > options.tolerance {
