@@ -6,8 +6,8 @@
 
 use crate::fit::{Candidate, FOOT_ROUNDING, Fit, FitRequest, FitState, Measured, settled};
 use crate::limits::{
-    ACCEPTED, DENSE_BATCHES, FOOT_LEAD, FOOT_STEP, MAX_HALFWAY, PACE, PEAK_FACTOR, PEAK_NEAR, SMALL_ERROR,
-    THOROUGH_SAMPLES, ZOOM_RISE,
+    ACCEPTED, DENSE_BATCHES, FOOT_LEAD, FOOT_STEP, MAX_HALFWAY, PACE_EIGHT, PACE_SIXTEEN, PEAK_FACTOR, PEAK_NEAR,
+    SMALL_ERROR, THOROUGH_SAMPLES, ZOOM_RISE,
 };
 use crate::sample::{
     ALL, CHECKED, Evenly, FITTED, Lane, Lanes, MIDDLE, SIDE, UNIT, between, highest_peak, interleaved, larger, largest,
@@ -65,7 +65,9 @@ impl<S: Source> StretchFitter<'_, S> {
     ) -> Result<Option<f64>, NotFinite> {
         let tol = self.tolerance;
         let (z, error) = (fitted.z, checked.error);
-        let resolved = request.are_resolved(check, z, &fitted.s, &checked.s);
+        let Resolution { resolved, even } = request.resolution(check, z, &fitted.s, &checked.s);
+        // A map of unknown degree may swing where the image slows down.
+        let resolved = if self.simple { resolved } else { even };
         if !(self.trusts_samples(request) && resolved && steady(feet) && error <= ACCEPTED * tol) {
             return Ok(None);
         }
@@ -74,8 +76,11 @@ impl<S: Source> StretchFitter<'_, S> {
         let e1 = frame.signed_distances(check, z.a, z.b, &checked.s, &checked.squares);
         let errors = interleaved(&e0, &e1, 0.0);
         let peak = larger(highest_peak(&errors), error);
-        if peak <= if self.simple { ACCEPTED } else { SMALL_ERROR } * tol {
+        if peak <= if even && self.simple { ACCEPTED } else { SMALL_ERROR } * tol {
             return Ok(Some(peak));
+        }
+        if !even {
+            return Ok(None);
         }
         let closer = halfway(self.source, &request.candidate(z), feet, &errors, tol)?;
         Ok(closer.filter(|closer| *closer <= ACCEPTED * tol).map(|closer| closer.max(error)))
@@ -106,11 +111,20 @@ impl<S: Source> StretchFitter<'_, S> {
     }
 }
 
+/// Verdict on sixteen samples.
+pub(crate) struct Resolution {
+    /// The samples resolve image and cubic.
+    pub(crate) resolved: bool,
+    /// The image's speed is even besides.
+    pub(crate) even: bool,
+}
+
 impl FitRequest<'_> {
-    /// Returns `true` if sixteen samples with foot points `s0`, `s1` resolve the state.
+    /// Tests if sixteen samples with foot points `s0`, `s1` resolve the state.
     #[inline(always)]
-    pub(crate) fn are_resolved(&self, check: &Lanes, z: &FitState, s0: &Lane, s1: &Lane) -> bool {
-        self.pace_ratio(z, s0, (check, s1, &CHECKED)) < PACE
+    pub(crate) fn resolution(&self, check: &Lanes, z: &FitState, s0: &Lane, s1: &Lane) -> Resolution {
+        let ratio = self.pace_ratio(z, s0, (check, s1, &CHECKED));
+        Resolution { resolved: ratio < PACE_SIXTEEN, even: ratio < PACE_EIGHT }
     }
 
     /// The largest error in the widest gap between the fitted samples, extrapolated from their residuals; infinite if
@@ -118,7 +132,7 @@ impl FitRequest<'_> {
     #[inline(always)]
     pub(crate) fn middle_error(&self, z: &FitState, s0: &Lane, squares: &Lane) -> f64 {
         let next = Lanes { x: neighbours(&self.g.x), y: neighbours(&self.g.y) };
-        if self.pace_ratio(z, s0, (&next, &neighbours(s0), &neighbours(&FITTED))) >= PACE {
+        if self.pace_ratio(z, s0, (&next, &neighbours(s0), &neighbours(&FITTED))) >= PACE_EIGHT {
             return f64::INFINITY;
         }
         let n = self.frame.signed_distances(self.g, z.a, z.b, s0, squares);
@@ -623,7 +637,7 @@ mod tests {
     }
 
     /// The verdict on images at `x(τ)` of a line from 0 to 1, fitted by the line itself with foot points `s(τ)`.
-    fn verdict(x: impl Fn(f64) -> f64, s: impl Fn(f64) -> f64) -> bool {
+    fn verdict(x: impl Fn(f64) -> f64, s: impl Fn(f64) -> f64) -> Resolution {
         let unit = Vec2::new(1.0, 0.0);
         let end = |t: f64| BreakPoint { t, p: Point::new(t, 0.0), speed: 1.0, into: unit, away: unit };
         let (from, to) = (end(0.0), end(1.0));
@@ -635,21 +649,23 @@ mod tests {
         let s0 = FITTED.map(|j| s(j * UNIT));
         let z = FitState { a: handles[0], b: handles[1], s: s0 };
         let s1 = between(&s0);
-        request.are_resolved(&check, &z, &s0, &s1)
+        request.resolution(&check, &z, &s0, &s1)
     }
 
     #[test]
     fn foot_points_far_from_even_ones_are_not_resolved() {
         // Ahead of the samples by up to 0.17 and 0.19.
         let ahead = |by: f64| verdict(|t| t, |t| t + 4.0 * by * t * (1.0 - t));
-        assert!(ahead(0.17) && !ahead(0.19));
+        assert!(ahead(0.17).resolved && !ahead(0.19).resolved);
     }
 
     #[test]
     fn uneven_speed_is_seen() {
         // Speed proportional to a power of τ: over the samples it varies 2, 6.5 and 16 times.
         let slowing = |power: f64| verdict(|t| t.powf(power), |t| t);
-        assert!(slowing(1.3) && !slowing(1.8));
+        assert!(slowing(1.3).resolved && slowing(1.3).even);
+        assert!(slowing(1.8).resolved && !slowing(1.8).even);
+        assert!(!slowing(2.2).resolved);
     }
 
     /// The line beside the x axis at this height.

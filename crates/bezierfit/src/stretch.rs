@@ -1,7 +1,7 @@
 //! One piece for one stretch of a curve: its samples, a line if they are on one, the Hermite cubic if that fits, or the best cubic found.
 
 use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, improved};
-use crate::limits::{MAX_ATTEMPTS, MAX_PLANNED, PACE, SMALL_ERROR, STRAIGHT};
+use crate::limits::{MAX_ATTEMPTS, MAX_PLANNED, PACE_EIGHT, PACE_SIXTEEN, SMALL_ERROR, STRAIGHT};
 use crate::proof;
 use crate::report::Piece;
 use crate::sample::{
@@ -242,13 +242,15 @@ impl<S: Source> StretchFitter<'_, S> {
     /// The Hermite cubic, if it fits and nothing more needs to be looked at.
     #[inline(always)]
     fn hermite(&self, request: &mut FitRequest<'_>, first: &HermiteResiduals) -> Result<Option<FitOutcome>, NotFinite> {
-        if !first.suffice(request.frame.size, self.tolerance) {
+        let pace = if self.simple { PACE_SIXTEEN } else { PACE_EIGHT };
+        if !first.suffice(request.frame.size, self.tolerance, pace) {
             return Ok(None);
         }
-        let error = if self.simple && self.form.is_none() {
+        let of_low_degree = self.simple && self.form.is_none();
+        let error = if of_low_degree && first.suffice(request.frame.size, self.tolerance, PACE_EIGHT) {
             EIGHT_GROWTH * first.worst.sqrt()
         } else {
-            self.hermite_error_at_sixteen(request, first)?
+            self.hermite_error_at_sixteen(request, first, pace)?
         };
         let [a, b] = request.frame.home;
         let piece = Piece::Cubic(request.frame.cubic(request.from.p, request.to.p, a, b));
@@ -261,11 +263,12 @@ impl<S: Source> StretchFitter<'_, S> {
         &self,
         request: &mut FitRequest<'_>,
         first: &HermiteResiduals,
+        pace: f64,
     ) -> Result<f64, NotFinite> {
         let check = *self.checked(request)?;
         let second = HermiteResiduals::at_checked(request, &check);
         let both = first.and(&second);
-        if !both.suffice(request.frame.size, self.tolerance) {
+        if !both.suffice(request.frame.size, self.tolerance, pace) {
             return Ok(f64::INFINITY);
         }
         let ([a, b], s) = (request.frame.home, first.feet(&FITTED));
@@ -361,15 +364,16 @@ impl HermiteResiduals {
         }
     }
 
-    /// Returns `true` if the residuals are small, and the samples resolve cubic and image.
+    /// Returns `true` if the residuals are small, and the samples resolve both the cubic and an image whose speeds squared differ less
+    /// than `pace` times.
     #[inline(always)]
-    fn suffice(&self, size: f64, tolerance: f64) -> bool {
+    fn suffice(&self, size: f64, tolerance: f64, pace: f64) -> bool {
         // Foot points that move by less than half the spacing each cannot change order.
         self.worst <= (SMALL_ERROR * tolerance).powi(2)
             && self.drift * self.drift * size <= DRIFT * tolerance
             && self.along
             && self.drift < 0.5 * UNIT
-            && self.paces[1] < PACE * self.paces[0]
+            && self.paces[1] < pace * self.paces[0]
     }
 
     /// The foot points after their Newton steps.
