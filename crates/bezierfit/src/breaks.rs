@@ -70,7 +70,7 @@ impl<S: Source> StretchFitter<'_, S> {
                 out.push(outcome.piece);
                 continue;
             }
-            if let Some(t) = self.slow.inside(from.t, to.t) {
+            if let Some(t) = self.slow.inside(from.t, to.t).or(outcome.cusp) {
                 let mid = self.source.end(t)?;
                 stack.push((mid, to, None));
                 stack.push((from, mid, None));
@@ -131,7 +131,7 @@ impl<S: Source> StretchFitter<'_, S> {
                 fits &= outcome.fits(tol);
             }
             placements += 1;
-            if fits || self.is_spent() {
+            if fits || self.is_spent() || plan.outcomes[..n].iter().flatten().any(|o| o.cusp.is_some()) {
                 break;
             }
             let mut next = n;

@@ -46,6 +46,9 @@ pub const STRAIGHT: f64 = 1e-3;
 /// and −1.6 %.
 pub(crate) const SLOW_SPEED: f64 = 0.3;
 
+/// The image has a cusp where its speed falls below this share of the mean. Without a search: hairpins have three times the work, and errors between samples.
+pub(crate) const CUSP_SPEED: f64 = 0.1;
+
 // Fit
 
 /// Longest Gauss–Newton step, as a share of the piece's size. Longer ones overshoot the valley. 0.075: +0.1 % pieces, −0.5 % work; 0.3:

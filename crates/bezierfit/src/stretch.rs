@@ -1,7 +1,9 @@
 //! One piece for one stretch of a curve: its samples, a line if they are on one, the Hermite cubic if that fits, or the best cubic found.
 
 use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, improved};
-use crate::limits::{MAX_ATTEMPTS, MAX_PLANNED, PACE_EIGHT, PACE_SIXTEEN, SMALL_ERROR, STRAIGHT};
+use crate::limits::{
+    CUSP_SPEED, MAX_ATTEMPTS, MAX_PLANNED, PACE_EIGHT, PACE_SIXTEEN, SLOW_SPEED, SMALL_ERROR, STRAIGHT,
+};
 use crate::proof;
 use crate::report::Piece;
 use crate::sample::{
@@ -115,7 +117,7 @@ impl<S: Source> StretchFitter<'_, S> {
             Some(form) if size > 0.0 => proof::line(self.source, form, request.from, request.to, size)?,
             _ => off,
         };
-        Ok(Some(FitOutcome { piece: Piece::Line(line), error, reach: error }))
+        Ok(Some(FitOutcome { piece: Piece::Line(line), error, reach: error, cusp: None }))
     }
 
     /// The checked samples, taken on first use.
@@ -165,6 +167,8 @@ pub(crate) struct FitOutcome {
     pub(crate) error: f64,
     /// Error at the fitted samples, or what more iterations would reach: it predicts the number of pieces.
     pub(crate) reach: f64,
+    /// A parameter at which the image nearly stops, if the piece misses.
+    pub(crate) cusp: Option<f64>,
 }
 
 impl FitOutcome {
@@ -233,9 +237,10 @@ impl<S: Source> StretchFitter<'_, S> {
         let (piece, fits) = (Piece::Cubic(attempt.request.cubic(&best.fit.z)), best.error <= self.tolerance);
         let (least, predicted) = (best.fit.error, best.error);
         Ok(if fits {
-            FitOutcome { piece, error: predicted, reach: least }
+            FitOutcome { piece, error: predicted, reach: least, cusp: None }
         } else {
-            FitOutcome { piece, error: predicted.max(least), reach: predicted }
+            let cusp = attempt.fitter.cusp(&attempt.request);
+            FitOutcome { piece, error: predicted.max(least), reach: predicted, cusp }
         })
     }
 
@@ -254,7 +259,7 @@ impl<S: Source> StretchFitter<'_, S> {
         };
         let [a, b] = request.frame.home;
         let piece = Piece::Cubic(request.frame.cubic(request.from.p, request.to.p, a, b));
-        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error }))
+        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error, cusp: None }))
     }
 
     /// Infinite if sixteen samples leave the error in doubt.
@@ -292,7 +297,7 @@ impl<S: Source> StretchFitter<'_, S> {
         let z = FitState { a, b, s: s0 };
         let error = self.proven(request, &z, [&s0, &s1], 0.0)?;
         let piece = Piece::Cubic(request.cubic(&z));
-        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error }))
+        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error, cusp: None }))
     }
 }
 
@@ -384,6 +389,61 @@ impl HermiteResiduals {
             s[i] = clamp_unit(set[i] * UNIT + self.ds[i]);
         }
         s
+    }
+}
+
+/// Golden sections of a search for the slowest place: down to the rounding of the parameter.
+const SECTIONS: usize = 50;
+
+impl<S: Source> StretchFitter<'_, S> {
+    /// The parameter inside a stretch at which the image nearly stops, if there is one.
+    #[inline(never)]
+    fn cusp(&self, request: &FitRequest<'_>) -> Option<f64> {
+        let FitRequest { from, to, frame, g, .. } = request;
+        // The polygon through the samples. At the ends the image slows down because of a short handle, which is no cusp.
+        let place = |i: usize| if i == 0 { 0.0 } else { FITTED.get(i - 1).map_or(1.0, |j| j * UNIT) };
+        let point = |i: usize| match i {
+            0 => Vec2::ZERO,
+            9 => frame.q,
+            _ => Vec2::new(g.x[i - 1], g.y[i - 1]),
+        };
+        let (mut length, mut least) = (0.0, (0, f64::INFINITY));
+        for i in 0..9 {
+            let l = (point(i + 1) - point(i)).hypot();
+            length += l;
+            let pace = l / (place(i + 1) - place(i));
+            if pace < least.1 && (1..8).contains(&i) {
+                least = (i, pace);
+            }
+        }
+        if least.1 > SLOW_SPEED * length {
+            return None;
+        }
+        self.extra.set(self.extra.get() + SECTIONS);
+        let h = to.t - from.t;
+        let speed = |tau: f64| self.source.eval(from.t + h * tau).1.hypot() * h;
+        let (mut lo, mut hi) = (place(least.0 - 1), place(least.0 + 2));
+        const GOLD: f64 = 0.381_966_011_250_105;
+        let mut mid = lo + GOLD * (hi - lo);
+        let mut slowest = speed(mid);
+        for _ in 0..SECTIONS {
+            let other = if mid - lo > hi - mid { mid - GOLD * (mid - lo) } else { mid + GOLD * (hi - mid) };
+            let v = speed(other);
+            if v < slowest {
+                if other > mid {
+                    lo = mid
+                } else {
+                    hi = mid
+                }
+                (mid, slowest) = (other, v);
+            } else if other > mid {
+                hi = other;
+            } else {
+                lo = other;
+            }
+        }
+        // One at an end is that end's own.
+        (slowest < CUSP_SPEED * length && mid > 1e-3 && mid < 1.0 - 1e-3).then_some(from.t + h * mid)
     }
 }
 
