@@ -158,8 +158,7 @@ pub(super) fn simplify_command() -> Command {
         .long_about(format!(
             "{about}.\n\nTraced drawings and those of many small steps get smooth curves with few nodes, each point of which is within \
              --tolerance of the original, and the original of them. Ids, classes, groups and everything else stay as they are; so do \
-             paths that would not get fewer nodes, basic shapes, text and copies (use). The default tolerance is 5e-4 of the drawing's \
-             diagonal, and less for small contours.",
+             paths that would not get fewer nodes, basic shapes, text and copies (use).",
         ))
         .after_help(
             "Examples:\n  A traced drawing:\n    pathwarp simplify trace.svg -o clean.svg\n  Within a tenth of a millimetre, for a \
@@ -201,7 +200,13 @@ pub(super) fn outline_command() -> Command {
 fn declared(info: &'static EditInfo, about: &'static str) -> Command {
     let own = info.params.iter().map(steps::param_arg);
     let shared = some_options(&SHARED).map(|a| a.help_heading("Common options"));
-    Command::new(info.name).about(about).args([inputs_arg()]).args(own).args(shared).args(reading_args())
+    let command = Command::new(info.name).about(about).args([inputs_arg()]).args(own).args(shared).args(reading_args());
+    let Some(share) = info.tolerance else { return command };
+    let help = format!(
+        "Largest distance between the drawing and the result: user units, or a length such as 0.05mm. If it is given, it holds for all \
+         contours alike [default: {share:e} of the artwork's diagonal, and for small contours 2e-3 of their own]",
+    );
+    command.mut_arg("tolerance", |a| a.help(help))
 }
 
 /// Runs an edit.
