@@ -6,8 +6,8 @@
 mod common;
 
 use bezierfit::{Degree, Fitted, Offset, Options, PathSource, Pieces, Source, fit, fit_points, simplify};
-use common::distance;
-use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveNearest, PathSeg, Point, Vec2};
+use common::{Random, distance};
+use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, ParamCurveNearest, PathSeg, Point, Vec2};
 use std::cell::Cell;
 
 /// Fits a source, and checks the distance, the number of pieces and that of evaluations.
@@ -188,6 +188,30 @@ fn spirals_loops_flat_ellipses_and_cusps_are_followed() {
         (Point::new(50.0 * u * u, 50.0 * u * u * u + 0.01 * u), Vec2::new(200.0 * u, 300.0 * u * u + 0.02))
     };
     check("near-cusp", &near, 0.001, 16);
+}
+
+/// Closed and open curves far from the origin under x + 4 sin(y/16), y − xy/500: 20 units wide and 10,000 long, they turn back within a
+/// few units.
+#[test]
+fn hairpins_are_followed() {
+    let mut random = Random(3);
+    for k in 0..24 {
+        let mut point = || Point::new(50.0 + 50.0 * random.unit(), 50.0 + 50.0 * random.unit());
+        let drop = CubicBez::new((50.0, 62.5), (16.7, 47.78587920056), (83.3, 47.78587920056), (50.0, 62.5));
+        let cubic = if k == 0 { drop } else { CubicBez::new(point(), point(), point(), point()) };
+        let around = kurbo::Shape::bounding_box(&cubic);
+        let hairpin = |t: f64| {
+            let (p, d) = (cubic.eval(t), cubic.deriv().eval(t));
+            let (x, y) = (1e5 + p.x, 3e5 + p.y);
+            let (sin, cos) = (y / 16.0).sin_cos();
+            let down = (p.x * 3e5 + p.y * 1e5 + p.x * p.y) / 500.0;
+            (
+                Point::new(p.x + 4.0 * sin, p.y - down),
+                Vec2::new(d.x + 0.25 * cos * d.y, d.y - (d.x * y + x * d.y) / 500.0),
+            )
+        };
+        check("hairpin", &hairpin, 1e-4 * around.width().hypot(around.height()), 12);
+    }
 }
 
 #[test]
