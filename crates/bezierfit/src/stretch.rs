@@ -392,8 +392,8 @@ impl HermiteResiduals {
     }
 }
 
-/// Parabolas through three speeds in a search for the slowest place, each a quarter as wide as the one before.
-const CLOSER: usize = 6;
+/// Parabolas through three speeds in a search for the slowest place, at most; six are usual.
+const CLOSER: usize = 16;
 
 impl<S: Source> StretchFitter<'_, S> {
     /// The parameter inside a stretch at which the image nearly stops, if there is one.
@@ -432,8 +432,12 @@ impl<S: Source> StretchFitter<'_, S> {
             if !(bend > 0.0) {
                 return None;
             }
-            mid += (0.5 * step * (before - after) / bend).clamp(-2.0 * step, 2.0 * step);
-            step *= 0.25;
+            let shift = (0.5 * step * (before - after) / bend).clamp(-2.0 * step, 2.0 * step);
+            mid += shift;
+            step = (0.5 * shift.abs()).clamp(0.125 * step, 0.5 * step);
+            if step < 1e-6 {
+                break;
+            }
         }
         // One at an end is that end's own.
         (slowest < (CUSP_SPEED * length).powi(2) && mid > 1e-3 && mid < 1.0 - 1e-3).then_some(from.t + h * mid)

@@ -160,20 +160,20 @@ fn single(seg: Seg) -> Outline {
 fn pieces_and_work_stay_at_their_figures() {
     let outlines: Vec<Outline> = segments().into_iter().map(single).collect();
     let found = figures(&outlines, Options::new);
-    stay_at("checked", found, [[1495, 11788], [2059, 19610], [2882, 31163], [4107, 50042]]);
+    stay_at("checked", found, [[1499, 15073], [2065, 24771], [2896, 39352], [4124, 63270]]);
 }
 
 #[test]
 fn proven_pieces_and_work_stay_at_their_figures() {
     let outlines: Vec<Outline> = segments().into_iter().map(single).collect();
     let found = figures(&outlines, |t| Options::new(t).with_certify(true));
-    stay_at("certified", found, [[1557, 11600], [2176, 20745], [3054, 37053], [4262, 63902]]);
+    stay_at("certified", found, [[1561, 15033], [2183, 26496], [3070, 47299], [4283, 81192]]);
 }
 
 #[test]
 fn merged_pieces_and_work_stay_at_their_figures() {
     let found = figures(&runs(), |t| Options::new(t).with_merge(true));
-    stay_at("merged", found, [[251, 3652], [405, 5887], [627, 9744], [885, 12731]]);
+    stay_at("merged", found, [[251, 3652], [405, 5970], [628, 9837], [885, 12886]]);
 }
 
 #[test]
