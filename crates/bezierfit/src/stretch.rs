@@ -429,12 +429,12 @@ impl<S: Source> StretchFitter<'_, S> {
             let [before, at, after] = [mid - step, mid, mid + step].map(square);
             slowest = at;
             let bend = before - 2.0 * at + after;
-            if !(bend > 0.0) {
+            if bend.is_nan() || bend <= 0.0 {
                 return None;
             }
             let shift = (0.5 * step * (before - after) / bend).clamp(-2.0 * step, 2.0 * step);
-            mid += shift;
             step = (0.5 * shift.abs()).clamp(0.125 * step, 0.5 * step);
+            mid = (mid + shift).clamp(step, 1.0 - step);
             if step < 1e-6 {
                 break;
             }
