@@ -226,6 +226,10 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
         let ends = nodes.next(seg)?;
         fitter.parts(seg, ends, fitter.options.shared.contains(seg), &mut parts).map_err(lost)?;
     }
+    for i in 1..parts.len() {
+        let (before, after) = parts.split_at_mut(i);
+        Part::join(&mut before[i - 1], &mut after[0]);
+    }
     let found = Merger::new(fitter, &parts, memory).merged().map_err(lost)?;
     // What a map moves as it is keeps its control points, unless it has many more than it needs: flattened curves, outlines of dashes.
     if !parts.is_empty() && parts.len() <= MANY_NODES * found.0.len() && parts.iter().all(Part::is_affine) {

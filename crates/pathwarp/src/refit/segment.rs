@@ -301,6 +301,15 @@ impl Part {
         branch.is_some_and(|b| matches!(b.class(), Class::Affine(_)))
     }
 
+    /// Joins consecutive parts that come from the same side to a tear and leave to it.
+    pub(super) fn join(before: &mut Self, after: &mut Self) {
+        if let (Some(a), Some(b)) = (&mut before.cut, &mut after.cut)
+            && before.jets[1].p == after.jets[0].p
+        {
+            (a.torn[1], b.torn[0]) = (None, None);
+        }
+    }
+
     /// The line from the neighbour at the start (0), or to that at the end (1), if the map tears there.
     pub(super) fn bridge(&self, end: usize) -> Option<Piece> {
         let (torn, own) = (self.cut.as_ref()?.torn[end]?, self.jets[end].p);

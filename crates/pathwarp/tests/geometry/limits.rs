@@ -1,7 +1,7 @@
 //! Thresholds of the refit at work: cases that only one of them decides.
 
 use crate::support::{self, Fold, Ripple};
-use kurbo::{CubicBez, PathEl, Point, Vec2};
+use kurbo::{CubicBez, ParamCurveNearest, PathEl, Point, Vec2};
 use pathwarp::map::{Crease, Creases, Formula, Jet, Level, Map, Real};
 use pathwarp::refit::{Options, RefittedPath, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
@@ -75,6 +75,18 @@ fn a_tear_between_merged_segments_is_bridged_by_a_line() {
             (a, b) = (b, a);
         }
         assert!(a.distance(edge) < 1e-9 && b.distance(edge + Vec2::new(0.0, 40.0)) < 1e-9, "{a:?} {b:?}");
+    }
+}
+
+/// Nodes on a tear between segments on one side of it: the image has no gap.
+#[test]
+fn a_tear_that_is_touched_in_a_node_is_not_crossed() {
+    for d in ["M600 300L500 310L600 340", "M600 280C560 280 500 290 500 310S560 340 600 340"] {
+        let outline = Outline::from_svg(d).unwrap();
+        let touching = warp_path(&outline, &Step(40.0), &Options::new(0.1).with_merge(true)).unwrap();
+        let [beyond, node] = [0.0, 40.0].map(|side| Side(side).point(Point::new(500.0, 310.0)));
+        let near = |p: Point| touching.path.segments().any(|s| s.nearest(p, 1e-9).distance_sq < 0.011);
+        assert!(near(node) && !near(beyond), "{:?}", touching.path);
     }
 }
 
