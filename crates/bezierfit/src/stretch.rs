@@ -433,13 +433,16 @@ impl<S: Source> StretchFitter<'_, S> {
                 return None;
             }
             let shift = (0.5 * step * (before - after) / bend).clamp(-2.0 * step, 2.0 * step);
+            mid += shift;
             step = (0.5 * shift.abs()).clamp(0.125 * step, 0.5 * step);
-            mid = (mid + shift).clamp(step, 1.0 - step);
+            // One at an end is that end's own.
+            if mid <= step || mid >= 1.0 - step {
+                return None;
+            }
             if step < 1e-6 {
                 break;
             }
         }
-        // One at an end is that end's own.
         (slowest < (CUSP_SPEED * length).powi(2) && mid > 1e-3 && mid < 1.0 - 1e-3).then_some(from.t + h * mid)
     }
 }
