@@ -46,7 +46,7 @@ pub const STRAIGHT: f64 = 1e-3;
 /// and −1.6 %.
 pub(crate) const SLOW_SPEED: f64 = 0.3;
 
-/// The image has a cusp where its speed falls below this share of the mean. 0 (no search): −0.3 % pieces, −21 % work; but hairpins take
+/// The image has a cusp where its speed falls below this share of the mean. 0 (no search): −0.4 % pieces, −21 % work; but hairpins take
 /// twice the work, with errors between samples.
 pub(crate) const CUSP_SPEED: f64 = 0.1;
 
