@@ -84,7 +84,7 @@ impl Ramp {
             SpreadMethod::Pad => padded(&shading.stops, from, to),
             SpreadMethod::Repeat | SpreadMethod::Reflect => {
                 let (first, last) = (from.floor(), to.ceil());
-                if !(last - first <= MAX_PERIODS) {
+                if last - first > MAX_PERIODS {
                     return None;
                 }
                 let periods = (0..(last - first) as usize).map(|n| first + n as f64);
@@ -148,7 +148,7 @@ impl Ramp {
             out.extend(crossed.iter().map(|&i| Stop { offset: offset(self.scale[i]), color: self.stops[i].color }));
         }
         out.push(Stop { offset: 1.0, color: self.color(profile[profile.len() - 1]) });
-        pruned(out)
+        pruned(&out)
     }
 }
 
@@ -178,7 +178,7 @@ fn period(shading: &Shading, n: f64) -> Vec<Stop> {
 }
 
 /// Drops stops between which the colours are the same without them.
-fn pruned(stops: Vec<Stop>) -> Vec<Stop> {
+fn pruned(stops: &[Stop]) -> Vec<Stop> {
     /// A difference that rounding to 255 levels hides.
     const HIDDEN: f64 = 0.3 / 255.0;
     let mut out: Vec<Stop> = Vec::with_capacity(stops.len());
@@ -409,7 +409,7 @@ impl Samples {
                 }
                 damping *= 5.0;
             }
-            if !(sum < 0.999 * before) {
+            if sum.is_nan() || sum >= 0.999 * before {
                 break;
             }
         }

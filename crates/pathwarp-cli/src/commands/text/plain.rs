@@ -2,7 +2,7 @@
 
 use super::{failure, style};
 use crate::failure::Failure;
-use crate::options::ReadingOptions;
+use crate::options::Reading;
 use pathwarp::budget::{Limit, cost};
 use pathwarp::param::LengthUnit;
 use pathwarp_editor::Words;
@@ -10,7 +10,7 @@ use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering};
 use pathwarp_text::{Font, TextLimits, TextStyle, layout_within};
 
 /// Sets words as a drawing in mm.
-pub(crate) fn set(words: &Words, reading: &ReadingOptions) -> Result<String, Failure> {
+pub(crate) fn set(words: &Words, reading: &Reading) -> Result<String, Failure> {
     let read = reading.read_options();
     let find = |family: &String| style::find_font(family, style::REGULAR, false, &read);
     let file: Option<FontFile> = words.font.as_ref().map(find).transpose()?;

@@ -23,8 +23,6 @@ use std::sync::Arc;
 /// Millimetres in glTF's unit of length.
 const METRE: f64 = 1000.0;
 
-
-
 /// Returns `true` if the file begins like binary glTF, or is JSON that says it is glTF.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {

@@ -302,8 +302,6 @@ fn check_indices(mesh: &Mesh, e: &Element, kind: &str, i: usize) -> Result<(), M
     Ok(())
 }
 
-
-
 /// Writes a mesh. A vertex becomes several if its corners differ in texture coordinates or normals. Faces of different sizes become
 /// triangles.
 ///
