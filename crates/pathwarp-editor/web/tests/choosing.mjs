@@ -113,7 +113,7 @@ const LINE = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 200"><rec
 export const a_path_is_picked = () => within(async (page) => {
   await choose(page, "Bend");
   await page.click(".more summary");
-  const pick = page.locator("#settings .field", { has: page.locator("#set-along") }).locator("button");
+  const pick = page.locator("#settings .field", { has: page.locator("#set-along") }).getByRole("button", { name: "Pick from drawing" });
   const way = () => page.$eval("#stage .art #art-way", (path) => path.getAttribute("d"));
   await pick.click();
   await page.keyboard.press("Escape");

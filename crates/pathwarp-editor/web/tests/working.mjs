@@ -425,7 +425,7 @@ export const paths_are_picked_nearby = async () => {
   try {
     await choose(page, "Bend");
     await page.click("#settings summary");
-    await page.locator("#settings .field", { has: page.locator("#set-along") }).locator("button").click();
+    await page.locator("#settings .field", { has: page.locator("#set-along") }).getByRole("button", { name: "Pick from drawing" }).click();
     const at = await page.$eval("#stage .art [id$=way]", (p) => { const q = p.getPointAtLength(100).matrixTransform(p.getScreenCTM()); return [q.x, q.y]; });
     await page.mouse.click(at[0], at[1] - 30);
     check(await page.$eval("#stage", (s) => s.classList.contains("picking")), "a miss ends the choice");
