@@ -344,7 +344,7 @@ fn barr() {
 #[test]
 fn cones_and_cylinders() {
     for (pairs, [bottom, top]) in
-        [(&[("radius", "100")][..], [100.0, 100.0]), (&[("radius", "90"), ("top", "110")], [90.0, 110.0])]
+        [(&[("radius", "100")][..], [100.0, 100.0]), (&[("radius", "90"), ("top-radius", "110")], [90.0, 110.0])]
     {
         compare(&build("wrap", pairs), |p| {
             let sine: f64 = (top - bottom) / 40.0;
