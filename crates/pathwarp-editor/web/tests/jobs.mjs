@@ -176,7 +176,7 @@ export const job_words = () => job("words", "logo.svg", async (page, dir, editor
   await page.getByRole("button", { name: "Set words" }).click();
   await quiet(page);
   check((await paths(page)) !== bent && (await page.locator("#steps").textContent()).includes("Bend"), "the bend is gone, or the words are as before");
-  await saved(page, "SVG", "sign.svg");
+  await saved(page, "SVG Can", "sign.svg");
   const picture = await paths(page);
   await editor.stop();
   const again = await edit(join(dir, "sign.svg"));

@@ -2,11 +2,11 @@
 
 use super::bends::{Bend, Bends};
 use super::fits::{self, EmbeddedImage, PlacedSlot, written};
-use super::gradients::Shading;
 use super::options::{Edit, OnError};
 use super::outcome::{PartOutcome, Skipped, Warning, WarpedDocument, WarpedPart};
 use super::part;
 use super::path::ROUNDING;
+use super::shading::Shading;
 use super::task::{self, LetterPiece, PartContext, PartTask};
 use crate::scene::drawing::Drawing;
 use crate::scene::geometry::is_invertible;

@@ -4,7 +4,7 @@
 //! say which colour lies on each. The lines or ellipses are sought by Gauss–Newton's method, with the colours projected out: for every
 //! choice, the piecewise linear profile nearest to the samples follows by least squares.
 
-use super::gradients::{GradientShape, Shading, Stop, premultiplied};
+use super::shading::{GradientShape, Shading, Stop, premultiplied};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use usvg::SpreadMethod;
 
@@ -531,7 +531,7 @@ fn damped(columns: &[Vec<f64>], off: &[f64], damping: f64) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::gradients::tests::shading;
+    use super::super::shading::tests::shading;
     use super::*;
 
     /// Straight lines across become circles around (50, 400): 100 units of x are a quarter of a turn, and y is the radius.

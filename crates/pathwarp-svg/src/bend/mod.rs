@@ -10,6 +10,7 @@ pub(crate) mod outcome;
 pub(crate) mod part;
 pub(crate) mod path;
 pub(crate) mod pictures;
+pub(crate) mod shading;
 pub(crate) mod stroke;
 pub(crate) mod task;
 pub(crate) mod width;

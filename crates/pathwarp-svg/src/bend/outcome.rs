@@ -1,8 +1,8 @@
 //! Results of warping, by part for the writers and by shape for the report.
 
 use super::fits::PaintFit;
-use super::gradients::Shading;
 use super::pictures::{BentImage, PictureError};
+use super::shading::Shading;
 use crate::source::number::path_data_by;
 use pathwarp::kurbo::{BezPath, Rect};
 use pathwarp::refit::{Assurance, PathReport};

@@ -1,9 +1,10 @@
 //! Bends a part: its path, fill, stroke, and paints.
 
 use super::fits::{self, PaintFit};
-use super::gradients::{BentGradient, PaintedGradient, Shading};
+use super::gradients::{BentGradient, PaintedGradient};
 use super::options::{Strokes, WarpOptions};
 use super::outcome::{StrokeOutcome, WarpedPart};
+use super::shading::Shading;
 use super::task::{BentPath, LetterPiece, PartTask};
 use super::{path, stroke};
 use crate::scene::geometry::stretch;

@@ -10,9 +10,9 @@ use super::markup::{
 };
 use super::{boxes, filter};
 use crate::bend::fits::EmbeddedImage;
-use crate::bend::gradients::{Shading, Stop};
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::bend::pictures::BentImage;
+use crate::bend::shading::{Shading, Stop};
 use crate::scene::geometry::affine;
 use crate::scene::model::Tiles;
 use crate::scene::model::{Group, Node, Part};

@@ -3,9 +3,9 @@
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::BentDrawing;
 use crate::bend::fits::{EmbeddedImage, PaintFit, PlacedSlot, written};
-use crate::bend::gradients::Shading;
 use crate::bend::options::WarpOptions;
 use crate::bend::outcome::{PartOutcome, WarpedPart};
+use crate::bend::shading::Shading;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{Group, Node, Part, Scene, Tiles};
 use crate::source::text::SourceText;
