@@ -118,7 +118,7 @@ impl KnownShapes {
         Self(Arc::new(memory.into_shapes()))
     }
 
-    /// As [`warp_path`](warp_path), with this knowledge.
+    /// As [`warp_path`], with this knowledge.
     ///
     /// # Errors
     /// See there.
