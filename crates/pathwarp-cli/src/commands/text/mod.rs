@@ -1,6 +1,7 @@
 //! `pathwarp text WORDS -o OUT.svg`: sets text as outlines, which any deformation takes as its input.
 
 mod on_path;
+#[cfg(feature = "editor")]
 pub(crate) mod plain;
 mod style;
 
