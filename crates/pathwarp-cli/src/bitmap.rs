@@ -196,9 +196,9 @@ fn coarsest((width, height): (f64, f64), among: usize) -> Vec2 {
     const SIDE: f64 = 64.0;
     const DENSITY: f64 = 0.25;
     /// Most pixels in all pictures of a drawing that are only there for that.
-    const MOST_TOGETHER: f64 = 4e6;
+    const MAX_TOGETHER: f64 = 4e6;
     let least = Vec2::new((DENSITY * width).max(SIDE), (DENSITY * height).max(SIDE));
-    least * (MOST_TOGETHER / among.max(1) as f64 / (least.x * least.y)).sqrt().min(1.0)
+    least * (MAX_TOGETHER / among.max(1) as f64 / (least.x * least.y)).sqrt().min(1.0)
 }
 
 /// A length that exceeds whole pixels by less than this is rounding error.

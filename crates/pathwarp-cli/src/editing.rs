@@ -2,7 +2,7 @@
 
 use crate::advice::Flags;
 use crate::bitmap::{background, encode};
-use crate::commands::text::plain;
+use crate::commands::text::set_plainly;
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format, PICTURES};
 use crate::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which, read_options};
@@ -18,6 +18,7 @@ use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary, Words};
 use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::{Document, Origin, ReadOptions, families, usvg_tree};
+use pathwarp_text::TextStyle;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -271,7 +272,10 @@ impl Host for EditorHost {
     }
 
     fn set_words(&self, words: &Words) -> Result<String, String> {
-        self.said(self.given.read().and_then(|options| plain::set(words, &options.reading)))
+        let letter_spacing = 0.01 * words.spacing * words.size;
+        let style = TextStyle { size: words.size, letter_spacing, ..TextStyle::default() };
+        let set = |options: CommonOptions| set_plainly(&words.text, words.font.as_deref(), &style, &options.reading);
+        self.said(self.given.read().and_then(set))
     }
 
     fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String> {

@@ -1,21 +1,23 @@
 //! `pathwarp text WORDS -o OUT.svg`: sets text as outlines, which any deformation takes as its input.
 
 mod on_path;
-#[cfg(feature = "editor")]
-pub(crate) mod plain;
 mod style;
 
 use crate::commands::args::{choice, out_arg, switch, target};
 use crate::failure::{Failure, Status};
 use crate::format::{Choice, DRAWINGS};
+#[cfg(feature = "editor")]
+use crate::options::Reading;
 use crate::options::{Given, reading_args, some_options};
 use crate::readable::listed;
 use crate::{advice, export, input, mistakes, output, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::budget::{Exceeded, Limit, Limits, cost};
 use pathwarp::deform::Registry;
+#[cfg(feature = "editor")]
+use pathwarp::param::LengthUnit;
 use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering, write_set_lines};
-use pathwarp_text::{Font, TextLimits, layout_within};
+use pathwarp_text::{Font, OutlinedText, TextLimits, TextStyle, layout_within};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -45,9 +47,9 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let files: Vec<FontFile> = names.iter().map(find).collect::<Result<_, _>>()?;
     let mut chosen: Vec<Font<'_>> = Vec::with_capacity(files.len() + 1);
     for (name, file) in names.iter().zip(&files) {
-        chosen.push(Font::new(&file.bytes, file.index).map_err(|e| Failure::Input(format!("{name}: {e}")))?);
+        chosen.push(read_font(name, file)?);
     }
-    chosen.push(Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))?);
+    chosen.push(bundled()?);
     let first = names.first().copied().unwrap_or("the bundled font");
     style::check_style(&chosen[0], first, &Wanted { weight, italic, synthesize }, &read)?;
     let wanted = Wanted { weight, italic, synthesize };
@@ -58,9 +60,7 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let chosen = style::with_variations(chosen, &style::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
 
     let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
-    let most = |cost: f64| (limits.of(Limit::Work) / cost) as usize;
-    let most = TextLimits { letters: most(cost::LETTER), segments: most(cost::SEGMENT) };
-    let set = |text: &String| layout_within(text, &chosen, &style, &most).map_err(|e| failure(&e, &limits));
+    let set = |text: &String| laid_out(text, &chosen, &style, &limits);
     let [text, below] = texts.map(|t| t.as_ref().map(set).transpose());
     let (text, below) = (text?, below?);
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
@@ -85,6 +85,36 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let result = export::drawing(svg, format, &read, &options, None)?;
     output::write(target, &result.bytes)?;
     Ok(Status::partial_if(!lacking.is_empty()))
+}
+
+/// Sets words in a family, or in the bundled font, as a drawing in mm.
+#[cfg(feature = "editor")]
+pub(crate) fn set_plainly(
+    words: &str,
+    family: Option<&str>,
+    style: &TextStyle,
+    reading: &Reading,
+) -> Result<String, Failure> {
+    let read = reading.read_options();
+    let file = family.map(|name| style::find_font(name, style::REGULAR, false, &read)).transpose()?;
+    let own = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
+    let fonts: Vec<Font<'_>> = own.into_iter().chain([bundled()?]).collect();
+    let text = laid_out(words, &fonts, style, &reading.limits.for_input(words.len()))?;
+    Ok(write_lettering(&text, &LetteringOptions { fill: None, margin: 0.0, unit: Some(LengthUnit::Mm) })?)
+}
+
+fn read_font<'a>(name: &str, file: &'a FontFile) -> Result<Font<'a>, Failure> {
+    Font::new(&file.bytes, file.index).map_err(|e| Failure::Input(format!("{name}: {e}")))
+}
+
+fn bundled() -> Result<Font<'static>, Failure> {
+    Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))
+}
+
+fn laid_out(words: &str, fonts: &[Font<'_>], style: &TextStyle, limits: &Limits) -> Result<OutlinedText, Failure> {
+    let max = |cost: f64| (limits.of(Limit::Work) / cost) as usize;
+    let max = TextLimits { letters: max(cost::LETTER), segments: max(cost::SEGMENT) };
+    layout_within(words, fonts, style, &max).map_err(|e| failure(&e, limits))
 }
 
 /// Maps an error of the layout: a bad option is wrong usage, anything else a problem of the font or the text.
