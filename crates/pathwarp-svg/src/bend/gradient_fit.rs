@@ -416,25 +416,23 @@ impl Samples {
         levels
     }
 
-    /// The gradients with these levels, with few stops and with more.
-    fn gradients(&self, ramp: &Ramp, levels: Levels) -> Vec<Shading> {
+    /// The gradients with these levels, with few stops and then with more.
+    fn gradients(&self, ramp: &Ramp, levels: Levels) -> impl Iterator<Item = Shading> {
         let along = levels.along(&self.places);
         let (from, to) = range(&along);
         let around = AROUND * (to - from);
         let range = (from - around, to + around);
-        let range = if matches!(levels, Levels::Lines(_)) { range } else { (range.0.max(0.0), range.1) };
-        if !matches!(levels, Levels::Lines(_)) && range.0 > NARROWEST * range.1 {
-            return Vec::new();
-        }
-        let gradient = |cells: usize| {
+        let is_radial = !matches!(levels, Levels::Lines(_));
+        let range = if is_radial { (range.0.max(0.0), range.1) } else { range };
+        let tried = if is_radial && range.0 > NARROWEST * range.1 { &[][..] } else { &TRIED_CELLS };
+        tried.iter().map(move |&cells| {
             let profile = monotone(profile(&along, &self.values, range, cells));
             let mut stops = ramp.stops(&profile);
-            if !matches!(levels, Levels::Lines(_)) {
+            if is_radial {
                 stops.iter_mut().for_each(|s| s.offset = (range.0 + s.offset * (range.1 - range.0)) / range.1);
             }
             levels.shading(range, self.out, stops)
-        };
-        TRIED_CELLS.into_iter().map(gradient).collect()
+        })
     }
 }
 
