@@ -3,22 +3,14 @@
 # target/. Skipped where there is no Python with venv, or where its packages cannot be fetched.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-python=${PYTHON:-python3}
-if ! "$python" -c 'import ensurepip, venv, sys; sys.exit(sys.version_info < (3, 9))' 2>/dev/null; then
-    echo "skipped: the Python package is not tested without Python 3.9 or newer with venv" >&2
-    exit 0
-fi
+. integrations/venv.sh
+need_python 9 "the Python package is not tested"
 env=target/python-tests
-[ -x "$env/bin/python" ] || "$python" -m venv "$env"
-packages="maturin>=1.9,<2 numpy pytest mypy fonttools svgpathtools lxml pillow tqdm setuptools wheel"
+packages=("maturin>=1.9,<2" numpy pytest mypy fonttools svgpathtools lxml pillow tqdm setuptools wheel)
 # vpype needs Python 3.11.
-with_vpype=$("$env/bin/python" -c 'import sys; print(int(sys.version_info >= (3, 11)))')
-[ "$with_vpype" = 0 ] || packages="$packages vpype>=1.15"
-# shellcheck disable=SC2086
-if ! "$env/bin/python" -m pip install --quiet --disable-pip-version-check $packages; then
-    echo "skipped: the Python package is not tested, as its packages cannot be fetched" >&2
-    exit 0
-fi
+with_vpype=$("$python" -c 'import sys; print(int(sys.version_info >= (3, 11)))')
+[ "$with_vpype" = 0 ] || packages+=("vpype>=1.15")
+fetch_into $env "the Python package is not tested, as its packages cannot be fetched" "${packages[@]}"
 # The profile of the other tests, whose crates are built already.
 rm -rf target/python-wheels
 "$env/bin/maturin" build --quiet --locked --profile dev --strip true --interpreter "$env/bin/python" \

@@ -8,21 +8,17 @@ if [ -z "$wheel" ]; then
     echo "skipped: the pipelines for clusters are not tested without the wheel for Python" >&2
     exit 0
 fi
+. integrations/venv.sh
 env=target/scale-out-tests
-[ -x "$env/bin/python" ] || "${PYTHON:-python3}" -m venv "$env"
 systems=ray
-packages="ray[data] numpy pandas pyarrow psutil"
+packages=("ray[data]" numpy pandas pyarrow psutil)
 if command -v java >/dev/null; then
     systems="ray spark"
-    packages="$packages pyspark"
+    packages+=(pyspark)
 else
     echo "skipped: the pipeline for Spark is not tested without Java" >&2
 fi
-# shellcheck disable=SC2086
-if ! "$env/bin/python" -m pip install --quiet --disable-pip-version-check $packages; then
-    echo "skipped: the pipelines for clusters are not tested, as Ray cannot be installed" >&2
-    exit 0
-fi
+fetch_into $env "the pipelines for clusters are not tested, as Ray cannot be installed" "${packages[@]}"
 "$env/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$wheel"
 cargo build --quiet --locked --workspace --bin pathwarp
 measure() {
