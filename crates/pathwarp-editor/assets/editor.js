@@ -208,6 +208,9 @@
     if (least > -Infinity) return `${what} from ${least}${end2} up`;
     return `${what}, such as ${isWhole ? 3 : 30}${end2}`;
   }
+  function reason(e) {
+    return e instanceof Error ? e.message : String(e);
+  }
   function inWords(problem) {
     const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/--([a-z-]+)/g, (_, name) => `“${name.replaceAll("-", " ")}”`);
     return text.replace(/`([^`]*)`/g, "“$1”").replace(/^./, (c) => c.toUpperCase());
@@ -1435,7 +1438,7 @@
       try {
         return await work();
       } catch (e) {
-        if (!(e instanceof Gone)) this.fail(e instanceof Error ? e.message : String(e));
+        if (!(e instanceof Gone)) this.fail(reason(e));
         return null;
       }
     }
@@ -1813,6 +1816,13 @@
       await app2.load(answer.state);
     }
   };
+  async function bring(app2, file) {
+    const bytes = await base64(file);
+    const answer = await app2.attempt(() => app2.connection.ask({ do: "bring", name: file.name, bytes }));
+    if (!answer?.written) return null;
+    if (answer.copied) toast(`${file.name} was copied beside the drawing`);
+    return answer.written;
+  }
   var PIECE = 32768;
   async function base64(file) {
     const bytes = new Uint8Array(await file.arrayBuffer());
@@ -1831,7 +1841,6 @@
       app2.listen((change) => {
         if (change === "state") void this.load();
         if (change === "steps") this.show();
-        if (change === "report") this.shade();
       });
       byId("parts-all").addEventListener("click", () => void app2.scope([]));
       stage2.onPart = (name, adds) => this.clicked(name, adds);
@@ -1843,6 +1852,7 @@
     details = byId("parts-list");
     scope = byId("parts-scope");
     all = [];
+    rows = [];
     /** The names of what is not shown; the file has it all the same. */
     hidden = /* @__PURE__ */ new Set();
     shownFile = "";
@@ -1855,7 +1865,9 @@
       this.all = answer?.parts ?? [];
       this.stage.parts = new Set(this.all.map(({ name }) => name));
       byId("parts-box").hidden = this.all.length < 2;
-      this.list.replaceChildren(...this.all.map((part) => this.row(part)));
+      this.rows = this.all.map((part) => this.row(part));
+      this.list.replaceChildren(...this.rows);
+      this.shade();
       this.show();
     }
     row(part) {
@@ -1871,7 +1883,7 @@
       };
       const row = h(
         "li",
-        { "data-part": part.name },
+        {},
         choose,
         button("eye", "Hide here:", () => this.hide(part)),
         button("lock", "Lock:", () => void this.lock(part))
@@ -1911,12 +1923,10 @@
     }
     show() {
       const { chosen, locks } = this.app;
-      for (const part of this.all) {
-        const row = this.list.querySelector(`[data-part="${CSS.escape(part.name)}"]`);
-        row?.querySelector(".part-name")?.setAttribute("aria-pressed", String(chosen.includes(part.selector)));
-        row?.querySelector(".eye")?.setAttribute("aria-pressed", String(this.hidden.has(part.name)));
-        row?.querySelector(".lock")?.setAttribute("aria-pressed", String(locks.includes(part.selector)));
-      }
+      this.all.forEach((part, i) => {
+        const pressed = [chosen.includes(part.selector), this.hidden.has(part.name), locks.includes(part.selector)];
+        pressed.forEach((on2, k) => this.rows[i]?.children[k]?.setAttribute("aria-pressed", String(on2)));
+      });
       const count = chosen.length;
       this.scope.textContent = count === 0 ? "This step bends everything." : `This step bends ${count === 1 ? "one part" : `${count} parts`}.`;
       byId("parts-all").hidden = count === 0;
@@ -2351,6 +2361,8 @@
     /** Outlines of the parts that are chosen or pointed at in their list. */
     chosen = s("g", { class: "chosen-parts" });
     litParts = [];
+    /** The names of parts that are not shown. */
+    away = /* @__PURE__ */ new Set();
     /** Lines that are being drawn. */
     overlay = s("g", {});
     guides = s("g", { class: "guides" });
@@ -2462,6 +2474,7 @@
     show(answer) {
       if (answer.picture) {
         this.drawing.show(answer.picture);
+        if ("whole" in answer.picture && this.away.size > 0) this.hideParts(this.away);
         this.grown = answer.page;
         this.grow();
       }
@@ -2658,32 +2671,34 @@
       if (!named) return toast("No path with a name is there. Click one, or press Escape");
       const take = this.picks;
       this.pick(null);
-      take?.(named.closest("[id]").id.replace(/^art-/, ""));
+      take?.(partOf(named.closest("[id]").id));
     }
     /** Names the part that was clicked. */
     pickedPart(e) {
       let name = null;
       for (let at = this.named(e, ".art *"); at && !at.matches(".art"); at = at.parentElement) {
-        const own = at.id.replace(/^art-/, "");
+        const own = partOf(at.id);
         if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
       }
       this.light(null);
       this.onPart(name, e.shiftKey);
     }
-    /** The elements of a part in the picture. */
-    ofPart(name) {
-      return Array.from(this.art.querySelectorAll(`[id="${CSS.escape(`art-${name}`)}"]`));
+    /** The elements of parts in the picture. */
+    ofParts(names) {
+      const all = names.size > 0 ? Array.from(this.art.querySelectorAll("[id]")) : [];
+      return all.filter(({ id }) => names.has(partOf(id)));
     }
     /** Draws the outlines of parts. */
     lightParts(names) {
       this.litParts = names;
-      const outlines = names.flatMap((name) => this.ofPart(name)).flatMap((e) => e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path")));
+      const outlines = this.ofParts(new Set(names)).flatMap((e) => e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path")));
       this.chosen.replaceChildren(...outlines.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
     }
     /** Leaves parts out of the picture. */
     hideParts(names) {
+      this.away = names;
       for (const e of Array.from(this.art.querySelectorAll(".away"))) e.classList.remove("away");
-      for (const name of names) for (const e of this.ofPart(name)) e.classList.add("away");
+      for (const e of this.ofParts(names)) e.classList.add("away");
     }
     /** The path, of those that the selector matches, that is nearest to the pointer. */
     named(e, which) {
@@ -2795,6 +2810,9 @@
       this.changed(handle, performance.now());
     }
   };
+  function partOf(id) {
+    return id.replace(/^art-/, "");
+  }
   function outlineOf(path, svg, to) {
     const [from, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
     to.setAttribute("d", path.getAttribute("d") ?? "");
@@ -3094,7 +3112,7 @@
         this.dialog.close();
         toast(`${name} is kept among the shapes`);
       } catch (e) {
-        this.say(e instanceof Error ? e.message : String(e));
+        this.say(reason(e));
       }
     }
   };
@@ -3356,7 +3374,7 @@
         this.dialog.close();
         this.done(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
       } catch (e) {
-        this.say(e instanceof Error ? e.message : String(e));
+        this.say(reason(e));
       }
     }
     /** Hands the file to the browser, which knows a folder that can be written. */
@@ -3373,7 +3391,7 @@
         this.app.tell("state");
         toast([`Downloaded ${written}`, ...warnings].join(". "));
       } catch (e) {
-        this.say(e instanceof Error ? e.message : String(e));
+        this.say(reason(e));
       }
     }
     done(written, state, warnings) {
@@ -3392,7 +3410,7 @@
       try {
         line = (await this.app.connection.ask({ do: "command-line", ...target })).text ?? "";
       } catch (e) {
-        return this.say(e instanceof Error ? inWords(e.message) : String(e));
+        return this.say(inWords(reason(e)));
       }
       try {
         await navigator.clipboard.writeText(line);
@@ -3565,11 +3583,8 @@
         const file = input.files?.[0];
         input.value = "";
         if (!file) return;
-        const bytes = await base64(file);
-        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "bring", name: file.name, bytes }));
-        if (!answer?.written) return;
-        if (answer.copied) toast(`${file.name} was copied beside the drawing`);
-        this.app.set(p.name, [answer.written], true);
+        const written = await bring(this.app, file);
+        if (written) this.app.set(p.name, [written], true);
       });
       const button = h("button", { type: "button", class: "link", title: "A copy is put beside the drawing" }, "Choose file…");
       button.addEventListener("click", () => input.click());
@@ -3985,11 +4000,12 @@
     async shape() {
       const { app: app2, file } = this;
       if (!file) return;
-      const answer = await app2.attempt(async () => app2.connection.ask({ do: "bring", name: file.name, bytes: await base64(file) }));
+      const written = await bring(app2, file);
       const closed2 = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
+      if (!written || !closed2) return;
       this.place = { x: 0, y: 0, width: this.natural };
       this.lay();
-      if (answer?.written && closed2) await app2.choose("envelope", { envelope: [answer.written] }, closed2.label);
+      await app2.choose("envelope", { envelope: [written] }, closed2.label);
     }
   };
 
@@ -4067,7 +4083,7 @@
         this.stage.forget();
         if (state) await app2.load(state);
       } catch (e) {
-        this.say(e instanceof Error ? e.message : String(e));
+        this.say(reason(e));
       }
     }
     say(text) {

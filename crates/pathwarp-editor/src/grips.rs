@@ -57,16 +57,15 @@ fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
         Kind::Point if s.given(p.name) || p.default.is_some() => Some(json!({ "point": xy(s.point(p.name).ok()?) })),
         Kind::Path => {
             let paths = s.paths(p.name).ok()?;
+            if let ([text], [named]) = (s.texts(p.name).as_slice(), paths.as_slice())
+                && ["circle:", "arc:"].iter().any(|word| text.trim_start().starts_with(word))
+                && let Some(circle) = circle(&named.outline)
+            {
+                return Some(json!({ "circle": circle }));
+            }
             let diagonal = s.frame().extent(Axis::Diagonal);
             let all: Vec<Value> = paths.iter().map(|named| path(&named.outline, ARCS_WITHIN * diagonal)).collect();
-            let round = match (s.texts(p.name).as_slice(), paths.as_slice()) {
-                ([text], [named]) if ["circle:", "arc:"].iter().any(|w| text.trim_start().starts_with(w)) => {
-                    circle(&named.outline)
-                }
-                _ => None,
-            };
-            (!all.is_empty())
-                .then(|| round.map_or_else(|| json!({ "paths": all }), |circle| json!({ "circle": circle })))
+            (!all.is_empty()).then(|| json!({ "paths": all }))
         }
         Kind::Length(_) | Kind::Number | Kind::Angle | Kind::Count => {
             Some(json!({ "value": s.number_if(p.name).ok()?.filter(|v| v.is_finite())? }))

@@ -1,11 +1,12 @@
 //! [`Host`]: what the editor needs from the program around it, which knows files, formats and options.
 
+use crate::words::Words;
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_svg::Document;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -79,19 +80,6 @@ pub trait Host: Send + Sync {
     /// # Errors
     /// The file cannot be written.
     fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String>;
-}
-
-/// Words that a drawing consists of.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Words {
-    /// The text, with line breaks.
-    pub text: String,
-    /// The family; `None` for the bundled font.
-    pub font: Option<String>,
-    /// The size of the letters' em, in mm.
-    pub size: f64,
-    /// Space between letters, in per cent of the size.
-    pub spacing: f64,
 }
 
 /// A drawing that has been read.

@@ -30,5 +30,6 @@ mod stretch;
 mod words;
 
 pub use command_line::selectors;
-pub use host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Purpose, Summary, Words};
+pub use host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Purpose, Summary};
 pub use server::{News, Options, serve};
+pub use words::Words;

@@ -79,11 +79,10 @@ pub(crate) fn forget(host: &dyn Host, name: &str) -> Result<(), String> {
 }
 
 impl Preset {
-    /// Step `i` for artwork in `frame`.
-    pub(crate) fn step_for(&self, registry: &Registry, i: usize, frame: Rect) -> Option<PageStep> {
-        let step = self.steps.get(i)?.clone();
-        let Some([x0, y0, x1, y1]) = self.frames.get(i) else { return Some(step) };
-        Some(laid(registry, step, Rect::new(*x0, *y0, *x1, *y1), frame))
+    /// The steps, each with the box of the artwork that it was made for.
+    pub(crate) fn steps_with_frames(self) -> impl Iterator<Item = (PageStep, Option<Rect>)> {
+        let frames = self.frames.into_iter().map(|[x0, y0, x1, y1]| Some(Rect::new(x0, y0, x1, y1)));
+        self.steps.into_iter().zip(frames.chain(std::iter::repeat(None)))
     }
 }
 
@@ -120,8 +119,10 @@ mod tests {
         let args = [("shaper".to_owned(), vec!["M0,10 L10,10 L10,0 L0,0 Z".to_owned()])];
         let step = PageStep { deformation: "shaper".into(), inverse: false, args: args.into(), ..PageStep::default() };
         let preset = Preset { name: "a".into(), steps: vec![step], frames: vec![[0.0, 0.0, 10.0, 10.0]] };
-        let laid = preset.step_for(&Registry::builtin(), 0, Rect::new(5.0, 5.0, 25.0, 10.0)).unwrap();
+        let mut all = preset.steps_with_frames();
+        let (step, from) = all.next().unwrap();
+        let laid = laid(&Registry::builtin(), step, from.unwrap(), Rect::new(5.0, 5.0, 25.0, 10.0));
         assert_eq!(laid.args["shaper"], ["M5,10 L25,10 L25,5 L5,5 Z"]);
-        assert_eq!(preset.step_for(&Registry::builtin(), 1, Rect::ZERO), None);
+        assert_eq!(all.next(), None);
     }
 }

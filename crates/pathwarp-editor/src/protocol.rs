@@ -3,7 +3,8 @@
 //! A page sends requests with a number, and gets one answer with the same number for each, in order. It sends the next picture
 //! of a drag only when it has the last one, so nothing piles up.
 
-use crate::host::{PictureOptions, Words};
+use crate::host::PictureOptions;
+use crate::words::Words;
 use pathwarp::param::Args;
 use pathwarp::recipe::{Recipe, Step};
 use serde::{Deserialize, Serialize};

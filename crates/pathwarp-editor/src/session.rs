@@ -5,11 +5,12 @@ use crate::command_line::{command_line, quoted};
 use crate::draft::{Draft, Kept, NO_FOLDER};
 use crate::grips::{grips, with_net_of};
 use crate::guard::Guard;
-use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose, Words};
+use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
 use crate::picture::Picture;
 use crate::protocol::{PageStep, Target, recipe, steps};
 use crate::stretch::stretch;
-use crate::{presets, saving, words};
+use crate::words::Words;
+use crate::{presets, saving};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::deform::{Info, Variant};
@@ -47,6 +48,8 @@ pub(crate) struct Session {
     /// The steps are the result of the session.
     handed_over: bool,
     opened: Opened,
+    /// The words that the drawing was set from, if it was.
+    words: Option<Words>,
     kept: Kept,
     /// The user's folder for drafts and addresses.
     drafts: Option<PathBuf>,
@@ -91,8 +94,23 @@ impl Session {
         let as_opened = steps(&opened.recipe);
         let saved = opened.is_result.then(|| (file.to_owned(), as_opened.clone()));
         let kept = kept.unwrap_or_else(|| Kept::new(as_opened));
+        let words = Words::of(opened.artwork.document().text());
         let (file, first, handed_over) = (file.to_owned(), None, false);
-        Ok(Self { host, file, first, purpose, handed_over, opened, kept, drafts, draft, saved, restored, problem })
+        Ok(Self {
+            host,
+            file,
+            first,
+            purpose,
+            handed_over,
+            opened,
+            words,
+            kept,
+            drafts,
+            draft,
+            saved,
+            restored,
+            problem,
+        })
     }
 
     /// Keeps the address of the page for the next run. Without it, only a page that is open now does not find that.
@@ -124,31 +142,40 @@ impl Session {
     /// under its steps, whose paths are laid onto their box.
     pub(crate) fn set_words(&mut self, words: &Words) -> Result<(), String> {
         self.refuse_for_program("words cannot be set")?;
-        let svg = words::written(words, &self.host.set_words(words)?);
-        let before = words::of(self.opened.artwork.document().text());
-        let own = before.as_ref().filter(|_| !self.opened.is_result).map(|_| self.file.clone());
-        let file = own.unwrap_or_else(|| saving::of_words(&words.text, &self.file));
-        let old: Vec<Rect> = match &before {
-            Some(_) => self.opened.artwork.settle(&recipe(&self.kept.steps))?.1.frames.iter().map(|f| f.rect).collect(),
-            None => Vec::new(),
-        };
-        self.host.write(&file, svg.as_bytes())?;
+        let svg = words.written(&self.host.set_words(words)?);
+        let own = self.words.is_some().then_some(&self.file).filter(|_| !self.opened.is_result);
+        let file = own.cloned().unwrap_or_else(|| saving::of_words(&words.text, &self.file));
         let (host, purpose) = (Arc::clone(&self.host), self.purpose.clone());
         let mut other = Self::open(host, &file, svg.as_bytes(), purpose, self.drafts.clone())?;
-        if before.is_some() {
-            let mut steps = Vec::with_capacity(self.kept.steps.len());
-            for (step, from) in self.kept.steps.iter().zip(old) {
-                let to = other.frame_of(&steps, &step.select)?;
-                steps.push(presets::laid(self.host.registry(), step.clone(), from, to));
-            }
+        if self.words.is_some() {
+            let (_, built) = self.opened.artwork.settle(&recipe(&self.kept.steps))?;
+            let frames = built.frames.iter().map(|f| Some(f.rect));
+            let steps = other.laid(self.kept.steps.iter().cloned().zip(frames))?;
             other.kept = self.kept.clone();
             other.kept.steps = steps;
             other.saved = self.saved.clone().map(|(path, _)| (path, Vec::new()));
+        }
+        self.host.write(&file, svg.as_bytes())?;
+        let is_other = self.words.is_none();
+        if !is_other {
             other.keep();
         }
-        let first = self.first.take().or_else(|| before.is_none().then(|| self.file.clone()));
+        let first = self.first.take().or_else(|| is_other.then(|| self.file.clone()));
         *self = Self { first, ..other };
         Ok(())
+    }
+
+    /// Steps with their paths laid from the boxes that they had onto those of this drawing.
+    fn laid(&mut self, given: impl Iterator<Item = (PageStep, Option<Rect>)>) -> Result<Vec<PageStep>, String> {
+        let mut out = Vec::new();
+        for (step, from) in given {
+            let to = self.frame_of(&out, &step.select)?;
+            out.push(match from {
+                Some(from) => presets::laid(self.host.registry(), step, from, to),
+                None => step,
+            });
+        }
+        Ok(out)
     }
 
     /// Copies a file that a step is to read beside the drawing, and answers with the text that names it in a step. A file that is
@@ -193,7 +220,7 @@ impl Session {
             "problem": self.problem,
             "toPx": document.user_to_px().as_coeffs(),
             "page": [page.x0, page.y0, page.width(), page.height()],
-            "words": words::of(document.text()),
+            "words": self.words,
             "missing": document.missing(),
         })
     }
@@ -397,12 +424,7 @@ impl Session {
     pub(crate) fn preset(&mut self, name: &str) -> Result<Vec<PageStep>, String> {
         let preset = presets::all()?.into_iter().find(|p| p.name == name);
         let preset = preset.ok_or_else(|| format!("there is no preset {name}"))?;
-        let mut steps = Vec::with_capacity(preset.steps.len());
-        for i in 0..preset.steps.len() {
-            let frame = self.frame_after(&steps)?;
-            steps.extend(preset.step_for(self.host.registry(), i, frame));
-        }
-        Ok(steps)
+        self.laid(preset.steps_with_frames())
     }
 
     /// A small picture of the drawing under these steps.

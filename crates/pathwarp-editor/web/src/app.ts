@@ -3,7 +3,7 @@
 import { Connection, Gone } from "./connection";
 import { isTyping } from "./dom";
 import { toast } from "./toast";
-import { inWords, isAnyWrong } from "./fields";
+import { inWords, isAnyWrong, reason } from "./fields";
 import { Handles } from "./handles";
 import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
 
@@ -461,7 +461,7 @@ export class App {
     try {
       return await work();
     } catch (e) {
-      if (!(e instanceof Gone)) this.fail(e instanceof Error ? e.message : String(e));
+      if (!(e instanceof Gone)) this.fail(reason(e));
       return null;
     }
   }

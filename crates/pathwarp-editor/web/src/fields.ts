@@ -83,6 +83,11 @@ export function asked(unit: string, least = -Infinity, most = Infinity, isWhole 
   return `${what}, such as ${isWhole ? 3 : 30}${end}`;
 }
 
+/** What is wrong, of whatever was thrown. */
+export function reason(e: unknown): string {
+  return e instanceof Error ? e.message : String(e);
+}
+
 /** What the program says about a value, in the words of the page. */
 export function inWords(problem: string): string {
   const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/--([a-z-]+)/g, (_, name: string) => `“${name.replaceAll("-", " ")}”`);

@@ -59,11 +59,20 @@ export class Opening {
   }
 }
 
+/** Puts a copy of a file beside the drawing, where steps can read it. Returns the text that names it in a step. */
+export async function bring(app: App, file: File): Promise<string | null> {
+  const bytes = await base64(file);
+  const answer = await app.attempt(() => app.connection.ask({ do: "bring", name: file.name, bytes }));
+  if (!answer?.written) return null;
+  if (answer.copied) toast(`${file.name} was copied beside the drawing`);
+  return answer.written;
+}
+
 /** Characters that are made of bytes at a time: more are too many arguments. */
 const PIECE = 0x8000;
 
 /** The content of a file in base64. */
-export async function base64(file: File): Promise<string> {
+async function base64(file: File): Promise<string> {
   const bytes = new Uint8Array(await file.arrayBuffer());
   let binary = "";
   for (let i = 0; i < bytes.length; i += PIECE) binary += String.fromCharCode(...bytes.subarray(i, i + PIECE));

@@ -16,6 +16,7 @@ export class Parts {
   private details = byId<HTMLDetailsElement>("parts-list");
   private scope = byId("parts-scope");
   private all: Part[] = [];
+  private rows: HTMLLIElement[] = [];
   /** The names of what is not shown; the file has it all the same. */
   private hidden = new Set<string>();
   private shownFile = "";
@@ -24,7 +25,6 @@ export class Parts {
     app.listen((change) => {
       if (change === "state") void this.load();
       if (change === "steps") this.show();
-      if (change === "report") this.shade();
     });
     byId("parts-all").addEventListener("click", () => void app.scope([]));
     stage.onPart = (name, adds) => this.clicked(name, adds);
@@ -39,7 +39,9 @@ export class Parts {
     this.all = answer?.parts ?? [];
     this.stage.parts = new Set(this.all.map(({ name }) => name));
     byId("parts-box").hidden = this.all.length < 2;
-    this.list.replaceChildren(...this.all.map((part) => this.row(part)));
+    this.rows = this.all.map((part) => this.row(part));
+    this.list.replaceChildren(...this.rows);
+    this.shade();
     this.show();
   }
 
@@ -55,7 +57,7 @@ export class Parts {
       return b;
     };
     const row = h(
-      "li", { "data-part": part.name }, choose,
+      "li", {}, choose,
       button("eye", "Hide here:", () => this.hide(part)),
       button("lock", "Lock:", () => void this.lock(part)),
     );
@@ -100,12 +102,10 @@ export class Parts {
 
   private show(): void {
     const { chosen, locks } = this.app;
-    for (const part of this.all) {
-      const row = this.list.querySelector(`[data-part="${CSS.escape(part.name)}"]`);
-      row?.querySelector(".part-name")?.setAttribute("aria-pressed", String(chosen.includes(part.selector)));
-      row?.querySelector(".eye")?.setAttribute("aria-pressed", String(this.hidden.has(part.name)));
-      row?.querySelector(".lock")?.setAttribute("aria-pressed", String(locks.includes(part.selector)));
-    }
+    this.all.forEach((part, i) => {
+      const pressed = [chosen.includes(part.selector), this.hidden.has(part.name), locks.includes(part.selector)];
+      pressed.forEach((on, k) => this.rows[i]?.children[k]?.setAttribute("aria-pressed", String(on)));
+    });
     const count = chosen.length;
     this.scope.textContent = count === 0 ? "This step bends everything." : `This step bends ${count === 1 ? "one part" : `${count} parts`}.`;
     byId("parts-all").hidden = count === 0;

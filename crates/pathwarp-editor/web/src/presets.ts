@@ -2,6 +2,7 @@
 
 import type { App } from "./app";
 import { byId } from "./dom";
+import { reason } from "./fields";
 import type { Gallery } from "./gallery";
 import { toast } from "./toast";
 
@@ -43,7 +44,7 @@ export class Presets {
       toast(`${name} is kept among the shapes`);
     } catch (e) {
       // The dialog covers the line of problems.
-      this.say(e instanceof Error ? e.message : String(e));
+      this.say(reason(e));
     }
   }
 }

@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
-import { inWords } from "./fields";
+import { inWords, reason } from "./fields";
 import { toast } from "./toast";
 
 const FORMATS: [string, string, string][] = [
@@ -195,7 +195,7 @@ export class Saving {
       this.dialog.close();
       this.done(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
     } catch (e) {
-      this.say(e instanceof Error ? e.message : String(e));
+      this.say(reason(e));
     }
   }
 
@@ -213,7 +213,7 @@ export class Saving {
       this.app.tell("state");
       toast([`Downloaded ${written}`, ...warnings].join(". "));
     } catch (e) {
-      this.say(e instanceof Error ? e.message : String(e));
+      this.say(reason(e));
     }
   }
 
@@ -234,7 +234,7 @@ export class Saving {
     try {
       line = (await this.app.connection.ask({ do: "command-line", ...target })).text ?? "";
     } catch (e) {
-      return this.say(e instanceof Error ? inWords(e.message) : String(e));
+      return this.say(inWords(reason(e)));
     }
     try {
       await navigator.clipboard.writeText(line);

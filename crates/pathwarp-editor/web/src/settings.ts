@@ -4,9 +4,8 @@ import type { App } from "./app";
 import { byId, h } from "./dom";
 import { asked, evaluate, Field, type Quantity } from "./fields";
 import { capital, paramName, words } from "./names";
-import { base64 } from "./opening";
+import { bring } from "./opening";
 import type { Sketch } from "./sketch";
-import { toast } from "./toast";
 import type { Adjust, Param } from "./types";
 import { adjustName, adjustUnit, DRAGGED, readAdjust, short, writeAdjust } from "./values";
 
@@ -176,11 +175,8 @@ export class Settings {
       const file = input.files?.[0];
       input.value = "";
       if (!file) return;
-      const bytes = await base64(file);
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "bring", name: file.name, bytes }));
-      if (!answer?.written) return;
-      if (answer.copied) toast(`${file.name} was copied beside the drawing`);
-      this.app.set(p.name, [answer.written], true);
+      const written = await bring(this.app, file);
+      if (written) this.app.set(p.name, [written], true);
     });
     const button = h("button", { type: "button", class: "link", title: "A copy is put beside the drawing" }, "Choose file…");
     button.addEventListener("click", () => input.click());

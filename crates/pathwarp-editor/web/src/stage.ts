@@ -49,6 +49,8 @@ export class Stage {
   /** Outlines of the parts that are chosen or pointed at in their list. */
   private chosen = s("g", { class: "chosen-parts" });
   private litParts: string[] = [];
+  /** The names of parts that are not shown. */
+  private away = new Set<string>();
   /** Lines that are being drawn. */
   readonly overlay = s("g", {});
   private guides = s("g", { class: "guides" });
@@ -194,6 +196,7 @@ export class Stage {
   private show(answer: Answer): void {
     if (answer.picture) {
       this.drawing.show(answer.picture);
+      if ("whole" in answer.picture && this.away.size > 0) this.hideParts(this.away);
       // While something is dragged, the sheet grows under the view as it is.
       this.grown = answer.page;
       this.grow();
@@ -412,15 +415,14 @@ export class Stage {
     if (!named) return toast("No path with a name is there. Click one, or press Escape");
     const take = this.picks;
     this.pick(null);
-    // The ids of the drawing stand behind a prefix.
-    take?.(named.closest("[id]")!.id.replace(/^art-/, ""));
+    take?.(partOf(named.closest("[id]")!.id));
   }
 
   /** Names the part that was clicked. */
   pickedPart(e: PointerEvent): void {
     let name: string | null = null;
     for (let at: Element | null = this.named(e, ".art *"); at && !at.matches(".art"); at = at.parentElement) {
-      const own = at.id.replace(/^art-/, "");
+      const own = partOf(at.id);
       // A copy is one part, whatever it shows.
       if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
     }
@@ -428,22 +430,24 @@ export class Stage {
     this.onPart(name, e.shiftKey);
   }
 
-  /** The elements of a part in the picture. */
-  private ofPart(name: string): SVGGraphicsElement[] {
-    return Array.from(this.art.querySelectorAll<SVGGraphicsElement>(`[id="${CSS.escape(`art-${name}`)}"]`));
+  /** The elements of parts in the picture. */
+  private ofParts(names: Set<string>): SVGGraphicsElement[] {
+    const all = names.size > 0 ? Array.from(this.art.querySelectorAll<SVGGraphicsElement>("[id]")) : [];
+    return all.filter(({ id }) => names.has(partOf(id)));
   }
 
   /** Draws the outlines of parts. */
   lightParts(names: string[]): void {
     this.litParts = names;
-    const outlines = names.flatMap((name) => this.ofPart(name)).flatMap((e) => (e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path"))));
+    const outlines = this.ofParts(new Set(names)).flatMap((e) => (e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path"))));
     this.chosen.replaceChildren(...outlines.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
   }
 
   /** Leaves parts out of the picture. */
   hideParts(names: Set<string>): void {
+    this.away = names;
     for (const e of Array.from(this.art.querySelectorAll(".away"))) e.classList.remove("away");
-    for (const name of names) for (const e of this.ofPart(name)) e.classList.add("away");
+    for (const e of this.ofParts(names)) e.classList.add("away");
   }
 
   /** The path, of those that the selector matches, that is nearest to the pointer. */
@@ -568,6 +572,11 @@ export class Stage {
     this.modes.mover(handles, handle)(to, null);
     this.changed(handle, performance.now());
   }
+}
+
+/** The id in the drawing of an element of the picture, whose ids stand behind a prefix. */
+function partOf(id: string): string {
+  return id.replace(/^art-/, "");
 }
 
 /** Gives a path the outline of another one of the picture. */

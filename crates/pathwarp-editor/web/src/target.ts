@@ -3,7 +3,7 @@
 import type { App } from "./app";
 import { byId, s } from "./dom";
 import { Field, asked, evaluate } from "./fields";
-import { base64 } from "./opening";
+import { bring } from "./opening";
 import type { Stage } from "./stage";
 
 const MM = 96 / 25.4;
@@ -110,10 +110,11 @@ export class Target {
   private async shape(): Promise<void> {
     const { app, file } = this;
     if (!file) return;
-    const answer = await app.attempt(async () => app.connection.ask({ do: "bring", name: file.name, bytes: await base64(file) }));
+    const written = await bring(app, file);
     const closed = app.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
+    if (!written || !closed) return;
     this.place = { x: 0, y: 0, width: this.natural };
     this.lay();
-    if (answer?.written && closed) await app.choose("envelope", { envelope: [answer.written] }, closed.label);
+    await app.choose("envelope", { envelope: [written] }, closed.label);
   }
 }

@@ -2,6 +2,7 @@
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
+import { reason } from "./fields";
 import type { Stage } from "./stage";
 
 const BUNDLED = "Noto Sans (bundled)";
@@ -79,7 +80,7 @@ export class WordsDialog {
       this.stage.forget();
       if (state) await app.load(state);
     } catch (e) {
-      this.say(e instanceof Error ? e.message : String(e));
+      this.say(reason(e));
     }
   }
 

@@ -159,7 +159,7 @@ export const a_target_is_fitted_to = () => within("lettering.svg", async (page, 
   check((await paths(page)) !== was && !(await page.isVisible("#problem")), await page.textContent("#problem"));
   if (process.env.SHOTS) await page.screenshot({ path: join(process.env.SHOTS, "target.png") });
   await page.click("#save");
-  await page.waitForSelector("#toast.on");
+  await page.locator("#toast.on", { hasText: "Saved art-bent.svg" }).waitFor();
   check(!readFileSync(join(dir, "art-bent.svg"), "utf8").includes("#8b8"), "the target is in the result");
   await press(page, "Remove target");
   check(!(await image.isVisible()), "it is still there");
