@@ -1383,7 +1383,10 @@
       await this.turns;
       await this.lastCommit;
       const { problem } = this;
-      if (this.refusals === refusals || problem === null) return null;
+      if (this.refusals === refusals || problem === null) {
+        this.screen.reveal();
+        return null;
+      }
       this.fail(null);
       return inWords(problem);
     }
@@ -1504,7 +1507,7 @@
     none = h("p", { class: "none", role: "status", hidden: true });
     /** The names of the user's presets. */
     names = [];
-    shownFile = "";
+    shown = "";
     seen = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         const card = this.cards.find((c) => c.button === entry.target);
@@ -1515,10 +1518,10 @@
       }
     }, { rootMargin: "150px" });
     build() {
-      if (this.shownFile === "") void this.loadPresets();
-      const file = `${this.app.state?.folder}/${this.app.state?.file}`;
-      if (file === this.shownFile || this.app.catalogue.length === 0) return;
-      this.shownFile = file;
+      if (this.shown === "") void this.loadPresets();
+      const { drawing = "" } = this.app.state ?? {};
+      if (drawing === this.shown || this.app.catalogue.length === 0) return;
+      this.shown = drawing;
       for (const { image } of this.cards) URL.revokeObjectURL(image.src);
       this.cards = [];
       this.queue = [];
@@ -1765,9 +1768,8 @@
   // src/opening.ts
   var PASTED = "pasted.svg";
   var Opening = class {
-    constructor(app2, stage2) {
+    constructor(app2) {
       this.app = app2;
-      this.stage = stage2;
       const chosen = byId("open-file");
       byId("open").addEventListener("click", () => chosen.click());
       chosen.addEventListener("change", () => {
@@ -1793,7 +1795,6 @@
       });
     }
     app;
-    stage;
     /** Opens what was dropped or pasted: a file, or the text of a drawing. */
     take(data) {
       const file = data?.files[0];
@@ -1812,7 +1813,6 @@
       if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
       const answer = await app2.attempt(async () => app2.connection.ask({ do: "open", name: file.name, bytes: await base64(file) }));
       if (!answer?.state) return;
-      this.stage.forget();
       await app2.load(answer.state);
     }
   };
@@ -1855,11 +1855,11 @@
     rows = [];
     /** The names of what is not shown; the file has it all the same. */
     hidden = /* @__PURE__ */ new Set();
-    shownFile = "";
+    shown = "";
     async load() {
-      const file = `${this.app.state?.folder}/${this.app.state?.file}`;
-      if (file === this.shownFile) return;
-      this.shownFile = file;
+      const { drawing = "" } = this.app.state ?? {};
+      if (drawing === this.shown) return;
+      this.shown = drawing;
       this.hidden.clear();
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
       this.all = answer?.parts ?? [];
@@ -2322,7 +2322,6 @@
       app2.listen((change) => {
         if (change === "state") this.place();
         if (change === "handles") this.rebuild();
-        if (change === "drawing") this.forget();
         if (change === "report" && this.showsStretch) void this.drawStretch();
       });
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
@@ -2378,6 +2377,8 @@
     isFitted = false;
     /** The first picture of a drawing has not arrived yet. */
     isFresh = true;
+    /** The name of the drawing on show. */
+    shown = "";
     /** The handles of the first picture are on their way. */
     isToFit = false;
     /** The page of the last picture, as saving would have it; null for the drawing's own. */
@@ -2463,6 +2464,8 @@
     place() {
       const { state } = this.app;
       if (!state) return;
+      if (state.drawing !== this.shown) this.forget();
+      this.shown = state.drawing;
       const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
       this.camera.toPx = state.toPx;
       if (isNew || this.isFresh) {
@@ -2523,7 +2526,7 @@
       this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
       this.beforeArt.setAttribute("visibility", this.isBefore ? "visible" : "hidden");
     }
-    /** Another drawing has been opened. */
+    /** Another drawing is on show. */
     forget() {
       this.beforeArt.replaceChildren();
       this.isFresh = true;
@@ -3762,7 +3765,7 @@
     circle: "Drag from the centre of the circle to its edge"
   };
   var NEAR = 8;
-  var [FROM, TO] = [180, 540];
+  var [FROM, TO] = [90, 450];
   var Sketching = class {
     constructor(stage2) {
       this.stage = stage2;
@@ -4013,9 +4016,8 @@
   var BUNDLED = "Noto Sans (bundled)";
   var LARGEST = 2e3;
   var WordsDialog = class {
-    constructor(app2, stage2) {
+    constructor(app2) {
       this.app = app2;
-      this.stage = stage2;
       byId("words").addEventListener("click", () => void this.open());
       byId("words-cancel").addEventListener("click", () => this.dialog.close());
       this.search.addEventListener("input", () => this.list());
@@ -4029,7 +4031,6 @@
       });
     }
     app;
-    stage;
     dialog = byId("words-dialog");
     text = byId("words-text");
     search = byId("words-search");
@@ -4080,7 +4081,6 @@
         const words2 = { text: this.text.value, font: this.font, size, spacing };
         const { state } = await app2.connection.ask({ do: "set-words", words: words2 });
         this.dialog.close();
-        this.stage.forget();
         if (state) await app2.load(state);
       } catch (e) {
         this.say(reason(e));
@@ -4103,9 +4103,9 @@
   new Steps(app);
   new Parts(app, stage, modes);
   new Place(app, stage);
-  new Opening(app, stage);
+  new Opening(app);
   new Target(app, stage);
-  new WordsDialog(app, stage);
+  new WordsDialog(app);
   new Pointing(app, stage, modes).onPan = () => report.panned();
   modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
   stage.onZoom = () => {

@@ -7,31 +7,92 @@ use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 use std::fs::{self, DirBuilder, OpenOptions};
 use std::io;
+use std::mem;
 use std::path::{Path, PathBuf};
 
 /// The version of the file's format.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// What is wrong where nothing can be kept.
 pub(crate) const NO_FOLDER: &str = "there is no folder for state (HOME is not set)";
+
+/// Most states that can be undone.
+const MOST_UNDO: usize = 500;
+
+/// The work as it is at one time.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Moment {
+    pub(crate) steps: Vec<PageStep>,
+    /// Which of the drawings that the words were set as is on show.
+    #[serde(default)]
+    pub(crate) drawing: usize,
+}
 
 /// What a draft holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Kept {
     pathwarp: u32,
-    pub(crate) steps: Vec<PageStep>,
-    pub(crate) undo: Vec<Vec<PageStep>>,
-    pub(crate) redo: Vec<Vec<PageStep>>,
+    #[serde(flatten)]
+    pub(crate) now: Moment,
+    pub(crate) undo: Vec<Moment>,
+    pub(crate) redo: Vec<Moment>,
+    /// The drawings that the words were set as, the oldest first; none before they are edited.
+    #[serde(default)]
+    drawings: Vec<String>,
 }
 
 impl Kept {
     pub(crate) fn new(steps: Vec<PageStep>) -> Self {
-        Self { pathwarp: VERSION, steps, undo: Vec::new(), redo: Vec::new() }
+        let now = Moment { steps, drawing: 0 };
+        Self { pathwarp: VERSION, now, undo: Vec::new(), redo: Vec::new(), drawings: Vec::new() }
+    }
+
+    /// Goes on with other steps.
+    pub(crate) fn go_on(&mut self, steps: Vec<PageStep>) {
+        let next = Moment { steps, ..self.now };
+        self.undo.push(mem::replace(&mut self.now, next));
+        if self.undo.len() > MOST_UNDO {
+            self.undo.remove(0);
+        }
+        self.redo.clear();
+    }
+
+    /// Goes on with other words: from the drawing `old` to `new`, and these steps.
+    pub(crate) fn set_anew(&mut self, old: &str, new: String, steps: Vec<PageStep>) {
+        if self.drawings.is_empty() {
+            self.drawings.push(old.to_owned());
+        }
+        self.go_on(steps);
+        // The drawings of what could be redone until now are in the way.
+        self.drawings.truncate(self.now.drawing + 1);
+        self.drawings.push(new);
+        self.now.drawing += 1;
+    }
+
+    /// The drawing on show, if the words were edited.
+    pub(crate) fn drawing(&self) -> Option<&str> {
+        self.drawings.get(self.now.drawing).map(String::as_str)
+    }
+
+    /// Takes back the last change.
+    pub(crate) fn undo(&mut self) {
+        if let Some(old) = self.undo.pop() {
+            self.redo.push(mem::replace(&mut self.now, old));
+        }
+    }
+
+    /// Makes the change again that was taken back last.
+    pub(crate) fn redo(&mut self) {
+        if let Some(new) = self.redo.pop() {
+            self.undo.push(mem::replace(&mut self.now, new));
+        }
     }
 }
 
 /// The draft of a drawing.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Draft {
+    /// A name for the drawing, with its place and content.
+    pub(crate) key: String,
     /// `None`: nothing can be kept.
     path: Option<PathBuf>,
 }
@@ -39,7 +100,8 @@ pub(crate) struct Draft {
 impl Draft {
     /// The draft of the drawing `file` with this content; another content is another drawing.
     pub(crate) fn of(state: Option<&Path>, file: &Path, content: &[u8]) -> Self {
-        Self { path: state.map(|s| s.join("drafts").join(key(file, content) + ".json")) }
+        let key = key(file, content);
+        Self { path: state.map(|s| s.join("drafts").join(format!("{key}.json"))), key }
     }
 
     /// What was kept; `None` if there is no draft, or one of another version.

@@ -2,7 +2,7 @@
 
 use crate::catalogue::{example, of_variant, opening};
 use crate::command_line::{command_line, quoted};
-use crate::draft::{Draft, Kept, NO_FOLDER};
+use crate::draft::{Draft, Kept, Moment, NO_FOLDER};
 use crate::grips::{grips, with_net_of};
 use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
@@ -24,8 +24,6 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Most states that can be undone.
-const MOST_UNDO: usize = 500;
 /// Most parts of a drawing that are listed.
 const MOST_PARTS: usize = 2000;
 /// Decimals of the coordinates of pictures, in px: a picture is zoomed, a draft hardly.
@@ -54,8 +52,10 @@ pub(crate) struct Session {
     /// The user's folder for drafts and addresses.
     drafts: Option<PathBuf>,
     draft: Draft,
-    /// The last file saved, and its steps.
-    saved: Option<(PathBuf, Vec<PageStep>)>,
+    /// A name for what is on show; another drawing, or the same in other words, has another.
+    drawing: String,
+    /// The last file saved, and what is in it.
+    saved: Option<(PathBuf, Moment)>,
     /// The steps come from a draft that was left behind.
     restored: bool,
     /// The draft cannot be written.
@@ -91,11 +91,11 @@ impl Session {
         let kept = draft.read();
         let restored = kept.is_some();
         let problem = (drafts.is_none() && purpose.program().is_none()).then(|| NO_FOLDER.to_owned());
-        let as_opened = steps(&opened.recipe);
-        let saved = opened.is_result.then(|| (file.to_owned(), as_opened.clone()));
-        let kept = kept.unwrap_or_else(|| Kept::new(as_opened));
+        let as_opened = Kept::new(steps(&opened.recipe));
+        let saved = opened.is_result.then(|| (file.to_owned(), as_opened.now.clone()));
+        let kept = kept.unwrap_or(as_opened);
         let words = Words::of(opened.artwork.document().text());
-        let (file, first, handed_over) = (file.to_owned(), None, false);
+        let (file, first, handed_over, drawing) = (file.to_owned(), None, false, draft.key.clone());
         Ok(Self {
             host,
             file,
@@ -107,6 +107,7 @@ impl Session {
             kept,
             drafts,
             draft,
+            drawing,
             saved,
             restored,
             problem,
@@ -145,23 +146,46 @@ impl Session {
         let svg = words.written(&self.host.set_words(words)?);
         let own = self.words.is_some().then_some(&self.file).filter(|_| !self.opened.is_result);
         let file = own.cloned().unwrap_or_else(|| saving::of_words(&words.text, &self.file));
-        let (host, purpose) = (Arc::clone(&self.host), self.purpose.clone());
-        let mut other = Self::open(host, &file, svg.as_bytes(), purpose, self.drafts.clone())?;
         if self.words.is_some() {
-            let (_, built) = self.opened.artwork.settle(&recipe(&self.kept.steps))?;
-            let frames = built.frames.iter().map(|f| Some(f.rect));
-            let steps = other.laid(self.kept.steps.iter().cloned().zip(frames))?;
-            other.kept = self.kept.clone();
-            other.kept.steps = steps;
-            other.saved = self.saved.clone().map(|(path, _)| (path, Vec::new()));
+            return self.edit_words(&file, svg);
         }
+        let other = self.with_drawing(&file, &svg)?;
         self.host.write(&file, svg.as_bytes())?;
-        let is_other = self.words.is_none();
-        if !is_other {
-            other.keep();
-        }
-        let first = self.first.take().or_else(|| is_other.then(|| self.file.clone()));
+        let first = self.first.take().or_else(|| Some(self.file.clone()));
         *self = Self { first, ..other };
+        Ok(())
+    }
+
+    fn edit_words(&mut self, file: &Path, svg: String) -> Result<(), String> {
+        let old = self.opened.artwork.document().text().to_owned();
+        if svg == old {
+            return Ok(());
+        }
+        let mut other = self.with_drawing(file, &svg)?;
+        let (_, built) = self.opened.artwork.settle(&recipe(&self.kept.now.steps))?;
+        let frames = built.frames.iter().map(|f| Some(f.rect));
+        let steps = other.laid(self.kept.now.steps.iter().cloned().zip(frames))?;
+        let mut kept = self.kept.clone();
+        kept.set_anew(&old, svg, steps);
+        self.redraw(other, kept)
+    }
+
+    /// A session like this one for the drawing `svg`, which is to be the content of `file`.
+    fn with_drawing(&self, file: &Path, svg: &str) -> Result<Self, String> {
+        let (host, purpose) = (Arc::clone(&self.host), self.purpose.clone());
+        Self::open(host, file, svg.as_bytes(), purpose, self.drafts.clone())
+    }
+
+    /// Goes over to another drawing and to what `kept` has, and writes the drawing's file.
+    fn redraw(&mut self, other: Self, kept: Kept) -> Result<(), String> {
+        let mut other = Self { kept, saved: self.saved.clone(), restored: false, ..other };
+        // A crash in between loses neither.
+        other.keep();
+        self.host.write(&other.file, other.opened.artwork.document().text().as_bytes())?;
+        if other.draft != self.draft {
+            self.draft.remove();
+        }
+        *self = Self { first: self.first.take(), ..other };
         Ok(())
     }
 
@@ -201,7 +225,7 @@ impl Session {
         let document = self.opened.artwork.document();
         let page = document.view_box();
         let name = |p: &Path| p.file_name().map(|n| n.to_string_lossy().into_owned());
-        let saved = self.saved.as_ref().filter(|(_, steps)| *steps == self.kept.steps);
+        let saved = self.saved.as_ref().filter(|(_, saved)| *saved == self.kept.now);
         let again = saved.map(|(p, _)| p).or(self.first.as_ref()).unwrap_or(&self.file);
         let again = std::path::absolute(again).unwrap_or_else(|_| again.clone());
         json!({
@@ -209,7 +233,8 @@ impl Session {
             "again": format!("pathwarp edit {}", quoted(&again.display().to_string())),
             "program": self.purpose.program(),
             "folder": folder_of(&self.file),
-            "steps": self.kept.steps,
+            "drawing": self.drawing,
+            "steps": self.kept.now.steps,
             "undo": !self.kept.undo.is_empty(),
             "redo": !self.kept.redo.is_empty(),
             "saved": saved.is_some(),
@@ -268,40 +293,29 @@ impl Session {
         if visible.len() < given.len() {
             self.opened.artwork.settle(&recipe(&given))?;
         }
-        if given != self.kept.steps {
-            let old = std::mem::replace(&mut self.kept.steps, given);
-            self.kept.undo.push(old);
-            if self.kept.undo.len() > MOST_UNDO {
-                self.kept.undo.remove(0);
-            }
-            self.kept.redo.clear();
+        if given != self.kept.now.steps {
+            self.kept.go_on(given);
             self.keep();
         }
         Ok(picture)
     }
 
-    /// Takes back the last change.
-    pub(crate) fn undo(&mut self, shown: Option<usize>) -> Result<Shown, String> {
-        if let Some(old) = self.kept.undo.pop() {
-            let new = std::mem::replace(&mut self.kept.steps, old);
-            self.kept.redo.push(new);
+    /// Takes back the last change, or makes the one again that was taken back last.
+    pub(crate) fn turn(&mut self, back: bool, shown: Option<usize>) -> Result<Shown, String> {
+        let mut kept = self.kept.clone();
+        if back { kept.undo() } else { kept.redo() }
+        if kept.now.drawing == self.kept.now.drawing {
+            self.kept = kept;
             self.keep();
-        }
-        self.now(shown)
-    }
-
-    /// Makes the change again that was taken back last.
-    pub(crate) fn redo(&mut self, shown: Option<usize>) -> Result<Shown, String> {
-        if let Some(new) = self.kept.redo.pop() {
-            let old = std::mem::replace(&mut self.kept.steps, new);
-            self.kept.undo.push(old);
-            self.keep();
+        } else {
+            let svg = kept.drawing().ok_or("the draft lacks a drawing")?;
+            self.redraw(self.with_drawing(&self.file, svg)?, kept)?;
         }
         self.now(shown)
     }
 
     fn now(&mut self, shown: Option<usize>) -> Result<Shown, String> {
-        let given = self.kept.steps.clone();
+        let given = self.kept.now.steps.clone();
         self.bend(visible(&given, shown), None)
     }
 
@@ -309,7 +323,7 @@ impl Session {
         if self.purpose.program().is_some() {
             return;
         }
-        let is_saved = self.saved.as_ref().is_some_and(|(_, steps)| *steps == self.kept.steps);
+        let is_saved = self.saved.as_ref().is_some_and(|(_, saved)| *saved == self.kept.now);
         self.problem = if is_saved {
             self.draft.remove();
             None
@@ -410,7 +424,7 @@ impl Session {
 
     /// Keeps the present steps as a preset.
     pub(crate) fn keep_preset(&mut self, name: &str) -> Result<(), String> {
-        let given = self.kept.steps.clone();
+        let given = self.kept.now.steps.clone();
         let (_, built) = self.opened.artwork.settle(&recipe(&given))?;
         let frames: Vec<Rect> = built.frames.iter().map(|f| f.rect).collect();
         presets::keep(&*self.host, name, given, &frames)
@@ -488,7 +502,7 @@ impl Session {
 
     /// The result, if the user has kept it.
     pub(crate) fn result(&self) -> Option<Recipe> {
-        self.handed_over.then(|| recipe(&self.kept.steps))
+        self.handed_over.then(|| recipe(&self.kept.now.steps))
     }
 
     /// Writes the result. Answers with the name, or says that the file exists.
@@ -511,7 +525,7 @@ impl Session {
             return Ok(json!({ "unwritable": why }));
         }
         if is_svg(&to) {
-            self.saved = Some((to.clone(), self.kept.steps.clone()));
+            self.saved = Some((to.clone(), self.kept.now.clone()));
             self.draft.remove();
             self.restored = false;
             if saving::same_file(&to, &self.file) {
@@ -532,7 +546,7 @@ impl Session {
 
     /// The result in the format of the file `to`, and what that cannot hold.
     fn finished(&mut self, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
-        let given = recipe(&self.kept.steps);
+        let given = recipe(&self.kept.now.steps);
         if saving::has_extension(to, &["toml"]) {
             return Ok((self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new()));
         }
@@ -543,7 +557,7 @@ impl Session {
     /// The command line that writes the result as *Save* does, under a name or the usual one.
     pub(crate) fn command_line(&self, target: &Target) -> Result<String, String> {
         let to = self.place(target)?;
-        let given = recipe(&self.kept.steps);
+        let given = recipe(&self.kept.now.steps);
         let document = self.opened.artwork.document();
         let is_result = self.opened.is_result;
         let (source, before) = match is_result.then(|| saving::source_of(&self.file, document.source())).flatten() {

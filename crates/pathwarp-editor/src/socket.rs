@@ -101,11 +101,11 @@ impl Page {
                 self.changed(session, shown)
             }
             Request::Undo { shown } => {
-                let shown = session.undo(shown)?;
+                let shown = session.turn(true, shown)?;
                 self.changed(session, shown)
             }
             Request::Redo { shown } => {
-                let shown = session.redo(shown)?;
+                let shown = session.turn(false, shown)?;
                 self.changed(session, shown)
             }
             Request::Before => Ok(json!({ "svg": session.before()?.text() })),

@@ -399,7 +399,10 @@ export class App {
     await this.turns;
     await this.lastCommit;
     const { problem } = this;
-    if (this.refusals === refusals || problem === null) return null;
+    if (this.refusals === refusals || problem === null) {
+      this.screen.reveal();
+      return null;
+    }
     this.fail(null);
     return inWords(problem);
   }

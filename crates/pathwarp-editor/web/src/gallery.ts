@@ -37,7 +37,7 @@ export class Gallery {
   private none = h("p", { class: "none", role: "status", hidden: true });
   /** The names of the user's presets. */
   names: string[] = [];
-  private shownFile = "";
+  private shown = "";
   private seen = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       const card = this.cards.find((c) => c.button === entry.target);
@@ -60,10 +60,10 @@ export class Gallery {
   }
 
   private build(): void {
-    if (this.shownFile === "") void this.loadPresets();
-    const file = `${this.app.state?.folder}/${this.app.state?.file}`;
-    if (file === this.shownFile || this.app.catalogue.length === 0) return;
-    this.shownFile = file;
+    if (this.shown === "") void this.loadPresets();
+    const { drawing = "" } = this.app.state ?? {};
+    if (drawing === this.shown || this.app.catalogue.length === 0) return;
+    this.shown = drawing;
     for (const { image } of this.cards) URL.revokeObjectURL(image.src);
     this.cards = [];
     this.queue = [];

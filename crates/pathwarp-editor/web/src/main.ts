@@ -32,9 +32,9 @@ new Presets(app, new Gallery(app));
 new Steps(app);
 new Parts(app, stage, modes);
 new Place(app, stage);
-new Opening(app, stage);
+new Opening(app);
 new Target(app, stage);
-new WordsDialog(app, stage);
+new WordsDialog(app);
 new Pointing(app, stage, modes).onPan = () => report.panned();
 modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
 stage.onZoom = () => {

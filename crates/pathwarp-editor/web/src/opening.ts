@@ -2,14 +2,13 @@
 
 import type { App } from "./app";
 import { byId, isTyping } from "./dom";
-import type { Stage } from "./stage";
 import { toast } from "./toast";
 
 /** The name of a drawing that comes as text. */
 const PASTED = "pasted.svg";
 
 export class Opening {
-  constructor(private app: App, private stage: Stage) {
+  constructor(private app: App) {
     const chosen = byId<HTMLInputElement>("open-file");
     byId("open").addEventListener("click", () => chosen.click());
     chosen.addEventListener("change", () => {
@@ -54,7 +53,6 @@ export class Opening {
     if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
     const answer = await app.attempt(async () => app.connection.ask({ do: "open", name: file.name, bytes: await base64(file) }));
     if (!answer?.state) return;
-    this.stage.forget();
     await app.load(answer.state);
   }
 }

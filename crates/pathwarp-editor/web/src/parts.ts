@@ -19,7 +19,7 @@ export class Parts {
   private rows: HTMLLIElement[] = [];
   /** The names of what is not shown; the file has it all the same. */
   private hidden = new Set<string>();
-  private shownFile = "";
+  private shown = "";
 
   constructor(private app: App, private stage: Stage, private modes: Modes) {
     app.listen((change) => {
@@ -31,9 +31,9 @@ export class Parts {
   }
 
   private async load(): Promise<void> {
-    const file = `${this.app.state?.folder}/${this.app.state?.file}`;
-    if (file === this.shownFile) return;
-    this.shownFile = file;
+    const { drawing = "" } = this.app.state ?? {};
+    if (drawing === this.shown) return;
+    this.shown = drawing;
     this.hidden.clear();
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
     this.all = answer?.parts ?? [];

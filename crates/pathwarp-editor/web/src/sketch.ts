@@ -17,8 +17,8 @@ const HINTS: Record<Sketch, string> = {
 
 /** Presses that are nearer are clicks on the same point, in px. */
 const NEAR = 8;
-/** A circle begins at the left and goes over the top, where words are read from. */
-const [FROM, TO] = [180, 540];
+/** A circle begins at the bottom and goes over the top, where the middle of words lies then. */
+const [FROM, TO] = [90, 450];
 
 export class Sketching {
   private line = s("path", { class: "lit" });

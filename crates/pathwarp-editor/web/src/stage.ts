@@ -66,6 +66,8 @@ export class Stage {
   private isFitted = false;
   /** The first picture of a drawing has not arrived yet. */
   private isFresh = true;
+  /** The name of the drawing on show. */
+  private shown = "";
   /** The handles of the first picture are on their way. */
   private isToFit = false;
   /** The page of the last picture, as saving would have it; null for the drawing's own. */
@@ -99,7 +101,6 @@ export class Stage {
     app.listen((change) => {
       if (change === "state") this.place();
       if (change === "handles") this.rebuild();
-      if (change === "drawing") this.forget();
       if (change === "report" && this.showsStretch) void this.drawStretch();
     });
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
@@ -183,6 +184,8 @@ export class Stage {
   private place(): void {
     const { state } = this.app;
     if (!state) return;
+    if (state.drawing !== this.shown) this.forget();
+    this.shown = state.drawing;
     const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
     this.camera.toPx = state.toPx;
     if (isNew || this.isFresh) {
@@ -252,8 +255,8 @@ export class Stage {
     this.beforeArt.setAttribute("visibility", this.isBefore ? "visible" : "hidden");
   }
 
-  /** Another drawing has been opened. */
-  forget(): void {
+  /** Another drawing is on show. */
+  private forget(): void {
     this.beforeArt.replaceChildren();
     this.isFresh = true;
     this.grown = null;

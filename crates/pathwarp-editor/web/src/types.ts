@@ -108,6 +108,8 @@ export interface StepGrips {
 export interface State {
   file: string;
   folder: string;
+  /** A name for what is on show; the same drawing in other words has another. */
+  drawing: string;
   steps: Step[];
   undo: boolean;
   redo: boolean;

@@ -3,7 +3,6 @@
 import type { App } from "./app";
 import { byId, h } from "./dom";
 import { reason } from "./fields";
-import type { Stage } from "./stage";
 
 const BUNDLED = "Noto Sans (bundled)";
 const LARGEST = 2000;
@@ -19,7 +18,7 @@ export class WordsDialog {
   private families: string[] | null = null;
   private font: string | null = null;
 
-  constructor(private app: App, private stage: Stage) {
+  constructor(private app: App) {
     byId("words").addEventListener("click", () => void this.open());
     byId("words-cancel").addEventListener("click", () => this.dialog.close());
     this.search.addEventListener("input", () => this.list());
@@ -77,7 +76,6 @@ export class WordsDialog {
       const words = { text: this.text.value, font: this.font, size, spacing };
       const { state } = await app.connection.ask({ do: "set-words", words });
       this.dialog.close();
-      this.stage.forget();
       if (state) await app.load(state);
     } catch (e) {
       this.say(reason(e));

@@ -1,10 +1,11 @@
 // Whole jobs, by visible labels and places alone. SHOTS=FOLDER keeps a picture of each.
+import { execFileSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { becomes, check, edit, folder, open, paths, quiet, sample } from "./harness.mjs";
+import { becomes, check, edit, folder, open, paths, program, quiet, sample } from "./harness.mjs";
 
-async function job(name, drawing, work) {
-  const dir = folder({ [drawing]: sample(drawing) });
+async function job(name, drawing, work, content = sample(drawing)) {
+  const dir = folder({ [drawing]: content });
   const editor = await edit(`${dir}/${drawing}`);
   const page = await open(editor.address, { viewport: { width: 1440, height: 900 } });
   try {
@@ -46,23 +47,53 @@ const saved = async (page, format, name) => {
   await page.getByRole("dialog").getByRole("button", { name: "Save", exact: true }).click();
   await page.getByText(`Saved ${name}`).waitFor();
 };
+const reload = async (page) => {
+  await page.reload();
+  await page.waitForSelector("#stage .art *", { state: "attached" });
+  await quiet(page);
+};
 /** Undoes and redoes everything, with the page loaded anew in between. */
 const backAndForth = async (page, times) => {
   const picture = await paths(page);
   for (let i = 0; i < times; i++) await press(page, "Undo");
-  await page.reload();
-  await page.waitForSelector("#stage .art *", { state: "attached" });
-  await quiet(page);
+  await reload(page);
   for (let i = 0; i < times; i++) await press(page, "Redo");
   await becomes(page, picture, "undo and redo do not lead back");
 };
 
-/** A word arched by exactly 30 %, as a picture of 2,000 px and for print. */
+/** Presses a button that asks for a file. */
+const given = async (page, name, file) => {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.getByRole("button", { name, exact: true }).click()]);
+  await chooser.setFiles(file);
+};
+/** Closes the program, and goes on with a file that was saved. */
+const openedAgain = async (editor, file, work) => {
+  await editor.stop();
+  const again = await edit(file);
+  const page = await open(again.address);
+  try {
+    await work(page);
+  } finally {
+    await again.stop();
+    await page.context().close();
+  }
+};
+const setWords = async (page, button, fields) => {
+  await page.getByRole("button", { name: button }).click();
+  for (const [name, text] of Object.entries(fields)) await page.getByRole("textbox", { name }).fill(text);
+  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("dialog").waitFor({ state: "hidden" });
+  await quiet(page);
+};
+
+/** A word arched onto a badge by exactly 30 %, as a picture of 2,000 px and for print. */
 export const job_arch = () => job("arch", "lettering.svg", async (page, dir) => {
   await press(page, "Arch");
   await field(page, "Bend", "30");
   check((await page.getByRole("textbox", { name: "Bend", exact: true }).inputValue()) === "30", "it is not 30");
   await backAndForth(page, 2);
+  await given(page, "Target", sample("badge.svg"));
+  await page.getByRole("textbox", { name: "Width" }).waitFor();
   await saved(page, "PNG", "word.png");
   await saved(page, "PDF", "word.pdf");
   check(readFileSync(`${dir}/word.png`).readUInt32BE(16) === 2000 && existsSync(`${dir}/word.pdf`), "the picture has another width");
@@ -86,15 +117,7 @@ export const job_flag_in_perspective = () => job("flag", "logo.svg", async (page
   const picture = await paths(page);
   await press(page, "Save");
   await page.getByText("Saved logo-bent.svg in").waitFor();
-  await editor.stop();
-  const again = await edit(join(dir, "logo-bent.svg"));
-  const page2 = await open(again.address);
-  try {
-    await becomes(page2, picture, "opened again, it is another drawing");
-  } finally {
-    await again.stop();
-    await page2.context().close();
-  }
+  await openedAgain(editor, join(dir, "logo-bent.svg"), (page2) => becomes(page2, picture, "opened again, it is another drawing"));
 });
 
 /** A bottle's label: the neck by both upper corners, the belly by the lower side. */
@@ -155,11 +178,8 @@ export const job_letter = () => job("letter", "lettering.svg", async (page) => {
 
 /** A word is typed, set in another font, put on a drawn circle, saved, opened again, and is still a word. */
 export const job_words = () => job("words", "logo.svg", async (page, dir, editor) => {
-  await press(page, "Words…");
-  await page.getByRole("textbox", { name: "Text" }).fill("Harbour");
-  await page.getByRole("button", { name: "Set words" }).click();
+  await setWords(page, "Words…", { Text: "Harbour" });
   await page.getByRole("heading", { name: "harbour.svg" }).waitFor();
-  await quiet(page);
   const bundled = await paths(page);
   await press(page, "Bend");
   const box = await page.locator("#stage .sheet").boundingBox();
@@ -176,21 +196,128 @@ export const job_words = () => job("words", "logo.svg", async (page, dir, editor
   await page.getByRole("button", { name: "Set words" }).click();
   await quiet(page);
   check((await paths(page)) !== bent && (await page.locator("#steps").textContent()).includes("Bend"), "the bend is gone, or the words are as before");
+  await backAndForth(page, 3);
   await saved(page, "SVG Can", "sign.svg");
   const picture = await paths(page);
-  await editor.stop();
-  const again = await edit(join(dir, "sign.svg"));
-  const page2 = await open(again.address);
-  try {
+  await openedAgain(editor, join(dir, "sign.svg"), async (page2) => {
     await becomes(page2, picture, "opened again, it is another drawing");
-    await page2.getByRole("button", { name: "Edit words…" }).click();
-    check((await page2.getByRole("textbox", { name: "Text" }).inputValue()) === "Harbour", "opened again, it is no word");
-    await page2.getByRole("textbox", { name: "Text" }).fill("Harbour Coffee");
-    await page2.getByRole("button", { name: "Set words" }).click();
-    await quiet(page2);
+    await setWords(page2, "Edit words…", { Text: "Harbour Coffee" });
     check((await paths(page2)) !== picture, "the words cannot be changed");
-  } finally {
-    await again.stop();
-    await page2.context().close();
+    await press(page2, "Undo");
+    await becomes(page2, picture, "the words cannot be undone");
+    await page2.getByText("Saved as sign.svg").waitFor();
+  });
+});
+
+/** A photograph with a caption: both follow the flag, are saved, and are there again. */
+export const job_photograph = () => {
+  const photograph = execFileSync(program, ["render", sample("badge.svg"), "--width", "300", "--background", "#8ac", "--format", "png", "-o", "-"]).toString("base64");
+  const card = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 360 380"><image id="photo" x="30" y="20" width="300" height="300" href="data:image/png;base64,${photograph}"/>
+    <text id="caption" x="180" y="352" font-family="Noto Sans" font-size="26" text-anchor="middle" fill="#333">Seaside, 1962</text></svg>`;
+  return job("photograph", "card.svg", async (page, dir, editor) => {
+    const looks = () => page.evaluate(() => {
+      const art = document.querySelector("#stage .art:not([visibility=hidden])");
+      return [art.querySelector("image").outerHTML, Array.from(art.querySelectorAll("path"), (p) => p.getAttribute("d")).join()];
+    });
+    const before = await looks();
+    await press(page, "Flag");
+    await field(page, "Bend", "40");
+    const bent = await looks();
+    check(bent[0] !== before[0], "the photograph does not follow");
+    check(bent[1] !== before[1], "the caption does not follow");
+    await backAndForth(page, 2);
+    check((await looks()).join() === bent.join(), "redone, it looks different");
+    await press(page, "Save");
+    await page.getByText("Saved card-bent.svg in").waitFor();
+    const picture = await paths(page);
+    await openedAgain(editor, join(dir, "card-bent.svg"), (page2) => becomes(page2, picture, "opened again, it is another drawing"));
+  }, card);
+};
+
+/** Twenty steps of every kind are undone and redone, each with the picture that it had, with the page loaded anew on the way there and back. */
+export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page, dir, editor) => {
+  await setWords(page, "Words…", { Text: "Harbour" });
+  const corner = async () => at(page, (await page.locator(".knob.node").last().getAttribute("aria-label")));
+  const add = async (name) => {
+    await press(page, "Add step");
+    await press(page, name);
+  };
+  const between = async (a, b) => {
+    const [[ax, ay], [bx, by]] = [await at(page, a), await at(page, b)];
+    return [(ax + bx) / 2, (ay + by) / 2];
+  };
+  const steps = [
+    () => press(page, "Bend"),
+    async () => {
+      await page.getByRole("button", { name: "Draw circle" }).first().click();
+      const { x, y, width, height } = await page.locator("#stage .sheet").boundingBox();
+      await pull(page, [x + width / 2, y + height / 2 + 40], [width / 3, 0]);
+    },
+    () => setWords(page, "Edit words…", { Text: "Haven", Spacing: "10" }),
+    () => add("Flag"),
+    () => field(page, "Bend", "20+5"),
+    () => setWords(page, "Edit words…", { Size: "25" }),
+    () => add("Perspective"),
+    async () => pull(page, await corner(), [-40, -30]),
+    () => add("Cage"),
+    async () => pull(page, await at(page, "Cage, point 3"), [-50, 0]),
+    () => add("Pins"),
+    async () => pull(page, await at(page, "Pair 5, where it goes"), [10, 15]),
+    async () => {
+      const [x, y] = await at(page, "Pair 5, where it goes");
+      await page.mouse.dblclick(x + 60, y);
+      await quiet(page);
+    },
+    async () => {
+      await page.mouse.click(...(await at(page, "Pair 1, where it goes")));
+      await press(page, "Remove point");
+    },
+    () => press(page, "Grid"),
+    async () => pull(page, await between("Control point 1,1", "Control point 2,1"), [0, -30]),
+    async () => {
+      await page.mouse.dblclick(...(await between("Control point 0,0", "Control point 1,0")));
+      await quiet(page);
+    },
+    () => press(page, "Move Grid up"),
+    () => add("Bulge"),
+    async () => {
+      await page.getByText("This step bends everything.").click();
+      await page.getByRole("button", { name: "Path “v”", exact: true }).click();
+      await quiet(page);
+    },
+    () => press(page, "Remove Perspective"),
+  ];
+  // All steps are seen while the last one is being changed.
+  const last = async () => {
+    await page.getByRole("list").getByRole("button", { name: /^[0-9]+\. / }).last().click();
+    await quiet(page);
+  };
+  const seen = [await paths(page)];
+  for (const [i, step] of steps.entries()) {
+    await step();
+    await last();
+    seen.push(await paths(page));
+    check(!(await page.isVisible("#problem")), `step ${i + 1}: ${await page.textContent("#problem")}`);
   }
+  await saved(page, "SVG Can", "before.svg");
+  check(new Set(seen).size > 15, "too little is seen of the steps");
+  for (let i = steps.length - 1; i >= 0; i--) {
+    await press(page, "Undo");
+    if (i === 9) await reload(page);
+    await becomes(page, seen[i], `undone, step ${i + 1} leaves something behind`);
+  }
+  check(await page.getByRole("button", { name: "Undo", exact: true }).isDisabled(), "there is more to undo");
+  for (let i = 1; i <= steps.length; i++) {
+    await press(page, "Redo");
+    if (i === 11) await reload(page);
+    await becomes(page, seen[i], `redone, step ${i} is another`);
+  }
+  await saved(page, "SVG Can", "after.svg");
+  const bytes = (name) => readFileSync(join(dir, name), "utf8");
+  check(bytes("after.svg") === bytes("before.svg"), "what was undone and redone is saved as something else");
+  await openedAgain(editor, join(dir, "after.svg"), async (page2) => {
+    await becomes(page2, seen[steps.length], "opened again, it is another drawing");
+    await saved(page2, "SVG Can", "again.svg");
+    check(bytes("again.svg") === bytes("before.svg"), "opened again, it is saved as something else");
+  });
 });

@@ -46,7 +46,7 @@ impl Skeleton {
         let mut sub = anchors::only_subpath(path, "a single connected run of them")?;
         let backwards = match sub.closed {
             true => turns_left(&sub),
-            false => sub.end().x < sub.start.x && !winds(&sub),
+            false => runs_left(&sub) && !winds(&sub),
         };
         if reverse != (backwards && !as_drawn) {
             sub = sub.reversed();
@@ -301,6 +301,13 @@ fn turns_left(sub: &Subpath) -> bool {
         at(i).cross(at(i + 1))
     };
     sub.segs.iter().map(|s| (0..CHORDS).map(|i| chord(s, i)).sum::<f64>()).sum::<f64>() < 0.0
+}
+
+/// Returns `true` if an open run ends left of its start. The ends of a whole circle are the same up to rounding.
+fn runs_left(sub: &Subpath) -> bool {
+    const SAME: f64 = 1e-9;
+    let size = sub.segs.iter().map(|s| s.eval(0.5).distance(sub.start)).fold(0.0, f64::max);
+    sub.start.x - sub.end().x > SAME * size
 }
 
 /// Returns `true` if the tangent of an open run turns through more than a whole turn from its start to its end.
