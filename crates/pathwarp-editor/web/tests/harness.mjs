@@ -150,9 +150,9 @@ export async function choose(page, name, section = "") {
 
 /** Waits until the picture is this one. */
 export async function becomes(page, picture, message) {
-  for (let i = 0; i < 50; i++) {
+  for (let i = 0; i < 100; i++) {
     if ((await paths(page)) === picture) return;
-    await page.waitForTimeout(100);
+    await page.waitForTimeout(50);
   }
   throw new Error(message);
 }

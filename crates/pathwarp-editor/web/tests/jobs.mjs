@@ -48,6 +48,7 @@ const saved = async (page, format, name) => {
   await page.getByText(`Saved ${name}`).waitFor();
 };
 const reload = async (page) => {
+  await quiet(page);
   await page.reload();
   await page.waitForSelector("#stage .art *", { state: "attached" });
   await quiet(page);
@@ -93,7 +94,10 @@ export const job_arch = () => job("arch", "lettering.svg", async (page, dir) => 
   check((await page.getByRole("textbox", { name: "Bend", exact: true }).inputValue()) === "30", "it is not 30");
   await backAndForth(page, 2);
   await given(page, "Target", sample("badge.svg"));
-  await page.getByRole("textbox", { name: "Width" }).waitFor();
+  for (const [name, mm] of [["Width", "185"], ["X", "-2"], ["Y", "-32"]]) {
+    await page.getByRole("textbox", { name: new RegExp(`^${name} +mm`) }).fill(mm);
+    await page.keyboard.press("Enter");
+  }
   await saved(page, "PNG", "word.png");
   await saved(page, "PDF", "word.pdf");
   check(readFileSync(`${dir}/word.png`).readUInt32BE(16) === 2000 && existsSync(`${dir}/word.pdf`), "the picture has another width");
@@ -289,6 +293,7 @@ export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page
   ];
   // All steps are seen while the last one is being changed.
   const last = async () => {
+    if (!(await page.getByText("so that you see what you drag").isVisible())) return;
     await page.getByRole("list").getByRole("button", { name: /^[0-9]+\. / }).last().click();
     await quiet(page);
   };
@@ -302,13 +307,13 @@ export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page
   await saved(page, "SVG Can", "before.svg");
   check(new Set(seen).size > 15, "too little is seen of the steps");
   for (let i = steps.length - 1; i >= 0; i--) {
-    await press(page, "Undo");
+    await page.getByRole("button", { name: "Undo", exact: true }).click();
     if (i === 9) await reload(page);
     await becomes(page, seen[i], `undone, step ${i + 1} leaves something behind`);
   }
   check(await page.getByRole("button", { name: "Undo", exact: true }).isDisabled(), "there is more to undo");
   for (let i = 1; i <= steps.length; i++) {
-    await press(page, "Redo");
+    await page.getByRole("button", { name: "Redo", exact: true }).click();
     if (i === 11) await reload(page);
     await becomes(page, seen[i], `redone, step ${i} is another`);
   }

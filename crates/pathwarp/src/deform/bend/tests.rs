@@ -107,6 +107,19 @@ fn a_closed_skeleton_closes_and_runs_on() {
     assert!(m.point(Point::new(50.0, 50.0)).y < 0.0);
 }
 
+/// The ends of a whole circle meet, so neither is left of the other.
+#[test]
+fn whole_circles_run_as_they_say() {
+    for from in (0..360).step_by(15) {
+        let along = format!("arc:r=30,from={from},to={},cx=50,cy=50", from + 360);
+        let m = build(&[("along", &along), ("baseline", "0")]).unwrap().map;
+        let [x, y] = [f64::cos, f64::sin].map(|f| f(f64::from(from + 180).to_radians()));
+        let j = m.jet(Point::new(50.0, 100.0));
+        assert!(j.p.distance(Point::new(50.0 + 30.0 * x, 50.0 + 30.0 * y)) < 1e-9, "{from}: {:?}", j.p);
+        assert!((j.dx - Vec2::new(-y, x)).hypot() < 1e-9, "{from}: {:?}", j.dx);
+    }
+}
+
 #[test]
 fn the_polynomial_mode_has_exact_images() {
     let m = build(&[("along", "M0,60 C30,20 70,90 100,50 S150,0 200,60"), ("by", "parameter"), ("stretch", "fit")])

@@ -350,6 +350,7 @@ static INFO: Info = Info::new("triangle", "pull artwork about by a triangular ne
     .group("Lattices and nets")
     .by_hand(ByHand {
         label: Some("Triangle net"),
+        neutral: &[("degree", "2")],
         ..ByHand::NONE
     })
     .about("Lays a triangle over the artwork, with control points along its sides and inside it, and lets the artwork follow \
