@@ -1,13 +1,16 @@
-//! Writes gradients as PDF's axial and radial shadings.
+//! Writes gradients as PDF's axial and radial shadings, and mesh gradients as Coons patch meshes (PDF 32000-1, 8.7.4.5).
 //!
 //! A shading cannot repeat or reflect its colours. The range of such a gradient is extended until it covers the painted area, and the
 //! colours are listed once for each period.
 
-use crate::file::File;
+use crate::file::{File, deflated};
+use crate::options::MeshPatch;
 use crate::stream::{FAR, affine, matrix};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pdf_writer::types::FunctionShadingType;
-use pdf_writer::{Finish as _, Name, Ref};
+use pdf_writer::writers::StreamShadingType;
+use pdf_writer::{Filter, Finish as _, Name, Ref};
+use std::ops::Range;
 use usvg::{Paint, SpreadMethod, Stop};
 
 /// Limit on the periods of a repeating gradient. Finer ones look like their average.
@@ -32,9 +35,16 @@ pub(crate) struct Gradient {
 enum Shape {
     Axial([Point; 2]),
     Radial([(Point, f64); 2]),
+    /// Has no stops.
+    Mesh(Vec<MeshPatch>),
 }
 
 impl Gradient {
+    /// A mesh gradient in user space.
+    pub(crate) fn mesh(patches: Vec<MeshPatch>) -> Self {
+        Self { transform: Affine::IDENTITY, shape: Shape::Mesh(patches), stops: Vec::new() }
+    }
+
     /// Reads the gradient of a paint, for painting `area`. Returns `None` for other paints.
     pub(crate) fn of(paint: &Paint, area: Rect) -> Option<Self> {
         let point = |x: f32, y: f32| Point::new(f64::from(x), f64::from(y));
@@ -72,25 +82,32 @@ impl Gradient {
 
     /// Whether any colour is translucent.
     pub(crate) fn is_translucent(&self) -> bool {
-        self.stops.iter().any(|(_, _, opacity)| *opacity < 1.0)
+        let in_mesh = || matches!(&self.shape, Shape::Mesh(all) if all.iter().any(|p| p.1.iter().any(|c| c[3] < 1.0)));
+        self.stops.iter().any(|(_, _, opacity)| *opacity < 1.0) || in_mesh()
     }
 
     /// Adds the colours as a pattern. `to_start` maps the user space of the painted path to that at the start of the content
     /// stream.
     pub(crate) fn colors(&self, file: &mut File<'_>, to_start: Affine) -> Ref {
+        if let Shape::Mesh(patches) = &self.shape {
+            return mesh(file, to_start, patches, 0..3, Name(b"DeviceRGB"));
+        }
         let stops: Vec<_> = self.stops.iter().map(|(at, color, _)| (*at, color.to_vec())).collect();
         self.shading(file, to_start, &stops, Name(b"DeviceRGB"))
     }
 
     /// Adds the opacities as shades of grey.
     pub(crate) fn opacities(&self, file: &mut File<'_>, to_start: Affine) -> Ref {
+        if let Shape::Mesh(patches) = &self.shape {
+            return mesh(file, to_start, patches, 3..4, Name(b"DeviceGray"));
+        }
         let stops: Vec<_> = self.stops.iter().map(|(at, _, opacity)| (*at, vec![*opacity])).collect();
         self.shading(file, to_start, &stops, Name(b"DeviceGray"))
     }
 
     /// The position of a gradient far from the origin; zero for others.
     fn far(&self) -> Vec2 {
-        let (Shape::Axial([at, _]) | Shape::Radial([(at, _), _])) = self.shape;
+        let (Shape::Axial([at, _]) | Shape::Radial([(at, _), _])) = self.shape else { return Vec2::ZERO };
         if at.to_vec2().hypot() > FAR { at.to_vec2() } else { Vec2::ZERO }
     }
 
@@ -112,12 +129,53 @@ impl Gradient {
                     circles.iter().flat_map(|(c, r)| [(c.x - near.x) as f32, (c.y - near.y) as f32, *r as f32]),
                 );
             }
+            Shape::Mesh(_) => {}
         }
         shading.pair(Name(b"ColorSpace"), space);
         shading.extend([true, true]).function(function);
         shading.finish();
         at
     }
+}
+
+/// Adds a mesh of Coons patches, with some components of the colours, as a pattern.
+fn mesh(
+    file: &mut File<'_>,
+    to_start: Affine,
+    patches: &[MeshPatch],
+    components: Range<usize>,
+    space: Name<'_>,
+) -> Ref {
+    let all = || patches.iter().flat_map(|p| p.0);
+    let bounds = all().map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b)).unwrap_or_default();
+    // Coordinates are counted from the corner, in whole numbers of 32 bits.
+    let share = |v: f64, size: f64| if size > 0.0 { (v / size * f64::from(u32::MAX)).round() as u32 } else { 0 };
+    let mut data = Vec::new();
+    for (points, colors) in patches {
+        // This patch shares no side with the one before.
+        data.push(0);
+        for p in points {
+            data.extend(share(p.x - bounds.x0, bounds.width()).to_be_bytes());
+            data.extend(share(p.y - bounds.y0, bounds.height()).to_be_bytes());
+        }
+        for level in colors.iter().flat_map(|c| &c[components.clone()]) {
+            data.extend(((level * f64::from(u16::MAX)).round() as u16).to_be_bytes());
+        }
+    }
+    let [shading, at] = [file.new_ref(), file.new_ref()];
+    let bytes = deflated(&data);
+    let mut out = file.pdf.stream_shading(shading, &bytes);
+    out.filter(Filter::FlateDecode);
+    out.shading_type(StreamShadingType::CoonsPatch).pair(Name(b"ColorSpace"), space);
+    out.bits_per_coordinate(32).bits_per_component(16).bits_per_flag(8);
+    let sides = [0.0, bounds.width() as f32, 0.0, bounds.height() as f32];
+    out.decode(sides.into_iter().chain(components.flat_map(|_| [0.0, 1.0])));
+    out.finish();
+    let mut pattern = file.pdf.shading_pattern(at);
+    pattern.matrix(matrix(to_start * Affine::translate(bounds.origin().to_vec2())));
+    pattern.shading_ref(shading);
+    pattern.finish();
+    at
 }
 
 /// The corners of an area in the coordinates of a gradient; `None` if the gradient has no area.

@@ -1,6 +1,6 @@
 //! Options for writing a PDF.
 
-use kurbo::BezPath;
+use kurbo::{BezPath, Point, Rect};
 use pathwarp::budget::Limits;
 use std::fmt;
 
@@ -10,10 +10,19 @@ pub(crate) const PRINT: f64 = 300.0;
 /// Returns the exact outline of a path in its own coordinates, if usvg's is an approximation.
 pub type ExactOutline<'a> = dyn Fn(&usvg::Path) -> Option<BezPath> + 'a;
 
+/// A Coons patch: the control points of its sides, which lead around it from corner to corner, and the colours of the corners in the same
+/// order: red, green, blue and opacity, 0 to 1.
+pub type MeshPatch = ([Point; 12], [[f64; 4]; 4]);
+
+/// Returns the patches of the mesh gradient that a paint stands for, in the user space of a path with this box. usvg has no mesh gradients.
+pub type MeshOf<'a> = dyn Fn(&usvg::Paint, Rect) -> Option<Vec<MeshPatch>> + 'a;
+
 /// Options for writing a PDF.
 pub struct Options<'a> {
     /// Provides outlines in place of usvg's, which approximates arcs.
     pub exact: &'a ExactOutline<'a>,
+    /// Provides mesh gradients in place of paints.
+    pub mesh: &'a MeshOf<'a>,
     /// Pixels per inch of pictures that replace filters; `None` stands for 300.
     pub picture_dpi: Option<f64>,
     /// Limits on embedded pictures, and on those that replace filters.
@@ -31,6 +40,6 @@ impl fmt::Debug for Options<'_> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { exact: &|_| None, picture_dpi: None, limits: Limits::default() }
+        Self { exact: &|_| None, mesh: &|_, _| None, picture_dpi: None, limits: Limits::default() }
     }
 }

@@ -21,7 +21,8 @@ struct Use<'a> {
 /// Calls `draw` with the paint set.
 fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use<'_>, draw: impl FnOnce(&mut Stream)) {
     let area = roomy(rect(painted.path.stroke_bounding_box()));
-    let gradient = Gradient::of(painted.paint, area);
+    let mesh = (file.options.mesh)(painted.paint, rect(painted.path.bounding_box()));
+    let gradient = mesh.map(Gradient::mesh).or_else(|| Gradient::of(painted.paint, area));
     let mut state = State::default().opacity(painted.opacity);
     if let Some(gradient) = gradient.as_ref().filter(|g| g.is_translucent()) {
         // The same gradient in shades of grey serves as a mask.

@@ -8,10 +8,12 @@ use crate::document::Document;
 use crate::scene::drawing::UnreadImages;
 use crate::source::read::ReadOptions;
 use crate::source::tree;
-use pathwarp::kurbo::BezPath;
+use pathwarp::kurbo::{BezPath, Rect};
 use pathwarp::{Error, Seg};
 use std::collections::HashMap;
 use std::sync::Arc;
+
+pub use crate::source::mesh::CoonsPatch;
 
 /// Reads SVG or svgz data into usvg's tree, with the same fonts and limits as [`Document::read`]. `name` identifies the data
 /// in errors.
@@ -66,6 +68,13 @@ pub fn tree(document: &Document) -> &Arc<usvg::Tree> {
 /// Returns the error of `f`, or [`Error::Input`] if there is no memory for the stack.
 pub fn with_stack<T: Send>(document: &Document, f: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
     document.drawing().with_stack(f)
+}
+
+/// The Coons patches of the mesh gradient that a paint of a document's tree stands for, in the user space of a shape with this box; `None`
+/// for other paints. usvg has no mesh gradients, and draws nothing in their place.
+#[must_use]
+pub fn mesh(document: &Document, paint: &usvg::Paint, bounds: Rect) -> Option<Vec<CoonsPatch>> {
+    Some(document.drawing().mesh(paint)?.on(bounds).patches())
 }
 
 /// The outlines of the paths whose arcs usvg approximates, by up to a tenth of a unit, and of those so far from the origin that its single

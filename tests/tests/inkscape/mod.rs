@@ -5,6 +5,7 @@ mod drawings;
 mod editor;
 mod extension;
 mod hand;
+mod meshes;
 
 use crate::common::rendered;
 use crate::support::{pathwarp, root};

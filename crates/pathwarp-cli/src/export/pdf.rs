@@ -11,8 +11,9 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, _: Option<f64>) -> 
     let exact = ExactOutlines::of(doc);
     let written = usvg_tree::with_stack(doc, || {
         let outline = |path: &_| exact.get(path).cloned();
+        let mesh = |paint: &_, bounds| usvg_tree::mesh(doc, paint, bounds);
         let limits = doc.budget().limits();
-        let options = pathwarp_pdf::Options { exact: &outline, picture_dpi: options.image_dpi, limits };
+        let options = pathwarp_pdf::Options { exact: &outline, mesh: &mesh, picture_dpi: options.image_dpi, limits };
         Ok(pathwarp_pdf::write(usvg_tree::tree(doc), &options))
     })??;
     let (pictures, coarser) = (written.pictures, written.coarser);

@@ -112,7 +112,7 @@ fn warp_parts(
         }
         let gathered = map.prefers_batches().then(|| Gathered::new(*map));
         let map = gathered.as_ref().map_or(*map, |g| g as &dyn Map);
-        let context = PartContext { map, options, known: &known[k], to_px: scene.to_px, gradients, hairline };
+        let context = PartContext { map, options, known: &known[k], drawing, to_px: scene.to_px, gradients, hairline };
         let write = written(scene, slots, p.slot, p.frame);
         (is_invertible(p.frame) && is_invertible(write)).then(|| {
             let outline = (shapes[i].outline.clone(), &contours[k][i][..]);

@@ -2,11 +2,13 @@
 
 use super::fits::PaintFit;
 use super::gradient_fit::{Moved, SEARCH, nearest};
+use super::meshes;
 use super::options::Gradients;
 use super::pictures::{BentImage, GradientRequest, PictureError, SeenColor};
 use super::shading::Shading;
 use super::task::PartTask;
 use crate::scene::geometry::stretch;
+use crate::source::mesh::MeshGradient;
 use pathwarp::Outline;
 use pathwarp::kurbo::{self, BezPath, ParamCurve as _, ParamCurveArclen as _, Point, Rect, Shape as _, Vec2};
 use pathwarp::outline::boundary;
@@ -24,8 +26,18 @@ const BETWEEN: f64 = 1.25;
 /// A gradient that an affine fit would show wrong.
 pub(super) enum BentGradient {
     /// Another gradient shows it right.
-    Near(Shading),
+    Near(NewGradient),
     Picture(PaintedGradient),
+    /// A mesh gradient that cannot be bent.
+    Unbent(PictureError),
+}
+
+/// A gradient in the place of one of the source.
+#[derive(Debug)]
+pub(crate) enum NewGradient {
+    /// A linear or radial one.
+    Plain(Shading),
+    Mesh(MeshGradient),
 }
 
 /// A gradient that must become a picture to look right.
@@ -45,7 +57,14 @@ impl BentGradient {
         let (p, options) = (t.part, t.options());
         // A gradient spans all copies, which the map does not describe. In tiles, errors are too small to see.
         let repeated = options.copies.len() > 1 || !options.letters.places.is_empty();
-        if !options.paints_gradients() || repeated || p.in_tile || !p.painted() {
+        if repeated || p.in_tile || !p.painted() {
+            return None;
+        }
+        if let Some(mesh) = t.context.drawing.mesh(paint) {
+            let bent = options.moves(paint).then(|| meshes::bent(t, mesh))?;
+            return Some(bent.map_or_else(Self::Unbent, |m| Self::Near(NewGradient::Mesh(m))));
+        }
+        if !options.paints_gradients() {
             return None;
         }
         let shading = Shading::of(paint)?;
@@ -79,7 +98,7 @@ impl BentGradient {
         if t.options().refit.budget.spend(SEARCH).is_ok()
             && let Some(near) = near()
         {
-            return Some(Self::Near(near));
+            return Some(Self::Near(NewGradient::Plain(near)));
         }
         if !pictured {
             return None;

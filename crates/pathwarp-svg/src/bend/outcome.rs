@@ -1,8 +1,8 @@
 //! Results of warping, by part for the writers and by shape for the report.
 
 use super::fits::PaintFit;
+use super::gradients::NewGradient;
 use super::pictures::{BentImage, PictureError};
-use super::shading::Shading;
 use crate::source::number::path_data_by;
 use pathwarp::kurbo::{BezPath, Rect};
 use pathwarp::refit::{Assurance, PathReport};
@@ -177,8 +177,8 @@ pub(crate) struct WarpedPart {
     /// Fit to be applied to gradients and patterns; `None` if they are unchanged.
     pub(crate) fit: Option<PaintFit>,
     /// Gradients in the place of the fill's and the stroke's, which no affine map makes right.
-    pub(crate) fill_gradient: Option<Shading>,
-    pub(crate) stroke_gradient: Option<Shading>,
+    pub(crate) fill_gradient: Option<NewGradient>,
+    pub(crate) stroke_gradient: Option<NewGradient>,
     /// Pictures of the fill's and the stroke's gradient.
     pub(crate) fill_image: Option<BentImage>,
     pub(crate) stroke_image: Option<BentImage>,

@@ -1,10 +1,10 @@
 //! Bends a part: its path, fill, stroke, and paints.
 
 use super::fits::{self, PaintFit};
-use super::gradients::{BentGradient, PaintedGradient};
+use super::gradients::{BentGradient, NewGradient, PaintedGradient};
 use super::options::{Strokes, WarpOptions};
 use super::outcome::{StrokeOutcome, WarpedPart};
-use super::shading::Shading;
+use super::pictures::PictureError;
 use super::task::{BentPath, LetterPiece, PartTask};
 use super::{path, stroke};
 use crate::scene::geometry::stretch;
@@ -27,7 +27,8 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let Filled { mut path, mut data, fill, mut report } = filled(t, bent)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
     let stroke_gradient = p.stroke.as_ref().and_then(|s| BentGradient::of(t, s.paint(), fit, expands(t, s)));
-    let (stroke_gradient, stroke_picture) = divided(stroke_gradient);
+    let mut unpainted = None;
+    let (stroke_gradient, stroke_picture) = divided(stroke_gradient, &mut unpainted);
     let bent = stroke::stroke(t, &path, pieces, stroke_picture.is_some())?;
     if draft && bent.outcome.outline().is_none() {
         let refitted = t.bend(&t.outline, &t.contours)?;
@@ -39,7 +40,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     written.extend(bent.report);
     let report = combined(centre, written);
     let fill_gradient = p.fill.as_ref().and_then(|f| BentGradient::of(t, f.paint(), fit, true));
-    let (fill_gradient, fill_picture) = divided(fill_gradient);
+    let (fill_gradient, fill_picture) = divided(fill_gradient, &mut unpainted);
     let mut out = WarpedPart {
         path,
         fill,
@@ -54,7 +55,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         stroke_gradient,
         fill_image: None,
         stroke_image: None,
-        unpainted: None,
+        unpainted,
         residual: None,
         report,
         rounding: t.rounding,
@@ -69,11 +70,18 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
 }
 
 /// A gradient that became another, or one to be painted.
-fn divided(bent: Option<BentGradient>) -> (Option<Shading>, Option<PaintedGradient>) {
+fn divided(
+    bent: Option<BentGradient>,
+    unpainted: &mut Option<PictureError>,
+) -> (Option<NewGradient>, Option<PaintedGradient>) {
     match bent {
         None => (None, None),
         Some(BentGradient::Near(near)) => (Some(near), None),
         Some(BentGradient::Picture(picture)) => (None, Some(picture)),
+        Some(BentGradient::Unbent(why)) => {
+            *unpainted = Some(why);
+            (None, None)
+        }
     }
 }
 

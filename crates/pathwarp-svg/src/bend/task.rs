@@ -23,6 +23,7 @@ pub(super) struct PartContext<'a> {
     pub(super) options: &'a WarpOptions,
     /// Shapes that recur in the drawing.
     pub(super) known: &'a KnownShapes,
+    pub(super) drawing: &'a Drawing,
     /// Root user space to px.
     pub(super) to_px: Affine,
     /// Number of gradients in the drawing that may become pictures.

@@ -6,6 +6,7 @@ use super::model::{Group, Node, Part, PartRole, Scene};
 use super::resolve::{self, Tiling};
 use crate::source::elements::ElementId;
 use crate::source::images::shown;
+use crate::source::mesh::MeshGradient;
 use crate::source::read::{self, ReadOptions};
 use crate::source::select::Selection;
 use crate::source::text::{SourceText, WORTH_THREADS};
@@ -80,6 +81,13 @@ impl Drawing {
             dpi,
             budget: options.budget.clone(),
         })
+    }
+
+    /// The mesh gradient that a paint stands for.
+    pub(crate) fn mesh(&self, paint: &usvg::Paint) -> Option<&MeshGradient> {
+        let usvg::Paint::LinearGradient(g) = paint else { return None };
+        let is_own = || !self.scene().foreign.contains(&(Arc::as_ptr(g) as usize));
+        self.source.meshes().get(g.id()).filter(|_| is_own())
     }
 
     /// Resolves the drawing again, with pattern tiles laid out as geometry.

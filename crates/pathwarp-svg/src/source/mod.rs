@@ -8,6 +8,7 @@ pub(crate) mod fontface;
 pub(crate) mod fonts;
 pub(crate) mod images;
 pub(crate) mod markup;
+pub(crate) mod mesh;
 pub(crate) mod number;
 pub(crate) mod read;
 pub(crate) mod select;

@@ -3,6 +3,7 @@
 use super::elements::{
     Attr, Element, ElementId, INKSCAPE, Namespace, SVG, Table, Unpatchable, XLINK, declared, is_animation, is_tracked,
 };
+use super::mesh::{self, MeshGradient};
 use super::threads::{both, map_parallel};
 use pathwarp::budget::Budget;
 use pathwarp::{Error, Outline};
@@ -48,6 +49,7 @@ pub(crate) struct SourceText {
     by_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     by_tree_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     line_starts: OnceLock<Vec<usize>>,
+    meshes: OnceLock<HashMap<String, MeshGradient>>,
     /// Numbers of characters before evenly spaced positions.
     characters: OnceLock<Vec<usize>>,
 }
@@ -171,6 +173,23 @@ impl SourceText {
             }
             out
         })
+    }
+
+    /// The element that `fill` or `stroke` of an element refers to, its own or inherited.
+    pub(crate) fn paint_server(&self, e: ElementId, property: &str) -> Option<ElementId> {
+        let value = self.ancestors(e).find_map(|a| self.property(a, property).filter(|v| v != "inherit"))?;
+        let id = value.strip_prefix("url(")?.split(')').next()?.trim_matches(['"', '\'', ' ']).strip_prefix('#')?;
+        self.by_id().get(id)?.first().copied()
+    }
+
+    /// The mesh gradient that an element defines.
+    pub(crate) fn mesh(&self, e: ElementId) -> Option<&MeshGradient> {
+        self.meshes().get(&*self.attr(e, "id")?).filter(|_| mesh::is_mesh(&self.elements[e].tag))
+    }
+
+    /// Mesh gradients by id.
+    pub(crate) fn meshes(&self) -> &HashMap<String, MeshGradient> {
+        self.meshes.get_or_init(|| mesh::read(self))
     }
 
     /// Elements by their id in usvg's tree, which may be a temporary one.
@@ -361,6 +380,11 @@ impl SourceText {
                 Some(a) => (a.value_range.end..a.value_range.end, format!(";{style}")),
                 None => (e.qname.end..e.qname.end, format!(" style=\"{style}\"")),
             })
+        }));
+        // A mesh gradient gets a stand-in, which usvg takes for it.
+        patches.extend(self.elements.iter().filter(|e| mesh::is_mesh(&e.tag)).filter_map(|e| {
+            let id = e.attr(&self.text, "id").filter(|id| self.meshes().contains_key(&**id))?;
+            Some((e.range.start..e.range.start, mesh::stand_in(self.prefix(), &id)))
         }));
         patches.sort_by_key(|(at, _)| at.start);
         let mut out = String::with_capacity(self.text.len() + patches.len() * 16);

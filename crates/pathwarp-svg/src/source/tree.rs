@@ -1,7 +1,7 @@
 //! Resolves a drawing with usvg, with its fonts and images, within limits on its size.
 
 use super::check;
-use super::elements::ElementId;
+use super::elements::{ElementId, is_shape};
 use super::fontface;
 use super::fonts::{self, FontGuard};
 use super::images::{self, Missing, Rejected, Unread};
@@ -106,6 +106,7 @@ pub(crate) fn parse_counted(
     let mut source = SourceText::parse(text, name)?;
     source.unsupported_style = unsupported;
     missed.undrawn = undrawn(&source);
+    missed.undrawn.extend(meshes(&source));
     Ok((Arc::new(tree), missed))
 }
 
@@ -142,6 +143,19 @@ pub(crate) fn is_definition(source: &SourceText, e: ElementId) -> bool {
 fn is_elsewhere(link: &str) -> bool {
     let link = link.trim_start();
     !link.is_empty() && !link.starts_with('#')
+}
+
+/// Names the elements whose mesh gradients a picture lacks.
+fn meshes(source: &SourceText) -> impl Iterator<Item = String> {
+    let all = if source.meshes().is_empty() { 0..0 } else { 0..source.elements.len() };
+    let painted = |&e: &ElementId| {
+        (is_shape(&source.elements[e].tag) || source.elements[e].tag == "text") && !is_definition(source, e)
+    };
+    all.filter(painted).filter_map(|e| {
+        let is_mesh = |p: &&str| source.paint_server(e, p).is_some_and(|s| source.mesh(s).is_some());
+        let paint = ["fill", "stroke"].into_iter().find(is_mesh)?;
+        Some(format!("the {paint} of {} is not drawn: a mesh gradient, for Inkscape and PDF", source.display_name(e)))
+    })
 }
 
 /// Lists the content and style that a picture of the drawing lacks, worded for people.

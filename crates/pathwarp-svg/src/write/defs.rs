@@ -30,6 +30,8 @@ pub(super) struct Definitions {
     pub(super) mask_ids: Vec<Option<String>>,
     /// Ids of gradients and patterns.
     pub(super) servers: HashMap<ServerKey, String>,
+    /// Ids of mesh gradients by their content.
+    pub(super) meshes: HashMap<String, String>,
     /// Ids of filters.
     pub(super) filters: HashMap<FilterKey, String>,
     /// Regions of the source's filters, by their ids, that are to grow.
@@ -62,6 +64,7 @@ impl Definitions {
             clip_ids: vec![None; scene.clips.len()],
             mask_ids: vec![None; scene.masks.len()],
             servers: HashMap::new(),
+            meshes: HashMap::new(),
             filters: HashMap::new(),
             regions: BTreeMap::new(),
             in_source,

@@ -8,6 +8,7 @@ use crate::bend::outcome::{Notes, Skipped, Warning, WarpedDocument};
 use crate::scene::drawing::Drawing;
 use crate::source::elements::{ElementId, is_shape};
 use crate::source::images::{is_same_link, shown};
+use crate::source::mesh::is_mesh;
 use crate::source::text::SourceText;
 use crate::source::tree::{Unknown, is_definition, unknown};
 use pathwarp::Error;
@@ -131,9 +132,8 @@ fn flattened(
 /// A paint server that the renderer does not know, in words.
 fn paint(tag: &str) -> Option<&'static str> {
     match tag {
-        "meshgradient" | "meshGradient" | "mesh" => Some("a mesh gradient"),
         "hatch" => Some("a hatch"),
-        _ => None,
+        _ => is_mesh(tag).then_some("a mesh gradient"),
     }
 }
 
@@ -203,9 +203,8 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
     let warped: HashSet<ElementId> =
         parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element()).collect();
     let unknown = |e: ElementId, property: &str| {
-        let value = source.ancestors(e).find_map(|a| source.property(a, property).filter(|v| v != "inherit"))?;
-        let id = value.strip_prefix("url(")?.split(')').next()?.trim_matches(['"', '\'', ' ']).strip_prefix('#')?;
-        paint(&source.elements[*source.by_id().get(id)?.first()?].tag)
+        let server = source.paint_server(e, property)?;
+        paint(&source.elements[server].tag).filter(|_| source.mesh(server).is_none())
     };
     let why = |e: ElementId| {
         if let Some(why) = content(source, e) {

@@ -8,15 +8,17 @@ use super::input::WriteInput;
 use super::markup::{
     self, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
 };
-use super::{boxes, filter};
+use super::{boxes, filter, mesh};
 use crate::bend::fits::EmbeddedImage;
+use crate::bend::gradients::NewGradient;
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::bend::pictures::BentImage;
 use crate::bend::shading::{Shading, Stop};
 use crate::scene::geometry::affine;
 use crate::scene::model::Tiles;
 use crate::scene::model::{Group, Node, Part};
-use crate::source::number::{matrix, outline_data, short};
+use crate::source::mesh::MeshGradient;
+use crate::source::number::{MAX_DECIMALS, matrix, outline_data, short};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
@@ -284,10 +286,19 @@ impl<'a> Writer<'a> {
 
     /// A paint as a CSS value.
     pub(super) fn paint(&mut self, paint: &Paint, p: &Part, warped: Option<&WarpedPart>) -> String {
-        if let Some(bent) = warped.and_then(|w| self.input.bent_gradient(paint, p, w)) {
-            return self.bent_gradient(paint, bent);
+        if let Some((w, bent)) = warped.and_then(|w| Some((w, self.input.bent_gradient(paint, p, w)?))) {
+            return match bent {
+                NewGradient::Plain(shading) => self.bent_gradient(paint, shading),
+                NewGradient::Mesh(mesh) => self.mesh(paint, mesh, w.decimals),
+            };
         }
         let fit = self.input.paint_fit(paint, p, warped).map_or(Affine::IDENTITY, |f| f.affine);
+        if let Some(mesh) = self.input.drawing.mesh(paint) {
+            if self.markup.in_source && fit == Affine::IDENTITY {
+                return format!("url(#{})", server_id(paint));
+            }
+            return self.mesh(paint, &mesh.on(p.local.bounding_box().unwrap_or_default()).moved(fit), MAX_DECIMALS);
+        }
         match paint {
             Paint::Color(c) => color(*c),
             Paint::LinearGradient(g) => {
@@ -349,12 +360,7 @@ impl<'a> Writer<'a> {
 
     /// Writes a gradient with stops of its own in the place of another.
     fn bent_gradient(&mut self, paint: &Paint, bent: &Shading) -> String {
-        let name = match paint {
-            Paint::LinearGradient(g) => g.id(),
-            Paint::RadialGradient(g) => g.id(),
-            Paint::Color(_) | Paint::Pattern(_) => "gradient",
-        };
-        let id = self.defs.new_id(name);
+        let id = self.defs.new_id(server_id(paint));
         let (tag, geometry) = bent.geometry();
         let mut tag = self.markup.element(tag).with("id", &id).with("gradientUnits", "userSpaceOnUse");
         tag = geometry.into_iter().fold(tag, |tag, (name, v)| tag.with(name, &short(v)));
@@ -368,6 +374,19 @@ impl<'a> Writer<'a> {
         };
         let stops: String = bent.stops.iter().map(stop).collect();
         self.defs.push(&tag.around(&stops));
+        format!("url(#{id})")
+    }
+
+    /// Writes a mesh gradient in the place of one.
+    fn mesh(&mut self, paint: &Paint, mesh: &MeshGradient, decimals: u8) -> String {
+        let content = mesh::content(&self.markup, mesh, decimals);
+        // A stroke that becomes an outline has its paint written twice.
+        if let Some(id) = self.defs.meshes.get(&content) {
+            return format!("url(#{id})");
+        }
+        let id = self.defs.new_id(server_id(paint));
+        self.defs.push(&mesh::element(&self.markup, mesh, &id, decimals).around(&content));
+        self.defs.meshes.insert(content, id.clone());
         format!("url(#{id})")
     }
 
@@ -606,4 +625,14 @@ pub(super) fn image(input: &WriteInput<'_>, markup: &Markup<'_>, skipped: &mut V
     let tag = tag.with("height", &short(image.size().height().into()));
     let style = rendering.map(|how| ("style", format!("image-rendering:{how}")));
     tag.with_all(style).raw(&format!(" {}=\"{url}\"", markup.link())).empty()
+}
+
+/// The id of a paint server.
+fn server_id(paint: &Paint) -> &str {
+    match paint {
+        Paint::LinearGradient(g) => g.id(),
+        Paint::RadialGradient(g) => g.id(),
+        Paint::Pattern(p) => p.id(),
+        Paint::Color(_) => "gradient",
+    }
 }

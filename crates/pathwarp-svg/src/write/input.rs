@@ -3,9 +3,9 @@
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::BentDrawing;
 use crate::bend::fits::{EmbeddedImage, PaintFit, PlacedSlot, written};
+use crate::bend::gradients::NewGradient;
 use crate::bend::options::WarpOptions;
 use crate::bend::outcome::{PartOutcome, WarpedPart};
-use crate::bend::shading::Shading;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{Group, Node, Part, Scene, Tiles};
 use crate::source::text::SourceText;
@@ -75,7 +75,7 @@ impl<'a> WriteInput<'a> {
     }
 
     /// The gradient in the place of a paint of the part, if there is one.
-    pub(super) fn bent_gradient<'w>(&self, paint: &Paint, p: &Part, warped: &'w WarpedPart) -> Option<&'w Shading> {
+    pub(super) fn bent_gradient<'w>(&self, paint: &Paint, p: &Part, warped: &'w WarpedPart) -> Option<&'w NewGradient> {
         match &p.fill {
             Some(f) if std::ptr::eq(f.paint(), paint) => warped.fill_gradient.as_ref(),
             _ => warped.stroke_gradient.as_ref(),

@@ -9,4 +9,5 @@ pub(crate) mod input;
 mod keep;
 pub(crate) mod lettering;
 mod markup;
+mod mesh;
 mod page;

@@ -1,0 +1,165 @@
+//! Bends mesh gradients. The image of a mesh is cut along lines of constant u and v until the Coons patches of the pieces' sides come near
+//! enough to it. Each side is the cubic that has the image's ends and derivatives.
+
+use super::pictures::PictureError;
+use super::task::PartTask;
+use crate::source::mesh::{MeshGradient, PatchPoint, coons};
+use pathwarp::kurbo::{CubicBez, Point, Vec2};
+use pathwarp::map::{Jet, Map};
+
+/// Limit on the patches of a bent mesh, beside those of the source.
+const MAX_PATCHES: usize = 4096;
+
+/// Parameters of a patch at which it is compared with the image.
+const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// How far bilinear colours may be from smooth ones: half of what is noticeable.
+const COLOR: f64 = 4.0 / 255.0;
+
+/// The image of a mesh gradient on a part.
+pub(super) fn bent(t: &PartTask<'_>, mesh: &MeshGradient) -> Result<MeshGradient, PictureError> {
+    let bounds = t.part.local.bounding_box().unwrap_or_default();
+    let source = mesh.on(bounds).moved(t.part.frame);
+    let spend = |evaluations: usize| t.options().refit.budget.spend(evaluations as f64).is_ok();
+    image(&source, t.context.map, t.finest, spend).map(|m| m.moved(t.back))
+}
+
+/// The image of a mesh within a tolerance. `spend` says whether some evaluations of the map may be made.
+fn image(
+    source: &MeshGradient,
+    map: &dyn Map,
+    tolerance: f64,
+    spend: impl Fn(usize) -> bool,
+) -> Result<MeshGradient, PictureError> {
+    let limit = MAX_PATCHES + source.rows() * source.columns();
+    let mut grid = Grid { source, u: cuts(source.columns()), v: cuts(source.rows()) };
+    loop {
+        let patches = grid.columns() * grid.rows();
+        if patches > limit || !spend(patches * SAMPLES.len().pow(2)) {
+            return Err("its mesh would take too many patches".into());
+        }
+        // Once it is cut, a mesh of smooth colours has bilinear ones that look alike.
+        let cut = patches > source.rows() * source.columns();
+        let image = MeshGradient { smooth: source.smooth && !cut, ..grid.image(map) };
+        let Some([u, v]) = grid.coarse(&image, map, tolerance) else {
+            return Err("the map is not defined on all of its mesh".into());
+        };
+        if !u.contains(&true) && !v.contains(&true) {
+            return Ok(image);
+        }
+        (grid.u, grid.v) = (halved(&grid.u, &u), halved(&grid.v, &v));
+    }
+}
+
+/// A mesh with its cuts, which are parameters of the whole mesh and count patches.
+struct Grid<'a> {
+    source: &'a MeshGradient,
+    u: Vec<f64>,
+    v: Vec<f64>,
+}
+
+impl Grid<'_> {
+    fn columns(&self) -> usize {
+        self.u.len() - 1
+    }
+
+    fn rows(&self) -> usize {
+        self.v.len() - 1
+    }
+
+    /// A point of the source, in the row and column of patches in which the parameters `row` and `column` lie.
+    fn at(&self, u: f64, v: f64, [column, row]: [f64; 2]) -> PatchPoint {
+        let within = |t: f64, count: usize| (t as usize).min(count - 1);
+        let (column, row) = (within(column, self.source.columns()), within(row, self.source.rows()));
+        self.source.at(row, column, u - column as f64, v - row as f64)
+    }
+
+    /// The image, with a Hermite cubic for each side.
+    fn image(&self, map: &dyn Map) -> MeshGradient {
+        let mut ends: Vec<(Point, Vec2)> = Vec::new();
+        for v in &self.v {
+            for pair in self.u.windows(2) {
+                let third = (pair[1] - pair[0]) / 3.0;
+                let end = |&u: &f64| self.at(u, *v, [pair[0], *v]);
+                ends.extend(pair.iter().map(end).map(|s| (s.at, third * s.du)));
+            }
+        }
+        for pair in self.v.windows(2) {
+            let third = (pair[1] - pair[0]) / 3.0;
+            for u in &self.u {
+                let end = |&v: &f64| self.at(*u, v, [*u, pair[0]]);
+                ends.extend(pair.iter().map(end).map(|s| (s.at, third * s.dv)));
+            }
+        }
+        let places: Vec<Point> = ends.iter().map(|e| e.0).collect();
+        let mut jets = vec![Jet::UNDEFINED; places.len()];
+        map.jets(&places, &mut jets);
+        let side = |k: usize| {
+            let [from, to] = [2 * k, 2 * k + 1].map(|i| (jets[i].p, jets[i].push(ends[i].1)));
+            CubicBez::new(from.0, from.0 + from.1, to.0 - to.1, to.0)
+        };
+        let (columns, rows) = (self.columns(), self.rows());
+        let first = columns * (rows + 1);
+        let across = (0..=rows).map(|i| (i * columns..(i + 1) * columns).map(side).collect()).collect();
+        let down = (0..rows).map(|i| (i * (columns + 1)..(i + 1) * (columns + 1)).map(|k| side(first + k)).collect());
+        let colors = self.v.iter().map(|v| self.u.iter().map(|u| self.source.color(*u, *v)).collect()).collect();
+        MeshGradient { across, down: down.collect(), colors, smooth: false, in_box: false }
+    }
+
+    /// Whether the columns and the rows of an image are too coarse. Returns `None` where the map is undefined.
+    fn coarse(&self, image: &MeshGradient, map: &dyn Map, tolerance: f64) -> Option<[Vec<bool>; 2]> {
+        let lattice = || SAMPLES.iter().flat_map(|y| SAMPLES.iter().map(|x| (*x, *y)));
+        let cells = || (0..self.rows()).flat_map(|i| (0..self.columns()).map(move |k| (i, k)));
+        let between = |c: &[f64], t: f64| c[0] + t * (c[1] - c[0]);
+        let in_cell = |(i, k): (usize, usize), (x, y)| [between(&self.u[k..], x), between(&self.v[i..], y)];
+        let place = |cell: (usize, usize), at| {
+            let [u, v] = in_cell(cell, at);
+            self.at(u, v, [self.u[cell.1], self.v[cell.0]]).at
+        };
+        let place = &place;
+        let places: Vec<Point> = cells().flat_map(|cell| lattice().map(move |at| place(cell, at))).collect();
+        let mut images = places.clone();
+        map.points(&places, &mut images);
+        let (mut columns, mut rows) = (vec![false; self.columns()], vec![false; self.rows()]);
+        for ((i, k), wanted) in cells().zip(images.chunks_exact(SAMPLES.len().pow(2))) {
+            let sides = [image.across[i][k], image.down[i][k + 1], image.across[i + 1][k], image.down[i][k]];
+            // How far sides along u and along v are off, and what lies between them: 1 is the limit.
+            let [mut along_u, mut along_v, mut inside] = [0.0_f64; 3];
+            for ((x, y), wanted) in lattice().zip(wanted) {
+                let mut off = coons(sides, x, y).at.distance(*wanted) / tolerance;
+                if !off.is_finite() {
+                    return None;
+                }
+                if self.source.smooth && !image.smooth {
+                    let [u, v] = in_cell((i, k), (x, y));
+                    let colors = [image.color(k as f64 + x, i as f64 + y), self.source.color(u, v)];
+                    off = (0..4).map(|n| (colors[0][n] - colors[1][n]).abs() / COLOR).fold(off, f64::max);
+                }
+                let is_rim = |t: f64| t == 0.0 || t == 1.0;
+                let worst = match (is_rim(x), is_rim(y)) {
+                    (_, true) => &mut along_u,
+                    (true, false) => &mut along_v,
+                    (false, false) => &mut inside,
+                };
+                *worst = worst.max(off);
+            }
+            let both = inside > 1.0 && along_u.max(along_v) <= 1.0;
+            columns[k] |= both || along_u > 1.0;
+            rows[i] |= both || along_v > 1.0;
+        }
+        Some([columns, rows])
+    }
+}
+
+fn cuts(patches: usize) -> Vec<f64> {
+    (0..=patches).map(|i| i as f64).collect()
+}
+
+/// The cuts with a further one in the middle of each interval that asks for it.
+fn halved(cuts: &[f64], asks: &[bool]) -> Vec<f64> {
+    let between =
+        cuts.windows(2).zip(asks).flat_map(|(c, asks)| [c[0], if *asks { 0.5 * (c[0] + c[1]) } else { c[0] }]);
+    let mut all: Vec<f64> = between.chain(cuts.last().copied()).collect();
+    all.dedup();
+    all
+}

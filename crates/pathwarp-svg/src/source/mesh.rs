@@ -1,0 +1,410 @@
+//! Mesh gradients as Inkscape writes them: grids of Coons patches with a colour at each corner (SVG 2, drafts up to 2016,
+//! “Mesh Gradients”).
+//!
+//! Between the cubics T(u) above, B(u) below, L(v) on the left and R(v) on the right, the patch over [0, 1]² is
+//!
+//! S(u, v) = (1 − v) T(u) + v B(u) + (1 − u) L(v) + u R(v) − Q(u, v)
+//!
+//! where Q interpolates the four corners bilinearly. Any rectangle of it, cut along lines of constant u and v, is the Coons patch of its
+//! own four sides.
+
+use super::elements::ElementId;
+use super::text::SourceText;
+use pathwarp::kurbo::{Affine, CubicBez, ParamCurve as _, ParamCurveDeriv as _, Point, Rect, Vec2};
+use std::collections::HashMap;
+use std::str::FromStr as _;
+use svgtypes::NumberListParser;
+
+/// Red, green, blue and opacity, 0 to 1, not premultiplied.
+pub(crate) type Rgba = [f64; 4];
+
+/// A Coons patch: the control points of its sides, which lead around it from corner to corner, and the colours of the corners in the same
+/// order: red, green, blue and opacity, 0 to 1, bilinear between them.
+pub type CoonsPatch = ([Point; 12], [[f64; 4]; 4]);
+
+/// A mesh gradient. The patch in row r and column c lies between `across[r][c]` above and `across[r + 1][c]` below, which lead to the
+/// right, and `down[r][c]` and `down[r][c + 1]`, which lead down.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MeshGradient {
+    pub(crate) across: Vec<Vec<CubicBez>>,
+    pub(crate) down: Vec<Vec<CubicBez>>,
+    /// Colours of the corners, by rows.
+    pub(crate) colors: Vec<Vec<Rgba>>,
+    /// Whether colours change smoothly from patch to patch (`type="bicubic"`).
+    pub(crate) smooth: bool,
+    /// Whether coordinates are shares of the painted shape's box.
+    pub(crate) in_box: bool,
+}
+
+/// The point of a patch and its derivatives by u and v.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PatchPoint {
+    pub(crate) at: Point,
+    pub(crate) du: Vec2,
+    pub(crate) dv: Vec2,
+}
+
+impl MeshGradient {
+    pub(crate) fn rows(&self) -> usize {
+        self.down.len()
+    }
+
+    pub(crate) fn columns(&self) -> usize {
+        self.across[0].len()
+    }
+
+    /// The mesh with all its points moved.
+    pub(crate) fn moved(&self, by: Affine) -> Self {
+        let moved = |edges: &[Vec<CubicBez>]| edges.iter().map(|row| row.iter().map(|e| by * *e).collect()).collect();
+        Self { across: moved(&self.across), down: moved(&self.down), colors: self.colors.clone(), ..*self }
+    }
+
+    /// The mesh in the user space of a shape with this box.
+    pub(crate) fn on(&self, bounds: Rect) -> Self {
+        if !self.in_box {
+            return self.clone();
+        }
+        let size = Affine::scale_non_uniform(bounds.width(), bounds.height());
+        Self { in_box: false, ..self.moved(Affine::translate(bounds.origin().to_vec2()) * size) }
+    }
+
+    /// The point with the parameters `u` and `v` in the patch of a row and column. Beyond [0, 1] it is that of the same polynomial.
+    pub(crate) fn at(&self, row: usize, column: usize, u: f64, v: f64) -> PatchPoint {
+        let (top, bottom) = (self.across[row][column], self.across[row + 1][column]);
+        let (left, right) = (self.down[row][column], self.down[row][column + 1]);
+        coons([top, right, bottom, left], u, v)
+    }
+
+    /// The patches. Those with smooth colours are divided until bilinear ones look so.
+    pub(crate) fn patches(&self) -> Vec<CoonsPatch> {
+        /// Parts of a patch with smooth colours, along each side; Inkscape draws as many.
+        const PARTS: u32 = 8;
+        let parts = if self.smooth { PARTS } else { 1 };
+        let at = |k: u32| f64::from(k) / f64::from(parts);
+        let cells = (0..self.rows()).flat_map(|r| (0..self.columns()).map(move |c| (r, c)));
+        let part = |(r, c): (usize, usize), i: u32, k: u32| {
+            let ([u0, u1], [v0, v1]) = ([at(k), at(k + 1)], [at(i), at(i + 1)]);
+            let corner = |u: f64, v: f64| self.at(r, c, u, v);
+            let around = [corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)];
+            let third = (u1 - u0) / 3.0;
+            let ways: [fn(PatchPoint) -> Vec2; 4] = [|p| p.du, |p| p.dv, |p| -p.du, |p| -p.dv];
+            let side = |s: usize| {
+                let (from, to, way) = (around[s], around[(s + 1) % 4], ways[s]);
+                [from.at, from.at + third * way(from), to.at - third * way(to)]
+            };
+            let points = [side(0), side(1), side(2), side(3)].concat();
+            let color = |u: f64, v: f64| self.color(c as f64 + u, r as f64 + v);
+            let colors = [color(u0, v0), color(u1, v0), color(u1, v1), color(u0, v1)];
+            (std::array::from_fn(|j| points[j]), colors)
+        };
+        let parts = |cell| (0..parts).flat_map(move |i| (0..parts).map(move |k| (cell, i, k)));
+        cells.flat_map(parts).map(|(cell, i, k)| part(cell, i, k)).collect()
+    }
+
+    /// The colour at the parameters `u` and `v` of the whole mesh, which count patches: bilinear between the corners of a patch, or bicubic
+    /// as in Inkscape, with derivatives along the sides and none across (Hermite's form).
+    pub(crate) fn color(&self, u: f64, v: f64) -> Rgba {
+        let within = |t: f64, count: usize| (t as usize).min(count - 1);
+        let (row, column) = (within(v, self.rows()), within(u, self.columns()));
+        let (s, t) = (u - column as f64, v - row as f64);
+        let (along_u, along_v) =
+            if self.smooth { (hermite(s), hermite(t)) } else { ([1.0 - s, s, 0.0, 0.0], [1.0 - t, t, 0.0, 0.0]) };
+        let mut out = [0.0; 4];
+        for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let (r, c) = (row + i, column + k);
+            let (wide, high) = (length(self.across[r][column]), length(self.down[row][c]));
+            let add = |by: f64, color: Rgba, out: &mut Rgba| (0..4).for_each(|n| out[n] += by * color[n]);
+            add(along_u[k] * along_v[i], self.colors[r][c], &mut out);
+            if self.smooth {
+                let du = slope(self.columns(), c, |n| self.colors[r][n], |n| length(self.across[r][n]));
+                let dv = slope(self.rows(), r, |n| self.colors[n][c], |n| length(self.down[n][c]));
+                add(along_u[2 + k] * along_v[i] * wide, du, &mut out);
+                add(along_u[k] * along_v[2 + i] * high, dv, &mut out);
+            }
+        }
+        out.map(|level| level.clamp(0.0, 1.0))
+    }
+}
+
+/// The weights of the values at 0 and 1, and of the derivatives there, in a cubic at `t`.
+fn hermite(t: f64) -> [f64; 4] {
+    let rest = 1.0 - t;
+    [rest * rest * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), t * rest * rest, -t * t * rest]
+}
+
+/// The distance between a side's ends.
+fn length(side: CubicBez) -> f64 {
+    side.p0.distance(side.p3)
+}
+
+/// How fast colours change at corner `i` of `last` + 1, by unit of length, as Inkscape has it: within a row the mean of the steps before
+/// and after, at most three times either, and 0 at an extremum; at the ends such that the mean with the neighbour's is the step between.
+fn slope(last: usize, i: usize, color: impl Fn(usize) -> Rgba, length: impl Fn(usize) -> f64) -> Rgba {
+    std::array::from_fn(|n| {
+        let step = |k: usize| {
+            let length = length(k);
+            if length > 0.0 { (color(k + 1)[n] - color(k)[n]) / length } else { 0.0 }
+        };
+        let inner = |k: usize| monotone(step(k - 1), step(k));
+        match (i, last) {
+            // Inkscape sets the first end before the last.
+            (0, 1) => 2.0 * step(0),
+            (_, 1) => 0.0,
+            (0, _) => 2.0 * step(0) - inner(1),
+            _ if i == last => 2.0 * step(last - 1) - inner(last - 1),
+            _ => inner(i),
+        }
+    })
+}
+
+/// The point of a Coons patch with the sides top, right, bottom and left, of which the first and third lead to the right, the others down.
+pub(crate) fn coons([top, right, bottom, left]: [CubicBez; 4], u: f64, v: f64) -> PatchPoint {
+    let vec = |p: Point| p.to_vec2();
+    let at = |c: CubicBez, t: f64| vec(c.eval(t));
+    let slope = |c: CubicBez, t: f64| vec(c.deriv().eval(t));
+    let corners = [top.p0, top.p3, bottom.p0, bottom.p3].map(vec);
+    let q = |u: f64, v: f64| corners[0].lerp(corners[1], u).lerp(corners[2].lerp(corners[3], u), v);
+    let s = at(top, u).lerp(at(bottom, u), v) + at(left, v).lerp(at(right, v), u) - q(u, v);
+    let du = slope(top, u).lerp(slope(bottom, u), v) + at(right, v) - at(left, v) - (q(1.0, v) - q(0.0, v));
+    let dv = slope(left, v).lerp(slope(right, v), u) + at(bottom, u) - at(top, u) - (q(u, 1.0) - q(u, 0.0));
+    PatchPoint { at: s.to_point(), du, dv }
+}
+
+/// The slope between two steps of a monotone cubic spline: their mean, at most three times either, and 0 at an extremum.
+fn monotone(before: f64, after: f64) -> f64 {
+    if before * after <= 0.0 {
+        return 0.0;
+    }
+    let most = 3.0 * before.abs().min(after.abs());
+    (0.5 * (before + after)).clamp(-most, most)
+}
+
+/// Whether a tag is that of a mesh gradient.
+pub(crate) fn is_mesh(tag: &str) -> bool {
+    matches!(tag, "meshgradient" | "meshGradient" | "mesh")
+}
+
+/// Reads the mesh gradients of a drawing that are whole, by their ids.
+pub(super) fn read(source: &SourceText) -> HashMap<String, MeshGradient> {
+    let all = (0..source.elements.len()).filter(|&e| is_mesh(&source.elements[e].tag));
+    let named = all.filter_map(|e| Some((source.attr(e, "id")?.into_owned(), gradient(source, e)?)));
+    named.filter(|(id, _)| !id.is_empty()).collect()
+}
+
+fn gradient(source: &SourceText, e: ElementId) -> Option<MeshGradient> {
+    /// Longest chain of links followed.
+    const LONGEST: usize = 16;
+    let next = |&e: &ElementId| source.target(e).filter(|&t| is_mesh(&source.elements[t].tag));
+    let chain: Vec<ElementId> = std::iter::successors(Some(e), next).take(LONGEST).collect();
+    // In Inkscape, patches and units are those of the gradient that this one refers to, and nothing else is.
+    let length = |name: &str| source.attr(e, name).map_or(Some(0.0), |v| v.trim().parse::<f64>().ok());
+    let transform = match source.attr(e, "gradientTransform") {
+        None => Affine::IDENTITY,
+        Some(t) => crate::scene::geometry::transform(&t)?,
+    };
+    let rows = chain.iter().map(|&e| children(source, e, "meshrow")).find(|rows| !rows.is_empty())?;
+    let mut mesh = MeshGradient {
+        across: Vec::new(),
+        down: Vec::new(),
+        colors: Vec::new(),
+        smooth: source.attr(e, "type").is_some_and(|t| t.trim() == "bicubic"),
+        in_box: source.in_user_space(e, "gradientUnits") != Some(true),
+    };
+    let mut start = Point::new(length("x")?, length("y")?);
+    for row in rows {
+        let patches = children(source, row, "meshpatch");
+        start = push_row(source, &mut mesh, &patches, start)?;
+    }
+    let columns = mesh.columns();
+    let finite = |e: &CubicBez| e.is_finite();
+    let whole = columns > 0 && mesh.across.iter().all(|row| row.len() == columns);
+    let whole = whole && mesh.across.iter().chain(&mesh.down).flatten().all(finite);
+    whole.then(|| mesh.moved(transform))
+}
+
+/// The children with a tag, whose letters may be of either case.
+fn children(source: &SourceText, e: ElementId, tag: &str) -> Vec<ElementId> {
+    let own = |&c: &ElementId| source.elements[c].parent == Some(e) && source.elements[c].tag.eq_ignore_ascii_case(tag);
+    source.descendants(e).filter(own).collect()
+}
+
+/// Reads a row of patches. Each lists those of its sides that no patch before it has, clockwise from the top; a corner's colour stands with
+/// the side that begins there. `start` is where the first row begins. Returns where the next one does.
+fn push_row(source: &SourceText, mesh: &mut MeshGradient, patches: &[ElementId], start: Point) -> Option<Point> {
+    let first_row = mesh.across.is_empty();
+    if first_row {
+        mesh.across.push(Vec::new());
+        mesh.colors.push(Vec::new());
+    }
+    let above = mesh.across.len() - 1;
+    let (mut below, mut down, mut colors) = (Vec::new(), Vec::new(), Vec::new());
+    for (c, &patch) in patches.iter().enumerate() {
+        let stops = children(source, patch, "stop");
+        let mut stops = stops.into_iter();
+        if first_row {
+            let stop = stops.next()?;
+            let from = mesh.across[0].last().map_or(start, |before: &CubicBez| before.p3);
+            mesh.across[0].push(side(source, stop, from, None)?);
+            if c == 0 {
+                mesh.colors[0].push(color(source, stop)?);
+            }
+        }
+        let top = *mesh.across[above].get(c)?;
+        let stop = stops.next()?;
+        let right = side(source, stop, top.p3, None)?;
+        if first_row {
+            mesh.colors[0].push(color(source, stop)?);
+        }
+        let stop = stops.next()?;
+        let corner = down.last().map(|left: &CubicBez| left.p3);
+        let bottom = side(source, stop, right.p3, corner)?;
+        let right_color = color(source, stop)?;
+        if c == 0 {
+            let stop = stops.next()?;
+            down.push(reversed(side(source, stop, bottom.p3, Some(top.p0))?));
+            colors.push(color(source, stop)?);
+        }
+        colors.push(right_color);
+        down.push(right);
+        below.push(reversed(bottom));
+    }
+    let next = down.first()?.p3;
+    mesh.across.push(below);
+    mesh.down.push(down);
+    mesh.colors.push(colors);
+    Some(next)
+}
+
+pub(crate) fn reversed(c: CubicBez) -> CubicBez {
+    CubicBez::new(c.p3, c.p2, c.p1, c.p0)
+}
+
+/// Reads the side that a stop describes: a line or a cubic from `from`. If it is known where the side ends, `end`, the path need not say.
+fn side(source: &SourceText, stop: ElementId, from: Point, end: Option<Point>) -> Option<CubicBez> {
+    /// Numbers of a cubic.
+    const LONGEST: usize = 6;
+    let path = source.attr(stop, "path")?;
+    let path = path.trim();
+    let kind = path.chars().next()?;
+    let numbers = NumberListParser::from(&path[kind.len_utf8()..]).take(LONGEST + 1);
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().ok()?;
+    let base = if kind.is_ascii_lowercase() { from.to_vec2() } else { Vec2::ZERO };
+    let points: Vec<Point> = numbers.chunks_exact(2).map(|p| Point::new(p[0], p[1]) + base).collect();
+    let cubic = |a: Point, b: Point, to: Point| CubicBez::new(from, a, b, to);
+    let line = |to: Point| cubic(from.lerp(to, 1.0 / 3.0), from.lerp(to, 2.0 / 3.0), to);
+    match (kind.to_ascii_lowercase(), points.as_slice(), end) {
+        ('l' | 'z', _, Some(end)) | ('l', &[end], None) => Some(line(end)),
+        ('c', &[a, b] | &[a, b, _], Some(end)) | ('c', &[a, b, end], None) => Some(cubic(a, b, end)),
+        _ => None,
+    }
+}
+
+/// The colour of a stop, with its opacity.
+fn color(source: &SourceText, stop: ElementId) -> Option<Rgba> {
+    let text = source.property(stop, "stop-color").map_or("black".into(), |v| v.trim().to_owned());
+    let inherited = || source.ancestors(stop).find_map(|a| source.property(a, "color"));
+    let text = if text == "currentColor" { inherited().map_or("black".into(), |v| v.trim().to_owned()) } else { text };
+    let c = svgtypes::Color::from_str(&text).ok()?;
+    let opacity = match source.property(stop, "stop-opacity") {
+        None => 1.0,
+        Some(v) => match v.trim().strip_suffix('%') {
+            Some(share) => share.parse::<f64>().ok()? / 100.0,
+            None => v.trim().parse().ok()?,
+        },
+    };
+    let level = |v: u8| f64::from(v) / 255.0;
+    Some([level(c.red), level(c.green), level(c.blue), level(c.alpha) * opacity.clamp(0.0, 1.0)])
+}
+
+/// What usvg, which knows no mesh gradients, is given in the place of one: a gradient with its id that shows nothing, as browsers do.
+pub(super) fn stand_in(prefix: &str, id: &str) -> String {
+    let stops = ["", " offset=\"1\""].map(|at| format!("<{prefix}stop{at} stop-opacity=\"0\"/>")).concat();
+    let head = format!("id=\"{}\" gradientUnits=\"userSpaceOnUse\" x2=\"1\"", pathwarp_reader::xml::escape(id));
+    format!("<{prefix}linearGradient {head}>{stops}</{prefix}linearGradient>")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(inner: &str) -> Option<MeshGradient> {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{inner}</svg>");
+        SourceText::parse(svg, "t").unwrap().meshes().get("m").cloned()
+    }
+
+    const PATCH: &str = "<stop path='c 1,0 2,0 3,0' stop-color='#f00'/><stop path='l 0,3' style='stop-color:#0f0;stop-opacity:50%'/><stop \
+                         path='C2,3 1,3 0,3' stop-color='blue'/><stop path='c0,-1 0,-2' stop-color='#fff'/>";
+
+    #[test]
+    fn sides_that_neighbours_have_are_left_out() {
+        let right =
+            "<stop path='l 3,0'/><stop path='l 0,3' stop-color='#111'/><stop path='c -1,0 -2,0' stop-color='#222'/>";
+        let below = "<stop path='l 0,3'/><stop path='l -3,0' stop-color='#333'/><stop path='z' stop-color='#444'/>";
+        let last = "<stop path='l 0,3'/><stop path='l -3,0' stop-color='#555'/>";
+        let rows = [[PATCH, right], [below, last]].map(|row| {
+            let patches = row.map(|p| format!("<meshpatch>{p}</meshpatch>")).concat();
+            format!("<meshrow>{patches}</meshrow>")
+        });
+        let m = mesh(&format!("<meshgradient id='m' gradientUnits='userSpaceOnUse'>{}</meshgradient>", rows.concat()))
+            .unwrap();
+        assert_eq!((m.rows(), m.columns()), (2, 2));
+        // The sides are straight, so each patch is a square of 3 units, run through evenly.
+        for (row, column, u, v) in [(0, 0, 0.3, 0.7), (0, 1, 0.5, 0.25), (1, 0, 0.0, 1.0), (1, 1, 0.9, 0.1)] {
+            let at = m.at(row, column, u, v);
+            let wanted = Point::new(3.0 * (column as f64 + u), 3.0 * (row as f64 + v));
+            assert!(at.at.distance(wanted) < 1e-12, "{row} {column}: {at:?}");
+            assert!((at.du - Vec2::new(3.0, 0.0)).hypot() + (at.dv - Vec2::new(0.0, 3.0)).hypot() < 1e-12);
+        }
+        let grey = |v: u8| [f64::from(v) / 255.0; 3];
+        let [red, half, dark] = [m.colors[0][0], m.colors[0][1], m.colors[2][2]];
+        assert_eq!((red, half), ([1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.5]));
+        assert_eq!(dark[..3], grey(0x55));
+        assert_eq!([m.colors[1][0], m.colors[1][1]], [[1.0; 4], [0.0, 0.0, 1.0, 1.0]]);
+        assert_eq!(m.colors[2][0][..3], grey(0x44));
+    }
+
+    #[test]
+    fn what_is_not_whole_is_no_mesh() {
+        let whole = |inner: &str| {
+            format!("<meshgradient id='m'><meshrow><meshpatch>{inner}</meshpatch></meshrow></meshgradient>")
+        };
+        assert!(mesh(&whole(PATCH)).is_some());
+        for broken in [
+            PATCH.replace("l 0,3", "l 0"),
+            PATCH.replace("l 0,3", ""),
+            PATCH.replace("#f00", "no"),
+            PATCH.replace("C2,3", "C2,1e999"),
+            PATCH.replacen("<stop", "<other", 1),
+            String::new(),
+        ] {
+            assert!(mesh(&whole(&broken)).is_none(), "{broken}");
+        }
+        let ragged = format!("<meshpatch>{PATCH}</meshpatch></meshrow><meshrow>");
+        assert!(mesh(&format!("<meshgradient id='m'><meshrow>{ragged}</meshrow></meshgradient>")).is_none());
+        // A chain of links that ends in itself.
+        assert!(mesh("<meshgradient id='m' href='#m'/>").is_none());
+    }
+
+    /// Levels that Inkscape 1.2 draws in the middle of a row of patches, whose widths are 100, 50, 150 and 100.
+    #[test]
+    fn smooth_colours_are_inkscapes() {
+        let (widths, levels) = ([100, 50, 150, 100], ["#000", "#333", "#ccc", "#fff", "#999"]);
+        let stop = |path: String, color: &str| format!("<stop path='{path}' stop-color='{color}'/>");
+        let patch = |k: usize| {
+            let (w, next) = (widths[k], levels[k + 1]);
+            let sides =
+                [stop(format!("l {w},0"), levels[0]), stop("l 0,100".into(), next), stop(format!("l -{w},0"), next)];
+            let left = if k == 0 { stop("z".into(), levels[0]) } else { String::new() };
+            format!("<meshpatch>{}{left}</meshpatch>", sides.concat())
+        };
+        let patches: String = (0..4).map(patch).collect();
+        let m =
+            mesh(&format!("<meshgradient id='m' type='bicubic'><meshrow>{patches}</meshrow></meshgradient>")).unwrap();
+        for (u, level) in
+            [(0.405, 0.0), (0.755, 20.0), (1.21, 78.0), (1.61, 153.0), (2.0, 204.0), (2.336, 240.0), (2.837, 254.0)]
+        {
+            let found = 255.0 * m.color(u, 0.5)[0];
+            assert!((found - level).abs() < 2.5, "{u}: {found} for {level}");
+        }
+    }
+}
