@@ -4,6 +4,7 @@
 use super::pictures::PictureError;
 use super::task::PartTask;
 use crate::source::mesh::{MeshGradient, PatchPoint, coons};
+use pathwarp::budget::cost;
 use pathwarp::kurbo::{CubicBez, Point, Vec2};
 use pathwarp::map::{Jet, Map};
 
@@ -13,6 +14,9 @@ const MAX_PATCHES: usize = 4096;
 /// Parameters of a patch at which it is compared with the image.
 const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
+/// Work of a patch: it is compared with the image, and its sides are laid out and written.
+const PATCH: f64 = (SAMPLES.len() * SAMPLES.len()) as f64 + 4.0 * cost::SEGMENT;
+
 /// How far bilinear colours may be from smooth ones: half of what is noticeable.
 const COLOR: f64 = 4.0 / 255.0;
 
@@ -20,22 +24,22 @@ const COLOR: f64 = 4.0 / 255.0;
 pub(super) fn bent(t: &PartTask<'_>, mesh: &MeshGradient) -> Result<MeshGradient, PictureError> {
     let bounds = t.part.local.bounding_box().unwrap_or_default();
     let source = mesh.on(bounds).moved(t.part.frame);
-    let spend = |evaluations: usize| t.options().refit.budget.spend(evaluations as f64).is_ok();
+    let spend = |work: f64| t.options().refit.budget.spend(work).is_ok();
     image(&source, t.context.map, t.finest, spend).map(|m| m.moved(t.back))
 }
 
-/// The image of a mesh within a tolerance. `spend` says whether some evaluations of the map may be made.
+/// The image of a mesh within a tolerance. `spend` says whether some work may be done.
 fn image(
     source: &MeshGradient,
     map: &dyn Map,
     tolerance: f64,
-    spend: impl Fn(usize) -> bool,
+    spend: impl Fn(f64) -> bool,
 ) -> Result<MeshGradient, PictureError> {
     let limit = MAX_PATCHES + source.rows() * source.columns();
     let mut grid = Grid { source, u: cuts(source.columns()), v: cuts(source.rows()) };
     loop {
         let patches = grid.columns() * grid.rows();
-        if patches > limit || !spend(patches * SAMPLES.len().pow(2)) {
+        if patches > limit || !spend(patches as f64 * PATCH) {
             return Err("its mesh would take too many patches".into());
         }
         // Once it is cut, a mesh of smooth colours has bilinear ones that look alike.

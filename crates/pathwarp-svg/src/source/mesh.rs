@@ -186,9 +186,21 @@ pub(crate) fn is_mesh(tag: &str) -> bool {
 
 /// Reads the mesh gradients of a drawing that are whole, by their ids.
 pub(super) fn read(source: &SourceText) -> HashMap<String, MeshGradient> {
-    let all = (0..source.elements.len()).filter(|&e| is_mesh(&source.elements[e].tag));
-    let named = all.filter_map(|e| Some((source.attr(e, "id")?.into_owned(), gradient(source, e)?)));
-    named.filter(|(id, _)| !id.is_empty()).collect()
+    /// Limit on the patches of those that refer to others, which copy them.
+    const MAX_COPIED: usize = 100_000;
+    let mut copied = 0;
+    let mut out = HashMap::new();
+    for e in (0..source.elements.len()).filter(|&e| is_mesh(&source.elements[e].tag)) {
+        let id = source.attr(e, "id").filter(|id| !id.is_empty());
+        let is_copy = source.link(e).is_some();
+        if let Some(id) = id.filter(|_| !is_copy || copied < MAX_COPIED)
+            && let Some(mesh) = gradient(source, e)
+        {
+            copied += if is_copy { mesh.rows() * mesh.columns() } else { 0 };
+            out.insert(id.into_owned(), mesh);
+        }
+    }
+    out
 }
 
 fn gradient(source: &SourceText, e: ElementId) -> Option<MeshGradient> {
