@@ -87,7 +87,7 @@ impl Drawing {
     pub(crate) fn mesh(&self, paint: &usvg::Paint) -> Option<&MeshGradient> {
         let usvg::Paint::LinearGradient(g) = paint else { return None };
         let is_own = || !self.scene().foreign.contains(&(Arc::as_ptr(g) as usize));
-        self.source.meshes().get(g.id()).filter(|_| is_own())
+        self.source.meshes.get(g.id()).filter(|_| is_own())
     }
 
     /// Resolves the drawing again, with pattern tiles laid out as geometry.

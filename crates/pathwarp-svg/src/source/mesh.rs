@@ -8,12 +8,12 @@
 //! where Q interpolates the four corners bilinearly. Any rectangle of it, cut along lines of constant u and v, is the Coons patch of its
 //! own four sides.
 
-use super::elements::ElementId;
-use super::text::SourceText;
+use super::elements::{XLINK, declared};
 use pathwarp::kurbo::{Affine, CubicBez, ParamCurve as _, ParamCurveDeriv as _, Point, Rect, Vec2};
 use std::collections::HashMap;
 use std::str::FromStr as _;
 use svgtypes::NumberListParser;
+use usvg::roxmltree::{Document, Node};
 
 /// Red, green, blue and opacity, 0 to 1, not premultiplied.
 pub(crate) type Rgba = [f64; 4];
@@ -185,64 +185,78 @@ pub(crate) fn is_mesh(tag: &str) -> bool {
 }
 
 /// Reads the mesh gradients of a drawing that are whole, by their ids.
-pub(super) fn read(source: &SourceText) -> HashMap<String, MeshGradient> {
+pub(super) fn read(doc: &Document<'_>) -> HashMap<String, MeshGradient> {
     /// Limit on the patches of those that refer to others, which copy them.
     const MAX_COPIED: usize = 100_000;
-    let mut copied = 0;
     let mut out = HashMap::new();
-    for e in (0..source.elements.len()).filter(|&e| is_mesh(&source.elements[e].tag)) {
-        let id = source.attr(e, "id").filter(|id| !id.is_empty());
-        let is_copy = source.link(e).is_some();
-        if let Some(id) = id.filter(|_| !is_copy || copied < MAX_COPIED)
-            && let Some(mesh) = gradient(source, e)
+    if !doc.input_text().contains("mesh") {
+        return out;
+    }
+    let named = |n: &Node<'_, '_>| n.is_element() && n.attribute("id").is_some_and(|id| !id.is_empty());
+    let all: Vec<Node<'_, '_>> = doc.descendants().filter(|n| is_mesh(n.tag_name().name()) && named(n)).collect();
+    let by_id: HashMap<&str, Node<'_, '_>> = all.iter().filter_map(|n| Some((n.attribute("id")?, *n))).collect();
+    let mut copied = 0;
+    for node in &all {
+        let mut chain = vec![*node];
+        // Longer chains of links are not followed.
+        while let Some(next) = chain.last().and_then(|n| by_id.get(link(*n)?)).filter(|_| chain.len() < 16) {
+            chain.push(*next);
+        }
+        if (chain.len() == 1 || copied < MAX_COPIED)
+            && let Some(id) = node.attribute("id")
+            && let Some(mesh) = gradient(&chain)
         {
-            copied += if is_copy { mesh.rows() * mesh.columns() } else { 0 };
-            out.insert(id.into_owned(), mesh);
+            copied += if chain.len() > 1 { mesh.rows() * mesh.columns() } else { 0 };
+            out.insert(id.to_owned(), mesh);
         }
     }
     out
 }
 
-fn gradient(source: &SourceText, e: ElementId) -> Option<MeshGradient> {
-    /// Longest chain of links followed.
-    const LONGEST: usize = 16;
-    let next = |&e: &ElementId| source.target(e).filter(|&t| is_mesh(&source.elements[t].tag));
-    let chain: Vec<ElementId> = std::iter::successors(Some(e), next).take(LONGEST).collect();
+/// The id that an element refers to.
+fn link<'a>(node: Node<'a, '_>) -> Option<&'a str> {
+    node.attribute("href").or_else(|| node.attribute((XLINK, "href")))?.trim().strip_prefix('#')
+}
+
+/// Reads a gradient with those that it refers to.
+fn gradient(chain: &[Node<'_, '_>]) -> Option<MeshGradient> {
+    let own = *chain.first()?;
     // In Inkscape, patches and units are those of the gradient that this one refers to, and nothing else is.
-    let length = |name: &str| source.attr(e, name).map_or(Some(0.0), |v| v.trim().parse::<f64>().ok());
-    let transform = match source.attr(e, "gradientTransform") {
+    let length = |name: &str| own.attribute(name).map_or(Some(0.0), |v| v.trim().parse::<f64>().ok());
+    let transform = match own.attribute("gradientTransform") {
         None => Affine::IDENTITY,
-        Some(t) => crate::scene::geometry::transform(&t)?,
+        Some(t) => {
+            let t = svgtypes::Transform::from_str(t).ok()?;
+            Affine::new([t.a, t.b, t.c, t.d, t.e, t.f])
+        }
     };
-    let rows = chain.iter().map(|&e| children(source, e, "meshrow")).find(|rows| !rows.is_empty())?;
+    let units = chain.iter().find_map(|n| n.attribute("gradientUnits"));
+    let rows = chain.iter().map(|n| children(*n, "meshrow")).find(|rows| !rows.is_empty())?;
     let mut mesh = MeshGradient {
         across: Vec::new(),
         down: Vec::new(),
         colors: Vec::new(),
-        smooth: source.attr(e, "type").is_some_and(|t| t.trim() == "bicubic"),
-        in_box: source.in_user_space(e, "gradientUnits") != Some(true),
+        smooth: own.attribute("type").is_some_and(|t| t.trim() == "bicubic"),
+        in_box: units.is_none_or(|u| u.trim() != "userSpaceOnUse"),
     };
     let mut start = Point::new(length("x")?, length("y")?);
     for row in rows {
-        let patches = children(source, row, "meshpatch");
-        start = push_row(source, &mut mesh, &patches, start)?;
+        start = push_row(&mut mesh, &children(row, "meshpatch"), start)?;
     }
     let columns = mesh.columns();
-    let finite = |e: &CubicBez| e.is_finite();
     let whole = columns > 0 && mesh.across.iter().all(|row| row.len() == columns);
-    let whole = whole && mesh.across.iter().chain(&mesh.down).flatten().all(finite);
+    let whole = whole && mesh.across.iter().chain(&mesh.down).flatten().all(CubicBez::is_finite);
     whole.then(|| mesh.moved(transform))
 }
 
 /// The children with a tag, whose letters may be of either case.
-fn children(source: &SourceText, e: ElementId, tag: &str) -> Vec<ElementId> {
-    let own = |&c: &ElementId| source.elements[c].parent == Some(e) && source.elements[c].tag.eq_ignore_ascii_case(tag);
-    source.descendants(e).filter(own).collect()
+fn children<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Vec<Node<'a, 'i>> {
+    node.children().filter(|c| c.tag_name().name().eq_ignore_ascii_case(tag)).collect()
 }
 
 /// Reads a row of patches. Each lists those of its sides that no patch before it has, clockwise from the top; a corner's colour stands with
 /// the side that begins there. `start` is where the first row begins. Returns where the next one does.
-fn push_row(source: &SourceText, mesh: &mut MeshGradient, patches: &[ElementId], start: Point) -> Option<Point> {
+fn push_row(mesh: &mut MeshGradient, patches: &[Node<'_, '_>], start: Point) -> Option<Point> {
     let first_row = mesh.across.is_empty();
     if first_row {
         mesh.across.push(Vec::new());
@@ -251,30 +265,30 @@ fn push_row(source: &SourceText, mesh: &mut MeshGradient, patches: &[ElementId],
     let above = mesh.across.len() - 1;
     let (mut below, mut down, mut colors) = (Vec::new(), Vec::new(), Vec::new());
     for (c, &patch) in patches.iter().enumerate() {
-        let stops = children(source, patch, "stop");
+        let stops = children(patch, "stop");
         let mut stops = stops.into_iter();
         if first_row {
             let stop = stops.next()?;
             let from = mesh.across[0].last().map_or(start, |before: &CubicBez| before.p3);
-            mesh.across[0].push(side(source, stop, from, None)?);
+            mesh.across[0].push(side(stop, from, None)?);
             if c == 0 {
-                mesh.colors[0].push(color(source, stop)?);
+                mesh.colors[0].push(color(stop)?);
             }
         }
         let top = *mesh.across[above].get(c)?;
         let stop = stops.next()?;
-        let right = side(source, stop, top.p3, None)?;
+        let right = side(stop, top.p3, None)?;
         if first_row {
-            mesh.colors[0].push(color(source, stop)?);
+            mesh.colors[0].push(color(stop)?);
         }
         let stop = stops.next()?;
         let corner = down.last().map(|left: &CubicBez| left.p3);
-        let bottom = side(source, stop, right.p3, corner)?;
-        let right_color = color(source, stop)?;
+        let bottom = side(stop, right.p3, corner)?;
+        let right_color = color(stop)?;
         if c == 0 {
             let stop = stops.next()?;
-            down.push(reversed(side(source, stop, bottom.p3, Some(top.p0))?));
-            colors.push(color(source, stop)?);
+            down.push(reversed(side(stop, bottom.p3, Some(top.p0))?));
+            colors.push(color(stop)?);
         }
         colors.push(right_color);
         down.push(right);
@@ -292,11 +306,10 @@ pub(crate) fn reversed(c: CubicBez) -> CubicBez {
 }
 
 /// Reads the side that a stop describes: a line or a cubic from `from`. If it is known where the side ends, `end`, the path need not say.
-fn side(source: &SourceText, stop: ElementId, from: Point, end: Option<Point>) -> Option<CubicBez> {
+fn side(stop: Node<'_, '_>, from: Point, end: Option<Point>) -> Option<CubicBez> {
     /// Numbers of a cubic.
     const LONGEST: usize = 6;
-    let path = source.attr(stop, "path")?;
-    let path = path.trim();
+    let path = stop.attribute("path")?.trim();
     let kind = path.chars().next()?;
     let numbers = NumberListParser::from(&path[kind.len_utf8()..]).take(LONGEST + 1);
     let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().ok()?;
@@ -312,20 +325,28 @@ fn side(source: &SourceText, stop: ElementId, from: Point, end: Option<Point>) -
 }
 
 /// The colour of a stop, with its opacity.
-fn color(source: &SourceText, stop: ElementId) -> Option<Rgba> {
-    let text = source.property(stop, "stop-color").map_or("black".into(), |v| v.trim().to_owned());
-    let inherited = || source.ancestors(stop).find_map(|a| source.property(a, "color"));
-    let text = if text == "currentColor" { inherited().map_or("black".into(), |v| v.trim().to_owned()) } else { text };
-    let c = svgtypes::Color::from_str(&text).ok()?;
-    let opacity = match source.property(stop, "stop-opacity") {
+fn color(stop: Node<'_, '_>) -> Option<Rgba> {
+    let inherited = || stop.ancestors().find_map(|a| property(a, "color"));
+    let text = match property(stop, "stop-color") {
+        Some("currentColor") => inherited(),
+        own => own,
+    };
+    let c = svgtypes::Color::from_str(text.unwrap_or("black")).ok()?;
+    let opacity = match property(stop, "stop-opacity") {
         None => 1.0,
-        Some(v) => match v.trim().strip_suffix('%') {
+        Some(v) => match v.strip_suffix('%') {
             Some(share) => share.parse::<f64>().ok()? / 100.0,
-            None => v.trim().parse().ok()?,
+            None => v.parse().ok()?,
         },
     };
     let level = |v: u8| f64::from(v) / 255.0;
     Some([level(c.red), level(c.green), level(c.blue), level(c.alpha) * opacity.clamp(0.0, 1.0)])
+}
+
+/// The value of a property that an element itself declares.
+fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    let style = node.attribute("style").and_then(|s| declared(s, name));
+    style.or_else(|| node.attribute(name)).map(str::trim)
 }
 
 /// What usvg, which knows no mesh gradients, is given in the place of one: a gradient with its id that shows nothing, as browsers do.
@@ -341,7 +362,7 @@ mod tests {
 
     fn mesh(inner: &str) -> Option<MeshGradient> {
         let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{inner}</svg>");
-        SourceText::parse(svg, "t").unwrap().meshes().get("m").cloned()
+        read(&Document::parse(&svg).unwrap()).get("m").cloned()
     }
 
     const PATCH: &str = "<stop path='c 1,0 2,0 3,0' stop-color='#f00'/><stop path='l 0,3' style='stop-color:#0f0;stop-opacity:50%'/><stop \

@@ -42,6 +42,8 @@ pub(crate) struct SourceText {
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
     /// Small differences from what browsers show: a sentence, and the element or name it is about.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
+    /// Mesh gradients by id.
+    pub(crate) meshes: HashMap<String, MeshGradient>,
     marks: Marks,
     /// Outlines of `path` elements, read ahead for large drawings.
     pub(crate) ahead: Ahead,
@@ -49,7 +51,6 @@ pub(crate) struct SourceText {
     by_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     by_tree_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     line_starts: OnceLock<Vec<usize>>,
-    meshes: OnceLock<HashMap<String, MeshGradient>>,
     /// Numbers of characters before evenly spaced positions.
     characters: OnceLock<Vec<usize>>,
 }
@@ -96,10 +97,11 @@ impl SourceText {
                 format!("the root element is <{}>, not <svg>", root.tag_name().name()),
             ));
         };
+        let meshes = mesh::read(&doc);
         drop(doc);
         let Table { elements, css, unpatchable } = table;
         let animated = elements.iter().any(|e| is_animation(&e.tag));
-        Ok(Self { text, elements, css, animated, unpatchable, ..Self::default() })
+        Ok(Self { text, elements, css, animated, unpatchable, meshes, ..Self::default() })
     }
 
     /// Whether any stack is deep enough for the drawing and nothing in it could make its readers panic. References multiply the
@@ -184,12 +186,7 @@ impl SourceText {
 
     /// The mesh gradient that an element defines.
     pub(crate) fn mesh(&self, e: ElementId) -> Option<&MeshGradient> {
-        self.meshes().get(&*self.attr(e, "id")?).filter(|_| mesh::is_mesh(&self.elements[e].tag))
-    }
-
-    /// Mesh gradients by id.
-    pub(crate) fn meshes(&self) -> &HashMap<String, MeshGradient> {
-        self.meshes.get_or_init(|| mesh::read(self))
+        self.meshes.get(&*self.attr(e, "id")?).filter(|_| mesh::is_mesh(&self.elements[e].tag))
     }
 
     /// Elements by their id in usvg's tree, which may be a temporary one.
@@ -383,7 +380,7 @@ impl SourceText {
         }));
         // A mesh gradient gets a stand-in, which usvg takes for it.
         patches.extend(self.elements.iter().filter(|e| mesh::is_mesh(&e.tag)).filter_map(|e| {
-            let id = e.attr(&self.text, "id").filter(|id| self.meshes().contains_key(&**id))?;
+            let id = e.attr(&self.text, "id").filter(|id| self.meshes.contains_key(&**id))?;
             Some((e.range.start..e.range.start, mesh::stand_in(self.prefix(), &id)))
         }));
         patches.sort_by_key(|(at, _)| at.start);

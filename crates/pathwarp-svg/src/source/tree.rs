@@ -147,7 +147,7 @@ fn is_elsewhere(link: &str) -> bool {
 
 /// Names the elements whose mesh gradients a picture lacks.
 fn meshes(source: &SourceText) -> impl Iterator<Item = String> {
-    let all = if source.meshes().is_empty() { 0..0 } else { 0..source.elements.len() };
+    let all = if source.meshes.is_empty() { 0..0 } else { 0..source.elements.len() };
     let painted = |&e: &ElementId| {
         (is_shape(&source.elements[e].tag) || source.elements[e].tag == "text") && !is_definition(source, e)
     };
