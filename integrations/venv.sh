@@ -8,12 +8,15 @@ need_python() {
     exit 0
 }
 
-# Makes the environment $1 with packages; where they cannot be fetched, ends the tests with the message $2.
+# Makes the environment $1 with packages; where they cannot be fetched, ends the tests with the message $2. With FETCH_ONLY, that is all.
 fetch_into() {
     local env=$1 message=$2
     shift 2
     [ -x "$env/bin/python" ] || "$python" -m venv "$env"
-    "$env/bin/python" -m pip install --quiet --disable-pip-version-check "$@" && return
+    if "$env/bin/python" -m pip install --quiet --disable-pip-version-check "$@"; then
+        [ -z "${FETCH_ONLY:-}" ] && return
+        exit 0
+    fi
     echo "skipped: $message" >&2
     exit 0
 }
