@@ -3,16 +3,18 @@
 use crate::advice::Flags;
 use crate::bitmap::{background, encode};
 use crate::commands::text::set_plainly;
+use crate::export::Exported;
 use crate::failure::Failure;
+use crate::first_steps::First;
 use crate::format::{Choice, DRAWINGS, Format, PICTURES};
-use crate::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which, read_options};
+use crate::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which};
 use crate::options::{CommonOptions, Given};
 use crate::output::PendingFile;
 use crate::pipeline::{Framed, Ready, Session};
 use crate::report::ReportedShape;
-use crate::{coming_from, export, recipe_file, references};
+use crate::{coming_from, first_steps, recipe_file, references};
 use pathwarp::Outline;
-use pathwarp::deform::Registry;
+use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::Rect;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary, Words};
@@ -35,8 +37,9 @@ struct EditedArtwork {
     plugins: Vec<(String, String)>,
     /// The folder of the drawing, where its results go.
     folder: PathBuf,
-    /// The frame for the guides and the baseline of the last picture.
+    /// The frame for the guides and the baseline of the last picture, and what was done before bending.
     framed: Option<Framed>,
+    first: First,
 }
 
 impl EditedArtwork {
@@ -58,6 +61,7 @@ impl EditedArtwork {
             plugins: Vec::new(),
             folder: PathBuf::new(),
             framed: None,
+            first: Vec::new(),
         }
     }
 
@@ -76,9 +80,14 @@ impl EditedArtwork {
         is_file: bool,
         work: impl FnOnce(&Session<'_>, &mut SvgArtwork, Ready) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
-        let mut resolved = recipe.clone();
+        let (mut resolved, given, first) = self.told(recipe)?;
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let Self { svg, shown, registry, given, options, framed, .. } = self;
+        if self.first != first {
+            (self.framed, self.first) = (None, first);
+            self.options = given.read()?;
+        }
+        let given = &given;
+        let Self { svg, shown, registry, options, framed, .. } = self;
         let svg = shown.as_mut().filter(|_| !is_file).unwrap_or(svg);
         svg.renew_budget();
         svg.restore(options);
@@ -87,10 +96,64 @@ impl EditedArtwork {
         work(&session, svg, ready)
     }
 
+    /// The steps and options as the command line has them.
+    fn told(&self, recipe: &Recipe) -> Result<(Recipe, Given, First), Failure> {
+        let (recipe, first) = first_steps::taken(recipe);
+        let mut given = self.given.clone();
+        for (name, value) in &first {
+            given.set(name, value).map_err(Failure::Usage)?;
+        }
+        Ok((recipe, given, first))
+    }
+
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
-        let folder = self.folder.clone();
-        let is_file = matches!(fineness, Fineness::Finished { .. });
-        self.with_steps(recipe, is_file, |session, svg, ready| bent(session, svg, ready, recipe, fineness, &folder))
+        let told = first_steps::taken(recipe).0;
+        self.with_steps(recipe, false, |session, svg, ready| bent(session, svg, ready, &told, fineness))
+    }
+
+    /// The result as a file of this format; for a picture, as the SVG that it is drawn from.
+    fn finished(&mut self, recipe: &Recipe, format: Format) -> Result<Exported, Failure> {
+        let (told, folder) = (first_steps::taken(recipe).0, self.folder.clone());
+        self.with_steps(recipe, true, |session, svg, ready| {
+            let embeds = matches!(format, Format::Svg | Format::Svgz);
+            let text = || recipe_file::write(session.registry, &told, session.given, &folder);
+            let request = WarpRequest {
+                recipe: &told,
+                built: &ready.built,
+                options: session.options,
+                tolerance: session.tolerance(svg, &ready.frame)?,
+                suited: session.options.tolerance.is_none(),
+                embedded_recipe: embeds.then(text).transpose()?,
+                same_view: false,
+                edit: None,
+            };
+            svg.set_format(if format.of_picture(None).is_none() { format } else { Format::Svg });
+            let written = svg.written(&request);
+            svg.set_format(Format::Svg);
+            ready.checked(written)
+        })
+    }
+
+    /// The result as the file `to`, and what its format cannot hold.
+    fn written(
+        &mut self,
+        recipe: &Recipe,
+        to: &Path,
+        picture: &PictureOptions,
+    ) -> Result<(Vec<u8>, Vec<String>), Failure> {
+        let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
+        let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
+        let Exported { bytes, warnings } = self.finished(recipe, format)?;
+        if format.of_picture(None).is_none() {
+            return Ok((bytes, warnings));
+        }
+        let limits = self.options.reading.limits.for_input(bytes.len());
+        let tree = usvg_tree::parse_tree(&bytes, "the result", &ReadOptions::default())?;
+        let size = picture.scale.map_or(Size::Width(picture.width), Size::Scale);
+        let background = picture.background.as_deref().map(background).transpose().map_err(Failure::usage)?;
+        let background = background.and_then(|b| b.0);
+        let drawn = RenderOptions { size, background }.render_within(&tree, &limits)?;
+        Ok((encode(drawn, format, None)?, warnings))
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
@@ -105,19 +168,17 @@ fn bent(
     ready: Ready,
     given: &Recipe,
     fineness: Fineness,
-    folder: &Path,
 ) -> Result<Bent, Failure> {
     let exact = session.tolerance(svg, &ready.frame)?;
     let is_draft = matches!(fineness, Fineness::Draft(_));
-    let text = || recipe_file::write(session.registry, given, session.given, folder);
     let request = WarpRequest {
         recipe: given,
         built: &ready.built,
         options: session.options,
         tolerance: if let Fineness::Draft(draft) = fineness { draft.max(exact) } else { exact },
         suited: session.options.tolerance.is_none() && !is_draft,
-        embedded_recipe: (fineness == Fineness::Finished { embedded: true }).then(text).transpose()?,
-        same_view: !matches!(fineness, Fineness::Finished { .. }),
+        embedded_recipe: None,
+        same_view: true,
         edit: None,
     };
     if is_draft {
@@ -130,13 +191,16 @@ fn bent(
     let WarpedResult::Bytes(bytes) = warped.result else {
         return Err(Failure::Input("the result is not a drawing".into()));
     };
+    let edited = svg.edited();
     let svg = String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?;
     let Ready { recipe: resolved, built, .. } = ready;
     let shapes = &warped.shapes;
     let fold = |s: &ReportedShape| s.fold.at.map(|at| (s.shape.id.clone(), at));
+    let bent = [0, 1].map(|i| shapes.iter().map(|s| [s.shape.path.segments_in, s.shape.path.segments_out][i]).sum());
+    let edited = edited.unwrap_or(bent);
     let summary = Summary {
-        segments_in: shapes.iter().map(|s| s.shape.path.segments_in).sum(),
-        segments_out: shapes.iter().map(|s| s.shape.path.segments_out).sum(),
+        segments_in: edited[0],
+        segments_out: if shapes.is_empty() { edited[1] } else { bent[1] },
         max_error: shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max),
         tolerance,
         folds: shapes.iter().filter_map(fold).collect(),
@@ -168,19 +232,33 @@ impl Artwork for EditedArtwork {
         self.said(bent)
     }
 
+    fn written(
+        &mut self,
+        recipe: &Recipe,
+        to: &Path,
+        picture: &PictureOptions,
+    ) -> Result<(Vec<u8>, Vec<String>), String> {
+        let written = Self::written(self, recipe, to, picture);
+        self.said(written)
+    }
+
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
         let settled = self.with_steps(recipe, true, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
         self.said(settled)
     }
 
-    fn options(&self) -> Vec<(String, String)> {
-        let all = self.given.stored();
-        let stored = all.flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v)));
-        stored.chain(self.plugins.iter().cloned()).collect()
+    fn as_told(&self, recipe: &Recipe) -> Result<(Recipe, Vec<(String, String)>), String> {
+        let (recipe, given, _) = self.said(self.told(recipe))?;
+        let stored = given.stored().flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v)));
+        let options = stored.chain(self.plugins.iter().cloned()).collect();
+        Ok((recipe, options))
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
-        self.said(recipe_file::write(&*self.registry, recipe, &self.given, &self.folder))
+        let told = self.told(recipe);
+        self.said(
+            told.and_then(|(recipe, given, _)| recipe_file::write(&*self.registry, &recipe, &given, &self.folder)),
+        )
     }
 }
 
@@ -222,7 +300,10 @@ impl EditorHost {
         };
         let is_result = saved.is_some();
         let (recipe, given) = match saved {
-            Some(saved) => (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given)),
+            Some(mut saved) => {
+                first_steps::put(&mut saved.recipe, |name| saved.options.take(name).pop());
+                (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given))
+            }
             None => (Recipe::default(), self.usual.overridden_by(&self.given)),
         };
         let options = given.read()?;
@@ -234,24 +315,6 @@ impl EditorHost {
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
-    fn converted(&self, svg: String, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), Failure> {
-        let options = self.given.read()?;
-        let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
-        let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
-        let read = read_options(to, &options.reading);
-        if format.of_picture(None).is_none() {
-            let exported = export::drawing(svg, format, &read, &options, None)?;
-            return Ok((exported.bytes, exported.warnings));
-        }
-        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the result", &ReadOptions::default())?;
-        let limits = options.reading.limits.for_input(svg.len());
-        let size = picture.scale.map_or(Size::Width(picture.width), Size::Scale);
-        let background = picture.background.as_deref().map(background).transpose().map_err(Failure::usage)?;
-        let background = background.and_then(|b| b.0);
-        let drawn = RenderOptions { size, background }.render_within(&tree, &limits)?;
-        Ok((encode(drawn, format, None)?, Vec::new()))
-    }
-
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
         result.map_err(|f| f.message(&self.flags))
     }
@@ -260,6 +323,10 @@ impl EditorHost {
 impl Host for EditorHost {
     fn registry(&self) -> &Registry {
         &self.registry
+    }
+
+    fn first(&self) -> &[Info] {
+        &first_steps::FIRST
     }
 
     fn foreign_words(&self) -> Vec<(&str, &str)> {
@@ -284,10 +351,6 @@ impl Host for EditorHost {
 
     fn reference(&self, file: &Path) -> String {
         recipe_file::from_here(file)
-    }
-
-    fn export(&self, svg: String, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
-        self.said(self.converted(svg, to, picture))
     }
 
     fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String> {

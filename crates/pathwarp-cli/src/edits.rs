@@ -93,6 +93,17 @@ impl EditChoice {
     }
 }
 
+/// The usual edit that gives paths few nodes.
+pub(crate) fn simplifying() -> Edit {
+    Edit::Simplify { corner: CORNERS.to_radians(), polylines: false }
+}
+
+/// The usual edit by which areas grow, or shrink by a distance below zero.
+pub(crate) fn growing(by: f64) -> Edit {
+    let side = if by > 0.0 { Side::Outside } else { Side::Inside };
+    Edit::Offset(Offset { by: by.abs(), join: Join::Round, side, even_odd: false })
+}
+
 /// The recipe of an edit, in which nothing moves: its frame is what lengths refer to.
 pub(crate) fn still() -> Recipe {
     Recipe { steps: vec![Step::new("affine", Args::new())] }

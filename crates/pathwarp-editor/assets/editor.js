@@ -1122,6 +1122,10 @@
     deformation(name) {
       return this.catalogue.find((d) => d.name === name);
     }
+    /** A step changes the drawing before it is bent. */
+    isFirst(step2) {
+      return this.deformation(step2?.deformation)?.first ?? false;
+    }
     /** The steps up to the one being changed. */
     get visible() {
       return this.steps.slice(0, this.selected + 1);
@@ -1176,7 +1180,7 @@
     scope(select) {
       return this.inTurn(async () => {
         const { step: step2, selected } = this;
-        if (!step2 || select.length === 0 && this.chosen.length === 0) return;
+        if (!step2 || this.isFirst(step2) || select.length === 0 && this.chosen.length === 0) return;
         const answer = await this.attempt(() => this.connection.ask({ do: "scope", steps: this.visible, select }));
         if (!answer?.step) return;
         this.steps = this.steps.map((s2, i) => i === selected ? answer.step : s2);
@@ -1300,6 +1304,7 @@
         const answer = await this.connection.ask({ do: direction, shown: null });
         this.screen.show(answer);
         await this.load(answer.state);
+        this.screen.reveal();
       });
     }
     /** Starts or ends the choice of a shape for a further step. */
@@ -1314,6 +1319,8 @@
       return this.inTurn(() => this.replaced(deformation, args, appends, variant));
     }
     async replaced(deformation, args, appends, variant) {
+      if (this.deformation(deformation)?.first) return this.prepared(deformation);
+      appends ||= this.isFirst(this.step);
       const at = appends ? this.steps.length : this.selected;
       const before2 = this.steps.slice(0, at);
       const step2 = await this.opening(deformation, before2, variant, this.chosen);
@@ -1324,10 +1331,28 @@
       this.selected = Math.min(at, this.steps.length - 1);
       this.tell("steps");
       this.dropHandles();
+      await this.proposed();
+    }
+    async proposed() {
       await this.commit();
       this.isWorkedOn = false;
       this.tell("steps");
       this.screen.reveal();
+    }
+    /** Puts a step before all that bends, in the order of the catalogue; there is one of each kind. */
+    async prepared(deformation) {
+      const others = this.isProposal ? [] : this.steps;
+      const known = others.findIndex((s2) => s2.deformation === deformation);
+      if (known >= 0) return this.choosing(known);
+      const step2 = await this.opening(deformation, []);
+      if (!step2) return;
+      const rank = (s2) => this.catalogue.findIndex((d) => d.name === s2.deformation);
+      const at = others.filter((s2) => this.isFirst(s2) && rank(s2) < rank(step2)).length;
+      this.steps = others.toSpliced(at, 0, step2);
+      this.selected = at;
+      this.tell("steps");
+      this.dropHandles();
+      await this.proposed();
     }
     /** Changes the list of steps. */
     arrange(steps, selected) {
@@ -1344,11 +1369,12 @@
       this.tell("steps");
     }
     select(step2) {
-      return this.inTurn(async () => {
-        this.selected = step2;
-        this.tell("steps");
-        await this.refresh();
-      });
+      return this.inTurn(() => this.choosing(step2));
+    }
+    async choosing(step2) {
+      this.selected = step2;
+      this.tell("steps");
+      await this.refresh();
     }
     /** Sets a parameter of the step being changed. */
     set(name, values, isDone) {
@@ -1482,7 +1508,9 @@
   var ALSO = {
     shaper: "bottle label neck",
     bend: "text on path words on a line badge seal",
-    arc: "text on a circle badge"
+    arc: "text on a circle badge",
+    simplify: "smooth clean up fewer nodes traced",
+    outset: "offset outline grow bolder thicker inset shrink thinner"
   };
   var Gallery = class {
     constructor(app2) {
@@ -1525,7 +1553,8 @@
       for (const { image } of this.cards) URL.revokeObjectURL(image.src);
       this.cards = [];
       this.queue = [];
-      const all = this.app.catalogue;
+      const all = this.app.catalogue.filter((d) => !d.first);
+      const first = this.app.catalogue.filter((d) => d.first);
       const byHand = all.filter((d) => isDragged(d) && !d.gallery);
       const effects = all.filter((d) => !isDragged(d) && !d.gallery);
       const styles = all.filter((d) => d.gallery);
@@ -1534,7 +1563,8 @@
         this.own,
         this.section("Bend by hand", byHand.flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))])),
         ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery.title), this.presets(d))),
-        this.section("Effects", effects.map((d) => this.whole(d)))
+        this.section("Effects", effects.map((d) => this.whole(d))),
+        this.section("Before bending", first.map((d) => this.whole(d)))
       );
       this.mark();
       this.filter();
@@ -1585,7 +1615,7 @@
     async choose({ deformation, args, variant }) {
       const { app: app2 } = this;
       const { step: step2 } = app2;
-      const isReplaced = app2.isWorkedOn && !app2.appends && step2?.deformation !== deformation;
+      const isReplaced = app2.isWorkedOn && !app2.appends && step2?.deformation !== deformation && !app2.isFirst(step2) && !app2.deformation(deformation)?.first;
       const name = (step3) => step3 ? stepName(step3, app2.deformation(step3.deformation)) : "";
       const old = name(step2);
       document.body.classList.remove("shapes-open");
@@ -1669,6 +1699,46 @@
   }
   function isDragged(d) {
     return d.params.some((p) => p.kind === "path" && p.name !== "base" || DRAGGED.has(p.notation ?? ""));
+  }
+
+  // src/ground.ts
+  var GROUNDS = ["white", "black", "checks"];
+  var CHOSEN = "pathwarp-ground";
+  var PALE = 235;
+  var Ground = class {
+    shown = "white";
+    /** The drawing that the sheet was last chosen for. */
+    drawing = "";
+    constructor(app2) {
+      this.show(this.chosen);
+      app2.listen((change) => {
+        if (change === "report") this.suit(app2.state?.drawing ?? "");
+      });
+      byId("ground").addEventListener("click", () => {
+        this.show(GROUNDS[(GROUNDS.indexOf(this.shown) + 1) % GROUNDS.length]);
+        localStorage.setItem(CHOSEN, this.shown);
+      });
+    }
+    get chosen() {
+      return GROUNDS.find((name) => name === localStorage.getItem(CHOSEN)) ?? "white";
+    }
+    show(name) {
+      this.shown = name;
+      for (const other of GROUNDS) document.body.classList.toggle(`on-${other}`, other === name);
+      byId("ground-name").textContent = name === "checks" ? "transparent" : name;
+    }
+    /** Shows a drawing of white alone on black, where the user has chosen white. */
+    suit(drawing) {
+      const art = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) :is(path, image)"));
+      if (drawing === this.drawing || art.length === 0) return;
+      this.drawing = drawing;
+      this.show(this.chosen === "white" && art.every(isPale) ? "black" : this.chosen);
+    }
+  };
+  function isPale(element) {
+    const { fill: fill2, stroke } = getComputedStyle(element);
+    const colours = [fill2, stroke].filter((paint) => paint !== "none");
+    return element.tagName === "path" && colours.every((paint) => paint.startsWith("rgb(") && paint.match(/\d+/g).every((part) => Number(part) >= PALE));
   }
 
   // src/modes.ts
@@ -1864,7 +1934,6 @@
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
       this.all = answer?.parts ?? [];
       this.stage.parts = new Set(this.all.map(({ name }) => name));
-      byId("parts-box").hidden = this.all.length < 2;
       this.rows = this.all.map((part) => this.row(part));
       this.list.replaceChildren(...this.rows);
       this.shade();
@@ -1923,6 +1992,7 @@
     }
     show() {
       const { chosen, locks } = this.app;
+      byId("parts-box").hidden = this.all.length < 2 || this.app.isFirst(this.app.step);
       this.all.forEach((part, i) => {
         const pressed = [chosen.includes(part.selector), this.hidden.has(part.name), locks.includes(part.selector)];
         pressed.forEach((on2, k) => this.rows[i]?.children[k]?.setAttribute("aria-pressed", String(on2)));
@@ -3689,7 +3759,7 @@
       slider.addEventListener("dblclick", () => app2.set(values(0)[0], reset(), true));
     }
     slider(p, id, label, title) {
-      const [unit, range] = scale(p);
+      const [unit, range] = this.app.isFirst(this.app.step) ? ["%", p.slider] : scale(p);
       const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
       this.slide(slider, (value) => [p.name, [`${short(value)}${unit}`]], () => []);
       this.refreshers.push(() => {
@@ -3874,6 +3944,7 @@
     row(step2, i) {
       const { app: app2 } = this;
       const { steps, selected } = app2;
+      const first = steps.filter((s2) => app2.isFirst(s2)).length;
       const title = stepName(step2, app2.deformation(step2.deformation));
       const count = step2.select?.length ?? 0;
       const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
@@ -3895,8 +3966,8 @@
         "li",
         { class: i === selected ? "chosen" : "" },
         choose,
-        steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i === 0),
-        steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i === steps.length - 1),
+        steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i <= first),
+        steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i < first || i === steps.length - 1),
         !app2.isProposal && button("close", `Remove ${title}`, remove)
       );
     }
@@ -4100,6 +4171,7 @@
   var saving = new Saving(app);
   var settings = new Settings(app);
   new Presets(app, new Gallery(app));
+  new Ground(app);
   new Steps(app);
   new Parts(app, stage, modes);
   new Place(app, stage);
@@ -4159,15 +4231,6 @@
     byId("legend").hidden = !v;
     void stage.drawStretch();
   });
-  var GROUNDS = ["white", "black", "checks"];
-  var GROUND = "pathwarp-ground";
-  function ground(name) {
-    for (const other of GROUNDS) document.body.classList.toggle(`on-${other}`, other === name);
-    byId("ground-name").textContent = name === "checks" ? "transparent" : name;
-    localStorage.setItem(GROUND, name);
-  }
-  ground(GROUNDS.find((name) => name === localStorage.getItem(GROUND)) ?? "white");
-  on("ground", () => ground(GROUNDS[(GROUNDS.indexOf(localStorage.getItem(GROUND) ?? "") + 1) % GROUNDS.length]));
   var SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" };
   var { classList } = document.body;
   for (const [sheet, button] of Object.entries(SHEETS)) {

@@ -7,15 +7,21 @@ use pathwarp::param::{Axis, Kind, Param, is_inline};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Describes all deformations, in menu order. `foreign` are names in other programs, with the deformation that each means.
-pub(crate) fn catalogue(registry: &Registry, foreign: &[(&str, &str)]) -> Value {
+/// Describes all deformations, in menu order, and then what comes before them. `foreign` are names in other programs, with the deformation
+/// that each means.
+pub(crate) fn catalogue(registry: &Registry, first: &[Info], foreign: &[(&str, &str)]) -> Value {
     let described = |info: &Info| {
         let mut out = deformation(info);
         out["knownAs"] =
             foreign.iter().filter(|(w, name)| *name == info.name && !is_preset(info, w)).map(|(w, _)| *w).collect();
         out
     };
-    registry.entries().iter().map(|e| described(e.info())).collect()
+    let first = first.iter().map(|info| {
+        let mut out = deformation(info);
+        out["first"] = json!(true);
+        out
+    });
+    registry.entries().iter().map(|e| described(e.info())).chain(first).collect()
 }
 
 /// Returns `true` if a name of another program ends in that of a preset, which is found by its own.
@@ -35,6 +41,8 @@ fn deformation(info: &Info) -> Value {
         "title": info.title,
         "group": info.group,
         "about": info.about,
+        "first": false,
+        "knownAs": [],
         "params": params.map(|p| param(info, p)).collect::<Value>(),
         "variants": info.by_hand.variants.iter().map(|v| json!({ "label": v.label, "param": v.param })).collect::<Value>(),
         "gallery": info.gallery.map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
@@ -182,7 +190,8 @@ mod tests {
     #[test]
     fn every_deformation_and_parameter_is_there() {
         let registry = Registry::builtin();
-        let all = catalogue(&registry, &[("Puppet Warp", "mls"), ("Warp › Arch", "warp"), ("Make with Warp", "warp")]);
+        let all =
+            catalogue(&registry, &[], &[("Puppet Warp", "mls"), ("Warp › Arch", "warp"), ("Make with Warp", "warp")]);
         let of = |name: &str| all.as_array().unwrap().iter().find(|d| d["name"] == name).unwrap()["knownAs"].clone();
         assert_eq!([of("mls"), of("warp"), of("bend")], [json!(["Puppet Warp"]), json!(["Make with Warp"]), json!([])]);
         for (entry, shown) in registry.entries().iter().zip(all.as_array().unwrap()) {

@@ -25,7 +25,7 @@ const TRIANGLE: &str = "I,J,K:X,Y";
 const ADJUST: &str = "[NAME=]VALUE";
 
 /// The handles of every step.
-pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe) -> Value {
+pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe) -> Vec<Value> {
     let steps = resolved.steps.iter().zip(&built.frames);
     let steps = steps.map(|(step, frame)| {
         let info = registry.get(&step.deformation).map(|e| e.info());

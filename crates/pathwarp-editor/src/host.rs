@@ -2,7 +2,7 @@
 
 use crate::words::Words;
 use pathwarp::Outline;
-use pathwarp::deform::Registry;
+use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_svg::Document;
@@ -45,6 +45,11 @@ pub trait Host: Send + Sync {
     /// The deformations on offer.
     fn registry(&self) -> &Registry;
 
+    /// What changes a drawing before it is bent, as steps that come before all others.
+    fn first(&self) -> &[Info] {
+        &[]
+    }
+
     /// Names that other programs have for deformations, each with that of the deformation: what a user may search for.
     fn foreign_words(&self) -> Vec<(&str, &str)> {
         Vec::new()
@@ -67,13 +72,6 @@ pub trait Host: Send + Sync {
 
     /// The text that names a file in a step.
     fn reference(&self, file: &Path) -> String;
-
-    /// Converts a finished drawing into the format that the extension of `to` names. Returns the bytes and what the format cannot
-    /// hold.
-    ///
-    /// # Errors
-    /// The format is unknown, or the drawing cannot be converted.
-    fn export(&self, svg: String, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String>;
 
     /// Writes a file completely or not at all.
     ///
@@ -118,14 +116,29 @@ pub trait Artwork: Send {
     /// A step cannot be built, or the drawing cannot be bent.
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String>;
 
+    /// Bends the drawing and writes it in the format that the extension of `to` names, an SVG with the recipe and the source in it. Returns the
+    /// bytes and what the format cannot hold.
+    ///
+    /// # Errors
+    /// As for [`bend`](Self::bend), or the format is unknown.
+    fn written(
+        &mut self,
+        recipe: &Recipe,
+        to: &Path,
+        picture: &PictureOptions,
+    ) -> Result<(Vec<u8>, Vec<String>), String>;
+
     /// Looks up the recipe's references and builds its steps, without bending anything.
     ///
     /// # Errors
     /// A step cannot be built.
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String>;
 
-    /// The options that the command line would need for the same result, by name, without those of the steps.
-    fn options(&self) -> Vec<(String, String)>;
+    /// The steps that the command line would need for the same result, and the options by name, without those of the steps.
+    ///
+    /// # Errors
+    /// A value is wrong.
+    fn as_told(&self, recipe: &Recipe) -> Result<(Recipe, Vec<(String, String)>), String>;
 
     /// The text of a recipe file with these steps.
     ///
@@ -141,11 +154,6 @@ pub enum Fineness {
     Draft(f64),
     /// As the program writes it, but on the page of the source.
     Exact,
-    /// As the program writes it.
-    Finished {
-        /// With the recipe and the source in it.
-        embedded: bool,
-    },
 }
 
 /// A drawing under a recipe.

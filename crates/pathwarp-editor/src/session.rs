@@ -3,7 +3,7 @@
 use crate::catalogue::{example, of_variant, opening};
 use crate::command_line::{command_line, quoted};
 use crate::draft::{Draft, Kept, Moment, NO_FOLDER};
-use crate::grips::{grips, with_net_of};
+use crate::grips::{grips, rect, with_net_of};
 use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
 use crate::picture::Picture;
@@ -162,9 +162,9 @@ impl Session {
             return Ok(());
         }
         let mut other = self.with_drawing(file, &svg)?;
-        let (_, built) = self.opened.artwork.settle(&recipe(&self.kept.now.steps))?;
-        let frames = built.frames.iter().map(|f| Some(f.rect));
-        let steps = other.laid(self.kept.now.steps.iter().cloned().zip(frames))?;
+        let steps = self.kept.now.steps.clone();
+        let frames = self.frames(&steps)?;
+        let steps = other.laid(steps.into_iter().zip(frames.into_iter().map(Some)))?;
         let mut kept = self.kept.clone();
         kept.set_anew(&old, svg, steps);
         self.redraw(other, kept)
@@ -251,14 +251,15 @@ impl Session {
     }
 
     pub(crate) fn catalogue(&self) -> Value {
-        crate::catalogue::catalogue(self.host.registry(), &self.host.foreign_words())
+        let first = if self.purpose.program().is_some() { &[] } else { self.host.first() };
+        crate::catalogue::catalogue(self.host.registry(), first, &self.host.foreign_words())
     }
 
     /// The drawing under these steps; `draft` is the tolerance while something is dragged.
     pub(crate) fn bend(&mut self, given: &[PageStep], draft: Option<f64>) -> Result<Shown, String> {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
         let bent = self.opened.artwork.bend(&recipe(given), fineness)?;
-        let about = self.about(&bent);
+        let about = self.about(self.firsts(given), &bent);
         Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about })
     }
 
@@ -267,9 +268,19 @@ impl Session {
         Picture::of(self.opened.artwork.document().text(), DECIMALS)
     }
 
-    fn about(&self, bent: &Bent) -> Value {
+    /// The number of steps that come before bending.
+    fn firsts(&self, given: &[PageStep]) -> usize {
+        let is_first = |s: &&PageStep| self.host.first().iter().any(|i| i.name == s.deformation);
+        given.iter().take_while(is_first).count()
+    }
+
+    fn about(&self, firsts: usize, bent: &Bent) -> Value {
+        let mut grips = grips(self.host.registry(), &bent.resolved, &bent.built);
+        // What comes before bending has no handles.
+        let frame = rect(self.opened.artwork.frame());
+        grips.splice(0..0, (0..firsts).map(|_| json!({ "frame": frame, "params": {} })));
         let mut about = json!({
-            "grips": grips(self.host.registry(), &bent.resolved, &bent.built),
+            "grips": grips,
             "guides": guides(&bent.built),
             "warnings": bent.warnings,
             "page": bent.page.map(|p| [p.x0, p.y0, p.width(), p.height()]),
@@ -303,7 +314,11 @@ impl Session {
     /// Takes back the last change, or makes the one again that was taken back last.
     pub(crate) fn turn(&mut self, back: bool, shown: Option<usize>) -> Result<Shown, String> {
         let mut kept = self.kept.clone();
-        if back { kept.undo() } else { kept.redo() }
+        if back {
+            kept.undo();
+        } else {
+            kept.redo();
+        }
         if kept.now.drawing == self.kept.now.drawing {
             self.kept = kept;
             self.keep();
@@ -409,6 +424,13 @@ impl Session {
         parts.map(part).collect()
     }
 
+    /// The box that each of these steps refers to.
+    fn frames(&mut self, given: &[PageStep]) -> Result<Vec<Rect>, String> {
+        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        let firsts = std::iter::repeat_n(self.opened.artwork.frame(), self.firsts(given));
+        Ok(firsts.chain(built.frames.iter().map(|f| f.rect)).take(given.len()).collect())
+    }
+
     /// The frame of a step after these.
     fn frame_after(&mut self, given: &[PageStep]) -> Result<Rect, String> {
         let (_, built) = self.opened.artwork.settle(&recipe(given))?;
@@ -425,8 +447,7 @@ impl Session {
     /// Keeps the present steps as a preset.
     pub(crate) fn keep_preset(&mut self, name: &str) -> Result<(), String> {
         let given = self.kept.now.steps.clone();
-        let (_, built) = self.opened.artwork.settle(&recipe(&given))?;
-        let frames: Vec<Rect> = built.frames.iter().map(|f| f.rect).collect();
+        let frames = self.frames(&given)?;
         presets::keep(&*self.host, name, given, &frames)
     }
 
@@ -456,8 +477,9 @@ impl Session {
 
     /// A deformation with the first values for artwork in this frame, or with those that show what it does.
     fn begun(&self, deformation: &str, variant: Option<&str>, frame: Rect, shows: bool) -> Result<PageStep, String> {
-        let entry = self.host.registry().get(deformation);
-        let info = entry.ok_or_else(|| format!("there is no deformation {deformation}"))?.info();
+        let bending = self.host.registry().get(deformation).map(|e| e.info());
+        let info = bending.or_else(|| self.host.first().iter().find(|i| i.name == deformation));
+        let info = info.ok_or_else(|| format!("there is no deformation {deformation}"))?;
         let args = match variant_of(info, variant)? {
             Some(variant) => of_variant(variant, frame, shows),
             None if shows => example(info, frame),
@@ -550,14 +572,13 @@ impl Session {
         if saving::has_extension(to, &["toml"]) {
             return Ok((self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new()));
         }
-        let svg = self.opened.artwork.bend(&given, Fineness::Finished { embedded: is_svg(to) })?.svg;
-        self.host.export(svg, to, picture)
+        self.opened.artwork.written(&given, to, picture)
     }
 
     /// The command line that writes the result as *Save* does, under a name or the usual one.
     pub(crate) fn command_line(&self, target: &Target) -> Result<String, String> {
         let to = self.place(target)?;
-        let given = recipe(&self.kept.now.steps);
+        let (given, mut options) = self.opened.artwork.as_told(&recipe(&self.kept.now.steps))?;
         let document = self.opened.artwork.document();
         let is_result = self.opened.is_result;
         let (source, before) = match is_result.then(|| saving::source_of(&self.file, document.source())).flatten() {
@@ -568,7 +589,6 @@ impl Session {
             }
             None => (self.file.clone(), String::new()),
         };
-        let mut options = self.opened.artwork.options();
         let name = to.display().to_string();
         let line = |options: &[(String, String)], out: &Path| {
             before + &command_line(self.host.registry(), &given, options, &source, out)

@@ -6,6 +6,7 @@ mod circles;
 mod commands;
 mod common;
 mod documentation;
+mod edits_first;
 mod encodings;
 mod exit_codes;
 mod explain;

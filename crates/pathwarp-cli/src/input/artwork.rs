@@ -37,6 +37,17 @@ pub(crate) trait Artwork {
     /// Removes the paths that serve as guides from the artwork. Called once, before anything below.
     fn remove_guides(&mut self, guides: Vec<String>);
 
+    /// Edits the artwork as the options ask for before bending. Called once the guides are removed.
+    ///
+    /// # Errors
+    /// The artwork cannot be edited.
+    fn edit_first(&mut self, options: &CommonOptions, _steps: &[Step]) -> Result<(), Failure> {
+        if options.edits_first() {
+            return Err(Failure::usage("--simplify and --outset are for SVG drawings"));
+        }
+        Ok(())
+    }
+
     /// Divides the artwork by what the steps hold for; returns the indices of each part's steps. Called once, after the guides are
     /// removed, and only if a step has a selection of its own.
     ///

@@ -1,6 +1,7 @@
 //! Input files: the kinds of artwork and what the pipeline asks of each, and the readers of other files.
 
 mod artwork;
+mod before;
 mod beside;
 mod files;
 #[cfg_attr(not(feature = "gimp"), path = "no_gimp.rs")]

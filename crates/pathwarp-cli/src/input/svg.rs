@@ -1,6 +1,7 @@
 //! SVG drawings as artwork.
 
 use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::before::{Original, Wanted};
 use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use crate::bitmap::Bender;
@@ -49,6 +50,8 @@ pub(crate) struct SvgArtwork {
     parts: Vec<Selection>,
     /// The format of the result.
     format: Format,
+    /// The drawing as it was read, if `doc` is an edited one.
+    original: Option<Original>,
 }
 
 impl SvgArtwork {
@@ -64,12 +67,15 @@ impl SvgArtwork {
         watch::count_pixels(doc.budget().taken(Limit::Pixels));
         let selection = selection(options);
         doc.check_selection(&selection)?;
-        Ok(Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format })
+        Ok(Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format, original: None })
     }
 
     /// Counts the work from here on anew, for a drawing that is bent again and again.
     pub(crate) fn renew_budget(&mut self) {
         self.doc.renew_budget();
+        if let Some(original) = &mut self.original {
+            original.document.renew_budget();
+        }
     }
 
     /// Undoes a division into parts.
@@ -77,8 +83,16 @@ impl SvgArtwork {
         (self.selection, self.steps, self.parts) = (selection(options), Vec::new(), Vec::new());
     }
 
+    /// The drawing as it was read.
     pub(crate) fn document(&self) -> &Document {
-        &self.doc
+        self.original.as_ref().map_or(&self.doc, |o| &o.document)
+    }
+
+    /// The segments of the drawing before and after its edits, if it was edited before bending.
+    pub(crate) fn edited(&self) -> Option<[usize; 2]> {
+        let count = |d: &Document, s: &Selection| d.selected(s).map(|s| s.outline.segs().count()).sum();
+        let original = self.original.as_ref()?;
+        Some([count(&original.document, original.wanted.whole()), count(&self.doc, &self.selection)])
     }
 
     /// The result for a look at it while something is dragged: within the tolerance, but not merged into few nodes, and with gradients
@@ -96,6 +110,17 @@ impl SvgArtwork {
         };
         let warped = self.bent(&request.built.parts, draft)?.1;
         Ok((warped.svg, warped.page.map(|[_, after]| after)))
+    }
+
+    /// The result in its format, without looking for folds.
+    pub(crate) fn written(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
+        let (_, warped, tolerance) = self.warped(request)?;
+        export::drawing(warped.svg, self.format, &self.read, request.options, Some(tolerance))
+    }
+
+    /// Changes the format of the result.
+    pub(crate) fn set_format(&mut self, format: Format) {
+        self.format = format;
     }
 
     /// The selection that is meant.
@@ -117,8 +142,32 @@ impl SvgArtwork {
         let options: Vec<WarpOptions> = parts.iter().enumerate().map(|(k, built)| options(k, built)).collect();
         let bends: Vec<(&dyn Map, &WarpOptions)> =
             parts.iter().zip(&options).map(|(built, options)| (&built.map as &dyn Map, options)).collect();
-        let warped = self.doc.warp_each(&bends)?;
+        let mut warped = self.doc.warp_each(&bends)?;
+        if let Some(original) = &self.original {
+            warped.svg = original.without_ids(&warped.svg);
+        }
         Ok((options, warped))
+    }
+
+    /// The drawing bent within the tolerance, which may be a length of the result's page, with its recipe. Returns the options for each part
+    /// and the tolerance, too.
+    fn warped(&self, request: &WarpRequest<'_>) -> Result<(Vec<WarpOptions>, WarpedDocument, f64), Failure> {
+        let WarpRequest { built, options: common, mut tolerance, .. } = *request;
+        let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        // The scale of the result's page is known once the artwork is on it.
+        if common.has_tolerance_of_result()
+            && let Some(scale) = common.page_scale(self.size_px(warped.page))
+            && (scale.by - 1.0).abs() > SAME_SCALE
+        {
+            tolerance /= scale.by;
+            let finer = WarpRequest { tolerance, edit: request.edit, embedded_recipe: None, ..*request };
+            (options, warped) = self.bent(&built.parts, |k, part| self.warp_options(&finer, k, part))?;
+        }
+        if let Some(recipe) = &request.embedded_recipe {
+            let origin = Origin { recipe: recipe.clone(), source: self.document().source().to_vec() };
+            warped.svg = origin.embed(&warped.svg)?;
+        }
+        Ok((options, warped, tolerance))
     }
 
     /// The options for a part of the drawing.
@@ -159,6 +208,17 @@ impl SvgArtwork {
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
         request.edit.map_or(warp.clone(), |e| warp.editing(e))
+    }
+
+    /// What each step selects.
+    fn selections(&self, steps: &[Step]) -> Vec<Selection> {
+        let own = |s: &Step| Selection {
+            select: s.select.clone(),
+            exclude: s.exclude.clone(),
+            guides: self.selection.guides.clone(),
+            ..Selection::default()
+        };
+        steps.iter().map(own).collect()
     }
 
     /// The size of the result's page in px, which is the source's, or `after` instead of `before` in its units.
@@ -312,22 +372,34 @@ fn format(options: &CommonOptions, input: &Path, target: Option<&Path>) -> Resul
 
 impl Artwork for SvgArtwork {
     fn path_named(&self, name: &str) -> Result<Outline, Error> {
-        Ok(self.doc.path(name)?.outline)
+        Ok(self.document().path(name)?.outline)
     }
 
     fn remove_guides(&mut self, guides: Vec<String>) {
         self.selection.guides = guides;
     }
 
+    fn edit_first(&mut self, options: &CommonOptions, steps: &[Step]) -> Result<(), Failure> {
+        if !options.edits_first() {
+            if let Some(original) = self.original.take() {
+                self.doc = original.document;
+            }
+            return Ok(());
+        }
+        let steps = if steps.iter().any(Step::is_selective) { self.selections(steps) } else { Vec::new() };
+        let wanted = Wanted::new(self.document(), options, self.selection.clone(), steps)?;
+        if self.original.as_ref().is_some_and(|o| o.wanted == wanted) {
+            return Ok(());
+        }
+        let (doc, warnings) = wanted.done(self.document(), &self.name, &self.read, options)?;
+        let edited = std::mem::replace(&mut self.doc, doc);
+        let document = self.original.take().map_or(edited, |o| o.document);
+        self.original = Some(Original { document, wanted, warnings });
+        Ok(())
+    }
+
     fn divide(&mut self, steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure> {
-        let guides = &self.selection.guides;
-        let own = |s: &Step| Selection {
-            select: s.select.clone(),
-            exclude: s.exclude.clone(),
-            guides: guides.clone(),
-            ..Selection::default()
-        };
-        let mut all: Vec<Selection> = steps.iter().map(own).collect();
+        let mut all = self.selections(steps);
         all.iter().try_for_each(|s| self.doc.check_selection(s))?;
         // What is selected for the whole recipe restricts every step.
         let whole = all.len();
@@ -419,24 +491,11 @@ impl FileArtwork for SvgArtwork {
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options: common, .. } = request;
-        let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
-        let mut tolerance = request.tolerance;
-        // The scale of the result's page is known once the artwork is on it.
-        if common.has_tolerance_of_result()
-            && let Some(scale) = common.page_scale(self.size_px(warped.page))
-            && (scale.by - 1.0).abs() > SAME_SCALE
-        {
-            tolerance /= scale.by;
-            let finer = WarpRequest { tolerance, edit: request.edit, embedded_recipe: None, ..*request };
-            (options, warped) = self.bent(&built.parts, |k, part| self.warp_options(&finer, k, part))?;
-        }
+        let (options, mut warped, tolerance) = self.warped(request)?;
         let page = PageNews::of(&mut warped, common.page, self.stays(request));
-        if let Some(recipe) = &request.embedded_recipe {
-            let origin = Origin { recipe: recipe.clone(), source: self.doc.source().to_vec() };
-            warped.svg = origin.embed(&warped.svg)?;
-        }
         let (shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;
         let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
+        warnings.extend(self.original.iter().flat_map(|o| &o.warnings).cloned());
         let empty = !self.doc.has_artwork(&self.selection);
         if empty {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());

@@ -81,6 +81,10 @@ pub(crate) struct CommonOptions {
     pub(crate) into: Option<PathBuf>,
     /// Read the paths before the damage in a damaged GIMP file.
     pub(crate) salvage: bool,
+    /// The distance within which paths get few nodes before they are bent.
+    pub(crate) simplify: Option<Length>,
+    /// The distance by which areas grow before they are bent.
+    pub(crate) outset: Option<Length>,
     pub(crate) tolerance: Option<Length>,
     pub(crate) certify: bool,
     pub(crate) merge: bool,
@@ -124,6 +128,11 @@ pub(crate) struct CommonOptions {
 }
 
 impl CommonOptions {
+    /// Returns `true` if the artwork is edited before it is bent.
+    pub(crate) fn edits_first(&self) -> bool {
+        self.simplify.is_some() || self.outset.is_some()
+    }
+
     /// Returns the tolerance given, or the default for artwork with this bounding box, in user units.
     ///
     /// # Errors
@@ -131,15 +140,21 @@ impl CommonOptions {
     pub(crate) fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> Result<f64, Failure> {
         let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
         let given = self.tolerance.map(|d| d.in_units(Axis::Diagonal, frame)).filter(|d| *d > 0.0);
-        let largest = artwork.map_or(0.0, |r| r.x0.abs().max(r.x1.abs()).max(r.y0.abs()).max(r.y1.abs()));
-        let finest = RESOLUTION * largest;
-        if given.is_some_and(|d| d < finest) {
-            let problem = "is finer than the numbers it would be measured with; use at least";
-            return Err(Failure::usage(format!("--tolerance: {:e} {problem} {finest:.0e}", given.unwrap_or(0.0))));
-        }
+        given.map_or(Ok(()), |d| measurable("tolerance", d, artwork))?;
         let share = self.edit.as_ref().and_then(|e| e.info.tolerance).unwrap_or(TOLERANCE_OF_DIAGONAL);
         Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * share } else { share }))
     }
+}
+
+/// Refuses a distance that is finer than numbers of the artwork's size can be.
+pub(crate) fn measurable(option: &str, distance: f64, artwork: Option<Rect>) -> Result<(), Failure> {
+    let largest = artwork.map_or(0.0, |r| r.x0.abs().max(r.x1.abs()).max(r.y0.abs()).max(r.y1.abs()));
+    let finest = RESOLUTION * largest;
+    if distance < finest {
+        let problem = "is finer than the numbers it would be measured with; use at least";
+        return Err(Failure::usage(format!("--{option}: {distance:e} {problem} {finest:.0e}")));
+    }
+    Ok(())
 }
 
 /// A page of another size.
@@ -256,6 +271,12 @@ pub(super) fn limit(text: &str, limits: &mut Limits) -> Result<(), String> {
 pub(super) fn positive_length(text: &str) -> Result<Length, String> {
     let length: Length = text.parse().map_err(|e| format!("`{text}` {e}"))?;
     if length.value > 0.0 { Ok(length) } else { Err(format!("`{text}` is not positive")) }
+}
+
+/// Parses a length that is no zero; `None` for zero.
+pub(super) fn some_length(text: &str) -> Result<Option<Length>, String> {
+    let length: Length = text.parse().map_err(|e| format!("`{text}` {e}"))?;
+    Ok(Some(length).filter(|l| l.value != 0.0))
 }
 
 /// Parses a side of a page.

@@ -2,7 +2,7 @@
 
 use super::common::{
     CommonOptions, GradientChoice, OnFailure, family_name, frame, image_size, limit, positive, positive_length,
-    side_of_page,
+    side_of_page, some_length,
 };
 use crate::format::Format;
 use crate::left_out;
@@ -121,6 +121,28 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         "salvage",
         OptionValue::Switch(|o| o.salvage = true),
         "Read the paths before the damage in a damaged GIMP file",
+    ),
+    stored(
+        "simplify",
+        OptionValue::Text {
+            name: "D",
+            minus: LeadingMinus::Any,
+            set: |o, text| {
+                o.simplify = some_length(text)?;
+                if o.simplify.is_some_and(|l| l.value < 0.0) { Err(format!("`{text}` is below zero")) } else { Ok(()) }
+            },
+        },
+        "Before bending, give paths the fewest nodes within this distance, such as 0.2mm or 0.1% (of the artwork's diagonal), as \
+         `pathwarp simplify` does",
+    ),
+    stored(
+        "outset",
+        OptionValue::Text {
+            name: "D",
+            minus: LeadingMinus::Any,
+            set: |o, text| some_length(text).map(|d| o.outset = d),
+        },
+        "Before bending, let areas grow by this distance, as `pathwarp offset` does; below zero, they shrink",
     ),
     CommonOption {
         default: Some("1e-4 of the artwork's diagonal, and for small contours 2e-3 of their own"),

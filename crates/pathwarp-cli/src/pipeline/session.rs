@@ -99,6 +99,7 @@ impl Session<'_> {
         let mut recipe = self.recipe.clone();
         let guides = references::resolve_names(self.registry, &mut recipe, |name| artwork.path_named(name))?;
         artwork.remove_guides(guides.clone());
+        artwork.edit_first(self.options, &recipe.steps)?;
         let known = framed.map(|cache| self.framed(artwork, guides, cache)).transpose()?;
         let is_selective = recipe.steps.iter().any(Step::is_selective);
         let parts = if is_selective { artwork.divide(&recipe.steps)? } else { vec![(0..recipe.steps.len()).collect()] };

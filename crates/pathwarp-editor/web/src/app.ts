@@ -105,6 +105,11 @@ export class App {
     return this.catalogue.find((d) => d.name === name);
   }
 
+  /** A step changes the drawing before it is bent. */
+  isFirst(step: Step | undefined): boolean {
+    return this.deformation(step?.deformation)?.first ?? false;
+  }
+
   /** The steps up to the one being changed. */
   get visible(): Step[] {
     return this.steps.slice(0, this.selected + 1);
@@ -165,7 +170,7 @@ export class App {
   scope(select: string[]): Promise<void> {
     return this.inTurn(async () => {
       const { step, selected } = this;
-      if (!step || (select.length === 0 && this.chosen.length === 0)) return;
+      if (!step || this.isFirst(step) || (select.length === 0 && this.chosen.length === 0)) return;
       const answer = await this.attempt(() => this.connection.ask({ do: "scope", steps: this.visible, select }));
       if (!answer?.step) return;
       this.steps = this.steps.map((s, i) => (i === selected ? answer.step! : s));
@@ -306,6 +311,7 @@ export class App {
       // Later pictures are sent as changes to this one.
       this.screen.show(answer);
       await this.load(answer.state!);
+      this.screen.reveal();
     });
   }
 
@@ -323,6 +329,9 @@ export class App {
   }
 
   private async replaced(deformation: string, args: Record<string, string[]>, appends: boolean, variant: string | null): Promise<void> {
+    if (this.deformation(deformation)?.first) return this.prepared(deformation);
+    // What comes before bending is not replaced by it.
+    appends ||= this.isFirst(this.step);
     const at = appends ? this.steps.length : this.selected;
     const before = this.steps.slice(0, at);
     const step = await this.opening(deformation, before, variant, this.chosen);
@@ -333,11 +342,31 @@ export class App {
     this.selected = Math.min(at, this.steps.length - 1);
     this.tell("steps");
     this.dropHandles();
+    await this.proposed();
+  }
+
+  private async proposed(): Promise<void> {
     await this.commit();
     this.isWorkedOn = false;
     this.tell("steps");
     // A shape may need more room than the last one.
     this.screen.reveal();
+  }
+
+  /** Puts a step before all that bends, in the order of the catalogue; there is one of each kind. */
+  private async prepared(deformation: string): Promise<void> {
+    const others = this.isProposal ? [] : this.steps;
+    const known = others.findIndex((s) => s.deformation === deformation);
+    if (known >= 0) return this.choosing(known);
+    const step = await this.opening(deformation, []);
+    if (!step) return;
+    const rank = (s: Step) => this.catalogue.findIndex((d) => d.name === s.deformation);
+    const at = others.filter((s) => this.isFirst(s) && rank(s) < rank(step)).length;
+    this.steps = others.toSpliced(at, 0, step);
+    this.selected = at;
+    this.tell("steps");
+    this.dropHandles();
+    await this.proposed();
   }
 
   /** Changes the list of steps. */
@@ -357,11 +386,13 @@ export class App {
   }
 
   select(step: number): Promise<void> {
-    return this.inTurn(async () => {
-      this.selected = step;
-      this.tell("steps");
-      await this.refresh();
-    });
+    return this.inTurn(() => this.choosing(step));
+  }
+
+  private async choosing(step: number): Promise<void> {
+    this.selected = step;
+    this.tell("steps");
+    await this.refresh();
   }
 
   /** Sets a parameter of the step being changed. */

@@ -12,6 +12,8 @@ const ALSO: Record<string, string> = {
   shaper: "bottle label neck",
   bend: "text on path words on a line badge seal",
   arc: "text on a circle badge",
+  simplify: "smooth clean up fewer nodes traced",
+  outset: "offset outline grow bolder thicker inset shrink thinner",
 };
 
 interface Card {
@@ -67,7 +69,8 @@ export class Gallery {
     for (const { image } of this.cards) URL.revokeObjectURL(image.src);
     this.cards = [];
     this.queue = [];
-    const all = this.app.catalogue;
+    const all = this.app.catalogue.filter((d) => !d.first);
+    const first = this.app.catalogue.filter((d) => d.first);
     const byHand = all.filter((d) => isDragged(d) && !d.gallery);
     const effects = all.filter((d) => !isDragged(d) && !d.gallery);
     const styles = all.filter((d) => d.gallery);
@@ -76,6 +79,7 @@ export class Gallery {
       this.section("Bend by hand", byHand.flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))])),
       ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery!.title), this.presets(d))),
       this.section("Effects", effects.map((d) => this.whole(d))),
+      this.section("Before bending", first.map((d) => this.whole(d))),
     );
     this.mark();
     this.filter();
@@ -133,7 +137,7 @@ export class Gallery {
     const { app } = this;
     const { step } = app;
     // Styles are tried one after another, but nobody should wonder what has become of work by hand.
-    const isReplaced = app.isWorkedOn && !app.appends && step?.deformation !== deformation;
+    const isReplaced = app.isWorkedOn && !app.appends && step?.deformation !== deformation && !app.isFirst(step) && !app.deformation(deformation)?.first;
     const name = (step: Step | undefined) => (step ? stepName(step, app.deformation(step.deformation)) : "");
     const old = name(step);
     document.body.classList.remove("shapes-open");

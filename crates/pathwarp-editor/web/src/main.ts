@@ -3,6 +3,7 @@
 import { App } from "./app";
 import { byId, isTyping } from "./dom";
 import { Gallery } from "./gallery";
+import { Ground } from "./ground";
 import { Modes, snapLines } from "./modes";
 import { Opening } from "./opening";
 import { Parts } from "./parts";
@@ -29,6 +30,7 @@ const report = new Report(app);
 const saving = new Saving(app);
 const settings = new Settings(app);
 new Presets(app, new Gallery(app));
+new Ground(app);
 new Steps(app);
 new Parts(app, stage, modes);
 new Place(app, stage);
@@ -93,17 +95,6 @@ toggle("stretch", () => stage.showsStretch, (v) => {
   byId("legend").hidden = !v;
   void stage.drawStretch();
 });
-
-// The sheet under the drawing: white artwork is seen on black, what is transparent on a pattern.
-const GROUNDS = ["white", "black", "checks"];
-const GROUND = "pathwarp-ground";
-function ground(name: string): void {
-  for (const other of GROUNDS) document.body.classList.toggle(`on-${other}`, other === name);
-  byId("ground-name").textContent = name === "checks" ? "transparent" : name;
-  localStorage.setItem(GROUND, name);
-}
-ground(GROUNDS.find((name) => name === localStorage.getItem(GROUND)) ?? "white");
-on("ground", () => ground(GROUNDS[(GROUNDS.indexOf(localStorage.getItem(GROUND) ?? "") + 1) % GROUNDS.length]!));
 
 // The panels of a narrow window are sheets, of which one is open at most.
 const SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" } as const;

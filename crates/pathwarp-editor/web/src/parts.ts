@@ -38,7 +38,6 @@ export class Parts {
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
     this.all = answer?.parts ?? [];
     this.stage.parts = new Set(this.all.map(({ name }) => name));
-    byId("parts-box").hidden = this.all.length < 2;
     this.rows = this.all.map((part) => this.row(part));
     this.list.replaceChildren(...this.rows);
     this.shade();
@@ -102,6 +101,7 @@ export class Parts {
 
   private show(): void {
     const { chosen, locks } = this.app;
+    byId("parts-box").hidden = this.all.length < 2 || this.app.isFirst(this.app.step);
     this.all.forEach((part, i) => {
       const pressed = [chosen.includes(part.selector), this.hidden.has(part.name), locks.includes(part.selector)];
       pressed.forEach((on, k) => this.rows[i]?.children[k]?.setAttribute("aria-pressed", String(on)));

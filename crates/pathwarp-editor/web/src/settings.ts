@@ -285,7 +285,7 @@ export class Settings {
   }
 
   private slider(p: Param, id: string, label: HTMLElement, title: string): HTMLElement {
-    const [unit, range] = scale(p);
+    const [unit, range] = this.app.isFirst(this.app.step) ? ["%", p.slider] as const : scale(p);
     const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
     this.slide(slider, (value) => [p.name, [`${short(value)}${unit}`]], () => []);
     this.refreshers.push(() => {

@@ -48,6 +48,7 @@ export class Steps {
   private row(step: Step, i: number): HTMLLIElement {
     const { app } = this;
     const { steps, selected } = app;
+    const first = steps.filter((s) => app.isFirst(s)).length;
     const title = stepName(step, app.deformation(step.deformation));
     const count = step.select?.length ?? 0;
     const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
@@ -67,8 +68,8 @@ export class Steps {
     const remove = () => void app.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
     return h(
       "li", { class: i === selected ? "chosen" : "" }, choose,
-      steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i === 0),
-      steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i === steps.length - 1),
+      steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i <= first),
+      steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i < first || i === steps.length - 1),
       !app.isProposal && button("close", `Remove ${title}`, remove),
     );
   }

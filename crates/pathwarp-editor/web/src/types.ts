@@ -52,6 +52,8 @@ export interface Deformation {
   title: string;
   group: string;
   about: string;
+  /** It changes the drawing before it is bent, so it comes before all that bends. */
+  first: boolean;
   /** Its names in other programs. */
   knownAs: string[];
   params: Param[];

@@ -64,6 +64,9 @@ export const every_format_is_written = () => within(null, async ({ dir, page }) 
     const bytes = readFileSync(`${dir}/logo-bent.${format}`, "latin1");
     check(bytes.startsWith(start), `${format} begins with ${JSON.stringify(bytes.slice(0, 8))}`);
   }
+  // The logo has wide strokes, of which a cutter follows the middle.
+  execFileSync(program, ["warp", "logo.svg", "--style", "arc", "-o", "by-command.dxf"], { cwd: dir, stdio: "pipe" });
+  check(readFileSync(`${dir}/by-command.dxf`).equals(readFileSync(`${dir}/logo-bent.dxf`)), "the command gives another DXF");
   await page.click("#save-as");
   await page.fill("#save-name", "logo.svg");
   await page.click("#save-dialog button[type=submit]");

@@ -126,17 +126,23 @@ export const results_go_where_they_are_wanted = () => within("lettering.svg", as
   check(readFileSync(await download.path()).readUInt16BE(0) === 0xffd8, "the download is no JPEG");
 });
 
-/** White artwork is seen on black. */
+/** White artwork is seen on black by itself; the user's choice stays. */
 export const the_sheet_changes = () => within(`<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path fill="#fff" d="M5 5h50v30H5z"/></svg>`, async (page) => {
   const fill = () => page.$eval("#stage .sheet", (e) => getComputedStyle(e).fill);
-  const was = await fill();
-  await press(page, "Sheet: white");
-  check((await fill()) !== was, "the sheet is white on black");
+  await page.getByRole("button", { name: "Sheet: black", exact: true }).waitFor();
+  check((await fill()) === "rgb(0, 0, 0)", await fill());
   await press(page, "Sheet: black");
   check((await fill()).includes("#checks"), "the sheet has no pattern");
   await page.reload();
   await page.getByRole("button", { name: "Sheet: transparent", exact: true }).waitFor();
   await press(page, "Sheet: transparent");
+  check((await fill()) === "rgb(255, 255, 255)", await fill());
+  await choose(page, "Flag");
+  await page.getByRole("button", { name: "Sheet: white", exact: true }).waitFor();
+  await page.setInputFiles("#open-file", { name: "word.svg", mimeType: "image/svg+xml", buffer: readFileSync(sample("lettering.svg")) });
+  await page.getByRole("heading", { name: "word.svg" }).waitFor();
+  await quiet(page);
+  check((await fill()) === "rgb(255, 255, 255)", "dark artwork is on another sheet");
 });
 
 /** A drawing behind the artwork, at its own place; its outline becomes the shape, and it is in no result. */

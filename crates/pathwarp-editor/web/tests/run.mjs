@@ -14,9 +14,10 @@ import * as working from "./working.mjs";
 import * as several from "./several.mjs";
 import * as jobs from "./jobs.mjs";
 import * as parts from "./parts.mjs";
+import * as first from "./first.mjs";
 
 const wanted = process.argv.slice(2);
-const tests = Object.entries({ ...dragging, ...files, ...keeping, ...points, ...modes, ...choosing, ...working, ...several, ...jobs, ...parts, ...safety, ...access, ...inkscape, ...firefox })
+const tests = Object.entries({ ...dragging, ...files, ...keeping, ...points, ...modes, ...choosing, ...working, ...several, ...jobs, ...parts, ...first, ...safety, ...access, ...inkscape, ...firefox })
   .filter(([name]) => wanted.length === 0 || wanted.some((word) => name.includes(word)));
 let failed = 0;
 

@@ -1,0 +1,52 @@
+// The sheet under the drawing: white, black, or a pattern where the drawing is transparent.
+
+import type { App } from "./app";
+import { byId } from "./dom";
+
+const GROUNDS = ["white", "black", "checks"] as const;
+type Name = (typeof GROUNDS)[number];
+/** Where the choice is remembered. */
+const CHOSEN = "pathwarp-ground";
+/** Colours with no part below this are not seen on white. */
+const PALE = 235;
+
+export class Ground {
+  private shown: Name = "white";
+  /** The drawing that the sheet was last chosen for. */
+  private drawing = "";
+
+  constructor(app: App) {
+    this.show(this.chosen);
+    app.listen((change) => {
+      if (change === "report") this.suit(app.state?.drawing ?? "");
+    });
+    byId("ground").addEventListener("click", () => {
+      this.show(GROUNDS[(GROUNDS.indexOf(this.shown) + 1) % GROUNDS.length]!);
+      localStorage.setItem(CHOSEN, this.shown);
+    });
+  }
+
+  private get chosen(): Name {
+    return GROUNDS.find((name) => name === localStorage.getItem(CHOSEN)) ?? "white";
+  }
+
+  private show(name: Name): void {
+    this.shown = name;
+    for (const other of GROUNDS) document.body.classList.toggle(`on-${other}`, other === name);
+    byId("ground-name").textContent = name === "checks" ? "transparent" : name;
+  }
+
+  /** Shows a drawing of white alone on black, where the user has chosen white. */
+  private suit(drawing: string): void {
+    const art = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) :is(path, image)"));
+    if (drawing === this.drawing || art.length === 0) return;
+    this.drawing = drawing;
+    this.show(this.chosen === "white" && art.every(isPale) ? "black" : this.chosen);
+  }
+}
+
+function isPale(element: Element): boolean {
+  const { fill, stroke } = getComputedStyle(element);
+  const colours = [fill, stroke].filter((paint) => paint !== "none");
+  return element.tagName === "path" && colours.every((paint) => paint.startsWith("rgb(") && paint.match(/\d+/g)!.every((part) => Number(part) >= PALE));
+}

@@ -1,0 +1,78 @@
+//! `--simplify` and `--outset`: drawings are edited before they are bent.
+
+use super::common::text;
+use crate::support::{pathwarp_in, root};
+use std::path::Path;
+
+const FLAG: [&str; 5] = ["warp", "--style", "flag", "--bend", "30%"];
+
+fn run(args: &[&str], input: &[u8]) -> String {
+    let out = pathwarp_in(Path::new("."), args, input);
+    assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+    text(&out.stdout)
+}
+
+fn sample(name: &str) -> Vec<u8> {
+    std::fs::read(root().join("samples").join(name)).unwrap()
+}
+
+/// As by a command for each.
+#[test]
+fn edits_come_before_the_bend() {
+    for name in ["traced/word.svg", "logo.svg", "lettering-text.svg"] {
+        let source = sample(name);
+        let simple = run(&["simplify", "-", "--tolerance", "0.5"], &source);
+        let thick = run(&["offset", "-", "--by", "2"], simple.as_bytes());
+        let expected = run(&FLAG, thick.as_bytes());
+        let at_once = run(&[&FLAG[..], &["--simplify", "0.5", "--outset", "2"]].concat(), &source);
+        assert_eq!(at_once, expected, "{name}");
+        let thin = run(&["offset", "-", "--by", "0.5", "--side", "inside"], &source);
+        let at_once = run(&[&FLAG[..], &["--outset=-0.5"]].concat(), &source);
+        assert_eq!(at_once, run(&FLAG, thin.as_bytes()), "{name}");
+        let nothing = run(&[&FLAG[..], &["--simplify", "0", "--outset", "0mm"]].concat(), &source);
+        assert_eq!(nothing, run(&FLAG, &source), "{name}");
+    }
+}
+
+/// What no step bends stays; places of elements without ids are those of the source, and no ids appear.
+#[test]
+fn edits_concern_what_is_bent() {
+    let svg = |a: &str, b: &str| {
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path{a} d='M10,10H40V40H10Z'/><path{b} d='M50,50H80V80H50Z'/></svg>"
+        )
+    };
+    let plain = svg("", "");
+    let place = format!("path at 1:{}", plain.rfind("<path").unwrap() + 1);
+    let by_place = run(&[&FLAG[..], &["--outset", "3", "--select", &place]].concat(), plain.as_bytes());
+    let by_id = run(&[&FLAG[..], &["--outset", "3", "--select", "#b"]].concat(), svg("", " id='b'").as_bytes());
+    assert_eq!(by_place, by_id.replace(" id='b'", ""));
+    assert!(by_place.contains("d='M10,10H40V40H10Z'") && !by_place.contains("50,50"), "{by_place}");
+    let chain = ["--select", &place, "--outset", "3", "+", "affine", "--move-x", "5", "--select", "nothing"];
+    let out = pathwarp_in(Path::new("."), &[&FLAG[..], &chain].concat(), plain.as_bytes());
+    assert!(text(&out.stderr).contains("nothing matches `nothing`"), "{}", text(&out.stderr));
+}
+
+/// A recipe keeps the edits, and a result leads back to its source.
+#[test]
+fn recipes_keep_the_edits() {
+    let source = sample("lettering.svg");
+    let embedded = run(&[&FLAG[..], &["--outset", "1%", "--simplify", "0.1mm", "--embed-recipe"]].concat(), &source);
+    assert!(embedded.contains("outset = \"1%\"") && embedded.contains("simplify = \"0.1mm\""));
+    assert_eq!(run(&["unwarp", "-"], embedded.as_bytes()).as_bytes(), source);
+}
+
+#[test]
+fn what_cannot_be_edited_is_said() {
+    let said = |args: &[&str], input: &[u8]| {
+        let out = pathwarp_in(Path::new("."), &[&FLAG[..], args].concat(), input);
+        assert_eq!(out.status.code(), Some(2), "{args:?}");
+        text(&out.stderr)
+    };
+    let logo = sample("logo.svg");
+    assert!(said(&["--simplify", "wide"], &logo).contains("--simplify: `wide` is not a length"));
+    assert!(said(&["--simplify=-1"], &logo).contains("below zero"));
+    assert!(said(&["--simplify", "1e-30"], &logo).contains("--simplify: 1e-30 is finer than"));
+    let xcf = root().join("samples/paper.xcf");
+    assert!(said(&["--outset", "1", xcf.to_str().unwrap()], b"").contains("for SVG drawings"));
+}
