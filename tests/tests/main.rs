@@ -23,6 +23,7 @@ mod plugins;
 mod presets;
 mod recipes;
 mod solid;
+mod straightened;
 mod styles;
 mod support;
 mod text;

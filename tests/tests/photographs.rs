@@ -12,7 +12,7 @@ fn photograph(svg: &str, width: u32) -> Pixmap {
 }
 
 fn png(pixmap: Pixmap) -> Vec<u8> {
-    Picture { pixmap, profile: None }.write(PictureFormat::Png).unwrap()
+    Picture::from(pixmap).write(PictureFormat::Png).unwrap()
 }
 
 const DRAWING: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 120' width='200' height='120'>\
@@ -63,7 +63,7 @@ fn photographing_and_warping_commute() {
 #[test]
 fn sizes_formats_and_exit_codes() {
     let dir = tempfile::tempdir().unwrap();
-    let picture = Picture { pixmap: photograph(DRAWING, 200), profile: Some(b"a profile".to_vec()) };
+    let picture = Picture { profile: Some(b"a profile".to_vec()), ..photograph(DRAWING, 200).into() };
     fs::write(
         dir.path().join("in.jpg"),
         picture.write(PictureFormat::Jpeg { quality: PictureFormat::QUALITY }).unwrap(),
@@ -80,17 +80,17 @@ fn sizes_formats_and_exit_codes() {
 
     assert_eq!(code(&["-o", "turned.jpg"]), 0);
     assert_eq!((size(&read("turned.jpg")), read("turned.jpg").profile), ((120, 200), picture.profile.clone()));
-    assert_eq!(code(&["-o", "small.png", "--image-size", "60"]), 0);
+    assert_eq!(code(&["-o", "small.png", "--size", "60"]), 0);
     assert_eq!((size(&read("small.png")), read("small.png").profile), ((60, 100), picture.profile.clone()));
-    assert_eq!(code(&["-o", "wide.png", "--image-size", "60x20"]), 0);
+    assert_eq!(code(&["-o", "wide.png", "--size", "60x20"]), 0);
     assert_eq!(size(&read("wide.png")), (60, 20));
     assert_eq!(size(&Picture::read(&run(&[]).stdout).unwrap()), (120, 200));
 
     let before = fs::read_dir(dir.path()).unwrap().count();
     assert_eq!(code(&["-o", "out.svg"]), 2);
     assert_eq!(code(&["-o", "out.png", "--select", "path"]), 2);
-    assert_eq!(code(&["-o", "out.png", "--image-size", "0x4"]), 2);
-    assert_eq!(code(&["-o", "out.png", "--image-size", "60000x60000"]), 4);
+    assert_eq!(code(&["-o", "out.png", "--size", "0x4"]), 2);
+    assert_eq!(code(&["-o", "out.png", "--size", "60000x60000"]), 4);
     fs::write(dir.path().join("in.jpg"), b"\xff\xd8\xff\xe0 no more").unwrap();
     assert_eq!(code(&["-o", "out.png"]), 3);
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), before);

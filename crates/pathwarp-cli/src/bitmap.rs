@@ -140,7 +140,9 @@ impl ImageWarper for Bender {
         };
         let pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
         self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
-        let png = Picture { pixmap, profile: picture.profile }.write(PictureFormat::Png).map_err(|e| e.to_string())?;
+        let png = Picture { profile: picture.profile, ..pixmap.into() }
+            .write(PictureFormat::Png)
+            .map_err(|e| e.to_string())?;
         Ok(BentImage { png, area: e.bounds })
     }
 }
@@ -315,6 +317,6 @@ pub(crate) fn background(text: &str) -> Result<Background, String> {
 pub(crate) fn encode(pixmap: Pixmap, format: Format, quality: Option<u8>) -> Result<Vec<u8>, Failure> {
     match format.of_picture(quality) {
         None | Some(PictureFormat::Png) => Ok(encode_png(&pixmap)?),
-        Some(other) => Ok(Picture { pixmap, profile: None }.write(other)?),
+        Some(other) => Ok(Picture::from(pixmap).write(other)?),
     }
 }

@@ -23,7 +23,7 @@ pub(crate) fn option() -> Option<Arg> {
 const WITHOUT: [&str; 8] = ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "new-plugin"];
 
 /// Names of arguments that a deformation's parameter cannot have, besides the common options.
-const ARGUMENTS: [&str; 7] = [INVERSE, OPTION, "help", "version", "points", "jacobian", "INPUT"];
+const ARGUMENTS: [&str; 8] = [INVERSE, OPTION, "help", "version", "points", "jacobian", "INPUT", "size"];
 
 /// The plug-ins of a run.
 #[derive(Default)]

@@ -40,7 +40,7 @@ mod warp_image;
 
 pub use compare::{Difference, compare, diff_image};
 pub use error::Error;
-pub use picture::{Picture, PictureFormat, header_size};
+pub use picture::{EarlyEnd, Picture, PictureFormat, header_size};
 pub use pixmap::enlarged;
 pub use png::{decode_png, encode_png, encode_smooth_png};
 pub use preview::{OverlayKind, Panel, Preview, PreviewOverlay};

@@ -305,7 +305,7 @@ fn jpegs_are_as_fine_in_colour_as_in_brightness() {
         p.copy_from_slice(if i % 2 == 0 { &[200, 60, 60, 255] } else { &[60, 60, 200, 255] });
     }
     let expected = pixels(&pixmap);
-    let picture = Picture { pixmap, profile: None };
+    let picture = Picture::from(pixmap);
     for quality in [80, 100] {
         let back = Picture::read(&picture.write(PictureFormat::Jpeg { quality }).unwrap()).unwrap();
         assert_near(&pixels(&back.pixmap), &expected, if quality == 100 { 3 } else { 25 }, &quality.to_string());
@@ -316,7 +316,7 @@ fn jpegs_are_as_fine_in_colour_as_in_brightness() {
 fn profiles_survive_in_every_format() {
     let mut profile = b"\0\0\0\0 of more than a segment of a JPEG".to_vec();
     profile.extend((0..150_000_u32).flat_map(|i| i.wrapping_mul(i).to_be_bytes()));
-    let picture = Picture { pixmap: Pixmap::new(3, 2).unwrap(), profile: Some(profile.clone()) };
+    let picture = Picture { profile: Some(profile.clone()), ..Picture::from(Pixmap::new(3, 2).unwrap()) };
     for format in [PictureFormat::Png, PictureFormat::Jpeg { quality: 50 }, PictureFormat::WebP] {
         assert!(
             Picture::read(&picture.write(format).unwrap()).unwrap().profile.as_ref() == Some(&profile),
@@ -327,7 +327,7 @@ fn profiles_survive_in_every_format() {
 
 #[test]
 fn sides_that_a_format_does_not_have_are_errors() {
-    let long = Picture { pixmap: Pixmap::new(65_536, 1).unwrap(), profile: None };
+    let long = Picture::from(Pixmap::new(65_536, 1).unwrap());
     for format in [PictureFormat::Jpeg { quality: 50 }, PictureFormat::WebP] {
         assert!(matches!(long.write(format), Err(Error::Encode(_))), "{format:?}");
     }

@@ -130,7 +130,7 @@ fn photograph(n: usize) -> Result<Vec<u8>, pathwarp_raster::Error> {
         let light = |a: u64, b: u64| ((a * x + b * y) * 200 / (10 * u64::from(width)) + noise).min(255) as u8;
         pixel.copy_from_slice(&[light(7, 2), light(4, 4), light(1, 8), 255]);
     }
-    Picture { pixmap, profile: None }.write(PictureFormat::Jpeg { quality: 85 })
+    Picture::from(pixmap).write(PictureFormat::Jpeg { quality: 85 })
 }
 
 /// A place on the page.

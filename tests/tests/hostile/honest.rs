@@ -33,7 +33,7 @@ fn a_photograph_of_a_hundred_megapixels() {
     let photograph = png(10_000, 10_000, &[chunk(b"IDAT", &zlib.finish().unwrap())]);
     assert!(photograph.len() < 1 << 20);
     let folder = Folder::with(&[("p.png", &photograph)]);
-    taken(&folder, &["swirl", "p.png", "-o", "o.jpg", "--image-size", "1000"]);
+    taken(&folder, &["swirl", "p.png", "-o", "o.jpg", "--size", "1000"]);
 }
 
 /// A fifth of a plot with a hundred thousand words, in a fifth of the bytes: letters were limited to half as many for each megabyte.

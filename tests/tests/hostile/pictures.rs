@@ -138,7 +138,7 @@ fn packed_profiles_are_counted() {
 /// A WebP of one pixel whose profile, at the end of the file, is said to have two gigabytes.
 #[test]
 fn profiles_longer_than_the_file_are_not_held() {
-    let picture = Picture { pixmap: resvg::tiny_skia::Pixmap::new(1, 1).unwrap(), profile: None };
+    let picture = Picture::from(resvg::tiny_skia::Pixmap::new(1, 1).unwrap());
     let plain = picture.write(PictureFormat::WebP).unwrap();
     let size = [0x20, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     let chunks = [b"WEBPVP8X\x0a\0\0\0", &size[..], &plain[12..], b"ICCP\xfe\xff\xff\x7fprofile "].concat();

@@ -3,6 +3,7 @@
 mod artwork;
 mod before;
 mod beside;
+mod crop;
 mod files;
 #[cfg_attr(not(feature = "gimp"), path = "no_gimp.rs")]
 mod gimp;

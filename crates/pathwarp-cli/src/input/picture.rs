@@ -1,6 +1,7 @@
 //! Photographs (PNG, JPEG, WebP) as artwork: warped pixel by pixel, by the same maps as a drawing.
 
 use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::crop::Crop;
 use super::files::{display, no_document};
 use crate::advice;
 use crate::bitmap::{self, Pixel, ROUNDING, inverse};
@@ -15,7 +16,7 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, Step};
 use pathwarp::{Error, Outline, fold};
 use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, header_size, shown, warp_image};
-use pathwarp_svg::OnError;
+use pathwarp_svg::{OnError, PageFit};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -44,6 +45,7 @@ impl PictureArtwork {
             (!options.exclude.is_empty(), "exclude"),
             (options.embed_recipe, "embed-recipe"),
             (options.preview.is_some(), "preview"),
+            (options.page_width.is_some() || options.page_height.is_some(), "page-width"),
         ] {
             if given {
                 return Err(Failure::usage(format!("--{option} is for SVG files; {name} is a picture")));
@@ -55,6 +57,10 @@ impl PictureArtwork {
         let counted = bitmap::count_picture(&budget, Pixel::Decoded, size);
         counted.map_err(|e| Failure::Limited(too_much("reading a picture", size, &e, ""), e, 3))?;
         let picture = Picture::read_within(bytes, &budget.limits())?;
+        if let Some(end) = picture.early_end.filter(|_| options.on_failure.of_shapes() == OnError::Stop) {
+            let advice = "get a whole copy of it, or take what is there with --on-error skip";
+            return Err(Failure::Input(format!("{name} {end}; {advice}")));
+        }
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
         Ok(Self { name, picture, format, budget: Arc::new(budget), outline: Outline::from_points(&corners, true) })
@@ -63,6 +69,26 @@ impl PictureArtwork {
     fn area(&self) -> Rect {
         Rect::new(0.0, 0.0, f64::from(self.picture.pixmap.width()), f64::from(self.picture.pixmap.height()))
     }
+
+    /// The part of the plane that is shown under `--fit`, and a place of the picture where the map is undefined.
+    fn page(&self, map: &Arc<dyn Map>, options: &CommonOptions) -> Result<(Rect, Option<Point>), Failure> {
+        let area = self.area();
+        let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &**map, Affine::IDENTITY)
+            .ok_or_else(|| Failure::Geometry(undefined_at(area.center())))?;
+        if let Some(p) = undefined.filter(|_| options.on_failure.of_shapes() == OnError::Stop) {
+            return Err(Failure::Geometry(format!("{}; --on-error skip leaves that part out", undefined_at(p))));
+        }
+        let page = match options.page {
+            PageFit::None => area,
+            PageFit::Grow => area.union(bounds),
+            _ => bounds,
+        };
+        Ok((page, undefined))
+    }
+}
+
+fn undefined_at(p: Point) -> String {
+    format!("the map is undefined on part of the picture, such as at {:.4},{:.4}", p.x, p.y)
 }
 
 impl Artwork for PictureArtwork {
@@ -119,26 +145,23 @@ impl FileArtwork for PictureArtwork {
         }
         let area = self.area();
         let map: Arc<dyn Map> = Arc::new(built.map.clone());
-        let mut warnings = Vec::new();
-        let undefined_at =
-            |p: Point| format!("the map is undefined on part of the picture, such as at {:.4},{:.4}", p.x, p.y);
-        let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &*map, Affine::IDENTITY)
-            .ok_or_else(|| Failure::Geometry(undefined_at(area.center())))?;
-        if let Some(p) = undefined {
-            if options.on_failure.of_shapes() == OnError::Stop {
-                return Err(Failure::Geometry(format!("{}; --on-error skip leaves that part out", undefined_at(p))));
-            }
-            warnings.push(undefined_at(p));
-        }
-        let orientation = fold::orientation(&self.outline, true, &*map);
+        let inverse = inverse(&map, area, &self.budget);
+        let mut warnings: Vec<String> = self.picture.early_end.iter().map(|end| format!("the picture {end}")).collect();
+        let crop = if options.crop { Some(Crop::of(built, request.recipe)?) } else { None };
+        let source = crop.as_ref().and_then(|c| c.source(&inverse));
+        let (bounds, undefined) = match &crop {
+            Some(crop) => (crop.bounds, None),
+            None => self.page(&map, options)?,
+        };
+        warnings.extend(undefined.map(undefined_at));
+        let orientation = fold::orientation(source.as_ref().map_or(&self.outline, |s| &s.outline), true, &*map);
         warnings
             .extend(orientation.folded_against(&orientation).map(|at| artwork::fold_warning("the picture", &[], at)));
-        let (visible, size) = size(bounds, options.image_size)?;
-        let smaller = "give a smaller --image-size, or ";
+        let (visible, size) = size(bounds, source.map(|s| s.size), options.image_size)?;
+        let smaller = "give a smaller --size, or ";
         let too_much = |e| Failure::Limited(too_much("warping it to a picture", size, &e, smaller), e, 4);
         bitmap::count_picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
         let size = (size.0 as u32, size.1 as u32);
-        let inverse = inverse(&map, area, &self.budget);
         let warp = ImageWarp {
             source: &self.picture.pixmap,
             placed: Affine::IDENTITY,
@@ -149,7 +172,12 @@ impl FileArtwork for PictureArtwork {
         };
         let pixmap = warp_image(&warp)?;
         self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
-        let warped = Picture { pixmap, profile: self.picture.profile.clone() };
+        let warped = self.picture.remade(pixmap, options.keep_location);
+        let lost = [
+            (self.picture.profile.is_some() && warped.profile.is_none(), "the colour profile is not one for RGB"),
+            (self.picture.exif.is_some() && warped.exif.is_none(), "the EXIF data are damaged or too long"),
+        ];
+        warnings.extend(lost.into_iter().filter(|(is, _)| *is).map(|(_, why)| format!("{why}; the result has none")));
         Ok(WarpedArtwork {
             result: WarpedResult::Bytes(warped.write(self.format)?),
             shapes: Vec::new(),
@@ -158,7 +186,7 @@ impl FileArtwork for PictureArtwork {
             page: PageNews::default(),
             files: Vec::new(),
             preview: None,
-            partial: undefined.is_some(),
+            partial: undefined.is_some() || self.picture.early_end.is_some(),
         })
     }
 }
@@ -168,24 +196,30 @@ fn too_much(what: &str, (width, height): (f64, f64), e: &Exceeded, advice: &str)
     format!("{what} of {width:.0} x {height:.0} pixels takes {e}; {advice}{}", advice::raise(e))
 }
 
-/// The part of the plane that the result shows, and its size in pixels: by default one pixel per unit of the plane.
-fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>) -> Result<(Rect, (f64, f64)), Failure> {
+/// The part of the plane that the result shows, and its size in pixels: by default `natural`, or else one pixel per unit of the plane.
+fn size(
+    bounds: Rect,
+    natural: Option<(f64, f64)>,
+    wanted: Option<(u32, Option<u32>)>,
+) -> Result<(Rect, (f64, f64)), Failure> {
     let shown = match wanted {
-        None => Rect::new(
+        None if natural.is_none() => Rect::new(
             (bounds.x0 + ROUNDING).floor(),
             (bounds.y0 + ROUNDING).floor(),
             (bounds.x1 - ROUNDING).ceil(),
             (bounds.y1 - ROUNDING).ceil(),
         ),
-        Some(_) => bounds,
+        _ => bounds,
     };
     if shown.width() <= 0.0 || shown.height() <= 0.0 {
         return Err(Failure::Geometry("the warped picture has no area".to_owned()));
     }
-    let (width, height) = match wanted {
-        None => (shown.width(), shown.height()),
+    let (width, height) = natural.unwrap_or((shown.width(), shown.height()));
+    let pixels = |length: f64| length.round().max(1.0);
+    let size = match wanted {
+        None => (pixels(width), pixels(height)),
         Some((w, Some(h))) => (f64::from(w), f64::from(h)),
-        Some((w, None)) => (f64::from(w), (f64::from(w) * shown.height() / shown.width()).round().max(1.0)),
+        Some((w, None)) => (f64::from(w), pixels(f64::from(w) * height / width)),
     };
-    Ok((shown, (width, height)))
+    Ok((shown, size))
 }

@@ -63,6 +63,13 @@ impl SvgArtwork {
     ) -> Result<Self, Failure> {
         let format = format(options, input, target).map_err(|e| not_a_drawing(bytes, input, e))?;
         let (name, read) = (display(input), read_options(input, &options.reading));
+        let of_pictures = [
+            (options.crop, "crop", "--fit page fits the page of a drawing"),
+            (options.image_size.is_some(), "size", "--page-width gives the page of a drawing its size"),
+        ];
+        if let Some((_, option, instead)) = of_pictures.into_iter().find(|(given, ..)| *given) {
+            return Err(Failure::usage(format!("--{option} is for PNG, JPEG and WebP files; {instead}")));
+        }
         let doc = Document::read(bytes, &name, &read).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
         watch::count_pixels(doc.budget().taken(Limit::Pixels));
         let selection = selection(options);

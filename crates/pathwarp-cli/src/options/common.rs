@@ -107,6 +107,10 @@ pub(crate) struct CommonOptions {
     /// Warp the bitmaps in drawings.
     pub(crate) warp_images: bool,
     pub(crate) image_dpi: Option<f64>,
+    /// Cut a warped picture to the image of the frame.
+    pub(crate) crop: bool,
+    /// Keep the place in the metadata of a picture.
+    pub(crate) keep_location: bool,
     /// Width, and height if given, of a warped picture in pixels.
     pub(crate) image_size: Option<(u32, Option<u32>)>,
     /// Form of Bézier curves in a DXF.

@@ -266,7 +266,7 @@ pub(crate) fn reading_args() -> impl Iterator<Item = Arg> {
 }
 
 fn arg(option: &CommonOption) -> Arg {
-    let mut arg = Arg::new(option.name).long(option.name).help(option.help());
+    let mut arg = Arg::new(option.name).long(option.name).visible_aliases(option.alias).help(option.help());
     if let Some(c) = option.short {
         arg = arg.short(c);
     }

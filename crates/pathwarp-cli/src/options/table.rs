@@ -12,7 +12,17 @@ use std::path::PathBuf;
 
 /// An option without short name, default and conflicts, stored in recipes.
 const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
-    CommonOption { name, short: None, value, default: None, stored: true, reading: false, conflicts: &[], help }
+    CommonOption {
+        name,
+        short: None,
+        alias: None,
+        value,
+        default: None,
+        stored: true,
+        reading: false,
+        conflicts: &[],
+        help,
+    }
 }
 
 /// An option that names files or changes what is printed; recipes do not store it.
@@ -387,6 +397,17 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         )
     },
     CommonOption {
+        conflicts: &["fit"],
+        ..stored(
+            "crop",
+            OptionValue::Switch(|o| o.crop = true),
+            "Cut a warped PNG, JPEG or WebP to the image of the frame: of the corners given to a perspective, of what a cage around part of \
+             a photograph holds (--inverse), or else of the whole picture. If that is upright, it gets as many pixels as the frame's \
+             sides have in the photograph. Without it, --fit page (as auto) shows all of the warped picture, none keeps the photograph's edges",
+        )
+    },
+    CommonOption {
+        alias: Some("size"),
         default: Some("the size of the warped picture"),
         ..stored(
             "image-size",
@@ -398,6 +419,11 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "Size in pixels of a warped PNG, JPEG or WebP",
         )
     },
+    stored(
+        "keep-location",
+        OptionValue::Switch(|o| o.keep_location = true),
+        "Keep the place where a photograph was taken in its EXIF data; without it, they come along without the place and the thumbnail",
+    ),
     #[cfg(feature = "dxf")]
     CommonOption {
         default: Some("spline"),
@@ -512,6 +538,8 @@ pub(crate) struct CommonOption {
     /// Long name, and the key in a recipe's `[options]`.
     pub(crate) name: &'static str,
     pub(crate) short: Option<char>,
+    /// Another long name, on the command line only.
+    pub(crate) alias: Option<&'static str>,
     pub(crate) value: OptionValue,
     /// Default, in words for help. The default of a [`Choice`](OptionValue::Choice) is one of its words.
     pub(crate) default: Option<&'static str>,

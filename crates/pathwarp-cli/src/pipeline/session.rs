@@ -17,6 +17,7 @@ use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe, Portion, Recipe, Step};
+use pathwarp_raster::Picture;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -75,7 +76,8 @@ pub(crate) fn warp_bytes(
     name: &Path,
     bytes: &[u8],
 ) -> Result<(Vec<u8>, Warped), Failure> {
-    let mut options = given.keeping_pages().read()?;
+    // The page of a drawing stays in the program that calls; a picture has none.
+    let mut options = if Picture::sniff(bytes) { given.read()? } else { given.keeping_pages().read()? };
     options.reading.stop(stop);
     let (session, flags) = (Session { registry, recipe, options: &options, given }, Flags::of(registry));
     let warped =

@@ -1,8 +1,26 @@
 //! The interface of all decoders, and conversion of their samples to pixels.
 
 use crate::error::Error;
-use std::fmt::Display;
+use std::fmt::{Display, Formatter, Result as Written};
 use tiny_skia::{ColorU8, Pixmap};
+
+/// How much of a picture is in a file that ends early.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EarlyEnd {
+    /// The lines of pixels in the file; `None` if all of them lack details.
+    pub lines: Option<u32>,
+    /// The lines of the whole picture.
+    pub of: u32,
+}
+
+impl Display for EarlyEnd {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Written {
+        match self.lines {
+            Some(lines) => write!(f, "ends early, after {lines} of {} lines", self.of),
+            None => write!(f, "ends early, before all details of its {} lines", self.of),
+        }
+    }
+}
 
 /// A file whose header has been read.
 pub(super) trait Bitmap {

@@ -1,8 +1,8 @@
 //! Decodes files to pixels, within limits.
 
-use super::bitmap::{Bitmap, Kind};
+use super::bitmap::{Bitmap, EarlyEnd, Kind};
 use super::gif::Gif;
-use super::jpeg::Jpeg;
+use super::jpeg::{Jpeg, early_end};
 use super::orientation::Orientation;
 use super::png::{self, Png};
 use super::webp::WebP;
@@ -11,8 +11,16 @@ use crate::pixmap::{check_size, new_pixmap};
 use pathwarp::budget::{Limit, Limits};
 use tiny_skia::Pixmap;
 
-/// Decodes the pixels and the ICC profile. If `upright`, applies the EXIF orientation.
-pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<(Pixmap, Option<Vec<u8>>), Error> {
+/// The contents of a file.
+pub(super) struct Decoded {
+    pub(super) pixmap: Pixmap,
+    pub(super) profile: Option<Vec<u8>>,
+    pub(super) exif: Option<Vec<u8>>,
+    pub(super) early_end: Option<EarlyEnd>,
+}
+
+/// Decodes the pixels and the ICC profile. If `upright`, applies the EXIF orientation and keeps the metadata.
+pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Decoded, Error> {
     let check = |(width, height): (u32, u32)| check_size(f64::from(width), f64::from(height), limits);
     png::size(bytes).map_or(Ok(()), check)?;
     let mut bitmap = open(bytes, limits)?;
@@ -23,8 +31,9 @@ pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<(Pi
     let limits = &limits.for_pixels(f64::from(width) * f64::from(height));
     let mut pixmap = new_pixmap(f64::from(width), f64::from(height), limits)?;
     bitmap.decode(&mut pixmap)?;
-    let orientation = exif.map_or_else(Orientation::default, |exif| Orientation::of_exif(&exif));
-    Ok((orientation.apply(pixmap, limits)?, profile))
+    let early_end = if upright && Kind::of(bytes) == Some(Kind::Jpeg) { early_end(bytes, &mut pixmap) } else { None };
+    let orientation = exif.as_deref().map_or_else(Orientation::default, Orientation::of_exif);
+    Ok(Decoded { pixmap: orientation.apply(pixmap, limits)?, profile, exif, early_end })
 }
 
 /// Returns the width and height in the header of a picture.

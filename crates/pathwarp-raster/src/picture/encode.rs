@@ -28,18 +28,24 @@ impl PictureFormat {
     pub const QUALITY: u8 = 92;
 }
 
-/// Encodes a picture with its ICC profile.
-pub(super) fn encode(pixmap: &Pixmap, profile: Option<&[u8]>, format: PictureFormat) -> Result<Vec<u8>, Error> {
+/// Encodes a picture with its ICC profile and EXIF metadata.
+pub(super) fn encode(
+    pixmap: &Pixmap,
+    profile: Option<&[u8]>,
+    exif: Option<&[u8]>,
+    format: PictureFormat,
+) -> Result<Vec<u8>, Error> {
     match format {
-        PictureFormat::Png => encode_png(pixmap, profile),
-        PictureFormat::Jpeg { quality } => encode_jpeg(pixmap, profile, quality),
-        PictureFormat::WebP => encode_webp(pixmap, profile),
+        PictureFormat::Png => encode_png(pixmap, profile, exif),
+        PictureFormat::Jpeg { quality } => encode_jpeg(pixmap, profile, exif, quality),
+        PictureFormat::WebP => encode_webp(pixmap, profile, exif),
     }
 }
 
-fn encode_png(pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error> {
+fn encode_png(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>) -> Result<Vec<u8>, Error> {
     let mut info = Info::with_size(pixmap.width(), pixmap.height());
     info.icc_profile = profile.map(Into::into);
+    info.exif_metadata = exif.map(Into::into);
     let mut out = Vec::new();
     let mut encoder = png::Encoder::with_info(&mut out, info).map_err(unencodable)?;
     encoder.set_color(ColorType::Rgba);
@@ -53,20 +59,22 @@ fn encode_png(pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error>
     Ok(out)
 }
 
-fn encode_webp(pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error> {
+fn encode_webp(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
     let mut encoder = WebPEncoder::new(&mut out);
     encoder.set_icc_profile(profile.unwrap_or_default().to_vec());
+    encoder.set_exif_metadata(exif.unwrap_or_default().to_vec());
     let (width, height) = (pixmap.width(), pixmap.height());
     encoder.encode(&straight(pixmap), width, height, image_webp::ColorType::Rgba8).map_err(unencodable)?;
     Ok(out)
 }
 
-fn encode_jpeg(pixmap: &Pixmap, profile: Option<&[u8]>, quality: u8) -> Result<Vec<u8>, Error> {
+fn encode_jpeg(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>, quality: u8) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
     let mut encoder = jpeg_encoder::Encoder::new(&mut out, quality.clamp(1, 100));
     // Don't subsample colours, so that red on white has no fringes.
     encoder.set_sampling_factor(SamplingFactor::F_1_1);
+    exif.map_or(Ok(()), |exif| encoder.add_exif_metadata(exif)).map_err(unencodable)?;
     encoder.add_icc_profile(profile.unwrap_or_default()).map_err(unencodable)?;
     encoder.encode_image(OnWhite::new(pixmap)?).map_err(unencodable)?;
     Ok(out)

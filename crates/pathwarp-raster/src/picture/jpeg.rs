@@ -1,6 +1,6 @@
 //! Reads JPEG: grey, RGB, YCbCr, CMYK and YCCK.
 
-use super::bitmap::{Bitmap, set_opaque, undecodable};
+use super::bitmap::{Bitmap, EarlyEnd, set_opaque, undecodable};
 use crate::error::Error;
 use tiny_skia::Pixmap;
 use zune_jpeg::JpegDecoder;
@@ -56,5 +56,143 @@ impl Bitmap for Jpeg<'_> {
 }
 
 fn wrong(why: DecodeErrors) -> Error {
-    undecodable("JPEG", why)
+    match why {
+        DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => {
+            undecodable("JPEG", "the file ends early, before its first line")
+        }
+        why => undecodable("JPEG", why),
+    }
+}
+
+/// How the lines of a JPEG are stored.
+#[derive(Default)]
+struct Layout {
+    /// The end is marked.
+    has_end: bool,
+    /// All of a line is in one place.
+    in_one_pass: bool,
+    /// Lines that are stored together.
+    together: u32,
+}
+
+/// Reads the layout from the markers of a JPEG, as far as they go.
+fn layout(bytes: &[u8]) -> Layout {
+    let (mut out, mut at, mut components) = (Layout::default(), 2, 0);
+    while let Some(&[0xff, marker]) = bytes.get(at..).and_then(|b| b.first_chunk()) {
+        let segment = match bytes.get(at + 2..).and_then(|b| b.first_chunk()) {
+            Some(&[high, low]) => usize::from(u16::from_be_bytes([high, low])),
+            None => 0,
+        };
+        let content = bytes.get(at + 4..).unwrap_or_default();
+        match marker {
+            0xd9 => return Layout { has_end: true, ..out },
+            0xff => at += 1,
+            0x00 | 0x01 | 0xd0..=0xd8 => at += 2,
+            // Frames, of which the third is progressive: precision, height, width, and three bytes for each component, of which the
+            // second has the lines stored together, in eights, in its lower half.
+            0xc0..=0xc2 => {
+                components = content.get(5).copied().unwrap_or(0);
+                let factors = content.get(6..).unwrap_or_default().chunks(3).take(components.into());
+                let most = factors.filter_map(|c| c.get(1)).map(|f| f & 15).max();
+                out.together = 8 * u32::from(most.unwrap_or(1).max(1));
+                out.in_one_pass = marker < 0xc2;
+                at += 2 + segment;
+            }
+            0xda => {
+                out.in_one_pass &= content.first() == Some(&components);
+                at += 2 + segment;
+            }
+            _ => at += 2 + segment,
+        }
+        // Data, up to the next marker.
+        at += bytes.get(at..).map_or(0, |rest| rest.iter().position(|b| *b == 0xff).unwrap_or(rest.len()));
+    }
+    out
+}
+
+/// Says where a JPEG ends that lacks a part, and clears the lines that it lacks.
+pub(super) fn early_end(bytes: &[u8], decoded: &mut Pixmap) -> Option<EarlyEnd> {
+    /// The decoder's mark of missing lines (zune-jpeg 0.5).
+    const MISSING: [u8; 4] = [128, 128, 128, 255];
+    let layout = layout(bytes);
+    if layout.has_end {
+        return None;
+    }
+    let of = decoded.height();
+    if !layout.in_one_pass {
+        return Some(EarlyEnd { lines: None, of });
+    }
+    let row = 4 * decoded.width() as usize;
+    let is_missing = |line: &&[u8]| line.as_chunks().0.iter().all(|p| *p == MISSING);
+    let missing = decoded.data().rchunks_exact(row).take_while(is_missing).count();
+    // The mark of the end alone is no loss.
+    let there = of.checked_sub(u32::try_from(missing).ok()?).filter(|n| *n < of)?;
+    // The last lines that are stored together are not all there.
+    let lines = there.saturating_sub(layout.together);
+    let all = decoded.data_mut();
+    all[row * lines as usize..].fill(0);
+    Some(EarlyEnd { lines: Some(lines), of })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Picture;
+    use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
+
+    /// A JPEG of 64 × 96 pixels of noise.
+    fn noise(factor: SamplingFactor, scans: Option<u8>, color: (ColorType, usize)) -> Vec<u8> {
+        let mut n = 1u32;
+        let mut random = || {
+            n = n.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (n >> 24) as u8
+        };
+        let samples: Vec<u8> = (0..64 * 96 * color.1).map(|_| random()).collect();
+        let mut out = Vec::new();
+        let mut encoder = Encoder::new(&mut out, 90);
+        encoder.set_sampling_factor(factor);
+        scans.into_iter().for_each(|n| encoder.set_progressive_scans(n));
+        encoder.encode(&samples, 64, 96, color.0).unwrap();
+        out
+    }
+
+    /// Wherever a file is cut, the lines that are said to be there are those of the whole file.
+    #[test]
+    fn lines_before_the_cut_are_right() {
+        let kinds = [
+            (SamplingFactor::F_1_1, (ColorType::Rgb, 3), 8),
+            (SamplingFactor::F_2_2, (ColorType::Rgb, 3), 16),
+            (SamplingFactor::F_1_1, (ColorType::Luma, 1), 8),
+        ];
+        for (factor, color, together) in kinds {
+            let whole = noise(factor, None, color);
+            let expected = Picture::read(&whole).unwrap();
+            assert_eq!(expected.early_end, None);
+            let mut most = 0;
+            for cut in (1000..whole.len() - 2).step_by(whole.len() / 40) {
+                let found = Picture::read(&whole[..cut]).unwrap();
+                let Some(end) = found.early_end else {
+                    // Cut in what holds the last lines.
+                    assert!(cut as f64 > whole.len() as f64 * 0.8, "{cut} of {}", whole.len());
+                    continue;
+                };
+                let lines = end.lines.unwrap();
+                assert!(end.of == 96 && lines >= most, "{end}");
+                // Two units that are stored together hold what is not counted.
+                assert!(lines + 2 * together > 96 * cut as u32 / whole.len() as u32, "{cut}: {end}");
+                let (there, missing) = found.pixmap.data().split_at(lines as usize * 64 * 4);
+                assert!(expected.pixmap.data().starts_with(there), "{cut}: {end}");
+                assert!(missing.iter().all(|b| *b == 0));
+                most = lines;
+            }
+            assert!(most + 2 * together + 2 >= 96, "{most}");
+        }
+    }
+
+    #[test]
+    fn a_progressive_file_lacks_details() {
+        let whole = noise(SamplingFactor::F_1_1, Some(6), (ColorType::Rgb, 3));
+        assert_eq!(Picture::read(&whole).unwrap().early_end, None);
+        let cut = Picture::read(&whole[..whole.len() / 2]).unwrap().early_end.unwrap();
+        assert_eq!(cut.to_string(), "ends early, before all details of its 96 lines");
+    }
 }

@@ -1,8 +1,9 @@
-//! Reads and writes photographs, with orientation and colour profile.
+//! Reads and writes photographs, with orientation, colour profile and EXIF metadata.
 
 mod bitmap;
 mod decode;
 mod encode;
+mod exif;
 mod gif;
 mod jpeg;
 mod orientation;
@@ -11,20 +12,32 @@ mod webp;
 
 use crate::error::Error;
 use crate::picture::bitmap::Kind;
+use crate::picture::decode::Decoded;
 use pathwarp::budget::Limits;
 use tiny_skia::Pixmap;
 
+pub use bitmap::EarlyEnd;
 pub(crate) use bitmap::PNG_SIGNATURE;
 pub use decode::header_size;
 pub use encode::PictureFormat;
 
-/// A bitmap with its colour profile.
+/// A bitmap with its colour profile and what else is known of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
     /// The pixels.
     pub pixmap: Pixmap,
-    /// The ICC profile of the colours; `None` for sRGB.
+    /// The ICC profile of the file; `None` for sRGB. One for other colours than RGB does not fit the pixels and is not written.
     pub profile: Option<Vec<u8>>,
+    /// The EXIF metadata as the file has them, starting with the header of TIFF.
+    pub exif: Option<Vec<u8>>,
+    /// Where the file ends, if that is before all of the picture.
+    pub early_end: Option<EarlyEnd>,
+}
+
+impl From<Pixmap> for Picture {
+    fn from(pixmap: Pixmap) -> Self {
+        Self { pixmap, profile: None, exif: None, early_end: None }
+    }
 }
 
 impl Picture {
@@ -73,7 +86,24 @@ impl Picture {
     }
 
     fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
-        decode::decode(bytes, upright, limits).map(|(pixmap, profile)| Self { pixmap, profile })
+        let Decoded { pixmap, profile, exif, early_end } = decode::decode(bytes, upright, limits)?;
+        Ok(Self { pixmap, profile, exif, early_end })
+    }
+
+    /// A picture made of the pixels of this one: it has the same colour profile, if it fits, and the EXIF metadata, if they are sound, for
+    /// upright pixels and its own size. They lack the thumbnail, and the place unless `keep_location`.
+    #[must_use]
+    pub fn remade(&self, pixmap: Pixmap, keep_location: bool) -> Self {
+        let size = (pixmap.width(), pixmap.height());
+        let exif = self.exif.as_deref().and_then(|e| exif::edited(e, size, keep_location));
+        Self { profile: self.profile_of_pixels().map(<[u8]>::to_vec), exif, ..Self::from(pixmap) }
+    }
+
+    /// The profile if it is one for RGB, which the pixels are.
+    fn profile_of_pixels(&self) -> Option<&[u8]> {
+        // ICC.1:2022, 7.2: the colour space, and a signature.
+        let is_other = |p: &[u8]| p.get(36..40) == Some(b"acsp") && p.get(16..20) != Some(b"RGB ");
+        self.profile.as_deref().filter(|p| !p.is_empty() && !is_other(p))
     }
 
     /// Encodes the picture.
@@ -81,8 +111,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Encode`], for instance for a JPEG with a side of more than 65535 pixels.
     pub fn write(&self, format: PictureFormat) -> Result<Vec<u8>, Error> {
-        let profile = self.profile.as_deref().filter(|profile| !profile.is_empty());
-        encode::encode(&self.pixmap, profile, format)
+        encode::encode(&self.pixmap, self.profile_of_pixels(), self.exif.as_deref(), format)
     }
 }
 
@@ -96,7 +125,7 @@ mod tests {
         for (i, p) in pixmap.pixels_mut().iter_mut().enumerate() {
             *p = ColorU8::from_rgba(255, 0, 0, if i % 16 < 8 { 255 } else { 0 }).premultiply();
         }
-        Picture { pixmap, profile: Some(b"a profile".to_vec()) }
+        Picture { profile: Some(b"a profile".to_vec()), ..Picture::from(pixmap) }
     }
 
     const JPEG: PictureFormat = PictureFormat::Jpeg { quality: PictureFormat::QUALITY };

@@ -1,14 +1,10 @@
 //! Reads the EXIF orientation of a photograph, and turns the picture upright.
 
+use super::exif;
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
 use pathwarp::budget::Limits;
 use tiny_skia::Pixmap;
-
-/// The tag of the orientation in TIFF and EXIF.
-const TAG: u16 = 0x0112;
-/// The type of a 16-bit number.
-const SHORT: u16 = 3;
 
 /// The operation that turns a stored picture upright: mirrors it along its axes, then swaps rows and columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -20,8 +16,8 @@ pub(super) struct Orientation {
 
 impl Orientation {
     /// Reads the orientation from EXIF metadata, which are a TIFF file; upright if there is none.
-    pub(super) fn of_exif(exif: &[u8]) -> Self {
-        number(exif).map_or_else(Self::default, |n| Self {
+    pub(super) fn of_exif(metadata: &[u8]) -> Self {
+        exif::orientation(metadata).map_or_else(Self::default, |n| Self {
             mirror_x: matches!(n, 2 | 3 | 7 | 8),
             mirror_y: matches!(n, 3 | 4 | 6 | 7),
             transpose: matches!(n, 5..=8),
@@ -50,32 +46,9 @@ impl Orientation {
     }
 }
 
-/// Finds the number of the orientation in the first directory of a TIFF file; 1 is upright.
-fn number(tiff: &[u8]) -> Option<u16> {
-    let is_little = match tiff.get(..4)? {
-        b"II\x2a\0" => true,
-        b"MM\0\x2a" => false,
-        _ => return None,
-    };
-    let short = |at: usize| {
-        let (two, _) = tiff.get(at..)?.split_first_chunk()?;
-        Some(if is_little { u16::from_le_bytes(*two) } else { u16::from_be_bytes(*two) })
-    };
-    let long = |at: usize| {
-        let (four, _) = tiff.get(at..)?.split_first_chunk()?;
-        Some(if is_little { u32::from_le_bytes(*four) } else { u32::from_be_bytes(*four) })
-    };
-    let directory = usize::try_from(long(4)?).ok()?;
-    // Twelve bytes for each entry: tag, type, count, value.
-    let entries = (0..usize::from(short(directory)?)).map(|i| directory.saturating_add(2 + 12 * i));
-    let is_it = |at: usize| Some((short(at)?, short(at + 2)?, long(at + 4)?) == (TAG, SHORT, 1));
-    let at = entries.take_while(|at| *at < tiff.len()).find(|at| is_it(*at) == Some(true))?;
-    // Two bytes of padding follow the value; an entry cut short within them does not count.
-    long(at + 8).and(short(at + 8))
-}
-
 #[cfg(test)]
 mod tests {
+    use super::exif::orientation as number;
     use super::*;
     use tiny_skia::PremultipliedColorU8;
 

@@ -75,6 +75,10 @@ unless --base-as-drawn or --target-as-drawn say otherwise.")
             what: "Straighten a photographed sign",
             command: "projective samples/badge.svg --base '2%,90% 95%,98% 90%,5% 8%,10%' --target '0%,100% 100%,100% 100%,0% 0%,0%' -o out.svg",
         },
+        Example {
+            what: "Straighten a photographed label and cut it out",
+            command: "projective samples/label.jpg --target '150,475 640,520 685,160 235,95' --inverse --crop -o out.jpg",
+        },
     ])
     .laws(&[
         Law::Identity(&[("target", "0,0 100,0 100,100 0,100")]),

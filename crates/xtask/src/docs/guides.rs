@@ -57,6 +57,10 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             for stage in stages(command) {
                 drawing = pipe(root, program, &stage, &drawing)?;
             }
+            if let Some(photograph) = words(command).iter().find(|w| w.ends_with(".jpg")) {
+                beside(root, program, &png, (photograph, &drawing))?;
+                continue;
+            }
             shell::render(root, program, &drawing, WIDTH, &png)?;
         }
     }
@@ -97,6 +101,28 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     let [width, height] = [columns, 2].map(|n| GAP + n * (SIDE + GAP));
     let sheet = format!("<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}'>{sheet}</svg>");
     shell::render(root, program, sheet.as_bytes(), WIDTH, png)
+}
+
+/// Draws a photograph and beside it, as high, what a command made of it.
+fn beside(root: &Path, program: &Path, png: &Path, (photograph, made): (&str, &[u8])) -> Result<(), ChoreError> {
+    /// The height of both, and the space between them.
+    const HEIGHT: f64 = 300.0;
+    const GAP: f64 = 20.0;
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let taken = fs::read(root.join(photograph)).map_err(at(&root.join(photograph)))?;
+    let (mut images, mut x) = (String::new(), 0.0);
+    for (name, content) in [("before", &taken[..]), ("after", made)] {
+        let (width, height) = pathwarp_raster::header_size(content).map_err(|e| e.to_string())?;
+        let width = HEIGHT * f64::from(width) / f64::from(height);
+        let _ = write!(images, "<image x='{x}' width='{width}' height='{HEIGHT}' href='{name}'/>");
+        x += width + GAP;
+        fs::write(folder.path().join(name), content).map_err(at(png))?;
+    }
+    let drawing = folder.path().join("drawing.svg");
+    let open = format!("<svg xmlns='http://www.w3.org/2000/svg' width='{}' height='{HEIGHT}'>", x - GAP);
+    fs::write(&drawing, format!("{open}{images}</svg>")).map_err(at(&drawing))?;
+    let [drawing, png] = [&drawing, png].map(|file| file.display().to_string());
+    pipe(root, program, &["render", &drawing, "--width", WIDTH, "-o", &png].map(str::to_owned), &[]).map(drop)
 }
 
 /// Draws the picture for a command that reduces the number of nodes: the drawing before and after, with its nodes.

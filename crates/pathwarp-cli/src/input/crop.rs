@@ -1,0 +1,102 @@
+//! What `--crop` keeps of a photograph: the image of the frame, at the size that the frame has in the photograph.
+
+use crate::failure::Failure;
+use pathwarp::Outline;
+use pathwarp::deform::{Built, Role};
+use pathwarp::kurbo::{BezPath, PathEl, Point, Rect, Shape as _};
+use pathwarp::map::Map;
+use pathwarp::recipe::{BuiltRecipe, Recipe};
+
+/// Samples of a side.
+const SAMPLES: usize = 64;
+
+/// The image of the frame.
+pub(super) struct Crop {
+    pub(super) bounds: Rect,
+    /// It is a rectangle along the axes.
+    is_straight: bool,
+}
+
+/// A straightened frame as it is in the photograph.
+pub(super) struct Source {
+    pub(super) outline: Outline,
+    /// Its mean width and height along its sides.
+    pub(super) size: (f64, f64),
+}
+
+impl Crop {
+    /// Finds the image of the frame of the first step that straightens something: one with corners of its own, or an inverse one, which
+    /// takes what it holds for into the frame. If none does, it is that of the first step's frame.
+    pub(super) fn of(built: &BuiltRecipe, recipe: &Recipe) -> Result<Self, Failure> {
+        let is_inverse = |i: usize| recipe.steps.get(built.indices[i]).is_some_and(|s| s.inverse);
+        let frame = |i: usize| corners(built.frames[i].rect);
+        let straightens =
+            |i: &usize| is_inverse(*i) || quad(&built.steps[*i], Role::Base).is_some_and(|q| q != frame(*i));
+        let step = (0..built.steps.len()).find(straightens).unwrap_or(0);
+        let (role, first) = if is_inverse(step) { (Role::Target, step + 1) } else { (Role::Base, step) };
+        let quad = quad(&built.steps[step], role).unwrap_or_else(|| frame(step));
+        let image: Vec<Point> =
+            ring(quad).map(|p| built.steps[first..].iter().fold(p, |p, s| s.map.point(p))).collect();
+        let is_finite = image.iter().all(|p| p.is_finite());
+        let bounds = image.iter().map(|p| Rect::from_points(*p, *p)).reduce(|a, b| a.union(b));
+        let bounds = bounds.filter(|b| is_finite && b.width() > 0.0 && b.height() > 0.0);
+        let bounds =
+            bounds.ok_or_else(|| Failure::Geometry("--crop: the map is undefined on part of the frame".into()))?;
+        Ok(Self { bounds, is_straight: is_box(&image, bounds) })
+    }
+
+    /// The frame in the photograph, if its image is a rectangle along the axes.
+    pub(super) fn source(&self, inverse: &dyn Map) -> Option<Source> {
+        let points: Vec<Point> = ring(corners(self.bounds)).map(|p| inverse.point(p)).collect();
+        let length = |side: usize| {
+            let at = |i: usize| points[(side * SAMPLES + i) % points.len()];
+            (0..SAMPLES).map(|i| at(i).distance(at(i + 1))).sum::<f64>()
+        };
+        let mean = |a: usize, b: usize| 0.5 * (length(a) + length(b));
+        let size = (mean(0, 2), mean(1, 3));
+        let is_known = self.is_straight && size.0.is_finite() && size.1.is_finite();
+        is_known.then(|| Source { outline: Outline::from_points(&points, true), size })
+    }
+}
+
+/// The corners of a box, in the order of anchors: from its bottom left over the right.
+fn corners(r: Rect) -> [Point; 4] {
+    [(r.x0, r.y1), (r.x1, r.y1), (r.x1, r.y0), (r.x0, r.y0)].map(Point::from)
+}
+
+/// Points along the sides of a quadrilateral.
+fn ring(quad: [Point; 4]) -> impl Iterator<Item = Point> {
+    let side = move |i: usize| (0..SAMPLES).map(move |k| quad[i].lerp(quad[(i + 1) % 4], k as f64 / SAMPLES as f64));
+    (0..4).flat_map(side)
+}
+
+/// The guide of a step that is a quadrilateral.
+fn quad(step: &Built, role: Role) -> Option<[Point; 4]> {
+    let path: &BezPath = &step.explanation.overlays.iter().find(|o| o.role == role)?.path;
+    let mut points: Vec<Point> = Vec::new();
+    for (i, element) in path.elements().iter().enumerate() {
+        match *element {
+            PathEl::MoveTo(p) if i == 0 => points.push(p),
+            PathEl::LineTo(p) if i > 0 => points.push(p),
+            PathEl::ClosePath => {}
+            _ => return None,
+        }
+    }
+    if points.len() == 5 && points[4] == points[0] {
+        points.pop();
+    }
+    <[Point; 4]>::try_from(points).ok().filter(|_| path.area() != 0.0)
+}
+
+/// Returns `true` if the image of the sides of a quadrilateral is a box, corners at its corners.
+fn is_box(image: &[Point], bounds: Rect) -> bool {
+    /// The largest distance that counts as none, as a share of the box's size.
+    const SAME: f64 = 2e-3;
+    let near = SAME * bounds.width().hypot(bounds.height());
+    let off = |p: Point| {
+        let [left, top] = [p.x - bounds.x0, p.y - bounds.y0];
+        [left, bounds.width() - left, top, bounds.height() - top].into_iter().fold(f64::INFINITY, f64::min)
+    };
+    let is_corner = |c: &Point| image.iter().step_by(SAMPLES).any(|p| p.distance(*c) <= near);
+    image.iter().all(|p| off(*p) <= near) && corners(bounds).iter().all(is_corner)
+}
