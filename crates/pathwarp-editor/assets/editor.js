@@ -1836,6 +1836,7 @@
   }
 
   // src/opening.ts
+  var PICTURES = ["image/png", "image/jpeg", "image/webp"];
   var PASTED = "pasted.svg";
   var Opening = class {
     constructor(app2) {
@@ -1871,7 +1872,7 @@
       const text = data?.getData("text/plain") ?? "";
       if (file) void this.open(file);
       else if (/<svg[\s>]/i.test(text)) void this.open(new File([text], PASTED));
-      else if (data) toast("This is not a drawing: drop or paste an SVG");
+      else if (data) toast("This is not a drawing: drop or paste an SVG or a photograph");
     }
     async open(file) {
       const { app: app2 } = this;
@@ -1881,11 +1882,22 @@
       if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
       const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
       if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
-      const answer = await app2.attempt(async () => app2.connection.ask({ do: "open", name: file.name, bytes: await base64(file) }));
+      const answer = await app2.attempt(async () => {
+        const drawing = PICTURES.includes(file.type) ? await framed(file) : file;
+        return app2.connection.ask({ do: "open", name: drawing.name, bytes: await base64(drawing) });
+      });
       if (!answer?.state) return;
       await app2.load(answer.state);
     }
   };
+  async function framed(picture) {
+    const bitmap = await createImageBitmap(picture).catch(() => null);
+    if (!bitmap) throw new Error(`${picture.name} is not a picture that the browser can show`);
+    const size = `width="${bitmap.width}" height="${bitmap.height}"`;
+    const image = `<image id="picture" ${size} href="data:${picture.type};base64,${await base64(picture)}"/>`;
+    const svg = `<svg xmlns="http://www.w3.org/2000/svg" ${size} viewBox="0 0 ${bitmap.width} ${bitmap.height}">${image}</svg>`;
+    return new File([svg], picture.name.replace(/(\.\w+)?$/, ".svg"));
+  }
   async function bring(app2, file) {
     const bytes = await base64(file);
     const answer = await app2.attempt(() => app2.connection.ask({ do: "bring", name: file.name, bytes }));
@@ -3294,7 +3306,7 @@
     ["webp", "WebP", "A picture for the web"],
     ["toml", "Recipe", "For other drawings"]
   ];
-  var PICTURES = ["png", "jpg", "webp"];
+  var PICTURES2 = ["png", "jpg", "webp"];
   var WIDTH = 2e3;
   var WIDEST = 2e4;
   var REMEMBERED = "pathwarp-export";
@@ -3408,7 +3420,7 @@
     /** The file that is asked for. Returns `null` for a picture without a size. */
     target() {
       const [name, folder] = [this.name.value, this.folder.value];
-      if (!PICTURES.includes(this.extension)) return { name, folder };
+      if (!PICTURES2.includes(this.extension)) return { name, folder };
       const size = Number(this.size.value.replace(",", "."));
       const unit = this.unit.value === "%" ? "%" : "px";
       if (!(size > 0 && size <= WIDEST) || unit === "px" && !Number.isInteger(size)) {
@@ -3426,7 +3438,7 @@
       for (const input of Array.from(this.dialog.querySelectorAll("input[type=radio]"))) {
         input.checked = input.value === this.extension;
       }
-      byId("save-picture").hidden = !PICTURES.includes(extension);
+      byId("save-picture").hidden = !PICTURES2.includes(extension);
       this.say("");
     }
     /** Shows a message, with the button that helps. */

@@ -103,7 +103,7 @@ impl Wanted {
             let gone = warped.shapes.iter().filter(|s| s.path.segments_in > 0 && s.path.segments_out == 0);
             let gone: Vec<&str> = gone.map(|s| s.id.as_str()).collect();
             if !gone.is_empty() {
-                warnings.push(format!("nothing is left of {}: narrower than --outset", listed(&gone, NAMED)));
+                warnings.push(format!("nothing is left of {}: narrower than the distance", listed(&gone, NAMED)));
             }
             document = Document::read(warped.svg.as_bytes(), name, read)?;
         }

@@ -4,6 +4,8 @@ import type { App } from "./app";
 import { byId, isTyping } from "./dom";
 import { toast } from "./toast";
 
+/** Pictures that a drawing can hold. */
+const PICTURES = ["image/png", "image/jpeg", "image/webp"];
 /** The name of a drawing that comes as text. */
 const PASTED = "pasted.svg";
 
@@ -40,7 +42,7 @@ export class Opening {
     const text = data?.getData("text/plain") ?? "";
     if (file) void this.open(file);
     else if (/<svg[\s>]/i.test(text)) void this.open(new File([text], PASTED));
-    else if (data) toast("This is not a drawing: drop or paste an SVG");
+    else if (data) toast("This is not a drawing: drop or paste an SVG or a photograph");
   }
 
   private async open(file: File): Promise<void> {
@@ -51,10 +53,23 @@ export class Opening {
     if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
     const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
     if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
-    const answer = await app.attempt(async () => app.connection.ask({ do: "open", name: file.name, bytes: await base64(file) }));
+    const answer = await app.attempt(async () => {
+      const drawing = PICTURES.includes(file.type) ? await framed(file) : file;
+      return app.connection.ask({ do: "open", name: drawing.name, bytes: await base64(drawing) });
+    });
     if (!answer?.state) return;
     await app.load(answer.state);
   }
+}
+
+/** A drawing of a picture alone, a px for each of its pixels. */
+async function framed(picture: File): Promise<File> {
+  const bitmap = await createImageBitmap(picture).catch(() => null);
+  if (!bitmap) throw new Error(`${picture.name} is not a picture that the browser can show`);
+  const size = `width="${bitmap.width}" height="${bitmap.height}"`;
+  const image = `<image id="picture" ${size} href="data:${picture.type};base64,${await base64(picture)}"/>`;
+  const svg = `<svg xmlns="http://www.w3.org/2000/svg" ${size} viewBox="0 0 ${bitmap.width} ${bitmap.height}">${image}</svg>`;
+  return new File([svg], picture.name.replace(/(\.\w+)?$/, ".svg"));
 }
 
 /** Puts a copy of a file beside the drawing, where steps can read it. Returns the text that names it in a step. */

@@ -234,7 +234,18 @@ export const job_photograph = () => {
     await press(page, "Save");
     await page.getByText("Saved card-bent.svg in").waitFor();
     const picture = await paths(page);
-    await openedAgain(editor, join(dir, "card-bent.svg"), (page2) => becomes(page2, picture, "opened again, it is another drawing"));
+    await openedAgain(editor, join(dir, "card-bent.svg"), async (page2) => {
+      await becomes(page2, picture, "opened again, it is another drawing");
+      // The photograph alone.
+      await given(page2, "Open…", { name: "badge.png", mimeType: "image/png", buffer: Buffer.from(photograph, "base64") });
+      await page2.getByRole("heading", { name: "badge.svg" }).waitFor();
+      await quiet(page2);
+      await press(page2, "Arch");
+      if (process.env.SHOTS) await page2.screenshot({ path: join(process.env.SHOTS, "photograph-alone.png") });
+      await press(page2, "Save");
+      await page2.getByText("Saved badge-bent.svg in").waitFor();
+      check(page2.problems.length === 0, page2.problems.join("; "));
+    });
   }, card);
 };
 
