@@ -4229,7 +4229,7 @@
   toggle("pick-parts", () => modes.picksParts, (v) => {
     modes.picksParts = v;
     if (v) byId("parts-list").open = true;
-    stage.svg.classList.toggle("picking", v);
+    for (const name of ["picking", "parts"]) stage.svg.classList.toggle(name, v);
   });
   toggle("snap", () => modes.snaps, (v) => modes.snaps = v);
   toggle("mirror", () => modes.mirrors, (v) => modes.mirrors = v);

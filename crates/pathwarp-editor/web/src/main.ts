@@ -81,7 +81,7 @@ toggle("select", () => modes.selects, (v) => {
 toggle("pick-parts", () => modes.picksParts, (v) => {
   modes.picksParts = v;
   if (v) byId<HTMLDetailsElement>("parts-list").open = true;
-  stage.svg.classList.toggle("picking", v);
+  for (const name of ["picking", "parts"]) stage.svg.classList.toggle(name, v);
 });
 toggle("snap", () => modes.snaps, (v) => (modes.snaps = v));
 toggle("mirror", () => modes.mirrors, (v) => (modes.mirrors = v));
