@@ -1,4 +1,4 @@
-// Firefox: the page opens, handles are dragged, and the result is saved. Everything else is tested in Chromium.
+// Firefox: the page opens, handles are dragged, the result is saved, and words are set and undone. Everything else is tested in Chromium.
 import { existsSync } from "node:fs";
 import { firefox } from "./bidi.mjs";
 import { AXE, check, edit, folder, sample } from "./harness.mjs";
@@ -26,6 +26,21 @@ export async function firefox_opens_drags_and_saves() {
     await page.click("#save");
     await page.until("document.querySelector('#toast').classList.contains('on')", "nothing was saved");
     check(existsSync(`${dir}/logo-bent.svg`), "there is no file");
+    const words = async (text) => {
+      await page.click("#words");
+      await page.until("document.querySelector('#words-dialog').open", "there is no dialog");
+      await page.evaluate(`document.querySelector('#words-text').value = ${JSON.stringify(text)}`);
+      await page.click("#words-dialog button[type=submit]");
+      await page.until("!document.querySelector('#words-dialog').open", "the words are not set");
+      await page.until("document.querySelectorAll('.knob').length > 0", "there are no handles");
+    };
+    await words("Ahoy");
+    await page.until("document.querySelector('#file').textContent === 'ahoy.svg'", "the words are not on show");
+    const ahoy = await page.evaluate(PATHS);
+    await words("Ahoi");
+    await page.until(`${PATHS} !== ${JSON.stringify(ahoy)}`, "the words are not changed");
+    await page.click("#undo");
+    await page.until(`${PATHS} === ${JSON.stringify(ahoy)}`, "the words are not undone");
     const found = await page.evaluate(`await ${AXE}`);
     check(found.length === 0, found.join("\n"));
     check(page.problems.length === 0, page.problems.join("; "));
