@@ -4209,6 +4209,10 @@
   on("zoom-in", () => stage.zoom(ZOOM));
   on("zoom-out", () => stage.zoom(1 / ZOOM));
   on("fit", () => stage.fit());
+  var phone = matchMedia("(max-width: 520px)");
+  var arrange = () => byId(phone.matches ? "keep-preset" : "history").after(byId("start-over"));
+  phone.addEventListener("change", arrange);
+  arrange();
   on("start-over", async () => {
     await app.arrange([], 0);
     byId("undo").focus();

@@ -58,6 +58,11 @@ on("redo", () => void app.turn("redo"));
 on("zoom-in", () => stage.zoom(ZOOM));
 on("zoom-out", () => stage.zoom(1 / ZOOM));
 on("fit", () => stage.fit());
+// A phone's header has no room for what stands well below the steps.
+const phone = matchMedia("(max-width: 520px)");
+const arrange = () => byId(phone.matches ? "keep-preset" : "history").after(byId("start-over"));
+phone.addEventListener("change", arrange);
+arrange();
 on("start-over", async () => {
   await app.arrange([], 0);
   byId("undo").focus();
