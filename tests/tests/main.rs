@@ -7,6 +7,7 @@ mod cli;
 mod common;
 mod editor;
 mod envelope;
+mod filters;
 mod formats;
 mod gimp;
 mod gradient_colors;

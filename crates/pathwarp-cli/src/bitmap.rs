@@ -13,7 +13,7 @@ use pathwarp_raster::{
 };
 use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
 use std::str::FromStr as _;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Pixels per inch of a drawing at 100 %.
 const PX_PER_INCH: f64 = 96.0;
@@ -37,17 +37,19 @@ const SEARCHED_STRICTLY: f64 = 2000.0;
 /// Bends the bitmaps and gradients of drawings by one map.
 #[derive(Debug)]
 pub struct Bender {
-    map: Arc<dyn Map>,
+    pub(crate) map: Arc<dyn Map>,
     /// Pixels per inch; `None`: as many as keep every detail.
     dpi: Option<f64>,
-    budget: Arc<Budget>,
+    pub(crate) budget: Arc<Budget>,
+    /// The work that filters' pictures leave to others, once there are any.
+    pub(crate) filters_leave: OnceLock<f64>,
 }
 
 impl Bender {
     /// Creates a bender for `map` at `dpi` pixels per inch of the drawing; `None` uses as many as keep every detail.
     #[must_use]
     pub fn new(map: Arc<dyn Map>, dpi: Option<f64>) -> Self {
-        Self { map, dpi, budget: Arc::default() }
+        Self { map, dpi, budget: Arc::default(), filters_leave: OnceLock::new() }
     }
 
     /// Sets limits on the bitmaps.
@@ -57,7 +59,7 @@ impl Bender {
     }
 
     /// Pixels per unit of a result of this size, beyond which nobody sees a difference. `unit` is the size of a unit in px.
-    fn seen_density(&self, unit: f64, (width, height): (f64, f64)) -> f64 {
+    pub(crate) fn seen_density(&self, unit: f64, (width, height): (f64, f64)) -> f64 {
         /// Pixels per px of the drawing in each direction: the resolution of a screen of twice the density.
         const DENSITY: f64 = 2.0;
         /// The same for small drawings, which are often shown enlarged, along the longer side.
@@ -148,7 +150,7 @@ impl ImageWarper for Bender {
 }
 
 /// The error about a bitmap that takes too much work.
-fn too_much(e: Exceeded) -> PictureError {
+pub(crate) fn too_much(e: Exceeded) -> PictureError {
     format!("bending it takes {e}; {}", advice::raise(&e)).into()
 }
 

@@ -37,6 +37,7 @@ mod edits;
 pub mod embed;
 mod export;
 mod failure;
+mod filters;
 mod first_steps;
 mod format;
 mod inkscape;

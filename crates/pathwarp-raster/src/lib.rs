@@ -4,7 +4,7 @@
 //! * [`encode_png`] and [`decode_png`] convert pictures to and from PNG.
 //! * [`compare()`] measures the difference of two pictures; [`diff_image`] visualises it.
 //! * [`Picture`] reads and writes photographs with orientation and colour profile.
-//! * [`warp_image()`] warps a bitmap by a map; [`SmoothShade`] warps a paint.
+//! * [`warp_image()`] warps a bitmap by a map; [`SmoothShade`] warps a paint, [`DrawingWarp`] what a drawing shows.
 //! * [`Preview`] draws a drawing and its warped result side by side, with cages, bases and targets on top.
 //!
 //! All pictures are [`Pixmap`]s: RGBA, sRGB, 8 bits per channel, premultiplied alpha.
@@ -36,6 +36,7 @@ mod pixmap;
 mod png;
 mod preview;
 mod render;
+mod warp_drawing;
 mod warp_image;
 
 pub use compare::{Difference, compare, diff_image};
@@ -46,7 +47,8 @@ pub use png::{decode_png, encode_png, encode_smooth_png};
 pub use preview::{OverlayKind, Panel, Preview, PreviewOverlay};
 pub use render::{RenderOptions, Size, render, render_group};
 pub use tiny_skia::{Color, IntRect, Pixmap};
+pub use warp_drawing::{Counter, DrawingWarp};
 pub use warp_image::{
-    Colors, Extent, GridInverse, ImageWarp, SeenColor, Shade, ShadeTolerance, SmoothShade, extent, shade, shown,
-    warp_image,
+    Colors, Continued, Extent, GridInverse, ImageWarp, SeenColor, Shade, ShadeTolerance, SmoothShade, extent, shade,
+    shown, warp_image,
 };

@@ -2,7 +2,7 @@
 
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
-use crate::bend::fits;
+use crate::bend::fits::{self, FilterOutcome};
 use crate::bend::options::{Edit, OnError, PageFit, Strokes, Structure, WarpOptions};
 use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::task::placed_outlines;
@@ -474,7 +474,10 @@ impl Document {
 
 fn warp(drawing: &Drawing, bends: &Bends<'_>) -> Result<WarpedDocument, Error> {
     let mut out = WarpedDocument::default();
-    let bent = bend(drawing, bends, &mut out)?;
+    let mut bent = bend(drawing, bends, &mut out)?;
+    bent.filters = drawing.with_stack(|| Ok(write::shadows::outcomes(&WriteInput::new(drawing, &bent, bends))))?;
+    let pictured = |f: &&FilterOutcome| !matches!(f, FilterOutcome::Fits);
+    out.filter_pictures = bent.filters.values().filter(pictured).count();
     let input = WriteInput::new(drawing, &bent, bends);
     drawing.with_stack(|| write::document::write(&input, &mut out))?;
     Ok(out)

@@ -74,13 +74,14 @@ pub mod usvg_tree;
 mod write;
 
 pub use bend::options::{
-    Clones, Edit, Gradients, LetterPlaces, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions,
+    Clones, Edit, Filters, Gradients, LetterPlaces, OnError, PageFit, Patterns, Strokes, Structure, TextMode,
+    WarpOptions,
 };
 pub use bend::outcome::{Overhang, ShapeReport, Skipped, Warning, WarpedDocument};
 pub use bend::path::{WarpedPath, edit_path, warp_path};
 pub use bend::pictures::{
-    BentImage, GradientColors, GradientPainter, GradientRequest, ImageRequest, ImageWarper, Images, PictureError,
-    SeenColor,
+    BentImage, FilterDrawing, FilterPainter, FilterRequest, GradientColors, GradientPainter, GradientRequest,
+    ImageRequest, ImageWarper, Images, PictureError, SeenColor,
 };
 pub use document::{Document, DrawingPart};
 pub use embed::Origin;

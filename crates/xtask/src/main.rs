@@ -12,6 +12,7 @@ mod package;
 mod process;
 mod public;
 mod refit_report;
+mod shadows;
 mod shell;
 mod speed;
 
@@ -20,7 +21,7 @@ use clap::Command;
 use std::process::ExitCode;
 
 /// All chores. Each declares its options in a file of its own.
-const CHORES: [Chore; 12] = [
+const CHORES: [Chore; 13] = [
     new_deformation::CHORE,
     corpus::CHORE,
     refit_report::CHORE,
@@ -33,6 +34,7 @@ const CHORES: [Chore; 12] = [
     docs::CHORE,
     public::CHORE,
     browser::CHORE,
+    shadows::CHORE,
 ];
 
 fn main() -> ExitCode {

@@ -26,8 +26,20 @@ pub(crate) struct Program {
 }
 
 /// The common options that a dialog shows, in its order. The others make no sense for a part of an open drawing.
-const SHOWN: [&str; 11] =
-    ["fit", "clones", "strokes", "text", "gradients", "patterns", "images", "merge", "on-error", "tolerance", "frame"];
+const SHOWN: [&str; 12] = [
+    "fit",
+    "clones",
+    "strokes",
+    "text",
+    "gradients",
+    "filters",
+    "patterns",
+    "images",
+    "merge",
+    "on-error",
+    "tolerance",
+    "frame",
+];
 
 /// Other defaults than the command line has: in Inkscape, clones show what happens to their original, and pages stay.
 const DEFAULTS: [(&str, &str); 2] = [("clones", "follow"), ("fit", "none")];

@@ -7,7 +7,7 @@ use super::files::{display, not_a_drawing, read_options};
 use crate::bitmap::Bender;
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
-use crate::options::{CommonOptions, FrameChoice, GradientChoice};
+use crate::options::{CommonOptions, FilterChoice, FrameChoice, GradientChoice};
 use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{Fold, ReportedShape, SkippedShape};
@@ -21,8 +21,8 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
-    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, ShapeReport,
-    Strokes, WarpOptions, WarpedDocument,
+    Document, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection,
+    ShapeReport, Strokes, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -108,6 +108,7 @@ impl SvgArtwork {
     pub(crate) fn draft(&self, request: &WarpRequest<'_>) -> Result<(String, Option<Rect>), Failure> {
         let draft = |k: usize, built: &BuiltRecipe| {
             let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
+            options.filters = Filters::Affine;
             options.refit = options.refit.with_merge(false);
             if let Images::Warp(_) = options.images {
                 let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
@@ -190,6 +191,13 @@ impl SvgArtwork {
             GradientChoice::Auto => Gradients::Auto(bender.clone()),
             GradientChoice::Exact => Gradients::Exact(bender.clone()),
         };
+        let filters = match options.filters {
+            // Cutters and plotters follow the shape alone.
+            _ if self.format == Format::Dxf => Filters::Affine,
+            FilterChoice::Auto => Filters::Auto(bender.clone()),
+            FilterChoice::Affine => Filters::Affine,
+            FilterChoice::Picture => Filters::Picture(bender.clone()),
+        };
         let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
         let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
@@ -207,6 +215,7 @@ impl SvgArtwork {
             .with_selection(self.selection(Which::Part(k)).clone())
             .with_on_error(options.on_failure.of_shapes())
             .with_gradients(gradients)
+            .with_filters(filters)
             .with_patterns(options.patterns)
             .with_page(if self.stays(request).is_some() { PageFit::None } else { options.page })
             .with_same_view(request.same_view)
@@ -508,6 +517,11 @@ impl FileArtwork for SvgArtwork {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
         }
         warnings.extend(pictured(&shapes));
+        warnings.extend(match warped.filter_pictures {
+            0 => None,
+            1 => Some("a filter became a picture; --filters affine keeps it".into()),
+            n => Some(format!("{n} filters became pictures; --filters affine keeps them")),
+        });
         warnings.extend(folds);
         warnings.extend(advice::outside(&self.doc.unread_images()));
         beside::check_surface(built)?;

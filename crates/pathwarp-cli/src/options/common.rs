@@ -30,6 +30,15 @@ pub(crate) enum FrameChoice {
     Rect(TypedBox),
 }
 
+/// Treatment of filters.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum FilterChoice {
+    #[default]
+    Auto,
+    Affine,
+    Picture,
+}
+
 /// Treatment of gradients.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum GradientChoice {
@@ -97,6 +106,7 @@ pub(crate) struct CommonOptions {
     pub(crate) union: bool,
     pub(crate) text: TextMode,
     pub(crate) gradients: GradientChoice,
+    pub(crate) filters: FilterChoice,
     pub(crate) patterns: Patterns,
     pub(crate) page: PageFit,
     /// The size of the result's page.

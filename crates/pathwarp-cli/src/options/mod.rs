@@ -7,6 +7,8 @@ mod common;
 mod given;
 mod table;
 
-pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure, Reading, measurable, rect};
+pub(crate) use common::{
+    CommonOptions, FilterChoice, FrameChoice, GradientChoice, OnFailure, Reading, measurable, rect,
+};
 pub(crate) use given::{Given, INPUT, args, inputs_arg, options_without_inputs, reading_args, some_options};
 pub(crate) use table::{CommonOption, OPTIONS, OptionValue};

@@ -1,8 +1,8 @@
 //! The table of common options: each is declared here, and nowhere else.
 
 use super::common::{
-    CommonOptions, GradientChoice, OnFailure, family_name, frame, image_size, limit, positive, positive_length,
-    side_of_page, some_length,
+    CommonOptions, FilterChoice, GradientChoice, OnFailure, family_name, frame, image_size, limit, positive,
+    positive_length, side_of_page, some_length,
 };
 use crate::format::Format;
 use crate::left_out;
@@ -302,6 +302,19 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "Gradients follow the best affine fit. Where its colours would be off by more than 3 % (auto) or 0.6 % \
              (exact), the nearest gradient with more stops takes its place, or else a picture clipped to the shape; fit never \
              makes pictures, keep leaves them unchanged",
+        )
+    },
+    CommonOption {
+        default: Some("auto"),
+        ..stored(
+            "filters",
+            OptionValue::Choice(&[
+                ("auto", |o| o.filters = FilterChoice::Auto),
+                ("affine", |o| o.filters = FilterChoice::Affine),
+                ("picture", |o| o.filters = FilterChoice::Picture),
+            ]),
+            "Filters follow the best affine fit (affine). Where that would look wrong (auto) or in any case (picture), a picture \
+             shows what they draw; a shape with a shadow or glow stays a shape",
         )
     },
     CommonOption {

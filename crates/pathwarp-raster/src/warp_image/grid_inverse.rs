@@ -26,6 +26,8 @@ const BUCKETS: usize = 32;
 const MAX_STEPS: usize = 5;
 /// A residual below this fraction of the image's size needs just one more step, which about squares it.
 const CLOSE: f64 = 1.0 / 1024.0;
+/// A strict answer's residual is below this multiple of it.
+const FAR: f64 = 4.0;
 /// The map is used around the box if it differs from its tangent by no more than this fraction of the distance.
 const CONTINUES: f64 = 0.25;
 /// Largest distance from the first answer, in cells.
@@ -42,6 +44,8 @@ pub struct GridInverse<'a> {
     cell: Vec2,
     /// A residual below this needs just one more step.
     close: f64,
+    /// The largest residual of an answer.
+    most: f64,
 }
 
 impl fmt::Debug for GridInverse<'_> {
@@ -84,7 +88,13 @@ impl<'a> GridInverse<'a> {
         let bounds = bounds.unwrap_or_default();
         let buckets = Buckets::new(bounds, &nodes, &triangles);
         let close = CLOSE * bounds.width().hypot(bounds.height());
-        Self { map, read, write, nodes, triangles, buckets, cell: grid.cell(), close }
+        Self { map, read, write, nodes, triangles, buckets, cell: grid.cell(), close, most: f64::INFINITY }
+    }
+
+    /// Leaves out answers that are not near, and those where the map is reversed: nothing hides them from view.
+    #[must_use]
+    pub(crate) fn strict(self) -> Self {
+        Self { most: FAR * self.close, ..self }
     }
 
     /// Returns `false` if certainly no point of a box has an inverse.
@@ -112,7 +122,7 @@ impl<'a> GridInverse<'a> {
                 *last = t.mapped.then_some(*k);
                 return Some(found);
             }
-            reversed = reversed.or(Some(found));
+            reversed = reversed.or(Some(found).filter(|_| self.most.is_infinite()));
         }
         reversed
     }
@@ -169,7 +179,7 @@ impl Map for GridInverse<'_> {
         let mut jets = vec![Jet::default(); active.len()];
         for _ in 0..MAX_STEPS {
             if active.is_empty() {
-                return;
+                break;
             }
             places.clear();
             places.extend(active.iter().map(|s| self.read * s.at));
@@ -178,8 +188,14 @@ impl Map for GridInverse<'_> {
             active.retain_mut(|s| {
                 let found = self.step(qs[s.index], &jets[k]);
                 k += 1;
-                let Some((step, residual)) = found.filter(|f| f.1 < s.best) else { return false };
-                out[s.index] = s.at;
+                let nowhere = Point::new(f64::NAN, f64::NAN);
+                let Some((step, residual)) = found.filter(|f| f.1 < s.best) else {
+                    if s.best > self.most {
+                        out[s.index] = nowhere;
+                    }
+                    return false;
+                };
+                out[s.index] = if residual > self.most { nowhere } else { s.at };
                 s.best = residual;
                 let (to, far) = (s.at + step, s.at + step - s.start);
                 if far.x.abs() > MAX_DRIFT * self.cell.x || far.y.abs() > MAX_DRIFT * self.cell.y {

@@ -18,6 +18,7 @@
 //! Tiles are independent and run in parallel. Memory is the source, the result, and a third of the source for the pyramid if the
 //! map shrinks.
 
+mod continued;
 mod grid_inverse;
 mod image_warp;
 mod painter;
@@ -28,6 +29,7 @@ mod shade;
 mod tile;
 mod trace;
 
+pub use continued::Continued;
 pub use grid_inverse::GridInverse;
 pub use image_warp::{Extent, ImageWarp, extent, shown};
 pub use painter::warp_image;

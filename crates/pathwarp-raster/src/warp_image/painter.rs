@@ -190,8 +190,9 @@ fn extrapolated(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Opt
     })
 }
 
-/// Cells along a side of the picture.
+/// Most cells along a side of the picture, and pixels of a cell of a small one.
 const CELLS: usize = 192;
+const CELL: usize = 2;
 
 /// The tiles of the result that the picture touches. The inverse must not be evaluated in other tiles, where it may have values, too:
 /// a projective inverse also maps points beyond the horizon.
@@ -204,9 +205,10 @@ impl Reach {
     pub(super) fn new(warp: &ImageWarp<'_>, to_target: Affine, tile: usize) -> Self {
         let (columns, rows) = (tiles(warp.size.0, tile), tiles(warp.size.1, tile));
         let mut out = Self { touched: vec![false; columns * rows], columns };
-        let corners = images(warp.source, warp.placed, warp.map, to_target);
+        let cells = (warp.size.0.max(warp.size.1) as usize / CELL).clamp(1, CELLS);
+        let corners = images(warp.source, warp.placed, warp.map, to_target, cells);
         for pair in corners.windows(2) {
-            for i in 0..CELLS {
+            for i in 0..pair[0].len() - 1 {
                 let cell = [pair[0][i], pair[0][i + 1], pair[1][i], pair[1][i + 1]];
                 out.touch(cell, tile, rows);
             }
@@ -241,13 +243,13 @@ fn tiles(pixels: u32, tile: usize) -> usize {
 }
 
 /// Maps a grid over the picture to pixels of the result.
-fn images(source: &Pixmap, placed: Affine, map: &dyn Map, to_target: Affine) -> Vec<Vec<Point>> {
+fn images(source: &Pixmap, placed: Affine, map: &dyn Map, to_target: Affine, cells: usize) -> Vec<Vec<Point>> {
     let (width, height) = (f64::from(source.width()), f64::from(source.height()));
     let mut creases = Creases::default();
     map.creases(&mut creases);
     let row = |j: usize| {
-        let v = height * j as f64 / CELLS as f64;
-        let places: Vec<Point> = (0..=CELLS).map(|i| placed * Point::new(width * i as f64 / CELLS as f64, v)).collect();
+        let v = height * j as f64 / cells as f64;
+        let places: Vec<Point> = (0..=cells).map(|i| placed * Point::new(width * i as f64 / cells as f64, v)).collect();
         let mut out = vec![Point::ORIGIN; places.len()];
         map.points(&places, &mut out);
         let defined = places.iter().zip(out);
@@ -255,5 +257,5 @@ fn images(source: &Pixmap, placed: Affine, map: &dyn Map, to_target: Affine) -> 
             .map(|(p, q)| if creases.defined_at(*p) { to_target * q } else { Point::new(f64::NAN, f64::NAN) })
             .collect()
     };
-    (0..=CELLS).map(row).collect()
+    (0..=cells).map(row).collect()
 }

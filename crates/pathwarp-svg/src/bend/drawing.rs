@@ -1,7 +1,7 @@
 //! Bends a whole drawing: all parts, in parallel, with slots and bitmaps.
 
 use super::bends::{Bend, Bends};
-use super::fits::{self, EmbeddedImage, PlacedSlot, written};
+use super::fits::{self, EmbeddedImage, FilterOutcome, PlacedSlot, written};
 use super::options::{Edit, OnError};
 use super::outcome::{PartOutcome, Skipped, Warning, WarpedDocument, WarpedPart};
 use super::part;
@@ -10,7 +10,7 @@ use super::shading::Shading;
 use super::task::{self, LetterPiece, PartContext, PartTask};
 use crate::scene::drawing::Drawing;
 use crate::scene::geometry::is_invertible;
-use crate::scene::model::{Bitmap, Part};
+use crate::scene::model::{Bitmap, Part, Scene};
 use crate::source::elements::ElementId;
 use crate::source::threads::map_parallel;
 use pathwarp::kurbo::Affine;
@@ -34,6 +34,8 @@ pub(crate) struct BentDrawing {
     pub(crate) slots: Vec<PlacedSlot>,
     /// For each part, the index of its bend.
     pub(crate) of: Vec<Option<usize>>,
+    /// By the index of their slot.
+    pub(crate) filters: HashMap<usize, FilterOutcome>,
 }
 
 /// Bends everything in a drawing and reports to `out`.
@@ -83,7 +85,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     warn(drawing, bends, &outcomes, &slots, out);
     let bend = |b: &Bitmap| fits::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
     let images = scene.bitmaps.iter().map(bend).collect();
-    Ok(BentDrawing { outcomes, images, slots, of })
+    Ok(BentDrawing { outcomes, images, slots, of, filters: HashMap::new() })
 }
 
 /// Warps every part by the bend whose index `of` gives; `None` for parts that are not bent.
@@ -171,6 +173,19 @@ fn known_shapes(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usi
 fn gradients(p: &Part) -> usize {
     let is_gradient = |p: &usvg::Paint| usize::from(Shading::of(p).is_some());
     p.fill.as_ref().map_or(0, |f| is_gradient(f.paint())) + p.stroke.as_ref().map_or(0, |s| is_gradient(s.paint()))
+}
+
+impl BentDrawing {
+    /// The drawing as it is.
+    pub(crate) fn unbent(scene: &Scene) -> Self {
+        Self {
+            outcomes: scene.parts.iter().map(|_| PartOutcome::Kept).collect(),
+            images: scene.bitmaps.iter().map(|_| EmbeddedImage::Placed).collect(),
+            slots: fits::unmoved(scene),
+            of: vec![None; scene.parts.len()],
+            filters: HashMap::new(),
+        }
+    }
 }
 
 fn warn(

@@ -5,7 +5,7 @@ use super::options::{Patterns, Strokes};
 use super::pictures::{BentImage, ImageRequest, Images};
 use crate::scene::drawing::Drawing;
 use crate::scene::geometry::is_invertible;
-use crate::scene::model::{Bitmap, PartRole, Scene};
+use crate::scene::model::{Bitmap, PartRole, Scene, Slot};
 use crate::scene::resolve::{Painted, Tiling};
 use pathwarp::Error;
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
@@ -141,13 +141,7 @@ pub(super) fn place(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) 
     let mut out: Vec<PlacedSlot> = Vec::with_capacity(scene.slots.len());
     for s in &scene.slots {
         let outer = written(scene, &out, s.outer, s.frame);
-        // Parts of tiles and of filters' pictures are never bent and do not count.
-        let mut own = s.parts.clone().filter(|&i| scene.parts[i].role != PartRole::Pattern);
-        let bend = match own.next() {
-            Some(first) => of[first].filter(|k| own.all(|i| of[i] == Some(*k))),
-            None => bends.of(s.owner.or(s.element)),
-        };
-        let fit = bend
+        let fit = bend_of(s, scene, bends, of)
             .filter(|_| is_invertible(s.frame) && is_invertible(outer))
             .and_then(|k| fit(s.area, s.frame, outer, bends.each[k].map))
             .filter(|f| is_invertible(f.affine) && !f.is_identity(s.area));
@@ -155,6 +149,56 @@ pub(super) fn place(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) 
         out.push(PlacedSlot { fit, write: outer * fit });
     }
     out
+}
+
+/// The slots of a drawing that does not move.
+pub(crate) fn unmoved(scene: &Scene) -> Vec<PlacedSlot> {
+    scene.slots.iter().map(|s| PlacedSlot { fit: Affine::IDENTITY, write: s.frame }).collect()
+}
+
+/// How far a map is from moving everything alike: the largest distance of its derivative from that of a translation. `read` is the user
+/// space of `area`, `write` that of the result.
+pub(crate) fn bends_by(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> f64 {
+    let linear = |a: Affine, v: Vec2| (a * v.to_point()).to_vec2() - a.translation();
+    let back = write.inverse();
+    let off = |p: Point| {
+        let jet = map.jet(read * p);
+        let moved = |v: Vec2| (linear(back, jet.push(linear(read, v))) - v).hypot2();
+        (moved(Vec2::new(1.0, 0.0)) + moved(Vec2::new(0.0, 1.0))).sqrt()
+    };
+    grid(area).map(off).map(|off| if off.is_finite() { off } else { f64::INFINITY }).fold(0.0, f64::max)
+}
+
+/// Index of the map that bends all of a slot.
+pub(crate) fn bend_of(s: &Slot, scene: &Scene, bends: &Bends<'_>, of: &[Option<usize>]) -> Option<usize> {
+    // Parts of tiles and of filters' pictures are never bent and do not count.
+    let mut own = s.parts.clone().filter(|&i| scene.parts[i].role != PartRole::Pattern);
+    match own.next() {
+        Some(first) => of[first].filter(|k| own.all(|i| of[i] == Some(*k))),
+        None => bends.of(s.owner.or(s.element)),
+    }
+}
+
+/// Result for the filters of a slot. Pictures are in the slot's user space as written.
+#[derive(Debug)]
+pub(crate) enum FilterOutcome {
+    /// They follow the fit, which looks right.
+    Fits,
+    /// What they draw beneath and above their graphic became pictures.
+    Around { beneath: Option<BentImage>, above: Option<BentImage> },
+    /// All became a picture.
+    Whole(BentImage),
+}
+
+impl FilterOutcome {
+    /// The pictures beneath and above; the graphic itself is not drawn in between if it is [`FilterOutcome::Whole`].
+    pub(crate) fn pictures(&self) -> [Option<&BentImage>; 2] {
+        match self {
+            Self::Fits => [None, None],
+            Self::Around { beneath, above } => [beneath.as_ref(), above.as_ref()],
+            Self::Whole(image) => [Some(image), None],
+        }
+    }
 }
 
 /// Result for a bitmap.

@@ -1,6 +1,6 @@
 //! Options for warping a document.
 
-use super::pictures::{GradientPainter, Images};
+use super::pictures::{FilterPainter, GradientPainter, Images};
 use crate::scene::model::{Part, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::select::Selection;
@@ -102,6 +102,40 @@ impl PartialEq for Gradients {
     }
 }
 
+/// Treatment of filters.
+#[derive(Clone, Default)]
+#[non_exhaustive]
+pub enum Filters {
+    /// Transform them with what they are applied to by the map's best affine fit.
+    #[default]
+    Affine,
+    /// Replace what a filter draws by a picture, bent pixel by pixel, if the affine fit would look wrong: if it would be off by
+    /// more than 3 % over more than 1 % of what is painted. A shape beneath or above a shadow stays a shape.
+    Auto(Arc<dyn FilterPainter>),
+    /// Replace it in any case.
+    Picture(Arc<dyn FilterPainter>),
+}
+
+impl fmt::Debug for Filters {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Affine => "Affine",
+            Self::Auto(_) => "Auto",
+            Self::Picture(_) => "Picture",
+        })
+    }
+}
+
+impl PartialEq for Filters {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Affine, Self::Affine) => true,
+            (Self::Auto(a), Self::Auto(b)) | (Self::Picture(a), Self::Picture(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
 /// Treatment of the page.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -184,6 +218,8 @@ pub struct WarpOptions {
     pub on_error: OnError,
     /// Treatment of gradients.
     pub gradients: Gradients,
+    /// Treatment of filters.
+    pub filters: Filters,
     /// Treatment of patterns.
     pub patterns: Patterns,
     /// Treatment of the page: viewBox, width and height. If it changes, lengths in percent of it become numbers, except in style
@@ -220,6 +256,7 @@ impl WarpOptions {
             selection: Selection::default(),
             on_error: OnError::default(),
             gradients: Gradients::default(),
+            filters: Filters::default(),
             patterns: Patterns::default(),
             page: PageFit::default(),
             copies: Vec::new(),
@@ -235,6 +272,7 @@ impl WarpOptions {
     #[must_use]
     pub fn editing(self, edit: Edit) -> Self {
         let options = self.with_edit(Some(edit)).with_images(Images::Keep).with_overhang(false);
+        let options = options.with_filters(Filters::Affine);
         match edit {
             Edit::Simplify { corner, .. } => {
                 let refit = options.refit.clone().with_merge(true).with_corner(corner);
@@ -278,6 +316,7 @@ setters! { WarpOptions,
     selection: Selection, with_selection;
     on_error: OnError, with_on_error;
     gradients: Gradients, with_gradients;
+    filters: Filters, with_filters;
     patterns: Patterns, with_patterns;
     page: PageFit, with_page;
     copies: Vec<Affine>, with_copies;

@@ -147,6 +147,49 @@ impl fmt::Debug for GradientRequest<'_> {
     }
 }
 
+/// Draws what filters draw, and bends it.
+pub trait FilterPainter: Send + Sync {
+    /// Returns pictures of the layers under the map, without those that are empty; or `None` if the fit looks right.
+    ///
+    /// # Errors
+    /// Returns the reason why it cannot be bent. The filter then follows the best affine fit.
+    fn paint(&self, request: &FilterRequest<'_>) -> Result<Option<Vec<Option<BentImage>>>, PictureError>;
+}
+
+/// Makes an SVG drawing whose visible area is a box.
+pub type FilterDrawing<'a> = dyn Fn(Rect) -> String + 'a;
+
+/// What a filter draws.
+#[derive(Clone, Copy)]
+#[non_exhaustive]
+pub struct FilterRequest<'a> {
+    /// SVG drawings of `area` that are to become pictures: what lies beneath and above the graphic, or all of it.
+    pub layers: &'a dyn Fn() -> Vec<Option<String>>,
+    /// Draw a part of all of it, and a part of the user space of the result, where the filter follows its fit. `None`: pictures are wanted
+    /// in any case.
+    pub compared: Option<[&'a FilterDrawing<'a>; 2]>,
+    /// What may be drawn on, in the user space of the filter.
+    pub area: Rect,
+    /// What the graphic covers of it, without the filter.
+    pub graphic: Rect,
+    /// From that user space to root user space.
+    pub placed: Affine,
+    /// The map of root user space.
+    pub map: &'a dyn Map,
+    /// From root user space to the user space of the result.
+    pub after: Affine,
+    /// Root user space to px, to choose a resolution.
+    pub to_px: Affine,
+    /// Upper bound on the number of filters in the drawing, which share a budget of pixels.
+    pub among: usize,
+}
+
+impl fmt::Debug for FilterRequest<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FilterRequest").field("area", &self.area).field("map", &self.map).finish_non_exhaustive()
+    }
+}
+
 /// A colour of a bent gradient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenColor {

@@ -301,6 +301,7 @@ fn primitive(kind: &Kind, of: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> 
             | ColorMatrixKind::Saturate(_)
             | ColorMatrixKind::HueRotate(_) => of(m.input()),
         },
+        Kind::Flood(f) if f.opacity().get() == 0.0 => None,
         Kind::ComponentTransfer(t) if keeps_transparent(t.func_a()) => of(t.input()),
         Kind::ComponentTransfer(_)
         | Kind::ConvolveMatrix(_)

@@ -1,5 +1,6 @@
 //! Filters: all seventeen primitives, in their resolved form and in user space.
 
+use super::layers::{Layer, Need};
 use super::markup::{self, Markup};
 use crate::scene::areas;
 use crate::source::markup::Tag;
@@ -10,10 +11,18 @@ use usvg::filter::{
     Input, Kind, LightSource, MorphologyOperator, TransferFunction, Turbulence, TurbulenceKind,
 };
 
-/// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order.
-pub(super) fn element(markup: &Markup<'_>, f: &Filter, all: Rect, id: &str, pictures: Vec<String>) -> String {
+/// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order. A `layer`
+/// takes only what it needs.
+pub(super) fn element(
+    markup: &Markup<'_>,
+    f: &Filter,
+    all: Rect,
+    id: &str,
+    pictures: Vec<String>,
+    layer: Option<&Layer>,
+) -> String {
     let mut pictures = pictures.into_iter();
-    let primitives = f.primitives().iter().map(|p| {
+    let primitives = f.primitives().iter().enumerate().map(|(at, p)| {
         let space = match p.color_interpolation() {
             ColorInterpolation::SRGB => "sRGB",
             ColorInterpolation::LinearRGB => "linearRGB",
@@ -23,12 +32,17 @@ pub(super) fn element(markup: &Markup<'_>, f: &Filter, all: Rect, id: &str, pict
             tag.with("color-interpolation-filters", space)
         };
         let (tag, content) = primitive(markup, &begin, p.kind(), &mut pictures);
+        let (tag, content) = match (layer.map(|l| l.need(at)), p.kind()) {
+            (Some(Need::Nothing), _) => return String::new(),
+            (Some(Need::Uncut), Kind::Composite(c)) => (begin("feOffset").input("in", c.input1()), content),
+            _ => (tag, content),
+        };
         let tag = tag.with("result", p.result());
         if content.is_empty() { tag.empty() } else { tag.around(&content) }
     });
     let primitives: String = primitives.collect();
     let filter = markup.element("filter").with("id", id).with("filterUnits", "userSpaceOnUse");
-    filter.with_all(region(all)).around(&primitives)
+    filter.with_all(region(all)).around(&(primitives + layer.map_or("", |l| &l.more)))
 }
 
 /// The attributes of a region in user space.
@@ -113,7 +127,7 @@ fn primitive(
 }
 
 impl Tag {
-    fn input(self, name: &str, i: &Input) -> Self {
+    pub(super) fn input(self, name: &str, i: &Input) -> Self {
         match i {
             Input::SourceGraphic => self.with(name, "SourceGraphic"),
             Input::SourceAlpha => self.with(name, "SourceAlpha"),
@@ -121,7 +135,7 @@ impl Tag {
         }
     }
 
-    fn numbers(self, name: &str, values: &[f32]) -> Self {
+    pub(super) fn numbers(self, name: &str, values: &[f32]) -> Self {
         let all: Vec<String> = values.iter().map(|v| short((*v).into())).collect();
         self.with(name, &all.join(" "))
     }

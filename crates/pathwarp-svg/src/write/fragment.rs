@@ -5,11 +5,12 @@
 
 use super::defs::{Definitions, filter_key, has_usable_stops, server_key};
 use super::input::WriteInput;
+use super::layers::Layer;
 use super::markup::{
     self, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
 };
 use super::{boxes, filter, mesh};
-use crate::bend::fits::EmbeddedImage;
+use crate::bend::fits::{EmbeddedImage, FilterOutcome};
 use crate::bend::gradients::NewGradient;
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::bend::pictures::BentImage;
@@ -17,6 +18,7 @@ use crate::bend::shading::{Shading, Stop};
 use crate::scene::geometry::affine;
 use crate::scene::model::Tiles;
 use crate::scene::model::{Group, Node, Part};
+use crate::source::markup::Tag;
 use crate::source::mesh::MeshGradient;
 use crate::source::number::{MAX_DECIMALS, matrix, outline_data, short};
 use pathwarp::kurbo::{Affine, Rect};
@@ -93,15 +95,25 @@ impl<'a> Writer<'a> {
     /// Writes a group with `lead` before its content.
     pub(super) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
         let head = self.head(g, extra);
-        let mut inner = lead.to_owned();
+        let mut inner = String::new();
         self.push_nodes(&g.children, &mut inner);
-        self.wrapped(g, &head, inner)
+        let inner = self.with_pictures(g, inner);
+        self.wrapped(g, &head, lead.to_owned() + &inner)
+    }
+
+    /// The content of a group between the pictures of what its filters draw, or the picture of all.
+    pub(super) fn with_pictures(&self, g: &Group, content: String) -> String {
+        let Some(outcome) = self.input.filter_outcome(g) else { return content };
+        let [beneath, above] = outcome.pictures().map(|p| p.map(|p| bent(&self.markup, p, Affine::IDENTITY)));
+        let content = if matches!(outcome, FilterOutcome::Whole(_)) { String::new() } else { content };
+        beneath.unwrap_or_default() + &content + &above.unwrap_or_default()
     }
 
     /// Writes a group around content that has been written.
     pub(super) fn group_around(&mut self, g: &Group, content: &str) -> String {
         let head = self.head(g, "");
-        self.wrapped(g, &head, content.to_owned())
+        let content = self.with_pictures(g, content.to_owned());
+        self.wrapped(g, &head, content)
     }
 
     fn wrapped(&self, g: &Group, head: &str, content: String) -> String {
@@ -126,7 +138,7 @@ impl<'a> Writer<'a> {
             let id = self.mask_id(i);
             properties.push(("mask", format!("url(#{id})")));
         }
-        if !g.filters.is_empty() {
+        if self.input.has_filters(g) {
             properties.push(("filter", self.filters(g)));
         }
         if g.blend != BlendMode::Normal {
@@ -530,13 +542,20 @@ impl<'a> Writer<'a> {
 
     /// Refers to the filters of a group: the source's, or ones that are written if necessary.
     pub(super) fn filters(&mut self, g: &Group) -> String {
+        self.note_filters(g);
         let growth = boxes::growth(&self.input, g);
         let list: Vec<String> = g.filters.iter().map(|f| self.filter(f, boxes::grown(f, growth))).collect();
         list.join(" ")
     }
 
+    /// Notes that the filters of a group do not look right.
+    pub(super) fn note_filters(&mut self, g: &Group) {
+        if self.input.filter_outcome(g).is_none() {
+            g.filters.iter().for_each(|f| self.notes.add(FILTERS, f.id()));
+        }
+    }
+
     fn filter(&mut self, f: &Arc<Filter>, region: Rect) -> String {
-        self.notes.add(FILTERS, f.id());
         if self.keeps_filter(f) {
             self.defs.grow(f, region);
             return format!("url(#{})", f.id());
@@ -558,16 +577,37 @@ impl<'a> Writer<'a> {
         if let Some(id) = self.defs.filters.get(&key) {
             return id.clone();
         }
-        let id = self.defs.new_id(f.id());
+        let id = self.new_filter(f, region, None);
         self.defs.filters.insert(key, id.clone());
+        id
+    }
+
+    /// Writes a filter, or what a layer needs of it.
+    fn new_filter(&mut self, f: &Arc<Filter>, region: Rect, layer: Option<&Layer>) -> String {
+        let id = self.defs.new_id(f.id());
         let pictures = f.primitives().iter().filter_map(|p| match p.kind() {
             usvg::filter::Kind::Image(i) => Some(self.picture(i.root())),
             _ => None,
         });
         let pictures: Vec<String> = pictures.collect();
-        let text = filter::element(&self.markup, f, region, &id, pictures);
+        let text = filter::element(&self.markup, f, region, &id, pictures, layer);
         self.defs.push(&text);
         id
+    }
+
+    /// A drawing of the area `view` of what the filters of a group draw, or of a layer of the only one.
+    pub(super) fn layer(&mut self, g: &Group, layer: Option<&Layer>, view: Rect) -> String {
+        let mut inner = String::new();
+        self.push_nodes(&g.children, &mut inner);
+        let growth = boxes::growth(&self.input, g);
+        let urls = g.filters.iter().map(|f| format!("url(#{})", self.new_filter(f, boxes::grown(f, growth), layer)));
+        let urls: Vec<String> = urls.collect();
+        let content = Tag::new("g").with("filter", &urls.join(" ")).around(&inner);
+        let size = [("width", view.width()), ("height", view.height())].map(|(name, v)| (name, short(v)));
+        let place = [view.x0, view.y0, view.width(), view.height()].map(short).join(" ");
+        let svg = Tag::new("svg").with("xmlns", "http://www.w3.org/2000/svg");
+        let svg = svg.with("xmlns:xlink", "http://www.w3.org/1999/xlink").with_all(size).with("viewBox", &place);
+        svg.around(&format!("<defs>{}</defs>{content}", self.defs.text))
     }
 
     /// Writes the content of an `feImage` as a definition; returns the link to it.

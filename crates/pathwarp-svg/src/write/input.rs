@@ -2,7 +2,7 @@
 
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::BentDrawing;
-use crate::bend::fits::{EmbeddedImage, PaintFit, PlacedSlot, written};
+use crate::bend::fits::{EmbeddedImage, FilterOutcome, PaintFit, PlacedSlot, written};
 use crate::bend::gradients::NewGradient;
 use crate::bend::options::WarpOptions;
 use crate::bend::outcome::{PartOutcome, WarpedPart};
@@ -10,6 +10,7 @@ use crate::scene::drawing::Drawing;
 use crate::scene::model::{Group, Node, Part, Scene, Tiles};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::Affine;
+use std::collections::HashMap;
 use std::ops::Range;
 use usvg::Paint;
 use usvg::filter::{Filter, Kind};
@@ -25,6 +26,7 @@ pub(crate) struct WriteInput<'a> {
     pub(super) slots: &'a [PlacedSlot],
     pub(super) bends: &'a Bends<'a>,
     pub(super) of: &'a [Option<usize>],
+    pub(super) filters: &'a HashMap<usize, FilterOutcome>,
     /// For the document.
     pub(super) options: &'a WarpOptions,
 }
@@ -40,12 +42,23 @@ impl<'a> WriteInput<'a> {
             slots: &bent.slots,
             bends,
             of: &bent.of,
+            filters: &bent.filters,
             options: &bends.options,
         }
     }
 
     pub(super) fn part(&self, i: usize) -> &'a Part {
         &self.scene.parts[i]
+    }
+
+    /// What became of the filters of a group; `None` if they follow the fit and look different.
+    pub(super) fn filter_outcome(&self, g: &Group) -> Option<&'a FilterOutcome> {
+        self.filters.get(&g.slot.filter(|_| !g.filters.is_empty())?)
+    }
+
+    /// Returns `true` if a group still has its filters.
+    pub(super) fn has_filters(&self, g: &Group) -> bool {
+        !g.filters.is_empty() && matches!(self.filter_outcome(g), None | Some(FilterOutcome::Fits))
     }
 
     /// What bends the first of these parts that is bent.

@@ -313,7 +313,12 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
     }
     let mut all = all?;
     let growth = boxes::growth(input, g);
-    for f in &g.filters {
+    if let Some((outcome, slot)) = input.filter_outcome(g).zip(g.slot) {
+        let frame = input.written(g.slot, scene.slots[slot].frame);
+        let pictures = outcome.pictures().into_iter().flatten().map(|p| frame.transform_rect_bbox(p.area));
+        all = pictures.fold(all, |all, p| all.union(p));
+    }
+    for f in g.filters.iter().filter(|_| input.has_filters(g)) {
         if let Some(s) = g.slot {
             let frame = input.written(g.slot, scene.slots[s].frame);
             let region = boxes::grown(f, growth);

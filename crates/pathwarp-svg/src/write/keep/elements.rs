@@ -2,7 +2,7 @@
 
 use super::keeper::{self, Keeper};
 use super::text;
-use crate::bend::fits::EmbeddedImage;
+use crate::bend::fits::{EmbeddedImage, FilterOutcome};
 use crate::bend::options::Clones;
 use crate::bend::outcome::{Skipped, WarpedPart};
 use crate::scene::geometry::stretch;
@@ -10,7 +10,7 @@ use crate::scene::model::{Clip, Group, Mask, Node, Part, Referrer};
 use crate::source::elements::{ElementId, Namespace, Unpatchable, is_live, is_shape};
 use crate::source::number::short;
 use crate::write::boxes;
-use crate::write::fragment::FILTERS;
+use crate::write::fragment::bent;
 use crate::write::input::WriteInput;
 use crate::write::markup::{bent_attributes, bent_url, dashes, part_data};
 use pathwarp::kurbo::Affine;
@@ -22,6 +22,9 @@ use usvg::{Fill, Stroke};
 /// Patches everything in a group.
 pub(super) fn group(k: &mut Keeper<'_, '_>, g: &Group) {
     filters(k, g);
+    if matches!(k.input.filter_outcome(g), Some(FilterOutcome::Whole(_))) {
+        return;
+    }
     // Shapes with their markers, in painting order.
     let mut marked: BTreeMap<ElementId, Vec<&Node>> = BTreeMap::new();
     for n in &g.children {
@@ -55,6 +58,9 @@ fn filters(k: &mut Keeper<'_, '_>, g: &Group) {
     if g.filters.is_empty() {
         return;
     }
+    if !k.input.has_filters(g) {
+        return pictures(k, g);
+    }
     let growth = boxes::growth(&k.input, g);
     let slot = g.slot.map(|s| &k.input.scene.slots[s]);
     if let [n @ Node::Text { element: Some(e), .. }] = g.children.as_slice()
@@ -76,8 +82,29 @@ fn filters(k: &mut Keeper<'_, '_>, g: &Group) {
             }
         }
     }
-    for f in &g.filters {
-        k.writer.notes.add(FILTERS, f.id());
+    k.writer.note_filters(g);
+}
+
+/// Replaces the filters of a group by pictures of what they draw.
+fn pictures(k: &mut Keeper<'_, '_>, g: &Group) {
+    let Some(outcome) = k.input.filter_outcome(g) else { return };
+    let Some(e) = g.slot.and_then(|s| k.input.scene.slots[s].element) else { return };
+    k.edits.set_property(e, "filter", "none".into());
+    if matches!(outcome, FilterOutcome::Whole(_)) {
+        let picture = k.writer.with_pictures(g, String::new());
+        if !matches!(k.tag(e), "g" | "a") {
+            k.make_group(e, String::new());
+        }
+        let title = k.source.elements[e].title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
+        k.edits.set_content(e, title + &picture);
+        return;
+    }
+    let [beneath, above] =
+        outcome.pictures().map(|p| p.map_or(String::new(), |p| bent(&k.writer.markup, p, Affine::IDENTITY)));
+    if matches!(k.tag(e), "g" | "a") {
+        k.edits.wrap_content(e, beneath, above);
+    } else {
+        k.around.insert(e, [beneath, above]);
     }
 }
 
@@ -89,8 +116,9 @@ pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     let Some(warped) = k.input.warped(i) else { return };
     let outlined = p.stroke.is_some() && warped.stroke.outline().is_some();
     let separate_fill = warped.fill.as_ref().is_some_and(|f| !f.elements().is_empty());
-    if k.input.in_pieces(i) || outlined || separate_fill {
+    if k.input.in_pieces(i) || outlined || separate_fill || k.around.contains_key(&e) {
         let content = k.writer.part(i);
+        let content = k.between_pictures(e, content);
         k.make_group(e, content);
         return;
     }
@@ -159,6 +187,7 @@ fn marked_shape(k: &mut Keeper<'_, '_>, e: ElementId, nodes: &[&Node]) {
         return;
     }
     let content = nodes.iter().map(|n| k.writer.node(n)).collect();
+    let content = k.between_pictures(e, content);
     k.make_group(e, content);
     for name in MARKERS {
         k.edits.set_style(e, name, "none".into());

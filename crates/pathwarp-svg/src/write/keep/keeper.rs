@@ -9,7 +9,7 @@ use crate::write::defs::Replaced;
 use crate::write::fragment::Writer;
 use crate::write::input::WriteInput;
 use pathwarp::kurbo::Affine;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Geometry attributes, which a shape loses when it becomes a path.
 const GEOMETRY: [&str; 15] =
@@ -26,12 +26,14 @@ pub(super) struct Keeper<'a, 'w> {
     pub(super) writer: &'w mut Writer<'a>,
     /// Elements that have become groups.
     pub(super) fragments: BTreeSet<ElementId>,
+    /// Pictures beneath and above the content of elements that become groups.
+    pub(super) around: HashMap<ElementId, [String; 2]>,
 }
 
 impl<'a, 'w> Keeper<'a, 'w> {
     pub(super) fn new(input: WriteInput<'a>, writer: &'w mut Writer<'a>) -> Self {
         let source = input.source;
-        Self { input, source, edits: Edits::new(source), writer, fragments: BTreeSet::new() }
+        Self { input, source, edits: Edits::new(source), writer, fragments: BTreeSet::new(), around: HashMap::new() }
     }
 
     pub(super) fn tag(&self, e: ElementId) -> &'a str {
@@ -73,6 +75,14 @@ impl<'a, 'w> Keeper<'a, 'w> {
         let text = &self.source.text;
         let kept = el.attrs.iter().filter(|a| !omitted.contains(&a.name(text)) && !is_live(a, text));
         kept.map(|a| format!(" {}", &self.source.text[a.range.clone()])).collect()
+    }
+
+    /// The content of an element between its pictures.
+    pub(super) fn between_pictures(&self, e: ElementId, content: String) -> String {
+        match self.around.get(&e) {
+            Some([beneath, above]) => format!("{beneath}{content}{above}"),
+            None => content,
+        }
     }
 
     pub(super) fn remove_geometry(&mut self, e: ElementId) {

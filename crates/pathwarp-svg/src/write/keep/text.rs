@@ -67,6 +67,7 @@ pub(super) fn text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners
     } else {
         k.writer.group(content, "")
     };
+    let inner = k.between_pictures(e, inner);
     let title = source.elements[e].title.as_ref().unwrap_or(&words);
     let title = if title.is_empty() { String::new() } else { k.writer.markup.title(title) };
     k.edits.rename(e, "g");

@@ -1,0 +1,73 @@
+//! What filters draw, bent pixel by pixel where their affine fit would look different.
+
+use crate::bitmap::{Bender, Pixel, count_evaluations, count_pixels, too_much};
+use pathwarp::budget::{Budget, Limit};
+use pathwarp_raster::{Continued, DrawingWarp, Error, encode_smooth_png};
+use pathwarp_svg::usvg_tree::{ReadTree, read_tree};
+use pathwarp_svg::{BentImage, FilterPainter, FilterRequest, PictureError, ReadOptions};
+
+/// The share of the work left for a drawing that its filters may take, and that of the rest of it which one may take.
+const SHARE: f64 = 0.5;
+const SHARE_OF_ONE: f64 = 0.25;
+
+impl FilterPainter for Bender {
+    fn paint(&self, r: &FilterRequest<'_>) -> Result<Option<Vec<Option<BentImage>>>, PictureError> {
+        let floor = *self.filters_leave.get_or_init(|| (1.0 - SHARE) * self.budget.left());
+        let most = SHARE_OF_ONE * (self.budget.left() - floor).max(0.0);
+        let budget = Budget::new(self.budget.limits().with(Limit::Work, most));
+        let pictures = self.pictures(r, &budget);
+        self.budget.spend(most - budget.left()).map_err(too_much)?;
+        pictures
+    }
+}
+
+impl Bender {
+    fn pictures(&self, r: &FilterRequest<'_>, budget: &Budget) -> Result<Option<Vec<Option<BentImage>>>, PictureError> {
+        /// Most pixels of a picture, and of those of a drawing together.
+        const MOST: f64 = 2e6;
+        const MOST_TOGETHER: f64 = 8e6;
+        /// Evaluations of the map for a filter, and for a pixel.
+        const FILTER: f64 = 12e3;
+        const EVALUATED: f64 = 0.5;
+        /// Pixels per px of a picture that shows little, and where the fit is compared.
+        const COARSEST: f64 = 0.25;
+        const COMPARED: f64 = 2.0;
+        let reason = |e: Error| PictureError::from(e.to_string());
+        let count = |width: f64, height: f64| {
+            count_evaluations(budget, &*self.map, EVALUATED * width * height)?;
+            count_pixels(budget, Pixel::Warped, width * height)
+        };
+        count_evaluations(budget, &*self.map, FILTER).map_err(too_much)?;
+        let [inner, outer] = [r.graphic, r.area].map(|area| r.placed.transform_rect_bbox(area));
+        let map = Continued::new(r.map, inner.intersect(outer), outer);
+        let warp = DrawingWarp::new((r.area, r.placed), &map, r.after, &count, budget);
+        let warp = warp.ok_or("the map is undefined on part of it, or makes nothing of it")?;
+        let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+        if let Some([drawing, fitted]) = r.compared {
+            let [drawing, fitted] = [tree(&drawing(r.area), budget)?, tree(&fitted(warp.bounds()), budget)?];
+            if warp.resembles(&drawing.tree, &fitted.tree, COMPARED * unit).map_err(reason)? {
+                return Ok(None);
+            }
+        }
+        let most = MOST.min(MOST_TOGETHER / r.among.max(1) as f64) / warp.bounds().area();
+        let size = (warp.bounds().width(), warp.bounds().height());
+        let finest = self.seen_density(unit, size).min(most.sqrt());
+        let picture = |svg: Option<String>| {
+            let Some(svg) = svg else { return Ok(None) };
+            let Some((picture, area)) =
+                warp.paint(&tree(&svg, budget)?.tree, COARSEST * unit, finest).map_err(reason)?
+            else {
+                return Ok(None);
+            };
+            Ok(Some(BentImage { png: encode_smooth_png(&picture).map_err(reason)?, area }))
+        };
+        let pictures = (r.layers)().into_iter().map(picture).collect::<Result<_, PictureError>>()?;
+        budget.exceeded().map_or(Ok(Some(pictures)), |e| Err(too_much(e)))
+    }
+}
+
+/// Reads a drawing that was written for a filter.
+fn tree(svg: &str, budget: &Budget) -> Result<ReadTree, PictureError> {
+    count_pixels(budget, Pixel::Decoded, svg.len() as f64).map_err(too_much)?;
+    read_tree(svg.as_bytes(), "what a filter draws", &ReadOptions::default()).map_err(|e| e.to_string().into())
+}

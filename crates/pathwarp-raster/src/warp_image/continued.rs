@@ -1,0 +1,86 @@
+//! A map that its tangents continue where it folds.
+
+use kurbo::{Point, Rect};
+use pathwarp::map::{Batches, Cost, Creases, Jet, Map};
+use std::fmt;
+
+/// A map, continued beyond a box by its tangents if it folds there or is not defined.
+///
+/// Deformations are made for the box of the artwork; its shadows lie around it.
+pub struct Continued<'a> {
+    map: &'a dyn Map,
+    /// The box beyond which tangents continue the map.
+    inner: Option<Rect>,
+}
+
+impl fmt::Debug for Continued<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Continued").field("map", &self.map).field("inner", &self.inner).finish()
+    }
+}
+
+impl<'a> Continued<'a> {
+    /// Continues `map` from `inner` to `outer` if necessary.
+    #[must_use]
+    pub fn new(map: &'a dyn Map, inner: Rect, outer: Rect) -> Self {
+        /// Cells along a side where the map is looked at.
+        const CELLS: usize = 24;
+        let at = |k: usize| (k as f64) / CELLS as f64;
+        let places = (0..=CELLS).flat_map(|j| (0..=CELLS).map(move |i| (at(i), at(j))));
+        let places: Vec<Point> = places
+            .map(|(u, v)| Point::new(outer.x0 + u * outer.width(), outer.y0 + v * outer.height()))
+            .chain([inner.center()])
+            .collect();
+        let mut jets = vec![Jet::default(); places.len()];
+        map.jets(&places, &mut jets);
+        let mut creases = Creases::default();
+        map.creases(&mut creases);
+        let sign = jets.last().map_or(0.0, |jet| jet.det().signum());
+        let sound = |(p, jet): (&Point, &Jet)| jet.det() * sign > 0.0 && creases.defined_at(*p);
+        let is_sound = places.iter().zip(&jets).all(sound);
+        Self { map, inner: (!is_sound).then_some(inner) }
+    }
+
+    /// The nearest point of the inner box.
+    fn within(&self, p: Point) -> Point {
+        self.inner.map_or(p, |r| Point::new(p.x.clamp(r.x0, r.x1), p.y.clamp(r.y0, r.y1)))
+    }
+}
+
+impl Map for Continued<'_> {
+    fn jet(&self, p: Point) -> Jet {
+        let from = self.within(p);
+        let jet = self.map.jet(from);
+        Jet { p: jet.p + jet.push(p - from), ..jet }
+    }
+
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        let from: Vec<Point> = ps.iter().map(|p| self.within(*p)).collect();
+        self.map.jets(&from, out);
+        for ((p, from), jet) in ps.iter().zip(&from).zip(out) {
+            jet.p += jet.push(*p - *from);
+        }
+    }
+
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        if self.inner.is_none() {
+            return self.map.points(ps, out);
+        }
+        let mut jets = vec![Jet::default(); ps.len()];
+        self.jets(ps, &mut jets);
+        out.iter_mut().zip(jets).for_each(|(o, jet)| *o = jet.p);
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        if self.inner.is_none() {
+            self.map.creases(out);
+        }
+    }
+
+    fn cost(&self) -> Cost<'_> {
+        let cost = Cost::new(self.map.work());
+        if self.map.prefers_batches() { cost.batched(self) } else { cost }
+    }
+}
+
+impl Batches for Continued<'_> {}

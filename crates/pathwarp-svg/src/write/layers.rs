@@ -1,0 +1,207 @@
+//! What a filter draws beneath and above its graphic, as filters of their own.
+
+use super::markup::color;
+use crate::scene::areas::overlap;
+use crate::scene::geometry::rect;
+use crate::source::markup::Tag;
+use pathwarp::kurbo::Rect;
+use usvg::BlendMode;
+use usvg::filter::{
+    ColorInterpolation, ColorMatrixKind, CompositeOperator, DropShadow, Filter, Input, Kind, Primitive,
+};
+
+/// A layer of what a filter draws.
+pub(super) struct Layer {
+    /// What becomes of each primitive.
+    needs: Vec<Need>,
+    /// Primitives that follow, the last of which draws the layer.
+    pub(super) more: String,
+}
+
+/// What a layer needs of a primitive. Later ones need more.
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Need {
+    #[default]
+    Nothing,
+    /// Its input, since the graphic hides where it would be cut out.
+    Uncut,
+    /// Its result, except where the graphic hides it.
+    Visible,
+    Result,
+}
+
+impl Layer {
+    pub(super) fn need(&self, at: usize) -> Need {
+        self.needs[at]
+    }
+}
+
+/// Something in a stack of layers.
+enum Stacked<'a> {
+    Nothing,
+    Source,
+    Result(usize),
+    Shadow(&'a DropShadow, &'a Input),
+}
+
+/// The layers that a filter draws beneath and above its graphic, if there are any. `None` if it changes the graphic itself, or cuts it.
+pub(super) fn around(f: &Filter, content: Rect, opaque: bool) -> Option<[Option<Layer>; 2]> {
+    /// Most primitives, which are looked through for each other.
+    const MOST: usize = 1000;
+    let all = f.primitives();
+    if all.len() > MOST {
+        return None;
+    }
+    let region = rect(f.rect().to_rect());
+    // Regions are held in single precision.
+    let slack = 1e-4 * region.width().max(region.height());
+    if overlap(content, region.inflate(slack, slack)) != Some(content) {
+        return None;
+    }
+    let mut stack = Vec::new();
+    push(f, all.len().checked_sub(1)?, &mut stack)?;
+    let mut sources = stack.iter().enumerate().filter(|(_, s)| matches!(s, Stacked::Source));
+    let (Some((at, _)), None) = (sources.next(), sources.next()) else { return None };
+    let layers = [layer(f, &stack[..at], opaque), layer(f, &stack[at + 1..], false)];
+    // Results are composited in sRGB.
+    let linear = all.iter().any(|p| p.color_interpolation() == ColorInterpolation::LinearRGB);
+    (!linear || opaque && layers[1].is_none()).then_some(layers)
+}
+
+/// Adds what a primitive stacks, from the bottom to the top.
+fn push<'a>(f: &'a Filter, at: usize, out: &mut Vec<Stacked<'a>>) -> Option<()> {
+    /// Most layers; references can ask for any number.
+    const MAX_LAYERS: usize = 64;
+    let p = &f.primitives()[at];
+    // Counts the call.
+    out.push(Stacked::Nothing);
+    let layer = |input: &'a Input| match input {
+        Input::SourceGraphic => {
+            out.push(Stacked::Source);
+            Some(())
+        }
+        // The silhouette is not beside the graphic.
+        Input::SourceAlpha => None,
+        Input::Reference(name) => push(f, named(f, name, at)?, out),
+    };
+    match p.kind() {
+        Kind::Merge(_) | Kind::Blend(_) | Kind::Composite(_) if is_stack(p) => {
+            (p.rect() == f.rect()).then_some(())?;
+            inputs(p.kind()).into_iter().rev().try_for_each(layer)?;
+        }
+        Kind::DropShadow(s) if *s.input() == Input::SourceGraphic && p.rect() == f.rect() => {
+            out.extend([Stacked::Shadow(s, s.input()), Stacked::Source]);
+        }
+        // An empty background.
+        Kind::Flood(flood) if flood.opacity().get() == 0.0 => {}
+        _ => {
+            (named(f, p.result(), f.primitives().len()) == Some(at)).then_some(())?;
+            out.push(Stacked::Result(at));
+        }
+    }
+    (out.len() <= MAX_LAYERS).then_some(())
+}
+
+fn is_stack(p: &Primitive) -> bool {
+    matches!(p.kind(), Kind::Merge(_))
+        || matches!(p.kind(), Kind::Blend(b) if b.mode() == BlendMode::Normal)
+        || matches!(p.kind(), Kind::Composite(c) if c.operator() == CompositeOperator::Over)
+}
+
+/// The last primitive of this name among the first ones.
+fn named(f: &Filter, name: &str, before: usize) -> Option<usize> {
+    f.primitives()[..before].iter().rposition(|p| p.result() == name)
+}
+
+/// The inputs of a primitive, from the top to the bottom.
+fn inputs(kind: &Kind) -> Vec<&Input> {
+    match kind {
+        Kind::Merge(m) => m.inputs().iter().rev().collect(),
+        Kind::Blend(b) => vec![b.input1(), b.input2()],
+        Kind::Composite(c) => vec![c.input1(), c.input2()],
+        Kind::DisplacementMap(m) => vec![m.input1(), m.input2()],
+        Kind::ColorMatrix(m) => vec![m.input()],
+        Kind::ComponentTransfer(t) => vec![t.input()],
+        Kind::ConvolveMatrix(m) => vec![m.input()],
+        Kind::DiffuseLighting(l) => vec![l.input()],
+        Kind::DropShadow(s) => vec![s.input()],
+        Kind::GaussianBlur(b) => vec![b.input()],
+        Kind::Morphology(m) => vec![m.input()],
+        Kind::Offset(o) => vec![o.input()],
+        Kind::SpecularLighting(l) => vec![l.input()],
+        Kind::Tile(t) => vec![t.input()],
+        Kind::Flood(_) | Kind::Image(_) | Kind::Turbulence(_) => Vec::new(),
+    }
+}
+
+/// The layer that a part of a stack draws; `hidden` by the graphic, where that is.
+fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool) -> Option<Layer> {
+    let mut needs = vec![Need::Nothing; f.primitives().len()];
+    let (mut more, mut nodes) = (String::new(), String::new());
+    let begin = |tag: &str| Tag::new(tag).with("color-interpolation-filters", "sRGB");
+    for (k, layer) in stack.iter().enumerate() {
+        let result = match layer {
+            Stacked::Nothing | Stacked::Source => continue,
+            Stacked::Result(at) => {
+                needs[*at] = if hidden { Need::Visible } else { Need::Result };
+                f.primitives()[*at].result().to_owned()
+            }
+            Stacked::Shadow(s, graphic) => {
+                let [offset, flood, result] = ["o", "f", "s"].map(|part| format!("pathwarp-{k}{part}"));
+                let blur = begin("feGaussianBlur").input("in", graphic);
+                more += &blur.numbers("stdDeviation", &[s.std_dev_x().get(), s.std_dev_y().get()]).empty();
+                let by = begin("feOffset").numbers("dx", &[s.dx()]).numbers("dy", &[s.dy()]);
+                more += &by.with("result", &offset).empty();
+                let color = begin("feFlood").with("flood-color", &color(s.color()));
+                more += &color.numbers("flood-opacity", &[s.opacity().get()]).with("result", &flood).empty();
+                let cut = begin("feComposite").with("in", &flood).with("in2", &offset).with("operator", "in");
+                more += &cut.with("result", &result).empty();
+                result
+            }
+        };
+        nodes += &Tag::new("feMergeNode").with("in", &result).empty();
+    }
+    for at in (0..needs.len()).rev() {
+        let kind = f.primitives()[at].kind();
+        let own = needs[at];
+        let (mut all, mut need) = (inputs(kind), Need::Result);
+        if own == Need::Visible {
+            if cuts_out(f, at) {
+                all.truncate(1);
+                needs[at] = Need::Uncut;
+            }
+            if is_local(kind) {
+                need = Need::Visible;
+            }
+        }
+        for input in all.into_iter().filter(|_| own != Need::Nothing) {
+            if let Input::Reference(name) = input
+                && let Some(i) = named(f, name, at)
+            {
+                needs[i] = needs[i].max(need);
+            }
+        }
+    }
+    (!nodes.is_empty()).then(|| Layer { needs, more: more + &begin("feMerge").around(&nodes) })
+}
+
+/// Returns `true` if a pixel of the result depends on the same pixel of the inputs only.
+pub(super) fn is_local(kind: &Kind) -> bool {
+    use Kind::{Blend, ColorMatrix, ComponentTransfer, Composite, Merge};
+    matches!(kind, Blend(_) | ColorMatrix(_) | ComponentTransfer(_) | Composite(_) | Merge(_))
+}
+
+/// Returns `true` if a primitive cuts out the graphic.
+fn cuts_out(f: &Filter, at: usize) -> bool {
+    let Kind::Composite(c) = f.primitives()[at].kind() else { return false };
+    let is_graphic = match c.input2() {
+        Input::SourceGraphic | Input::SourceAlpha => true,
+        Input::Reference(name) => named(f, name, at).is_some_and(|i| {
+            let p = &f.primitives()[i];
+            // The last value of the fourth row is the alpha of transparent pixels.
+            matches!(p.kind(), Kind::ColorMatrix(m) if !matches!(m.input(), Input::Reference(_))
+                && matches!(m.kind(), ColorMatrixKind::Matrix(v) if v.get(19).is_some_and(|a| *a <= 0.0)))
+        }),
+    };
+    c.operator() == CompositeOperator::Out && is_graphic
+}

@@ -1,0 +1,189 @@
+//! Filters that cannot follow a map: what they draw beneath and above their graphic becomes a picture, or all of it does.
+
+use super::boxes;
+use super::fragment::Writer;
+use super::input::WriteInput;
+use super::layers::{Layer, around, is_local};
+use crate::bend::drawing::BentDrawing;
+use crate::bend::fits::{self, FilterOutcome};
+use crate::bend::options::Filters;
+use crate::bend::outcome::Notes;
+use crate::bend::pictures::FilterRequest;
+use crate::scene::areas;
+use crate::scene::geometry::{rect, stretch};
+use crate::scene::model::{Group, Node};
+use crate::source::elements::is_shape;
+use pathwarp::kurbo::Rect;
+use std::collections::HashMap;
+use std::sync::Arc;
+use usvg::filter::{Filter, Kind};
+use usvg::{BlendMode, Paint, Stop};
+
+/// Decides about every filter of a drawing, by the index of its slot. Those that are missing follow the fit and look different.
+pub(crate) fn outcomes(input: &WriteInput<'_>) -> HashMap<usize, FilterOutcome> {
+    let mut groups = Vec::new();
+    let asks = input.bends.each.iter().any(|b| b.options.filters != Filters::Affine);
+    if asks {
+        filtered(&input.scene.root, &mut groups);
+    }
+    let unbent = if groups.is_empty() { None } else { Some(BentDrawing::unbent(input.scene)) };
+    let Some(unbent) = unbent else { return HashMap::new() };
+    let original = WriteInput::new(input.drawing, &unbent, input.bends);
+    let outcome = |(slot, g): &(usize, &Group)| Some((*slot, outcome(input, &original, (*slot, *g), groups.len())?));
+    groups.iter().filter_map(outcome).collect()
+}
+
+/// Lists the groups with filters that have a slot.
+fn filtered<'a>(g: &'a Group, out: &mut Vec<(usize, &'a Group)>) {
+    out.extend(g.slot.filter(|_| !g.filters.is_empty()).map(|s| (s, g)));
+    for n in &g.children {
+        match n {
+            Node::Group(g) => filtered(g, out),
+            Node::Text { content, .. } => filtered(content, out),
+            Node::Part(_) | Node::Image(_) => {}
+        }
+    }
+}
+
+/// A drawing of what the filters of a group draw, or of a layer of it.
+fn drawing(input: &WriteInput<'_>, g: &Group, layer: Option<&Layer>, view: Rect) -> String {
+    let (mut skipped, mut notes) = (Vec::new(), Notes::default());
+    Writer::new(*input, false, &mut skipped, &mut notes).layer(g, layer, view)
+}
+
+fn outcome(
+    input: &WriteInput<'_>,
+    original: &WriteInput<'_>,
+    (slot, group): (usize, &Group),
+    among: usize,
+) -> Option<FilterOutcome> {
+    let s = &input.scene.slots[slot];
+    let bend = &input.bends.each[fits::bend_of(s, input.scene, input.bends, input.of)?];
+    let (painter, always) = match &bend.options.filters {
+        Filters::Affine => return None,
+        Filters::Auto(painter) => (painter, false),
+        Filters::Picture(painter) => (painter, true),
+    };
+    let repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
+    if bend.is_identity() || s.before || repeated || nests(group) || !takes_pictures(input, slot) {
+        return None;
+    }
+    let content = content(original, group, s.frame.inverse())?;
+    let painted = |area: Option<Rect>, f: &Arc<Filter>| areas::painted(f, rect(f.rect().to_rect()), area?);
+    let area = group.filters.iter().fold(Some(content), painted)?;
+    let write = input.written(Some(slot), s.frame);
+    if !always
+        && moves_little(
+            group,
+            (content, area),
+            fits::bends_by(area, s.frame, write, bend.map) * stretch(input.scene.to_px * write),
+        )
+    {
+        return Some(FilterOutcome::Fits);
+    }
+    let layers = match group.filters.as_slice() {
+        [f] => around(f, content, is_opaque(original, group)),
+        _ => None,
+    };
+    let whole = |view| drawing(original, group, None, view);
+    let draw = || match &layers {
+        Some(layers) => layers.iter().map(|l| l.as_ref().map(|l| drawing(original, group, Some(l), area))).collect(),
+        None => vec![Some(whole(area))],
+    };
+    let fitted = |view| drawing(input, group, None, view);
+    let request = FilterRequest {
+        layers: &draw,
+        compared: (!always).then_some([&whole, &fitted]),
+        area,
+        graphic: content,
+        placed: s.frame,
+        map: bend.map,
+        after: write.inverse(),
+        to_px: input.scene.to_px,
+        among,
+    };
+    let Some(mut pictures) = painter.paint(&request).ok()?.map(Vec::into_iter) else {
+        return Some(FilterOutcome::Fits);
+    };
+    let mut next = || pictures.next().flatten();
+    if layers.is_some() {
+        return Some(FilterOutcome::Around { beneath: next(), above: next() });
+    }
+    next().map(FilterOutcome::Whole)
+}
+
+/// Returns `true` if what filters draw lies where their fit puts it, to less than anyone sees: if they only move and blur what they draw,
+/// and the map bends little so far. `bends` is the change of a unit in px.
+fn moves_little(g: &Group, (content, area): (Rect, Rect), bends: f64) -> bool {
+    /// In px.
+    const UNSEEN: f64 = 0.5;
+    let [x, y] = [(content.x0 - area.x0).max(area.x1 - content.x1), (content.y0 - area.y0).max(area.y1 - content.y1)];
+    let moves = |k: &Kind| matches!(k, Kind::DropShadow(_) | Kind::Flood(_) | Kind::GaussianBlur(_) | Kind::Offset(_));
+    let plain = g.filters.iter().flat_map(|f| f.primitives()).all(|p| is_local(p.kind()) || moves(p.kind()));
+    plain && bends * x.max(y).max(0.0) < UNSEEN
+}
+
+/// Returns `true` if pictures can stand in the place of the filters of a slot.
+fn takes_pictures(input: &WriteInput<'_>, slot: usize) -> bool {
+    let s = &input.scene.slots[slot];
+    let has =
+        |e: usize, name: &str| input.source.attr(e, name).is_some_and(|v| name == "filter" || v.contains("filter"));
+    let tag = |e: usize| input.source.elements[e].tag.as_ref();
+    // A `switch` puts its filters around the element that takes the fit.
+    let takes = |e: usize| matches!(tag(e), "g" | "a" | "text") || is_shape(tag(e));
+    s.owner.is_some() || s.element.is_some_and(|e| takes(e) && (has(e, "filter") || has(e, "style")))
+}
+
+/// The box of what a group paints, in the user space of its filters.
+fn content(original: &WriteInput<'_>, g: &Group, from_root: pathwarp::kurbo::Affine) -> Option<Rect> {
+    let one = |n: &Node| match n {
+        Node::Group(c) | Node::Text { content: c, .. } => content(original, c, from_root),
+        Node::Part(i) => {
+            let p = original.part(*i);
+            areas::is_seen(p).then(|| boxes::painted_box(p, None, from_root * p.frame))
+        }
+        Node::Image(i) => {
+            let b = &original.scene.bitmaps[*i];
+            Some(from_root.transform_rect_bbox(areas::picture_box(b)?))
+        }
+    };
+    g.children.iter().filter_map(one).reduce(|a, b| a.union(b)).filter(Rect::is_finite)
+}
+
+/// Returns `true` if anything in a group has filters of its own.
+fn nests(g: &Group) -> bool {
+    g.children.iter().any(|n| match n {
+        Node::Group(c) => !c.filters.is_empty() || nests(c),
+        Node::Text { content, .. } => !content.filters.is_empty() || nests(content),
+        Node::Part(_) | Node::Image(_) => false,
+    })
+}
+
+/// Returns `true` if nothing shines through a group where it paints.
+fn is_opaque(input: &WriteInput<'_>, g: &Group) -> bool {
+    let stops = |s: &[Stop]| s.iter().all(|s| s.opacity().get() >= 1.0);
+    let covers = |p: &Paint| match p {
+        Paint::Color(_) => true,
+        Paint::LinearGradient(g) => stops(g.stops()),
+        Paint::RadialGradient(g) => stops(g.stops()),
+        Paint::Pattern(_) => false,
+    };
+    let plain = |p: &Paint, opacity: f32| opacity >= 1.0 && covers(p);
+    let group = |g: &Group| {
+        g.opacity >= 1.0
+            && g.mask.is_none()
+            && g.blend == BlendMode::Normal
+            && g.filters.is_empty()
+            && is_opaque(input, g)
+    };
+    g.children.iter().all(|n| match n {
+        Node::Group(g) => group(g),
+        Node::Text { content, .. } => group(content),
+        Node::Part(i) => {
+            let p = input.part(*i);
+            p.fill.as_ref().is_none_or(|f| plain(f.paint(), f.opacity().get()))
+                && p.stroke.as_ref().is_none_or(|s| plain(s.paint(), s.opacity().get()))
+        }
+        Node::Image(_) => false,
+    })
+}
