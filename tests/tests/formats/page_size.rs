@@ -113,3 +113,59 @@ fn every_command_that_writes_drawings_has_it() {
     let text = String::from_utf8_lossy(&pdf).into_owned();
     assert!(text.contains("/MediaBox [0 0 72 54"), "{}", &text[..600.min(text.len())]);
 }
+
+#[test]
+fn sheets_and_paths_of_gimp_have_it() {
+    let svg = drawing("80mm", "60mm", 1.0);
+    let sheet = run(&["gallery", "-", "--page-width", "210mm", "--page-height", "297mm"], &svg);
+    let [width, height] = sides(&sheet).map(|side| side.trim_end_matches("mm").parse::<f64>().unwrap());
+    assert!(width == 210.0 && height < 297.0 || width < 210.0 && height == 297.0, "{width} {height}");
+    let refused = ["gallery", "-", "--page-width", "210mm", "--format", "png"];
+    assert_eq!(pathwarp_in(Path::new("."), &refused, svg.as_bytes()).status.code(), Some(2));
+
+    let list = |more: &[&str]| -> serde_json::Value {
+        serde_json::from_slice(&run(&[&["convert", "-", "--format", "json"], more].concat(), &svg)).unwrap()
+    };
+    let points = |v: &serde_json::Value| -> Vec<f64> {
+        let points = v["paths"][0]["strokes"][0]["controlpoints"].as_array().unwrap();
+        points.iter().map(|p| p.as_f64().unwrap()).collect()
+    };
+    let (plain, large) = (list(&[]), list(&["--page-width", "50mm"]));
+    // 50 mm are 50/25.4 · 96 px.
+    let scale = 50.0 / 25.4 * 96.0 / plain["width"].as_f64().unwrap();
+    for side in ["width", "height"] {
+        assert!((large[side].as_f64().unwrap() - scale * plain[side].as_f64().unwrap()).abs() < 1e-9, "{side}");
+    }
+    for (a, b) in points(&plain).iter().zip(points(&large)) {
+        assert!((scale * a - b).abs() < 1e-9 * b.abs().max(1.0), "{a} {b}");
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let xcf = dir.path().join("out.xcf").display().to_string();
+    run(&["convert", "-", "--page-width", "300", "-o", &xcf], &svg);
+    // The canvas is in the header (devel-docs/xcf.txt): after the magic number of 14 bytes.
+    let bytes = std::fs::read(&xcf).unwrap();
+    assert_eq!(bytes[14..18], 300u32.to_be_bytes());
+}
+
+/// The report has the tolerance that the curves were held to: in units of the source, a tenth of it on a page ten times as large.
+#[test]
+fn the_report_has_the_tolerance_of_the_result() {
+    let svg = drawing("80mm", "60mm", 1.0);
+    let dir = tempfile::tempdir().unwrap();
+    let report = dir.path().join("report.json").display().to_string();
+    let out = dir.path().join("out.svg").display().to_string();
+    let tolerance = |more: &[&str]| {
+        let bend = ["expr", "-", "--y", "y + 9*sin(x/7)", "--fit", "none", "--tolerance", "0.02mm"];
+        run(&[&bend[..], &["--report", &report, "-o", &out], more].concat(), &svg);
+        let read: serde_json::Value = serde_json::from_slice(&std::fs::read(&report).unwrap()).unwrap();
+        let file = &read["inputs"][0];
+        let most = |key: &str| {
+            let shapes = file["shapes"].as_array().unwrap();
+            shapes.iter().map(|s| s[key].as_f64().unwrap_or(f64::NAN)).fold(0.0, f64::max)
+        };
+        assert!(most("max_error") <= 1.001 * file["tolerance"].as_f64().unwrap());
+        file["tolerance"].as_f64().unwrap()
+    };
+    let (same, large) = (tolerance(&[]), tolerance(&["--page-width", "800mm"]));
+    assert!((same / large - 10.0).abs() < 1e-6, "{same} {large}");
+}

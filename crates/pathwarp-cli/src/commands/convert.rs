@@ -46,7 +46,7 @@ pub(super) fn convert_command() -> Command {
         .after_help(
             "The SVG has its size in px and a matching viewBox, so that GIMP imports it without scaling; path names become ids. \
              Coordinates are written with the precision that GIMP stores.\n\nExamples:\n  pathwarp convert \
-             art.xcf -o art.svg\n  pathwarp convert art.xcf#Cage -o cage.json\n  pathwarp convert art.xcf -o paths.svg --split\n  pathwarp convert \
+             art.xcf -o art.svg\n  pathwarp convert art.xcf#Cage -o cage.json\n  pathwarp convert art.xcf -o paths.svg --split\n  pathwarp convert art.xcf -o large.xcf --page-width 1200\n  pathwarp convert \
              drawing.svg -o drawing.pdf\n  pathwarp convert drawing.svg -o drawing.dxf --dxf-curves polyline",
         )
 }

@@ -3,7 +3,7 @@
 use crate::export;
 use crate::failure::{Failure, Status};
 use crate::format::Format;
-use crate::input::{self, GimpFile};
+use crate::input::{self, GimpFile, resized};
 use crate::options::{CommonOptions, Reading};
 use crate::output::{self, PendingFile};
 use crate::sources::Files;
@@ -68,8 +68,14 @@ fn drawing(file: &Path, reading: &Reading) -> Result<([f64; 2], Vec<GimpPath>), 
 /// The bytes of a file with these paths.
 fn bytes(format: Format, size: [f64; 2], paths: &[GimpPath], options: &CommonOptions) -> Result<Vec<u8>, Failure> {
     match format {
-        Format::PointList => Ok(to_json(Some(size), paths).into_bytes()),
-        Format::Xcf => Ok(new_xcf(size.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), paths)),
+        Format::PointList => {
+            let (size, paths) = resized(size, paths, options);
+            Ok(to_json(Some(size), &paths).into_bytes())
+        }
+        Format::Xcf => {
+            let (size, paths) = resized(size, paths, options);
+            Ok(new_xcf(size.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), &paths))
+        }
         drawing => {
             let svg = to_svg(size, paths, None);
             Ok(export::drawing(svg, drawing, &ReadOptions::default(), options, None)?.bytes)

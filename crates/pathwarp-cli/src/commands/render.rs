@@ -112,7 +112,7 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
             "SHEET.svg|SHEET.png",
             "Write the sheet to this file: .svg, .svgz, .pdf, .png, .jpg or .webp; - or none writes SVG to standard output",
         ))
-        .args(some_options(&["format", "quality"]))
+        .args(some_options(&["format", "quality", "page-width", "page-height"]))
         .arg(
             choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]),
         )
@@ -159,7 +159,8 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
              same everywhere.\n\nExamples:\n  \
              pathwarp gallery samples/logo.svg -o sheet.svg\n  \
              pathwarp gallery samples/lettering.svg --set wordart --columns 5 -o sheet.png\n  \
-             pathwarp gallery samples/badge.svg --bend -30% --axis vertical -o sheet.svg",
+             pathwarp gallery samples/badge.svg --bend -30% --axis vertical -o sheet.svg\n  \
+             pathwarp gallery samples/logo.svg --page-width 210mm --page-height 297mm -o sheet.pdf",
         )
 }
 
@@ -175,6 +176,11 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
     let target = target(m, [file])?;
     let options = Given::options(m).read()?;
     let format = Choice { what: "a sheet is", among: SHEETS }.format(target, options.format)?;
+    if format.of_picture(None).is_some() && (options.page_width.is_some() || options.page_height.is_some()) {
+        return Err(Failure::usage(
+            "--page-width and --page-height are for sheets as .svg or .pdf; --scale enlarges a picture",
+        ));
+    }
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));

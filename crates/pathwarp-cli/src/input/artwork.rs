@@ -186,6 +186,8 @@ pub(crate) struct WarpedArtwork {
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
     pub(crate) page: PageNews,
+    /// The tolerance, if it is not that of the request.
+    pub(crate) tolerance: Option<f64>,
     /// Files besides the result.
     pub(crate) files: Vec<PendingFile>,
     /// The picture of `--preview`.

@@ -3,7 +3,7 @@
 use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::beside;
 use super::files::{display, split_reference};
-use super::gimp_file::GimpFile;
+use super::gimp_file::{GimpFile, resized};
 use crate::export::{self, Exported};
 use crate::failure::Failure;
 use crate::format::{Choice, Format};
@@ -134,7 +134,10 @@ impl GimpArtwork {
         };
         let paths = warped.paths(self);
         let Exported { bytes, warnings } = match format {
-            Format::PointList => to_json(Some(canvas), &paths).into_bytes().into(),
+            Format::PointList => {
+                let (canvas, paths) = resized(canvas, &paths, request.options);
+                to_json(Some(canvas), &paths).into_bytes().into()
+            }
             drawing => {
                 let svg = to_svg(canvas, &paths, precision);
                 export::drawing(svg, drawing, &ReadOptions::default(), request.options, Some(request.tolerance))?
@@ -229,6 +232,7 @@ impl FileArtwork for GimpArtwork {
         Ok(WarpedArtwork {
             result,
             page: PageNews::default(),
+            tolerance: None,
             files: Vec::new(),
             preview: preview.transpose()?,
             shapes: warped.shapes,

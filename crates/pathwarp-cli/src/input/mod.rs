@@ -22,7 +22,7 @@ pub(crate) use files::{
 pub(crate) use gimp::file_name;
 pub(crate) use gimp::{outline, svg_name};
 #[cfg(feature = "gimp")]
-pub(crate) use gimp_file::GimpFile;
+pub(crate) use gimp_file::{GimpFile, resized};
 pub(crate) use svg::SvgArtwork;
 
 use crate::failure::Failure;

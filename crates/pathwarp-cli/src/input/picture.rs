@@ -184,6 +184,7 @@ impl FileArtwork for PictureArtwork {
             skipped: Vec::new(),
             warnings,
             page: PageNews::default(),
+            tolerance: None,
             files: Vec::new(),
             preview: None,
             partial: undefined.is_some() || self.picture.early_end.is_some(),

@@ -544,6 +544,7 @@ impl FileArtwork for SvgArtwork {
             preview: preview.transpose()?,
             partial: empty,
             page,
+            tolerance: Some(tolerance),
         })
     }
 }

@@ -179,7 +179,7 @@ impl Session<'_> {
             file: artwork.file_name(),
             output: None,
             error: None,
-            tolerance: Some(tolerance),
+            tolerance: Some(warped.tolerance.unwrap_or(tolerance)),
             frame: Some(shown(first.rect)),
             selections: selections(&ready.recipe, whole),
             baseline: first.baseline,

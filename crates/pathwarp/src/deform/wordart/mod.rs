@@ -11,11 +11,11 @@ mod tests;
 use super::bend::{Align, Bend, Stretch};
 use super::entry::{Built, ByHand, Case, Deformation, Example, Gallery, Info, Law, Role};
 use crate::anchors;
-use crate::error::{Error, with_area};
+use crate::error::{Error, with_area, within};
 use crate::map::{AffineMap, Along, Guide, TileRow, Tiled, tiled};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Axis, Kind, Letter, Param, Settings, word_space};
-use kurbo::{Affine, BezPath, Rect, Size};
+use kurbo::{Affine, BezPath, Point, Rect, Size};
 use shape::{GuideError, Guides};
 use std::sync::Arc;
 
@@ -41,6 +41,7 @@ pub struct WordArt {
     by_parameter: bool,
     split: Option<Vec<f64>>,
     shape_box: ShapeBox,
+    padding: f64,
     letters: Arc<[Letter]>,
 }
 
@@ -59,6 +60,7 @@ impl WordArt {
             by_parameter: false,
             split: None,
             shape_box: ShapeBox::Fit,
+            padding: 0.0,
             letters: Arc::new([]),
         }
     }
@@ -89,6 +91,12 @@ impl WordArt {
         Self { shape_box, ..self }
     }
 
+    /// Keeps the artwork this far off the guides, along its verticals, and off their ends, user units. Default: 0.
+    #[must_use]
+    pub fn padding(self, padding: f64) -> Self {
+        Self { padding, ..self }
+    }
+
     /// Sets the artwork's letters. By default the artwork is divided between their lines, and fewer lines than guides take the
     /// first guides only.
     #[must_use]
@@ -100,7 +108,7 @@ impl WordArt {
     ///
     /// # Errors
     /// [`Error::Geometry`] for a flat box; [`Error::Usage`] for adjust values out of range, a wrong split, a wrong formula, or
-    /// a guide that has no length in this box.
+    /// a guide that has no length in this box, or a padding that leaves no room.
     pub fn build(&self) -> Result<Built, Error> {
         let Self { frame: rect, shape, adjusted, .. } = self;
         with_area(*rect)?;
@@ -130,8 +138,10 @@ impl WordArt {
             let Rect { x0, y0, .. } = shape_box;
             built.note(format!("box of the shape: {x0:.6},{y0:.6},{:.6},{:.6}", shape_box.width(), shape_box.height()));
         }
-        let rows = self.rows(guides(shape_box.width(), shape_box.height())?, &cuts, shape_box, &mut built)?;
-        let map = rows.and_then(|rows| Tiled::over(*rect, cuts, rows));
+        let there = || guides(shape_box.width(), shape_box.height());
+        let wide = self.padded(there()?, &cuts, shape_box)?;
+        let rows = wide.rows(there()?, &cuts, shape_box, &mut built)?;
+        let map = rows.and_then(|rows| Tiled::over(wide.frame, cuts, rows));
         let map = map.ok_or_else(|| wrong("has a guide without length in this box: adjust it less far".into()))?;
         built.map = anchors::settled(map, *rect);
         Ok(built)
@@ -162,6 +172,42 @@ impl WordArt {
                 Ok::<_, Error>(rows.and_then(|rows| Tiled::over(rect, cuts.to_vec(), rows)))
             }),
         }
+    }
+
+    /// The same with a larger box, such that mapping that into the shape keeps the artwork as far off the guides as it should be.
+    fn padded(&self, guides: Guides, cuts: &[f64], shape_box: Rect) -> Result<Self, Error> {
+        /// Samples of a guide.
+        const SAMPLES: usize = 128;
+        within("padding", self.padding, 0.0, 1e9)?;
+        let (rect, last) = (self.frame, cuts.len());
+        if self.padding == 0.0 || matches!(guides, Guides::Along(_)) {
+            return Ok(self.clone());
+        }
+        let rows = self.rows(guides, cuts, shape_box, &mut Built::new(Arc::new(AffineMap::IDENTITY)))?;
+        let Some(map) = rows.and_then(|rows| Tiled::over(rect, cuts.to_vec(), rows)) else { return Ok(self.clone()) };
+        let along = |y: f64| -> Vec<Point> {
+            let at = |i: usize| rect.x0 + rect.width() * i as f64 / SAMPLES as f64;
+            (0..=SAMPLES).map(|i| map.point(Point::new(at(i), y))).collect()
+        };
+        let length = |ps: &[Point]| ps.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
+        // The shares of the length and of the heights of the outer bands, within which the lines between bands are guides, too.
+        let (mut ends, mut shares) = (0f64, [0.0; 2]);
+        for (k, share) in [0, last].into_iter().zip(&mut shares) {
+            let band = self.band(cuts, k);
+            let [top, bottom] = [1e-12, 1.0 - 1e-12].map(|v| along(band.y0 + v * band.height()));
+            let least = top.iter().zip(&bottom).map(|(p, q)| p.distance(*q)).fold(f64::INFINITY, f64::min);
+            ends = ends.max(self.padding / length(&top).min(length(&bottom)));
+            *share = self.padding / least;
+        }
+        // A single band has both sides.
+        let sides = if last == 0 { 2.0 } else { 1.0 };
+        if !(ends < 0.5 && shares.iter().all(|share| sides * share < 1.0)) {
+            return Err(Error::usage("padding", self.padding.to_string(), "leaves nothing of the shape"));
+        }
+        let grown = |k: usize, share: f64| self.band(cuts, k).height() * share / (1.0 - sides * share);
+        let wide = rect.inflate(rect.width() * ends / (1.0 - 2.0 * ends), 0.0);
+        let frame = Rect { y0: rect.y0 - grown(0, shares[0]), y1: rect.y1 + grown(last, shares[1]), ..wide };
+        Ok(Self { frame, ..self.clone() })
     }
 
     /// The part of the artwork's box between two cuts.
@@ -210,7 +256,9 @@ impl WordArt {
 
     /// Stands a band of artwork on `path`: true to size in a box that suits it, else scaled to the path's length.
     fn standing(&self, path: &[Seg], band: Rect) -> Result<Built, Error> {
-        let bend = Bend::new(band, &outline(path)).baseline(band.y1).as_drawn(true);
+        // On a given box artwork has the scale of the path's length.
+        let scale = if self.shape_box == ShapeBox::Fit { 1.0 } else { shape::length(path) / band.width() };
+        let bend = Bend::new(band, &outline(path)).baseline(band.y1 + self.padding / scale).as_drawn(true);
         let loose = || shape::is_loose(path, band.width(), band.height(), word_space(&self.letters).unwrap_or(0.0));
         match self.shape_box {
             // Short text stands around the top.
@@ -346,6 +394,10 @@ X,Y,W,H (user units or %).",
         )
         .default("fit"),
         Param::new("split", Kind::Text("Y[,Y…]"), "The heights at which artwork is divided between bands, user units or %."),
+        Param::length("padding", Axis::Y, "Distance that the artwork keeps from the guides, along its verticals, and from their ends.")
+            .default("0")
+            .within(0.0, 1e9)
+            .slider(0.0, 50.0),
     ])
     .demo(&[("preset", "wave1"), ("adj", "adj1=15000"), ("adj", "adj2=4000")])
     .examples(&[
@@ -357,6 +409,10 @@ X,Y,W,H (user units or %).",
         Example {
             what: "On an arch, from low on the left to low on the right",
             command: "wordart samples/logo.svg --preset arch-up --adj 150deg --fit page -o out.svg",
+        },
+        Example {
+            what: "A chevron with room around the word",
+            command: "wordart samples/lettering.svg --preset chevron --padding 12 -o out.svg",
         },
         Example {
             what: "Round a ring, by the curves' parameters",
@@ -423,6 +479,7 @@ impl Deformation for Entry {
                 Some(&"fit") => ShapeBox::Fit,
                 _ => s.rect_if("box")?.map_or(ShapeBox::Artwork, ShapeBox::Given),
             },
+            padding: s.number("padding")?,
             letters: Arc::clone(&s.frame().letters),
         };
         wordart.build()

@@ -280,7 +280,7 @@ fn samples() -> impl Iterator<Item = (f64, f64)> {
     (0..SAMPLES).map(|i| (f64::from(i) / f64::from(SAMPLES), f64::from(i + 1) / f64::from(SAMPLES)))
 }
 
-fn length(guide: &[Seg]) -> f64 {
+pub(super) fn length(guide: &[Seg]) -> f64 {
     guide.iter().map(|s| ArcLength::of(s).length()).sum()
 }
 

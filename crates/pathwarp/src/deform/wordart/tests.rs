@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::check;
+use crate::map::Map;
 use crate::param::{Args, Frame};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveArclen, PathSeg, Point, QuadBez};
 
@@ -323,5 +324,53 @@ fn files_of_ones_own() {
         r#""x": 1 }"#,
     ] {
         assert!(with(&format!("{head}{rest}")).is_err(), "{rest}");
+    }
+}
+
+/// Followed on, the artwork's verticals reach the guides of the whole shape after the padding, at the nearest place exactly.
+#[test]
+fn padding_is_kept_from_the_guides() {
+    const PADDING: f64 = 4.0;
+    for name in NAMES {
+        if matches!(default_guides(name), Guides::Along(_)) {
+            continue;
+        }
+        let map =
+            |more: &[(&str, &str)]| build(&[&[("preset", *name), ("box", "artwork")], more].concat()).unwrap().map;
+        let (whole, padded) = (map(&[]), map(&[("padding", "4")]));
+        for (y, inwards) in [(1e-9, 0.01), (H - 1e-9, -0.01)] {
+            let guide: Vec<Point> = (0..=3000).map(|i| whole.point(Point::new(W * f64::from(i) / 3000.0, y))).collect();
+            let off = |x: f64| {
+                let [from, behind] = [0.0, inwards].map(|d| padded.point(Point::new(x, y + d)));
+                let out = (from - behind).normalize();
+                let ahead = guide.iter().map(|g| *g - from).filter(|g| g.dot(out) > 0.0);
+                let met = ahead.min_by(|a, b| a.cross(out).abs().total_cmp(&b.cross(out).abs())).unwrap();
+                (met.dot(out), met.cross(out).abs())
+            };
+            let all: Vec<(f64, f64)> = (0..=40).map(|i| off(W * f64::from(i) / 40.0)).collect();
+            // Where a vertical runs nearly along a guide, samples of it do not tell where it meets it.
+            let sure = || all.iter().filter(|(_, missed)| *missed < 0.15).map(|(off, _)| *off);
+            let least = sure().fold(f64::INFINITY, f64::min);
+            assert!((0.98 * PADDING..1.1 * PADDING).contains(&least), "{name}: {least}");
+            assert!(sure().count() > 30, "{name}");
+        }
+    }
+    let plain = build(&[("preset", "plain"), ("padding", "10%")]).unwrap().map;
+    for (p, image) in [((0.0, 0.0), (12.0, 12.0)), ((W, H), (W - 12.0, H - 12.0)), ((150.0, 60.0), (150.0, 60.0))] {
+        assert!(plain.point(p.into()).distance(image.into()) < 1e-9);
+    }
+    assert!(build(&[("preset", "plain"), ("padding", "60")]).unwrap_err().to_string().contains("leaves nothing"));
+}
+
+/// The bottom of what stands on a circle is a circle, larger by the padding.
+#[test]
+fn padding_lifts_off_a_guide() {
+    let built = build(&[("preset", "arch-up"), ("padding", "7")]).unwrap();
+    let guide = &built.explanation.overlays[0].path;
+    let center = kurbo::Shape::bounding_box(guide);
+    let (center, radius) = (Point::new(center.center().x, center.y1), 0.5 * center.width());
+    for x in [0.0, 80.0, 150.0, W] {
+        let off = built.map.point(Point::new(x, H)).distance(center) - radius;
+        assert!((off - 7.0).abs() < 1e-2, "{off}");
     }
 }
