@@ -8,7 +8,7 @@ use pathwarp_svg::{BentImage, FilterPainter, FilterRequest, PictureError, ReadOp
 
 /// The share of the work left for a drawing that its filters may take, and that of the rest of it which one may take.
 const SHARE: f64 = 0.5;
-const SHARE_OF_ONE: f64 = 0.25;
+const SHARE_OF_ONE: f64 = 0.5;
 
 impl FilterPainter for Bender {
     fn paint(&self, r: &FilterRequest<'_>) -> Result<Option<Vec<Option<BentImage>>>, PictureError> {

@@ -211,10 +211,12 @@ fn alike(a: &Pixmap, b: &Pixmap) -> bool {
     let read = |of: &Pixmap, at: usize| <[u8; 4]>::try_from(&of.data()[4 * at..4 * at + 4]).unwrap_or_default();
     let between = |own: [u8; 4], around: &Pixmap, at: usize| {
         let (x, y) = (at % width, at / width);
-        let (mut least, mut most) = (own.map(|_| u8::MAX), own.map(|_| 0));
+        let middle = read(around, at);
+        let (mut least, mut most) = (middle, middle);
         for v in y.saturating_sub(1)..(y + 2).min(height) {
             for u in x.saturating_sub(1)..(x + 2).min(width) {
-                let c = read(around, v * width + u);
+                let next = read(around, v * width + u);
+                let c: [u8; 4] = std::array::from_fn(|k| middle[k].midpoint(next[k]));
                 least = std::array::from_fn(|k| least[k].min(c[k]));
                 most = std::array::from_fn(|k| most[k].max(c[k]));
             }
