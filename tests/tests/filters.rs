@@ -66,11 +66,13 @@ fn what_filters_draw_is_the_bent_rendering() {
             assert!(!told.contains("follow the warp as a whole"), "{told}");
         }
         let picture = gap(&drawing(body), &keep.0);
-        let affine = gap(&drawing(body), &bent(body, &["--filters", "affine"]).0);
-        println!("{name}: {:.2} / 255 as pictures, {:.2} / 255 fitted", picture.mean, affine.mean);
-        assert!(picture.mean <= 1.5 && affine.mean > 2.0 * picture.mean, "{name}: {picture:?} {affine:?}");
+        println!("{name}: {:.2} / 255", picture.mean);
+        assert!(picture.mean <= 1.5, "{name}: {picture:?}");
         same(name, &keep.0, &flatten.0);
     }
+    let (_, body, ..) = FILTERS[0];
+    let affine = gap(&drawing(body), &bent(body, &["--filters", "affine"]).0);
+    assert!(affine.mean > 3.0, "{affine:?}");
 }
 
 /// A shadow that the fit shows right stays a filter, and nothing is said.
@@ -85,15 +87,32 @@ fn filters_that_look_right_stay() {
     assert!(!svg.contains("<image") && told.contains("follow the warp as a whole"), "{told}");
 }
 
-/// A cutter follows the shape, not its shadow.
+/// Layers that each stack the one before twice double until a limit ends it.
+#[test]
+fn layers_that_double_are_bounded() {
+    let twice =
+        |k: usize| format!("<feMerge result='m{}'><feMergeNode in='m{k}'/><feMergeNode in='m{k}'/></feMerge>", k + 1);
+    let last = "<feMerge><feMergeNode in='m60'/><feMergeNode in='SourceGraphic'/></feMerge>";
+    let merges: String = (0..60).map(twice).collect();
+    for first in ["<feFlood flood-opacity='0' result='m0'/>", "<feOffset dx='1' result='m0'/>"] {
+        let body = format!("<filter id='f'>{first}{merges}{last}</filter><path d='M20 20h50v30z' filter='url(#f)'/>");
+        let (svg, _) = bent(&body, &["--filters", "picture", "--limit", "work=3e7"]);
+        assert!(svg.contains("<path"), "{svg}");
+    }
+}
+
+/// A cutter follows the shape, not its shadow; a PDF has the shape beside the picture.
 #[test]
 fn no_picture_takes_a_shape_from_a_cutter() {
     let dir = tempfile::tempdir().unwrap();
     for (name, body, ..) in FILTERS {
         fs::write(dir.path().join("in.svg"), drawing(body)).unwrap();
-        let map = ["expr", "in.svg", "-o", "out.dxf", "--y", "y + 8*sin(x/25)", "--filters", "picture"];
-        let run = pathwarp_in(dir.path(), &map, b"");
+        let map = |to| ["expr", "in.svg", "-o", to, "--y", "y + 8*sin(x/25)", "--filters", "picture"];
+        let run = pathwarp_in(dir.path(), &map("out.dxf"), b"");
         let dxf = fs::read_to_string(dir.path().join("out.dxf")).unwrap_or_default();
         assert!(dxf.contains("SPLINE") || dxf.contains("POLYLINE") || dxf.contains("LINE"), "{name}: {:?}", run.stderr);
+        let run = pathwarp_in(dir.path(), &map("out.pdf"), b"");
+        let told = String::from_utf8(run.stderr).unwrap();
+        assert!(run.status.success() && !told.contains("PDF has no filters"), "{name}: {told}");
     }
 }

@@ -204,7 +204,7 @@ fn painted(picture: &Pixmap) -> Option<IntRect> {
     if to[1] == 0 { None } else { IntRect::from_xywh(x as i32, y as i32, w as u32, h as u32) }
 }
 
-/// Returns `true` if two pictures of the same size look alike. Edges may lie half a pixel apart, so each pixel may have any colour
+/// Returns `true` if two pictures of the same size look alike. Edges may lie a pixel apart, so each pixel may have any colour
 /// between those of the pixels around it in the other.
 fn alike(a: &Pixmap, b: &Pixmap) -> bool {
     let (width, height) = (a.width() as usize, a.height() as usize);
@@ -215,8 +215,7 @@ fn alike(a: &Pixmap, b: &Pixmap) -> bool {
         let (mut least, mut most) = (middle, middle);
         for v in y.saturating_sub(1)..(y + 2).min(height) {
             for u in x.saturating_sub(1)..(x + 2).min(width) {
-                let next = read(around, v * width + u);
-                let c: [u8; 4] = std::array::from_fn(|k| middle[k].midpoint(next[k]));
+                let c = read(around, v * width + u);
                 least = std::array::from_fn(|k| least[k].min(c[k]));
                 most = std::array::from_fn(|k| most[k].max(c[k]));
             }
