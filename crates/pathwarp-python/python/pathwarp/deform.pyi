@@ -175,6 +175,7 @@ def wordart(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def plain(
@@ -183,6 +184,7 @@ def plain(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def stop(
@@ -191,6 +193,7 @@ def stop(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def triangle_inverted(
@@ -199,6 +202,7 @@ def triangle_inverted(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def chevron(
@@ -207,6 +211,7 @@ def chevron(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def chevron_inverted(
@@ -215,6 +220,7 @@ def chevron_inverted(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def ring_inside(
@@ -223,6 +229,7 @@ def ring_inside(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def ring_outside(
@@ -231,6 +238,7 @@ def ring_outside(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def arch_up(
@@ -239,6 +247,7 @@ def arch_up(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def arch_down(
@@ -247,6 +256,7 @@ def arch_down(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def circle(
@@ -255,6 +265,7 @@ def circle(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def button(
@@ -263,6 +274,7 @@ def button(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def arch_up_pour(
@@ -271,6 +283,7 @@ def arch_up_pour(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def arch_down_pour(
@@ -279,6 +292,7 @@ def arch_down_pour(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def circle_pour(
@@ -287,6 +301,7 @@ def circle_pour(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def button_pour(
@@ -295,6 +310,7 @@ def button_pour(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def curve_up(
@@ -303,6 +319,7 @@ def curve_up(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def curve_down(
@@ -311,6 +328,7 @@ def curve_down(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def can_up(
@@ -319,6 +337,7 @@ def can_up(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def can_down(
@@ -327,6 +346,7 @@ def can_down(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def wave1(
@@ -335,6 +355,7 @@ def wave1(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def wave2(
@@ -343,6 +364,7 @@ def wave2(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def double_wave1(
@@ -351,6 +373,7 @@ def double_wave1(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def wave4(
@@ -359,6 +382,7 @@ def wave4(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def deflate(
@@ -367,6 +391,7 @@ def deflate(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def inflate_bottom(
@@ -375,6 +400,7 @@ def inflate_bottom(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def deflate_bottom(
@@ -383,6 +409,7 @@ def deflate_bottom(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def inflate_top(
@@ -391,6 +418,7 @@ def inflate_top(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def deflate_top(
@@ -399,6 +427,7 @@ def deflate_top(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def deflate_inflate(
@@ -407,6 +436,7 @@ def deflate_inflate(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def deflate_inflate_deflate(
@@ -415,6 +445,7 @@ def deflate_inflate_deflate(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def fade_right(
@@ -423,6 +454,7 @@ def fade_right(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def fade_left(
@@ -431,6 +463,7 @@ def fade_left(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def fade_up(
@@ -439,6 +472,7 @@ def fade_up(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def fade_down(
@@ -447,6 +481,7 @@ def fade_down(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def slant_up(
@@ -455,6 +490,7 @@ def slant_up(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def slant_down(
@@ -463,6 +499,7 @@ def slant_down(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def cascade_up(
@@ -471,6 +508,7 @@ def cascade_up(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def cascade_down(
@@ -479,6 +517,7 @@ def cascade_down(
     by: Optional[Literal["arclength", "parameter"]] = None,
     box: Optional[str] = None,
     split: Optional[str] = None,
+    padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
 ) -> Deformation: ...
 def bilinear(
