@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
 use crate::render::draw;
-use crate::warp_image::{GridInverse, ImageWarp, shown, warp_image};
+use crate::warp_image::{GridInverse, ImageWarp, lattice, shown, warp_image};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::map::{Creases, Map};
@@ -67,10 +67,7 @@ impl<'a> DrawingWarp<'a> {
         /// Reach of the inverse beyond the area, and pixels that it is made for.
         const REACH: f64 = 0.02;
         const PIXELS: f64 = 48.0;
-        let at = |k: usize| (k as f64) / CELLS as f64;
-        let places = (0..=CELLS).flat_map(|j| (0..=CELLS).map(move |i| (at(i), at(j))));
-        let places = places.map(|(u, v)| placed * Point::new(area.x0 + u * area.width(), area.y0 + v * area.height()));
-        let places: Vec<Point> = places.collect();
+        let places: Vec<Point> = lattice(area, CELLS).map(|p| placed * p).collect();
         let mut images = vec![Point::ORIGIN; places.len()];
         map.points(&places, &mut images);
         let mut creases = Creases::default();

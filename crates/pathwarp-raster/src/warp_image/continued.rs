@@ -4,6 +4,13 @@ use kurbo::{Point, Rect};
 use pathwarp::map::{Batches, Cost, Creases, Jet, Map};
 use std::fmt;
 
+/// The corners of a box divided into cells, of which `cells` lie along each side.
+pub(crate) fn lattice(r: Rect, cells: usize) -> impl Iterator<Item = Point> {
+    let at = move |k: usize| k as f64 / cells as f64;
+    let places = (0..=cells).flat_map(move |j| (0..=cells).map(move |i| (at(i), at(j))));
+    places.map(move |(u, v)| Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()))
+}
+
 /// A map, continued beyond a box by its tangents if it folds there or is not defined.
 ///
 /// Deformations are made for the box of the artwork; its shadows lie around it.
@@ -25,12 +32,7 @@ impl<'a> Continued<'a> {
     pub fn new(map: &'a dyn Map, inner: Rect, outer: Rect) -> Self {
         /// Cells along a side where the map is looked at.
         const CELLS: usize = 24;
-        let at = |k: usize| (k as f64) / CELLS as f64;
-        let places = (0..=CELLS).flat_map(|j| (0..=CELLS).map(move |i| (at(i), at(j))));
-        let places: Vec<Point> = places
-            .map(|(u, v)| Point::new(outer.x0 + u * outer.width(), outer.y0 + v * outer.height()))
-            .chain([inner.center()])
-            .collect();
+        let places: Vec<Point> = lattice(outer, CELLS).chain([inner.center()]).collect();
         let mut jets = vec![Jet::default(); places.len()];
         map.jets(&places, &mut jets);
         let mut creases = Creases::default();

@@ -30,6 +30,7 @@ mod tile;
 mod trace;
 
 pub use continued::Continued;
+pub(crate) use continued::lattice;
 pub use grid_inverse::GridInverse;
 pub use image_warp::{Extent, ImageWarp, extent, shown};
 pub use painter::warp_image;

@@ -3,9 +3,9 @@
 
 use super::pictures::PictureError;
 use super::task::PartTask;
-use crate::source::mesh::{MeshGradient, PatchPoint, coons};
+use crate::source::mesh::{MeshGradient, coons};
 use pathwarp::budget::cost;
-use pathwarp::kurbo::{CubicBez, Point, Vec2};
+use pathwarp::kurbo::Point;
 use pathwarp::map::{Jet, Map};
 
 /// Limit on the patches of a bent mesh, beside those of the source.
@@ -71,43 +71,14 @@ impl Grid<'_> {
         self.v.len() - 1
     }
 
-    /// A point of the source, in the row and column of patches in which the parameters `row` and `column` lie.
-    fn at(&self, u: f64, v: f64, [column, row]: [f64; 2]) -> PatchPoint {
-        let within = |t: f64, count: usize| (t as usize).min(count - 1);
-        let (column, row) = (within(column, self.source.columns()), within(row, self.source.rows()));
-        self.source.at(row, column, u - column as f64, v - row as f64)
-    }
-
     /// The image, with a Hermite cubic for each side.
     fn image(&self, map: &dyn Map) -> MeshGradient {
-        let mut ends: Vec<(Point, Vec2)> = Vec::new();
-        for v in &self.v {
-            for pair in self.u.windows(2) {
-                let third = (pair[1] - pair[0]) / 3.0;
-                let end = |&u: &f64| self.at(u, *v, [pair[0], *v]);
-                ends.extend(pair.iter().map(end).map(|s| (s.at, third * s.du)));
-            }
-        }
-        for pair in self.v.windows(2) {
-            let third = (pair[1] - pair[0]) / 3.0;
-            for u in &self.u {
-                let end = |&v: &f64| self.at(*u, v, [*u, pair[0]]);
-                ends.extend(pair.iter().map(end).map(|s| (s.at, third * s.dv)));
-            }
-        }
-        let places: Vec<Point> = ends.iter().map(|e| e.0).collect();
-        let mut jets = vec![Jet::UNDEFINED; places.len()];
-        map.jets(&places, &mut jets);
-        let side = |k: usize| {
-            let [from, to] = [2 * k, 2 * k + 1].map(|i| (jets[i].p, jets[i].push(ends[i].1)));
-            CubicBez::new(from.0, from.0 + from.1, to.0 - to.1, to.0)
-        };
-        let (columns, rows) = (self.columns(), self.rows());
-        let first = columns * (rows + 1);
-        let across = (0..=rows).map(|i| (i * columns..(i + 1) * columns).map(side).collect()).collect();
-        let down = (0..rows).map(|i| (i * (columns + 1)..(i + 1) * (columns + 1)).map(|k| side(first + k)).collect());
-        let colors = self.v.iter().map(|v| self.u.iter().map(|u| self.source.color(*u, *v)).collect()).collect();
-        MeshGradient { across, down: down.collect(), colors, smooth: false, in_box: false }
+        self.source.cut(&self.u, &self.v, |ends| {
+            let places: Vec<Point> = ends.iter().map(|e| e.0).collect();
+            let mut jets = vec![Jet::UNDEFINED; places.len()];
+            map.jets(&places, &mut jets);
+            jets.iter().zip(ends).map(|(jet, end)| (jet.p, jet.push(end.1))).collect()
+        })
     }
 
     /// Whether the columns and the rows of an image are too coarse. Returns `None` where the map is undefined.
@@ -118,7 +89,7 @@ impl Grid<'_> {
         let in_cell = |(i, k): (usize, usize), (x, y)| [between(&self.u[k..], x), between(&self.v[i..], y)];
         let place = |cell: (usize, usize), at| {
             let [u, v] = in_cell(cell, at);
-            self.at(u, v, [self.u[cell.1], self.v[cell.0]]).at
+            self.source.point(u, v, [self.u[cell.1], self.v[cell.0]]).at
         };
         let place = &place;
         let places: Vec<Point> = cells().flat_map(|cell| lattice().map(move |at| place(cell, at))).collect();

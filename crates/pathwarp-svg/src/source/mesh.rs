@@ -75,30 +75,59 @@ impl MeshGradient {
         coons([top, right, bottom, left], u, v)
     }
 
-    /// The patches. Those with smooth colours are divided until bilinear ones look so.
+    /// The point with the parameters `u` and `v` of the whole mesh, which count patches. It is taken from the column and row in which the
+    /// other two lie, as neighbours meet in a crease.
+    pub(crate) fn point(&self, u: f64, v: f64, [column, row]: [f64; 2]) -> PatchPoint {
+        let within = |t: f64, count: usize| (t as usize).min(count - 1);
+        let (column, row) = (within(column, self.columns()), within(row, self.rows()));
+        self.at(row, column, u - column as f64, v - row as f64)
+    }
+
+    /// The mesh cut at these parameters, with bilinear colours. `image` says where points are moved, and vectors at them.
+    pub(crate) fn cut(&self, u: &[f64], v: &[f64], image: impl Fn(&[(Point, Vec2)]) -> Vec<(Point, Vec2)>) -> Self {
+        let mut ends: Vec<(Point, Vec2)> = Vec::new();
+        for v in v {
+            for pair in u.windows(2) {
+                let third = (pair[1] - pair[0]) / 3.0;
+                let end = |&u: &f64| self.point(u, *v, [pair[0], *v]);
+                ends.extend(pair.iter().map(end).map(|s| (s.at, third * s.du)));
+            }
+        }
+        for pair in v.windows(2) {
+            let third = (pair[1] - pair[0]) / 3.0;
+            for u in u {
+                let end = |&v: &f64| self.point(*u, v, [*u, pair[0]]);
+                ends.extend(pair.iter().map(end).map(|s| (s.at, third * s.dv)));
+            }
+        }
+        let images = image(&ends);
+        let side = |k: usize| {
+            let [from, to] = [images[2 * k], images[2 * k + 1]];
+            CubicBez::new(from.0, from.0 + from.1, to.0 - to.1, to.0)
+        };
+        let (columns, rows) = (u.len() - 1, v.len() - 1);
+        let first = columns * (rows + 1);
+        let across = (0..=rows).map(|i| (i * columns..(i + 1) * columns).map(side).collect()).collect();
+        let down = (0..rows).map(|i| (i * (columns + 1)..(i + 1) * (columns + 1)).map(|k| side(first + k)).collect());
+        let colors = v.iter().map(|v| u.iter().map(|u| self.color(*u, *v)).collect()).collect();
+        Self { across, down: down.collect(), colors, smooth: false, in_box: false }
+    }
+
+    /// The patches. Those with smooth colours are cut until bilinear ones look so.
     pub(crate) fn patches(&self) -> Vec<CoonsPatch> {
         /// Parts of a patch with smooth colours, along each side; Inkscape draws as many.
-        const PARTS: u32 = 8;
-        let parts = if self.smooth { PARTS } else { 1 };
-        let at = |k: u32| f64::from(k) / f64::from(parts);
-        let cells = (0..self.rows()).flat_map(|r| (0..self.columns()).map(move |c| (r, c)));
-        let part = |(r, c): (usize, usize), i: u32, k: u32| {
-            let ([u0, u1], [v0, v1]) = ([at(k), at(k + 1)], [at(i), at(i + 1)]);
-            let corner = |u: f64, v: f64| self.at(r, c, u, v);
-            let around = [corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)];
-            let third = (u1 - u0) / 3.0;
-            let ways: [fn(PatchPoint) -> Vec2; 4] = [|p| p.du, |p| p.dv, |p| -p.du, |p| -p.dv];
-            let side = |s: usize| {
-                let (from, to, way) = (around[s], around[(s + 1) % 4], ways[s]);
-                [from.at, from.at + third * way(from), to.at - third * way(to)]
-            };
-            let points = [side(0), side(1), side(2), side(3)].concat();
-            let color = |u: f64, v: f64| self.color(c as f64 + u, r as f64 + v);
-            let colors = [color(u0, v0), color(u1, v0), color(u1, v1), color(u0, v1)];
-            (std::array::from_fn(|j| points[j]), colors)
+        const PARTS: usize = 8;
+        if self.smooth {
+            let cuts = |n: usize| (0..=n * PARTS).map(|k| k as f64 / PARTS as f64).collect::<Vec<f64>>();
+            return self.cut(&cuts(self.columns()), &cuts(self.rows()), <[_]>::to_vec).patches();
+        }
+        let patch = |r: usize, c: usize| {
+            let [below, left] = [self.across[r + 1][c], self.down[r][c]].map(reversed);
+            let around = [self.across[r][c], self.down[r][c + 1], below, left].map(|side| [side.p0, side.p1, side.p2]);
+            let colors = [(r, c), (r, c + 1), (r + 1, c + 1), (r + 1, c)].map(|(r, c)| self.colors[r][c]);
+            (std::array::from_fn(|k| around[k / 3][k % 3]), colors)
         };
-        let parts = |cell| (0..parts).flat_map(move |i| (0..parts).map(move |k| (cell, i, k)));
-        cells.flat_map(parts).map(|(cell, i, k)| part(cell, i, k)).collect()
+        (0..self.rows()).flat_map(|r| (0..self.columns()).map(move |c| (r, c))).map(|(r, c)| patch(r, c)).collect()
     }
 
     /// The colour at the parameters `u` and `v` of the whole mesh, which count patches: bilinear between the corners of a patch, or bicubic
