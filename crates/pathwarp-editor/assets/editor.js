@@ -1165,6 +1165,13 @@
       this.tell("steps");
       await this.refresh();
     }
+    /** Puts another drawing in the place of this one, when everything before is done; what follows, an undo for one, waits for it. */
+    enter(answer) {
+      return this.inTurn(async () => {
+        const state = (await answer())?.state;
+        if (state) await this.load(state);
+      });
+    }
     /** The first values of a deformation after these steps. */
     async opening(deformation, steps, variant = null, select = []) {
       return this.attempt(async () => {
@@ -1882,12 +1889,10 @@
       if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
       const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
       if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
-      const answer = await app2.attempt(async () => {
+      await app2.enter(() => app2.attempt(async () => {
         const drawing = PICTURES.includes(file.type) ? await framed(file) : file;
         return app2.connection.ask({ do: "open", name: drawing.name, bytes: await base64(drawing) });
-      });
-      if (!answer?.state) return;
-      await app2.load(answer.state);
+      }));
     }
   };
   async function framed(picture) {
@@ -4162,9 +4167,11 @@
       if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
       try {
         const words2 = { text: this.text.value, font: this.font, size, spacing };
-        const { state } = await app2.connection.ask({ do: "set-words", words: words2 });
-        this.dialog.close();
-        if (state) await app2.load(state);
+        await app2.enter(async () => {
+          const answer = await app2.connection.ask({ do: "set-words", words: words2 });
+          this.dialog.close();
+          return answer;
+        });
       } catch (e) {
         this.say(reason(e));
       }

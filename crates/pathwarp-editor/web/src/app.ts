@@ -153,6 +153,14 @@ export class App {
     await this.refresh();
   }
 
+  /** Puts another drawing in the place of this one, when everything before is done; what follows, an undo for one, waits for it. */
+  enter(answer: () => Promise<{ state?: State | null } | null>): Promise<void> {
+    return this.inTurn(async () => {
+      const state = (await answer())?.state;
+      if (state) await this.load(state);
+    });
+  }
+
   /** The first values of a deformation after these steps. */
   async opening(deformation: string, steps: Step[], variant: string | null = null, select: string[] = []): Promise<Step | null> {
     return this.attempt(async () => {

@@ -53,12 +53,10 @@ export class Opening {
     if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
     const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
     if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
-    const answer = await app.attempt(async () => {
+    await app.enter(() => app.attempt(async () => {
       const drawing = PICTURES.includes(file.type) ? await framed(file) : file;
       return app.connection.ask({ do: "open", name: drawing.name, bytes: await base64(drawing) });
-    });
-    if (!answer?.state) return;
-    await app.load(answer.state);
+    }));
   }
 }
 

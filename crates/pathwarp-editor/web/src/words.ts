@@ -74,9 +74,11 @@ export class WordsDialog {
     if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
     try {
       const words = { text: this.text.value, font: this.font, size, spacing };
-      const { state } = await app.connection.ask({ do: "set-words", words });
-      this.dialog.close();
-      if (state) await app.load(state);
+      await app.enter(async () => {
+        const answer = await app.connection.ask({ do: "set-words", words });
+        this.dialog.close();
+        return answer;
+      });
     } catch (e) {
       this.say(reason(e));
     }

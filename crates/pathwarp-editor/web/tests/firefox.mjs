@@ -27,18 +27,19 @@ export async function firefox_opens_drags_and_saves() {
     await page.until("document.querySelector('#toast').classList.contains('on')", "nothing was saved");
     check(existsSync(`${dir}/logo-bent.svg`), "there is no file");
     const words = async (text) => {
+      const before = await page.evaluate(PATHS);
       await page.click("#words");
       await page.until("document.querySelector('#words-dialog').open", "there is no dialog");
       await page.evaluate(`document.querySelector('#words-text').value = ${JSON.stringify(text)}`);
       await page.click("#words-dialog button[type=submit]");
       await page.until("!document.querySelector('#words-dialog').open", "the words are not set");
+      await page.until(`${PATHS} !== ${JSON.stringify(before)}`, `${text} is not on show`);
       await page.until("document.querySelectorAll('.knob').length > 0", "there are no handles");
     };
     await words("Ahoy");
-    await page.until("document.querySelector('#file').textContent === 'ahoy.svg'", "the words are not on show");
+    check(await page.evaluate("document.querySelector('#file').textContent") === "ahoy.svg", "the drawing has not the name of its words");
     const ahoy = await page.evaluate(PATHS);
     await words("Ahoi");
-    await page.until(`${PATHS} !== ${JSON.stringify(ahoy)}`, "the words are not changed");
     await page.click("#undo");
     await page.until(`${PATHS} === ${JSON.stringify(ahoy)}`, "the words are not undone");
     const found = await page.evaluate(`await ${AXE}`);
