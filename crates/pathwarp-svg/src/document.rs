@@ -445,8 +445,8 @@ impl Document {
         let document = bends.first().map_or_else(|| WarpOptions::new(refit::Options::new(1.0)), |b| b.1.clone());
         let bends = &Bends::new(&self.drawing.source, each, &document);
         // If nothing moves, return the source unchanged.
-        let unchanged = bends.is_identity() && matches!(document.page, PageFit::None | PageFit::Auto);
-        if unchanged && document.structure != Structure::Flatten {
+        let page_stays = document.page == PageFit::None || document.page == PageFit::Auto && document.grown.is_none();
+        if bends.is_identity() && page_stays && document.structure != Structure::Flatten {
             let svg = self.drawing.source.as_in_file().into_owned();
             return Ok(WarpedDocument { svg, ..WarpedDocument::default() });
         }

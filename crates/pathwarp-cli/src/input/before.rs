@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::options::{CommonOptions, measurable};
 use crate::readable::listed;
 use crate::units::units_per_px;
-use pathwarp::kurbo::Affine;
+use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::AffineMap;
 use pathwarp::param::{Axis, Frame, Length};
 use pathwarp::refit;
@@ -26,6 +26,16 @@ pub(super) struct Wanted {
 pub(super) struct Original {
     pub(super) document: Document,
     pub(super) wanted: Wanted,
+    /// The page that the edits need, if that is larger.
+    pub(super) grown: Option<Rect>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// An edited drawing on the page of its source.
+pub(super) struct Edited {
+    pub(super) document: Document,
+    /// The page that it needs, if that is larger.
+    pub(super) grown: Option<Rect>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -63,16 +73,16 @@ impl Wanted {
         self.steps.iter().chain([&self.whole]).any(selectors)
     }
 
-    /// The drawing with its edits, in which all selectors find the same as in the source; and warnings.
+    /// The drawing with its edits, in which all selectors find the same as in the source.
     pub(super) fn done(
         &self,
         source: &Document,
         name: &str,
         read: &ReadOptions,
         options: &CommonOptions,
-    ) -> Result<(Document, Vec<String>), Failure> {
+    ) -> Result<Edited, Failure> {
         const NAMED: usize = 5;
-        let mut warnings = Vec::new();
+        let (mut warnings, mut grown) = (Vec::new(), None);
         // Places shift.
         let text = if self.names_places() { source.with_ids().into() } else { source.source().to_vec() };
         let mut document = Document::read(&text, name, read)?;
@@ -96,9 +106,11 @@ impl Wanted {
                 .with_structure(options.structure)
                 .with_clones(options.clones)
                 .with_on_error(options.on_failure.of_shapes())
-                .with_page(PageFit::None)
+                .with_page(PageFit::Auto)
+                .with_same_view(true)
                 .editing(edit);
             let warped = document.warp(&AffineMap(Affine::IDENTITY), &warp)?;
+            grown = warped.page.map(|[_, after]| after);
             warnings.extend(warped.warnings.iter().map(ToString::to_string));
             let gone = warped.shapes.iter().filter(|s| s.path.segments_in > 0 && s.path.segments_out == 0);
             let gone: Vec<&str> = gone.map(|s| s.id.as_str()).collect();
@@ -107,7 +119,7 @@ impl Wanted {
             }
             document = Document::read(warped.svg.as_bytes(), name, read)?;
         }
-        Ok((document, warnings))
+        Ok(Edited { document, grown, warnings })
     }
 }
 

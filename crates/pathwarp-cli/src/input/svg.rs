@@ -1,7 +1,7 @@
 //! SVG drawings as artwork.
 
 use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
-use super::before::{Original, Wanted};
+use super::before::{Edited, Original, Wanted};
 use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use crate::bitmap::Bender;
@@ -219,6 +219,7 @@ impl SvgArtwork {
             .with_patterns(options.patterns)
             .with_page(if self.stays(request).is_some() { PageFit::None } else { options.page })
             .with_same_view(request.same_view)
+            .with_grown(self.original.as_ref().and_then(|o| o.grown))
             .with_clones(options.clones)
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
@@ -407,10 +408,11 @@ impl Artwork for SvgArtwork {
         if self.original.as_ref().is_some_and(|o| o.wanted == wanted) {
             return Ok(());
         }
-        let (doc, warnings) = wanted.done(self.document(), &self.name, &self.read, options)?;
+        let Edited { document: doc, grown, warnings } =
+            wanted.done(self.document(), &self.name, &self.read, options)?;
         let edited = std::mem::replace(&mut self.doc, doc);
         let document = self.original.take().map_or(edited, |o| o.document);
-        self.original = Some(Original { document, wanted, warnings });
+        self.original = Some(Original { document, wanted, grown, warnings });
         Ok(())
     }
 

@@ -6,7 +6,7 @@ use crate::source::elements::ElementId;
 use crate::source::select::Selection;
 use crate::source::text::SourceText;
 use pathwarp::edit::{Offset, moved, through_vertices};
-use pathwarp::kurbo::Affine;
+use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::Chain;
 use pathwarp::refit::{self, RefittedPath};
 use pathwarp::{GeometryError, Outline};
@@ -237,6 +237,9 @@ pub struct WarpOptions {
     /// Leave viewBox, width and height as they are, to show the result on the page of the source.
     /// [`WarpedDocument::page`](crate::WarpedDocument::page) still reports the new page.
     pub same_view: bool,
+    /// The page that an edit before bending has grown to. What lies on it counts as shown, and the page may have to grow although nothing is
+    /// bent.
+    pub grown: Option<Rect>,
     /// Measure how far the result extends past its page, and list artwork that has moved onto it. This examines every path.
     pub overhang: bool,
 }
@@ -264,6 +267,7 @@ impl WarpOptions {
             images: Images::default(),
             clones: Clones::default(),
             same_view: false,
+            grown: None,
             overhang: true,
         }
     }
@@ -324,6 +328,7 @@ setters! { WarpOptions,
     images: Images, with_images;
     clones: Clones, with_clones;
     same_view: bool, with_same_view;
+    grown: Option<Rect>, with_grown;
     overhang: bool, with_overhang;
 }
 

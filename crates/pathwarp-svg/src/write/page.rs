@@ -91,7 +91,8 @@ pub(super) fn is_blank(input: &WriteInput<'_>, shown: Rect) -> bool {
 
 /// Returns `true` if anything of the result has moved.
 fn moved(input: &WriteInput<'_>) -> bool {
-    input.outcomes.iter().any(|o| o.warped().is_some())
+    input.options.grown.is_some()
+        || input.outcomes.iter().any(|o| o.warped().is_some())
         || input.slots.iter().any(|s| s.fit != Affine::IDENTITY)
         || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent(_)))
 }
@@ -161,7 +162,11 @@ fn original(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
 /// Bounding box of everything painted, strokes included, in root user space. Guides do not count.
 fn artwork(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
     let counts = guideless(input);
-    group_box(input, &input.scene.root, Measure { counts: &counts, room, page: input.drawing.specified_area() })
+    group_box(
+        input,
+        &input.scene.root,
+        Measure { counts: &counts, room, page: input.options.grown.or(input.drawing.specified_area()) },
+    )
 }
 
 /// For every element, `true` unless it is a guide.
