@@ -27,6 +27,50 @@ fn the_page_works_in_a_browser() {
     assert!(out.status.success(), "{said}{}", String::from_utf8_lossy(&out.stderr));
 }
 
+/// A photograph is framed as a drawing, upright; a command line that is copied finds that drawing beside it.
+#[test]
+fn pictures_are_drawings_of_themselves() {
+    // An APP1 segment with orientation (0x0112) = 6: the first row is the right side.
+    const TURNED: &[u8] = b"\xff\xe1\x00\x22Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0";
+    let folder = tempfile::tempdir().unwrap();
+    let here = |args: &[&str], input: &str| crate::support::pathwarp_in(folder.path(), args, input.as_bytes());
+    let wide = LOGO.replace("0 0 90 90", "0 0 90 60");
+    for extension in ["png", "jpg", "webp"] {
+        let name = format!("photo.{extension}");
+        assert!(here(&["render", "-", "--background", "white", "--width", "90", "-o", &name], &wide).status.success());
+    }
+    let mut turned = fs::read(folder.path().join("photo.jpg")).unwrap();
+    turned.splice(2..2, TURNED.iter().copied());
+    fs::write(folder.path().join("turned.jpg"), turned).unwrap();
+    for (name, page) in
+        [("photo.png", [90, 60]), ("photo.webp", [90, 60]), ("photo.jpg", [90, 60]), ("turned.jpg", [60, 90])]
+    {
+        let editor = Editor::open(folder.path(), name);
+        let state = state(&editor);
+        assert_eq!(
+            (&state["file"], &state["page"]),
+            (&json!(name), &json!([0.0, 0.0, f64::from(page[0]), f64::from(page[1])]))
+        );
+        commit(&editor, "flag");
+        asked(&editor, &json!({ "do": "save", "name": "own.svg", "replace": true }));
+        let told = || asked(&editor, &json!({ "do": "command-line", "name": "told.svg" }));
+        let (told, again) = (told(), told());
+        let line = told["text"].as_str().unwrap();
+        let source = line.split(' ').nth(2).unwrap();
+        assert_eq!(
+            (&told["written"], &again["written"], &again["text"]),
+            (&json!(source), &Value::Null, &told["text"])
+        );
+        assert!(here(&line.split(' ').skip(1).collect::<Vec<_>>(), "").status.success(), "{line}");
+        let [own, told] = ["own.svg", "told.svg"].map(|n| fs::read(folder.path().join(n)).unwrap());
+        assert!(own == told, "{name}: other bytes by {line}");
+    }
+    fs::write(folder.path().join("bad.png"), &fs::read(folder.path().join("photo.png")).unwrap()[..60]).unwrap();
+    let out = here(&["edit", "--no-open", "bad.png"], "");
+    assert_eq!(out.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&out.stderr).contains("bad.png: not a readable picture"), "{out:?}");
+}
+
 #[test]
 fn what_cannot_be_edited_is_said() {
     let out = crate::support::pathwarp(&["edit", "-"]);

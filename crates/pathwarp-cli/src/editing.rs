@@ -7,11 +7,13 @@ use crate::export::Exported;
 use crate::failure::Failure;
 use crate::first_steps::First;
 use crate::format::{Choice, DRAWINGS, Format, PICTURES};
+use crate::framed::framed;
 use crate::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which};
 use crate::options::{CommonOptions, Given};
 use crate::output::PendingFile;
 use crate::pipeline::{Framed, Ready, Session};
 use crate::report::ReportedShape;
+use crate::steps::OF_STEPS;
 use crate::{coming_from, first_steps, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::deform::{Info, Registry};
@@ -116,7 +118,10 @@ impl EditedArtwork {
         let (told, folder) = (first_steps::taken(recipe).0, self.folder.clone());
         self.with_steps(recipe, true, |session, svg, ready| {
             let embeds = matches!(format, Format::Svg | Format::Svgz);
-            let text = || recipe_file::write(session.registry, &told, session.given, &folder);
+            let text = || {
+                let (line, given) = on_a_line(&told, session.given)?;
+                recipe_file::write(session.registry, &line, &given, &folder)
+            };
             let request = WarpRequest {
                 recipe: &told,
                 built: &ready.built,
@@ -159,6 +164,17 @@ impl EditedArtwork {
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
         result.map_err(|f| f.message(&self.flags))
     }
+}
+
+/// A recipe and options as a command line has them, where what the only step selects is an option.
+fn on_a_line(recipe: &Recipe, given: &Given) -> Result<(Recipe, Given), Failure> {
+    let (mut recipe, mut given) = (recipe.clone(), given.clone());
+    if let [step] = &mut *recipe.steps {
+        for (option, of) in OF_STEPS {
+            std::mem::take(of(step)).iter().try_for_each(|s| given.set(option, s)).map_err(Failure::Usage)?;
+        }
+    }
+    Ok((recipe, given))
 }
 
 /// Bends the drawing by these steps; `given` are the same as the user wrote them.
@@ -255,10 +271,8 @@ impl Artwork for EditedArtwork {
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
-        let told = self.told(recipe);
-        self.said(
-            told.and_then(|(recipe, given, _)| recipe_file::write(&*self.registry, &recipe, &given, &self.folder)),
-        )
+        let told = self.told(recipe).and_then(|(recipe, given, _)| on_a_line(&recipe, &given));
+        self.said(told.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, &self.folder)))
     }
 }
 
@@ -289,6 +303,8 @@ impl EditorHost {
         let reading = self.given.read()?.reading;
         reading.check()?;
         let limits = reading.limits.for_input(bytes.len());
+        let framed = framed(bytes, &limits).map_err(|e| Failure::file(file, e.message(&self.flags)))?;
+        let bytes = framed.as_deref().unwrap_or(bytes);
         let origin = Origin::of_file(bytes, "the drawing", &limits).unwrap_or(None);
         let folder = file.parent().unwrap_or(Path::new(""));
         let (source, saved) = match &origin {
@@ -301,6 +317,9 @@ impl EditorHost {
         let is_result = saved.is_some();
         let (recipe, given) = match saved {
             Some(mut saved) => {
+                if let [step] = &mut *saved.recipe.steps {
+                    OF_STEPS.iter().for_each(|(option, of)| of(step).extend(saved.options.take(option)));
+                }
                 first_steps::put(&mut saved.recipe, |name| saved.options.take(name).pop());
                 (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given))
             }

@@ -40,6 +40,8 @@ mod failure;
 mod filters;
 mod first_steps;
 mod format;
+#[cfg(feature = "editor")]
+mod framed;
 mod inkscape;
 mod input;
 mod left_out;

@@ -23,10 +23,10 @@ pub(crate) fn aliases(name: &str) -> Option<&'static str> {
 }
 
 /// Where a step keeps the values of an option.
-type OfStep = fn(&mut Step) -> &mut Vec<String>;
+pub(crate) type OfStep = fn(&mut Step) -> &mut Vec<String>;
 
 /// Options that apply to the whole chain if one part gives them, and else to the step of each part that does.
-const OF_STEPS: [(&str, OfStep); 2] = [("select", |s| &mut s.select), ("exclude", |s| &mut s.exclude)];
+pub(crate) const OF_STEPS: [(&str, OfStep); 2] = [("select", |s| &mut s.select), ("exclude", |s| &mut s.exclude)];
 
 /// Gives the steps of parts what is theirs alone: the selection, if several parts have one.
 pub(crate) fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mut Given)>) {

@@ -196,13 +196,18 @@
       return next;
     }
   }
+  function inUnits(text, unit) {
+    return evaluate(`0${unit}+(${text})`, unit)?.value ?? null;
+  }
   function factor(from, to) {
     if (from === to) return 1;
     const [a, b] = [LENGTHS[from], LENGTHS[to]];
     if (a === void 0 || b === void 0) throw new Error("units of different kinds");
     return a / b;
   }
-  function asked(unit, least = -Infinity, most = Infinity, isWhole = false) {
+  var BOUNDLESS = 1e6;
+  function asked(unit, from = -Infinity, to = Infinity, isWhole = false) {
+    const [least, most] = [Number(from.toPrecision(6)), to < BOUNDLESS ? to : Infinity];
     const [what, end2] = [isWhole ? "A whole number" : "A number", unit && ` ${unit}`];
     if (least > -Infinity && most < Infinity) return `${what} from ${least} to ${most}${end2}`;
     if (least > -Infinity) return `${what} from ${least}${end2} up`;
@@ -212,8 +217,8 @@
     return e instanceof Error ? e.message : String(e);
   }
   function inWords(problem) {
-    const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/--([a-z-]+)/g, (_, name) => `“${name.replaceAll("-", " ")}”`);
-    return text.replace(/`([^`]*)`/g, "“$1”").replace(/^./, (c) => c.toUpperCase());
+    const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/`([^`]*)`|--([a-z-]+)/g, (_, quoted, name = "") => `“${quoted ?? name.replaceAll("-", " ")}”`);
+    return /^\S+: /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
   }
   var Field = class {
     /** `take` returns what is wrong with a text; `isWrong` knows it while it is typed. */
@@ -1148,7 +1153,7 @@
       this.state = state;
       this.steps = structuredClone(state.steps);
       this.selected = Math.max(0, Math.min(this.steps.length - 1, Math.max(this.selected, this.steps.length - 1)));
-      this.locks = this.steps[0]?.exclude ?? this.locks;
+      this.locks = this.steps[0]?.exclude ?? [];
       this.isProposal = false;
       this.isWorkedOn = this.steps.length > 0;
       this.appends = false;
@@ -1163,7 +1168,14 @@
         }
       }
       this.tell("steps");
-      await this.refresh();
+      if (await this.refresh()) return;
+      const { problem } = this;
+      this.dropHandles();
+      if (this.isProposal) this.steps = [];
+      await this.attempt(async () => this.take(await this.connection.ask({ do: "bend", steps: [], draft: null })));
+      this.tell("steps");
+      if (this.isProposal) this.isProposal = false;
+      else this.fail(problem);
     }
     /** Puts another drawing in the place of this one, when everything before is done; what follows, an undo for one, waits for it. */
     enter(answer) {
@@ -1201,9 +1213,13 @@
       this.locks = locks;
       return this.arrange(this.steps.map((step2) => ({ ...step2, exclude: locks })), this.selected);
     }
-    /** Shows the picture of the present steps, exactly. */
+    /** Shows the picture of the present steps, exactly. Returns `false` if there is none. */
     async refresh() {
-      await this.attempt(async () => this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null })));
+      const shown2 = await this.attempt(async () => {
+        this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null }));
+        return true;
+      });
+      return shown2 ?? !this.isConnected;
     }
     /** Shows a quick picture of the present steps. While one is being made, only the newest wish counts. */
     draft(since) {
@@ -1284,12 +1300,12 @@
       this.isDragging = false;
       return true;
     }
-    /** Takes back what has been dragged since the last commit: the step is as it was. */
-    cancel(step2) {
+    /** Takes back what has been dragged since the last commit: the step is as it was before. */
+    cancel(step2, before2) {
       this.hold = null;
       this.isDragging = false;
       this.isWanted = false;
-      this.steps = this.steps.map((s2, i) => i === this.selected ? step2 : s2);
+      this.steps = this.steps.map((s2) => s2 === step2 ? before2 : s2);
       void this.refresh();
       this.tell("values");
     }
@@ -1450,6 +1466,7 @@
     }
     /** The handles of a step that is replaced must not be pulled while its successor is on the way. */
     dropHandles() {
+      this.hold?.();
       this.handles = null;
       this.grips = [];
       this.tell("handles");
@@ -1463,9 +1480,13 @@
     }
     /** Another page has changed the steps. */
     async hear(news) {
-      if (news.event !== "changed" || !news.state || this.isDragging) return;
-      const { file, folder } = this.state ?? news.state;
-      if (news.state.file !== file || news.state.folder !== folder) this.tell("drawing");
+      if (news.event !== "changed" || !news.state) return;
+      if (this.isDragging) {
+        if (news.state.drawing === this.state?.drawing) return;
+        this.hold?.();
+        this.endPause();
+      }
+      const { file } = this.state ?? news.state;
       await this.load(news.state);
       if (news.state.file !== file) toast(`${news.state.file} has been opened in another tab. The steps of ${file} are kept with it`);
     }
@@ -1474,7 +1495,7 @@
       try {
         return await work();
       } catch (e) {
-        if (!(e instanceof Gone)) this.fail(reason(e));
+        if (!(e instanceof Gone)) this.fail(inWords(reason(e)));
         return null;
       }
     }
@@ -1587,7 +1608,7 @@
         const use = h("button", { type: "button", class: "preset" }, name);
         use.addEventListener("click", async () => {
           const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
-          if (answer?.steps) await this.app.arrange(answer.steps, answer.steps.length - 1);
+          if (answer?.steps) await this.app.arrange(answer.steps.map((step2) => ({ ...step2, exclude: this.app.locks })), answer.steps.length - 1);
           document.body.classList.remove("shapes-open");
         });
         const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
@@ -1843,7 +1864,6 @@
   }
 
   // src/opening.ts
-  var PICTURES = ["image/png", "image/jpeg", "image/webp"];
   var PASTED = "pasted.svg";
   var Opening = class {
     constructor(app2) {
@@ -1889,20 +1909,9 @@
       if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
       const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
       if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
-      await app2.enter(() => app2.attempt(async () => {
-        const drawing = PICTURES.includes(file.type) ? await framed(file) : file;
-        return app2.connection.ask({ do: "open", name: drawing.name, bytes: await base64(drawing) });
-      }));
+      await app2.enter(() => app2.attempt(async () => app2.connection.ask({ do: "open", name: file.name, bytes: await base64(file) })));
     }
   };
-  async function framed(picture) {
-    const bitmap = await createImageBitmap(picture).catch(() => null);
-    if (!bitmap) throw new Error(`${picture.name} is not a picture that the browser can show`);
-    const size = `width="${bitmap.width}" height="${bitmap.height}"`;
-    const image = `<image id="picture" ${size} href="data:${picture.type};base64,${await base64(picture)}"/>`;
-    const svg = `<svg xmlns="http://www.w3.org/2000/svg" ${size} viewBox="0 0 ${bitmap.width} ${bitmap.height}">${image}</svg>`;
-    return new File([svg], picture.name.replace(/(\.\w+)?$/, ".svg"));
-  }
   async function bring(app2, file) {
     const bytes = await base64(file);
     const answer = await app2.attempt(() => app2.connection.ask({ do: "bring", name: file.name, bytes }));
@@ -2043,7 +2052,11 @@
         const place2 = (typed) => {
           const q = evaluate(typed, "");
           const [x, y, w, h2] = app2.handles?.frame ?? [0, 0, 1, 1];
-          return q?.unit === "%" ? i === 0 ? x + w * q.value / 100 : y + h2 * q.value / 100 : q?.unit === "" ? q.value : null;
+          if (!q || q.unit === "") return q?.value ?? null;
+          if (q.unit === "%") return i === 0 ? x + w * q.value / 100 : y + h2 * q.value / 100;
+          const [a, b] = app2.state?.toPx ?? [1, 0];
+          const px = inUnits(typed, "px");
+          return px === null ? null : px / Math.hypot(a, b);
         };
         const move = (value) => {
           const at = this.handle.get();
@@ -2752,7 +2765,7 @@
     /** The next click on the drawing names a path. */
     pick(take) {
       this.picks = take;
-      this.svg.classList.toggle("picking", take !== null);
+      this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
       this.light(null);
     }
     /** Names the path that was clicked; elsewhere, the question stays. */
@@ -3012,7 +3025,8 @@
       const { app: app2 } = this;
       const start = this.stage.point(e);
       void app2.flush();
-      const before2 = structuredClone(app2.step);
+      const step2 = app2.step;
+      const before2 = structuredClone(step2);
       let hasMoved = false;
       app2.isDragging = true;
       const stop = () => {
@@ -3032,7 +3046,7 @@
         },
         cancel: () => {
           stop();
-          if (hasMoved) app2.cancel(before2);
+          if (hasMoved) app2.cancel(step2, before2);
         }
       });
       app2.hold = abandon;
@@ -3268,6 +3282,7 @@
       if (app2.released) toast(`The line has left ${app2.released}, which is artwork again. Undo brings it back`);
       app2.released = null;
       if (app2.appends) return show("note", "Choose the shape of the next step, or press Escape");
+      if (app2.steps.length === 0) return show("note", "Choose a shape");
       if (!handles) return;
       const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
       const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
@@ -3311,7 +3326,7 @@
     ["webp", "WebP", "A picture for the web"],
     ["toml", "Recipe", "For other drawings"]
   ];
-  var PICTURES2 = ["png", "jpg", "webp"];
+  var PICTURES = ["png", "jpg", "webp"];
   var WIDTH = 2e3;
   var WIDEST = 2e4;
   var REMEMBERED = "pathwarp-export";
@@ -3425,9 +3440,9 @@
     /** The file that is asked for. Returns `null` for a picture without a size. */
     target() {
       const [name, folder] = [this.name.value, this.folder.value];
-      if (!PICTURES2.includes(this.extension)) return { name, folder };
-      const size = Number(this.size.value.replace(",", "."));
+      if (!PICTURES.includes(this.extension)) return { name, folder };
       const unit = this.unit.value === "%" ? "%" : "px";
+      const size = inUnits(this.size.value, unit) ?? NaN;
       if (!(size > 0 && size <= WIDEST) || unit === "px" && !Number.isInteger(size)) {
         this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${WIDEST}`);
         return null;
@@ -3443,7 +3458,7 @@
       for (const input of Array.from(this.dialog.querySelectorAll("input[type=radio]"))) {
         input.checked = input.value === this.extension;
       }
-      byId("save-picture").hidden = !PICTURES2.includes(extension);
+      byId("save-picture").hidden = !PICTURES.includes(extension);
       this.say("");
     }
     /** Shows a message, with the button that helps. */
@@ -3497,14 +3512,17 @@
       const target = this.target();
       if (!target) return;
       let line = "";
+      let said = "The command line is on the clipboard";
       try {
-        line = (await this.app.connection.ask({ do: "command-line", ...target })).text ?? "";
+        const { text = "", written } = await this.app.connection.ask({ do: "command-line", ...target });
+        line = text;
+        if (written) said += `; ${written}, which it reads, is beside the drawing now`;
       } catch (e) {
         return this.say(inWords(reason(e)));
       }
       try {
         await navigator.clipboard.writeText(line);
-        toast("The command line is on the clipboard");
+        toast(said);
       } catch {
         toast(line);
       }
@@ -3541,6 +3559,9 @@
     /** Asks for a line that is drawn on the canvas. */
     onDraw = () => {
     };
+    /** The settings are those of another step. */
+    onOther = () => {
+    };
     build() {
       const { step: step2 } = this.app;
       const deformation = this.app.deformation(step2?.deformation);
@@ -3548,6 +3569,7 @@
       const signature = [this.app.selected, step2?.deformation, ...this.adjusts(params)].join();
       if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
       this.shown = signature;
+      this.onOther();
       this.refreshers = [];
       if (!step2 || !deformation) return this.box.replaceChildren();
       const main = params.filter((p) => isMain(p, step2.args[p.name] !== void 0) || this.app.grip(p.name)?.adjust !== void 0);
@@ -3756,10 +3778,11 @@
       slider.addEventListener("input", () => {
         if (!slider.matches(":active") || isGivenUp) return;
         if (!isDragged2) {
-          const before2 = structuredClone(app2.step);
+          const step2 = app2.step;
+          const before2 = structuredClone(step2);
           app2.hold = () => {
             isGivenUp = true;
-            app2.cancel(before2);
+            app2.cancel(step2, before2);
           };
         }
         isDragged2 = true;
@@ -3912,11 +3935,13 @@
       const circle2 = `M${x - r},${y}a${r},${r} 0 1 1 ${2 * r},0a${r},${r} 0 1 1 ${-2 * r},0`;
       this.line.setAttribute("d", kind === "circle" ? circle2 : `M${[...points, to].join("L")}`);
     }
+    /** Ends drawing. */
     end() {
-      this.stop?.();
+      if (!this.stop) return;
+      this.stop();
       this.stop = null;
       this.line.setAttribute("d", "");
-      this.stage.svg.classList.remove("picking");
+      this.stage.pick(null);
     }
   };
 
@@ -4002,30 +4027,35 @@
       this.chosen.addEventListener("change", () => {
         const file = this.chosen.files?.[0];
         this.chosen.value = "";
-        if (file) void this.take(file);
+        if (file) void this.take(file).then(() => this.keep());
       });
-      const opacity = byId("target-opacity");
-      opacity.addEventListener("input", () => this.image.setAttribute("opacity", String(Number(opacity.value) / 100)));
+      this.opacity.addEventListener("input", () => this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100)));
+      this.opacity.addEventListener("change", () => void this.keep());
       byId("target-other").addEventListener("click", () => this.chosen.click());
-      byId("target-remove").addEventListener("click", () => this.remove());
+      byId("target-remove").addEventListener("click", () => {
+        this.clear();
+        void this.keep();
+      });
       this.outline.addEventListener("click", () => void this.shape());
       for (const name of ["x", "y", "width"]) {
         const input = byId(`target-${name}`);
         const least = name === "width" ? 0.01 : void 0;
-        const isWrong = (text) => {
-          const q = evaluate(text, "mm");
-          return q && q.unit === "mm" && (least === void 0 || q.value >= least) ? null : asked("mm", least);
-        };
+        const inMm = (text) => inUnits(text, "mm") ?? NaN;
+        const isWrong = (text) => inMm(text) >= (least ?? -Infinity) ? null : asked("mm", least);
         const field = new Field(input, () => String(Number((this.place[name] / MM).toFixed(2))), (text) => {
-          this.place[name] = (evaluate(text, "mm")?.value ?? 0) * MM;
+          this.place[name] = inMm(text) * MM;
           this.lay();
+          void this.keep();
           return null;
         }, isWrong);
         this.box.querySelector(".messages").append(field.message);
         this.fields.push(field);
       }
       app2.listen((change) => {
-        if (change === "drawing") this.remove();
+        if (change === "link") this.isKept = false;
+        if (change !== "state" || this.isKept) return;
+        this.isKept = true;
+        void (this.file ? this.keep() : this.restore());
       });
     }
     app;
@@ -4042,6 +4072,26 @@
     /** The width of a drawing at its own size. */
     natural = 1;
     fields = [];
+    opacity = byId("target-opacity");
+    /** The program has been asked for the target, or told of it. */
+    isKept = false;
+    /** Lets the program keep the target for the next time the page is loaded. */
+    async keep() {
+      const { file, place: place2, opacity } = this;
+      const target = file && { name: file.name, type: file.type, bytes: await base64(file), place: place2, opacity: opacity.value };
+      await this.app.attempt(() => this.app.connection.ask({ do: "keep-target", target }));
+    }
+    async restore() {
+      const kept2 = (await this.app.attempt(() => this.app.connection.ask({ do: "target" })))?.target;
+      if (!kept2) return;
+      const content = Uint8Array.from(atob(kept2.bytes), (c) => c.charCodeAt(0));
+      if (!await this.take(new File([content], kept2.name, { type: kept2.type }))) return;
+      this.place = kept2.place;
+      this.opacity.value = kept2.opacity;
+      this.image.setAttribute("opacity", String(Number(kept2.opacity) / 100));
+      this.lay();
+      this.show(false);
+    }
     /** Shows a file behind the drawing: a drawing at its own size and place, a picture as wide as the page. */
     async take(file) {
       const url = URL.createObjectURL(file);
@@ -4051,9 +4101,10 @@
         await probe.decode();
       } catch {
         URL.revokeObjectURL(url);
-        return this.app.fail(`${file.name} is not a picture or drawing that the browser can show`);
+        this.app.fail(`${file.name} is not a picture or drawing that the browser can show`);
+        return false;
       }
-      this.remove();
+      this.clear();
       this.file = file;
       const isDrawing = /\.svgz?$/i.test(file.name);
       const [x0, y0, x1] = this.stage.pageBox;
@@ -4062,10 +4113,11 @@
       this.place = isDrawing ? { x: 0, y: 0, width: probe.naturalWidth } : { x: x0, y: y0, width: x1 - x0 };
       this.outline.hidden = !isDrawing || this.app.state?.program !== null;
       this.image.setAttribute("href", url);
-      this.image.setAttribute("opacity", String(Number(byId("target-opacity").value) / 100));
+      this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100));
       this.image.setAttribute("visibility", "visible");
       this.lay();
       this.show(true);
+      return true;
     }
     lay() {
       const { x, y, width } = this.place;
@@ -4078,12 +4130,12 @@
       this.button.setAttribute("aria-expanded", String(on2));
       byId("target-name").textContent = this.file?.name ?? "";
     }
-    remove() {
+    clear() {
       const href = this.image.getAttribute("href");
       if (href) URL.revokeObjectURL(href);
       this.image.removeAttribute("href");
       this.image.setAttribute("visibility", "hidden");
-      byId("target-opacity").value = String(OPACITY);
+      this.opacity.value = String(OPACITY);
       this.file = null;
       this.show(false);
     }
@@ -4160,8 +4212,7 @@
     }
     async set() {
       const { app: app2 } = this;
-      const number = (input) => Number(input.value.trim().replace(",", "."));
-      const [size, spacing] = [number(this.size), number(this.spacing)];
+      const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
       if (this.text.value.trim() === "") return this.say("Type some words first");
       if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
       if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
@@ -4203,8 +4254,16 @@
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
   };
   var sketching = new Sketching(stage);
-  settings.onDraw = (kind, take) => sketching.begin(kind, take);
+  settings.onDraw = (kind, take) => {
+    stage.pick(null);
+    sketching.begin(kind, take);
+  };
+  settings.onOther = () => {
+    stage.pick(null);
+    sketching.end();
+  };
   settings.onPick = (take) => {
+    sketching.end();
     toast("Click a path of the drawing");
     stage.pick(take);
   };

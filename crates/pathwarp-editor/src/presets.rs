@@ -9,7 +9,7 @@ use crate::host::Host;
 use crate::protocol::PageStep;
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
-use pathwarp::kurbo::{Affine, Rect};
+use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::param::Kind;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -102,6 +102,35 @@ pub(crate) fn laid(registry: &Registry, mut step: PageStep, from: Rect, to: Rect
     step
 }
 
+/// A step of another drawing with its circles and arcs laid from that one's box onto this one's, and for no parts: those of another drawing
+/// have other names.
+pub(crate) fn brought(registry: &Registry, step: PageStep, from: Option<Rect>, to: Rect) -> PageStep {
+    let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+    let mut step = PageStep { select: Vec::new(), exclude: Vec::new(), ..step };
+    for p in params.iter().filter(|p| p.kind == Kind::Path) {
+        for value in step.args.get_mut(p.name).into_iter().flatten() {
+            *value = from.and_then(|from| laid_arc(value, onto(from, to))).unwrap_or_else(|| value.clone());
+        }
+    }
+    step
+}
+
+/// A circle or an arc with its centre in another place, and as large as that place's scale has it. `None` if it is given by other units, or
+/// the text is something else.
+fn laid_arc(text: &str, onto: Affine) -> Option<String> {
+    let (kind, rest) = text.split_once(':').filter(|(kind, _)| ["circle", "arc"].contains(kind))?;
+    let pairs: Vec<(&str, &str)> = rest.split(',').map(|pair| pair.split_once('=')).collect::<Option<_>>()?;
+    let number = |name: &str| pairs.iter().find(|(n, _)| *n == name)?.1.parse::<f64>().ok();
+    let (centre, r) = (onto * Point::new(number("cx")?, number("cy")?), number("r")?);
+    let pair = |(name, value): &(&str, &str)| match *name {
+        "cx" => format!("cx={}", centre.x),
+        "cy" => format!("cy={}", centre.y),
+        "r" => format!("r={}", r * onto.determinant().abs().sqrt()),
+        _ => format!("{name}={value}"),
+    };
+    Some(format!("{kind}:{}", pairs.iter().map(pair).collect::<Vec<_>>().join(",")))
+}
+
 /// The map of one box onto another; a box without width or height keeps its scale there.
 fn onto(from: Rect, to: Rect) -> Affine {
     let scale = |from: f64, to: f64| if from > 0.0 && to > 0.0 { to / from } else { 1.0 };
@@ -124,5 +153,16 @@ mod tests {
         let laid = laid(&Registry::builtin(), step, from.unwrap(), Rect::new(5.0, 5.0, 25.0, 10.0));
         assert_eq!(laid.args["shaper"], ["M5,10 L25,10 L25,5 L5,5 Z"]);
         assert_eq!(all.next(), None);
+    }
+
+    #[test]
+    fn steps_of_another_drawing_name_none_of_its_parts() {
+        let args = [("along".to_owned(), vec!["arc:r=3,cx=5,cy=5,from=90,to=450".to_owned()])];
+        let select = vec!["#mark".to_owned()];
+        let step = PageStep { deformation: "bend".into(), args: args.into(), select, ..PageStep::default() };
+        let [from, to] = [Rect::new(0.0, 0.0, 10.0, 10.0), Rect::new(100.0, 0.0, 140.0, 90.0)];
+        let brought = brought(&Registry::builtin(), step, Some(from), to);
+        assert_eq!(brought.args["along"], ["arc:r=18,cx=120,cy=45,from=90,to=450"]);
+        assert!(brought.select.is_empty());
     }
 }

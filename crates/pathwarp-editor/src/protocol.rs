@@ -8,6 +8,7 @@ use crate::words::Words;
 use pathwarp::param::Args;
 use pathwarp::recipe::{Recipe, Step};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// A step as pages and drafts have it: values as typed.
@@ -56,6 +57,12 @@ pub(crate) enum Request {
     },
     /// The drawing without any steps.
     Before,
+    /// The target of the page, if one is kept.
+    Target,
+    /// Keeps the target of the page, whatever that is, until the program ends.
+    KeepTarget {
+        target: Value,
+    },
     /// The parts of the drawing.
     Parts,
     /// How much these steps stretch the drawing.

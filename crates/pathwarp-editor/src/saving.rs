@@ -25,24 +25,29 @@ pub(crate) fn of_words(text: &str, beside: &Path) -> PathBuf {
 
 /// A name beside a file that no file has, with a number if need be.
 fn free(beside: &Path, stem: &str) -> PathBuf {
-    let name = |n: usize| match n {
-        1 => beside.with_file_name(format!("{stem}.svg")),
-        n => beside.with_file_name(format!("{stem}-{n}.svg")),
-    };
-    (1..MOST_NAMES).map(name).find(|p| !p.exists()).unwrap_or_else(|| name(MOST_NAMES))
+    names(beside, stem)
+        .find(|p| !p.exists())
+        .unwrap_or_else(|| beside.with_file_name(format!("{stem}-{MOST_NAMES}.svg")))
 }
 
-/// The file that a result was made from, as its name says, and whether it is there: its content is `source`. Otherwise a free name
-/// for that content.
+/// Names beside a file, with numbers from the second on.
+fn names(beside: &Path, stem: &str) -> impl Iterator<Item = PathBuf> {
+    (1..MOST_NAMES).map(move |n| {
+        let number = if n == 1 { String::new() } else { format!("-{n}") };
+        beside.with_file_name(format!("{stem}{number}.svg"))
+    })
+}
+
+/// The file of a drawing, or of that which a result was made from, by its name, and whether it is there: its content is `source`.
+/// Otherwise a free name for that content.
 pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)> {
     let stem = result.file_stem()?.to_string_lossy().into_owned();
     let stem = stem.rfind(SUFFIX).map_or(stem.as_str(), |at| &stem[..at]);
-    let names = ["svg", "svgz"].map(|extension| result.with_file_name(format!("{stem}.{extension}")));
-    let found = names.iter().find(|name| std::fs::read(name).is_ok_and(|content| content == source));
-    if let Some(found) = found {
-        return Some((found.clone(), true));
-    }
-    Some((free(result, &format!("{stem}-source")), false))
+    let own = [".svg", ".svgz"].map(|end| result.with_file_name(format!("{stem}{end}")));
+    let is_it = |name: &Path| std::fs::read(name).is_ok_and(|content| content == source);
+    let beside = format!("{stem}-source");
+    let known = own.into_iter().chain(names(result, &beside).take_while(|n| n.exists())).find(|name| is_it(name));
+    Some(known.map_or_else(|| (free(result, &beside), false), |name| (name, true)))
 }
 
 /// The file called `name` in the folder of `beside`.

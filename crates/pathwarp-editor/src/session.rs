@@ -2,7 +2,7 @@
 
 use crate::catalogue::{example, of_variant, opening};
 use crate::command_line::{command_line, quoted};
-use crate::draft::{Draft, Kept, Moment, NO_FOLDER};
+use crate::draft::{self, Draft, Kept, Moment, NO_FOLDER};
 use crate::grips::{grips, rect, with_net_of};
 use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
@@ -17,7 +17,7 @@ use pathwarp::deform::{Info, Variant};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Map as _, inverse_over};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
-use pathwarp_svg::DrawingPart;
+use pathwarp_svg::{DrawingPart, Selection};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -164,10 +164,25 @@ impl Session {
         let mut other = self.with_drawing(file, &svg)?;
         let steps = self.kept.now.steps.clone();
         let frames = self.frames(&steps)?;
-        let steps = other.laid(steps.into_iter().zip(frames.into_iter().map(Some)))?;
+        let kept = steps.into_iter().zip(frames).filter_map(|(step, frame)| Some((other.for_own_parts(step)?, frame)));
+        let kept: Vec<_> = kept.collect();
+        let steps = other.laid(kept.into_iter())?;
         let mut kept = self.kept.clone();
         kept.set_anew(&old, svg, steps);
         self.redraw(other, kept)
+    }
+
+    /// A step of other words for those of its parts that this drawing has, too; `None` if it has none of them.
+    fn for_own_parts(&self, mut step: PageStep) -> Option<PageStep> {
+        let document = self.opened.artwork.document();
+        let is_here = |selector: &String| {
+            let select = vec![selector.clone()];
+            document.check_selection(&Selection { select, ..Selection::default() }).is_ok()
+        };
+        let is_of_all = step.select.is_empty();
+        step.select.retain(is_here);
+        step.exclude.retain(is_here);
+        (is_of_all || !step.select.is_empty()).then_some(step)
     }
 
     /// A session like this one for the drawing `svg`, which is to be the content of `file`.
@@ -190,14 +205,11 @@ impl Session {
     }
 
     /// Steps with their paths laid from the boxes that they had onto those of this drawing.
-    fn laid(&mut self, given: impl Iterator<Item = (PageStep, Option<Rect>)>) -> Result<Vec<PageStep>, String> {
+    fn laid(&mut self, given: impl Iterator<Item = (PageStep, Rect)>) -> Result<Vec<PageStep>, String> {
         let mut out = Vec::new();
         for (step, from) in given {
             let to = self.frame_of(&out, &step.select)?;
-            out.push(match from {
-                Some(from) => presets::laid(self.host.registry(), step, from, to),
-                None => step,
-            });
+            out.push(presets::laid(self.host.registry(), step, from, to));
         }
         Ok(out)
     }
@@ -459,7 +471,13 @@ impl Session {
     pub(crate) fn preset(&mut self, name: &str) -> Result<Vec<PageStep>, String> {
         let preset = presets::all()?.into_iter().find(|p| p.name == name);
         let preset = preset.ok_or_else(|| format!("there is no preset {name}"))?;
-        self.laid(preset.steps_with_frames())
+        let mut out = Vec::new();
+        for (step, from) in preset.steps_with_frames() {
+            let to = self.frame_of(&out, &[])?;
+            let step = presets::brought(self.host.registry(), step, from, to);
+            out.push(from.map_or(step.clone(), |from| presets::laid(self.host.registry(), step, from, to)));
+        }
+        Ok(out)
     }
 
     /// A small picture of the drawing under these steps.
@@ -575,26 +593,41 @@ impl Session {
         self.opened.artwork.written(&given, to, picture)
     }
 
-    /// The command line that writes the result as *Save* does, under a name or the usual one.
-    pub(crate) fn command_line(&self, target: &Target) -> Result<String, String> {
+    /// The file that a command line bends, what has to be run before, and the name of the file if it has been written now: a drawing that
+    /// was dropped on the page, or a picture, is in no file.
+    fn source(&self) -> Result<(PathBuf, String, Option<String>), String> {
+        let content = self.opened.artwork.document().source();
+        let is_there = |holds: &dyn Fn(&[u8]) -> bool| std::fs::read(&self.file).is_ok_and(|bytes| holds(&bytes));
+        if !self.opened.is_result && is_there(&|bytes| bytes == content) {
+            return Ok((self.file.clone(), String::new(), None));
+        }
+        let Some((source, is_known)) = saving::source_of(&self.file, content) else {
+            return Err("the drawing has no name".into());
+        };
+        if is_known {
+            return Ok((source, String::new(), None));
+        }
+        if self.opened.is_result && is_there(&|bytes| draft::key(&self.file, bytes) == self.draft.key) {
+            let [result, name] = [&self.file, &source].map(|p| quoted(&p.display().to_string()));
+            return Ok((source, format!("pathwarp unwarp {result} -o {name} && "), None));
+        }
+        self.host.write(&source, content)?;
+        let name = source.file_name().map(|n| n.to_string_lossy().into_owned());
+        Ok((source, String::new(), name))
+    }
+
+    /// The command line that writes the result as *Save* does, under a name or the usual one; and the drawing's file if it was written
+    /// for that.
+    pub(crate) fn command_line(&self, target: &Target) -> Result<Value, String> {
         let to = self.place(target)?;
         let (given, mut options) = self.opened.artwork.as_told(&recipe(&self.kept.now.steps))?;
-        let document = self.opened.artwork.document();
-        let is_result = self.opened.is_result;
-        let (source, before) = match is_result.then(|| saving::source_of(&self.file, document.source())).flatten() {
-            Some((source, true)) => (source, String::new()),
-            Some((source, false)) => {
-                let [result, source_name] = [&self.file, &source].map(|p| quoted(&p.display().to_string()));
-                (source, format!("pathwarp unwarp {result} -o {source_name} && "))
-            }
-            None => (self.file.clone(), String::new()),
-        };
+        let (source, before, written) = self.source()?;
         let name = to.display().to_string();
         let line = |options: &[(String, String)], out: &Path| {
             before + &command_line(self.host.registry(), &given, options, &source, out)
         };
         let streamed = Path::new("-");
-        Ok(if saving::has_extension(&to, &["toml"]) {
+        let text = if saving::has_extension(&to, &["toml"]) {
             options.push(("write-recipe".to_owned(), name));
             line(&options, streamed) + " > /dev/null"
         } else if is_svg(&to) {
@@ -606,7 +639,8 @@ impl Session {
             let picture = target.picture.options();
             let picture: String = picture.iter().map(|(name, value)| format!(" --{name} {}", quoted(value))).collect();
             format!("{} | pathwarp render -{picture} -o {}", line(&options, streamed), quoted(&name))
-        })
+        };
+        Ok(json!({ "text": text, "written": written }))
     }
 }
 

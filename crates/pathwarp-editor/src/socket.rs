@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::io;
 use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, WebSocket};
@@ -91,6 +91,11 @@ impl Page {
                 (self.picture, self.quick) = (None, None);
                 Ok(json!({ "catalogue": session.catalogue(), "state": session.state() }))
             }
+            Request::Target => Ok(json!({ "target": *self.shared.target() })),
+            Request::KeepTarget { target } => {
+                *self.shared.target() = target;
+                Ok(json!({}))
+            }
             Request::Parts => Ok(json!({ "parts": session.parts() })),
             Request::Bend { steps, draft } => {
                 let shown = session.bend(&steps, draft)?;
@@ -157,7 +162,7 @@ impl Page {
                 Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) }))
             }
             Request::Renet { steps, values } => Ok(json!({ "step": session.renet(&steps, values)? })),
-            Request::CommandLine { to } => Ok(json!({ "text": session.command_line(&to)? })),
+            Request::CommandLine { to } => session.command_line(&to),
         }
     }
 
@@ -203,6 +208,8 @@ fn changed_paths(changes: Vec<(usize, String)>) -> Value {
 /// What the connections share.
 pub(crate) struct Shared {
     session: Mutex<Session>,
+    /// What the page shows behind the drawing.
+    target: Mutex<Value>,
     pub(crate) pages: Pages,
 }
 
@@ -253,7 +260,11 @@ impl Drop for OpenPage {
 
 impl Shared {
     pub(crate) fn new(session: Session) -> Self {
-        Self { session: Mutex::new(session), pages: Pages::default() }
+        Self { session: Mutex::new(session), target: Mutex::default(), pages: Pages::default() }
+    }
+
+    fn target(&self) -> MutexGuard<'_, Value> {
+        self.target.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Works on the session. A panic in another connection does not end the editor: steps are taken over only after the drawing has been bent by

@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(super) fn edit_command() -> Command {
     Command::new("edit")
         .about("Bend a drawing by hand in the browser, and see it while you drag")
-        .arg(file_arg("FILE", "An SVG file, or a result of this command, to go on with it"))
+        .arg(file_arg("FILE", "An SVG file, a picture (PNG, JPEG, WebP), or a result of this command, to go on with it"))
         .arg(out_arg("OUT", "Save to this file; without it, the page offers a name beside the drawing"))
         .arg(
             Arg::new("port")

@@ -17,7 +17,7 @@ const KEYS = 500;
 /** Parameters that say how many control points a net has. */
 const NET = new Set(["degree", "cells", "spline"]);
 
-export type Change = "state" | "steps" | "handles" | "values" | "drawing" | "report" | "link";
+export type Change = "state" | "steps" | "handles" | "values" | "report" | "link";
 
 /** Where a picture goes. */
 export interface Screen {
@@ -135,7 +135,7 @@ export class App {
     this.state = state;
     this.steps = structuredClone(state.steps);
     this.selected = Math.max(0, Math.min(this.steps.length - 1, Math.max(this.selected, this.steps.length - 1)));
-    this.locks = this.steps[0]?.exclude ?? this.locks;
+    this.locks = this.steps[0]?.exclude ?? [];
     this.isProposal = false;
     this.isWorkedOn = this.steps.length > 0;
     this.appends = false;
@@ -150,7 +150,15 @@ export class App {
       }
     }
     this.tell("steps");
-    await this.refresh();
+    if (await this.refresh()) return;
+    // The drawing is seen all the same: flat artwork fits into no cage, and steps may name a file that has gone.
+    const { problem } = this;
+    this.dropHandles();
+    if (this.isProposal) this.steps = [];
+    await this.attempt(async () => this.take(await this.connection.ask({ do: "bend", steps: [], draft: null })));
+    this.tell("steps");
+    if (this.isProposal) this.isProposal = false;
+    else this.fail(problem);
   }
 
   /** Puts another drawing in the place of this one, when everything before is done; what follows, an undo for one, waits for it. */
@@ -194,9 +202,13 @@ export class App {
     return this.arrange(this.steps.map((step) => ({ ...step, exclude: locks })), this.selected);
   }
 
-  /** Shows the picture of the present steps, exactly. */
-  async refresh(): Promise<void> {
-    await this.attempt(async () => this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null })));
+  /** Shows the picture of the present steps, exactly. Returns `false` if there is none. */
+  async refresh(): Promise<boolean> {
+    const shown = await this.attempt(async () => {
+      this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null }));
+      return true;
+    });
+    return shown ?? !this.isConnected;
   }
 
   /** Shows a quick picture of the present steps. While one is being made, only the newest wish counts. */
@@ -288,12 +300,12 @@ export class App {
     return true;
   }
 
-  /** Takes back what has been dragged since the last commit: the step is as it was. */
-  cancel(step: Step): void {
+  /** Takes back what has been dragged since the last commit: the step is as it was before. */
+  cancel(step: Step, before: Step): void {
     this.hold = null;
     this.isDragging = false;
     this.isWanted = false;
-    this.steps = this.steps.map((s, i) => (i === this.selected ? step : s));
+    this.steps = this.steps.map((s) => (s === step ? before : s));
     void this.refresh();
     this.tell("values");
   }
@@ -476,6 +488,7 @@ export class App {
 
   /** The handles of a step that is replaced must not be pulled while its successor is on the way. */
   private dropHandles(): void {
+    this.hold?.();
     this.handles = null;
     this.grips = [];
     this.tell("handles");
@@ -491,9 +504,14 @@ export class App {
 
   /** Another page has changed the steps. */
   private async hear(news: Answer): Promise<void> {
-    if (news.event !== "changed" || !news.state || this.isDragging) return;
-    const { file, folder } = this.state ?? news.state;
-    if (news.state.file !== file || news.state.folder !== folder) this.tell("drawing");
+    if (news.event !== "changed" || !news.state) return;
+    if (this.isDragging) {
+      // What is dragged wins, unless it is of another drawing now.
+      if (news.state.drawing === this.state?.drawing) return;
+      this.hold?.();
+      this.endPause();
+    }
+    const { file } = this.state ?? news.state;
     await this.load(news.state);
     if (news.state.file !== file) toast(`${news.state.file} has been opened in another tab. The steps of ${file} are kept with it`);
   }
@@ -503,7 +521,7 @@ export class App {
     try {
       return await work();
     } catch (e) {
-      if (!(e instanceof Gone)) this.fail(reason(e));
+      if (!(e instanceof Gone)) this.fail(inWords(reason(e)));
       return null;
     }
   }

@@ -67,6 +67,12 @@ export function evaluate(text: string, unit: string): Quantity | null {
   }
 }
 
+/** A value in this unit, whatever others are typed. `null` if the text is none. */
+export function inUnits(text: string, unit: string): number | null {
+  // A sum has the unit of its first number.
+  return evaluate(`0${unit}+(${text})`, unit)?.value ?? null;
+}
+
 /** The number of units `to` in a unit. */
 function factor(from: string, to: string): number {
   if (from === to) return 1;
@@ -75,8 +81,12 @@ function factor(from: string, to: string): number {
   return a / b;
 }
 
+/** Limits from here on are those of computing, not of the value. */
+const BOUNDLESS = 1e6;
+
 /** What may be typed. */
-export function asked(unit: string, least = -Infinity, most = Infinity, isWhole = false): string {
+export function asked(unit: string, from = -Infinity, to = Infinity, isWhole = false): string {
+  const [least, most] = [Number(from.toPrecision(6)), to < BOUNDLESS ? to : Infinity];
   const [what, end] = [isWhole ? "A whole number" : "A number", unit && ` ${unit}`];
   if (least > -Infinity && most < Infinity) return `${what} from ${least} to ${most}${end}`;
   if (least > -Infinity) return `${what} from ${least}${end} up`;
@@ -90,8 +100,9 @@ export function reason(e: unknown): string {
 
 /** What the program says about a value, in the words of the page. */
 export function inWords(problem: string): string {
-  const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/--([a-z-]+)/g, (_, name: string) => `“${name.replaceAll("-", " ")}”`);
-  return text.replace(/`([^`]*)`/g, "“$1”").replace(/^./, (c) => c.toUpperCase());
+  const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/`([^`]*)`|--([a-z-]+)/g, (_, quoted?: string, name = "") => `“${quoted ?? name.replaceAll("-", " ")}”`);
+  // Names of files stay as they are.
+  return /^\S+: /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
 }
 
 type Editable = HTMLInputElement | HTMLTextAreaElement;

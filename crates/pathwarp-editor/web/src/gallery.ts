@@ -97,7 +97,7 @@ export class Gallery {
       const use = h("button", { type: "button", class: "preset" }, name);
       use.addEventListener("click", async () => {
         const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
-        if (answer?.steps) await this.app.arrange(answer.steps, answer.steps.length - 1);
+        if (answer?.steps) await this.app.arrange(answer.steps.map((step) => ({ ...step, exclude: this.app.locks })), answer.steps.length - 1);
         document.body.classList.remove("shapes-open");
       });
       const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));

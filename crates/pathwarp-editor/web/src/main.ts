@@ -43,8 +43,16 @@ stage.onZoom = () => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
 };
 const sketching = new Sketching(stage);
-settings.onDraw = (kind, take) => sketching.begin(kind, take);
+settings.onDraw = (kind, take) => {
+  stage.pick(null);
+  sketching.begin(kind, take);
+};
+settings.onOther = () => {
+  stage.pick(null);
+  sketching.end();
+};
 settings.onPick = (take) => {
+  sketching.end();
   toast("Click a path of the drawing");
   stage.pick(take);
 };

@@ -4,8 +4,6 @@ import type { App } from "./app";
 import { byId, isTyping } from "./dom";
 import { toast } from "./toast";
 
-/** Pictures that a drawing can hold. */
-const PICTURES = ["image/png", "image/jpeg", "image/webp"];
 /** The name of a drawing that comes as text. */
 const PASTED = "pasted.svg";
 
@@ -53,21 +51,8 @@ export class Opening {
     if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
     const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
     if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
-    await app.enter(() => app.attempt(async () => {
-      const drawing = PICTURES.includes(file.type) ? await framed(file) : file;
-      return app.connection.ask({ do: "open", name: drawing.name, bytes: await base64(drawing) });
-    }));
+    await app.enter(() => app.attempt(async () => app.connection.ask({ do: "open", name: file.name, bytes: await base64(file) })));
   }
-}
-
-/** A drawing of a picture alone, a px for each of its pixels. */
-async function framed(picture: File): Promise<File> {
-  const bitmap = await createImageBitmap(picture).catch(() => null);
-  if (!bitmap) throw new Error(`${picture.name} is not a picture that the browser can show`);
-  const size = `width="${bitmap.width}" height="${bitmap.height}"`;
-  const image = `<image id="picture" ${size} href="data:${picture.type};base64,${await base64(picture)}"/>`;
-  const svg = `<svg xmlns="http://www.w3.org/2000/svg" ${size} viewBox="0 0 ${bitmap.width} ${bitmap.height}">${image}</svg>`;
-  return new File([svg], picture.name.replace(/(\.\w+)?$/, ".svg"));
 }
 
 /** Puts a copy of a file beside the drawing, where steps can read it. Returns the text that names it in a step. */
@@ -83,7 +68,7 @@ export async function bring(app: App, file: File): Promise<string | null> {
 const PIECE = 0x8000;
 
 /** The content of a file in base64. */
-async function base64(file: File): Promise<string> {
+export async function base64(file: File): Promise<string> {
   const bytes = new Uint8Array(await file.arrayBuffer());
   let binary = "";
   for (let i = 0; i < bytes.length; i += PIECE) binary += String.fromCharCode(...bytes.subarray(i, i + PIECE));

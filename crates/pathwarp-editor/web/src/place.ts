@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { byId } from "./dom";
-import { asked, evaluate, Field } from "./fields";
+import { asked, evaluate, Field, inUnits } from "./fields";
 import type { Stage } from "./stage";
 import type { Handle } from "./types";
 import { short } from "./values";
@@ -25,7 +25,11 @@ export class Place {
       const place = (typed: string): number | null => {
         const q = evaluate(typed, "");
         const [x, y, w, h] = app.handles?.frame ?? [0, 0, 1, 1];
-        return q?.unit === "%" ? (i === 0 ? x + (w * q.value) / 100 : y + (h * q.value) / 100) : q?.unit === "" ? q.value : null;
+        if (!q || q.unit === "") return q?.value ?? null;
+        if (q.unit === "%") return i === 0 ? x + (w * q.value) / 100 : y + (h * q.value) / 100;
+        const [a, b] = app.state?.toPx ?? [1, 0];
+        const px = inUnits(typed, "px");
+        return px === null ? null : px / Math.hypot(a, b);
       };
       const move = (value: number) => {
         const at = this.handle!.get();

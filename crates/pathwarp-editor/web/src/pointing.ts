@@ -110,7 +110,8 @@ export class Pointing {
     const { app } = this;
     const start = this.stage.point(e);
     void app.flush();
-    const before = structuredClone(app.step!);
+    const step = app.step!;
+    const before = structuredClone(step);
     let hasMoved = false;
     app.isDragging = true;
     const stop = () => {
@@ -131,7 +132,7 @@ export class Pointing {
       },
       cancel: () => {
         stop();
-        if (hasMoved) app.cancel(before);
+        if (hasMoved) app.cancel(step, before);
       },
     });
     app.hold = abandon;

@@ -71,6 +71,7 @@ export class Report {
     if (app.released) toast(`The line has left ${app.released}, which is artwork again. Undo brings it back`);
     app.released = null;
     if (app.appends) return show("note", "Choose the shape of the next step, or press Escape");
+    if (app.steps.length === 0) return show("note", "Choose a shape");
     // Handles are on the way.
     if (!handles) return;
     const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";

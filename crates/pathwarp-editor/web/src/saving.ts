@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
-import { inWords, reason } from "./fields";
+import { inUnits, inWords, reason } from "./fields";
 import { toast } from "./toast";
 
 const FORMATS: [string, string, string][] = [
@@ -153,8 +153,8 @@ export class Saving {
   private target(): Record<string, unknown> | null {
     const [name, folder] = [this.name.value, this.folder.value];
     if (!PICTURES.includes(this.extension)) return { name, folder };
-    const size = Number(this.size.value.replace(",", "."));
     const unit = this.unit.value === "%" ? "%" : "px";
+    const size = inUnits(this.size.value, unit) ?? NaN;
     if (!(size > 0 && size <= WIDEST) || (unit === "px" && !Number.isInteger(size))) {
       this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${WIDEST}`);
       return null;
@@ -231,14 +231,17 @@ export class Saving {
     const target = this.target();
     if (!target) return;
     let line = "";
+    let said = "The command line is on the clipboard";
     try {
-      line = (await this.app.connection.ask({ do: "command-line", ...target })).text ?? "";
+      const { text = "", written } = await this.app.connection.ask({ do: "command-line", ...target });
+      line = text;
+      if (written) said += `; ${written}, which it reads, is beside the drawing now`;
     } catch (e) {
       return this.say(inWords(reason(e)));
     }
     try {
       await navigator.clipboard.writeText(line);
-      toast("The command line is on the clipboard");
+      toast(said);
     } catch {
       toast(line);
     }

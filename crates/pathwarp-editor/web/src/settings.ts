@@ -33,6 +33,8 @@ export class Settings {
   onPick: (take: (id: string) => void) => void = () => {};
   /** Asks for a line that is drawn on the canvas. */
   onDraw: (kind: Sketch, take: (value: string) => void) => void = () => {};
+  /** The settings are those of another step. */
+  onOther: () => void = () => {};
 
   constructor(private app: App) {
     app.listen((change) => {
@@ -49,6 +51,7 @@ export class Settings {
     const signature = [this.app.selected, step?.deformation, ...this.adjusts(params)].join();
     if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
     this.shown = signature;
+    this.onOther();
     this.refreshers = [];
     if (!step || !deformation) return this.box.replaceChildren();
     const main = params.filter((p) => isMain(p, step.args[p.name] !== undefined) || this.app.grip(p.name)?.adjust !== undefined);
@@ -264,10 +267,11 @@ export class Settings {
     slider.addEventListener("input", () => {
       if (!slider.matches(":active") || isGivenUp) return;
       if (!isDragged) {
-        const before = structuredClone(app.step!);
+        const step = app.step!;
+        const before = structuredClone(step);
         app.hold = () => {
           isGivenUp = true;
-          app.cancel(before);
+          app.cancel(step, before);
         };
       }
       isDragged = true;

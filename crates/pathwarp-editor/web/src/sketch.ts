@@ -82,10 +82,12 @@ export class Sketching {
     this.line.setAttribute("d", kind === "circle" ? circle : `M${[...points, to].join("L")}`);
   }
 
-  private end(): void {
-    this.stop?.();
+  /** Ends drawing. */
+  end(): void {
+    if (!this.stop) return;
+    this.stop();
     this.stop = null;
     this.line.setAttribute("d", "");
-    this.stage.svg.classList.remove("picking");
+    this.stage.pick(null);
   }
 }

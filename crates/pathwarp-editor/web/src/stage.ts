@@ -408,7 +408,7 @@ export class Stage {
   /** The next click on the drawing names a path. */
   pick(take: ((id: string) => void) | null): void {
     this.picks = take;
-    this.svg.classList.toggle("picking", take !== null);
+    this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
     this.light(null);
   }
 

@@ -2,8 +2,8 @@
 
 import type { App } from "./app";
 import { byId, s } from "./dom";
-import { Field, asked, evaluate } from "./fields";
-import { bring } from "./opening";
+import { Field, asked, inUnits } from "./fields";
+import { base64, bring } from "./opening";
 import type { Stage } from "./stage";
 
 const MM = 96 / 25.4;
@@ -23,6 +23,9 @@ export class Target {
   /** The width of a drawing at its own size. */
   private natural = 1;
   private fields: Field[] = [];
+  private opacity = byId<HTMLInputElement>("target-opacity");
+  /** The program has been asked for the target, or told of it. */
+  private isKept = false;
 
   constructor(private app: App, private stage: Stage) {
     stage.behind.append(this.image);
@@ -30,35 +33,59 @@ export class Target {
     this.chosen.addEventListener("change", () => {
       const file = this.chosen.files?.[0];
       this.chosen.value = "";
-      if (file) void this.take(file);
+      if (file) void this.take(file).then(() => this.keep());
     });
-    const opacity = byId<HTMLInputElement>("target-opacity");
-    opacity.addEventListener("input", () => this.image.setAttribute("opacity", String(Number(opacity.value) / 100)));
+    this.opacity.addEventListener("input", () => this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100)));
+    this.opacity.addEventListener("change", () => void this.keep());
     byId("target-other").addEventListener("click", () => this.chosen.click());
-    byId("target-remove").addEventListener("click", () => this.remove());
+    byId("target-remove").addEventListener("click", () => {
+      this.clear();
+      void this.keep();
+    });
     this.outline.addEventListener("click", () => void this.shape());
     for (const name of ["x", "y", "width"] as const) {
       const input = byId<HTMLInputElement>(`target-${name}`);
       const least = name === "width" ? 0.01 : undefined;
-      const isWrong = (text: string) => {
-        const q = evaluate(text, "mm");
-        return q && q.unit === "mm" && (least === undefined || q.value >= least) ? null : asked("mm", least);
-      };
+      const inMm = (text: string) => inUnits(text, "mm") ?? NaN;
+      const isWrong = (text: string) => (inMm(text) >= (least ?? -Infinity) ? null : asked("mm", least));
       const field = new Field(input, () => String(Number((this.place[name] / MM).toFixed(2))), (text) => {
-        this.place[name] = (evaluate(text, "mm")?.value ?? 0) * MM;
+        this.place[name] = inMm(text) * MM;
         this.lay();
+        void this.keep();
         return null;
       }, isWrong);
       this.box.querySelector(".messages")!.append(field.message);
       this.fields.push(field);
     }
     app.listen((change) => {
-      if (change === "drawing") this.remove();
+      if (change === "link") this.isKept = false;
+      if (change !== "state" || this.isKept) return;
+      this.isKept = true;
+      void (this.file ? this.keep() : this.restore());
     });
   }
 
+  /** Lets the program keep the target for the next time the page is loaded. */
+  private async keep(): Promise<void> {
+    const { file, place, opacity } = this;
+    const target = file && { name: file.name, type: file.type, bytes: await base64(file), place, opacity: opacity.value };
+    await this.app.attempt(() => this.app.connection.ask({ do: "keep-target", target }));
+  }
+
+  private async restore(): Promise<void> {
+    const kept = (await this.app.attempt(() => this.app.connection.ask({ do: "target" })))?.target;
+    if (!kept) return;
+    const content = Uint8Array.from(atob(kept.bytes), (c) => c.charCodeAt(0));
+    if (!(await this.take(new File([content], kept.name, { type: kept.type })))) return;
+    this.place = kept.place;
+    this.opacity.value = kept.opacity;
+    this.image.setAttribute("opacity", String(Number(kept.opacity) / 100));
+    this.lay();
+    this.show(false);
+  }
+
   /** Shows a file behind the drawing: a drawing at its own size and place, a picture as wide as the page. */
-  private async take(file: File): Promise<void> {
+  private async take(file: File): Promise<boolean> {
     const url = URL.createObjectURL(file);
     const probe = new Image();
     probe.src = url;
@@ -66,9 +93,10 @@ export class Target {
       await probe.decode();
     } catch {
       URL.revokeObjectURL(url);
-      return this.app.fail(`${file.name} is not a picture or drawing that the browser can show`);
+      this.app.fail(`${file.name} is not a picture or drawing that the browser can show`);
+      return false;
     }
-    this.remove();
+    this.clear();
     this.file = file;
     const isDrawing = /\.svgz?$/i.test(file.name);
     const [x0, y0, x1] = this.stage.pageBox;
@@ -77,10 +105,11 @@ export class Target {
     this.place = isDrawing ? { x: 0, y: 0, width: probe.naturalWidth } : { x: x0, y: y0, width: x1 - x0 };
     this.outline.hidden = !isDrawing || this.app.state?.program !== null;
     this.image.setAttribute("href", url);
-    this.image.setAttribute("opacity", String(Number(byId<HTMLInputElement>("target-opacity").value) / 100));
+    this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100));
     this.image.setAttribute("visibility", "visible");
     this.lay();
     this.show(true);
+    return true;
   }
 
   private lay(): void {
@@ -96,12 +125,12 @@ export class Target {
     byId("target-name").textContent = this.file?.name ?? "";
   }
 
-  private remove(): void {
+  private clear(): void {
     const href = this.image.getAttribute("href");
     if (href) URL.revokeObjectURL(href);
     this.image.removeAttribute("href");
     this.image.setAttribute("visibility", "hidden");
-    byId<HTMLInputElement>("target-opacity").value = String(OPACITY);
+    this.opacity.value = String(OPACITY);
     this.file = null;
     this.show(false);
   }

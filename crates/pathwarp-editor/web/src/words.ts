@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
-import { reason } from "./fields";
+import { inUnits, reason } from "./fields";
 
 const BUNDLED = "Noto Sans (bundled)";
 const LARGEST = 2000;
@@ -67,8 +67,7 @@ export class WordsDialog {
 
   private async set(): Promise<void> {
     const { app } = this;
-    const number = (input: HTMLInputElement) => Number(input.value.trim().replace(",", "."));
-    const [size, spacing] = [number(this.size), number(this.spacing)];
+    const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
     if (this.text.value.trim() === "") return this.say("Type some words first");
     if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
     if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");

@@ -238,7 +238,7 @@ export const job_photograph = () => {
       await becomes(page2, picture, "opened again, it is another drawing");
       // The photograph alone.
       await given(page2, "Open…", { name: "badge.png", mimeType: "image/png", buffer: Buffer.from(photograph, "base64") });
-      await page2.getByRole("heading", { name: "badge.svg" }).waitFor();
+      await page2.getByRole("heading", { name: "badge.png" }).waitFor();
       await quiet(page2);
       await press(page2, "Arch");
       if (process.env.SHOTS) await page2.screenshot({ path: join(process.env.SHOTS, "photograph-alone.png") });

@@ -95,6 +95,38 @@ export const parts_are_locked_and_hidden = () => within(SQUARES, async (page) =>
   check((await seen()) === 4, "it does not come back");
 });
 
+/** A result with a locked part is what the copied command line writes, and opened again the part is still locked. */
+export const locks_are_kept = () => within(SQUARES, async (page, dir) => {
+  await choose(page, "Flag");
+  await page.click("#parts-list summary");
+  await press(page, "Lock: Group");
+  await page.click("#save-as");
+  await page.fill("#save-name", "own.svg");
+  await page.locator("#save-dialog").getByRole("button", { name: "Save", exact: true }).click();
+  await page.waitForSelector("#toast.on");
+  await page.click("#save-as");
+  await page.fill("#save-name", "copied.svg");
+  await page.click("#copy-command");
+  const line = await (await page.waitForFunction(() => window.copied)).jsonValue();
+  execFileSync("sh", ["-c", line.replace(/^pathwarp/, program)], { cwd: dir, stdio: "pipe" });
+  check(readFileSync(join(dir, "copied.svg"), "utf8") === readFileSync(join(dir, "own.svg"), "utf8"), `${line} gives other bytes`);
+  const again = await edit(join(dir, "own.svg"));
+  const page2 = await open(again.address);
+  await page2.locator("[aria-label='Lock: Group'][aria-pressed=true]").waitFor();
+  const picture = await paths(page2);
+  await press(page2, "Lock: Group");
+  check((await paths(page2)) !== picture, "the lock does not open");
+  await press(page2, "Undo");
+  check((await paths(page2)) === picture, "the lock does not come back");
+  // Another drawing has no such part.
+  await page2.setInputFiles("#open-file", { name: "word.svg", mimeType: "image/svg+xml", buffer: readFileSync(sample("lettering.svg")) });
+  await page2.getByRole("heading", { name: "word.svg" }).waitFor();
+  await choose(page2, "Arch");
+  check(!(await page2.isVisible("#problem")), await page2.textContent("#problem"));
+  await again.stop();
+  await page2.context().close();
+});
+
 /** A picture of 150 % on a colour, in a folder of its own, as the copied command line makes it; the choices are remembered. */
 export const results_go_where_they_are_wanted = () => within("lettering.svg", async (page, dir) => {
   await choose(page, "Flag");
@@ -160,6 +192,14 @@ export const a_target_is_fitted_to = () => within("lettering.svg", async (page, 
   check(Math.abs(before.width / after.width - 2) < 0.01 && Math.abs(before.height / after.height - 2) < 0.01, "it is not half as large");
   await page.getByRole("slider", { name: "Opacity" }).fill("80");
   check((await image.getAttribute("opacity")) === "0.8", "its opacity is another");
+  await page.getByRole("slider", { name: "Opacity" }).press("ArrowRight");
+  await quiet(page);
+  await page.reload();
+  await image.waitFor();
+  await quiet(page);
+  const [again, faint] = [await image.boundingBox(), await image.getAttribute("opacity")];
+  check(faint === "0.81" && ["x", "y", "width", "height"].every((side) => Math.abs(again[side] - after[side]) < 1), `loaded anew, the target is ${JSON.stringify(again)}, ${faint}`);
+  await press(page, "Target");
   const was = await paths(page);
   await press(page, "Use its outline as the shape");
   check((await paths(page)) !== was && !(await page.isVisible("#problem")), await page.textContent("#problem"));
