@@ -126,7 +126,7 @@ impl Document {
             edits.set_attr(0, "viewBox", view);
         }
         for (name, side) in [("width", page.width), ("height", page.height)] {
-            edits.set_property(0, name, format!("{}{unit}", single(side * scale / px)));
+            edits.set_page_side(name, format!("{}{unit}", single(side * scale / px)));
         }
         edits.apply().0
     }

@@ -66,6 +66,38 @@ fn the_page_has_the_size_asked_for_and_the_other_side_in_proportion() {
     }
 }
 
+/// In a browser, a style overrides the attributes, so it says the new size too.
+#[test]
+fn a_size_in_a_style_gives_way() {
+    let drawing = |root: &str, sheet: &str| {
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 50' {root}>{sheet}<rect x='10' y='10' width='60' height='30'/></svg>"
+        )
+    };
+    let fixed = "width:200px;height:100px";
+    for svg in
+        [drawing(&format!("style='fill:red;{fixed}'"), ""), drawing("", &format!("<style>svg{{{fixed}}}</style>"))]
+    {
+        for (more, [width, height]) in [
+            (&["--page-width", "80mm"][..], ["80mm", "40mm"]),
+            (&["--page-height", "60"], ["120px", "60px"]),
+            (&[], ["200px", "120px"]),
+        ] {
+            // Without a size, the page grows by a fifth of its height.
+            let down = if more.is_empty() { "20" } else { "0" };
+            let out = run(&[&["affine", "-", "--move-y", down], more].concat(), &svg);
+            let text = std::str::from_utf8(&out).unwrap();
+            let root = text.split('>').next().unwrap();
+            let style = root.split(" style=").nth(1).unwrap();
+            assert!(style.contains(&format!("width:{width};height:{height}")), "{more:?}: {root}");
+            assert!(
+                !style.contains("100px") && (sides(&out)[0].trim_end_matches("px") == width.trim_end_matches("px")),
+                "{root}"
+            );
+        }
+    }
+}
+
 /// Parameters are lengths of the source; the page that counts is that of the result, after `--fit`.
 #[test]
 fn parameters_are_lengths_of_the_source() {

@@ -351,7 +351,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         "page-width",
         OptionValue::Text {
             name: "LENGTH",
-            minus: LeadingMinus::No,
+            minus: LeadingMinus::Any,
             set: |o, text| side_of_page(text).map(|l| o.page_width = Some(l)),
         },
         "Width of the result's page, such as 80mm; its height is in proportion. A --tolerance and --kerf with units are lengths of the result \
@@ -361,7 +361,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         "page-height",
         OptionValue::Text {
             name: "LENGTH",
-            minus: LeadingMinus::No,
+            minus: LeadingMinus::Any,
             set: |o, text| side_of_page(text).map(|l| o.page_height = Some(l)),
         },
         "Height of the result's page; with --page-width, the page is as large as fits inside both",
@@ -452,7 +452,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         "kerf",
         OptionValue::Text {
             name: "D",
-            minus: LeadingMinus::No,
+            minus: LeadingMinus::Any,
             set: |o, text| positive_length(text).map(|d| o.kerf = Some(d)),
         },
         "Width of the cut, such as 0.2mm: the outer contours of a DXF grow by half of it and holes shrink, so that parts have \

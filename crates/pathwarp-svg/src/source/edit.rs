@@ -120,6 +120,15 @@ impl<'a> Edits<'a> {
         properties.push((name, value));
     }
 
+    /// Sets a length of the root, and in its style attribute too if a style would override the attribute.
+    pub(crate) fn set_page_side(&mut self, name: &'static str, value: String) {
+        if self.source.css_declares(name) || declared(&self.source.written_style(0), name).is_some() {
+            let unit = if value.ends_with(|c: char| c.is_ascii_digit()) { "px" } else { "" };
+            self.set_style(0, name, format!("{value}{unit}"));
+        }
+        self.set_attr(0, name, value);
+    }
+
     /// Applies all edits and returns the new text. Edits inside a replaced element are dropped. Also returns the elements that
     /// were not replaced, with the positions where they begin in the new text.
     pub(crate) fn apply(self) -> (String, Vec<(ElementId, usize)>) {

@@ -39,7 +39,11 @@ pub(super) fn write(
     keeper::remove_unfit(&mut k, &warped);
     if let Some(change) = change {
         for (name, value) in page::attributes(input.source, change) {
-            k.edits.set_attr(0, name, value);
+            if name == "viewBox" {
+                k.edits.set_attr(0, name, value);
+            } else {
+                k.edits.set_page_side(name, value);
+            }
         }
         pages::follow(&mut k, change);
     }
