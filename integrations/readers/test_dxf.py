@@ -156,3 +156,21 @@ def test_kerf_lets_parts_grow_and_holes_shrink(run, tmp_path):
     said = run("convert", "in.svg", "--kerf", "5mm", "-o", "out.dxf")
     assert "fewer" in said
     run("convert", "in.svg", "--kerf", "0.2mm", "-o", "out.pdf", code=2)
+
+
+def test_kerf_keeps_circular_arcs(run, tmp_path):
+    (tmp_path / "in.svg").write_text(
+        drawing(
+            "<rect x='10' y='10' width='40' height='30' rx='6'/>"
+            "<path d='M60,20H80A8,8 0 0 1 80,36H60A8,8 0 0 1 60,20Z' fill='none' stroke='red' stroke-width='0.1'/>"
+        )
+    )
+    run("convert", "in.svg", "--kerf", "0.4mm", "--quiet", "-o", "out.dxf")
+    plate, slot = opened(tmp_path / "out.dxf")
+    wanted = [(40.4 * 30.4, 6.2), (20 * 16.4, 8.2)]
+    for entity, (straight, radius) in zip([plate, slot], wanted):
+        assert entity.dxftype() == "LWPOLYLINE" and entity.closed
+        # The corners of the plate lack a part of their squares; the ends of the slot are half circles.
+        whole = straight + (np.pi - 4 if entity is plate else np.pi) * radius**2
+        points = ezdxf.path.make_path(entity).flattening(1e-4)
+        assert abs(area(np.array([(v.x, v.y) for v in points])) - whole) < 1e-4 * whole

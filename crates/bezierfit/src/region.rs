@@ -5,7 +5,7 @@ use crate::options::{Error, Options};
 use crate::path::{simplify, subpaths};
 use crate::report::{Assurance, Fitted, Report};
 use crate::source::NotFinite;
-use crate::stroke::{beside_path, stroke};
+use crate::stroke::{beside_path, outlined, stroke};
 use kurbo::{
     Affine, BezPath, Cap, Join, ParamCurve, ParamCurveArclen, ParamCurveNearest, PathEl, PathSeg, Point, Shape, Stroke,
 };
@@ -50,7 +50,7 @@ pub fn union_even_odd(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> 
 /// Moves outlines by a distance. Closed subpaths are the outlines of an area under the nonzero rule, which grows, or shrinks if the distance
 /// is negative. Open subpaths become the path beside them: to their left where y points up, to their right where y points down; on
 /// the other side if the distance is negative. What would be nearer to the source than the distance is removed. Corners are joined as
-/// in strokes, miters up to four times the distance.
+/// in strokes; miters of areas are cut off at four times the distance, those of open subpaths are left out beyond it.
 ///
 /// # Errors
 /// As [`union`].
@@ -95,7 +95,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
     // Edges inside of it do not count.
     let area = union(&area, options.tolerance)?;
     if !area.is_empty() {
-        let edge = stroke(&area, &style, &fine)?;
+        let edge = outlined(&area, &style, true, &fine)?;
         let segs: Vec<PathSeg> = area.segments().collect();
         let moved = covered(&area, &edge.path, options.tolerance, |w| match distance > 0.0 {
             true => w.shape_a != 0 || w.shape_b != 0,

@@ -39,8 +39,13 @@ const MOST_DASHES: f64 = 20_000.0;
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitted, Error> {
+    outlined(path, style, false, options)
+}
+
+/// The same; if `clipped`, miters beyond the limit are cut off there.
+pub(crate) fn outlined(path: &BezPath, style: &Stroke, clipped: bool, options: &Options) -> Result<Fitted, Error> {
     let gap = GAPS * options.tolerance;
-    let contours = contours(path, style, false, gap)?;
+    let contours = contours(path, style, clipped, gap)?;
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let inner = Options { tolerance: STROKED * options.tolerance, ..*options };

@@ -5,7 +5,7 @@
 mod polygon;
 
 use bezierfit::{Options, offset, stroke, union};
-use kurbo::{BezPath, Cap, Join, ParamCurve, ParamCurveNearest, PathSeg, Point, Stroke};
+use kurbo::{BezPath, Cap, Join, ParamCurve, ParamCurveNearest, PathSeg, Point, Shape, Stroke};
 use polygon::{Polygon, Random, random_path};
 
 const TOLERANCE: f64 = 0.02;
@@ -177,4 +177,25 @@ fn crossings(path: &BezPath) -> usize {
         !(across(a, b) && across(b, a))
     };
     (0..lines.len()).map(|i| (0..i).filter(|j| !apart(&lines[i], &lines[*j])).count()).sum()
+}
+
+/// An edge at a tip runs at the distance from it, however sharp it is: a miter that would reach too far is cut off.
+#[test]
+fn tips_keep_their_distance() {
+    const BY: f64 = 5.0;
+    for degrees in [4.0, 15.0, 28.0, 30.0, 60.0_f64] {
+        let half = (0.5 * degrees).to_radians();
+        let tip = Point::new(200.0, 0.0);
+        let mut needle = BezPath::new();
+        needle.move_to(tip);
+        needle.line_to((0.0, 200.0 * half.tan()));
+        needle.line_to((0.0, -200.0 * half.tan()));
+        needle.close_path();
+        let grown = offset(&needle, BY, Join::Miter, &Options::new(TOLERANCE)).unwrap().path;
+        let far = grown.bounding_box().x1 - tip.x;
+        let wanted = (BY / half.sin()).min(4.0 * BY);
+        assert!((far - wanted).abs() < 2.0 * TOLERANCE, "{degrees}°: {far} for {wanted}");
+        let nearest = grown.segments().map(|s| s.nearest(tip, 1e-9).distance_sq.sqrt()).fold(f64::INFINITY, f64::min);
+        assert!((nearest - BY).abs() < 2.0 * TOLERANCE, "{degrees}°: {nearest}");
+    }
 }

@@ -70,7 +70,7 @@ pub enum Side {
 pub struct Offset {
     /// Distance in user units, above zero.
     pub by: f64,
-    /// The join at corners that open; miters reach up to four times the distance.
+    /// The join at corners that open; miters reach up to four times the distance, where those of areas are cut off.
     pub join: Join,
     /// The side.
     pub side: Side,

@@ -1,10 +1,13 @@
 //! Room for the width of the cut: parts grow by half of it and their holes shrink, so that what is cut has the size drawn.
 
 use pathwarp::edit::{Offset, Side, moved};
-use pathwarp::kurbo::{BezPath, Join, Point, Rect, Shape as _};
+use pathwarp::kurbo::{BezPath, CubicBez, Join, ParamCurve as _, Point, Rect, Shape as _, Vec2};
 use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::{GeometryError, Outline, Seg, refit};
 use std::f64::consts::TAU;
+
+/// Rounding, as a share of a radius.
+const SLACK: f64 = 1e-6;
 
 /// An outline to cut.
 pub(super) struct Cut {
@@ -65,17 +68,61 @@ fn widened(area: &Outline, side: Side, by: f64, even_odd: bool, tolerance: f64) 
         return Ok(Outline { subpaths: (wanted > 0.0).then_some(larger).into_iter().collect() });
     }
     let offset = Offset { by, join: Join::Miter, side, even_odd };
-    Ok(Outline::from(&moved(area, &offset, &refit::Options::new(tolerance))?.path))
+    let path = moved(area, &offset, &refit::Options::new(tolerance))?.path;
+    Ok(with_arcs(Outline::from(&path), area, by, tolerance))
+}
+
+/// The outline with arcs for what runs `by` beside circular arcs of its source.
+fn with_arcs(mut outline: Outline, source: &Outline, by: f64, tolerance: f64) -> Outline {
+    /// Limit on comparisons of segments with arcs.
+    const MOST: usize = 10_000_000;
+    let arcs = source.subpaths.iter().flat_map(|s| &s.segs);
+    let circles: Vec<(Point, f64)> = arcs
+        .filter_map(|s| match s {
+            Seg::Arc(a) if is_round(a) => Some((a.center, a.a.hypot())),
+            _ => None,
+        })
+        .collect();
+    let segs = outline.subpaths.iter().map(|s| s.segs.len()).sum::<usize>();
+    if circles.len().saturating_mul(segs) > MOST {
+        return outline;
+    }
+    for seg in outline.subpaths.iter_mut().flat_map(|s| &mut s.segs) {
+        if let Seg::Cubic(c) = *seg {
+            let beside = circles.iter().flat_map(|&(center, r)| [(center, r - by), (center, r + by)]);
+            let arc =
+                beside.filter(|(_, r)| *r > tolerance).find_map(|(center, r)| on_circle(&c, center, r, tolerance));
+            *seg = arc.map_or(*seg, Seg::Arc);
+        }
+    }
+    outline
+}
+
+/// The arc of a circle that a cubic follows, if it does.
+fn on_circle(c: &CubicBez, center: Point, radius: f64, tolerance: f64) -> Option<EllipticArc> {
+    let is_on = |t: f64| (c.eval(t).distance(center) - radius).abs() <= tolerance;
+    if ![0.0, 1.0, 0.5, 0.25, 0.75].into_iter().all(is_on) {
+        return None;
+    }
+    let turn = |a: Point, b: Point| {
+        let (a, b) = (a - center, b - center);
+        a.cross(b).atan2(a.dot(b))
+    };
+    let sweep = turn(c.p0, c.eval(0.5)) + turn(c.eval(0.5), c.p3);
+    let arc = EllipticArc::new(center, Vec2::new(radius, 0.0), Vec2::new(0.0, radius), (c.p0 - center).angle(), sweep);
+    Some(EllipticArc { p0: c.p0, p1: c.p3, ..arc })
+}
+
+/// Returns `true` for an arc of a circle.
+fn is_round(a: &EllipticArc) -> bool {
+    let (size, slack) = (a.a.hypot(), SLACK * a.a.hypot());
+    (size - a.b.hypot()).abs() <= slack && a.a.dot(a.b).abs() <= slack * size
 }
 
 /// The circle that a contour is, if it is one.
 fn circle(s: &Subpath) -> Option<EllipticArc> {
-    /// Rounding, as a share of the radius.
-    const SLACK: f64 = 1e-6;
     let Some(Seg::Arc(first)) = s.segs.first() else { return None };
     let slack = SLACK * first.a.hypot();
-    let round =
-        (first.a.hypot() - first.b.hypot()).abs() <= slack && first.a.dot(first.b).abs() <= slack * first.a.hypot();
     let mut sweep = 0.0;
     for seg in &s.segs {
         let Seg::Arc(a) = seg else { return None };
@@ -86,7 +133,8 @@ fn circle(s: &Subpath) -> Option<EllipticArc> {
         sweep += a.sweep;
     }
     let whole = (sweep.abs() - TAU).abs() <= SLACK;
-    (round && whole).then(|| EllipticArc::new(first.center, first.a, first.b, first.start, TAU.copysign(sweep)))
+    (is_round(first) && whole)
+        .then(|| EllipticArc::new(first.center, first.a, first.b, first.start, TAU.copysign(sweep)))
 }
 
 /// A contour of lines, to be looked up.
