@@ -86,8 +86,10 @@ impl Wrap3 {
             let height = self.bounds.size()[1 - across];
             let sine = (far - self.radius) / height;
             if sine.is_nan() || sine.abs() >= 1.0 {
-                let problem =
-                    format!("differs from the other radius by more than the model's side is long, {height:.6} mm");
+                let problem = format!(
+                    "differs from the other radius by more than the model's side is long, {} mm",
+                    trimmed(height, 3)
+                );
                 return Err(Error::usage("top-radius", show(far), problem));
             }
             let mut chain = Chain3::default();
@@ -97,10 +99,17 @@ impl Wrap3 {
         };
         let (length, around) = (self.bounds.size()[across], std::f64::consts::TAU * radius);
         let mut built = Built3::new(map);
-        built
-            .note(format!("wrapped through {:.4}°, on a circumference of {around:.6}", (length / radius).to_degrees()));
+        built.note(format!(
+            "wrapped through {:.4}°, on a circumference of {} mm",
+            (length / radius).to_degrees(),
+            trimmed(around, 3)
+        ));
         if length > around {
-            built.warn(format!("the model is {length:.6} long and the circumference {around:.6}: its ends overlap; use a larger `radius`"));
+            built.warn(format!(
+                "the model is {} mm long and the circumference {} mm: its ends overlap; use a larger `radius`",
+                trimmed(length, 3),
+                trimmed(around, 3)
+            ));
         }
         Ok(built)
     }

@@ -632,6 +632,9 @@ impl<'t> Words<'t> {
                     all.join(", ")
                 )));
             }
+            if self.list.iter().filter(|w| w.0 == *name).count() > 1 {
+                return Err(self.wrong(format!("has “{name}” twice; give it once")));
+            }
         }
         Ok(())
     }
@@ -652,7 +655,8 @@ impl<'t> Words<'t> {
         match (self.size(s, radius)?, self.size(s, diameter)?) {
             (Some(r), None) => Ok(r),
             (None, Some(d)) => Ok(d / 2.0),
-            _ => Err(self.wrong(format!("needs {radius}=… or {diameter}=…, such as {diameter}=80mm"))),
+            (Some(_), Some(_)) => Err(self.wrong(format!("has a {radius} and a {diameter}; give one"))),
+            (None, None) => Err(self.wrong(format!("needs {radius}=… or {diameter}=…, such as {diameter}=80mm"))),
         }
     }
 }

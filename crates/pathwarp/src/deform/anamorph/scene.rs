@@ -1,5 +1,6 @@
 //! The artwork at its apparent size, and the eye.
 
+use crate::decimal::trimmed;
 use crate::map::Map;
 use crate::outline::Outline;
 use crate::param::Frame;
@@ -33,7 +34,12 @@ impl Scene {
         let at = |(u, v): (f64, f64)| map.point(Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()));
         let all = grid.map(at).filter(|p| p.is_finite()).map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b));
         let all = all.unwrap_or(r);
-        let say = |r: Rect| format!("{:.4} m × {:.4} m", r.width() / x / METRE, r.height() / y / METRE);
+        let say = |r: Rect| {
+            let metres = [r.width() / x / METRE, r.height() / y / METRE];
+            let (per_metre, unit) = if metres[0].max(metres[1]) < 1.0 { (1e3, "mm") } else { (1.0, "m") };
+            let [w, h] = metres.map(|v| trimmed(v * per_metre, 3));
+            format!("{w} × {h} {unit}")
+        };
         format!("the artwork appears to be {}; the result is {}", say(r), say(all))
     }
 }

@@ -218,7 +218,7 @@ pub(super) fn check_in_view(text: &str, cast: &Anamorphosis, camera: &Camera, fr
 // - a plane through P with normal n: δ = n·d / n·(P − O), linear in p;
 // - a net of control points on rays, or the sphere on whose near pole the eye sits and whose far pole touches the drawing
 //   (δ = |d|²/distance², the inverse of the stereographic projection): δ is a polynomial;
-// - cylinders, cones and other spheres: the nearer root of a quadratic aλ² + 2bλ + c = 0, or the positive one from inside,
+// - cylinders, cones and other spheres: the nearer root of a quadratic aλ² + 2bλ + c = 0, or the further one for a hollow,
 //   each in the form that does not cancel, λ = c/(−b ± √(b² − ac)).
 //
 // J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3, for the polynomial ones.
@@ -340,12 +340,21 @@ struct Quadratic<S> {
     a: S,
     b: S,
     c: f64,
+    /// The surface is a hollow, whose far side is seen.
+    hollow: bool,
+}
+
+impl<S> Quadratic<S> {
+    /// The nearer root is wanted, and the eye is outside.
+    fn is_near(&self) -> bool {
+        self.c > 0.0 && !self.hollow
+    }
 }
 
 impl<S: Real> Quadratic<S> {
     fn root(&self) -> S {
         let root = (self.b * self.b - self.a * self.c).sqrt();
-        S::from(self.c) / (if self.c > 0.0 { root } else { -root } - self.b)
+        S::from(self.c) / (if self.is_near() { root } else { -root } - self.b)
     }
 }
 
@@ -357,7 +366,11 @@ impl Quadratic<f64> {
             return d;
         }
         let root = d.sqrt();
-        d.min(if self.c > 0.0 { root - self.b } else { root + self.b })
+        d.min(match self.is_near() {
+            true => root - self.b,
+            false if self.c > 0.0 => -root - self.b,
+            false => root + self.b,
+        })
     }
 }
 
@@ -374,6 +387,7 @@ impl Round {
             a: dx * dx + distance * distance - dy * dy * (g * g),
             b: dx * ox + distance * oz - dy * (g * radius),
             c: ox * ox + oz * oz - radius * radius,
+            hollow: self.inside,
         }
     }
 
@@ -401,6 +415,7 @@ impl Sphere {
             a: dx * dx + dy * dy + distance * distance,
             b: dx * o[0] + dy * o[1] + distance * o[2],
             c: dot(o, o) - self.radius * self.radius,
+            hollow: self.inside,
         }
     }
 

@@ -316,6 +316,15 @@ fn labels_are_as_long_as_their_arcs() {
         let got = m.point((x, 50.0).into());
         assert!(got.distance((50.0 + 80.0 * theta, 50.0).into()) < 1e-10, "{got:?}");
     }
+    // A hollow is seen from within, and from outside, where the nearer wall does not count: r sin θ = (x − 50)/D · (D − r + r cos θ).
+    for distance in [150.0, 300.0] {
+        let hollow = build(&[("distance", &distance.to_string()), ("onto", "cylinder:radius=80,inside")]).unwrap().map;
+        for theta in [-0.5, -0.2, 0.0, 0.3, 0.6_f64] {
+            let x = 50.0 + distance * 80.0 * theta.sin() / (distance - 80.0 + 80.0 * theta.cos());
+            let got = hollow.point((x, 50.0).into());
+            assert!(got.distance((50.0 + 80.0 * theta, 50.0).into()) < 1e-10, "{distance} {theta}: {got:?}");
+        }
+    }
     // A cone whose half angle has the sine ½: half a turn of it unrolls to a quarter.
     let cone = Surface::Round(Round {
         middle: Point::ORIGIN,
@@ -432,6 +441,8 @@ fn every_fault_is_named() {
         (&[("distance", "100"), ("onto", "plane:slope")], "does not have"),
         (&[("distance", "100"), ("onto", "plane:")], "is not one of"),
         (&[("distance", "100"), ("onto", "cylinder:")], "needs radius"),
+        (&[("distance", "100"), ("onto", "cylinder:radius=20,diameter=40")], "has a radius and a diameter; give one"),
+        (&[("distance", "100"), ("onto", "cylinder:radius=20,radius=40")], "twice"),
         (&[("distance", "100"), ("onto", "cylinder:radius=20")], "misses the surface"),
         (&[("distance", "100"), ("onto", "cylinder:radius=-20")], "not positive"),
         (&[("distance", "100"), ("onto", "cone:top=20")], "top-radius=… or top-diameter=…"),
