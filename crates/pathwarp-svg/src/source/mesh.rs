@@ -131,18 +131,19 @@ impl MeshGradient {
     }
 
     /// The colour at the parameters `u` and `v` of the whole mesh, which count patches: bilinear between the corners of a patch, or bicubic
-    /// as in Inkscape, with derivatives along the sides and none across (Hermite's form).
+    /// as in Inkscape, with derivatives along the sides and none across (Hermite's form). Opacity is bilinear in both.
     pub(crate) fn color(&self, u: f64, v: f64) -> Rgba {
         let within = |t: f64, count: usize| (t as usize).min(count - 1);
         let (row, column) = (within(v, self.rows()), within(u, self.columns()));
         let (s, t) = (u - column as f64, v - row as f64);
-        let (along_u, along_v) =
-            if self.smooth { (hermite(s), hermite(t)) } else { ([1.0 - s, s, 0.0, 0.0], [1.0 - t, t, 0.0, 0.0]) };
+        let linear = ([1.0 - s, s, 0.0, 0.0], [1.0 - t, t, 0.0, 0.0]);
+        let (along_u, along_v) = if self.smooth { (hermite(s), hermite(t)) } else { linear };
         let mut out = [0.0; 4];
         for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let (r, c) = (row + i, column + k);
             let (wide, high) = (length(self.across[r][column]), length(self.down[row][c]));
-            let add = |by: f64, color: Rgba, out: &mut Rgba| (0..4).for_each(|n| out[n] += by * color[n]);
+            let add = |by: f64, color: Rgba, out: &mut Rgba| (0..3).for_each(|n| out[n] += by * color[n]);
+            out[3] += linear.0[k] * linear.1[i] * self.colors[r][c][3];
             add(along_u[k] * along_v[i], self.colors[r][c], &mut out);
             if self.smooth {
                 let du = slope(self.columns(), c, |n| self.colors[r][n], |n| length(self.across[r][n]));
@@ -467,6 +468,21 @@ mod tests {
         {
             let found = 255.0 * m.color(u, 0.5)[0];
             assert!((found - level).abs() < 2.5, "{u}: {found} for {level}");
+        }
+    }
+
+    /// Opacity that it draws at u, v: it is bilinear even so.
+    #[test]
+    fn opacity_is_not_smooth() {
+        let stop =
+            |path: &str, opacity: f64| format!("<stop path='{path}' stop-color='#000' stop-opacity='{opacity}'/>");
+        let first = [stop("l 160,0", 1.0), stop("l 0,160", 0.2), stop("l -160,0", 0.6), stop("l 0,-160", 0.0)].concat();
+        let second = [stop("l 160,0", 0.0), stop("l 0,160", 0.8), stop("l -160,0", 0.4)].concat();
+        let row = format!("<meshrow><meshpatch>{first}</meshpatch><meshpatch>{second}</meshpatch></meshrow>");
+        let m = mesh(&format!("<meshgradient id='m' type='bicubic'>{row}</meshgradient>")).unwrap();
+        for (x, y, drawn) in [(20, 40, 0.69), (80, 80, 0.447), (120, 20, 0.404), (240, 120, 0.502), (60, 120, 0.341)] {
+            let [u, v] = [x, y].map(|t| (f64::from(t) + 0.5) / 160.0);
+            assert!((m.color(u, v)[3] - drawn).abs() < 0.006, "{x},{y}: {}", m.color(u, v)[3]);
         }
     }
 }
