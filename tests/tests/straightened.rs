@@ -335,6 +335,31 @@ fn what_does_not_fit_is_left_out_and_said() {
 }
 
 #[test]
+fn what_is_wrong_with_a_picture_is_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let pixmap = painted(160, 80, |x, y| [x as u8, y as u8, 99]);
+    let whole = Picture { exif: Some(exif()), ..Picture::from(pixmap) }.write(PictureFormat::WebP).unwrap();
+    // The EXIF data of a WebP come last.
+    let at = whole.windows(4).rposition(|w| w == b"EXIF").unwrap();
+    fs::write(dir.join("whole.webp"), &whole).unwrap();
+    fs::write(dir.join("cut.webp"), &whole[..at + 60]).unwrap();
+    fs::write(dir.join("torn.jpg"), &[b"XX", &whole[..]].concat()).unwrap();
+    let still =
+        |file: &str, more: &[&str]| run(dir, &[&["affine", file, "--rotate", "0", "-o", "out.png"], more].concat());
+    assert_eq!(still("whole.webp", &[]), (0, String::new()));
+    for (file, more, wanted, said) in [
+        ("cut.webp", &[][..], 0, "EXIF data are damaged"),
+        ("torn.jpg", &[], 3, "torn.jpg: begins as no PNG, JPEG or WebP picture does"),
+        ("whole.webp", &["--kerf", "1mm"], 2, "--kerf is for SVG files"),
+        ("whole.webp", &["--fit", "none", "+", "affine", "--move-x", "999"], 0, "nothing of the picture"),
+    ] {
+        let (code, found) = still(file, more);
+        assert!(code == wanted && found.contains(said), "{file} {more:?}: {code} {found}");
+    }
+}
+
+#[test]
 fn a_jpeg_cut_short_is_said_to_be() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();

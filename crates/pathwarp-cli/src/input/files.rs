@@ -197,6 +197,12 @@ pub(crate) fn described(bytes: &[u8], name: &Path) -> Option<String> {
             "is a web page, not an SVG drawing; download the drawing itself (its address ends in .svg)".to_owned(),
         );
     }
+    if ["png", "jpg", "jpeg", "webp"].contains(&extension) && !text.starts_with(b"<") {
+        return Some(
+            "begins as no PNG, JPEG or WebP picture does: it is damaged, or something else; get a whole copy of it"
+                .to_owned(),
+        );
+    }
     if text.starts_with(b"<") || bytes.contains(&b'<') || bytes.contains(&0) {
         return None;
     }

@@ -15,7 +15,7 @@ use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, Step};
 use pathwarp::{Error, Outline, fold};
-use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, header_size, shown, warp_image};
+use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, Pixmap, extent, header_size, shown, warp_image};
 use pathwarp_svg::{OnError, PageFit};
 use std::path::Path;
 use std::sync::Arc;
@@ -46,6 +46,7 @@ impl PictureArtwork {
             (options.embed_recipe, "embed-recipe"),
             (options.preview.is_some(), "preview"),
             (options.page_width.is_some() || options.page_height.is_some(), "page-width"),
+            (options.kerf.is_some(), "kerf"),
         ] {
             if given {
                 return Err(Failure::usage(format!("--{option} is for SVG files; {name} is a picture")));
@@ -172,6 +173,10 @@ impl FileArtwork for PictureArtwork {
         };
         let pixmap = warp_image(&warp)?;
         self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
+        let is_seen = |p: &Pixmap| p.pixels().iter().any(|c| c.alpha() > 0);
+        if is_seen(&self.picture.pixmap) && !is_seen(&pixmap) {
+            warnings.push("nothing of the picture is in the result".to_owned());
+        }
         let warped = self.picture.remade(pixmap, options.keep_location);
         let lost = [
             (self.picture.profile.is_some() && warped.profile.is_none(), "the colour profile is not one for RGB"),

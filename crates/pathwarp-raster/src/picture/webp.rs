@@ -32,7 +32,9 @@ impl Bitmap for WebP<'_> {
     }
 
     fn exif(&mut self) -> Option<Vec<u8>> {
-        self.decoder.exif_metadata().ok().flatten()
+        let found = self.decoder.exif_metadata().ok().flatten();
+        // Of those of a file that ends before them, nothing is left.
+        found.or_else(|| announces_exif(self.bytes).then(Vec::new))
     }
 
     fn decode(mut self: Box<Self>, to: &mut Pixmap) -> Result<(), Error> {
@@ -64,6 +66,13 @@ fn first_frame_fits(bytes: &[u8]) -> Option<bool> {
     let frame = [[a, b, c, 0], [d, e, f, 0]].map(|side| u32::from_le_bytes(side) + 1);
     let (&[.., a, b, c, d], _) = picture.split_first_chunk::<10>()?;
     Some([[a, b], [c, d]].map(|side| u32::from(u16::from_le_bytes(side) & 0x3fff)) == frame)
+}
+
+/// Returns `true` if the header says that there are EXIF data.
+fn announces_exif(bytes: &[u8]) -> bool {
+    const EXIF: u8 = 8;
+    let first = bytes.get(12..).and_then(|b| chunks(b).next());
+    first.is_some_and(|(name, data)| &name == b"VP8X" && data.first().is_some_and(|flags| flags & EXIF != 0))
 }
 
 /// Lists the chunks of a RIFF file with their names. The last one may be cut short.
