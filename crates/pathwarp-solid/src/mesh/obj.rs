@@ -40,7 +40,7 @@ pub fn read(text: &[u8]) -> Result<Mesh, MeshError> {
     }
     check(&mesh, text)?;
     if mesh.positions.is_empty() {
-        return Err(MeshError::whole("holds no vertices (lines `v x y z`)"));
+        return Err(MeshError::whole("holds no vertices (lines `v x y z`); models are read as OBJ, STL, PLY and glTF"));
     }
     mesh.left_out = skipped.into_iter().map(|(what, n)| format!("{n} lines of `{what}`")).collect();
     Ok(mesh)

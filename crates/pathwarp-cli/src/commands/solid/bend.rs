@@ -154,7 +154,8 @@ pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: 
     // Nobody misses the names of a drawing's shapes in a file for a printer.
     lost.retain(|what| !(drawn && *what == NAMES));
     if !lost.is_empty() {
-        warnings.push(format!("the format of the result has no room for {}; .obj and .glb have", lost.join(", ")));
+        let others = if format == ModelFormat::Obj { ".glb has" } else { ".obj and .glb have" };
+        warnings.push(format!("the format of the result has no room for {}; {others}", lost.join(", ")));
     }
     warnings.extend(work.warnings(&built));
     warnings.extend(mesh_warnings(&deformed).into_iter().map(|w| work.flags.in_text(&w)));

@@ -216,7 +216,8 @@ impl ModelFormat {
             check(corners(|c| c.uv), "texture coordinates");
             check(corners(|c| c.normal), "normals of vertices");
             check(!mesh.colors.is_empty(), "colours");
-            check(kinds(PolygonKind::Line) || kinds(PolygonKind::Points), "lines and points");
+            let is_cloud = mesh.polygons.is_empty() && !mesh.positions.is_empty();
+            check(is_cloud || kinds(PolygonKind::Line) || kinds(PolygonKind::Points), "lines and points");
         }
         if self == Self::Obj && mesh.is_translucent() {
             out.push("the opacity of vertices");

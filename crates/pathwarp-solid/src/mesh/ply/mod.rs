@@ -11,6 +11,7 @@ use ply_rs_bw::ply::{
     PropertyType, ScalarType,
 };
 use ply_rs_bw::writer::Writer;
+use std::borrow::Cow;
 
 /// The names of a vertex's numbers, in the order of [`Element::values`]; each number may go by several names.
 const NAMES: [&[&str]; 12] = [
@@ -154,8 +155,9 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
         let text: String = e.to_string().lines().next().unwrap_or_default().chars().take(200).collect();
         MeshError::whole(format!("is a damaged PLY file: {text}"))
     };
+    let bytes = plain(bytes);
     let parser = Parser::<Element>::new();
-    let mut reader = Reader::new(bytes);
+    let mut reader = Reader::new(&*bytes);
     let header = parser.read_header(&mut reader).map_err(damaged)?;
     let mut mesh = Mesh::default();
     for element in header.elements.values() {
@@ -173,6 +175,36 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
         return Err(MeshError::whole("holds no vertices"));
     }
     Ok(mesh)
+}
+
+/// Text as the parser takes it: numbers like `.5` and `5.` get their zeros, and empty lines are left out. Binary files stay.
+fn plain(bytes: &[u8]) -> Cow<'_, [u8]> {
+    /// The format stands near the beginning.
+    const HEAD: usize = 1024;
+    const ASCII: &[u8] = b"format ascii";
+    let is_text = bytes.windows(ASCII.len()).take(HEAD).any(|w| w == ASCII);
+    let Some(text) = std::str::from_utf8(bytes).ok().filter(|_| is_text) else { return bytes.into() };
+    let lacks_zero =
+        |t: &str| t.trim_start_matches(['+', '-']).starts_with('.') || t.ends_with('.') || t.contains(".e");
+    let is_odd = |t: &str| lacks_zero(&t.to_ascii_lowercase()) && t.parse::<f64>().is_ok();
+    let lines = || text.split(['\n', '\r']).map(str::trim_ascii);
+    let is_odd_line = |line: &str| line.is_empty() || line.split_ascii_whitespace().any(is_odd);
+    if !lines().rev().skip(1).any(is_odd_line) {
+        return bytes.into();
+    }
+    let mut out = String::with_capacity(text.len() + HEAD);
+    for line in lines().filter(|line| !line.is_empty()) {
+        for word in line.split_ascii_whitespace() {
+            match word.parse::<f64>() {
+                Ok(v) if is_odd(word) => out.push_str(&v.to_string()),
+                _ => out.push_str(word),
+            }
+            out.push(' ');
+        }
+        out.pop();
+        out.push('\n');
+    }
+    out.into_bytes().into()
 }
 
 /// Checks, before elements are read, that as many as announced fit into the `left` bytes of the file.

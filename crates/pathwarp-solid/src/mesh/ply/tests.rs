@@ -31,6 +31,17 @@ fn quads_colours_normals_and_edges_come_back() {
     assert_eq!(back.corners[..4], quad.corners[..4]);
 }
 
+/// Other programs leave zeros out, and lines empty.
+#[test]
+fn numbers_may_lack_zeros_and_lines_be_empty() {
+    let loose = TEXT.replace("0.5", ".5").replace("1 1 .5", "1. +1.e0 5.E-1").replace("end_header\n", "end_header\n\n");
+    assert_ne!(loose, TEXT);
+    for text in [loose.clone(), loose.replace('\n', "\r\n"), format!("{loose}\n \n")] {
+        assert_eq!(read(text.as_bytes()), read(TEXT.as_bytes()), "{text}");
+    }
+    assert!(read(TEXT.replace("0 0 0.5", "0 0 .").as_bytes()).is_err());
+}
+
 #[test]
 fn opacity_stays() {
     let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n\
