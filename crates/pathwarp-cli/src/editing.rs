@@ -166,13 +166,19 @@ impl EditedArtwork {
     }
 }
 
-/// A recipe and options as a command line has them, where what the only step selects is an option.
+/// What selects the whole drawing.
+const WHOLE: &str = "svg";
+
+/// A recipe and options as a command line has them: what the only step selects is an option, and beside steps for parts, others name the
+/// whole drawing.
 fn on_a_line(recipe: &Recipe, given: &Given) -> Result<(Recipe, Given), Failure> {
     let (mut recipe, mut given) = (recipe.clone(), given.clone());
     if let [step] = &mut *recipe.steps {
         for (option, of) in OF_STEPS {
             std::mem::take(of(step)).iter().try_for_each(|s| given.set(option, s)).map_err(Failure::Usage)?;
         }
+    } else if recipe.steps.iter().any(|s| !s.select.is_empty()) {
+        recipe.steps.iter_mut().filter(|s| s.select.is_empty()).for_each(|s| s.select.push(WHOLE.into()));
     }
     Ok((recipe, given))
 }
@@ -320,6 +326,7 @@ impl EditorHost {
                 if let [step] = &mut *saved.recipe.steps {
                     OF_STEPS.iter().for_each(|(option, of)| of(step).extend(saved.options.take(option)));
                 }
+                saved.recipe.steps.iter_mut().filter(|s| s.select == [WHOLE]).for_each(|s| s.select.clear());
                 first_steps::put(&mut saved.recipe, |name| saved.options.take(name).pop());
                 (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given))
             }

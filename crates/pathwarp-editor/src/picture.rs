@@ -29,7 +29,7 @@ impl Picture {
             indent: Indent::Spaces(0),
             ..WriteOptions::default()
         };
-        let text = tree.to_string(&options);
+        let text = well_formed(&tree.to_string(&options));
         Ok(Self { lines: text.lines().map(ToOwned::to_owned).collect() })
     }
 
@@ -41,7 +41,7 @@ impl Picture {
         let seen = tree.root().abs_layer_bounding_box();
         let margin = MARGIN * seen.width().max(seen.height());
         let options = WriteOptions { coordinates_precision: 2, indent: Indent::Spaces(0), ..WriteOptions::default() };
-        let text = tree.to_string(&options);
+        let text = well_formed(&tree.to_string(&options));
         let (_, rest) = text.split_once('>').ok_or("the drawing has no root")?;
         let (x, y) = (seen.x() - margin, seen.y() - margin);
         let (width, height) = (seen.width() + 2.0 * margin, seen.height() + 2.0 * margin);
@@ -105,6 +105,26 @@ impl Picture {
         }
         Some(out)
     }
+}
+
+/// Escapes the names in a text of usvg's, which escapes quotes alone, and keeps each on its line.
+fn well_formed(text: &str) -> String {
+    let (mut out, mut done, mut quoted) = (String::with_capacity(text.len()), 0, false);
+    for (at, sign) in text.match_indices(['"', '<', '&', '\n']) {
+        quoted ^= sign == "\"";
+        let written = match sign {
+            "<" => "&lt;",
+            "&" if !text[at..].starts_with("&quot;") => "&amp;",
+            "\n" => " ",
+            _ => continue,
+        };
+        if quoted {
+            out += &text[done..at];
+            out += written;
+            done = at + 1;
+        }
+    }
+    out + &text[done..]
 }
 
 /// The place of the path data in a line.
@@ -236,6 +256,17 @@ fn is_same(a: &str, b: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn any_name_is_shown() {
+        let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path id="a&lt;&amp;&quot;&#10;b" d="M1,1h5v5z"/></svg>"#;
+        for text in [Picture::of(svg, 2).unwrap().text(), Picture::small(svg).unwrap()] {
+            let document =
+                pathwarp_svg::Document::read(text.as_bytes(), "the picture", &ReadOptions::default()).unwrap();
+            let id = &document.parts()[0].name;
+            assert!(id.ends_with("a<&\" b"), "{id}");
+        }
+    }
 
     fn picture(body: &str) -> Picture {
         let svg = format!(

@@ -102,14 +102,15 @@ pub(crate) fn laid(registry: &Registry, mut step: PageStep, from: Rect, to: Rect
     step
 }
 
-/// A step of another drawing with its circles and arcs laid from that one's box onto this one's, and for no parts: those of another drawing
-/// have other names.
+/// A step of another drawing, laid from the box it had onto one of this drawing with its circles and arcs, and for no parts: those of another
+/// drawing have other names.
 pub(crate) fn brought(registry: &Registry, step: PageStep, from: Option<Rect>, to: Rect) -> PageStep {
-    let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
-    let mut step = PageStep { select: Vec::new(), exclude: Vec::new(), ..step };
-    for p in params.iter().filter(|p| p.kind == Kind::Path) {
-        for value in step.args.get_mut(p.name).into_iter().flatten() {
-            *value = from.and_then(|from| laid_arc(value, onto(from, to))).unwrap_or_else(|| value.clone());
+    let step = PageStep { select: Vec::new(), exclude: Vec::new(), ..step };
+    let Some(from) = from else { return step };
+    let mut step = laid(registry, step, from, to);
+    for value in step.args.values_mut().flatten() {
+        if let Some(laid) = laid_arc(value, onto(from, to)) {
+            *value = laid;
         }
     }
     step
@@ -122,7 +123,7 @@ fn laid_arc(text: &str, onto: Affine) -> Option<String> {
     let pairs: Vec<(&str, &str)> = rest.split(',').map(|pair| pair.split_once('=')).collect::<Option<_>>()?;
     let number = |name: &str| pairs.iter().find(|(n, _)| *n == name)?.1.parse::<f64>().ok();
     let (centre, r) = (onto * Point::new(number("cx")?, number("cy")?), number("r")?);
-    let pair = |(name, value): &(&str, &str)| match *name {
+    let pair = |&(name, value): &(&str, &str)| match name {
         "cx" => format!("cx={}", centre.x),
         "cy" => format!("cy={}", centre.y),
         "r" => format!("r={}", r * onto.determinant().abs().sqrt()),

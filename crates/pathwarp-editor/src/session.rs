@@ -162,11 +162,13 @@ impl Session {
             return Ok(());
         }
         let mut other = self.with_drawing(file, &svg)?;
-        let steps = self.kept.now.steps.clone();
-        let frames = self.frames(&steps)?;
-        let kept = steps.into_iter().zip(frames).filter_map(|(step, frame)| Some((other.for_own_parts(step)?, frame)));
-        let kept: Vec<_> = kept.collect();
-        let steps = other.laid(kept.into_iter())?;
+        let (old_steps, mut steps) = (self.kept.now.steps.clone(), Vec::new());
+        let frames = self.frames(&old_steps)?;
+        for (step, from) in old_steps.into_iter().zip(frames) {
+            let Some(step) = other.for_own_parts(step) else { continue };
+            let to = other.frame_of(&steps, &step.select)?;
+            steps.push(presets::laid(other.host.registry(), step, from, to));
+        }
         let mut kept = self.kept.clone();
         kept.set_anew(&old, svg, steps);
         self.redraw(other, kept)
@@ -202,16 +204,6 @@ impl Session {
         }
         *self = Self { first: self.first.take(), ..other };
         Ok(())
-    }
-
-    /// Steps with their paths laid from the boxes that they had onto those of this drawing.
-    fn laid(&mut self, given: impl Iterator<Item = (PageStep, Rect)>) -> Result<Vec<PageStep>, String> {
-        let mut out = Vec::new();
-        for (step, from) in given {
-            let to = self.frame_of(&out, &step.select)?;
-            out.push(presets::laid(self.host.registry(), step, from, to));
-        }
-        Ok(out)
     }
 
     /// Copies a file that a step is to read beside the drawing, and answers with the text that names it in a step. A file that is
@@ -474,8 +466,7 @@ impl Session {
         let mut out = Vec::new();
         for (step, from) in preset.steps_with_frames() {
             let to = self.frame_of(&out, &[])?;
-            let step = presets::brought(self.host.registry(), step, from, to);
-            out.push(from.map_or(step.clone(), |from| presets::laid(self.host.registry(), step, from, to)));
+            out.push(presets::brought(self.host.registry(), step, from, to));
         }
         Ok(out)
     }

@@ -22,7 +22,8 @@ export const keyboard_alone = () => within(async (page) => {
   const [x, y] = await middle(page, key);
   await page.keyboard.press("Shift+ArrowUp");
   await page.keyboard.press("ArrowRight");
-  await page.waitForTimeout(900);
+  await page.waitForFunction(() => !document.querySelector("#undo").disabled);
+  await quiet(page);
   const [nx, ny] = await middle(page, key);
   check(Math.abs(nx - x - 1) < 0.6 && Math.abs(ny - y + 10) < 0.6, `moved by ${nx - x},${ny - y}`);
   check((await paths(page)) !== before, "the picture did not follow");
@@ -35,7 +36,8 @@ export const typed_numbers = () => within(async (page) => {
   await page.locator('.knob[data-key="shaper/0.0/2"]').focus();
   await page.fill("#place-x", "600");
   await page.keyboard.press("Enter");
-  await page.waitForTimeout(900);
+  await page.waitForFunction(() => !document.querySelector("#undo").disabled);
+  await quiet(page);
   check((await page.inputValue("#place-x")) === "600", "the number is not kept");
 });
 

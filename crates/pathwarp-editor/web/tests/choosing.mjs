@@ -1,6 +1,6 @@
 // Settings and steps: controls of every kind, files, the choice of further steps, and other drawings.
 import { existsSync, readFileSync } from "node:fs";
-import { check, choose, drag, edit, folder, open, paths, quiet, sample } from "./harness.mjs";
+import { becomes, check, choose, drag, edit, folder, open, paths, quiet, sample } from "./harness.mjs";
 
 async function within(test, { drawing = sample("logo.svg") } = {}) {
   const dir = folder({ "logo.svg": drawing, "badge.svg": sample("badge.svg") });
@@ -53,7 +53,7 @@ export const files_are_chosen = () => within(async (page, dir, editor) => {
   const again = await edit(`${dir}/logo-bent.svg`);
   const page2 = await open(again.address);
   try {
-    check((await paths(page2)) === bent, "the result looks different when opened again");
+    await becomes(page2, bent, "the result looks different when opened again");
     await choose(page2, "Arc");
     await page2.setInputFiles("#settings [aria-label=Style]", sample("roof.toml"));
     await page2.waitForFunction(() => document.querySelector("#set-style").value === "roof.toml");

@@ -1,7 +1,7 @@
 // Saving, opening again, drafts, dropped files, two pages, the end of the server.
 import { chmodSync, existsSync, readFileSync, readdirSync } from "node:fs";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
-import { OWN, becomes, check, choose, drag, edit, folder, middle, open, paths, program, quiet, root, sample } from "./harness.mjs";
+import { OWN, becomes, changes, check, choose, drag, edit, folder, middle, open, paths, program, quiet, root, sample } from "./harness.mjs";
 
 async function within(file, test, ...args) {
   const dir = folder({ "logo.svg": file ?? sample("logo.svg") });
@@ -29,7 +29,7 @@ export const a_flag_is_saved_and_opened_again = () => within(null, async ({ dir,
   const again = await edit(saved);
   const page2 = await open(again.address);
   try {
-    check((await paths(page2)) === before, "the file looks different when opened again");
+    await becomes(page2, before, "the file looks different when opened again");
     check((await page2.textContent("#steps")).includes("Flag"), "the step is not there again");
     await page2.locator("#settings input[type=range]").first().focus();
     await page2.keyboard.press("ArrowRight");
@@ -81,14 +81,12 @@ export const a_crash_loses_nothing = () => within(null, async ({ dir, page, edit
   const again = await edit(`${dir}/logo.svg`);
   const page2 = await open(again.address);
   try {
-    check((await paths(page2)) === before, "the steps are not there again");
+    await becomes(page2, before, "the steps are not there again");
     await page2.reload();
     await page2.waitForSelector(".knob");
-    await quiet(page2);
-    check((await paths(page2)) === before, "a reload loses the steps");
+    await becomes(page2, before, "a reload loses the steps");
     await page2.click("#undo");
-    await quiet(page2);
-    check((await paths(page2)) !== before, "a crash loses the history");
+    await changes(page2, before);
   } finally {
     again.stop();
     await page2.context().close();

@@ -125,8 +125,15 @@ export async function quiet(page) {
   await page.waitForTimeout(60);
   await page.waitForFunction(() => !document.querySelector(".knob.held"));
   await page.waitForTimeout(150);
-  await page.waitForFunction(() => document.querySelector("#view").getAttribute("aria-busy") !== "true");
+  // One answer may lead to the next question.
+  for (let i = 0; i < 2; i++) await page.waitForFunction(() => document.querySelector("#view").getAttribute("aria-busy") !== "true");
 }
+
+/** Waits until the picture is another than this one. */
+export const changes = (page, picture) => page.waitForFunction((was) => Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) path"), (p) => p.getAttribute("d")).join("|") !== was, picture);
+
+/** Waits until something in the page has another text than this one. */
+export const turns = (page, selector, text) => page.waitForFunction(([s, was]) => document.querySelector(s).textContent !== was, [selector, text]);
 
 /** Drags a handle by so many px, in steps. */
 export async function drag(page, key, dx, dy, steps = 12) {

@@ -168,6 +168,7 @@ export const strangers_at_the_port_learn_no_token = () => within(async ({ page, 
   });
   await new Promise((done) => stranger.listen(Number(port), "127.0.0.1", done));
   try {
+    for (let i = 0; i < 100 && asked.length === 0; i++) await page.waitForTimeout(100);
     await page.waitForTimeout(2500);
     check(asked.length > 0 && asked.every((a) => !a.includes(token)), asked.join("\n"));
     check(await page.isVisible("#gone"), "the page takes a stranger for the program");

@@ -1,5 +1,5 @@
 // Ways of moving handles and the view: snapping, symmetry, smooth nodes, keys, Escape, zoom.
-import { becomes, check, choose, drag, edit, folder, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { becomes, changes, check, choose, drag, edit, folder, middle, open, paths, quiet, sample, turns } from "./harness.mjs";
 
 async function within(test, options) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
@@ -102,8 +102,7 @@ export const escape_takes_a_drag_back = () => within(async (page) => {
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x + 40, y - 40, { steps: 6 });
-  await page.waitForTimeout(200);
-  check((await paths(page)) !== before, "the picture does not follow");
+  await changes(page, before);
   await page.keyboard.press("Escape");
   await becomes(page, before, "the picture is not as it was");
   await page.mouse.up();
@@ -131,7 +130,7 @@ export const the_view_moves_and_fits = () => within(async (page) => {
   const fitted = await zoom();
   await page.mouse.move(...before);
   await page.mouse.wheel(0, -300);
-  await page.waitForTimeout(100);
+  await turns(page, "#zoom", fitted);
   const [x, y] = await middle(page, CORNER);
   check((await zoom()) !== fitted && Math.hypot(x - before[0], y - before[1]) < 1, "the wheel does not zoom about the pointer");
   await page.mouse.move(640, 680);
@@ -152,8 +151,9 @@ export const the_view_moves_and_fits = () => within(async (page) => {
     await page.click("#fit");
   }
   // The window changes, and the view with it, until somebody moves it.
+  const wide = await zoom();
   await page.setViewportSize({ width: 1000, height: 600 });
-  await page.waitForTimeout(200);
+  await turns(page, "#zoom", wide);
   const stage = await page.locator("#stage").boundingBox();
   check((await middle(page, CORNER))[0] < stage.x + stage.width, "the drawing is cut off in a smaller window");
 });
@@ -168,7 +168,8 @@ export const two_fingers_zoom = () => within(async (page) => {
   await touch("touchStart", before, second);
   for (let i = 1; i <= 5; i++) await touch("touchMove", [before[0] + 10 * i, before[1]], [second[0] - 10 * i, second[1]]);
   await touch("touchEnd");
-  await page.waitForTimeout(200);
+  await turns(page, "#zoom", zoom);
+  await quiet(page);
   const ratio = parseInt(await page.textContent("#zoom"), 10) / parseInt(zoom, 10);
   check(Math.abs(ratio - 2) < 0.1, `fingers twice as far apart zoom by ${ratio}`);
   check((await paths(page)) === picture && (await page.isDisabled("#undo")), "the handle was moved");

@@ -1,5 +1,5 @@
 // Several points at once: selected by a frame, clicks or a line, and moved, turned and scaled together.
-import { becomes, check, choose, drag, edit, folder, keys, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { becomes, changes, check, choose, drag, edit, folder, keys, middle, open, paths, quiet, sample } from "./harness.mjs";
 
 async function within(shape, test) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
@@ -70,7 +70,10 @@ export const points_in_a_frame = () => within("Grid", async (page) => {
   moved(dragged, scaled, (k, [x, y]) => (mine.includes(k) ? [(x + a[0]) / 2, (y + a[1]) / 2] : null));
 
   await page.locator('.knob[data-key="at/5"]').focus();
+  const unmoved = await paths(page);
   for (let i = 0; i < 3; i++) await page.keyboard.press("Shift+ArrowLeft");
+  await changes(page, unmoved);
+  // Keys that follow each other are one change after a pause.
   await page.waitForTimeout(700);
   await quiet(page);
   moved(scaled, await places(page), (k, [x, y]) => (mine.includes(k) ? [x - 30, y] : null));

@@ -1,7 +1,7 @@
 // An hour of real work: corners of cages, undo, fields. Real mouse moves and real keys.
 import { execFileSync } from "node:child_process";
 import { readFileSync, rmSync } from "node:fs";
-import { becomes, check, choose, drag, edit, folder, keys, middle, open, paths, program, quiet, sample } from "./harness.mjs";
+import { becomes, changes, check, choose, drag, edit, folder, keys, middle, open, paths, program, quiet, sample } from "./harness.mjs";
 
 async function within(shape, test, options = {}) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
@@ -114,7 +114,7 @@ export const undo_during_a_drag = () => within("Arc", async (page) => {
   await page.mouse.move(box.x + 8 + at * (box.width - 16), box.y + box.height / 2);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width * 0.2, box.y + box.height / 2, { steps: 6 });
-  check((await value(page, "set-bend")) !== shown, "the field does not follow the slider");
+  await page.waitForFunction((was) => document.querySelector("#set-bend").value !== was, shown);
   await page.keyboard.press("Control+z");
   await page.mouse.move(box.x + box.width * 0.3, box.y + box.height / 2, { steps: 3 });
   await page.mouse.up();
@@ -129,9 +129,9 @@ export const slider_keys_are_one_change = () => within("Arc", async (page) => {
   for (const id of ["set-bend-slider", "set-bend"]) {
     await page.focus(`#${id}`);
     for (let i = 0; i < 6; i++) await page.keyboard.press(id === "set-bend" ? "Shift+ArrowUp" : "ArrowRight");
+    await changes(page, before);
     await page.waitForTimeout(700);
     await quiet(page);
-    check((await paths(page)) !== before, `keys in ${id} do nothing`);
     await page.click("#undo");
     await becomes(page, before, `keys in ${id} are more than one change`);
   }
@@ -190,6 +190,7 @@ export const fields_of_numbers = () => within("Arc", async (page) => {
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x, y - 30, { steps: 5 });
+  await page.waitForFunction(() => document.querySelector("#set-bend").value !== "21");
   const during = [await value(page, "set-bend"), await page.inputValue("#set-bend-slider")].map(Number);
   await page.mouse.up();
   check(during[0] !== 21 && Math.abs(during[0] - during[1]) < 1, `${during} during the drag`);
@@ -401,16 +402,18 @@ export const nothing_to_save_is_said = () => within(null, async (page) => {
 /** A drawing that is opened in one tab is announced in the other, with its own original. */
 export const another_tab_opens_a_drawing = () => within("Arc", async (page, dir, editor) => {
   await page.keyboard.down("b");
-  await page.waitForTimeout(200);
+  await page.waitForSelector("#stage.before");
   await page.keyboard.up("b");
   const other = await open(editor.address);
   await other.setInputFiles("#open-file", sample("badge.svg"));
   await page.waitForSelector("#toast.on:has-text('badge.svg has been opened in another tab')");
   await page.waitForFunction(() => document.querySelector("#file").textContent === "badge.svg");
   await quiet(page);
+  await quiet(other);
   const shown = (p) => p.$$eval("#stage .art:not([visibility=hidden]) path", (all) => all.length);
   await page.keyboard.down("b");
-  await page.waitForTimeout(400);
+  await page.waitForSelector("#stage.before");
+  await quiet(page);
   const [mine, theirs] = [await shown(page), await shown(other)];
   await page.keyboard.up("b");
   check(mine === theirs, `the original has ${mine} paths instead of ${theirs}`);
@@ -467,11 +470,11 @@ export const presets_ask_before_they_replace = () => within("Flag", async (page)
     await page.click("#keep-preset");
     await page.fill("#preset-name", name);
     await page.keyboard.press("Enter");
-    await page.waitForTimeout(300);
   };
   await keep("Twice");
-  check(!(await page.isVisible("#preset-dialog")), "it was not kept");
+  await page.waitForFunction(() => !document.querySelector("#preset-dialog").open);
   await keep("Twice");
+  await page.waitForFunction(() => document.querySelector("#preset-message").textContent !== "");
   check((await page.textContent("#preset-message")).includes("exists") && (await page.isVisible("#preset-replace")), "it was replaced without a word");
   await page.click("#preset-replace");
   await page.waitForFunction(() => !document.querySelector("#preset-dialog").open);
