@@ -3892,6 +3892,7 @@
       const stop = new AbortController();
       const listen = { signal: stop.signal, capture: true };
       this.stop = () => stop.abort();
+      stage2.pick(null);
       stage2.svg.classList.add("picking");
       toast(HINTS[kind]);
       const done = (value) => {
@@ -4254,10 +4255,7 @@
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
   };
   var sketching = new Sketching(stage);
-  settings.onDraw = (kind, take) => {
-    stage.pick(null);
-    sketching.begin(kind, take);
-  };
+  settings.onDraw = (kind, take) => sketching.begin(kind, take);
   settings.onOther = () => {
     stage.pick(null);
     sketching.end();

@@ -8,6 +8,7 @@ use crate::grips::path_data;
 use crate::host::Host;
 use crate::protocol::PageStep;
 use pathwarp::Outline;
+use pathwarp::decimal::trimmed;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::param::Kind;
@@ -116,6 +117,9 @@ pub(crate) fn brought(registry: &Registry, step: PageStep, from: Option<Rect>, t
     step
 }
 
+/// Decimals of circles that have been laid onto another box.
+const DECIMALS: usize = 4;
+
 /// A circle or an arc with its centre in another place, and as large as that place's scale has it. `None` if it is given by other units, or
 /// the text is something else.
 fn laid_arc(text: &str, onto: Affine) -> Option<String> {
@@ -124,9 +128,9 @@ fn laid_arc(text: &str, onto: Affine) -> Option<String> {
     let number = |name: &str| pairs.iter().find(|(n, _)| *n == name)?.1.parse::<f64>().ok();
     let (centre, r) = (onto * Point::new(number("cx")?, number("cy")?), number("r")?);
     let pair = |&(name, value): &(&str, &str)| match name {
-        "cx" => format!("cx={}", centre.x),
-        "cy" => format!("cy={}", centre.y),
-        "r" => format!("r={}", r * onto.determinant().abs().sqrt()),
+        "cx" => format!("cx={}", trimmed(centre.x, DECIMALS)),
+        "cy" => format!("cy={}", trimmed(centre.y, DECIMALS)),
+        "r" => format!("r={}", trimmed(r * onto.determinant().abs().sqrt(), DECIMALS)),
         _ => format!("{name}={value}"),
     };
     Some(format!("{kind}:{}", pairs.iter().map(pair).collect::<Vec<_>>().join(",")))

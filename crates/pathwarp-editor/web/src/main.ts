@@ -43,10 +43,7 @@ stage.onZoom = () => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
 };
 const sketching = new Sketching(stage);
-settings.onDraw = (kind, take) => {
-  stage.pick(null);
-  sketching.begin(kind, take);
-};
+settings.onDraw = (kind, take) => sketching.begin(kind, take);
 settings.onOther = () => {
   stage.pick(null);
   sketching.end();

@@ -36,6 +36,7 @@ export class Sketching {
     const stop = new AbortController();
     const listen = { signal: stop.signal, capture: true };
     this.stop = () => stop.abort();
+    stage.pick(null);
     stage.svg.classList.add("picking");
     toast(HINTS[kind]);
     const done = (value: string | null) => {

@@ -149,17 +149,6 @@ export interface Summary {
   folds: [string, XY][];
 }
 
-/** A target as it is kept for the next time the page is loaded. */
-export interface KeptTarget {
-  name: string;
-  type: string;
-  /** Its content, as base64. */
-  bytes: string;
-  place: { x: number; y: number; width: number };
-  /** In per cent. */
-  opacity: string;
-}
-
 export type Picture = { whole: string } | { changes: [number, string, string][] };
 
 export interface Answer {
@@ -178,7 +167,8 @@ export interface Answer {
   step?: Step;
   at?: XY | null;
   text?: string;
-  target?: KeptTarget | null;
+  /** The target as it was kept, with its content as base64. */
+  target?: { name: string; type: string; bytes: string; place: { x: number; y: number; width: number }; opacity: string } | null;
   written?: string;
   exists?: string;
   /** The reason why nothing could be written. */
