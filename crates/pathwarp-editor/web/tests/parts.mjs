@@ -249,3 +249,65 @@ export const lines_are_drawn = () => within("lettering.svg", async (page) => {
   await page.keyboard.press("Escape");
   check((await page.locator(".knob.node").count()) === 3, "Escape does not give up");
 });
+
+/** Artwork without a height fits into no cage; it is seen all the same, and bent along a path. */
+export const flat_artwork_is_seen = () => within(`<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 300"><path d="M10,10h300" stroke="#000"/></svg>`, async (page) => {
+  await page.locator("#note", { hasText: "Choose a shape" }).waitFor();
+  const line = await paths(page);
+  check(line.includes("10") && !(await page.isVisible("#problem")) && (await page.locator(".knob").count()) === 0, await page.textContent("#problem"));
+  await choose(page, "Bend");
+  await page.locator(".knob.node").first().waitFor();
+  check(!(await page.isVisible("#problem")), await page.textContent("#problem"));
+  await press(page, "Undo");
+  check((await paths(page)) === line, "undone, it is another drawing");
+});
+
+/** Steps for letters that other words do not have are gone with them, and come back with them; a preset is for no part of another drawing. */
+export const parts_go_with_their_words = () => within("lettering.svg", async (page) => {
+  const setWords = async (text) => {
+    await page.getByRole("button", { name: /words…$/i }).click();
+    await page.getByRole("textbox", { name: "Text" }).fill(text);
+    await page.getByRole("button", { name: "Set words" }).click();
+    await page.getByRole("dialog").waitFor({ state: "hidden" });
+    await quiet(page);
+  };
+  await setWords("Harbour");
+  await choose(page, "Flag");
+  await page.click("#parts-list summary");
+  await press(page, "Lock: Path “u”");
+  await page.getByRole("button", { name: "Add step", exact: true }).click();
+  await choose(page, "Arch");
+  await press(page, "Path “b”");
+  const bent = await paths(page);
+  await setWords("Ho");
+  check((await page.locator("#steps li").allTextContents()).join() === "1. Flag" && !(await page.isVisible("#problem")), await page.textContent("#steps"));
+  await press(page, "Undo");
+  await page.locator("#steps li").nth(1).waitFor();
+  check((await paths(page)) === bent, "the letters do not come back");
+  await page.click("#keep-preset");
+  await page.fill("#preset-name", "Two letters");
+  await page.keyboard.press("Enter");
+  await page.locator(".preset").waitFor();
+  await page.setInputFiles("#open-file", { name: "squares.svg", mimeType: "image/svg+xml", buffer: Buffer.from(SQUARES) });
+  await page.getByRole("heading", { name: "squares.svg" }).waitFor();
+  await quiet(page);
+  const before = await each(page);
+  await press(page, "Two letters");
+  check(moved(before, await each(page)) === "0,1,2,3" && !(await page.isVisible("#problem")), await page.textContent("#problem"));
+  await press(page, "Forget Two letters");
+});
+
+/** A line that was to be drawn for one shape is none of the next. */
+export const drawing_ends_with_its_shape = () => within("lettering.svg", async (page) => {
+  await choose(page, "Bend");
+  await page.getByRole("button", { name: "Draw circle" }).first().click();
+  await choose(page, "Flag");
+  const flag = await paths(page);
+  const { x, y, width, height } = await page.locator("#stage .sheet").boundingBox();
+  await page.mouse.move(x + 10, y + height - 10);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 3, y + height - 10, { steps: 4 });
+  await page.mouse.up();
+  await quiet(page);
+  check((await paths(page)) === flag && !(await page.isVisible("#problem")), `${await page.textContent("#problem")} after a drag on the sheet`);
+});
