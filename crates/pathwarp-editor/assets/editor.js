@@ -2916,9 +2916,12 @@
   function partOf(id) {
     return id.replace(/^art-/, "");
   }
+  var FARTHEST = 1e6;
   function outlineOf(path, svg, to) {
     const [from, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
-    to.setAttribute("d", path.getAttribute("d") ?? "");
+    const { width, height } = path.getBBox();
+    const isFar = m !== null && Math.hypot(width, height) * Math.hypot(m.a, m.b) > FARTHEST;
+    to.setAttribute("d", isFar ? "" : path.getAttribute("d") ?? "");
     if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
     return to;
   }
@@ -3892,7 +3895,6 @@
       const stop = new AbortController();
       const listen = { signal: stop.signal, capture: true };
       this.stop = () => stop.abort();
-      stage2.pick(null);
       stage2.svg.classList.add("picking");
       toast(HINTS[kind]);
       const done = (value) => {
@@ -3936,10 +3938,9 @@
       const circle2 = `M${x - r},${y}a${r},${r} 0 1 1 ${2 * r},0a${r},${r} 0 1 1 ${-2 * r},0`;
       this.line.setAttribute("d", kind === "circle" ? circle2 : `M${[...points, to].join("L")}`);
     }
-    /** Ends drawing. */
+    /** Ends drawing and picking. */
     end() {
-      if (!this.stop) return;
-      this.stop();
+      this.stop?.();
       this.stop = null;
       this.line.setAttribute("d", "");
       this.stage.pick(null);
@@ -4256,10 +4257,7 @@
   };
   var sketching = new Sketching(stage);
   settings.onDraw = (kind, take) => sketching.begin(kind, take);
-  settings.onOther = () => {
-    stage.pick(null);
-    sketching.end();
-  };
+  settings.onOther = () => sketching.end();
   settings.onPick = (take) => {
     sketching.end();
     toast("Click a path of the drawing");

@@ -44,10 +44,7 @@ stage.onZoom = () => {
 };
 const sketching = new Sketching(stage);
 settings.onDraw = (kind, take) => sketching.begin(kind, take);
-settings.onOther = () => {
-  stage.pick(null);
-  sketching.end();
-};
+settings.onOther = () => sketching.end();
 settings.onPick = (take) => {
   sketching.end();
   toast("Click a path of the drawing");

@@ -36,7 +36,6 @@ export class Sketching {
     const stop = new AbortController();
     const listen = { signal: stop.signal, capture: true };
     this.stop = () => stop.abort();
-    stage.pick(null);
     stage.svg.classList.add("picking");
     toast(HINTS[kind]);
     const done = (value: string | null) => {
@@ -83,10 +82,9 @@ export class Sketching {
     this.line.setAttribute("d", kind === "circle" ? circle : `M${[...points, to].join("L")}`);
   }
 
-  /** Ends drawing. */
+  /** Ends drawing and picking. */
   end(): void {
-    if (!this.stop) return;
-    this.stop();
+    this.stop?.();
     this.stop = null;
     this.line.setAttribute("d", "");
     this.stage.pick(null);

@@ -582,10 +582,16 @@ function partOf(id: string): string {
   return id.replace(/^art-/, "");
 }
 
+/** The largest path whose outline lights up, in px. */
+const FARTHEST = 1e6;
+
 /** Gives a path the outline of another one of the picture. */
 function outlineOf(path: SVGGraphicsElement, svg: SVGSVGElement, to: SVGPathElement): SVGPathElement {
   const [from, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
-  to.setAttribute("d", path.getAttribute("d") ?? "");
+  const { width, height } = path.getBBox();
+  // Browsers take forever to draw the stroke of a path that reaches far.
+  const isFar = m !== null && Math.hypot(width, height) * Math.hypot(m.a, m.b) > FARTHEST;
+  to.setAttribute("d", isFar ? "" : path.getAttribute("d") ?? "");
   if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
   return to;
 }
