@@ -311,19 +311,3 @@ export const drawing_ends_with_its_shape = () => within("lettering.svg", async (
   await quiet(page);
   check((await paths(page)) === flag && !(await page.isVisible("#problem")), `${await page.textContent("#problem")} after a drag on the sheet`);
 });
-
-/** A part that a map throws far away is chosen without the page standing still. */
-export const far_parts_are_chosen = () => within("badge.svg", async (page) => {
-  await choose(page, "Ring", "Effects");
-  await page.getByText("Conformal", { exact: true }).click();
-  for (const [id, value] of [["sweep", "173"], ["turn", "2.5"]]) {
-    await page.fill(`#set-${id}`, value);
-    await page.keyboard.press("Enter");
-    await quiet(page);
-  }
-  await page.click("#parts-list summary");
-  await page.locator("#parts .part-name", { hasText: /^Path$/ }).first().click();
-  await quiet(page);
-  const drawn = page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true)))));
-  check(await Promise.race([drawn, new Promise((done) => setTimeout(done, 10000))]), "the page stands still");
-});
