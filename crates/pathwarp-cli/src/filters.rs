@@ -32,6 +32,8 @@ impl Bender {
         /// Pixels per px of a picture that shows little, and where the fit is compared.
         const COARSEST: f64 = 0.25;
         const COMPARED: f64 = 2.0;
+        /// The density of a picture beside a shape whose edges are sharp, of that of pictures that stand alone.
+        const FINEST: f64 = 0.75;
         let reason = |e: Error| PictureError::from(e.to_string());
         let count = |width: f64, height: f64| {
             count_evaluations(budget, &*self.map, EVALUATED * width * height)?;
@@ -51,7 +53,7 @@ impl Bender {
         }
         let most = MOST.min(MOST_TOGETHER / r.among.max(1) as f64) / warp.bounds().area();
         let size = (warp.bounds().width(), warp.bounds().height());
-        let finest = self.seen_density(unit, size).min(most.sqrt());
+        let finest = (FINEST * self.seen_density(unit, size)).min(most.sqrt());
         let picture = |svg: Option<String>| {
             let Some(svg) = svg else { return Ok(None) };
             let Some((picture, area)) =

@@ -3,10 +3,10 @@
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
 use crate::render::draw;
-use crate::warp_image::{GridInverse, ImageWarp, lattice, shown, warp_image};
+use crate::warp_image::{GridInverse, ImageWarp, in_pixels, lattice, lengths, shown, warp_image};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::budget::{Budget, Exceeded};
-use pathwarp::map::{Creases, Map};
+use pathwarp::map::{Creases, Jet, Map};
 use std::fmt;
 use tiny_skia::{IntRect, Pixmap, Transform};
 use usvg::Node;
@@ -16,6 +16,9 @@ use usvg::filter::Kind;
 const MOST_BEFORE: f64 = 4e6;
 /// Pixels along the longer side where a drawing is compared with another.
 const COMPARED: f64 = 128.0;
+/// Fewer, which tell large differences, and the share of what is painted that must differ.
+const COMPARED_FIRST: f64 = 64.0;
+const LARGE_SHARE: f64 = 0.1;
 /// The largest difference that nobody notices, of 255, and the share of what is painted that may exceed it.
 const NOTICED: u8 = 8;
 const NOTICED_SHARE: f64 = 0.01;
@@ -24,10 +27,10 @@ const NOTICED_SHARE: f64 = 0.01;
 const SMOOTH: f64 = 3.0;
 const SMOOTH_SHARE: f64 = 0.05;
 const SHARP: f64 = 24.0;
+/// How many times as much half of the size loses, in squares, where a picture is blurred and not sharp: interpolation is of second order.
+const BLURRED: f64 = 5.0;
 /// A length that exceeds whole pixels by less is rounded.
 const ROUNDING: f64 = 1e-6;
-/// Resolutions tried, each twice the one before.
-const LEVELS: i32 = 4;
 /// The fewest pixels of a picture along a side.
 const LEAST_SIDE: f64 = 64.0;
 
@@ -42,6 +45,8 @@ pub struct DrawingWarp<'a> {
     inverse: GridInverse<'a>,
     after: Affine,
     bounds: Rect,
+    /// The lengths of the image of a unit: in the direction that shrinks most, but for a few places, and on average.
+    lengths: [f64; 2],
     count: &'a Counter<'a>,
     budget: &'a Budget,
 }
@@ -67,19 +72,36 @@ impl<'a> DrawingWarp<'a> {
         /// Reach of the inverse beyond the area, and pixels that it is made for.
         const REACH: f64 = 0.02;
         const PIXELS: f64 = 48.0;
+        /// One place of so many may shrink more than the others.
+        const FEW: usize = 20;
         let places: Vec<Point> = lattice(area, CELLS).map(|p| placed * p).collect();
-        let mut images = vec![Point::ORIGIN; places.len()];
-        map.points(&places, &mut images);
+        let mut images = vec![Jet::default(); places.len()];
+        map.jets(&places, &mut images);
         let mut creases = Creases::default();
         map.creases(&mut creases);
-        let is_defined = images.iter().all(|p| p.is_finite()) && places.iter().all(|p| creases.defined_at(*p));
-        let images = images.into_iter().map(|p| after * p);
-        let bounds = images.map(|p| Rect::from_origin_size(p, (0.0, 0.0))).reduce(|a, b| a.union(b))?;
+        let is_defined = images.iter().all(|jet| jet.p.is_finite()) && places.iter().all(|p| creases.defined_at(*p));
+        let images: Vec<Jet> = images.into_iter().map(|jet| in_pixels(&jet, after, placed)).collect();
+        let mut shortest: Vec<f64> = images.iter().map(|jet| lengths(jet)[0]).collect();
+        shortest.sort_unstable_by(f64::total_cmp);
+        let shortest = shortest[images.len() / FEW];
+        let mean = (images.iter().map(|jet| jet.det().abs()).sum::<f64>() / images.len() as f64).sqrt();
+        let bounds = images.iter().map(|jet| Rect::from_origin_size(jet.p, (0.0, 0.0))).reduce(|a, b| a.union(b))?;
         let has_area = bounds.width() > 0.0 && bounds.height() > 0.0 && bounds.is_finite();
         let place = placed.transform_rect_bbox(area);
         let reach = REACH * place.width().max(place.height());
         let inverse = || GridInverse::new(map, place, reach, Affine::IDENTITY, Affine::IDENTITY, PIXELS).strict();
-        (is_defined && has_area).then(|| Self { area, placed, map, inverse: inverse(), after, bounds, count, budget })
+        let lengths = [shortest, mean];
+        (is_defined && has_area).then(|| Self {
+            area,
+            placed,
+            map,
+            inverse: inverse(),
+            after,
+            bounds,
+            lengths,
+            count,
+            budget,
+        })
     }
 
     /// The bounding box of the image of the area.
@@ -94,11 +116,19 @@ impl<'a> DrawingWarp<'a> {
     /// # Errors
     /// The work exceeds the limits, or the renderer fails.
     pub fn resembles(&self, tree: &usvg::Tree, other: &usvg::Tree, finest: f64) -> Result<bool, Error> {
+        /// Pixels of the drawing for one of the result.
+        const SHARE: f64 = 0.8;
         let bounds = self.bounds;
-        let (target, density) = grid(bounds, (COMPARED / bounds.width().max(bounds.height())).min(finest), 1.0);
-        let picture = self.warped(tree, target, density)?;
-        let other = self.drawn(other, (bounds, target), density)?;
-        Ok(alike(&picture, &other))
+        let before = |density: f64| SHARE * density * (bounds.area() / self.area.area()).sqrt();
+        let along = |pixels: f64| pixels / bounds.width().max(bounds.height());
+        let first = Some((along(COMPARED_FIRST), LARGE_SHARE)).filter(|(density, _)| *density < finest);
+        let resembles = |(density, share): (f64, f64)| -> Result<bool, Error> {
+            let density = whole_offsets(other, density);
+            let target = grid(bounds, density);
+            let picture = self.warped(tree, (target, density), before(density))?;
+            Ok(alike(&picture, &self.drawn(other, (bounds, target), density)?, share))
+        };
+        Ok(first.map_or(Ok(true), resembles)? && resembles((along(COMPARED).min(finest), NOTICED_SHARE))?)
     }
 
     /// Warps a drawing, with at least `coarsest` and at most `finest` pixels per unit of the plane of the result. Returns the picture and
@@ -107,33 +137,38 @@ impl<'a> DrawingWarp<'a> {
     /// # Errors
     /// As for [`DrawingWarp::resembles`].
     pub fn paint(&self, tree: &usvg::Tree, coarsest: f64, finest: f64) -> Result<Option<(Pixmap, Rect)>, Error> {
+        /// The least growth from a resolution to the next.
+        const GROWTH: f64 = 1.4;
+        /// Pixels of the drawing for one of the result; where the map stretches it more, it is shown a little smoother.
+        const SHARE: f64 = 0.9;
+        /// Most of them in the direction that the map shrinks most: sampling more is slow.
+        const SHRUNK: f64 = 1.6;
+        const LEAST_SHARE: f64 = 0.5;
+        let [shortest, mean] = self.lengths;
+        let before = |density: f64| density * (SHARE * mean).min((SHRUNK * shortest).max(LEAST_SHARE * mean));
         let bounds = self.bounds;
-        let least = coarsest.max(LEAST_SIDE / bounds.width().min(bounds.height()));
-        let level = (0..LEVELS).rev().find(|k| finest * 0.5_f64.powi(*k) >= least).unwrap_or(0);
-        let (target, finest) = grid(bounds, finest, 2_f64.powi(level));
-        let density = |level: i32| finest * 0.5_f64.powi(level);
-        let mut picture = self.warped(tree, target, density(level))?;
+        let mut density = coarsest.max(LEAST_SIDE / bounds.width().min(bounds.height())).min(finest);
+        let mut target = grid(bounds, density);
+        let mut picture = self.warped(tree, (target, density), before(density))?;
         let Some(part) = painted(&picture) else { return Ok(None) };
-        let corner = Vec2::new(part.x().into(), part.y().into()) / density(level);
-        let size = (f64::from(part.width()) / density(level), f64::from(part.height()) / density(level));
-        let target = Rect::from_origin_size(target.origin() + corner, size);
+        let [x, y, width, height] =
+            [part.x().into(), part.y().into(), part.width().into(), part.height().into()].map(|v: f64| v / density);
+        target = Rect::from_origin_size(target.origin() + Vec2::new(x, y), (width, height));
         picture = picture.clone_rect(part).unwrap_or(picture);
-        for level in (0..level).rev() {
-            if is_smooth(&picture) {
-                break;
-            }
-            picture = self.warped(tree, target, density(level))?;
+        while density < finest && !is_smooth(&picture) {
+            // Halves of the finest.
+            let halvings = (finest / (GROWTH * density)).log2().floor().max(0.0);
+            density = finest * (-halvings).exp2();
+            target = grid(target, density);
+            picture = self.warped(tree, (target, density), before(density))?;
         }
         Ok(Some((picture, target)))
     }
 
-    /// A drawing warped over `target`.
-    fn warped(&self, tree: &usvg::Tree, target: Rect, density: f64) -> Result<Pixmap, Error> {
-        /// Pixels of the drawing for one of the result; where the map stretches it more, it is shown a little smoother.
-        const SHARE: f64 = 0.8;
+    /// A drawing warped over `target`, from a picture of about `before` pixels per unit.
+    fn warped(&self, tree: &usvg::Tree, (target, density): (Rect, f64), before: f64) -> Result<Pixmap, Error> {
         let size = ((target.width() * density).round(), (target.height() * density).round());
         (self.count)(size.0, size.1)?;
-        let before = SHARE * density * (self.bounds.area() / self.area.area()).sqrt();
         let before = whole_offsets(tree, before).min((MOST_BEFORE / self.area.area()).sqrt());
         let before = before.max(1.0 / self.area.width().min(self.area.height()));
         let source = self.drawn(tree, (self.area, self.area), before)?;
@@ -161,8 +196,14 @@ impl<'a> DrawingWarp<'a> {
     }
 }
 
-/// A density of `least` to twice as much at which a drawing's filters offset by nearly whole pixels: the renderer drops fractions.
-fn whole_offsets(tree: &usvg::Tree, least: f64) -> f64 {
+/// The least density around this one at which a drawing's filters offset by nearly whole pixels: the renderer drops fractions.
+fn whole_offsets(tree: &usvg::Tree, density: f64) -> f64 {
+    /// The range, and the fraction that may be dropped.
+    const LEAST: f64 = 0.85;
+    const MOST: f64 = 2.0;
+    const DROPPED: f64 = 0.15;
+    /// Multiples tried of each offset.
+    const TRIED: u32 = 3;
     let offset = |p: &usvg::filter::Primitive| match p.kind() {
         Kind::Offset(o) => [o.dx(), o.dy()],
         Kind::DropShadow(s) => [s.dx(), s.dy()],
@@ -172,16 +213,23 @@ fn whole_offsets(tree: &usvg::Tree, least: f64) -> f64 {
     let filters = groups.flat_map(|g| g.filters());
     let all: Vec<f64> = filters.flat_map(|f| f.primitives()).flat_map(offset).map(|v| f64::from(v).abs()).collect();
     let dropped = |density: f64| all.iter().map(|v| (v * density).fract()).fold(0.0, f64::max);
+    let (least, most) = (LEAST * density, MOST * density);
     // Slightly more, for rounding.
-    let whole = all.iter().filter(|v| **v > 0.0).map(|v| (v * least).ceil() / v * (1.0 + ROUNDING));
-    let tried = whole.filter(|d| *d < 2.0 * least).chain([least]);
-    tried.min_by(|a, b| dropped(*a).total_cmp(&dropped(*b)).then(a.total_cmp(b))).unwrap_or(least)
+    let whole = |v: f64| move |k: u32| ((v * least).ceil() + f64::from(k)) / v * (1.0 + ROUNDING);
+    let tried = all.iter().filter(|v| **v > 0.0).flat_map(|v| (0..TRIED).map(whole(*v)));
+    let tried = tried.filter(|d| *d < most).chain([density]);
+    let cost = |d: f64| (dropped(d).max(DROPPED), d);
+    let less = |a: &f64, b: &f64| {
+        let (a, b) = (cost(*a), cost(*b));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+    };
+    tried.min_by(less).unwrap_or(density)
 }
 
-/// A box of whole pixels, a multiple of `of` along each side, around `target`; and their density.
-fn grid(target: Rect, density: f64, of: f64) -> (Rect, f64) {
-    let side = |length: f64| (length * density / of - ROUNDING).ceil().max(1.0) * of / density;
-    (Rect::from_origin_size(target.origin(), (side(target.width()), side(target.height()))), density)
+/// A box of whole pixels around `target`.
+fn grid(target: Rect, density: f64) -> Rect {
+    let side = |length: f64| (length * density - ROUNDING).ceil().max(1.0) / density;
+    Rect::from_origin_size(target.origin(), (side(target.width()), side(target.height())))
 }
 
 /// The part of a picture that is painted, with a margin for what is interpolated.
@@ -201,9 +249,9 @@ fn painted(picture: &Pixmap) -> Option<IntRect> {
     if to[1] == 0 { None } else { IntRect::from_xywh(x as i32, y as i32, w as u32, h as u32) }
 }
 
-/// Returns `true` if two pictures of the same size look alike. Edges may lie a pixel apart, so each pixel may have any colour
+/// Returns `true` if two pictures of the same size look alike but for a share of what is painted. Edges may lie a pixel apart, so each pixel may have any colour
 /// between those of the pixels around it in the other.
-fn alike(a: &Pixmap, b: &Pixmap) -> bool {
+fn alike(a: &Pixmap, b: &Pixmap, share: f64) -> bool {
     let (width, height) = (a.width() as usize, a.height() as usize);
     let read = |of: &Pixmap, at: usize| <[u8; 4]>::try_from(&of.data()[4 * at..4 * at + 4]).unwrap_or_default();
     let between = |own: [u8; 4], around: &Pixmap, at: usize| {
@@ -226,36 +274,63 @@ fn alike(a: &Pixmap, b: &Pixmap) -> bool {
         let is_near = (0..4).all(|k| c[k].abs_diff(d[k]) <= NOTICED);
         off += u32::from(!(is_near || between(c, b, at) && between(d, a, at)));
     }
-    f64::from(off) <= NOTICED_SHARE * f64::from(painted)
+    f64::from(off) <= share * f64::from(painted)
 }
 
-/// Returns `true` if half as many pixels along each side, interpolated, show nearly the same.
+/// Returns `true` if half as many pixels along each side, interpolated, show nearly the same, or a picture of twice the size would differ
+/// as little from this one.
 fn is_smooth(picture: &Pixmap) -> bool {
-    let (width, height) = (picture.width() as usize / 2, picture.height() as usize / 2);
-    let read = |x: usize, y: usize| &picture.data()[4 * (y * picture.width() as usize + x)..][..4];
-    // Sums of squares of four pixels.
-    let sums = (0..width * height).map(|at| {
-        let (x, y) = (2 * (at % width), 2 * (at / width));
-        let four = [read(x, y), read(x + 1, y), read(x, y + 1), read(x + 1, y + 1)];
-        std::array::from_fn(|k| four.iter().map(|p| i32::from(p[k])).sum())
-    });
-    let sums: Vec<[i32; 4]> = sums.collect();
-    // A pixel lies a quarter of a square beside the middle of its own.
-    let beside =
-        |v: usize, n: usize| if v.is_multiple_of(2) { (v / 2).saturating_sub(1) } else { (v / 2 + 1).min(n - 1) };
-    let (mut over, mut noticed) = (0_usize, 0_usize);
-    for at in 0..4 * width * height {
-        let (x, y) = (at % (2 * width), at / (2 * width));
-        let (u, v) = (beside(x, width), beside(y, height) * width);
-        let [a, b, c, d] = [y / 2 * width + x / 2, y / 2 * width + u, v + x / 2, v + u].map(|i| sums[i]);
-        let off = (0..4).map(|k| (9 * a[k] + 3 * (b[k] + c[k]) + d[k] - 64 * i32::from(read(x, y)[k])).abs());
-        let off = f64::from(off.max().unwrap_or(0)) / 64.0;
-        if off > SHARP {
-            return false;
+    let half = Lost::new(picture, 2);
+    half.most <= SHARP
+        && (half.over <= SMOOTH_SHARE && half.noticed <= NOTICED_SHARE
+            || Lost::new(picture, 4).squares >= BLURRED * half.squares)
+}
+
+/// What a picture loses where squares of its pixels become one, which is interpolated.
+#[derive(Default)]
+struct Lost {
+    most: f64,
+    /// The shares above [`SMOOTH`] and [`NOTICED`].
+    over: f64,
+    noticed: f64,
+    /// The sum of the squares.
+    squares: f64,
+}
+
+impl Lost {
+    /// For squares of `n` pixels a side.
+    fn new(picture: &Pixmap, n: usize) -> Self {
+        let (width, height) = (picture.width() as usize / n, picture.height() as usize / n);
+        let read = |x: usize, y: usize| picture.data()[4 * (y * picture.width() as usize + x)..][..4].iter();
+        let mut sums = vec![[0.0; 4]; width * height];
+        for (x, y) in (0..n * height).flat_map(|y| (0..n * width).map(move |x| (x, y))) {
+            sums[y / n * width + x / n].iter_mut().zip(read(x, y)).for_each(|(s, v)| *s += f64::from(*v));
         }
-        over += usize::from(off > SMOOTH);
-        noticed += usize::from(off > f64::from(NOTICED));
+        // The square of a pixel, the one beside it, and its share.
+        let mixed = |v: usize, squares: usize| {
+            let off = ((v % n) as f64 + 0.5) / n as f64 - 0.5;
+            let beside = if off < 0.0 { (v / n).saturating_sub(1) } else { (v / n + 1).min(squares - 1) };
+            (v / n, beside, off.abs())
+        };
+        let columns: Vec<_> = (0..n * width).map(|x| mixed(x, width)).collect();
+        let mut out = Self::default();
+        for y in 0..n * height {
+            let (above, below, v) = mixed(y, height);
+            for (x, (left, right, u)) in columns.iter().enumerate() {
+                let corner = |row: usize, column: usize| sums[row * width + column];
+                let four = [(above, *left), (above, *right), (below, *left), (below, *right)];
+                let [a, b, c, d] = four.map(|(row, column)| corner(row, column));
+                let at = |k: usize| (a[k] * (1.0 - u) + b[k] * u) * (1.0 - v) + (c[k] * (1.0 - u) + d[k] * u) * v;
+                let area = (n * n) as f64;
+                let off = read(x, y).enumerate().map(|(k, own)| (at(k) / area - f64::from(*own)).abs());
+                let off = off.fold(0.0, f64::max);
+                out.most = out.most.max(off);
+                out.over += f64::from(u8::from(off > SMOOTH));
+                out.noticed += f64::from(u8::from(off > f64::from(NOTICED)));
+                out.squares += off * off;
+            }
+        }
+        let pixels = (n * n * width * height) as f64;
+        Self { over: out.over / pixels, noticed: out.noticed / pixels, ..out }
     }
-    let share = |n: usize| n as f64 / (4 * width * height) as f64;
-    share(over) <= SMOOTH_SHARE && share(noticed) <= NOTICED_SHARE
 }

@@ -476,8 +476,11 @@ fn warp(drawing: &Drawing, bends: &Bends<'_>) -> Result<WarpedDocument, Error> {
     let mut out = WarpedDocument::default();
     let mut bent = bend(drawing, bends, &mut out)?;
     bent.filters = drawing.with_stack(|| Ok(write::shadows::outcomes(&WriteInput::new(drawing, &bent, bends))))?;
-    let pictured = |f: &&FilterOutcome| !matches!(f, FilterOutcome::Fits);
-    out.filter_pictures = bent.filters.values().filter(pictured).count();
+    for (slot, outcome) in &bent.filters {
+        let s = &drawing.scene().slots[*slot];
+        let name = s.owner.or(s.element).map(|e| drawing.source.display_name(e)).unwrap_or_default();
+        out.filters[usize::from(matches!(outcome, FilterOutcome::Fits))].push(name);
+    }
     let input = WriteInput::new(drawing, &bent, bends);
     drawing.with_stack(|| write::document::write(&input, &mut out))?;
     Ok(out)

@@ -186,6 +186,8 @@ pub(crate) struct WarpedArtwork {
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
     pub(crate) page: PageNews,
+    /// Elements whose filters became pictures, and those whose filters look right under their fit.
+    pub(crate) filters: [Vec<String>; 2],
     /// The tolerance, if it is not that of the request.
     pub(crate) tolerance: Option<f64>,
     /// Files besides the result.

@@ -230,6 +230,7 @@ impl FileArtwork for GimpArtwork {
         warped.warnings.extend(lost);
         let preview = options.preview.as_deref().map(|file| self.preview(&warped, built, (file, options.quality)));
         Ok(WarpedArtwork {
+            filters: Default::default(),
             result,
             page: PageNews::default(),
             tolerance: None,

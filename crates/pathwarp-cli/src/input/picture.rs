@@ -184,6 +184,7 @@ impl FileArtwork for PictureArtwork {
         ];
         warnings.extend(lost.into_iter().filter(|(is, _)| *is).map(|(_, why)| format!("{why}; the result has none")));
         Ok(WarpedArtwork {
+            filters: Default::default(),
             result: WarpedResult::Bytes(warped.write(self.format)?),
             shapes: Vec::new(),
             skipped: Vec::new(),

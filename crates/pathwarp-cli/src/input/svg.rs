@@ -519,7 +519,7 @@ impl FileArtwork for SvgArtwork {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
         }
         warnings.extend(pictured(&shapes));
-        warnings.extend(match warped.filter_pictures {
+        warnings.extend(match warped.filters[0].len() {
             0 => None,
             1 => Some("a filter became a picture; --filters affine keeps it".into()),
             n => Some(format!("{n} filters became pictures; --filters affine keeps them")),
@@ -546,6 +546,7 @@ impl FileArtwork for SvgArtwork {
             preview: preview.transpose()?,
             partial: empty,
             page,
+            filters: warped.filters,
             tolerance: Some(tolerance),
         })
     }

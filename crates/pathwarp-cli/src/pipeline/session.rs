@@ -189,7 +189,8 @@ impl Session<'_> {
             warnings,
         };
         let partial = warped.partial || is_coarse || report.is_partial();
-        let notes = self.notes(flags, whole, &frames(options.frame, &ready.recipe, starts, seen), &report.shapes);
+        let mut notes = self.notes(flags, whole, &frames(options.frame, &ready.recipe, starts, seen), &report.shapes);
+        notes.extend(filters(&warped.filters).filter(|_| self.options.explain));
         Ok(Warped {
             result: warped.result,
             page: warped.page,
@@ -430,6 +431,17 @@ fn pictures(shapes: &[ReportedShape]) -> Option<String> {
     let pictured: Vec<&str> = shapes.iter().filter(|s| s.shape.pictures > 0).map(|s| s.shape.id.as_str()).collect();
     let named = listed(&pictured, NAMED);
     (!pictured.is_empty()).then(|| format!("gradients: pictures on {named} (--gradients fit prevents that)"))
+}
+
+/// Names the elements whose filters became pictures, and those whose filters did not have to.
+fn filters([pictured, kept]: &[Vec<String>; 2]) -> Option<String> {
+    const NAMED: usize = 5;
+    let said = |of: &Vec<String>, before: &str, after: &str| {
+        (!of.is_empty()).then(|| format!("{before} {}{after}", listed(of, NAMED)))
+    };
+    let pictures = said(pictured, "pictures on", " (--filters affine prevents that)");
+    let all: Vec<String> = pictures.into_iter().chain(said(kept, "affine fits on", "")).collect();
+    (!all.is_empty()).then(|| format!("filters: {}", all.join("; ")))
 }
 
 #[cfg(test)]

@@ -30,11 +30,19 @@ pub fn shown(target: Rect, size: (u32, u32)) -> Affine {
 
 /// Converts a jet of a map between planes to one between the pixels of two pictures.
 #[inline]
-pub(super) fn in_pixels(jet: &Jet, to_source: Affine, shown: Affine) -> Jet {
+pub(crate) fn in_pixels(jet: &Jet, to_source: Affine, shown: Affine) -> Jet {
     let [a, b, c, d, ..] = to_source.as_coeffs();
     let along = |v: Vec2| Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y);
     let [p, q, r, s, ..] = shown.as_coeffs();
     Jet { p: to_source * jet.p, dx: along(jet.push(Vec2::new(p, q))), dy: along(jet.push(Vec2::new(r, s))) }
+}
+
+/// The lengths of the image of a unit in the directions that the map shrinks most and stretches most.
+pub(crate) fn lengths(jet: &Jet) -> [f64; 2] {
+    let frobenius = jet.dx.hypot2() + jet.dy.hypot2();
+    let discriminant = (frobenius * frobenius - 4.0 * jet.det() * jet.det()).max(0.0).sqrt();
+    let stretch = (0.5 * (frobenius + discriminant)).sqrt();
+    [jet.det().abs() / stretch, stretch]
 }
 
 /// Cells along a side of the sampling grid.
@@ -74,10 +82,7 @@ pub fn extent(area: Rect, placed: Affine, map: &dyn Map, after: Affine) -> Optio
             undefined = undefined.or(Some(p));
             continue;
         }
-        let frobenius = jet.dx.hypot2() + jet.dy.hypot2();
-        let discriminant = (frobenius * frobenius - 4.0 * jet.det() * jet.det()).max(0.0).sqrt();
-        let stretch = (0.5 * (frobenius + discriminant)).sqrt();
-        let squeeze = jet.det().abs() / stretch;
+        let [squeeze, stretch] = lengths(&jet);
         let e = out.get_or_insert(Extent {
             bounds: Rect::from_origin_size(jet.p, (0.0, 0.0)),
             stretch: 0.0,

@@ -17,7 +17,7 @@ use pathwarp::kurbo::Affine;
 use pathwarp::map::{Gathered, Map};
 use pathwarp::refit::{self, KnownShapes};
 use pathwarp::{Error, GeometryError, Outline};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 /// Width of a hairline in millimetres. A quarter of a point is 0.088 mm, and laser and plotter programs treat lines up to 0.1 mm as
@@ -35,7 +35,7 @@ pub(crate) struct BentDrawing {
     /// For each part, the index of its bend.
     pub(crate) of: Vec<Option<usize>>,
     /// By the index of their slot.
-    pub(crate) filters: HashMap<usize, FilterOutcome>,
+    pub(crate) filters: BTreeMap<usize, FilterOutcome>,
 }
 
 /// Bends everything in a drawing and reports to `out`.
@@ -85,7 +85,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     warn(drawing, bends, &outcomes, &slots, out);
     let bend = |b: &Bitmap| fits::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
     let images = scene.bitmaps.iter().map(bend).collect();
-    Ok(BentDrawing { outcomes, images, slots, of, filters: HashMap::new() })
+    Ok(BentDrawing { outcomes, images, slots, of, filters: BTreeMap::new() })
 }
 
 /// Warps every part by the bend whose index `of` gives; `None` for parts that are not bent.
@@ -183,7 +183,7 @@ impl BentDrawing {
             images: scene.bitmaps.iter().map(|_| EmbeddedImage::Placed).collect(),
             slots: fits::unmoved(scene),
             of: vec![None; scene.parts.len()],
-            filters: HashMap::new(),
+            filters: BTreeMap::new(),
         }
     }
 }

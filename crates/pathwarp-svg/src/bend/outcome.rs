@@ -27,8 +27,8 @@ pub struct WarpedDocument {
     pub overhang: Option<Overhang>,
     /// The visible area before and after, in root user units, if the page is adapted.
     pub page: Option<[Rect; 2]>,
-    /// Number of filters whose drawing became a picture.
-    pub filter_pictures: usize,
+    /// Names of the elements whose filters' drawing became a picture, and of those whose filters follow a fit that looks right.
+    pub filters: [Vec<String>; 2],
     /// Whether nothing of the result lies on its page.
     pub blank: bool,
 }

@@ -10,7 +10,7 @@ use crate::scene::drawing::Drawing;
 use crate::scene::model::{Group, Node, Part, Scene, Tiles};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::Affine;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use usvg::Paint;
 use usvg::filter::{Filter, Kind};
@@ -26,7 +26,7 @@ pub(crate) struct WriteInput<'a> {
     pub(super) slots: &'a [PlacedSlot],
     pub(super) bends: &'a Bends<'a>,
     pub(super) of: &'a [Option<usize>],
-    pub(super) filters: &'a HashMap<usize, FilterOutcome>,
+    pub(super) filters: &'a BTreeMap<usize, FilterOutcome>,
     /// For the document.
     pub(super) options: &'a WarpOptions,
 }

@@ -14,20 +14,20 @@ use crate::scene::geometry::{rect, stretch};
 use crate::scene::model::{Group, Node};
 use crate::source::elements::is_shape;
 use pathwarp::kurbo::Rect;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
-use usvg::filter::{Filter, Kind};
+use usvg::filter::{Filter, Kind, Primitive};
 use usvg::{BlendMode, Paint, Stop};
 
 /// Decides about every filter of a drawing, by the index of its slot. Those that are missing follow the fit and look different.
-pub(crate) fn outcomes(input: &WriteInput<'_>) -> HashMap<usize, FilterOutcome> {
+pub(crate) fn outcomes(input: &WriteInput<'_>) -> BTreeMap<usize, FilterOutcome> {
     let mut groups = Vec::new();
     let asks = input.bends.each.iter().any(|b| b.options.filters != Filters::Affine);
     if asks {
         filtered(&input.scene.root, &mut groups);
     }
     let unbent = if groups.is_empty() { None } else { Some(BentDrawing::unbent(input.scene)) };
-    let Some(unbent) = unbent else { return HashMap::new() };
+    let Some(unbent) = unbent else { return BTreeMap::new() };
     let original = WriteInput::new(input.drawing, &unbent, input.bends);
     let outcome = |(slot, g): &(usize, &Group)| Some((*slot, outcome(input, &original, (*slot, *g), groups.len())?));
     groups.iter().filter_map(outcome).collect()
@@ -117,10 +117,19 @@ fn outcome(
 fn moves_little(g: &Group, (content, area): (Rect, Rect), bends: f64) -> bool {
     /// In px.
     const UNSEEN: f64 = 0.5;
+    /// What a change of the deviation moves, for each unit that a blur reaches.
+    const BLUR: f64 = 1.0 / 3.0;
     let [x, y] = [(content.x0 - area.x0).max(area.x1 - content.x1), (content.y0 - area.y0).max(area.y1 - content.y1)];
     let moves = |k: &Kind| matches!(k, Kind::DropShadow(_) | Kind::Flood(_) | Kind::GaussianBlur(_) | Kind::Offset(_));
-    let plain = g.filters.iter().flat_map(|f| f.primitives()).all(|p| is_local(p.kind()) || moves(p.kind()));
-    plain && bends * x.max(y).max(0.0) < UNSEEN
+    let primitives = || g.filters.iter().flat_map(|f| f.primitives()).map(Primitive::kind);
+    let offset = |k: &Kind| match k {
+        Kind::Offset(o) => o.dx().hypot(o.dy()),
+        Kind::DropShadow(s) => s.dx().hypot(s.dy()),
+        _ => 0.0,
+    };
+    let reach = x.max(y).max(0.0);
+    let offset = primitives().map(offset).map(f64::from).sum::<f64>().min(reach);
+    primitives().all(|k| is_local(k) || moves(k)) && bends * (offset + BLUR * (reach - offset)) < UNSEEN
 }
 
 /// Returns `true` if pictures can stand in the place of the filters of a slot.
