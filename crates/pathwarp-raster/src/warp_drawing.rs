@@ -142,7 +142,7 @@ impl<'a> DrawingWarp<'a> {
         /// Pixels of the drawing for one of the result; where the map stretches it more, it is shown a little smoother.
         const SHARE: f64 = 0.9;
         /// Most of them in the direction that the map shrinks most: sampling more is slow.
-        const SHRUNK: f64 = 1.6;
+        const SHRUNK: f64 = 1.9;
         const LEAST_SHARE: f64 = 0.5;
         let [shortest, mean] = self.lengths;
         let before = |density: f64| density * (SHARE * mean).min((SHRUNK * shortest).max(LEAST_SHARE * mean));

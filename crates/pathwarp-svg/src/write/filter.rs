@@ -32,8 +32,12 @@ pub(super) fn element(
             tag.with("color-interpolation-filters", space)
         };
         let (tag, content) = primitive(markup, &begin, p.kind(), &mut pictures);
+        let smooth = |m| layer.and_then(|l| l.smooth(m));
         let (tag, content) = match (layer.map(|l| l.need(at)), p.kind()) {
             (Some(Need::Nothing), _) => return String::new(),
+            (Some(_), Kind::ColorMatrix(m)) if let Some(kind) = smooth(m) => {
+                (color_matrix(begin("feColorMatrix").input("in", m.input()), &kind), content)
+            }
             (Some(Need::Uncut), Kind::Composite(c)) => (begin("feOffset").input("in", c.input1()), content),
             _ => (tag, content),
         };

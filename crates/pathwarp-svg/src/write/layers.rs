@@ -7,7 +7,7 @@ use crate::source::markup::Tag;
 use pathwarp::kurbo::Rect;
 use usvg::BlendMode;
 use usvg::filter::{
-    ColorInterpolation, ColorMatrixKind, CompositeOperator, DropShadow, Filter, Input, Kind, Primitive,
+    ColorInterpolation, ColorMatrix, ColorMatrixKind, CompositeOperator, DropShadow, Filter, Input, Kind, Primitive,
 };
 
 /// A layer of what a filter draws.
@@ -16,6 +16,8 @@ pub(super) struct Layer {
     needs: Vec<Need>,
     /// Primitives that follow, the last of which draws the layer.
     pub(super) more: String,
+    /// Nothing shines through the graphic where it paints.
+    opaque: bool,
 }
 
 /// What a layer needs of a primitive. Later ones need more.
@@ -33,6 +35,13 @@ pub(super) enum Need {
 impl Layer {
     pub(super) fn need(&self, at: usize) -> Need {
         self.needs[at]
+    }
+
+    /// The matrix that keeps the edges of an opaque graphic smooth, if one draws all of it in full: in Figma's idiom.
+    pub(super) fn smooth(&self, m: &ColorMatrix) -> Option<ColorMatrixKind> {
+        let (ColorMatrixKind::Matrix(v), Input::SourceAlpha) = (m.kind(), m.input()) else { return None };
+        let is_full = matches!(v[15..], [0.0, 0.0, 0.0, factor, 0.0] if factor > 1.0);
+        (self.opaque && is_full).then(|| ColorMatrixKind::Matrix([&v[..18], &[1.0, 0.0]].concat()))
     }
 }
 
@@ -62,7 +71,7 @@ pub(super) fn around(f: &Filter, content: Rect, opaque: bool) -> Option<[Option<
     push(f, all.len().checked_sub(1)?, &mut stack)?;
     let mut sources = stack.iter().enumerate().filter(|(_, s)| matches!(s, Stacked::Source));
     let (Some((at, _)), None) = (sources.next(), sources.next()) else { return None };
-    let layers = [layer(f, &stack[..at], opaque), layer(f, &stack[at + 1..], false)];
+    let layers = [layer(f, &stack[..at], opaque, opaque), layer(f, &stack[at + 1..], false, opaque)];
     // Results are composited in sRGB.
     let linear = all.iter().any(|p| p.color_interpolation() == ColorInterpolation::LinearRGB);
     (!linear || opaque && layers[1].is_none()).then_some(layers)
@@ -135,7 +144,7 @@ fn inputs(kind: &Kind) -> Vec<&Input> {
 }
 
 /// The layer that a part of a stack draws; `hidden` by the graphic, where that is.
-fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool) -> Option<Layer> {
+fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool, opaque: bool) -> Option<Layer> {
     let mut needs = vec![Need::Nothing; f.primitives().len()];
     let (mut more, mut nodes) = (String::new(), String::new());
     let begin = |tag: &str| Tag::new(tag).with("color-interpolation-filters", "sRGB");
@@ -182,7 +191,7 @@ fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool) -> Option<Layer> {
             }
         }
     }
-    (!nodes.is_empty()).then(|| Layer { needs, more: more + &begin("feMerge").around(&nodes) })
+    (!nodes.is_empty()).then(|| Layer { needs, more: more + &begin("feMerge").around(&nodes), opaque })
 }
 
 /// Returns `true` if a pixel of the result depends on the same pixel of the inputs only.
