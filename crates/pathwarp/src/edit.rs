@@ -4,7 +4,7 @@ use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
 use crate::refit::{Options, PathReport, RefittedPath};
 use bezierfit::{Fitted, fit_points, union_even_odd};
-use kurbo::{BezPath, Join, Point, Shape};
+use kurbo::{BezPath, Join, Point, Rect, Shape};
 
 /// Share of the tolerance spent on turning arcs into cubics.
 const ARCS: f64 = 0.05;
@@ -79,7 +79,8 @@ pub struct Offset {
 }
 
 /// Offsets an outline: each point of the result has the given distance from it, within `options.tolerance`. Closed subpaths enclose an area,
-/// which grows or shrinks, and vanishes where it is too narrow; loops are removed.
+/// which grows or shrinks, and vanishes where it is too narrow; loops are removed. `contours` holds tolerances of the subpaths; those beyond
+/// its end have that of the options. What lies close together has the smallest of them.
 ///
 /// # Errors
 /// A coordinate is not finite.
@@ -91,12 +92,39 @@ pub struct Offset {
 ///
 /// let square = Outline::from_svg("M0,0H60V60H0Z")?;
 /// let by = Offset { by: 10.0, join: Join::Miter, side: Side::Outside, even_odd: false };
-/// assert!((moved(&square, &by, &Options::new(0.01))?.path.area().abs() - 6400.0).abs() < 1.0);
+/// assert!((moved(&square, &by, &Options::new(0.01), &[])?.path.area().abs() - 6400.0).abs() < 1.0);
 /// # Ok::<(), pathwarp::Error>(())
 /// ```
-pub fn moved(outline: &Outline, offset: &Offset, options: &Options) -> Result<RefittedPath, GeometryError> {
-    let fine = ARCS * options.tolerance;
-    let fitter = bezierfit::Options::new(options.tolerance - fine).with_corner(options.corner);
+pub fn moved(
+    outline: &Outline,
+    offset: &Offset,
+    options: &Options,
+    contours: &[f64],
+) -> Result<RefittedPath, GeometryError> {
+    let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(offset.by, offset.by)).collect();
+    let (mut path, mut report) = (BezPath::new(), PathReport::default());
+    for group in apart(&boxes) {
+        let own = |i: &usize| contours.get(*i).copied().unwrap_or_else(|| options.of_contour(&outline.subpaths[*i]));
+        let tolerance = group.iter().map(own).fold(f64::INFINITY, f64::min);
+        let group = Outline { subpaths: group.iter().map(|i| outline.subpaths[*i].clone()).collect() };
+        for fitted in moved_group(&group, offset, options, tolerance)? {
+            report.add(reported(&fitted, tolerance));
+            path.extend(fitted.path);
+        }
+    }
+    (report.segments_in, report.segments_out) = (outline.segs().count(), path.segments().count());
+    Ok(RefittedPath { path, spans: Vec::new(), report })
+}
+
+/// Offsets subpaths together, to each side that is wanted.
+fn moved_group(
+    outline: &Outline,
+    offset: &Offset,
+    options: &Options,
+    tolerance: f64,
+) -> Result<Vec<Fitted>, GeometryError> {
+    let fine = ARCS * tolerance;
+    let fitter = bezierfit::Options::new(tolerance - fine).with_corner(options.corner);
     let mut source = outline.to_bez_path(fine);
     if offset.even_odd {
         let open = outline.subpaths.iter().filter(|s| !s.closed).cloned().collect();
@@ -104,19 +132,45 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options) -> Result<Re
         area.extend(Outline { subpaths: open }.to_bez_path(fine));
         source = area;
     }
-    let distances: &[f64] = match offset.side {
+    let signs: &[f64] = match offset.side {
         Side::Outside => &[1.0],
         Side::Inside => &[-1.0],
         Side::Both => &[1.0, -1.0],
     };
-    let (mut path, mut report) = (BezPath::new(), PathReport::default());
-    for sign in distances {
-        let fitted = bezierfit::offset(&source, sign * offset.by, offset.join, &fitter)?;
-        report.add(reported(&fitted, options.tolerance));
-        path.extend(fitted.path);
+    let one = |sign: &f64| bezierfit::offset(&source, sign * offset.by, offset.join, &fitter);
+    Ok(signs.iter().map(one).collect::<Result<_, _>>()?)
+}
+
+/// The numbers of boxes in groups, ordered as their first boxes are: lines along the axes lie between any two groups.
+fn apart(boxes: &[Rect]) -> Vec<Vec<usize>> {
+    /// Limit on the cuts one after the other, across and along by turns. Only staircases take as many.
+    const MAX_CUTS: usize = 64;
+    let spans: [fn(&Rect) -> [f64; 2]; 2] = [|b| [b.x0, b.x1], |b| [b.y0, b.y1]];
+    // Groups, with the cuts so far and how many of the last ones had no effect.
+    let (mut open, mut done) = (vec![((0..boxes.len()).collect::<Vec<usize>>(), 0, 0)], Vec::new());
+    while let Some((mut group, cuts, vain)) = open.pop() {
+        if vain == spans.len() || cuts == MAX_CUTS || group.len() < 2 {
+            group.sort_unstable();
+            done.push(group);
+            continue;
+        }
+        let span = |i: usize| spans[cuts % spans.len()](&boxes[i]);
+        group.sort_by(|a, b| span(*a)[0].total_cmp(&span(*b)[0]));
+        let mut end = f64::NEG_INFINITY;
+        let mut parts: Vec<Vec<usize>> = Vec::new();
+        for i in group {
+            match parts.last_mut().filter(|_| span(i)[0] <= end) {
+                Some(part) => part.push(i),
+                None => parts.push(vec![i]),
+            }
+            end = end.max(span(i)[1]);
+        }
+        let vain = if parts.len() == 1 { vain + 1 } else { 0 };
+        open.extend(parts.into_iter().map(|part| (part, cuts + 1, vain)));
     }
-    (report.segments_in, report.segments_out) = (outline.segs().count(), path.segments().count());
-    Ok(RefittedPath { path, spans: Vec::new(), report })
+    done.retain(|group| !group.is_empty());
+    done.sort_unstable();
+    done
 }
 
 /// Returns the area of a fill as outlines that meet neither themselves nor each other, within `tolerance`; `None` if that holds already.

@@ -68,7 +68,7 @@ fn widened(area: &Outline, side: Side, by: f64, even_odd: bool, tolerance: f64) 
         return Ok(Outline { subpaths: (wanted > 0.0).then_some(larger).into_iter().collect() });
     }
     let offset = Offset { by, join: Join::Miter, side, even_odd };
-    let path = moved(area, &offset, &refit::Options::new(tolerance))?.path;
+    let path = moved(area, &offset, &refit::Options::new(tolerance), &[])?.path;
     Ok(with_arcs(Outline::from(&path), area, by, tolerance))
 }
 

@@ -447,7 +447,7 @@ pub(super) fn moved_strokes(
     offset: &Offset,
     options: &refit::Options,
 ) -> Result<WarpedStrokes, GeometryError> {
-    let moved = edit::moved(outline, offset, options)?;
+    let moved = edit::moved(outline, offset, options, &[])?;
     let strokes = Outline::from(&moved.path).subpaths.iter().map(Stroke::from_subpath).collect();
     Ok(WarpedStrokes { strokes, report: moved.report })
 }

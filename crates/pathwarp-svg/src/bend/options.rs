@@ -370,7 +370,7 @@ impl Edit {
     ) -> Result<Option<RefittedPath>, GeometryError> {
         match self {
             Self::Simplify { polylines: true, .. } => through_vertices(outline, options, contours),
-            Self::Offset(offset) => moved(outline, &offset, options).map(Some),
+            Self::Offset(offset) => moved(outline, &offset, options, contours).map(Some),
             Self::Simplify { .. } | Self::Outline => Ok(None),
         }
     }

@@ -5,7 +5,7 @@ use crate::source::number::{MAX_DECIMALS, arcs_data, path_data, path_data_by};
 use pathwarp::kurbo::{BezPath, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Class, Map, Undeclared};
 use pathwarp::outline::{EllipticArc, Subpath};
-use pathwarp::refit::{self, Assurance, PathReport, RefittedPath, SharedEdges, Span, SpanReport, suited};
+use pathwarp::refit::{self, Assurance, PathReport, RefittedPath, SharedEdges, Span, SpanReport};
 use pathwarp::{GeometryError, Outline, Seg};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -76,8 +76,7 @@ pub fn warp_path(
 ) -> Result<WarpedPath, GeometryError> {
     options.check()?;
     let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
-    let held = |s: &Subpath| if options.suited { suited(options.tolerance, s.diagonal()) } else { options.tolerance };
-    let contours: Vec<f64> = outline.subpaths.iter().map(held).collect();
+    let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect();
     let finest = contours.iter().copied().fold(options.tolerance, f64::min);
     let mut outline = outline.clone();
     outline.subpaths.iter_mut().for_each(|s| drop_closing_stub(s, digits.rounding(finest)));

@@ -57,7 +57,7 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
     options.check()?;
     let own;
     let options = if options.suited && options.spans.is_empty() {
-        let contours: Vec<f64> = outline.subpaths.iter().map(|s| suited(options.tolerance, s.diagonal())).collect();
+        let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect();
         let alone = || SharedEdges::held([(outline, &contours[..])]);
         let spans = if *options.shared == SharedEdges::default() {
             alone().spans(outline, &contours)

@@ -3,6 +3,7 @@
 use super::shared::{SharedEdges, Span};
 use crate::budget::Budget;
 use crate::error::GeometryError;
+use crate::outline::Subpath;
 use bezierfit::parts::SMOOTH_JOINT;
 use std::sync::Arc;
 
@@ -63,6 +64,12 @@ impl Options {
         let mut all = [self.tolerance].into_iter().chain(self.spans.iter().map(|s| s.tolerance));
         let wrong = |t: &f64| !(t.is_finite() && *t > 0.0);
         all.find(wrong).map_or(Ok(()), |t| Err(GeometryError::Tolerance(t)))
+    }
+
+    /// The tolerance of a contour: [`Options::tolerance`], or with [`Options::suited`] what suits it.
+    #[must_use]
+    pub fn of_contour(&self, contour: &Subpath) -> f64 {
+        if self.suited { suited(self.tolerance, contour.diagonal()) } else { self.tolerance }
     }
 
     /// Sets [`Options::tolerance`].
