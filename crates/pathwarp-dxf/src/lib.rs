@@ -37,8 +37,9 @@ use pathwarp::budget::{Budget, Exceeded, cost};
 pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded> {
     let layers = Layers::of(shapes);
     if options.curves == Curves::Polylines {
-        let segs = shapes.iter().flat_map(|s| s.outline.segs());
-        let lines: f64 = segs.map(|s| entities::most_lines(s, options.tolerance)).sum();
+        let subpaths = shapes.iter().flat_map(|s| &s.outline.subpaths);
+        let segs = subpaths.flat_map(|s| s.segs.iter().map(|seg| (seg, options.of_contour(s))));
+        let lines: f64 = segs.map(|(seg, tolerance)| entities::most_lines(seg, tolerance)).sum();
         Budget::new(options.limits).spend(cost::SEGMENT * lines)?;
     }
     let mut out = Codes::new();
@@ -46,10 +47,11 @@ pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded
     for shape in shapes {
         let pen = Pen { layer: layers.name(shape.layer), color: shape.color };
         for subpath in &shape.outline.subpaths {
-            match options.curves {
-                Curves::Splines => entities::exact(&mut out, &pen, subpath, options.tolerance),
-                Curves::Polylines => entities::polyline(&mut out, &pen, subpath, options.tolerance),
-            }
+            let write = match options.curves {
+                Curves::Splines => entities::exact,
+                Curves::Polylines => entities::polyline,
+            };
+            write(&mut out, &pen, subpath, options.of_contour(subpath));
         }
     }
     Ok(file::finish(out))

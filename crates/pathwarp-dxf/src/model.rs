@@ -2,6 +2,8 @@
 
 use pathwarp::Outline;
 use pathwarp::budget::Limits;
+use pathwarp::outline::Subpath;
+use pathwarp::refit::suited;
 
 /// An outline with its layer and colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +35,8 @@ pub struct Options {
     /// Largest distance of polylines from curves, in mm. Arcs that are this close to circular ones, within a tenth, are written as
     /// such.
     pub tolerance: f64,
+    /// Hold small contours to what [suits](pathwarp::refit::suited) them, too.
+    pub suited: bool,
     /// Width and height of the page in mm.
     pub page: [f64; 2],
     /// Limits on the number of segments.
@@ -42,6 +46,14 @@ pub struct Options {
 impl Default for Options {
     /// Splines on an A4 page, with a tolerance of 0.01 mm.
     fn default() -> Self {
-        Self { curves: Curves::Splines, tolerance: 0.01, page: [210.0, 297.0], limits: Limits::default() }
+        let page = [210.0, 297.0];
+        Self { curves: Curves::Splines, tolerance: 0.01, suited: false, page, limits: Limits::default() }
+    }
+}
+
+impl Options {
+    /// The tolerance of a contour.
+    pub(crate) fn of_contour(&self, contour: &Subpath) -> f64 {
+        if self.suited { suited(self.tolerance, contour.diagonal()) } else { self.tolerance }
     }
 }

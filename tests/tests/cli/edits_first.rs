@@ -2,6 +2,7 @@
 
 use super::common::text;
 use crate::support::{pathwarp_in, root};
+use pathwarp::kurbo::{BezPath, ParamCurve as _, Point};
 use std::path::Path;
 
 const FLAG: [&str; 5] = ["warp", "--style", "flag", "--bend", "30%"];
@@ -88,4 +89,24 @@ fn what_cannot_be_edited_is_said() {
     assert!(said(&["--simplify", "1e-30"], &logo).contains("--simplify: 1e-30 is finer than"));
     let xcf = root().join("samples/paper.xcf");
     assert!(said(&["--outset", "1", xcf.to_str().unwrap()], b"").contains("for SVG drawings"));
+}
+
+/// Small contours keep their shape beside large ones, in one path or in several.
+#[test]
+fn dots_of_large_drawings_grow_evenly() {
+    let dot = "M52,50A2,2 0 1 1 48,50A2,2 0 1 1 52,50Z";
+    let drawings =
+        [format!("<path d='{dot}M0,900H9000V9000H0Z'/>"), format!("<path d='{dot}'/><path d='M0,900H9000V9000H0Z'/>")];
+    for drawing in drawings {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9000 9000'>{drawing}</svg>");
+        let out = run(&["offset", "-", "--by", "1"], svg.as_bytes());
+        let data = out.split(['"', '\'']).filter(|t| t.starts_with('M'));
+        let path: BezPath = data.flat_map(|d| BezPath::from_svg(d).unwrap()).collect();
+        let near = |p: &Point| p.distance(Point::new(50.0, 50.0)) < 10.0;
+        let points = path.segments().flat_map(|s| (0..=20).map(move |i| s.eval(f64::from(i) / 20.0)));
+        let radii: Vec<f64> = points.filter(near).map(|p| p.distance(Point::new(50.0, 50.0))).collect();
+        // 2e-3 of the diagonal of the dot.
+        let allowed = 2e-3 * 32.0_f64.sqrt() + 1e-4;
+        assert!(radii.len() > 60 && radii.iter().all(|r| (r - 3.0).abs() <= allowed), "{drawing}: {radii:?}");
+    }
 }

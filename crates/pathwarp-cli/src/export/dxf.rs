@@ -9,6 +9,7 @@ use pathwarp::budget::cost;
 use pathwarp::edit::united;
 use pathwarp::kurbo::Affine;
 use pathwarp::param::{Axis, Frame};
+use pathwarp::refit;
 use pathwarp_dxf::{Curves, Shape};
 use pathwarp_svg::{Document, Plot, PlotShape, Selection};
 
@@ -26,6 +27,7 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
         let frame = Frame::new(bounds.unwrap_or_else(|| doc.view_box())).with_units_per_px(units_per_px(doc));
         options.tolerance_for(bounds, &frame)
     };
+    let suited = options.tolerance.is_none();
     let tolerance = tolerance.map_or_else(default, Ok)?;
     let cut = |s: &PlotShape| -> Result<Cut, Failure> {
         let rule = s.even_odd.filter(|_| options.union);
@@ -43,7 +45,8 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
         let spent = doc.budget().spend(cost::COMPARISON * contours * contours);
         spent.map_err(|e| pathwarp::Error::limit(doc.name(), "with --kerf, it takes", e))?;
         let together = |i: usize| (&plot.shapes[i].layer, plot.shapes[i].color);
-        let fewer = kerf::widen(&mut cuts, together, by, tolerance * mm_per_unit).map_err(pathwarp::Error::from)?;
+        let refit = refit::Options::new(tolerance * mm_per_unit).with_suited(suited);
+        let fewer = kerf::widen(&mut cuts, together, by, &refit).map_err(pathwarp::Error::from)?;
         if fewer > 0 {
             let contours = counted(fewer, "contour", "contours");
             warnings.push(format!("--kerf leaves {contours} fewer: narrow ones close, and those that meet unite"));
@@ -56,6 +59,7 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
     let settings = pathwarp_dxf::Options {
         curves: if options.dxf_polylines { Curves::Polylines } else { Curves::Splines },
         tolerance: tolerance * mm_per_unit,
+        suited,
         page,
         limits: doc.budget().limits(),
     };

@@ -23,7 +23,7 @@ pub(super) fn widen<K: PartialEq>(
     cuts: &mut [Cut],
     among: impl Fn(usize) -> K,
     by: f64,
-    tolerance: f64,
+    options: &refit::Options,
 ) -> Result<usize, GeometryError> {
     let loops: Vec<(usize, Loop)> =
         cuts.iter().enumerate().filter(|(_, c)| c.even_odd.is_none()).flat_map(loops).collect();
@@ -46,7 +46,7 @@ pub(super) fn widen<K: PartialEq>(
                 .collect(),
         };
         for (area, side) in areas {
-            let to = widened(&area, side, by, cut.even_odd == Some(true), tolerance)?;
+            let to = widened(&area, side, by, cut.even_odd == Some(true), options)?;
             fewer += area.subpaths.len().saturating_sub(to.subpaths.len());
             cut.outline.subpaths.extend(to.subpaths);
         }
@@ -56,7 +56,13 @@ pub(super) fn widen<K: PartialEq>(
 }
 
 /// The area whose edge is `by` away. A circle stays one; corners stay sharp.
-fn widened(area: &Outline, side: Side, by: f64, even_odd: bool, tolerance: f64) -> Result<Outline, GeometryError> {
+fn widened(
+    area: &Outline,
+    side: Side,
+    by: f64,
+    even_odd: bool,
+    options: &refit::Options,
+) -> Result<Outline, GeometryError> {
     if let [only] = area.subpaths.as_slice()
         && let Some(circle) = circle(only)
     {
@@ -68,12 +74,12 @@ fn widened(area: &Outline, side: Side, by: f64, even_odd: bool, tolerance: f64) 
         return Ok(Outline { subpaths: (wanted > 0.0).then_some(larger).into_iter().collect() });
     }
     let offset = Offset { by, join: Join::Miter, side, even_odd };
-    let path = moved(area, &offset, &refit::Options::new(tolerance), &[])?.path;
-    Ok(with_arcs(Outline::from(&path), area, by, tolerance))
+    let path = moved(area, &offset, options, &[])?.path;
+    Ok(with_arcs(Outline::from(&path), area, by, options))
 }
 
 /// The outline with arcs for what runs `by` beside circular arcs of its source.
-fn with_arcs(mut outline: Outline, source: &Outline, by: f64, tolerance: f64) -> Outline {
+fn with_arcs(mut outline: Outline, source: &Outline, by: f64, options: &refit::Options) -> Outline {
     /// Limit on comparisons of segments with arcs.
     const MOST: usize = 10_000_000;
     let arcs = source.subpaths.iter().flat_map(|s| &s.segs);
@@ -87,7 +93,8 @@ fn with_arcs(mut outline: Outline, source: &Outline, by: f64, tolerance: f64) ->
     if circles.len().saturating_mul(segs) > MOST {
         return outline;
     }
-    for seg in outline.subpaths.iter_mut().flat_map(|s| &mut s.segs) {
+    let held = outline.subpaths.iter_mut().map(|s| (options.of_contour(s), s));
+    for (tolerance, seg) in held.flat_map(|(tolerance, s)| s.segs.iter_mut().map(move |seg| (tolerance, seg))) {
         if let Seg::Cubic(c) = *seg {
             let beside = circles.iter().flat_map(|&(center, r)| [(center, r - by), (center, r + by)]);
             let arc =
