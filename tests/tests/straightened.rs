@@ -344,7 +344,7 @@ fn what_is_wrong_with_a_picture_is_said() {
     let at = whole.windows(4).rposition(|w| w == b"EXIF").unwrap();
     fs::write(dir.join("whole.webp"), &whole).unwrap();
     fs::write(dir.join("cut.webp"), &whole[..at + 60]).unwrap();
-    fs::write(dir.join("torn.jpg"), &[b"XX", &whole[..]].concat()).unwrap();
+    fs::write(dir.join("torn.jpg"), [b"XX", &whole[..]].concat()).unwrap();
     let still =
         |file: &str, more: &[&str]| run(dir, &[&["affine", file, "--rotate", "0", "-o", "out.png"], more].concat());
     assert_eq!(still("whole.webp", &[]), (0, String::new()));
