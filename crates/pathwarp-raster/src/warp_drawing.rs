@@ -249,8 +249,8 @@ fn painted(picture: &Pixmap) -> Option<IntRect> {
     if to[1] == 0 { None } else { IntRect::from_xywh(x as i32, y as i32, w as u32, h as u32) }
 }
 
-/// Returns `true` if two pictures of the same size look alike but for a share of what is painted. Edges may lie a pixel apart, so each pixel may have any colour
-/// between those of the pixels around it in the other.
+/// Returns `true` if two pictures of the same size look alike but for a share of what is painted. Edges may lie a pixel apart, so each pixel
+/// may have any colour between those of the pixels around it in the other.
 fn alike(a: &Pixmap, b: &Pixmap, share: f64) -> bool {
     let (width, height) = (a.width() as usize, a.height() as usize);
     let read = |of: &Pixmap, at: usize| <[u8; 4]>::try_from(&of.data()[4 * at..4 * at + 4]).unwrap_or_default();
