@@ -20,8 +20,8 @@ use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::Rect;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_editor::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary, Words};
-use pathwarp_raster::{RenderOptions, Size};
-use pathwarp_svg::{Document, Origin, ReadOptions, families, usvg_tree};
+use pathwarp_raster::{Picture, RenderOptions, Size};
+use pathwarp_svg::{Document, Origin, ReadOptions, Turned, families, usvg_tree};
 use pathwarp_text::TextStyle;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -153,7 +153,8 @@ impl EditedArtwork {
             return Ok((bytes, warnings));
         }
         let limits = self.options.reading.limits.for_input(bytes.len());
-        let tree = usvg_tree::parse_tree(&bytes, "the result", &ReadOptions::default())?;
+        let tree =
+            usvg_tree::parse_tree(&bytes, "the result", &ReadOptions::default().with_turned(Some(Picture::turned)))?;
         let size = picture.scale.map_or(Size::Width(picture.width), Size::Scale);
         let background = picture.background.as_deref().map(background).transpose().map_err(Failure::usage)?;
         let background = background.and_then(|b| b.0);
@@ -349,6 +350,10 @@ impl EditorHost {
 impl Host for EditorHost {
     fn registry(&self) -> &Registry {
         &self.registry
+    }
+
+    fn turned(&self) -> Option<Turned> {
+        Some(Picture::turned)
     }
 
     fn first(&self) -> &[Info] {

@@ -7,8 +7,8 @@ use pathwarp::budget::Limits;
 use pathwarp_raster::{Picture, PictureFormat};
 use std::borrow::Cow;
 
-/// A drawing of a PNG, JPEG or WebP alone, a px for each of its pixels; `None` for other files. Images of drawings are shown as they are
-/// stored, so a photograph that says to be turned is turned.
+/// A drawing of a PNG, JPEG or WebP alone, a px for each of its pixels; `None` for other files. Not every program turns images of
+/// drawings as their metadata say, so the pixels are turned.
 pub(crate) fn framed(bytes: &[u8], limits: &Limits) -> Result<Option<Vec<u8>>, Failure> {
     if !Picture::sniff(bytes) {
         return Ok(None);

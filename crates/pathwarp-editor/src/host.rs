@@ -5,7 +5,7 @@ use pathwarp::Outline;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
-use pathwarp_svg::Document;
+use pathwarp_svg::{Document, Turned};
 use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -53,6 +53,11 @@ pub trait Host: Send + Sync {
     /// Names that other programs have for deformations, each with that of the deformation: what a user may search for.
     fn foreign_words(&self) -> Vec<(&str, &str)> {
         Vec::new()
+    }
+
+    /// Turns pictures in drawings as browsers do.
+    fn turned(&self) -> Option<Turned> {
+        None
     }
 
     /// The families of the fonts there are.

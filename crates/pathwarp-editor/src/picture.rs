@@ -4,10 +4,11 @@
 //! line. While something is dragged, most lines stay and most of the others differ in one attribute, so only that is sent.
 
 use pathwarp::kurbo::{BezPath, Rect, Shape as _};
-use pathwarp_svg::ReadOptions;
 use pathwarp_svg::usvg_tree::parse_tree;
+use pathwarp_svg::{ReadOptions, Turned};
 use serde_json::{Value, json};
 use std::ops::Range;
+use std::sync::Arc;
 use usvg::{Indent, WriteOptions};
 
 /// Put before every id of the drawing, so that it cannot be one of the page's.
@@ -21,8 +22,8 @@ pub(crate) struct Picture {
 
 impl Picture {
     /// Resolves a drawing. `decimals` is the number of decimals of coordinates, in px.
-    pub(crate) fn of(svg: &str, decimals: u8) -> Result<Self, String> {
-        let tree = parse_tree(svg.as_bytes(), "the drawing", &ReadOptions::default()).map_err(|e| e.to_string())?;
+    pub(crate) fn of(svg: &str, decimals: u8, turned: Option<Turned>) -> Result<Self, String> {
+        let tree = resolved(svg, turned)?;
         let options = WriteOptions {
             id_prefix: Some(ID_PREFIX.into()),
             coordinates_precision: decimals,
@@ -34,10 +35,10 @@ impl Picture {
     }
 
     /// The text of a drawing that shows all there is, and not the page.
-    pub(crate) fn small(svg: &str) -> Result<String, String> {
+    pub(crate) fn small(svg: &str, turned: Option<Turned>) -> Result<String, String> {
         /// Space around the drawing, as a share of its size.
         const MARGIN: f32 = 0.02;
-        let tree = parse_tree(svg.as_bytes(), "the drawing", &ReadOptions::default()).map_err(|e| e.to_string())?;
+        let tree = resolved(svg, turned)?;
         let seen = tree.root().abs_layer_bounding_box();
         let margin = MARGIN * seen.width().max(seen.height());
         let options = WriteOptions { coordinates_precision: 2, indent: Indent::Spaces(0), ..WriteOptions::default() };
@@ -253,6 +254,11 @@ fn is_same(a: &str, b: &str) -> bool {
     read(a).zip(read(b)).is_some_and(|((a, m), (b, n))| m == n && near(a, b))
 }
 
+fn resolved(svg: &str, turned: Option<Turned>) -> Result<Arc<usvg::Tree>, String> {
+    let options = ReadOptions::default().with_turned(turned);
+    parse_tree(svg.as_bytes(), "the drawing", &options).map_err(|e| e.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -260,7 +266,7 @@ mod tests {
     #[test]
     fn any_name_is_shown() {
         let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path id="a&lt;&amp;&quot;&#10;b" d="M1,1h5v5z"/></svg>"#;
-        for text in [Picture::of(svg, 2).unwrap().text(), Picture::small(svg).unwrap()] {
+        for text in [Picture::of(svg, 2, None).unwrap().text(), Picture::small(svg, None).unwrap()] {
             let document =
                 pathwarp_svg::Document::read(text.as_bytes(), "the picture", &ReadOptions::default()).unwrap();
             let id = &document.parts()[0].name;
@@ -272,7 +278,7 @@ mod tests {
         let svg = format!(
             "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' viewBox='0 0 40 20'>{body}</svg>"
         );
-        Picture::of(&svg, 4).unwrap()
+        Picture::of(&svg, 4, None).unwrap()
     }
 
     #[test]
@@ -317,7 +323,7 @@ mod tests {
     }
 
     fn quick(text: &str) -> Option<Quick> {
-        Quick::from(text.to_owned(), &Picture::of(text, 2).unwrap())
+        Quick::from(text.to_owned(), &Picture::of(text, 2, None).unwrap())
     }
 
     #[test]
@@ -326,7 +332,7 @@ mod tests {
         let changes = quick.next(&text("M0,0H8V9z", "red")).unwrap();
         let [(line, data)] = changes.as_slice() else { panic!("{changes:?}") };
         assert_eq!(data, "M0,0H8V9z");
-        let mut picture = Picture::of(&text("M0,0h9v9z", "red"), 2).unwrap();
+        let mut picture = Picture::of(&text("M0,0h9v9z", "red"), 2, None).unwrap();
         picture.redraw(&changes);
         assert_eq!(picture.paths()[0], (*line, "M0,0H8V9z"));
         assert_eq!(quick.next(&text("M0,0H8V9z", "red")), Some(Vec::new()));

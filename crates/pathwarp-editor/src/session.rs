@@ -17,7 +17,7 @@ use pathwarp::deform::{Info, Variant};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Map as _, inverse_over};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
-use pathwarp_svg::{DrawingPart, Selection};
+use pathwarp_svg::{DrawingPart, Selection, Turned};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -68,12 +68,13 @@ pub(crate) struct Shown {
     /// A look at it while something is dragged.
     pub(crate) is_draft: bool,
     pub(crate) about: Value,
+    turned: Option<Turned>,
 }
 
 impl Shown {
     /// The picture of the drawing.
     pub(crate) fn picture(&self) -> Result<Picture, String> {
-        Picture::of(&self.svg, if self.is_draft { DRAFT_DECIMALS } else { DECIMALS })
+        Picture::of(&self.svg, if self.is_draft { DRAFT_DECIMALS } else { DECIMALS }, self.turned)
     }
 }
 
@@ -264,12 +265,12 @@ impl Session {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
         let bent = self.opened.artwork.bend(&recipe(given), fineness)?;
         let about = self.about(self.firsts(given), &bent);
-        Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about })
+        Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about, turned: self.host.turned() })
     }
 
     /// The drawing as it is without steps.
     pub(crate) fn before(&self) -> Result<Picture, String> {
-        Picture::of(self.opened.artwork.document().text(), DECIMALS)
+        Picture::of(self.opened.artwork.document().text(), DECIMALS, self.host.turned())
     }
 
     /// The number of steps that come before bending.
@@ -476,7 +477,7 @@ impl Session {
         let frame = self.opened.artwork.frame();
         let tolerance = THUMBNAIL_TOLERANCE * frame.width().hypot(frame.height());
         let bent = self.opened.artwork.bend(&recipe(given), Fineness::Draft(tolerance))?;
-        Picture::small(&bent.svg)
+        Picture::small(&bent.svg, self.host.turned())
     }
 
     /// A deformation with the values of its examples.

@@ -10,7 +10,7 @@ use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::param::{Args, Axis, Frame, Kind};
 use pathwarp::refit;
-use pathwarp_raster::{RenderOptions, Size};
+use pathwarp_raster::{Picture, RenderOptions, Size};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
 use pathwarp_svg::{Document, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument, usvg_tree};
 use rayon::prelude::*;
@@ -211,7 +211,7 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
         title: title(file, &sets, bend, axis),
     };
     let svg = sheet(&cells, &layout, &input::read_options(file, &options.reading))?;
-    let plain = ReadOptions::default().with_limits(options.reading.limits);
+    let plain = ReadOptions::default().with_turned(Some(Picture::turned)).with_limits(options.reading.limits);
     let bytes = if format.of_picture(None).is_some() {
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &plain)?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));

@@ -11,6 +11,7 @@ use pathwarp::Error;
 use pathwarp::budget::Limits;
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
+use pathwarp_raster::Picture;
 use pathwarp_svg::objects::Guides;
 use pathwarp_svg::{Document, ReadOptions};
 use std::cell::LazyCell;
@@ -136,7 +137,7 @@ impl Stage<'_> {
 
     /// Reads a drawing.
     pub(super) fn read(&self, svg: &str) -> Result<Document, Failure> {
-        let options = ReadOptions::default().with_limits(self.limits());
+        let options = ReadOptions::default().with_turned(Some(Picture::turned)).with_limits(self.limits());
         Ok(Document::read(svg.as_bytes(), "the drawing", &options)?)
     }
 }

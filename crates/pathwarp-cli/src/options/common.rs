@@ -7,6 +7,7 @@ use pathwarp::budget::{Limit, Limits};
 use pathwarp::kurbo::{Point, Rect, Size};
 use pathwarp::param::{Axis, Frame, Length, LengthUnit};
 use pathwarp::refit::RESOLUTION;
+use pathwarp_raster::Picture;
 use pathwarp_svg::{
     Clones, GenericFamilies, LetteringFrame, OnError, PageFit, Patterns, ReadOptions, Strokes, Structure, TextMode,
     check_fonts,
@@ -233,6 +234,7 @@ impl Reading {
     /// The same as options of the library.
     pub(crate) fn read_options(&self) -> ReadOptions {
         ReadOptions::default()
+            .with_turned(Some(Picture::turned))
             .with_limits(self.limits)
             .with_external(self.external)
             .with_fonts(self.fonts.paths.clone())

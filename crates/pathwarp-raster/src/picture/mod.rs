@@ -68,8 +68,8 @@ impl Picture {
         }
     }
 
-    /// Reads an image of a drawing (PNG, JPEG, GIF or WebP) without applying its orientation, as SVG renderers do. Takes the
-    /// first image of an animation.
+    /// Reads an image of a drawing (PNG, JPEG, GIF or WebP) as it is stored, without applying its orientation. Takes the first image of an
+    /// animation.
     ///
     /// # Errors
     /// As for [`Picture::read`].
@@ -83,6 +83,22 @@ impl Picture {
     /// As for [`Picture::read`].
     pub fn read_stored_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
         Self::decode(bytes, false, limits)
+    }
+
+    /// An image of a drawing with its pixels turned as browsers show it: a JPEG or PNG whose EXIF metadata ask for it. `None` for others,
+    /// and for what cannot be read within the limits.
+    #[must_use]
+    pub fn turned(bytes: &[u8], limits: &Limits) -> Option<Vec<u8>> {
+        let format = match Kind::of(bytes)? {
+            Kind::Jpeg => PictureFormat::Jpeg { quality: PictureFormat::QUALITY },
+            Kind::Png => PictureFormat::Png,
+            Kind::WebP | Kind::Gif => return None,
+        };
+        if !decode::is_turned(bytes, limits) {
+            return None;
+        }
+        let picture = Self::read_within(bytes, limits).ok()?;
+        Self { exif: None, ..picture }.write(format).ok()
     }
 
     fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
@@ -164,6 +180,29 @@ mod tests {
         let back = Picture::read(&bytes).unwrap().pixmap;
         assert_eq!((back.width(), back.height()), (8, 16));
         assert!(back.pixel(4, 2).unwrap().green() < 20 && back.pixel(4, 13).unwrap().green() > 240);
+    }
+
+    #[test]
+    fn images_are_turned_as_browsers_do() {
+        // A TIFF header, and a directory with the orientation alone.
+        let exif =
+            |n: u8| [&b"MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0"[..], &[n, 0, 0, 0, 0, 0, 0]].concat();
+        let picture = half_red();
+        let [width, height] = [picture.pixmap.width(), picture.pixmap.height()];
+        for (format, turns) in [
+            (PictureFormat::Png, true),
+            (PictureFormat::Jpeg { quality: PictureFormat::QUALITY }, true),
+            (PictureFormat::WebP, false),
+        ] {
+            let limits = Limits::default();
+            let with = |n| Picture { exif: Some(exif(n)), ..picture.clone() }.write(format).unwrap();
+            assert_eq!(Picture::turned(&with(1), &limits), None);
+            let file = with(6);
+            let turned = Picture::turned(&file, &limits);
+            let size = turned.as_deref().map(|file| header_size(file).unwrap());
+            assert_eq!(size, turns.then_some((height, width)));
+            assert_eq!(turned.and_then(|file| Picture::turned(&file, &limits)), None);
+        }
     }
 
     #[test]

@@ -76,7 +76,12 @@ pub(super) fn resolver<'a>(
     let load = Arc::new(move |mime: &str, data: Arc<Vec<u8>>, what: &str, usvg: &usvg::Options<'_>| {
         match checked(mime, data, &format!("{name}: {what}"), options) {
             // As in browsers, the content decides about the format.
-            Ok(data) => decode(if mime == SVG { mime } else { ANY }, data?, usvg),
+            Ok(data) if mime == SVG => decode(mime, data?, usvg),
+            Ok(data) => {
+                let data = data?;
+                let turned = options.turned.and_then(|turned| turned(&data, &options.budget.limits()));
+                decode(ANY, turned.map_or(data, Arc::new), usvg)
+            }
             Err(e) => {
                 if let Ok(mut r) = rejected.lock() {
                     r.get_or_insert(e);

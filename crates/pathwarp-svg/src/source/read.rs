@@ -40,9 +40,15 @@ pub struct ReadOptions {
     pub limits: Limits,
     /// Follow links out of [`base_dir`](Self::base_dir): absolute ones, `..`, and symbolic links.
     pub external: bool,
+    /// Gives images whose metadata ask for it with their pixels turned, as browsers show them; without it, they are taken as they are
+    /// stored.
+    pub turned: Option<Turned>,
     /// The budget of the file being read.
     pub(crate) budget: Arc<Budget>,
 }
+
+/// An image with its pixels turned, within limits; `None` where they stay.
+pub type Turned = fn(&[u8], &Limits) -> Option<Vec<u8>>;
 
 impl Default for ReadOptions {
     fn default() -> Self {
@@ -54,6 +60,7 @@ impl Default for ReadOptions {
             dpi: 96.0,
             limits: Limits::default(),
             external: false,
+            turned: None,
             budget: Arc::default(),
         }
     }
@@ -86,6 +93,7 @@ setters! { ReadOptions,
     dpi: f32, with_dpi;
     limits: Limits, with_limits;
     external: bool, with_external;
+    turned: Option<Turned>, with_turned;
 }
 
 /// Decodes an SVG or svgz file. `name` identifies it in errors.
