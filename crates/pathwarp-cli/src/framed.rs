@@ -19,8 +19,7 @@ pub(crate) fn framed(bytes: &[u8], limits: &Limits) -> Result<Option<Vec<u8>>, F
         _ => ("image/png", PictureFormat::Png),
     };
     let upright = Picture::read_within(bytes, limits)?;
-    let is_turned = upright.exif.is_some() && Picture::read_stored_within(bytes, limits)?.pixmap != upright.pixmap;
-    let shown = if is_turned {
+    let shown = if Picture::is_turned(bytes, limits) {
         Cow::Owned(upright.remade(upright.pixmap.clone(), false).write(format)?)
     } else {
         Cow::Borrowed(bytes)

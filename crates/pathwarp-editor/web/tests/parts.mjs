@@ -27,6 +27,19 @@ const clicked = async (page, n, modifiers = []) => {
   for (const key of modifiers) await page.keyboard.up(key);
   await quiet(page);
 };
+/** Saves the result, runs the command line that the page copies, and checks that both give the same bytes. */
+const savedAsCopied = async (page, dir) => {
+  await page.click("#save-as");
+  await page.fill("#save-name", "own.svg");
+  await page.locator("#save-dialog").getByRole("button", { name: "Save", exact: true }).click();
+  await page.waitForSelector("#toast.on");
+  await page.click("#save-as");
+  await page.fill("#save-name", "copied.svg");
+  await page.click("#copy-command");
+  const line = await (await page.waitForFunction(() => window.copied)).jsonValue();
+  execFileSync("sh", ["-c", line.replace(/^pathwarp/, program)], { cwd: dir, stdio: "pipe" });
+  check(readFileSync(join(dir, "copied.svg"), "utf8") === readFileSync(join(dir, "own.svg"), "utf8"), `${line} gives other bytes`);
+};
 const press = async (page, name) => {
   await page.getByRole("button", { name, exact: true }).click();
   await quiet(page);
@@ -52,16 +65,7 @@ export const steps_hold_for_parts = () => within(SQUARES, async (page, dir) => {
   await page.locator("#parts .part-name", { hasText: "Group" }).click();
   await quiet(page);
   check(moved(before, await each(page)) === "0,1,2,3", "the second step does not bend the group");
-  await page.click("#save-as");
-  await page.fill("#save-name", "own.svg");
-  await page.locator("#save-dialog").getByRole("button", { name: "Save", exact: true }).click();
-  await page.waitForSelector("#toast.on");
-  await page.click("#save-as");
-  await page.fill("#save-name", "copied.svg");
-  await page.click("#copy-command");
-  const line = await (await page.waitForFunction(() => window.copied)).jsonValue();
-  execFileSync("sh", ["-c", line.replace(/^pathwarp/, program)], { cwd: dir, stdio: "pipe" });
-  check(readFileSync(join(dir, "copied.svg"), "utf8") === readFileSync(join(dir, "own.svg"), "utf8"), `${line} gives other bytes`);
+  await savedAsCopied(page, dir);
   const picture = await paths(page);
   const again = await edit(join(dir, "own.svg"));
   const page2 = await open(again.address);
@@ -100,16 +104,7 @@ export const locks_are_kept = () => within(SQUARES, async (page, dir) => {
   await choose(page, "Flag");
   await page.click("#parts-list summary");
   await press(page, "Lock: Group");
-  await page.click("#save-as");
-  await page.fill("#save-name", "own.svg");
-  await page.locator("#save-dialog").getByRole("button", { name: "Save", exact: true }).click();
-  await page.waitForSelector("#toast.on");
-  await page.click("#save-as");
-  await page.fill("#save-name", "copied.svg");
-  await page.click("#copy-command");
-  const line = await (await page.waitForFunction(() => window.copied)).jsonValue();
-  execFileSync("sh", ["-c", line.replace(/^pathwarp/, program)], { cwd: dir, stdio: "pipe" });
-  check(readFileSync(join(dir, "copied.svg"), "utf8") === readFileSync(join(dir, "own.svg"), "utf8"), `${line} gives other bytes`);
+  await savedAsCopied(page, dir);
   const again = await edit(join(dir, "own.svg"));
   const page2 = await open(again.address);
   await page2.locator("[aria-label='Lock: Group'][aria-pressed=true]").waitFor();

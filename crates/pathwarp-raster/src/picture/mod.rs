@@ -85,6 +85,12 @@ impl Picture {
         Self::decode(bytes, false, limits)
     }
 
+    /// Whether the EXIF metadata of a PNG, JPEG or WebP ask to turn its pixels. Decodes none of them.
+    #[must_use]
+    pub fn is_turned(bytes: &[u8], limits: &Limits) -> bool {
+        Self::sniff(bytes) && decode::is_turned(bytes, limits)
+    }
+
     /// An image of a drawing with its pixels turned as browsers show it: a JPEG or PNG whose EXIF metadata ask for it. `None` for others,
     /// and for what cannot be read within the limits.
     #[must_use]
@@ -94,7 +100,7 @@ impl Picture {
             Kind::Png => PictureFormat::Png,
             Kind::WebP | Kind::Gif => return None,
         };
-        if !decode::is_turned(bytes, limits) {
+        if !Self::is_turned(bytes, limits) {
             return None;
         }
         let picture = Self::read_within(bytes, limits).ok()?;
