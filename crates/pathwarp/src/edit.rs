@@ -9,6 +9,9 @@ use kurbo::{BezPath, Join, Point, Rect, Shape};
 /// Share of the tolerance spent on turning arcs into cubics.
 const ARCS: f64 = 0.05;
 
+/// How far the miters of an offset reach at most, in distances.
+const MITERS: f64 = 4.0;
+
 /// A contour with so few edges is meant as a polygon, not as a curve in small steps.
 const MAX_POLYGON_EDGES: usize = 4;
 
@@ -101,7 +104,8 @@ pub fn moved(
     options: &Options,
     contours: &[f64],
 ) -> Result<RefittedPath, GeometryError> {
-    let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(offset.by, offset.by)).collect();
+    let reach = if offset.join == Join::Miter { MITERS } else { 1.0 } * offset.by;
+    let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
     let (mut path, mut report) = (BezPath::new(), PathReport::default());
     for group in apart(&boxes) {
         let own = |i: &usize| contours.get(*i).copied().unwrap_or_else(|| options.of_contour(&outline.subpaths[*i]));
@@ -206,4 +210,20 @@ fn reported(fitted: &Fitted, tolerance: f64) -> PathReport {
     (out.max_error, out.share, out.assurance) = (r.max_error, r.max_error / tolerance, r.assurance);
     out.over_budget.clone_from(&r.unresolved);
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The miter of a tip of 31° reaches 3.7 times the distance, into a bar that lies three times the distance away.
+    #[test]
+    fn miters_unite_with_what_they_reach() {
+        let outline = Outline::from_svg("M0,0L36,10L0,20ZM39,0H49V20H39Z").unwrap();
+        let by = Offset { by: 1.0, join: Join::Miter, side: Side::Outside, even_odd: false };
+        let grown = moved(&outline, &by, &Options::new(0.01), &[]).unwrap();
+        let grown = Outline::from(&grown.path);
+        assert_eq!(grown.subpaths.len(), 1);
+        assert_eq!(united(&grown, false, 0.01).unwrap(), None);
+    }
 }
