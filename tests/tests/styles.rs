@@ -134,16 +134,26 @@ fn shown(drawings: &[String], transform: &str, name: &str, folder: &Path) -> Pix
     }
     let (html, png) = (folder.join(format!("{name}.html")), folder.join(format!("{name}.png")));
     fs::write(&html, page).unwrap();
-    let out = Command::new(chromium().unwrap())
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--allow-file-access-from-files"])
-        .arg(format!("--window-size={},{}", COLUMNS * SIDE, drawings.len().div_ceil(COLUMNS) * SIDE))
-        .arg(format!("--user-data-dir={}", folder.join("profile").display()))
-        .arg(format!("--screenshot={}", png.display()))
-        .arg(format!("file://{}", html.display()))
-        .output()
-        .unwrap();
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-    decode_png(&fs::read(png).unwrap()).unwrap()
+    let attempt = |number: usize| {
+        let out = Command::new(chromium().unwrap())
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--hide-scrollbars",
+                "--allow-file-access-from-files",
+            ])
+            .arg(format!("--window-size={},{}", COLUMNS * SIDE, drawings.len().div_ceil(COLUMNS) * SIDE))
+            .arg(format!("--user-data-dir={}", folder.join(format!("profile{number}")).display()))
+            .arg(format!("--screenshot={}", png.display()))
+            .arg(format!("file://{}", html.display()))
+            .output()
+            .unwrap();
+        fs::read(&png).map_err(|e| format!("{e}: {}", String::from_utf8_lossy(&out.stderr)))
+    };
+    // On a busy machine a browser now and then takes no picture; a new one does.
+    let picture = attempt(0).or_else(|_| attempt(1)).or_else(|_| attempt(2)).unwrap();
+    decode_png(&picture).unwrap()
 }
 
 /// For each drawing, the fraction of its pixels that differ by more than antialiasing.

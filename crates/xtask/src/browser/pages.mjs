@@ -10,6 +10,8 @@ const executablePath = ["/usr/bin/chromium-headless-shell", "/usr/bin/chromium",
 // Letters have their exact places and no coloured edges, and linked files are read.
 const args = ["--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--allow-file-access-from-files", "--font-render-hinting=none", "--disable-lcd-text"];
 const TIMEOUT = 60000;
+// On a busy machine a browser now and then takes no picture ("Unable to capture screenshot"); a new one does.
+const ATTEMPTS = 3;
 
 /** The page's extent in px, and the matrix from user units to px. */
 const asked = () => {
@@ -22,25 +24,36 @@ const asked = () => {
   };
 };
 
-const browser = await chromium.launch({ executablePath, headless: true, args });
+const launch = () => chromium.launch({ executablePath, headless: true, args });
+let browser = await launch();
+
+async function show({ file, size, scale }) {
+  const [width, height] = size ?? [600, 600];
+  const page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: scale ?? 1, locale: "en-US" });
+  await page.goto(pathToFileURL(file).href, { waitUntil: "load", timeout: TIMEOUT });
+  const answer = await page.evaluate(asked);
+  if (size) {
+    // What moves is shown as it begins.
+    await page.evaluate(() => { document.documentElement.pauseAnimations?.(); document.documentElement.setCurrentTime?.(0); });
+    const png = await page.screenshot({ animations: "disabled", omitBackground: true, timeout: TIMEOUT });
+    answer.png = png.toString("base64");
+  }
+  await page.close();
+  return answer;
+}
+
 for await (const line of createInterface({ input: process.stdin })) {
-  const { file, size, scale } = JSON.parse(line);
-  let page, answer;
-  try {
-    const [width, height] = size ?? [600, 600];
-    page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: scale ?? 1, locale: "en-US" });
-    await page.goto(pathToFileURL(file).href, { waitUntil: "load", timeout: TIMEOUT });
-    answer = await page.evaluate(asked);
-    if (size) {
-      // What moves is shown as it begins.
-      await page.evaluate(() => { document.documentElement.pauseAnimations?.(); document.documentElement.setCurrentTime?.(0); });
-      const png = await page.screenshot({ animations: "disabled", omitBackground: true, timeout: TIMEOUT });
-      answer.png = png.toString("base64");
+  let answer;
+  for (let left = ATTEMPTS; left > 0; left--) {
+    try {
+      answer = await show(JSON.parse(line));
+      break;
+    } catch (e) {
+      answer = { error: String(e.message).split("\n")[0] };
+      await browser.close().catch(() => {});
+      browser = await launch();
     }
-  } catch (e) {
-    answer = { error: String(e.message).split("\n")[0] };
   }
   console.log(JSON.stringify(answer));
-  await page?.close();
 }
 await browser.close();
