@@ -531,6 +531,7 @@
   }
 
   // src/handles.ts
+  var FARTHEST_BEND = 1.9;
   var MARGIN = 0.15;
   var PAIR = "X,Y:X,Y";
   var FEWEST_CLOSED = 3;
@@ -649,7 +650,7 @@
         label: words(param),
         group: param,
         get: () => [middle2[0], middle2[1] - grip.value * h2 / 2],
-        set: (to) => void (grip.value = Math.max(-2, Math.min(2, 2 * (middle2[1] - to[1]) / Math.max(h2, 1e-9))))
+        set: (to) => void (grip.value = Math.max(-FARTHEST_BEND, Math.min(FARTHEST_BEND, 2 * (middle2[1] - to[1]) / Math.max(h2, 1e-9))))
       });
     }
     /** A radius about a centre: a handle on the circle. */

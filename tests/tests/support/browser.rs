@@ -15,6 +15,11 @@ pub fn chromium() -> Option<&'static str> {
     browsers.into_iter().find(|b| Path::new(b).exists())
 }
 
+/// Whether Firefox is where the page's tests look for it.
+pub fn has_firefox() -> bool {
+    ["/usr/bin/firefox-esr", "/usr/bin/firefox"].into_iter().any(|b| Path::new(b).exists())
+}
+
 /// Names a tool that tests of the page need and that is missing.
 pub fn missing() -> Option<&'static str> {
     let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok_and(|o| o.status.success());

@@ -24,6 +24,9 @@ export interface Pull {
   targets: (to: XY) => XY[];
 }
 
+/** A bend by hand ends here: styles of circular arcs do. */
+const FARTHEST_BEND = 1.9;
+
 /** Near its ends, a curve would need control points far away to follow a pointer. */
 const MARGIN = 0.15;
 
@@ -155,7 +158,7 @@ export class Handles {
     this.handles.push({
       key: param, param, shape: "node", label: words(param), group: param,
       get: () => [middle[0], middle[1] - (grip.value! * h) / 2],
-      set: (to) => void (grip.value = Math.max(-2, Math.min(2, (2 * (middle[1] - to[1])) / Math.max(h, 1e-9)))),
+      set: (to) => void (grip.value = Math.max(-FARTHEST_BEND, Math.min(FARTHEST_BEND, (2 * (middle[1] - to[1])) / Math.max(h, 1e-9)))),
     });
   }
 

@@ -2,7 +2,7 @@
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { becomes, check, edit, folder, open, paths, program, quiet, sample } from "./harness.mjs";
+import { becomes, check, edit, folder, keep, open, paths, program, quiet, sample } from "./harness.mjs";
 
 const press = async (page, name) => {
   await page.getByRole("button", { name, exact: true }).click();
@@ -38,7 +38,7 @@ export const simplified_and_grown_before_bending = async () => {
     check((await page.getByRole("list").getByRole("button", { name: /^[0-9]\. / }).allTextContents()).join() === "1. Simplify,2. Offset,3. Flag", "the order is another");
     check(!(await page.getByRole("button", { name: "Pick parts" }).isVisible()), "it asks for parts");
     await typed(page, "Distance", "2px");
-    if (process.env.SHOTS) await page.screenshot({ path: join(process.env.SHOTS, "first.png") });
+    await keep(page, "first");
     await page.getByRole("button", { name: "3. Flag" }).click();
     await quiet(page);
     const picture = await paths(page);

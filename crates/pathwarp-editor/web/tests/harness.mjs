@@ -1,11 +1,11 @@
-// Runs `pathwarp edit` and a headless Chromium for the tests.
+// Runs `pathwarp edit` and a headless browser for the tests: Chromium, or Firefox where BROWSER=firefox.
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, copyFileSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join, basename } from "node:path";
 import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
+import { chromium, firefox } from "playwright-core";
 
 export const root = fileURLToPath(new URL("../../../../", import.meta.url));
 export const program = process.env.PATHWARP ?? join(root, "target/debug/pathwarp");
@@ -79,10 +79,13 @@ export async function editWith({ uid, as = program, ...variables }, file, ...arg
 }
 
 let browser;
+const launch = () => process.env.BROWSER === "firefox"
+  ? firefox.launch({ channel: "moz-firefox", executablePath: fileURLToPath(new URL("firefox.mjs", import.meta.url)), headless: true })
+  : chromium.launch({ executablePath: browserPath, headless: true, args: FLAGS });
 
 /** Opens a page; anything that goes wrong in it is an error of the test. */
 export async function open(address, options = {}) {
-  browser ??= chromium.launch({ executablePath: browserPath, headless: true, args: FLAGS });
+  browser ??= launch();
   const context = await (await browser).newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();
   page.problems = [];
@@ -107,6 +110,15 @@ export async function open(address, options = {}) {
 export async function close() {
   await (await browser)?.close();
   browser = undefined;
+}
+
+/** Keeps a picture of the page in the folder SHOTS, if there is one. */
+export async function keep(page, name) {
+  if (!process.env.SHOTS) return;
+  const { length } = page.problems;
+  await page.screenshot({ path: join(process.env.SHOTS, `${name}.png`) });
+  // For a picture, Playwright sets a style, and Firefox says that the page does not allow it.
+  page.problems.length = length;
 }
 
 /** The middle of a handle on the screen. */

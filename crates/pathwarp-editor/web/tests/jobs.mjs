@@ -2,7 +2,7 @@
 import { execFileSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { becomes, check, edit, folder, open, paths, program, quiet, sample } from "./harness.mjs";
+import { becomes, check, edit, folder, keep, open, paths, program, quiet, sample } from "./harness.mjs";
 
 async function job(name, drawing, work, content = sample(drawing)) {
   const dir = folder({ [drawing]: content });
@@ -10,7 +10,7 @@ async function job(name, drawing, work, content = sample(drawing)) {
   const page = await open(editor.address, { viewport: { width: 1440, height: 900 } });
   try {
     await work(page, dir, editor);
-    if (process.env.SHOTS) await page.screenshot({ path: join(process.env.SHOTS, `${name}.png`) });
+    await keep(page, name);
     check(page.problems.length === 0, page.problems.join("; "));
     check(!(await page.isVisible("#folds")), await page.textContent("#folds"));
   } finally {
@@ -24,7 +24,7 @@ const press = async (page, name) => {
   await quiet(page);
 };
 const field = async (page, label, text) => {
-  await page.getByRole("textbox", { name: label, exact: true }).click({ clickCount: 3 });
+  await page.getByRole("textbox", { name: label, exact: typeof label === "string" }).click({ clickCount: 3 });
   await page.keyboard.type(text);
   await page.keyboard.press("Enter");
   await quiet(page);
@@ -94,10 +94,7 @@ export const job_arch = () => job("arch", "lettering.svg", async (page, dir) => 
   check((await page.getByRole("textbox", { name: "Bend", exact: true }).inputValue()) === "30", "it is not 30");
   await backAndForth(page, 2);
   await given(page, "Target", sample("badge.svg"));
-  for (const [name, mm] of [["Width", "185"], ["X", "-2"], ["Y", "-32"]]) {
-    await page.getByRole("textbox", { name: new RegExp(`^${name} +mm`) }).fill(mm);
-    await page.keyboard.press("Enter");
-  }
+  for (const [name, mm] of [["Width", "185"], ["X", "-2"], ["Y", "-32"]]) await field(page, new RegExp(`^${name} +mm`), mm);
   await saved(page, "PNG", "word.png");
   await saved(page, "PDF", "word.pdf");
   check(readFileSync(`${dir}/word.png`).readUInt32BE(16) === 2000 && existsSync(`${dir}/word.pdf`), "the picture has another width");
@@ -241,7 +238,7 @@ export const job_photograph = () => {
       await page2.getByRole("heading", { name: "badge.png" }).waitFor();
       await quiet(page2);
       await press(page2, "Arch");
-      if (process.env.SHOTS) await page2.screenshot({ path: join(process.env.SHOTS, "photograph-alone.png") });
+      await keep(page2, "photograph-alone");
       await press(page2, "Save");
       await page2.getByText("Saved badge-bent.svg in").waitFor();
       check(page2.problems.length === 0, page2.problems.join("; "));

@@ -2,7 +2,7 @@
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { check, choose, edit, folder, open, paths, program, quiet, sample } from "./harness.mjs";
+import { check, choose, edit, folder, keep, open, paths, program, quiet, sample } from "./harness.mjs";
 
 async function within(drawing, test) {
   const dir = folder(drawing.includes("<") ? { "art.svg": drawing } : { "art.svg": sample(drawing) });
@@ -198,7 +198,7 @@ export const a_target_is_fitted_to = () => within("lettering.svg", async (page, 
   const was = await paths(page);
   await press(page, "Use its outline as the shape");
   check((await paths(page)) !== was && !(await page.isVisible("#problem")), await page.textContent("#problem"));
-  if (process.env.SHOTS) await page.screenshot({ path: join(process.env.SHOTS, "target.png") });
+  await keep(page, "target");
   await page.click("#save");
   await page.locator("#toast.on", { hasText: "Saved art-bent.svg" }).waitFor();
   check(!readFileSync(join(dir, "art-bent.svg"), "utf8").includes("#8b8"), "the target is in the result");
@@ -234,7 +234,7 @@ export const lines_are_drawn = () => within("lettering.svg", async (page) => {
   await quiet(page);
   const [mx, my] = await centre();
   check(Math.hypot(mx - cx - 40, my - cy - 20) < 2 && (await paths(page)) !== picture, "the circle does not move as a whole");
-  if (process.env.SHOTS) await page.screenshot({ path: join(process.env.SHOTS, "circle.png") });
+  await keep(page, "circle");
   await page.getByRole("button", { name: "Draw path" }).first().click();
   for (const [dx, dy] of [[-200, 0], [0, -60], [200, 0]]) await page.mouse.click(x + dx, y + dy);
   await page.keyboard.press("Enter");
