@@ -36,7 +36,7 @@ fn the_page_works(browser: &str, tests: &[&str]) {
     }
     let mut node = Command::new("node");
     node.arg("tests/run.mjs").args(tests).current_dir(&web).env("PATHWARP", pathwarp_program());
-    let out = node.env("BROWSER", browser).output().unwrap();
+    let out = node.env("TESTED_IN", browser).output().unwrap();
     let said = String::from_utf8_lossy(&out.stdout);
     println!("{said}");
     said.lines().filter_map(|l| l.trim().strip_prefix("skipped: ")).for_each(crate::support::skipped);

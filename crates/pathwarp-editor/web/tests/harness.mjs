@@ -1,4 +1,4 @@
-// Runs `pathwarp edit` and a headless browser for the tests: Chromium, or Firefox where BROWSER=firefox.
+// Runs `pathwarp edit` and a headless browser for the tests: Chromium, or Firefox where TESTED_IN=firefox.
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, copyFileSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -79,7 +79,7 @@ export async function editWith({ uid, as = program, ...variables }, file, ...arg
 }
 
 let browser;
-const launch = () => process.env.BROWSER === "firefox"
+const launch = () => process.env.TESTED_IN === "firefox"
   ? firefox.launch({ channel: "moz-firefox", executablePath: fileURLToPath(new URL("firefox.mjs", import.meta.url)), headless: true })
   : chromium.launch({ executablePath: browserPath, headless: true, args: FLAGS });
 
