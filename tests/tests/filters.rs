@@ -36,6 +36,13 @@ const FILTERS: &[(&str, &str, usize, usize)] = &[
         1,
     ),
     (
+        "a smooth shadow, of few pixels, beneath two shapes",
+        "<g filter='url(#f)'><rect x='15' y='15' width='45' height='30' fill='#4af'/><circle cx='60' cy='55' r='18' fill='#fa4'/></g>\
+         <filter id='f' x='-.2' y='-.2' width='1.5' height='1.5'><feDropShadow dx='3' dy='3' stdDeviation='4'/></filter>",
+        2,
+        1,
+    ),
+    (
         "a blur",
         "<g filter='url(#f)'><path d='M20 30h60v40h-60z' fill='#c30'/></g><filter id='f' x='0' y='0' width='100' height='100' \
          filterUnits='userSpaceOnUse' color-interpolation-filters='sRGB'><feGaussianBlur stdDeviation='9 1'/></filter>",

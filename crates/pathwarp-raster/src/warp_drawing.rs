@@ -204,14 +204,8 @@ fn whole_offsets(tree: &usvg::Tree, density: f64) -> f64 {
     const DROPPED: f64 = 0.15;
     /// Multiples tried of each offset.
     const TRIED: u32 = 3;
-    let offset = |p: &usvg::filter::Primitive| match p.kind() {
-        Kind::Offset(o) => [o.dx(), o.dy()],
-        Kind::DropShadow(s) => [s.dx(), s.dy()],
-        _ => [0.0; 2],
-    };
-    let groups = tree.root().children().iter().filter_map(|n| if let Node::Group(g) = n { Some(g) } else { None });
-    let filters = groups.flat_map(|g| g.filters());
-    let all: Vec<f64> = filters.flat_map(|f| f.primitives()).flat_map(offset).map(|v| f64::from(v).abs()).collect();
+    let mut all = Vec::new();
+    push_offsets(tree.root(), &mut all);
     let dropped = |density: f64| all.iter().map(|v| (v * density).fract()).fold(0.0, f64::max);
     let (least, most) = (LEAST * density, MOST * density);
     // Slightly more, for rounding.
@@ -224,6 +218,23 @@ fn whole_offsets(tree: &usvg::Tree, density: f64) -> f64 {
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
     };
     tried.min_by(less).unwrap_or(density)
+}
+
+/// Lists how far filters offset, in units of the page.
+fn push_offsets(g: &usvg::Group, out: &mut Vec<f64>) {
+    let (x, y) = g.abs_transform().get_scale();
+    let offset = |p: &usvg::filter::Primitive| match p.kind() {
+        Kind::Offset(o) => [o.dx(), o.dy()],
+        Kind::DropShadow(s) => [s.dx(), s.dy()],
+        _ => [0.0; 2],
+    };
+    let offsets = g.filters().iter().flat_map(|f| f.primitives()).map(offset);
+    out.extend(offsets.flat_map(|[dx, dy]| [dx * x, dy * y]).map(|v| f64::from(v).abs()));
+    for n in g.children() {
+        if let Node::Group(g) = n {
+            push_offsets(g, out);
+        }
+    }
 }
 
 /// A box of whole pixels around `target`.
