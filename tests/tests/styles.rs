@@ -46,6 +46,8 @@ const SHEETS: &[(&str, &str)] = &[
     (".a{stroke-width:max(2px, .5rem);stroke-dasharray:calc(1px * 8) 1rem}", LINE),
     (".a{fill:red;fill:color(display-p3 0.4 0.6 0.4)}", RECT),
     (".a{stroke:oklch(0.7 0.1 150);stroke-width:9px}", LINE),
+    (".a{filter:drop-shadow(5px .5rem 2px rgba(200,0,0,.6))}", RECT),
+    ("g{filter:drop-shadow(rgb(0 0 200 / 60%) 9px 4px)}", THREE),
     // Selectors.
     ("rect:nth-child(2){fill:red}", THREE),
     ("rect:nth-of-type(2n + 1){fill:red}", THREE),

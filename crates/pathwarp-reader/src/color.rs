@@ -57,6 +57,35 @@ pub(super) fn color(value: &str) -> Option<Cow<'_, str>> {
     Some(format!("rgba({r},{g},{b},{})", f64::from(a) / 255.0).into())
 }
 
+/// Rewrites the colours and lengths in a list of functions for usvg, whose style sheets know no functions in functions.
+pub(super) fn in_functions<'v>(list: &'v str, length: impl Fn(&'v str) -> Option<Cow<'v, str>>) -> Cow<'v, str> {
+    let rewritten = |word: &'v str| {
+        if word.contains('(') {
+            let c = svgtypes::Color::from_str(&color(word)?).ok()?;
+            return Some(format!("#{:02x}{:02x}{:02x}{:02x}", c.red, c.green, c.blue, c.alpha).into());
+        }
+        let has_unit = !word.starts_with('#') && word.ends_with(|c: char| c.is_ascii_alphabetic());
+        length(word).filter(|_| has_unit)
+    };
+    let (mut out, mut depth, mut start) = (String::new(), 0, 0);
+    for (at, c) in list.char_indices() {
+        let ends = depth == 0 || depth == 1 && (c == ')' || c.is_ascii_whitespace());
+        match c {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ => {}
+        }
+        if ends {
+            let word = &list[start..at];
+            out.push_str(&rewritten(word).unwrap_or(word.into()));
+            out.push(c);
+            start = at + c.len_utf8();
+        }
+    }
+    out.push_str(&list[start..]);
+    if out == list { list.into() } else { out.into() }
+}
+
 /// Converts a colour of Display P3 to XYZ.
 fn in_xyz(color: &str) -> Option<String> {
     let arguments = color.strip_prefix("color(display-p3")?.strip_suffix(')')?;
@@ -77,12 +106,25 @@ fn in_xyz(color: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::paint;
+    use super::{in_functions, paint};
 
     #[test]
     fn what_usvg_reads_stays() {
         for css in ["#123", "url(#a) red", "context-fill", "currentColor", "hsl(120 50% 40% / 60%)"] {
             assert_eq!(paint(css).as_deref(), Some(css));
+        }
+    }
+
+    #[test]
+    fn functions_in_functions() {
+        for (css, plain) in [
+            ("drop-shadow(8px 1rem 6px rgba(0, 0, 0, .6))", "drop-shadow(8px 16px 6px #00000099)"),
+            ("blur(2px) drop-shadow(rgb(255 0 0 / 50%) 1px 2px)", "blur(2px) drop-shadow(#ff000080 1px 2px)"),
+            ("url(#rem) hue-rotate(90deg) grayscale(50%)", "url(#rem) hue-rotate(90deg) grayscale(50%)"),
+            ("drop-shadow(1px 2px", "drop-shadow(1px 2px"),
+            ("drop-shadow((()))) é", "drop-shadow((()))) é"),
+        ] {
+            assert_eq!(in_functions(css, |v| Some(if v == "1rem" { "16px" } else { v }.into())), plain);
         }
     }
 

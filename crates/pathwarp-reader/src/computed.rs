@@ -231,7 +231,7 @@ impl Values<'_, '_, '_> {
             Kind::BaselineShift => word(&["baseline", "sub", "super"], raw)
                 .or_else(|| self.length(&Property { kind: Kind::Length(Sign::Any), ..*p }, raw, Sign::Any, false)),
             Kind::Link => link(raw),
-            Kind::Filter => Some(self.filter(raw)),
+            Kind::Filter => Some(self.filter(p, raw)),
             _ => (!raw.is_empty()).then_some(Cow::Borrowed(raw)),
         }
     }
@@ -258,17 +258,17 @@ impl Values<'_, '_, '_> {
     }
 
     /// Rewrites a list of filters. If one of them does not exist, browsers apply none.
-    fn filter<'v>(&self, raw: &'v str) -> Cow<'v, str> {
+    fn filter<'v>(&self, p: &Property, raw: &'v str) -> Cow<'v, str> {
         let links =
             || raw.char_indices().filter_map(|(at, c)| reference(&raw[at..]).filter(|_| c.eq_ignore_ascii_case(&'u')));
         let is_there = |id: &str| self.ids.get(id).is_some_and(|n| n.tag_name().name() == "filter");
         if raw.eq_ignore_ascii_case("none") || links().any(|l| l.id.as_deref().is_none_or(|id| !is_there(id))) {
             return "none".into();
         }
-        // Lists stay as they are.
+        // Links in lists stay as they are.
         match reference(raw).filter(|l| l.rest.trim().is_empty()) {
             Some(only) => only.text(raw),
-            None => Cow::Borrowed(raw),
+            None => color::in_functions(raw, |v| self.length(p, v, Sign::Any, false)),
         }
     }
 
