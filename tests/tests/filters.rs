@@ -96,6 +96,18 @@ fn filters_that_look_right_stay() {
     assert!(!svg.contains("<image") && told.contains("follow the warp as a whole"), "{told}");
 }
 
+/// The renderer displaces pixels too far, so that a picture would show little of the shape.
+#[test]
+fn roughened_shapes_stay() {
+    let rough = "<rect x='20' y='20' width='60' height='50' filter='url(#f)'/><filter id='f'><feTurbulence \
+                 baseFrequency='.05' result='t'/><feDisplacementMap in='SourceGraphic' in2='t' scale='8' xChannelSelector='R'/></filter>";
+    for filters in ["auto", "picture"] {
+        let (svg, told) = bent(rough, &["--filters", filters]);
+        assert!(svg.contains("<path") && !svg.contains("<image"), "{svg}");
+        assert!(told.contains("filters follow the warp as a whole"), "{told}");
+    }
+}
+
 /// Layers that each stack the one before twice double until a limit ends it.
 #[test]
 fn layers_that_double_are_bounded() {

@@ -65,7 +65,8 @@ fn outcome(
         Filters::Picture(painter) => (painter, true),
     };
     let repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
-    if bend.is_identity() || s.before || repeated || nests(group) || !takes_pictures(input, slot) {
+    let unfit = nests(group) || displaces(group) || !takes_pictures(input, slot);
+    if bend.is_identity() || s.before || repeated || unfit {
         return None;
     }
     let content = content(original, group, s.frame.inverse())?;
@@ -157,6 +158,11 @@ fn content(original: &WriteInput<'_>, g: &Group, from_root: pathwarp::kurbo::Aff
         }
     };
     g.children.iter().filter_map(one).reduce(|a, b| a.union(b)).filter(Rect::is_finite)
+}
+
+/// Returns `true` if a filter displaces pixels: the renderer moves them by the square of the scale.
+fn displaces(g: &Group) -> bool {
+    g.filters.iter().flat_map(|f| f.primitives()).any(|p| matches!(p.kind(), Kind::DisplacementMap(_)))
 }
 
 /// Returns `true` if anything in a group has filters of its own.
