@@ -158,6 +158,16 @@ def test_kerf_lets_parts_grow_and_holes_shrink(run, tmp_path):
     run("convert", "in.svg", "--kerf", "0.2mm", "-o", "out.pdf", code=2)
 
 
+def test_kerf_takes_no_line_that_crosses_another_for_a_hole(run, tmp_path):
+    lines = "fill='none' stroke='red' stroke-width='0.1'"
+    rings = [(40, 30, 10), (45, 30, 10), (42, 60, 12), (57, 60, 6)]
+    circles = "".join(f"<circle cx='{x}' cy='{y}' r='{r}'/>" for x, y, r in rings)
+    (tmp_path / "in.svg").write_text(drawing(f"<g {lines}>{circles}</g>"))
+    run("convert", "in.svg", "--kerf", "0.4mm", "-o", "out.dxf")
+    for circle, (_, _, r) in zip(opened(tmp_path / "out.dxf"), rings, strict=True):
+        assert circle.dxftype() == "CIRCLE" and abs(circle.dxf.radius - (r + 0.2)) < SINGLE
+
+
 def test_kerf_keeps_circular_arcs(run, tmp_path):
     (tmp_path / "in.svg").write_text(
         drawing(

@@ -28,7 +28,8 @@ pub(super) fn widen<K: PartialEq>(
     let loops: Vec<(usize, Loop)> =
         cuts.iter().enumerate().filter(|(_, c)| c.even_odd.is_none()).flat_map(loops).collect();
     let is_hole = |i: usize, s: &Subpath| {
-        let around = |(k, l): &&(usize, Loop)| among(*k) == among(i) && l.is_around(s);
+        let within = Within::new(s);
+        let around = |(k, l): &&(usize, Loop)| among(*k) == among(i) && l.is_around(&within);
         loops.iter().filter(around).count() % 2 == 1
     };
     let mut fewer = 0;
@@ -152,8 +153,31 @@ struct Loop {
 }
 
 impl Loop {
-    fn is_around(&self, s: &Subpath) -> bool {
-        self.start != s.start && self.bounds.contains(s.start) && self.path.winding(s.start) != 0
+    /// Returns `true` if a contour lies inside of this one and does not cross it.
+    fn is_around(&self, s: &Within) -> bool {
+        let reach = SLACK * (s.bounds.width() + s.bounds.height());
+        self.start != s.start
+            && self.bounds.inflate(reach, reach).contains_rect(s.bounds)
+            && s.points.iter().all(|p| self.path.winding(*p) != 0)
+    }
+}
+
+/// A contour that may lie inside of others.
+struct Within {
+    bounds: Rect,
+    start: Point,
+    points: Vec<Point>,
+}
+
+impl Within {
+    fn new(s: &Subpath) -> Self {
+        /// Most segments looked at, and how far from edges that contours may share, against the contour's size.
+        const MOST: usize = 8;
+        const BESIDE: f64 = 1e-3;
+        let bounds = s.bounding_box();
+        let beside = |p: Point| p.lerp(bounds.center(), BESIDE);
+        let middles = s.segs.iter().step_by(s.segs.len().div_ceil(MOST).max(1)).map(|seg| seg.eval(0.5));
+        Self { bounds, start: s.start, points: middles.chain([s.start]).map(beside).collect() }
     }
 }
 
