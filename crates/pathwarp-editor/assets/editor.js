@@ -2019,7 +2019,9 @@
     }
     show() {
       const { chosen, locks } = this.app;
-      byId("parts-box").hidden = this.all.length < 2 || this.app.isFirst(this.app.step);
+      const hides = this.all.length < 2 || this.app.isFirst(this.app.step);
+      byId("parts-box").hidden = hides;
+      if (hides && this.modes.picksParts) byId("pick-parts").click();
       this.all.forEach((part, i) => {
         const pressed = [chosen.includes(part.selector), this.hidden.has(part.name), locks.includes(part.selector)];
         pressed.forEach((on2, k) => this.rows[i]?.children[k]?.setAttribute("aria-pressed", String(on2)));
@@ -2687,8 +2689,13 @@
       }
       this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
     }
+    /** A drag on the ground selects points. */
+    get selects() {
+      return this.modes.selects && (this.app.handles?.handles.length ?? 0) > 1;
+    }
     rebuild() {
       const { handles } = this.app;
+      this.svg.classList.toggle("selecting", this.selects);
       this.elements.clear();
       const lines = handles?.lines() ?? [];
       this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
@@ -2994,14 +3001,11 @@
       const bends = e.button === 0 && !stage2.isBefore;
       const knob = target.closest(".knob");
       const part = target.closest(".part")?.dataset.part;
-      if (this.modes.picksParts && bends && !knob) {
-        this.down.delete(e.pointerId);
-        return stage2.pickedPart(e);
-      }
       if (knob && bends) this.drag(e, knob);
+      else if (this.modes.picksParts && bends) this.pan(e, () => stage2.pickedPart(e));
       else if (part && bends) this.transform(e, stage2.selection.transform(part, stage2.point(e)));
-      else if (bends && (e.shiftKey || this.modes.selects)) this.frame(e);
-      else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e);
+      else if (bends && (e.shiftKey || stage2.selects)) this.frame(e);
+      else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage2.select([]));
     }
     /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. Returns what gives it up. */
     follow(e, { move, end: end2, cancel = end2 }) {
@@ -3142,7 +3146,8 @@
       }, () => stage2.select(pull.ends));
       return true;
     }
-    pan(e) {
+    /** Moves the view; a click does something else. */
+    pan(e, clicked) {
       const { stage: stage2 } = this;
       const first = stage2.point(e);
       let last = first;
@@ -3156,7 +3161,7 @@
         end: () => {
           stage2.svg.classList.remove("panning");
           const [x, y, w, h2] = this.app.handles?.frame ?? [0, 0, 0, 0];
-          if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES) stage2.select([]);
+          if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES && this.down.size < 2) clicked();
           const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h2;
           if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
         }
@@ -3881,45 +3886,53 @@
   var NEAR = 8;
   var [FROM, TO] = [90, 450];
   var Sketching = class {
-    constructor(stage2) {
+    constructor(app2, stage2) {
+      this.app = app2;
       this.stage = stage2;
       stage2.overlay.append(this.line);
     }
+    app;
     stage;
     line = s("path", { class: "lit" });
     stop = null;
-    /** Draws until the line is done; Escape gives it up. */
+    /** Draws until the line is done; Escape and Undo give it up. */
     begin(kind, take) {
       this.end();
-      const { stage: stage2 } = this;
+      const { app: app2, stage: stage2 } = this;
       const points = [];
       const stop = new AbortController();
       const listen = { signal: stop.signal, capture: true };
-      this.stop = () => stop.abort();
+      const giveUp = () => this.end();
+      this.stop = () => {
+        stop.abort();
+        if (app2.hold === giveUp) app2.hold = null;
+      };
+      app2.hold = giveUp;
       stage2.svg.classList.add("picking");
       toast(HINTS[kind]);
       const done = (value) => {
         this.end();
         if (value) take(value);
       };
-      const user = (p) => stage2.camera.toUser(p).map(short).join(",");
-      const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
-      const path = (closed2) => points.length < 2 ? null : `M${points.map(user).join(" L")}${closed2 ? " Z" : ""}`;
+      const text = (p) => p.map(short).join(",");
+      const isNear = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < NEAR * stage2.camera.pixel;
+      const place2 = (e) => stage2.camera.toUser(stage2.point(e));
+      const path = (closed2) => points.length < 2 ? null : `M${points.map(text).join(" L")}${closed2 ? " Z" : ""}`;
       stage2.svg.addEventListener("pointerdown", (e) => {
         if (e.button !== 0) return;
         e.stopPropagation();
         e.preventDefault();
-        const at = stage2.point(e);
-        if (kind === "path" && points.length > 2 && far(at, points[0]) < NEAR) return done(path(true));
-        if (points.length === 0 || far(at, points[points.length - 1]) >= NEAR) points.push(at);
+        const at = place2(e);
+        if (kind === "path" && points.length > 2 && isNear(at, points[0])) return done(path(true));
+        if (points.length === 0 || !isNear(at, points[points.length - 1])) points.push(at);
+        this.show(kind, points, at);
       }, listen);
-      stage2.svg.addEventListener("pointermove", (e) => this.show(kind, points, stage2.point(e)), listen);
+      stage2.svg.addEventListener("pointermove", (e) => this.show(kind, points, place2(e)), listen);
       window.addEventListener("pointerup", (e) => {
         if (kind === "path" || points.length === 0) return;
-        const [from, to] = [points[0], stage2.point(e)];
-        if (far(from, to) < NEAR) return void (points.length = 0);
-        const [[x, y], [px, py]] = [stage2.camera.toUser(from), stage2.camera.toUser(to)];
-        done(kind === "line" ? `M${user(from)} L${user(to)}` : arc([x, y, Math.hypot(px - x, py - y), FROM, TO]));
+        const [from, to] = [points[0], place2(e)];
+        if (isNear(from, to)) return void (points.length = 0);
+        done(kind === "line" ? `M${text(from)} L${text(to)}` : arc([...from, Math.hypot(to[0] - from[0], to[1] - from[1]), FROM, TO]));
       }, listen);
       stage2.svg.addEventListener("dblclick", (e) => {
         e.stopPropagation();
@@ -3928,16 +3941,17 @@
       window.addEventListener("keydown", (e) => {
         if (e.key !== "Escape" && e.key !== "Enter") return;
         e.stopPropagation();
+        e.preventDefault();
         done(e.key === "Enter" && kind === "path" ? path(false) : null);
       }, listen);
     }
     show(kind, points, to) {
-      const [from] = points;
-      if (!from) return;
-      const [x, y] = from;
-      const r = Math.hypot(to[0] - x, to[1] - y);
+      if (points.length === 0) return;
+      const places = [...points, to].map((p) => this.stage.camera.toScreen(p));
+      const [[x, y], [px, py]] = [places[0], places.at(-1)];
+      const r = Math.hypot(px - x, py - y);
       const circle2 = `M${x - r},${y}a${r},${r} 0 1 1 ${2 * r},0a${r},${r} 0 1 1 ${-2 * r},0`;
-      this.line.setAttribute("d", kind === "circle" ? circle2 : `M${[...points, to].join("L")}`);
+      this.line.setAttribute("d", kind === "circle" ? circle2 : `M${places.join("L")}`);
     }
     /** Ends drawing and picking. */
     end() {
@@ -4256,10 +4270,14 @@
   stage.onZoom = () => {
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
   };
-  var sketching = new Sketching(stage);
-  settings.onDraw = (kind, take) => sketching.begin(kind, take);
+  var sketching = new Sketching(app, stage);
+  settings.onDraw = (kind, take) => {
+    closeSheets();
+    sketching.begin(kind, take);
+  };
   settings.onOther = () => sketching.end();
   settings.onPick = (take) => {
+    closeSheets();
     sketching.end();
     toast("Click a path of the drawing");
     stage.pick(take);
@@ -4291,7 +4309,7 @@
   }
   toggle("select", () => modes.selects, (v) => {
     modes.selects = v;
-    stage.svg.classList.toggle("selecting", v);
+    stage.svg.classList.toggle("selecting", stage.selects);
   });
   toggle("pick-parts", () => modes.picksParts, (v) => {
     modes.picksParts = v;
@@ -4312,15 +4330,16 @@
   });
   var SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" };
   var { classList } = document.body;
+  var closeSheets = () => classList.remove(...Object.keys(SHEETS));
   for (const [sheet, button] of Object.entries(SHEETS)) {
     on(button, () => {
       const opens = !classList.contains(sheet);
-      classList.remove(...Object.keys(SHEETS));
+      closeSheets();
       classList.toggle(sheet, opens);
     });
   }
   byId("stage").addEventListener("pointerdown", (e) => {
-    if (!e.target.closest(".knob")) classList.remove(...Object.keys(SHEETS));
+    if (!e.target.closest(".knob")) closeSheets();
   });
   var opened = "";
   new MutationObserver(() => {

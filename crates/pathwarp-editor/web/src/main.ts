@@ -42,10 +42,14 @@ modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
 stage.onZoom = () => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
 };
-const sketching = new Sketching(stage);
-settings.onDraw = (kind, take) => sketching.begin(kind, take);
+const sketching = new Sketching(app, stage);
+settings.onDraw = (kind, take) => {
+  closeSheets();
+  sketching.begin(kind, take);
+};
 settings.onOther = () => sketching.end();
 settings.onPick = (take) => {
+  closeSheets();
   sketching.end();
   toast("Click a path of the drawing");
   stage.pick(take);
@@ -83,7 +87,7 @@ function toggle(id: string, get: () => boolean, set: (value: boolean) => void): 
 
 toggle("select", () => modes.selects, (v) => {
   modes.selects = v;
-  stage.svg.classList.toggle("selecting", v);
+  stage.svg.classList.toggle("selecting", stage.selects);
 });
 toggle("pick-parts", () => modes.picksParts, (v) => {
   modes.picksParts = v;
@@ -106,15 +110,16 @@ toggle("stretch", () => stage.showsStretch, (v) => {
 // The panels of a narrow window are sheets, of which one is open at most.
 const SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" } as const;
 const { classList } = document.body;
+const closeSheets = () => classList.remove(...Object.keys(SHEETS));
 for (const [sheet, button] of Object.entries(SHEETS)) {
   on(button, () => {
     const opens = !classList.contains(sheet);
-    classList.remove(...Object.keys(SHEETS));
+    closeSheets();
     classList.toggle(sheet, opens);
   });
 }
 byId("stage").addEventListener("pointerdown", (e) => {
-  if (!(e.target as Element).closest(".knob")) classList.remove(...Object.keys(SHEETS));
+  if (!(e.target as Element).closest(".knob")) closeSheets();
 });
 // Sheets are opened and closed by other parts, too; the drawing moves into the room that is left.
 let opened = "";

@@ -101,7 +101,10 @@ export class Parts {
 
   private show(): void {
     const { chosen, locks } = this.app;
-    byId("parts-box").hidden = this.all.length < 2 || this.app.isFirst(this.app.step);
+    const hides = this.all.length < 2 || this.app.isFirst(this.app.step);
+    byId("parts-box").hidden = hides;
+    // A mode whose button is not seen could not be left.
+    if (hides && this.modes.picksParts) byId("pick-parts").click();
     this.all.forEach((part, i) => {
       const pressed = [chosen.includes(part.selector), this.hidden.has(part.name), locks.includes(part.selector)];
       pressed.forEach((on, k) => this.rows[i]?.children[k]?.setAttribute("aria-pressed", String(on)));

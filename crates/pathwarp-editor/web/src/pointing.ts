@@ -74,14 +74,11 @@ export class Pointing {
     const bends = e.button === 0 && !stage.isBefore;
     const knob = target.closest<SVGGElement>(".knob");
     const part = target.closest<SVGGElement>(".part")?.dataset.part as Part | undefined;
-    if (this.modes.picksParts && bends && !knob) {
-      this.down.delete(e.pointerId);
-      return stage.pickedPart(e);
-    }
     if (knob && bends) this.drag(e, knob);
+    else if (this.modes.picksParts && bends) this.pan(e, () => stage.pickedPart(e));
     else if (part && bends) this.transform(e, stage.selection.transform(part, stage.point(e)));
-    else if (bends && (e.shiftKey || this.modes.selects)) this.frame(e);
-    else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e);
+    else if (bends && (e.shiftKey || stage.selects)) this.frame(e);
+    else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage.select([]));
   }
 
   /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. Returns what gives it up. */
@@ -228,7 +225,8 @@ export class Pointing {
     return true;
   }
 
-  private pan(e: PointerEvent): void {
+  /** Moves the view; a click does something else. */
+  private pan(e: PointerEvent, clicked: () => void): void {
     const { stage } = this;
     const first = stage.point(e);
     let last = first;
@@ -242,8 +240,8 @@ export class Pointing {
       end: () => {
         stage.svg.classList.remove("panning");
         const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
-        // A click beside everything selects nothing.
-        if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES) stage.select([]);
+        // A finger that is the first of two does not click.
+        if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES && this.down.size < 2) clicked();
         const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
         if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
       },

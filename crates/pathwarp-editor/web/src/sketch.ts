@@ -1,5 +1,6 @@
 // Lines that are drawn on the canvas: by a drag from end to end, by a drag from centre to edge, or by clicks.
 
+import type { App } from "./app";
 import { s } from "./dom";
 import type { Stage } from "./stage";
 import { toast } from "./toast";
@@ -24,43 +25,50 @@ export class Sketching {
   private line = s("path", { class: "lit" });
   private stop: (() => void) | null = null;
 
-  constructor(private stage: Stage) {
+  constructor(private app: App, private stage: Stage) {
     stage.overlay.append(this.line);
   }
 
-  /** Draws until the line is done; Escape gives it up. */
+  /** Draws until the line is done; Escape and Undo give it up. */
   begin(kind: Sketch, take: (value: string) => void): void {
     this.end();
-    const { stage } = this;
+    const { app, stage } = this;
+    // In units of the drawing, since the view may move meanwhile.
     const points: XY[] = [];
     const stop = new AbortController();
     const listen = { signal: stop.signal, capture: true };
-    this.stop = () => stop.abort();
+    const giveUp = () => this.end();
+    this.stop = () => {
+      stop.abort();
+      if (app.hold === giveUp) app.hold = null;
+    };
+    app.hold = giveUp;
     stage.svg.classList.add("picking");
     toast(HINTS[kind]);
     const done = (value: string | null) => {
       this.end();
       if (value) take(value);
     };
-    const user = (p: XY) => stage.camera.toUser(p).map(short).join(",");
-    const far = (a: XY, b: XY) => Math.hypot(a[0] - b[0], a[1] - b[1]);
-    const path = (closed: boolean) => (points.length < 2 ? null : `M${points.map(user).join(" L")}${closed ? " Z" : ""}`);
+    const text = (p: XY) => p.map(short).join(",");
+    const isNear = (a: XY, b: XY) => Math.hypot(a[0] - b[0], a[1] - b[1]) < NEAR * stage.camera.pixel;
+    const place = (e: PointerEvent) => stage.camera.toUser(stage.point(e));
+    const path = (closed: boolean) => (points.length < 2 ? null : `M${points.map(text).join(" L")}${closed ? " Z" : ""}`);
     stage.svg.addEventListener("pointerdown", (e) => {
       if (e.button !== 0) return;
       e.stopPropagation();
       e.preventDefault();
-      const at = stage.point(e);
-      if (kind === "path" && points.length > 2 && far(at, points[0]!) < NEAR) return done(path(true));
-      if (points.length === 0 || far(at, points[points.length - 1]!) >= NEAR) points.push(at);
+      const at = place(e);
+      if (kind === "path" && points.length > 2 && isNear(at, points[0]!)) return done(path(true));
+      if (points.length === 0 || !isNear(at, points[points.length - 1]!)) points.push(at);
+      this.show(kind, points, at);
     }, listen);
-    stage.svg.addEventListener("pointermove", (e) => this.show(kind, points, stage.point(e)), listen);
+    stage.svg.addEventListener("pointermove", (e) => this.show(kind, points, place(e)), listen);
     window.addEventListener("pointerup", (e) => {
       if (kind === "path" || points.length === 0) return;
-      const [from, to] = [points[0]!, stage.point(e)];
+      const [from, to] = [points[0]!, place(e)];
       // A click alone is no line.
-      if (far(from, to) < NEAR) return void (points.length = 0);
-      const [[x, y], [px, py]] = [stage.camera.toUser(from), stage.camera.toUser(to)];
-      done(kind === "line" ? `M${user(from)} L${user(to)}` : arc([x, y, Math.hypot(px - x, py - y), FROM, TO]));
+      if (isNear(from, to)) return void (points.length = 0);
+      done(kind === "line" ? `M${text(from)} L${text(to)}` : arc([...from, Math.hypot(to[0] - from[0], to[1] - from[1]), FROM, TO]));
     }, listen);
     stage.svg.addEventListener("dblclick", (e) => {
       e.stopPropagation();
@@ -69,17 +77,19 @@ export class Sketching {
     window.addEventListener("keydown", (e) => {
       if (e.key !== "Escape" && e.key !== "Enter") return;
       e.stopPropagation();
+      // The button that began it still has the focus, and would begin anew.
+      e.preventDefault();
       done(e.key === "Enter" && kind === "path" ? path(false) : null);
     }, listen);
   }
 
   private show(kind: Sketch, points: XY[], to: XY): void {
-    const [from] = points;
-    if (!from) return;
-    const [x, y] = from;
-    const r = Math.hypot(to[0] - x, to[1] - y);
+    if (points.length === 0) return;
+    const places = [...points, to].map((p) => this.stage.camera.toScreen(p));
+    const [[x, y], [px, py]] = [places[0]!, places.at(-1)!];
+    const r = Math.hypot(px - x, py - y);
     const circle = `M${x - r},${y}a${r},${r} 0 1 1 ${2 * r},0a${r},${r} 0 1 1 ${-2 * r},0`;
-    this.line.setAttribute("d", kind === "circle" ? circle : `M${[...points, to].join("L")}`);
+    this.line.setAttribute("d", kind === "circle" ? circle : `M${places.join("L")}`);
   }
 
   /** Ends drawing and picking. */

@@ -320,8 +320,14 @@ export class Stage {
     this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
   }
 
+  /** A drag on the ground selects points. */
+  get selects(): boolean {
+    return this.modes.selects && (this.app.handles?.handles.length ?? 0) > 1;
+  }
+
   private rebuild(): void {
     const { handles } = this.app;
+    this.svg.classList.toggle("selecting", this.selects);
     this.elements.clear();
     const lines = handles?.lines() ?? [];
     this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));

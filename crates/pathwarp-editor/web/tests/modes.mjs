@@ -211,3 +211,27 @@ export const folds_are_marked = () => within(async (page) => {
   check(/^Folds over at \d+ place/.test(await page.textContent("#folds")), await page.textContent("#folds"));
   check((await page.locator("#stage .fold").count()) > 0, "no fold is marked");
 });
+
+/** Modes whose buttons a shape or drawing does not have keep nobody from moving the view. */
+export const modes_end_with_their_buttons = () => within(async (page) => {
+  const pans = async (what) => {
+    const sheet = () => page.locator("#stage .sheet").boundingBox();
+    const { x, y } = await sheet();
+    await page.mouse.move(x + 5, y + 5);
+    await page.mouse.down();
+    await page.mouse.move(x + 45, y + 35, { steps: 4 });
+    await page.mouse.up();
+    check(Math.abs((await sheet()).x - x - 40) < 1, what);
+  };
+  await page.click("#select");
+  await choose(page, "Arc");
+  await page.locator("#select").waitFor({ state: "hidden" });
+  await pans("with one point, a frame is drawn");
+  await page.click("#pick-parts");
+  const one = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 30"><path id="one" d="M10,10h20v10H10z"/></svg>`;
+  await page.setInputFiles("#open-file", { name: "one.svg", mimeType: "image/svg+xml", buffer: Buffer.from(one) });
+  await page.getByRole("heading", { name: "one.svg" }).waitFor();
+  await page.locator("#pick-parts").waitFor({ state: "hidden" });
+  await choose(page, "Arc");
+  await pans("with one part, parts are picked");
+});

@@ -4,10 +4,10 @@ import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { check, choose, edit, folder, keep, open, paths, program, quiet, sample } from "./harness.mjs";
 
-async function within(drawing, test) {
+async function within(drawing, test, options = {}) {
   const dir = folder(drawing.includes("<") ? { "art.svg": drawing } : { "art.svg": sample(drawing) });
   const editor = await edit(`${dir}/art.svg`);
-  const page = await open(editor.address, { viewport: { width: 1440, height: 900 } });
+  const page = await open(editor.address, { viewport: { width: 1440, height: 900 }, ...options });
   try {
     await page.evaluate(() => { navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }; });
     await test(page, dir);
@@ -306,3 +306,30 @@ export const drawing_ends_with_its_shape = () => within("lettering.svg", async (
   await quiet(page);
   check((await paths(page)) === flag && !(await page.isVisible("#problem")), `${await page.textContent("#problem")} after a drag on the sheet`);
 });
+
+/** While parts are picked, a drag moves the view and two fingers magnify it, and neither picks. */
+export const the_view_moves_while_parts_are_picked = () => within(SQUARES, async (page) => {
+  await choose(page, "Flag");
+  await press(page, "Pick parts");
+  await clicked(page, 1);
+  const [picture, box] = [await paths(page), () => page.locator("#stage .sheet").boundingBox()];
+  const { x, y, width } = await box();
+  await page.mouse.move(x + 8, y + 8);
+  await page.mouse.down();
+  await page.mouse.move(x + 48, y + 28, { steps: 4 });
+  await page.mouse.up();
+  const off = (await box()).x - x;
+  check(Math.abs(off - 40) < 1, `the view moves by ${off}`);
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
+  const [one, two] = [[x + 60, y + 40], [x + 160, y + 40]];
+  await touch("touchStart", one);
+  await touch("touchStart", one, two);
+  for (let i = 1; i <= 5; i++) await touch("touchMove", [one[0] - 10 * i, one[1]], [two[0] + 10 * i, two[1]]);
+  await touch("touchEnd");
+  await page.waitForFunction((was) => document.querySelector("#stage .sheet").getBoundingClientRect().width > 1.5 * was, width);
+  await quiet(page);
+  check((await page.textContent("#parts-scope")) === "This step bends one part." && (await paths(page)) === picture, "other parts are picked");
+  await clicked(page, 2);
+  check((await paths(page)) !== picture, "a click does not pick");
+}, { hasTouch: true });
