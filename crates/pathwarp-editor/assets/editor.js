@@ -147,6 +147,7 @@
   // src/fields.ts
   var LENGTHS = { px: 1, in: 96, mm: 96 / 25.4, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
   var TOKEN2 = /\s*(?:(\d+[.,]?\d*|[.,]\d+)\s*(%|°|[a-z]+)?|([-+*/()]))\s*/iy;
+  var EXACT = 12;
   function evaluate(text, unit) {
     const tokens = [];
     const normal = text.replaceAll("−", "-").replaceAll("×", "*");
@@ -157,7 +158,7 @@
     }
     try {
       const result = sum(tokens);
-      return tokens.length === 0 && Number.isFinite(result.value) ? { value: result.value, unit: result.unit || unit } : null;
+      return tokens.length === 0 && Number.isFinite(result.value) ? { value: Number(result.value.toPrecision(EXACT)), unit: result.unit || unit } : null;
     } catch {
       return null;
     }
@@ -284,8 +285,12 @@
       this.input.value = this.shown = value;
     }
   };
-  function isAnyWrong() {
-    return document.querySelector("#settings [aria-invalid=true], #place [aria-invalid=true]") !== null;
+  function showWrong() {
+    const field = document.querySelector("#settings [aria-invalid=true], #place [aria-invalid=true]");
+    if (!field) return false;
+    field.focus();
+    toast(`${field.labels?.[0]?.textContent?.trim()}: ${byId(`${field.id}-wrong`).textContent}`);
+    return true;
   }
 
   // src/values.ts
@@ -1285,7 +1290,7 @@
       await this.turns;
       await this.flush();
       await this.lastCommit;
-      return this.refusals === refusals && !isAnyWrong();
+      return !showWrong() && this.refusals === refusals;
     }
     /** Takes the value that is being typed, as if its field were left. */
     takeTyped() {
@@ -3488,7 +3493,7 @@
         this.dialog.close();
         this.done(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
       } catch (e) {
-        this.say(reason(e));
+        this.say(inWords(reason(e)));
       }
     }
     /** Hands the file to the browser, which knows a folder that can be written. */
@@ -3505,7 +3510,7 @@
         this.app.tell("state");
         toast([`Downloaded ${written}`, ...warnings].join(". "));
       } catch (e) {
-        this.say(reason(e));
+        this.say(inWords(reason(e)));
       }
     }
     done(written, state, warnings) {
@@ -4241,7 +4246,7 @@
           return answer;
         });
       } catch (e) {
-        this.say(reason(e));
+        this.say(inWords(reason(e)));
       }
     }
     say(text) {

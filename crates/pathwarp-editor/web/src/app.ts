@@ -3,7 +3,7 @@
 import { Connection, Gone } from "./connection";
 import { isTyping } from "./dom";
 import { toast } from "./toast";
-import { inWords, isAnyWrong, reason } from "./fields";
+import { inWords, reason, showWrong } from "./fields";
 import { Handles } from "./handles";
 import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
 
@@ -281,7 +281,7 @@ export class App {
     await this.turns;
     await this.flush();
     await this.lastCommit;
-    return this.refusals === refusals && !isAnyWrong();
+    return !showWrong() && this.refusals === refusals;
   }
 
   /** Takes the value that is being typed, as if its field were left. */

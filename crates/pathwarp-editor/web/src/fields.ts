@@ -1,6 +1,7 @@
 // What is typed into fields of numbers: arithmetic with units, arrow keys, and words for what is wrong.
 
-import { h } from "./dom";
+import { byId, h } from "./dom";
+import { toast } from "./toast";
 
 /** A number with the unit it was typed in. */
 export interface Quantity {
@@ -11,6 +12,9 @@ export interface Quantity {
 /** Lengths, in px. */
 const LENGTHS: Record<string, number> = { px: 1, in: 96, mm: 96 / 25.4, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
 const TOKEN = /\s*(?:(\d+[.,]?\d*|[.,]\d+)\s*(%|°|[a-z]+)?|([-+*/()]))\s*/iy;
+
+/** The figures of a sum that computing leaves right. */
+const EXACT = 12;
 
 /** The value of a sum, difference, product or quotient; numbers without a unit have the field's. `null` if the text is none. */
 export function evaluate(text: string, unit: string): Quantity | null {
@@ -23,7 +27,7 @@ export function evaluate(text: string, unit: string): Quantity | null {
   }
   try {
     const result = sum(tokens);
-    return tokens.length === 0 && Number.isFinite(result.value) ? { value: result.value, unit: result.unit || unit } : null;
+    return tokens.length === 0 && Number.isFinite(result.value) ? { value: Number(result.value.toPrecision(EXACT)), unit: result.unit || unit } : null;
   } catch {
     return null;
   }
@@ -174,7 +178,11 @@ export class Field {
   }
 }
 
-/** A value is wrong that has been typed. */
-export function isAnyWrong(): boolean {
-  return document.querySelector("#settings [aria-invalid=true], #place [aria-invalid=true]") !== null;
+/** Shows the first value that has been typed wrong. Returns `false` if there is none. */
+export function showWrong(): boolean {
+  const field = document.querySelector<Editable>("#settings [aria-invalid=true], #place [aria-invalid=true]");
+  if (!field) return false;
+  field.focus();
+  toast(`${field.labels?.[0]?.textContent?.trim()}: ${byId(`${field.id}-wrong`).textContent}`);
+  return true;
 }

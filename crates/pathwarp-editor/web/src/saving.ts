@@ -195,7 +195,7 @@ export class Saving {
       this.dialog.close();
       this.done(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
     } catch (e) {
-      this.say(reason(e));
+      this.say(inWords(reason(e)));
     }
   }
 
@@ -213,7 +213,7 @@ export class Saving {
       this.app.tell("state");
       toast([`Downloaded ${written}`, ...warnings].join(". "));
     } catch (e) {
-      this.say(reason(e));
+      this.say(inWords(reason(e)));
     }
   }
 

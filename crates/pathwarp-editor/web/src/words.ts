@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
-import { inUnits, reason } from "./fields";
+import { inUnits, inWords, reason } from "./fields";
 
 const BUNDLED = "Noto Sans (bundled)";
 const LARGEST = 2000;
@@ -79,7 +79,7 @@ export class WordsDialog {
         return answer;
       });
     } catch (e) {
-      this.say(reason(e));
+      this.say(inWords(reason(e)));
     }
   }
 

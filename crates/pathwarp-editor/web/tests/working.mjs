@@ -499,3 +499,49 @@ export const zoom_has_its_range = () => within(null, async (page) => {
     check((await page.textContent("#zoom")) === end, `${key} ends at ${await page.textContent("#zoom")}`);
   }
 });
+
+/** Keys that go through long settings scroll the panel alone. */
+export const keys_go_through_long_settings = () => within("Bend", async (page) => {
+  await page.locator("#settings").getByRole("button").first().focus();
+  for (let inside = true; inside; ) {
+    await page.keyboard.press("Tab");
+    const { top, field, isInside } = await page.evaluate(() => ({
+      top: document.querySelector("header").getBoundingClientRect().top, field: document.activeElement.id, isInside: document.querySelector("#settings").contains(document.activeElement),
+    }));
+    check(top === 0, `at ${field}, the header is at ${top}`);
+    inside = isInside;
+  }
+}, { viewport: { width: 1440, height: 900 } });
+
+/** What keeps from saving is said, and has the focus. */
+export const a_wrong_value_is_named_when_saving = () => within("Arc", async (page) => {
+  const type = async (text) => {
+    await page.click("#set-bend", { clickCount: 3 });
+    await page.keyboard.type(text);
+    await page.keyboard.press("Enter");
+  };
+  await type("high");
+  await page.click("#save-as");
+  await page.locator("#toast.on", { hasText: /^Bend: A number.* %$/ }).waitFor();
+  check((await page.evaluate(() => document.activeElement.id)) === "set-bend", "the field has no focus");
+  check(!(await page.isVisible("#save-dialog")), "the dialog is open");
+  await type("30");
+  await page.locator("#set-bend-wrong").waitFor({ state: "hidden" });
+  await page.click("#save-as");
+  await page.fill("#save-name", "../a.svg");
+  await page.keyboard.press("Enter");
+  await page.locator("#save-message", { hasText: "a plain file name" }).waitFor();
+  check(!(await page.textContent("#save-message")).includes("`"), await page.textContent("#save-message"));
+});
+
+/** Sums of sizes are shown in the figures that were meant. */
+export const sizes_of_words_are_added = () => within(null, async (page) => {
+  await page.click("#words");
+  await page.fill("#words-text", "Word");
+  await page.fill("#words-size", "1 cm + 2.5");
+  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("dialog").waitFor({ state: "hidden" });
+  await page.click("#words");
+  await page.getByRole("dialog").waitFor();
+  check((await value(page, "words-size")) === "12.5", await value(page, "words-size"));
+});
