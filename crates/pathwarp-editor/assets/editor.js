@@ -4362,6 +4362,7 @@
     if (e.key === " " || e.key === "Enter") void stage.before(true);
   });
   function escape() {
+    app.hold?.();
     stage.pick(null);
     if (app.appends) app.append(false);
   }

@@ -140,8 +140,9 @@ before.addEventListener("keydown", (e) => {
   if (e.key === " " || e.key === "Enter") void stage.before(true);
 });
 
-/** Ends what waits for a click elsewhere. */
+/** Takes back what a pointer that is down has done, and ends what waits for a click elsewhere. */
 function escape(): void {
+  app.hold?.();
   stage.pick(null);
   if (app.appends) app.append(false);
 }

@@ -95,7 +95,7 @@ export const undo_is_whole = () => within("Arc", async (page) => {
   }
 });
 
-/** Ctrl Z during a drag takes that drag back and nothing else, of a handle and of a slider. */
+/** Ctrl Z during a drag takes that drag back and nothing else, of a handle and of a slider; Escape does, too. */
 export const undo_during_a_drag = () => within("Arc", async (page) => {
   await drag(page, "bend", 0, -30);
   const before = await paths(page);
@@ -108,19 +108,21 @@ export const undo_during_a_drag = () => within("Arc", async (page) => {
   await page.mouse.up();
   await quiet(page);
   await becomes(page, before, "the drag alone was to be taken back");
-  const box = await page.locator("#set-bend-slider").boundingBox();
   const shown = await value(page, "set-bend");
-  const at = await page.$eval("#set-bend-slider", (s) => (s.value - s.min) / (s.max - s.min));
-  await page.mouse.move(box.x + 8 + at * (box.width - 16), box.y + box.height / 2);
-  await page.mouse.down();
-  await page.mouse.move(box.x + box.width * 0.2, box.y + box.height / 2, { steps: 6 });
-  await page.waitForFunction((was) => document.querySelector("#set-bend").value !== was, shown);
-  await page.keyboard.press("Control+z");
-  await page.mouse.move(box.x + box.width * 0.3, box.y + box.height / 2, { steps: 3 });
-  await page.mouse.up();
-  await quiet(page);
-  await becomes(page, before, "the slider was to be taken back");
-  check((await value(page, "set-bend")) === shown, `${await value(page, "set-bend")} instead of ${shown}`);
+  for (const key of ["Control+z", "Escape"]) {
+    const box = await page.locator("#set-bend-slider").boundingBox();
+    const at = await page.$eval("#set-bend-slider", (s) => (s.value - s.min) / (s.max - s.min));
+    await page.mouse.move(box.x + 8 + at * (box.width - 16), box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width * 0.2, box.y + box.height / 2, { steps: 6 });
+    await page.waitForFunction((was) => document.querySelector("#set-bend").value !== was, shown);
+    await page.keyboard.press(key);
+    await page.mouse.move(box.x + box.width * 0.3, box.y + box.height / 2, { steps: 3 });
+    await page.mouse.up();
+    await quiet(page);
+    await becomes(page, before, `${key}: the slider was to be taken back`);
+    check((await value(page, "set-bend")) === shown, `${key}: ${await value(page, "set-bend")} instead of ${shown}`);
+  }
 });
 
 /** Keys on a slider and in a field are one change. */
