@@ -19,8 +19,8 @@ pub(crate) fn of_words(text: &str, beside: &Path) -> PathBuf {
     const LONGEST: usize = 40;
     let plain = |c: char| if c.is_alphanumeric() { c } else { '-' };
     let name: String = text.trim().to_lowercase().chars().map(plain).take(LONGEST).collect();
-    let name = name.trim_matches('-');
-    free(beside, if name.is_empty() { "words" } else { name })
+    let words: Vec<&str> = name.split('-').filter(|word| !word.is_empty()).collect();
+    free(beside, &if words.is_empty() { "words".to_owned() } else { words.join("-") })
 }
 
 /// A name beside a file that no file has, with a number if need be.
@@ -94,6 +94,8 @@ mod tests {
     fn names_stay_in_the_folder() {
         let beside = Path::new("/art/logo.svg");
         assert_eq!(usual(beside), Path::new("/art/logo-bent.svg"));
+        assert_eq!(of_words("It's “Fjord” & <sea>\n", beside), Path::new("/art/it-s-fjord-sea.svg"));
+        assert_eq!(of_words(" … ", beside), Path::new("/art/words.svg"));
         assert_eq!(named("flag", beside), Ok("/art/flag.svg".into()));
         assert_eq!(named("flag.pdf", beside), Ok("/art/flag.pdf".into()));
         for wrong in ["", "../x.svg", "a/b.svg", ".hidden", "a\\b"] {

@@ -128,10 +128,11 @@ impl Session {
         let file = saving::named(name, &self.file)?;
         let content = STANDARD.decode(bytes).map_err(|e| format!("{name}: {e}"))?;
         let (host, purpose) = (Arc::clone(&self.host), Purpose::Files { out: None });
-        let other = Self::open(host, &file, &content, purpose, self.drafts.clone())?;
+        let mut other = Self::open(host, &file, &content, purpose, self.drafts.clone())?;
         let first = self.first.take().or_else(|| Some(std::mem::take(&mut self.file)));
         // A file of this name in the folder may be another one.
-        *self = Self { first, saved: None, ..other };
+        let saved = other.saved.take().filter(|(there, _)| std::fs::read(there).is_ok_and(|c| c == content));
+        *self = Self { first, saved, ..other };
         Ok(())
     }
 

@@ -547,3 +547,24 @@ export const sizes_of_words_are_added = () => within(null, async (page) => {
   await page.getByRole("dialog").waitFor();
   check((await value(page, "words-size")) === "12.5", await value(page, "words-size"));
 });
+
+/** A result that is opened from its folder is a saved file, and is saved there again; a file of its name from elsewhere is not. */
+export const results_are_opened_as_saved = () => within("Arc", async (page, dir) => {
+  await page.click("#save");
+  await page.getByText("Saved as logo-bent.svg").waitFor();
+  await page.setInputFiles("#open-file", sample("badge.svg"));
+  await page.getByRole("heading", { name: "badge.svg" }).waitFor();
+  await page.setInputFiles("#open-file", `${dir}/logo-bent.svg`);
+  await page.getByRole("heading", { name: "logo-bent.svg" }).waitFor();
+  await page.waitForFunction(() => document.querySelector("#saved").textContent === "Saved");
+  const before = readFileSync(`${dir}/logo-bent.svg`, "utf8");
+  await choose(page, "Flag");
+  await page.waitForFunction(() => document.querySelector("#saved").textContent === "Not saved yet");
+  await page.click("#save");
+  await page.waitForFunction(() => document.querySelector("#saved").textContent !== "Not saved yet");
+  check(readFileSync(`${dir}/logo-bent.svg`, "utf8") !== before, "it was saved elsewhere");
+  const other = before.replace("<svg", "<!-- from elsewhere --><svg");
+  await page.setInputFiles("#open-file", { name: "logo-bent.svg", mimeType: "image/svg+xml", buffer: Buffer.from(other) });
+  await page.locator("#steps", { hasText: "Arc" }).waitFor();
+  await page.waitForFunction(() => document.querySelector("#saved").textContent === "Not saved yet");
+});
