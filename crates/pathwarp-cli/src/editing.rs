@@ -369,7 +369,7 @@ impl Host for EditorHost {
         self.given.read().map(|o| families(&o.reading.read_options())).unwrap_or_default()
     }
 
-    fn set_words(&self, words: &Words) -> Result<String, String> {
+    fn set_words(&self, words: &Words) -> Result<(String, Vec<char>), String> {
         let letter_spacing = 0.01 * words.spacing * words.size;
         let style = TextStyle { size: words.size, letter_spacing, ..TextStyle::default() };
         let set = |options: CommonOptions| set_plainly(&words.text, words.font.as_deref(), &style, &options.reading);

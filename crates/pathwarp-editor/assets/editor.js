@@ -4243,6 +4243,7 @@
         await app2.enter(async () => {
           const answer = await app2.connection.ask({ do: "set-words", words: words2 });
           this.dialog.close();
+          if (answer.lacking?.length) toast(`The font lacks ${answer.lacking.join(" ")}. Choose one that has them.`);
           return answer;
         });
       } catch (e) {

@@ -63,11 +63,11 @@ pub trait Host: Send + Sync {
     /// The families of the fonts there are.
     fn families(&self) -> Vec<String>;
 
-    /// Sets words as a drawing.
+    /// Sets words as a drawing, and lists the characters that no font has.
     ///
     /// # Errors
     /// The font is missing, or the words cannot be set.
-    fn set_words(&self, words: &Words) -> Result<String, String>;
+    fn set_words(&self, words: &Words) -> Result<(String, Vec<char>), String>;
 
     /// Reads a drawing. If it is the result of an earlier run with its source embedded, that source is opened, with its recipe.
     ///

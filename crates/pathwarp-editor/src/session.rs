@@ -142,20 +142,22 @@ impl Session {
     }
 
     /// Sets words, and makes them the drawing: a file beside the present one. If that consists of words, the new ones take their place
-    /// under its steps, whose paths are laid onto their box.
-    pub(crate) fn set_words(&mut self, words: &Words) -> Result<(), String> {
+    /// under its steps, whose paths are laid onto their box. Lists the characters that no font has.
+    pub(crate) fn set_words(&mut self, words: &Words) -> Result<Vec<char>, String> {
         self.refuse_for_program("words cannot be set")?;
-        let svg = words.written(&self.host.set_words(words)?);
+        let (svg, lacking) = self.host.set_words(words)?;
+        let svg = words.written(&svg);
         let own = self.words.is_some().then_some(&self.file).filter(|_| !self.opened.is_result);
         let file = own.cloned().unwrap_or_else(|| saving::of_words(&words.text, &self.file));
         if self.words.is_some() {
-            return self.edit_words(&file, svg);
+            self.edit_words(&file, svg)?;
+            return Ok(lacking);
         }
         let other = self.with_drawing(&file, &svg)?;
         self.host.write(&file, svg.as_bytes())?;
         let first = self.first.take().or_else(|| Some(self.file.clone()));
         *self = Self { first, ..other };
-        Ok(())
+        Ok(lacking)
     }
 
     fn edit_words(&mut self, file: &Path, svg: String) -> Result<(), String> {

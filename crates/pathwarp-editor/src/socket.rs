@@ -126,9 +126,9 @@ impl Page {
             }
             Request::Families => Ok(json!({ "families": session.families() })),
             Request::SetWords { words } => {
-                session.set_words(&words)?;
+                let lacking = session.set_words(&words)?;
                 self.count_change();
-                Ok(json!({ "state": session.state() }))
+                Ok(json!({ "state": session.state(), "lacking": lacking }))
             }
             Request::Open { name, bytes } => {
                 session.replace(&name, &bytes)?;

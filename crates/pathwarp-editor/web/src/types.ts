@@ -158,6 +158,8 @@ export interface Answer {
   grips?: StepGrips[];
   guides?: string[];
   warnings?: string[];
+  /** Characters that no font has. */
+  lacking?: string[];
   /** The page that saving gives the result, if that is not the drawing's. */
   page?: [number, number, number, number] | null;
   summary?: Summary;

@@ -3,6 +3,7 @@
 import type { App } from "./app";
 import { byId, h } from "./dom";
 import { inUnits, inWords, reason } from "./fields";
+import { toast } from "./toast";
 
 const BUNDLED = "Noto Sans (bundled)";
 const LARGEST = 2000;
@@ -76,6 +77,7 @@ export class WordsDialog {
       await app.enter(async () => {
         const answer = await app.connection.ask({ do: "set-words", words });
         this.dialog.close();
+        if (answer.lacking?.length) toast(`The font lacks ${answer.lacking.join(" ")}. Choose one that has them.`);
         return answer;
       });
     } catch (e) {

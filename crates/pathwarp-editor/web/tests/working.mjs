@@ -568,3 +568,11 @@ export const results_are_opened_as_saved = () => within("Arc", async (page, dir)
   await page.locator("#steps", { hasText: "Arc" }).waitFor();
   await page.waitForFunction(() => document.querySelector("#saved").textContent === "Not saved yet");
 });
+
+/** What the font lacks is said. */
+export const letters_that_are_missing_are_named = () => within(null, async (page) => {
+  await page.click("#words");
+  await page.fill("#words-text", "Tea 茶");
+  await page.getByRole("button", { name: "Set words" }).click();
+  await page.locator("#toast.on", { hasText: "The font lacks 茶." }).waitFor();
+});

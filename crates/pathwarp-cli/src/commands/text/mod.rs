@@ -87,20 +87,21 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     Ok(Status::partial_if(!lacking.is_empty()))
 }
 
-/// Sets words in a family, or in the bundled font, as a drawing in mm.
+/// Sets words in a family, or in the bundled font, as a drawing in mm, and lists the characters that neither has.
 #[cfg(feature = "editor")]
 pub(crate) fn set_plainly(
     words: &str,
     family: Option<&str>,
     style: &TextStyle,
     reading: &Reading,
-) -> Result<String, Failure> {
+) -> Result<(String, Vec<char>), Failure> {
     let read = reading.read_options();
     let file = family.map(|name| style::find_font(name, style::REGULAR, false, &read)).transpose()?;
     let own = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
     let fonts: Vec<Font<'_>> = own.into_iter().chain([bundled()?]).collect();
     let text = laid_out(words, &fonts, style, &reading.limits.for_input(words.len()))?;
-    Ok(write_lettering(&text, &LetteringOptions { fill: None, margin: 0.0, unit: Some(LengthUnit::Mm) })?)
+    let options = LetteringOptions { fill: None, margin: 0.0, unit: Some(LengthUnit::Mm) };
+    Ok((write_lettering(&text, &options)?, text.missing))
 }
 
 fn read_font<'a>(name: &str, file: &'a FontFile) -> Result<Font<'a>, Failure> {
