@@ -151,7 +151,11 @@ fn shown(drawings: &[String], transform: &str, name: &str, folder: &Path) -> Pix
             .arg(format!("file://{}", html.display()))
             .output()
             .unwrap();
-        fs::read(&png).map_err(|e| format!("{e}: {}", String::from_utf8_lossy(&out.stderr)))
+        let said = String::from_utf8_lossy(&out.stderr);
+        if !out.status.success() {
+            return Err(said.into_owned());
+        }
+        fs::read(&png).map_err(|e| format!("{e}: {said}"))
     };
     // On a busy machine a browser now and then takes no picture; a new one does.
     let picture = attempt(0).or_else(|_| attempt(1)).or_else(|_| attempt(2)).unwrap();
