@@ -1,6 +1,6 @@
 //! Thresholds of the fit, each with what it does to pieces and work.
 //!
-//! "0.15: −0.9 % pieces, +7 % work" is the change over the sample of `tests/geometry/figures.rs` in the core at tolerances 1, 0.1, 0.01 and
+//! "0.15: −0.9 % pieces, +7 % work" is the change over the sample of `tests/libraries/bending/figures.rs` at tolerances 1, 0.1, 0.01 and
 //! 0.001 together if this threshold alone has that value. Work is counted in calls of the map. Numbers that change either by less than
 //! 0.3 % when halved or doubled, and constants of mathematics, stand where they are used.
 

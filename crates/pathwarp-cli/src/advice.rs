@@ -56,7 +56,6 @@ pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
 }
 
 /// The message of an error about a surface in space, with advice.
-#[cfg(feature = "solid")]
 pub(crate) fn surface(e: &pathwarp_solid::artwork::Error) -> String {
     match e {
         pathwarp_solid::artwork::Error::TooMany { exceeded, .. } => {

@@ -1,7 +1,6 @@
 //! File formats of outputs: chosen by the extension, or by `--format`.
 
 use crate::failure::Failure;
-use crate::left_out;
 use pathwarp_raster::PictureFormat;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -87,9 +86,6 @@ impl Choice<'_> {
     pub(crate) fn format(self, target: Option<&Path>, given: Option<Format>) -> Result<Format, Failure> {
         if let Some(format) = given {
             let word = format.extension();
-            if let Some(said) = left_out::missing(word) {
-                return Err(Failure::Usage(said));
-            }
             if !self.among.contains(&format) {
                 return Err(Failure::usage(format!("--format {word}: {} written as {}", self.what, self.list())));
             }
@@ -104,9 +100,6 @@ impl Choice<'_> {
         let Some((target, extension)) = target.and_then(|t| Some((t, t.extension()?))) else { return Ok(first) };
         let extension = extension.to_string_lossy();
         let found = Format::of(target).filter(|f| self.among.contains(f));
-        if let Some(said) = found.and_then(|f| left_out::missing(f.extension())) {
-            return Err(Failure::Usage(said));
-        }
         found.ok_or_else(|| {
             let (target, list, hint) = (target.display(), self.list(), self.hint(&extension.to_lowercase()));
             Failure::usage(format!("{target}: {} written as {list}, not as .{extension}{hint}", self.what))
@@ -115,10 +108,9 @@ impl Choice<'_> {
 
     /// The names and extensions of the formats.
     fn list(self) -> String {
-        let written = || self.among.iter().filter(|f| left_out::missing(f.extension()).is_none());
-        let mut names: Vec<&str> = written().map(|f| f.entry().0).collect();
+        let mut names: Vec<&str> = self.among.iter().map(|f| f.entry().0).collect();
         names.dedup();
-        let extensions: Vec<String> = written().map(|f| format!(".{}", f.extension())).collect();
+        let extensions: Vec<String> = self.among.iter().map(|f| format!(".{}", f.extension())).collect();
         let last = names.pop().unwrap_or_default();
         let mut out = names.join(", ");
         let _ = write!(out, "{}{last} ({})", if names.is_empty() { "" } else { " or " }, extensions.join(", "));

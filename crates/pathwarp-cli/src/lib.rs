@@ -13,25 +13,11 @@
 //! result (the messages and the report say why); 2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
 //! On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.
 
-// Helpers of a part that is left out stay, unused.
-#![cfg_attr(
-    not(all(
-        feature = "dxf",
-        feature = "editor",
-        feature = "gimp",
-        feature = "pdf",
-        feature = "plug-ins",
-        feature = "solid"
-    )),
-    allow(dead_code, unused_imports)
-)]
-
 mod advice;
 mod bitmap;
 mod catalogue;
 pub mod coming_from;
 mod commands;
-#[cfg(feature = "editor")]
 mod editing;
 mod edits;
 pub mod embed;
@@ -40,17 +26,14 @@ mod failure;
 mod filters;
 mod first_steps;
 mod format;
-#[cfg(feature = "editor")]
 mod framed;
 mod inkscape;
 mod input;
-mod left_out;
 mod mistakes;
 mod options;
 mod output;
 mod page;
 mod pipeline;
-#[cfg_attr(not(feature = "plug-ins"), path = "no_plugins.rs")]
 mod plugins;
 mod readable;
 mod recipe_file;
@@ -116,7 +99,6 @@ pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> Exi
         Ok(Status::Partial) => ExitCode::from(1),
         Err(failure) => {
             let flags = advice::Flags::of(registry);
-            #[cfg(feature = "solid")]
             let flags = flags.and(advice::Flags::of(&pathwarp_solid::deform::Registry3::builtin()));
             failure.show(&flags);
             ExitCode::from(failure.code())

@@ -14,9 +14,9 @@ use std::path::{Path, PathBuf};
 /// The option that names a plug-in's file.
 const OPTION: &str = "plugin";
 
-pub(crate) fn option() -> Option<Arg> {
+pub(crate) fn option() -> Arg {
     let option = Arg::new(OPTION).long(OPTION).value_name("FILE").global(true).hide_short_help(true);
-    Some(option.help("Use the plug-in in this file, too (docs/plugin-protocol.md)"))
+    option.help("Use the plug-in in this file, too (docs/plugin-protocol.md)")
 }
 
 /// Commands for which no plug-in of the folder matters.

@@ -129,7 +129,6 @@ pub(crate) fn on_interruption_remove_all() {
 /// Waits for commits under way, ends the plug-ins' programs, removes all temporary files, and calls `end`, which ends this program.
 pub(crate) fn remove_all_and(end: impl FnOnce()) {
     let _gate = GATE.write().unwrap_or_else(PoisonError::into_inner);
-    #[cfg(feature = "plug-ins")]
     pathwarp_plugin::end_all();
     for path in live().iter() {
         let _ = std::fs::remove_file(path);

@@ -7,16 +7,14 @@
 
 #![allow(clippy::print_stdout, missing_docs)]
 
-mod support;
-
 use pathwarp::Outline;
 use pathwarp::deform::{Style, Warp};
 use pathwarp::map::Map;
 use pathwarp::refit::{KnownShapes, Options};
+use pathwarp_oracle::{Bicubic, Rational};
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
-use support::{Bicubic, Rational};
 
 const ROUNDS: usize = 3;
 
@@ -33,7 +31,7 @@ fn main() {
     let every = env("EVERY").parse().unwrap_or(8);
     let file = env("PATHS");
     let (all, fetched) = if file.is_empty() {
-        support::corpus()
+        pathwarp_oracle::corpus()
     } else {
         (std::fs::read_to_string(file).unwrap_or_default().lines().map(Outline::from_svg_lossy).collect(), true)
     };

@@ -7,17 +7,15 @@
 
 #![allow(clippy::print_stdout, missing_docs)]
 
-mod support;
-
 use kurbo::{CurveFitSample, ParamCurveFit, Point, Vec2, fit_to_bezpath, fit_to_bezpath_opt};
 use pathwarp::map::Map;
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Outline, Seg};
+use pathwarp_oracle::{BOX, Bicubic, Rational};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
-use support::{BOX, Bicubic, Rational};
 
 /// A segment's image with exact derivatives, for kurbo.
 struct Image<'a> {
@@ -91,7 +89,7 @@ const HEADING: [&str; 15] = [
 ];
 
 fn main() {
-    let (all, fetched) = support::corpus();
+    let (all, fetched) = pathwarp_oracle::corpus();
     let outlines: Vec<Outline> = all.into_iter().step_by(if fetched { env("EVERY", 8) } else { 1 }).collect();
     let segs: Vec<Seg> = outlines.iter().flat_map(Outline::segs).copied().collect();
     let source = if fetched { "icons" } else { "built-in samples (run `cargo xtask corpus` for the icons)" };

@@ -7,7 +7,6 @@ use crate::export::{self, Exported};
 use crate::failure::{Failure, Status};
 use crate::format::{Choice, Format};
 use crate::input;
-#[cfg(feature = "gimp")]
 use crate::input::GimpFile;
 use crate::options::{CommonOptions, Given, reading_args, some_options};
 use crate::output;
@@ -15,7 +14,6 @@ use crate::{advice, readable, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::decimal::trimmed;
 use pathwarp::kurbo::Point;
-#[cfg(feature = "gimp")]
 use pathwarp_gimp::GimpPath;
 use pathwarp_svg::Origin;
 use serde::Serialize;
@@ -40,7 +38,7 @@ pub(super) fn convert_command() -> Command {
                 .help("Write every path to its own file, named after OUT and the path: out-NAME.svg"),
         )
         .arg(
-            switch("salvage", "Copy the paths before the damage in a damaged file").hide(!cfg!(feature = "gimp")),
+            switch("salvage", "Copy the paths before the damage in a damaged file"),
         )
         .args(reading_args())
         .after_help(
@@ -104,7 +102,7 @@ pub(super) fn paths_command() -> Command {
         ))
         .arg(switch("json", "Print JSON with every point"))
         .arg(
-            switch("salvage", "List the paths before the damage in a damaged GIMP file").hide(!cfg!(feature = "gimp")),
+            switch("salvage", "List the paths before the damage in a damaged GIMP file"),
         )
         .args(reading_args())
         .after_help(
@@ -146,7 +144,6 @@ pub(super) fn list_paths(m: &ArgMatches) -> Result<Status, Failure> {
     let file = given_file(m, "FILE")?;
     let reading = Given::reading(m)?;
     let is_json = m.get_flag("json");
-    #[cfg(feature = "gimp")]
     if let Some(gimp) = GimpFile::open(file, m.get_flag("salvage"), &reading.limits)? {
         // For GIMP files the JSON holds only stored data.
         let path = |p| if is_json { ListedPath { bounds: None, ..of_gimp(p) } } else { of_gimp(p) };
@@ -168,7 +165,6 @@ fn print(file: &Path, paths: Vec<ListedPath>, is_json: bool) -> Result<(), Failu
     output::to_stdout(text.as_bytes())
 }
 
-#[cfg(feature = "gimp")]
 fn of_gimp(p: &GimpPath) -> ListedPath {
     ListedPath {
         name: p.name.clone(),

@@ -21,7 +21,7 @@ pub(super) fn install_command() -> Command {
         .arg(
             Arg::new("WHAT")
                 .required(true)
-                .value_parser(if cfg!(feature = "gimp") { vec!["gimp", "inkscape"] } else { vec!["inkscape"] })
+                .value_parser(["gimp", "inkscape"])
                 .help("gimp: the plug-in for GIMP 3; inkscape: a dialog for every deformation"),
         )
         .arg(

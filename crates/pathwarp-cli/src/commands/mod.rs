@@ -5,16 +5,12 @@ mod about;
 mod args;
 mod compare;
 mod convert;
-#[cfg(feature = "editor")]
 mod edit;
-#[cfg_attr(not(feature = "gimp"), path = "no_gimp_paths.rs")]
 mod gimp_paths;
 mod install;
 mod map;
-#[cfg(feature = "plug-ins")]
 mod plugin;
 mod render;
-#[cfg(feature = "solid")]
 mod solid;
 pub(crate) mod text;
 mod warp;
@@ -25,7 +21,7 @@ use crate::edits::{OFFSET, OUTLINE, SIMPLIFY};
 use crate::failure::{Failure, Status};
 use crate::options::Given;
 use crate::plugins::{self, Plugins};
-use crate::{advice, coming_from, left_out, mistakes, output, watch};
+use crate::{advice, coming_from, mistakes, output, watch};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command};
 use pathwarp::deform::Registry;
@@ -57,7 +53,7 @@ On 2 to 5 no output file is touched. An interrupted run leaves the results it ha
 /// The whole command line.
 pub(crate) fn build(registry: &Registry) -> Command {
     let deformations = registry.entries().iter().map(|e| warp::deformation_command(e.info()));
-    root().subcommands(deformations).subcommands(others().map(|o| (o.declare)(registry)))
+    root().subcommands(deformations).subcommands(OTHERS.iter().map(|o| (o.declare)(registry)))
 }
 
 /// The command line with no other subcommand than the one that `word` names: declaring them all takes longer than warping a
@@ -84,7 +80,7 @@ fn root() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .infer_subcommands(false)
-        .args(plugins::option())
+        .arg(plugins::option())
 }
 
 /// A subcommand that is not a deformation.
@@ -114,12 +110,10 @@ const fn subcommand(
 
 /// The subcommands that are not deformations, in the order of the help.
 static OTHERS: &[Subcommand] = &[
-    #[cfg(feature = "editor")]
     subcommand("edit", |_| edit::edit_command(), |c| edit::edit(c.registry, c.plugins, c.matches)),
     subcommand("run", warp::run_command, |c| warp::run_recipe(c.registry, c.matches, c.words)),
     subcommand("list", |_| about::list_command(), |c| about::list(c.registry, c.plugins, c.matches)),
     subcommand("map", map::map_command, |c| map::map(c.registry, c.matches, c.later)),
-    #[cfg(feature = "solid")]
     subcommand("solid", |_| solid::solid_command(), |c| solid::solid(c.matches, c.later)),
     subcommand("unwarp", |_| convert::unwarp_command(), |c| convert::unwarp(c.matches)),
     subcommand("schema", |_| about::schema_command(), |c| about::print_schema(c.registry)),
@@ -140,9 +134,7 @@ static OTHERS: &[Subcommand] = &[
     subcommand("render", |_| render::render_command(), |c| render::render(c.matches)),
     subcommand("gallery", render::gallery_command, |c| render::gallery(c.registry, c.matches)),
     subcommand("compare", |_| compare::compare_command(), |c| compare::compare_files(c.matches)),
-    #[cfg(feature = "plug-ins")]
     subcommand("check", |_| plugin::check_command(), |c| plugin::check(c.registry, c.plugins, c.matches)),
-    #[cfg(feature = "plug-ins")]
     subcommand(
         "new-plugin",
         |_| plugin::new_plugin_command(),
@@ -160,17 +152,13 @@ static OTHERS: &[Subcommand] = &[
     subcommand("man", |_| about::man_command(), |c| about::man(build(c.registry), c.matches)),
 ];
 
-fn others() -> impl Iterator<Item = &'static Subcommand> {
-    OTHERS.iter().filter(|o| left_out::missing(o.name).is_none())
-}
-
 fn other(name: &str) -> Option<&'static Subcommand> {
-    others().find(|o| o.name == name)
+    OTHERS.iter().find(|o| o.name == name)
 }
 
 /// Runs the subcommand that `args` names; the first of them is the program's name.
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
-    let (args, plugins) = plugins::load(registry, args, &others().map(|o| o.name).collect::<Vec<_>>())?;
+    let (args, plugins) = plugins::load(registry, args, &OTHERS.iter().map(|o| o.name).collect::<Vec<_>>())?;
     let result = dispatched(&plugins.added_to(registry), &args, &plugins);
     plugins.tell();
     result
@@ -181,9 +169,6 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
-    if let Some(said) = left_out_command(registry, first) {
-        return Err(Failure::Usage(said));
-    }
     if let Some(text) = foreign_help(registry, first) {
         output::to_stdout(text.as_bytes())?;
         return Ok(Status::Complete);
@@ -223,13 +208,6 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     (other(name).ok_or_else(missing)?.run)(&Call { registry, plugins, matches: m, words: first, later: &later })
 }
 
-/// The message that the command that `args` name, or ask for help about, was left out.
-fn left_out_command(registry: &Registry, args: &[OsString]) -> Option<String> {
-    let mut words = args.iter().skip(1).filter_map(|a| a.to_str());
-    let word = words.by_ref().find(|w| *w != "help")?;
-    if other(word).is_some() || registry.get(word).is_some() { None } else { left_out::missing(word) }
-}
-
 /// Words as one text.
 fn joined(words: &[OsString]) -> String {
     words.iter().map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
@@ -259,10 +237,6 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
         Some(ContextValue::String(text)) => Some(text.clone()),
         _ => None,
     };
-    let mut unknown = [ContextKind::InvalidArg, ContextKind::InvalidValue].into_iter().filter_map(context);
-    if let Some(said) = unknown.find_map(|word| left_out::missing(&word)) {
-        return Failure::Usage(said);
-    }
     let is_help = args.get(1).is_some_and(|a| a == "help");
     let tip = match error.kind() {
         ErrorKind::InvalidSubcommand if args.get(1).is_none_or(|a| a != "solid") => {

@@ -1,11 +1,8 @@
 //! Drawings in the formats besides SVG.
 
-#[cfg(feature = "dxf")]
 mod dxf;
 mod exported;
-#[cfg(feature = "dxf")]
 mod kerf;
-#[cfg(feature = "pdf")]
 mod pdf;
 
 pub(crate) use exported::Exported;
@@ -50,9 +47,7 @@ pub(crate) fn drawing(
     }
     let resizes = options.page_width.is_some() || options.page_height.is_some();
     let write: Option<Writer> = match format {
-        #[cfg(feature = "pdf")]
         Format::Pdf => Some(pdf::write),
-        #[cfg(feature = "dxf")]
         Format::Dxf => Some(dxf::write),
         _ => None,
     };

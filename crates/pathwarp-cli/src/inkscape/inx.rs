@@ -150,16 +150,16 @@ fn help(info: &Info) -> String {
     out
 }
 
-/// File name and content of each that this program can do.
+/// File name and content of each of the other calls.
 fn others(program: &Program) -> impl Iterator<Item = (String, String)> {
     let all = [
-        ("bend-by-hand", by_hand(program), cfg!(feature = "editor")),
-        ("edit-again", edit_again(program), true),
-        ("release", release(program), true),
-        ("xcf-input", xcf(program), cfg!(feature = "gimp")),
-        ("dxf-output", dxf(program), cfg!(feature = "dxf")),
+        ("bend-by-hand", by_hand(program)),
+        ("edit-again", edit_again(program)),
+        ("release", release(program)),
+        ("xcf-input", xcf(program)),
+        ("dxf-output", dxf(program)),
     ];
-    all.into_iter().filter(|o| o.2).map(|(name, text, _)| (format!("pathwarp-{name}.inx"), text))
+    all.into_iter().map(|(name, text)| (format!("pathwarp-{name}.inx"), text))
 }
 
 fn action(value: &str) -> String {

@@ -4,7 +4,6 @@
 //!
 //! A call is turned into the words of an ordinary command line (`line.rs`), which are applied to the drawing in memory (`stage.rs`).
 
-#[cfg(feature = "editor")]
 mod by_hand;
 mod guides;
 pub(crate) mod inx;
@@ -46,10 +45,7 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> R
         Job::Deformation(name) => warp(&stage, name),
         Job::Edit => edit_again(&stage),
         Job::Release => release(&stage),
-        #[cfg(feature = "editor")]
         Job::Hand => by_hand::by_hand(&stage),
-        #[cfg(not(feature = "editor"))]
-        Job::Hand => Err(Failure::Usage(crate::left_out::missing("edit").unwrap_or_default())),
         Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, &f)),
     };
     let svg = done.map_err(|f| in_a_window(&stage, &f))?;

@@ -10,7 +10,6 @@ use pathwarp::kurbo::{Point, Rect, Shape};
 use pathwarp::map::Map;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe};
 use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
-#[cfg(feature = "solid")]
 use pathwarp_solid::artwork::{self, NamedShape};
 use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use std::path::{Path, PathBuf};
@@ -79,21 +78,7 @@ pub(super) fn surface_requested(built: &BuiltRecipe) -> Option<&'static str> {
     built.steps.iter().filter_map(|s| s.space.as_ref()).find_map(|s| s.files.first()).map(|f| f.param)
 }
 
-/// Refuses the files that the recipe's steps ask for.
-#[cfg(not(feature = "solid"))]
-pub(super) fn surface_files(
-    _doc: &Document,
-    built: &BuiltRecipe,
-    _options: &WarpOptions,
-) -> Result<Vec<(PathBuf, String)>, Failure> {
-    match surface_requested(built).and(crate::left_out::missing("solid")) {
-        Some(said) => Err(Failure::Usage(said)),
-        None => Ok(Vec::new()),
-    }
-}
-
 /// The files that the recipe's steps ask for, with their text.
-#[cfg(feature = "solid")]
 pub(super) fn surface_files(
     doc: &Document,
     built: &BuiltRecipe,

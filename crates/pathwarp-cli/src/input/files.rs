@@ -3,7 +3,7 @@
 use super::gimp;
 use crate::failure::Failure;
 use crate::options::Reading;
-use crate::{left_out, watch};
+use crate::watch;
 use pathwarp::Error;
 use pathwarp_svg::{Document, ReadOptions};
 use std::fmt::Display;
@@ -81,7 +81,7 @@ pub(crate) fn document_of(bytes: &[u8], input: &Path, reading: &Reading) -> Resu
     if bytes.starts_with(XCF_MAGIC) {
         let advice =
             "an XCF holds paths, not a drawing; `pathwarp paths` lists them, `pathwarp convert` copies them to an SVG";
-        return Err(Failure::file(input, left_out::missing("xcf").as_deref().unwrap_or(advice)));
+        return Err(Failure::file(input, advice));
     }
     let read = Document::read(bytes, &display(input), &read_options(input, reading));
     read.map_err(|e| not_a_drawing(bytes, input, e.into()))
@@ -164,10 +164,6 @@ pub(crate) fn described(bytes: &[u8], name: &Path) -> Option<String> {
     let extension = name.extension().map(|e| e.to_ascii_lowercase().to_string_lossy().into_owned());
     let extension = extension.as_deref().unwrap_or_default();
     let starts = |at: usize, magic: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
-    let is_gimps = bytes.starts_with(XCF_MAGIC) || is_named_xcf(name) || extension == "json";
-    if let Some(said) = left_out::missing("xcf").filter(|_| is_gimps) {
-        return Some(said);
-    }
     // Documents of drawing programs are PDF or archives inside.
     let known =
         MAGIC.iter().find(|(at, magic, ..)| starts(*at, magic)).map(|(_, magic, what, advice)| match extension {

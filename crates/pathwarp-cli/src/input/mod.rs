@@ -5,9 +5,7 @@ mod before;
 mod beside;
 mod crop;
 mod files;
-#[cfg_attr(not(feature = "gimp"), path = "no_gimp.rs")]
 mod gimp;
-#[cfg(feature = "gimp")]
 mod gimp_file;
 mod picture;
 mod svg;
@@ -18,10 +16,8 @@ pub(crate) use files::{
     bytes, described, display, document, document_of, no_document, not_a_drawing, read_data_file, read_options,
     split_reference, unreadable,
 };
-#[cfg(feature = "gimp")]
 pub(crate) use gimp::file_name;
 pub(crate) use gimp::{outline, svg_name};
-#[cfg(feature = "gimp")]
 pub(crate) use gimp_file::{GimpFile, resized};
 pub(crate) use svg::SvgArtwork;
 

@@ -4,7 +4,6 @@ use super::common::{CommonOptions, Reading};
 use super::table::{CommonOption, LeadingMinus, OPTIONS, OptionValue};
 use crate::edits::EditChoice;
 use crate::failure::Failure;
-use crate::left_out;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use std::ffi::{OsStr, OsString};
@@ -223,9 +222,6 @@ fn apply(option: &CommonOption, value: &OsStr, options: &mut CommonOptions) -> R
 }
 
 fn unknown(name: &str) -> String {
-    if let Some(said) = left_out::missing(name) {
-        return said;
-    }
     crate::advice::unknown("option", name, OPTIONS.iter().map(|o| o.name))
 }
 

@@ -5,7 +5,6 @@ use super::common::{
     positive_length, side_of_page, some_length,
 };
 use crate::format::Format;
-use crate::left_out;
 use pathwarp_svg::{Clones, PageFit, Patterns, Strokes, Structure, TextMode};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -72,14 +71,11 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("auto", |o| o.format = None),
                 ("svg", |o| o.format = Some(Format::Svg)),
                 ("svgz", |o| o.format = Some(Format::Svgz)),
-                #[cfg(feature = "pdf")]
                 ("pdf", |o| o.format = Some(Format::Pdf)),
-                #[cfg(feature = "dxf")]
                 ("dxf", |o| o.format = Some(Format::Dxf)),
                 ("png", |o| o.format = Some(Format::Png)),
                 ("jpg", |o| o.format = Some(Format::Jpeg)),
                 ("webp", |o| o.format = Some(Format::WebP)),
-                #[cfg(feature = "gimp")]
                 ("json", |o| o.format = Some(Format::PointList)),
             ]),
             "Format of the result: of a drawing svg, svgz, pdf or dxf (outlines in mm), of a picture png, jpg or webp \
@@ -117,7 +113,6 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         OptionValue::Switch(|o| o.dry_run = true),
         "Print which file would be written for each input, and write none",
     ),
-    #[cfg(feature = "gimp")]
     CommonOption {
         conflicts: &["out", "out-dir"],
         ..of_the_run(
@@ -126,7 +121,6 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "For an XCF: write a copy of it with its paths warped and every other byte kept",
         )
     },
-    #[cfg(feature = "gimp")]
     stored(
         "salvage",
         OptionValue::Switch(|o| o.salvage = true),
@@ -437,7 +431,6 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         OptionValue::Switch(|o| o.keep_location = true),
         "Keep the place where a photograph was taken in its EXIF data; without it, they come along without the place and the thumbnail",
     ),
-    #[cfg(feature = "dxf")]
     CommonOption {
         default: Some("spline"),
         ..stored(
@@ -447,7 +440,6 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
              each contour is one entity. Lines, arcs and circles are exact in both",
         )
     },
-    #[cfg(feature = "dxf")]
     of_the_run(
         "kerf",
         OptionValue::Text {
@@ -620,8 +612,7 @@ impl CommonOption {
         match &self.value {
             OptionValue::Switch(_) if value != "true" => Err(format!("`{value}` is neither true nor false")),
             OptionValue::Choice(words) if !words.iter().any(|(word, _)| *word == value) => {
-                let unknown = || format!("`{value}` is not one of {}", self.words().join(", "));
-                Err(left_out::missing(value).unwrap_or_else(unknown))
+                Err(format!("`{value}` is not one of {}", self.words().join(", ")))
             }
             OptionValue::Whole { range, .. } if !value.parse().is_ok_and(|n| range.contains(&n)) => {
                 Err(format!("`{value}` is not a whole number from {} to {}", range.start(), range.end()))

@@ -1,16 +1,11 @@
-//! Tests of the comparison, and of the drawings in `tests/browser`.
+//! Tests of the comparison.
 
+use super::MAX_OF_PAGE;
 use super::measure::{Bend, Picture, ToPixels, compare};
-use super::{Finding, Judge, MAX_OF_PAGE, WAYS};
-use crate::chore::workspace;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::Map as _;
 use pathwarp::param::{Args, Frame};
-use std::fs;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 const SIDE: usize = 400;
 const SAMPLES: usize = 4;
@@ -96,79 +91,4 @@ fn formulas_are_the_map_of_the_pictures() {
             assert!(from.distance(back) < 1e-6, "{bend:?}: {from:?} {back:?}");
         }
     }
-}
-
-/// Whether node, playwright and Chromium are installed. If not, says so directly on standard error, which tests do not capture, because the
-/// gate lists such lines.
-fn can_show() -> bool {
-    let node = Command::new("node").arg("--version").output().is_ok_and(|o| o.status.success());
-    let playwright = workspace().join("crates/pathwarp-editor/web/node_modules/playwright-core").is_dir();
-    let browser = ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"];
-    let can = node && playwright && browser.iter().any(|b| Path::new("/usr/bin").join(b).exists());
-    if !can {
-        let why = b"skipped: drawings are not compared in Chromium without node, playwright-core and Chromium\n";
-        let _ = std::io::stderr().write_all(why);
-    }
-    can
-}
-
-fn judged(program: PathBuf, folder: &Path) -> Vec<Finding> {
-    Judge::new(program, WAYS.to_vec(), None).unwrap().all(&[folder.to_owned()]).unwrap()
-}
-
-/// Tries programs that empty a drawing, leave it as it is, or write no result.
-#[cfg(unix)]
-#[test]
-fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
-    use std::os::unix::fs::PermissionsExt as _;
-    if !can_show() {
-        return;
-    }
-    let dir = tempfile::tempdir().unwrap();
-    let art = dir.path().join("art");
-    fs::create_dir(&art).unwrap();
-    for side in [16, 24, 100, 640, 1200, 1700, 2000] {
-        for (color, at) in [("black", 4), ("white", 2)] {
-            let (from, part) = (side * at / 8, side / 8);
-            let mark = format!("<path fill='{color}' d='M{from} {from}h{part}v{part}z'/>");
-            let size = format!("viewBox='0 0 {side} {side}' width='{side}' height='{side}'");
-            let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' {size}>{mark}</svg>");
-            fs::write(art.join(format!("{color}-{side}.svg")), svg).unwrap();
-        }
-    }
-    fs::write(art.join("broken.svg"), "<svg xmlns='http://www.w3.org/2000/svg'><g></svg>").unwrap();
-    // The arguments are: expr FILE … -o RESULT --limit ….
-    let loop_ = "in=$2; while [ \"$1\" != -o ]; do shift; done\n";
-    for (name, body) in
-        [("emptied", "sed 's/<path[^>]*>//' \"$in\" >\"$2\""), ("unbent", "cp \"$in\" \"$2\""), ("none", ":")]
-    {
-        let program = dir.path().join(name);
-        fs::write(&program, format!("#!/bin/sh\n{loop_}{body}\n")).unwrap();
-        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-        for finding in judged(program, &art) {
-            let counts = !finding.file.ends_with("broken.svg");
-            assert_eq!(finding.differs(), counts, "{name}: {}", finding.line());
-        }
-    }
-}
-
-/// `tests/browser` holds a small drawing for each kind of thing that programs read in different ways. None may differ in any of the ways
-/// tried, whatever fonts a machine has. To add a drawing, put it there.
-#[test]
-fn own_drawings_are_what_chromium_shows() {
-    if !can_show() {
-        return;
-    }
-    let profile = std::env::current_exe().unwrap().parent().unwrap().parent().unwrap().to_owned();
-    let mut build = Command::new(env!("CARGO"));
-    // Building with the features of the whole workspace reuses what is already built.
-    build.args(["build", "--quiet", "--workspace", "--bin", "pathwarp", "--target-dir"]).arg(profile.parent().unwrap());
-    if profile.ends_with("release") {
-        build.arg("--release");
-    }
-    assert!(build.current_dir(workspace()).status().unwrap().success());
-    let program = profile.join("pathwarp").with_extension(std::env::consts::EXE_EXTENSION);
-    let found = judged(program, &workspace().join("tests/browser"));
-    assert!(found.len() > 30 && found.iter().all(|f| f.gap.is_some()), "{}", super::report(&found));
-    assert!(!found.iter().any(Finding::differs), "{}", super::report(&found));
 }

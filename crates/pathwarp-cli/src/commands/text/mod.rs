@@ -6,7 +6,6 @@ mod style;
 use crate::commands::args::{choice, out_arg, switch, target};
 use crate::failure::{Failure, Status};
 use crate::format::{Choice, DRAWINGS};
-#[cfg(feature = "editor")]
 use crate::options::Reading;
 use crate::options::{Given, reading_args, some_options};
 use crate::readable::listed;
@@ -14,7 +13,6 @@ use crate::{advice, export, input, mistakes, output, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::budget::{Exceeded, Limit, Limits, cost};
 use pathwarp::deform::Registry;
-#[cfg(feature = "editor")]
 use pathwarp::param::LengthUnit;
 use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering, write_set_lines};
 use pathwarp_text::{Font, OutlinedText, TextLimits, TextStyle, layout_within};
@@ -88,7 +86,6 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
 }
 
 /// Sets words in a family, or in the bundled font, as a drawing in mm, and lists the characters that neither has.
-#[cfg(feature = "editor")]
 pub(crate) fn set_plainly(
     words: &str,
     family: Option<&str>,

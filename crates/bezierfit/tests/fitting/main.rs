@@ -1,0 +1,22 @@
+//! The fitter from outside. One program: linking takes longer than most of these tests run.
+
+#![allow(
+    unreachable_pub,
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "tests may panic, and say what they find"
+)]
+
+#[cfg(feature = "area")]
+mod areas;
+mod common;
+mod hard_cases;
+mod options;
+mod polygon;
+mod random;
+#[cfg(feature = "area")]
+mod strokes;

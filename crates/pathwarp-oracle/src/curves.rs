@@ -1,0 +1,155 @@
+//! Path data as curves: commands by svgtypes, arcs by the formulas of SVG's appendix. Nothing here is shared with the program's reader.
+
+use kurbo::{Point, Vec2};
+use svgtypes::{PathParser, PathSegment};
+
+/// A curve over [0, 1].
+#[derive(Debug, Clone, Copy)]
+pub enum Curve {
+    Line([Point; 2]),
+    Quad([Point; 3]),
+    Cubic([Point; 4]),
+    /// Centre, radii, cosine and sine of the rotation, first angle and sweep; with the ends as written.
+    Arc {
+        center: Point,
+        radii: Vec2,
+        turned: Vec2,
+        from: f64,
+        sweep: f64,
+        ends: [Point; 2],
+    },
+}
+
+impl Curve {
+    pub fn at(&self, t: f64) -> Point {
+        let mix = |a: Point, b: Point| Point::new(a.x * (1.0 - t) + b.x * t, a.y * (1.0 - t) + b.y * t);
+        match *self {
+            Self::Line([a, b]) => mix(a, b),
+            Self::Quad([a, b, c]) => mix(mix(a, b), mix(b, c)),
+            Self::Cubic([a, b, c, d]) => {
+                let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
+                mix(mix(ab, bc), mix(bc, cd))
+            }
+            Self::Arc { ends, .. } if t == 0.0 || t == 1.0 => ends[t as usize],
+            Self::Arc { center, radii, turned, from, sweep, .. } => {
+                let (s, c) = (from + t * sweep).sin_cos();
+                let (u, v) = (radii.x * c, radii.y * s);
+                center + Vec2::new(turned.x * u - turned.y * v, turned.y * u + turned.x * v)
+            }
+        }
+    }
+
+    /// The directions in which the curve starts and ends, of no particular length.
+    pub fn directions(&self) -> [Vec2; 2] {
+        let (some, points): (_, &[Point]) = match self {
+            Self::Line(p) => (true, p),
+            Self::Quad(p) => (true, p),
+            Self::Cubic(p) => (true, p),
+            Self::Arc { ends, .. } => (false, ends),
+        };
+        if !some {
+            return [self.at(1e-4) - self.at(0.0), self.at(1.0) - self.at(1.0 - 1e-4)];
+        }
+        let (first, last) = (points[0], points[points.len() - 1]);
+        let away = points.iter().map(|p| *p - first).find(|v| *v != Vec2::ZERO);
+        let into = points.iter().rev().map(|p| last - *p).find(|v| *v != Vec2::ZERO);
+        [away.unwrap_or_default(), into.unwrap_or_default()]
+    }
+
+    fn arc(p: Point, radii: Vec2, degrees: f64, large: bool, sweep: bool, q: Point) -> Option<Self> {
+        let (mut r, ends) = (Vec2::new(radii.x.abs(), radii.y.abs()), [p, q]);
+        if p == q {
+            return None;
+        }
+        if r.x == 0.0 || r.y == 0.0 {
+            return Some(Self::Line(ends));
+        }
+        let turned = Vec2::from_angle(degrees.to_radians());
+        let half = (p - q) * 0.5;
+        let (x, y) = (half.dot(turned), turned.cross(half));
+        let over = (x / r.x).powi(2) + (y / r.y).powi(2);
+        if over > 1.0 {
+            r *= over.sqrt();
+        }
+        let (rx2, ry2, x2, y2) = (r.x * r.x, r.y * r.y, x * x, y * y);
+        let root = ((rx2 * ry2 - rx2 * y2 - ry2 * x2) / (rx2 * y2 + ry2 * x2)).max(0.0).sqrt();
+        let k = if large == sweep { -root } else { root };
+        let (cx, cy) = (k * r.x * y / r.y, -k * r.y * x / r.x);
+        let center = p.midpoint(q) + Vec2::new(turned.x * cx - turned.y * cy, turned.y * cx + turned.x * cy);
+        let angle = |x: f64, y: f64| (y / r.y).atan2(x / r.x);
+        let (from, to) = (angle(x - cx, y - cy), angle(-x - cx, -y - cy));
+        let turn = std::f64::consts::TAU;
+        let by = (to - from).rem_euclid(turn);
+        Some(Self::Arc { center, radii: r, turned, from, sweep: if sweep { by } else { by - turn }, ends })
+    }
+}
+
+/// The subpaths of path data.
+pub fn read(d: &str) -> Vec<Vec<Curve>> {
+    let (mut out, mut run) = (Vec::new(), Vec::new());
+    let (mut at, mut start) = (Point::ORIGIN, Point::ORIGIN);
+    let (mut cubic, mut quad): (Option<Point>, Option<Point>) = (None, None);
+    for s in PathParser::from(d) {
+        let Ok(s) = s else { break };
+        let to = |abs: bool, x: f64, y: f64| if abs { Point::new(x, y) } else { Point::new(at.x + x, at.y + y) };
+        let (mut c, mut q) = (None, None);
+        let curve = match s {
+            PathSegment::MoveTo { abs, x, y } => {
+                (at, start) = (to(abs, x, y), to(abs, x, y));
+                out.push(std::mem::take(&mut run));
+                (cubic, quad) = (None, None);
+                continue;
+            }
+            PathSegment::ClosePath { .. } => {
+                if at != start {
+                    run.push(Curve::Line([at, start]));
+                }
+                at = start;
+                out.push(std::mem::take(&mut run));
+                (cubic, quad) = (None, None);
+                continue;
+            }
+            PathSegment::LineTo { abs, x, y } => Some(Curve::Line([at, to(abs, x, y)])),
+            PathSegment::HorizontalLineTo { abs, x } => Some(Curve::Line([at, Point::new(to(abs, x, 0.0).x, at.y)])),
+            PathSegment::VerticalLineTo { abs, y } => Some(Curve::Line([at, Point::new(at.x, to(abs, 0.0, y).y)])),
+            PathSegment::CurveTo { abs, x1, y1, x2, y2, x, y } => {
+                c = Some(to(abs, x2, y2));
+                Some(Curve::Cubic([at, to(abs, x1, y1), to(abs, x2, y2), to(abs, x, y)]))
+            }
+            PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
+                c = Some(to(abs, x2, y2));
+                Some(Curve::Cubic([at, cubic.map_or(at, |h| at + (at - h)), to(abs, x2, y2), to(abs, x, y)]))
+            }
+            PathSegment::Quadratic { abs, x1, y1, x, y } => {
+                q = Some(to(abs, x1, y1));
+                Some(Curve::Quad([at, to(abs, x1, y1), to(abs, x, y)]))
+            }
+            PathSegment::SmoothQuadratic { abs, x, y } => {
+                q = Some(quad.map_or(at, |h| at + (at - h)));
+                Some(Curve::Quad([at, q.unwrap_or(at), to(abs, x, y)]))
+            }
+            PathSegment::EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
+                Curve::arc(at, Vec2::new(rx, ry), x_axis_rotation, large_arc, sweep, to(abs, x, y))
+            }
+        };
+        (cubic, quad) = (c, q);
+        if let Some(curve) = curve {
+            at = curve.at(1.0);
+            run.push(curve);
+        }
+    }
+    out.push(run);
+    out.retain(|r| !r.is_empty());
+    out
+}
+
+/// Subpaths as areas: an open one is closed by a line.
+pub fn closed(mut all: Vec<Vec<Curve>>) -> Vec<Vec<Curve>> {
+    for run in &mut all {
+        let ends = [run[run.len() - 1].at(1.0), run[0].at(0.0)];
+        if ends[0] != ends[1] {
+            run.push(Curve::Line(ends));
+        }
+    }
+    all
+}

@@ -1,0 +1,15 @@
+//! Deforming and refitting paths, tested from outside against independent measurements.
+
+mod budget;
+mod exact;
+mod few_nodes;
+mod figures;
+mod lattice;
+mod limits;
+mod merge_random;
+mod random;
+mod refit;
+mod repeats;
+mod report;
+mod shaper;
+mod touching;

@@ -1,0 +1,4 @@
+//! GIMP's files.
+
+mod seeds;
+mod xcf;

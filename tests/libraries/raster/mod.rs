@@ -1,0 +1,4 @@
+//! Pictures: decoded, and the samples drawn.
+
+mod pictures;
+mod samples;

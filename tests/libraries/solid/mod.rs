@@ -1,0 +1,5 @@
+//! Tests deformations of solids from outside, against independent formulas and in exact arithmetic.
+
+mod creases;
+mod oracle;
+mod patches;

@@ -1,0 +1,413 @@
+//! An independent oracle: formulas written again from their definitions, with plain arrays. Maps must agree with them up to a relative error
+//! of 1e-9, inverses must lead back, and rays and planes must stay such up to 1e-12.
+
+use pathwarp::param::Args;
+use pathwarp_solid::deform::Registry3;
+use pathwarp_solid::glam::DVec3;
+use pathwarp_solid::map::{Map3, NewtonInverse3};
+use pathwarp_solid::{Box3, Frame3};
+use std::sync::Arc;
+
+type P = [f64; 3];
+
+const BOX: [P; 2] = [[-10.0, 5.0, 20.0], [50.0, 45.0, 90.0]];
+
+fn build(name: &str, pairs: &[(&str, &str)]) -> Arc<dyn Map3> {
+    let [a, b] = BOX.map(DVec3::from_array);
+    let frame = Frame3::new(Box3::new(a, b));
+    let entry = Registry3::builtin();
+    entry.get(name).unwrap().build_from(&Args::from_pairs(pairs), &frame).unwrap().map
+}
+
+/// Points all over the box.
+fn points() -> Vec<P> {
+    let mut seed = 12345u64;
+    let mut random = move || {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    (0..400).map(|_| std::array::from_fn(|a| BOX[0][a] + random() * (BOX[1][a] - BOX[0][a]))).collect()
+}
+
+/// Compares a map, for single points and batches, with a formula, and checks that its inverse leads back.
+fn compare(map: &Arc<dyn Map3>, truth: impl Fn(P) -> P) {
+    let ps = points();
+    let mut batch: Vec<DVec3> = ps.iter().copied().map(DVec3::from_array).collect();
+    map.points(&mut batch);
+    let [a, b] = BOX.map(DVec3::from_array);
+    let frame = Box3::new(a, b);
+    let newton = || Arc::new(NewtonInverse3::new(Arc::clone(map), frame, 1.0, [4; 3])) as Arc<dyn Map3>;
+    let back = map.inverse().unwrap_or_else(newton);
+    for (p, q) in ps.iter().zip(&batch) {
+        let want = DVec3::from_array(truth(*p));
+        let p = DVec3::from_array(*p);
+        let size = want.length() + 1.0;
+        for got in [*q, map.point(p), map.jet(p).p] {
+            assert!(got.distance(want) <= 1e-9 * size, "{p}: {got}, not {want}");
+            // The stated bound is 1e-9; the actual error is only rounding.
+            assert!(got.distance(want) <= 1e-12 * size, "{p}: off by {:e}", got.distance(want));
+        }
+        let returned = back.point(want);
+        assert!(returned.distance(p) <= 1e-9 * (p.length() + 1.0), "{p} comes back as {returned}");
+        // The Jacobian against difference quotients of the formula.
+        const H: f64 = 1e-4;
+        for (axis, e) in DVec3::AXES.into_iter().enumerate() {
+            let at = |h: f64| DVec3::from_array(truth((p + e * h).to_array()));
+            let slope = (at(H) - at(-H)) / (2.0 * H);
+            assert!(slope.distance(map.jet(p).d.col(axis)) <= 1e-6 * (1.0 + slope.length()), "{p} {axis}");
+        }
+    }
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)
+}
+
+fn bernstein(n: usize, i: usize, t: f64) -> f64 {
+    binomial(n, i) * t.powi(i as i32) * (1.0 - t).powi((n - i) as i32)
+}
+
+/// The recursion of Cox and de Boor for uniform clamped knots.
+fn b_spline(degree: usize, cells: usize, i: usize, x: f64) -> f64 {
+    let knot = |k: usize| (k.clamp(degree, degree + cells) - degree) as f64 / cells as f64;
+    fn basis(knot: &dyn Fn(usize) -> f64, i: usize, d: usize, x: f64) -> f64 {
+        if d == 0 {
+            return f64::from(u8::from(knot(i) <= x && x < knot(i + 1)));
+        }
+        let part = |num: f64, den: f64, b: f64| if den > 0.0 { num / den * b } else { 0.0 };
+        part(x - knot(i), knot(i + d) - knot(i), basis(knot, i, d - 1, x))
+            + part(knot(i + d + 1) - x, knot(i + d + 1) - knot(i + 1), basis(knot, i + 1, d - 1, x))
+    }
+    basis(&knot, i, degree, x)
+}
+
+/// Σ N·w·P / Σ N·w over a lattice in which these points and weights are changed.
+fn lattice(
+    p: P,
+    counts: [usize; 3],
+    basis: impl Fn(usize, usize, f64) -> f64,
+    regular: impl Fn(usize, usize) -> f64,
+    changed: &[([usize; 3], P, f64)],
+) -> P {
+    let t: P = std::array::from_fn(|a| (p[a] - BOX[0][a]) / (BOX[1][a] - BOX[0][a]));
+    let (mut sum, mut weights) = ([0.0; 3], 0.0);
+    for i in 0..counts[0] {
+        for j in 0..counts[1] {
+            for k in 0..counts[2] {
+                let node = [i, j, k];
+                let change = changed.iter().find(|c| c.0 == node);
+                let w = change.map_or(1.0, |c| c.2);
+                let influence = w * (0..3).map(|a| basis(a, node[a], t[a])).product::<f64>();
+                for a in 0..3 {
+                    let at = BOX[0][a] + regular(a, node[a]) * (BOX[1][a] - BOX[0][a]);
+                    sum[a] += influence * (at + change.map_or(0.0, |c| c.1[a]));
+                }
+                weights += influence;
+            }
+        }
+    }
+    sum.map(|v| v / weights)
+}
+
+#[test]
+fn polynomial_and_rational_lattices() {
+    let degree = [3, 2, 4];
+    for weight in [1.0, 3.5] {
+        let changed = [
+            ([1, 2, 0], [5.0, -3.0, 2.0], 1.0),
+            ([2, 1, 3], [-4.0, 1.0, 6.0], weight),
+            ([3, 0, 4], [1.0, 2.0, 3.0], 1.0),
+        ];
+        let map = build(
+            "ffd",
+            &[
+                ("degree", "3x2x4"),
+                ("move", "1,2,0:5,-3,2 2,1,3:-4,1,6 3,0,4:1,2,3"),
+                ("weight", &format!("2,1,3:{weight}")),
+            ],
+        );
+        compare(&map, |p| {
+            lattice(
+                p,
+                degree.map(|d| d + 1),
+                |a, i, t| bernstein(degree[a], i, t),
+                |a, i| i as f64 / degree[a] as f64,
+                &changed,
+            )
+        });
+    }
+}
+
+#[test]
+fn spline_lattices() {
+    let (degree, cells) = ([2, 3, 1], [3, 2, 2]);
+    let counts = [0, 1, 2].map(|a| degree[a] + cells[a]);
+    let greville = |a: usize, i: usize| {
+        let knot = |k: usize| (k.clamp(degree[a], degree[a] + cells[a]) - degree[a]) as f64 / cells[a] as f64;
+        (i + 1..=i + degree[a]).map(knot).sum::<f64>() / degree[a] as f64
+    };
+    let changed = [([2, 2, 1], [3.0, -2.0, 1.5], 2.0), ([1, 3, 2], [-1.0, 2.0, 1.0], 1.0)];
+    let map = build(
+        "ffd",
+        &[("degree", "2x3x1"), ("cells", "3x2x2"), ("move", "2,2,1:3,-2,1.5 1,3,2:-1,2,1"), ("weight", "2,2,1:2")],
+    );
+    let inverse = map.inverse().unwrap();
+    // The Jacobian jumps at joints of degree 1 along z, so compare values only.
+    for p in points() {
+        let want = lattice(p, counts, |a, i, t| b_spline(degree[a], cells[a], i, t), greville, &changed);
+        let (got, want) = (map.point(DVec3::from_array(p)), DVec3::from_array(want));
+        assert!(got.distance(want) < 1e-12 * (1.0 + want.length()), "{p:?}: {got} {want}");
+        let back = inverse.point(want);
+        assert!(back.distance(DVec3::from_array(p)) < 1e-9 * 100.0, "{p:?} {back}");
+    }
+}
+
+fn det(m: [P; 3]) -> f64 {
+    m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+}
+
+fn minus(a: P, b: P) -> P {
+    std::array::from_fn(|k| a[k] - b[k])
+}
+
+/// Barycentric coordinates as ratios of volumes.
+fn barycentric(p: P, t: [P; 4]) -> [f64; 4] {
+    let volume = |t: [P; 4]| det([minus(t[1], t[0]), minus(t[2], t[0]), minus(t[3], t[0])]);
+    std::array::from_fn(|i| {
+        let mut s = t;
+        s[i] = p;
+        volume(s) / volume(t)
+    })
+}
+
+fn radial(eye: P, p: P, delta: f64) -> P {
+    std::array::from_fn(|k| eye[k] + (p[k] - eye[k]) / delta)
+}
+
+const EYE: P = [20.0, 30.0, 300.0];
+const CORNERS: [P; 4] = [[-20.0, 0.0, 20.0], [70.0, 0.0, 20.0], [0.0, 90.0, 20.0], [20.0, 20.0, 110.0]];
+const TETRAHEDRON: &str = "-20,0,20 70,0,20 0,90,20 20,20,110";
+
+#[test]
+fn tetrahedra_of_degree_one_and_two() {
+    let map =
+        build("anamorph", &[("eye", "20,30,300"), ("reference", TETRAHEDRON), ("push", "0,0,0,1:1.25 0,1,0,0:0.8")]);
+    compare(&map, |p| {
+        let u = barycentric(p, CORNERS);
+        radial(EYE, p, u[0] + u[1] / 0.8 + u[2] + u[3] / 1.25)
+    });
+    assert!(map.collineation().is_some());
+    let map = build(
+        "anamorph",
+        &[
+            ("eye", "20,30,300"),
+            ("reference", TETRAHEDRON),
+            ("degree", "2"),
+            ("push", "0,1,0,1:1.25 2,0,0,0:0.9 1,1,0,0:1.1"),
+        ],
+    );
+    compare(&map, |p| {
+        // De Casteljau's algorithm: the same affine combination applied twice, to values at the ends and middles of the six edges.
+        let u = barycentric(p, CORNERS);
+        let delta = |i: usize, j: usize| match (i.min(j), i.max(j)) {
+            (1, 3) => 1.0 / 1.25,
+            (0, 0) => 1.0 / 0.9,
+            (0, 1) => 1.0 / 1.1,
+            _ => 1.0,
+        };
+        let first: [f64; 4] = std::array::from_fn(|i| (0..4).map(|j| u[j] * delta(i, j)).sum());
+        radial(EYE, p, (0..4).map(|i| u[i] * first[i]).sum())
+    });
+}
+
+#[test]
+fn cuboids_and_sheets() {
+    let map = build("anamorph", &[("eye", "20,30,300"), ("degree", "3x1x2"), ("push", "1,1,1:1.2 3,0,2:0.7")]);
+    compare(&map, |p| {
+        let t: P = std::array::from_fn(|a| (p[a] - BOX[0][a]) / (BOX[1][a] - BOX[0][a]));
+        let b = |i, j, k| bernstein(3, i, t[0]) * bernstein(1, j, t[1]) * bernstein(2, k, t[2]);
+        radial(EYE, p, 1.0 + (1.0 / 1.2 - 1.0) * b(1, 1, 1) + (1.0 / 0.7 - 1.0) * b(3, 0, 2))
+    });
+    // A rectangle in the plane z = 10, on which a point's place is found along its ray.
+    let map = build(
+        "anamorph",
+        &[("eye", "20,30,300"), ("reference", "-20,0,10 60,50,10"), ("degree", "2x1x1"), ("push", "1,1,0:1.5")],
+    );
+    let on_plane = |p: P| {
+        let t = (10.0 - EYE[2]) / (p[2] - EYE[2]);
+        [EYE[0] + t * (p[0] - EYE[0]), EYE[1] + t * (p[1] - EYE[1])]
+    };
+    compare(&map, |p| {
+        let [x, y] = on_plane(p);
+        radial(EYE, p, 1.0 + (1.0 / 1.5 - 1.0) * bernstein(2, 1, (x + 20.0) / 80.0) * bernstein(1, 1, y / 50.0))
+    });
+    // A triangle in the same plane, of degree 2.
+    let map = build(
+        "anamorph",
+        &[("eye", "20,30,300"), ("reference", "-20,0,10 60,0,10 0,80,10"), ("degree", "2"), ("push", "1,0,1:1.5")],
+    );
+    compare(&map, |p| {
+        let [x, y] = on_plane(p);
+        let area =
+            |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let [a, b, c] = [[-20.0, 0.0], [60.0, 0.0], [0.0, 80.0]];
+        let u = [area([x, y], b, c), area(a, [x, y], c), area(a, b, [x, y])].map(|v| v / area(a, b, c));
+        radial(EYE, p, 1.0 + (1.0 / 1.5 - 1.0) * 2.0 * u[0] * u[2])
+    });
+}
+
+/// Every image lies on its ray, and a collineation maps planes to planes, up to 1e-12.
+#[test]
+fn rays_and_planes() {
+    let eye = DVec3::from_array(EYE);
+    let maps = [
+        build("anamorph", &[("eye", "20,30,300"), ("reference", TETRAHEDRON), ("push", "0,0,0,1:1.25")]),
+        build("anamorph", &[("eye", "20,30,300"), ("degree", "3"), ("push", "1,1,1:1.25 2,2,2:0.8")]),
+        build("anamorph", &[("eye", "20,30,300"), ("reference", "-20,0,10 60,0,10 0,80,10"), ("push", "1,0,0:1.5")]),
+    ];
+    for map in &maps {
+        for p in points().into_iter().map(DVec3::from_array) {
+            let q = map.point(p);
+            assert!((q - eye).normalize().cross((p - eye).normalize()).length() < 1e-12);
+        }
+    }
+    for p in points().chunks(4) {
+        let [a, b, c] = [0, 1, 2].map(|i| DVec3::from_array(p[i]));
+        let inner = a * 0.2 + b * 0.5 + c * 0.3;
+        let [a, b, c, d] = [a, b, c, inner].map(|p| maps[0].point(p));
+        assert!((d - a).dot((b - a).cross(c - a).normalize()).abs() < 1e-12 * 300.0);
+    }
+}
+
+/// The algorithm itself, in which every level is an affine map of space with its handles.
+fn casteljau(points: &[P], handles: impl Fn(usize, usize) -> [P; 2], u: f64, v: f64, w: f64) -> P {
+    let mut row = points.to_vec();
+    for level in 1..points.len() {
+        for i in 0..points.len() - level {
+            let [s, t] = handles(level, i);
+            row[i] = std::array::from_fn(|k| row[i][k] + u * (row[i + 1][k] - row[i][k]) + v * s[k] + w * t[k]);
+        }
+    }
+    row[0]
+}
+
+#[test]
+fn skeletons_with_handles_on_every_level() {
+    let map = build(
+        "bend",
+        &[
+            ("along", "z"),
+            ("skeleton", "20,25,0 22,25,30 30,28,60 40,30,100"),
+            ("side", "0:1,0,0 1:1,0.1,0 2:0.9,0,-0.3"),
+            ("up", "0:0,1,0 1:0,1,0.1 2:0,1.2,0"),
+            ("shear", "2,0:0.1,0,0:0,0.05,0 2,1:0,0.02,0:0,0,0.1 3,0:0.02,0.03,0:0,0,0"),
+        ],
+    );
+    let handles = |level: usize, i: usize| match (level, i) {
+        (1, 0) => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        (1, 1) => [[1.0, 0.1, 0.0], [0.0, 1.0, 0.1]],
+        (1, 2) => [[0.9, 0.0, -0.3], [0.0, 1.2, 0.0]],
+        (2, 0) => [[0.1, 0.0, 0.0], [0.0, 0.05, 0.0]],
+        (2, 1) => [[0.0, 0.02, 0.0], [0.0, 0.0, 0.1]],
+        _ => [[0.02, 0.03, 0.0], [0.0; 3]],
+    };
+    let polygon = [[20.0, 25.0, 0.0], [22.0, 25.0, 30.0], [30.0, 28.0, 60.0], [40.0, 30.0, 100.0]];
+    // The axis after z is x.
+    compare(&map, |p| casteljau(&polygon, handles, (p[2] - 20.0) / 70.0, p[0] - 20.0, p[1] - 25.0));
+}
+
+/// Barr's closed forms.
+#[test]
+fn barr() {
+    let turned = |x: f64, y: f64, a: f64| [x * a.cos() - y * a.sin(), x * a.sin() + y * a.cos()];
+    compare(&build("bend", &[("preset", "twist"), ("along", "z"), ("angle", "75")]), |p| {
+        let [x, y] = turned(p[0] - 20.0, p[1] - 25.0, 75f64.to_radians() * (p[2] - 20.0) / 70.0);
+        [20.0 + x, 25.0 + y, p[2]]
+    });
+    compare(&build("bend", &[("preset", "taper"), ("along", "z"), ("factor", "0.3")]), |p| {
+        let r = 1.0 - 0.7 * (p[2] - 20.0) / 70.0;
+        [20.0 + r * (p[0] - 20.0), 25.0 + r * (p[1] - 25.0), p[2]]
+    });
+    compare(&build("bend", &[("preset", "bend"), ("along", "x"), ("angle", "40")]), |p| {
+        // About the centre of curvature, 60/angle above the middle line.
+        let angle = 40f64.to_radians();
+        let (radius, theta) = (60.0 / angle, angle * (p[0] + 10.0) / 60.0);
+        let r = radius - (p[1] - 25.0);
+        [-10.0 + r * theta.sin(), 25.0 + radius - r * theta.cos(), p[2]]
+    });
+}
+
+/// For a cone of radius 90 at the bottom and 110 at the top, whose side is 40 long: distance and height of a point on the side, and of a
+/// step away from it.
+#[test]
+fn cones_and_cylinders() {
+    for (pairs, [bottom, top]) in
+        [(&[("radius", "100")][..], [100.0, 100.0]), (&[("radius", "90"), ("top-radius", "110")], [90.0, 110.0])]
+    {
+        compare(&build("wrap", pairs), |p| {
+            let sine: f64 = (top - bottom) / 40.0;
+            let cosine = (1.0 - sine * sine).sqrt();
+            let (along, out) = (p[1] - 25.0, p[2] - 20.0);
+            let theta = (p[0] - 20.0) / 100.0;
+            let rho = 100.0 + along * sine + out * cosine;
+            [20.0 + rho * theta.sin(), 25.0 + along * cosine - out * sine, 20.0 - 100.0 + rho * theta.cos()]
+        });
+    }
+}
+
+/// One pin: the smallest of all changes that satisfy it is d·Bᵢ(p)/ΣBⱼ(p)², and frozen layers take no part.
+#[test]
+fn pins_are_reached_with_the_smallest_change() {
+    let (pin, d) = ([14.0, 29.0, 41.0], [6.0, -5.0, 8.0]);
+    let t: P = std::array::from_fn(|a| (pin[a] - BOX[0][a]) / (BOX[1][a] - BOX[0][a]));
+    for frozen in [0, 1] {
+        let nodes = (frozen..3).flat_map(|i| (0..3).flat_map(move |j| (0..3).map(move |k| [i, j, k])));
+        let influence: Vec<([usize; 3], f64)> =
+            nodes.map(|n| (n, (0..3).map(|a| bernstein(2, n[a], t[a])).product())).collect();
+        let square: f64 = influence.iter().map(|(_, b)| b * b).sum();
+        let changed: Vec<_> = influence.iter().map(|(n, b)| (*n, d.map(|v| v * b / square), 1.0)).collect();
+        let freeze = format!("left:{frozen}");
+        let mut pairs = vec![("degree", "2"), ("pin", "14,29,41:20,24,49")];
+        if frozen > 0 {
+            pairs.push(("freeze", &freeze));
+        }
+        let map = build("ffd", &pairs);
+        assert!(map.point(DVec3::from_array(pin)).distance(DVec3::new(20.0, 24.0, 49.0)) < 1e-12);
+        for p in points() {
+            let want = lattice(p, [3; 3], |_, i, t| bernstein(2, i, t), |_, i| i as f64 / 2.0, &changed);
+            let (got, want) = (map.point(DVec3::from_array(p)), DVec3::from_array(want));
+            assert!(got.distance(want) <= 1e-9 * (1.0 + want.length()), "{p:?}: {got}, not {want}");
+        }
+    }
+}
+
+/// The paper's δ₃ = 1 + (δ − 1)/u₃ takes a point to its place. The outside of the tetrahedron stays, and so does the held face.
+#[test]
+fn a_prescribed_point_of_a_local_tetrahedron() {
+    let at = [22.0, 27.0, 60.0];
+    let u = barycentric(at, CORNERS);
+    let last = 1.0 + (1.0 / 1.3 - 1.0) / u[3];
+    let map = build(
+        "anamorph",
+        &[("eye", "20,30,300"), ("reference", TETRAHEDRON), ("local", "true"), ("point", "22,27,60:1.3")],
+    );
+    let goal: P = std::array::from_fn(|k| EYE[k] + 1.3 * (at[k] - EYE[k]));
+    assert!(map.point(DVec3::from_array(at)).distance(DVec3::from_array(goal)) < 1e-9);
+    let (mut inside, mut outside) = (0, 0);
+    for p in points() {
+        let u = barycentric(p, CORNERS);
+        let moved = u.iter().all(|v| *v >= 0.0);
+        let want = if moved { radial(EYE, p, 1.0 + (last - 1.0) * u[3]) } else { p };
+        (inside, outside) = (inside + i32::from(moved), outside + i32::from(!moved));
+        let got = map.point(DVec3::from_array(p));
+        assert!(got.distance(DVec3::from_array(want)) <= 1e-9 * (1.0 + got.length()), "{p:?}: {got}, not {want:?}");
+        let back = map.inverse().unwrap().point(got);
+        // Images from inside may cover points that stay, so either may be the source.
+        assert!(map.point(back).distance(got) <= 1e-9 * (1.0 + got.length()), "{p:?} comes back as {back}");
+    }
+    assert!(inside > 20 && outside > 20);
+    // A point on the held face.
+    let face: P = std::array::from_fn(|k| 0.2 * CORNERS[0][k] + 0.3 * CORNERS[1][k] + 0.5 * CORNERS[2][k]);
+    assert!(map.point(DVec3::from_array(face)).distance(DVec3::from_array(face)) < 1e-12);
+}

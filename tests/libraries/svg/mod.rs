@@ -1,0 +1,21 @@
+//! Drawings read, warped and written.
+
+mod arcs;
+mod covers;
+mod degenerate_strokes;
+mod features;
+mod filters;
+mod keeping;
+mod lettering;
+mod live;
+mod open_fills;
+mod page;
+mod patterns;
+mod reading;
+mod report;
+mod seen;
+mod strokes;
+mod structure;
+mod style;
+mod unsupported;
+mod vector_images;

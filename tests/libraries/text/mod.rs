@@ -1,0 +1,5 @@
+//! Lettering.
+
+mod common;
+mod harfbuzz;
+mod layout;

@@ -1,0 +1,192 @@
+//! Faults during a batch: a killed process, a full disk, a read-only folder, inputs that vanish. Every named output is whole or absent,
+//! and the next run removes what is left over.
+//!
+//! `PATHWARP_FAULTS=200 cargo test --test program cli::faults` tries more moments.
+#![cfg(unix)]
+
+use super::common::{files_below, text};
+use crate::support::{pathwarp_in, pathwarp_program, sample, start_in};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command};
+use std::time::Duration;
+
+/// Batches that are disturbed, each at its own moment, unless the environment asks for more.
+const MOMENTS: u32 = 12;
+/// Inputs of a batch.
+const FILES: usize = 16;
+
+const BATCH: [&str; 11] = [
+    "warp",
+    "--style",
+    "flag",
+    "-r",
+    "art",
+    "--out-dir",
+    "out",
+    "--preview",
+    "out/{stem}.png",
+    "--report",
+    "out/r.json",
+];
+
+fn moments() -> u32 {
+    std::env::var("PATHWARP_FAULTS").ok().and_then(|n| n.parse().ok()).unwrap_or(MOMENTS)
+}
+
+fn artwork(folder: &Path) {
+    let _ = fs::remove_dir_all(folder.join("art"));
+    fs::create_dir(folder.join("art")).unwrap();
+    for i in 0..FILES {
+        fs::copy(sample("logo.svg"), folder.join(format!("art/{i:03}.svg"))).unwrap();
+    }
+}
+
+/// The files of an undisturbed batch.
+fn undisturbed(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let out = pathwarp_in(folder, &BATCH, b"");
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    let all = contents(&folder.join("out"));
+    assert_eq!(all.len(), 2 * FILES + 1);
+    fs::remove_dir_all(folder.join("out")).unwrap();
+    all
+}
+
+/// Waits until a batch has written a part of its files, and a little longer. The golden ratio spreads the moments evenly.
+fn wait_for(moment: u32, batch: &mut Child, folder: &Path) {
+    let part = (f64::from(moment) * 0.618_033_988_749_895).fract();
+    let (wanted, out) = (((2 * FILES) as f64 * part) as usize, folder.join("out"));
+    let written = || if out.exists() { files_below(&out) } else { Vec::new() };
+    while written().iter().filter(|f| !f.starts_with('.')).count() < wanted && batch.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    std::thread::sleep(Duration::from_millis(u64::from(moment % 16)));
+}
+
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let files = if folder.exists() { files_below(folder) } else { Vec::new() };
+    files.into_iter().map(|f| (f.clone(), fs::read(folder.join(f)).unwrap())).collect()
+}
+
+/// Reports tell times and failures, so they need only parse.
+fn is_whole(name: &str, bytes: &[u8], whole: &BTreeMap<String, Vec<u8>>) -> bool {
+    match name {
+        "r.json" => serde_json::from_slice::<serde_json::Value>(bytes).is_ok(),
+        _ => whole.get(name).is_some_and(|all| all == bytes),
+    }
+}
+
+/// Asserts that every file under its own name is whole. Returns their number, and that of the temporary ones.
+fn assert_whole(folder: &Path, whole: &BTreeMap<String, Vec<u8>>, when: &str) -> (usize, usize) {
+    let (temporary, named): (Vec<_>, Vec<_>) =
+        contents(&folder.join("out")).into_iter().partition(|(name, _)| name.starts_with(".pathwarp-"));
+    for (name, bytes) in &named {
+        assert!(is_whole(name, bytes, whole), "{when}: {name} is not whole");
+    }
+    (named.len(), temporary.len())
+}
+
+#[test]
+fn killed_batches_leave_whole_files() {
+    let dir = tempfile::tempdir().unwrap();
+    artwork(dir.path());
+    let whole = undisturbed(dir.path());
+    let (mut some, mut left_over) = (0, 0);
+    for moment in 0..moments() {
+        let signal = ["KILL", "TERM", "INT"][moment as usize % 3];
+        let mut child = start_in(dir.path(), &BATCH);
+        wait_for(moment, &mut child, dir.path());
+        let _ = Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status();
+        child.wait().unwrap();
+        let (named, temporary) = assert_whole(dir.path(), &whole, &format!("{signal} at moment {moment}"));
+        some += usize::from(named > 0 && named < whole.len());
+        left_over += temporary;
+        assert!(signal == "KILL" || temporary == 0, "{signal} leaves temporary files");
+        if moment % 2 == 0 {
+            // The next run cleans up and ends as if nothing had happened.
+            let out = pathwarp_in(dir.path(), &BATCH, b"");
+            assert!(out.status.success(), "{}", text(&out.stderr));
+            let after = assert_whole(dir.path(), &whole, &format!("after {signal} at moment {moment}"));
+            assert_eq!(after, (whole.len(), 0), "after {signal} at moment {moment}");
+        }
+        let _ = fs::remove_dir_all(dir.path().join("out"));
+    }
+    assert!(some > 0, "no moment was in the middle of a batch");
+    println!("{some} batches were cut in the middle; {left_over} temporary files were left and removed");
+}
+
+#[test]
+fn inputs_may_vanish() {
+    let dir = tempfile::tempdir().unwrap();
+    artwork(dir.path());
+    let whole = undisturbed(dir.path());
+    for moment in 0..moments().div_ceil(4) {
+        artwork(dir.path());
+        let mut child = start_in(dir.path(), &BATCH);
+        wait_for(moment, &mut child, dir.path());
+        for i in (0..FILES).filter(|i| i % 3 == moment as usize % 3) {
+            let _ = fs::remove_file(dir.path().join(format!("art/{i:03}.svg")));
+        }
+        let end = child.wait_with_output().unwrap();
+        assert!(matches!(end.status.code(), Some(0 | 1)), "{}", text(&end.stderr));
+        let (_, temporary) = assert_whole(dir.path(), &whole, "vanished inputs");
+        assert_eq!(temporary, 0);
+        let _ = fs::remove_dir_all(dir.path().join("out"));
+    }
+}
+
+/// A file-size limit fails writes in the middle, as a full disk does.
+#[test]
+fn a_write_that_fails_leaves_nothing_of_its_file() {
+    let dir = tempfile::tempdir().unwrap();
+    artwork(dir.path());
+    let whole = undisturbed(dir.path());
+    // In blocks of 512 bytes (POSIX sh).
+    for blocks in [0, 1, 3, 6, 40] {
+        let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
+        let end = Command::new("sh")
+            .args(["-c", &script, "sh"])
+            .arg(pathwarp_program())
+            .args(BATCH)
+            .current_dir(dir.path())
+            .output();
+        let end = end.unwrap();
+        let said = text(&end.stderr);
+        assert!(matches!(end.status.code(), Some(1 | 5)), "{blocks}: {:?} {said}", end.status);
+        assert!(said.contains("cannot be written"), "{blocks}: {said}");
+        let (_, temporary) = assert_whole(dir.path(), &whole, &format!("{blocks} blocks"));
+        assert_eq!(temporary, 0, "{blocks}");
+        let _ = fs::remove_dir_all(dir.path().join("out"));
+    }
+}
+
+/// A tiny file system that fills up, and then one that is read-only. Needs user namespaces.
+#[test]
+fn full_and_read_only_file_systems() {
+    let dir = tempfile::tempdir().unwrap();
+    artwork(dir.path());
+    let whole = undisturbed(dir.path());
+    fs::create_dir_all(dir.path().join("out")).unwrap();
+    fs::create_dir_all(dir.path().join("copy")).unwrap();
+    // Only this process sees the mount, so its files are copied out.
+    let script = "mount -t tmpfs -o size=48k none out || exit 77; \"$@\"; code=$?; cp -a out/. copy/; \
+                  mount -o remount,ro none out || exit 77; \"$@\" 2>ro; echo $? $code; exit 0";
+    let unshared = Command::new("unshare")
+        .args(["--user", "--map-root-user", "--mount", "sh", "-c", script, "sh"])
+        .arg(pathwarp_program())
+        .args(BATCH)
+        .current_dir(dir.path())
+        .output();
+    let Some(end) = unshared.ok().filter(|o| o.status.success()) else {
+        crate::support::skipped("a full disk is not tested without user namespaces");
+        return;
+    };
+    assert_eq!(text(&end.stdout).lines().last(), Some("5 1"), "{} {}", text(&end.stdout), text(&end.stderr));
+    assert!(text(&end.stderr).contains("cannot be written"), "{}", text(&end.stderr));
+    assert!(fs::read_to_string(dir.path().join("ro")).unwrap().contains("cannot be written"));
+    fs::remove_dir(dir.path().join("out")).unwrap();
+    fs::rename(dir.path().join("copy"), dir.path().join("out")).unwrap();
+    let (named, temporary) = assert_whole(dir.path(), &whole, "a full file system");
+    assert!(named > 0 && named < whole.len() && temporary == 0, "{named} {temporary}");
+}

@@ -1,0 +1,9 @@
+//! The extension says the format: PDF, DXF, JPEG and WebP beside SVG and PNG, read back by programs and parsers that know nothing
+//! of pathwarp.
+
+mod choice;
+mod dxf;
+mod dxf_reader;
+mod page_size;
+mod pdf;
+mod pictures;

@@ -1,0 +1,200 @@
+//! Plug-ins that fail: each is ended within its limits and named, nothing is written, and no process is left.
+
+use crate::support::plugins::{Scratch, entry, is_running, script};
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::time::{Duration, Instant};
+
+/// Runs the plug-in `bad` and asserts that the error names it and says `words`.
+fn fails(kind: &str, scratch: &Scratch, words: &[&str]) {
+    let started = Instant::now();
+    let (_, stderr) = scratch.expect(3, &["bad", "in.svg", "-o", "out.svg"]);
+    for word in [&["pathwarp-bad"], words].concat() {
+        assert!(stderr.contains(word), "{kind}: `{word}` not in:\n{stderr}");
+    }
+    assert!(!scratch.file("out.svg").exists(), "{kind}");
+    assert!(started.elapsed() < Duration::from_secs(300), "{kind}: {:?}", started.elapsed());
+    let here = scratch.dir.path().display().to_string();
+    let gone = (0..3000).any(|_| {
+        let running = is_running(&here);
+        if running {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        !running
+    });
+    assert!(gone, "{kind}: a process of {here} is left");
+}
+
+/// A folder for a fault. Only a program that is silent is given two seconds.
+fn scratch(words: &[&str]) -> Scratch {
+    let scratch = Scratch::new();
+    if words.iter().any(|w| w.ends_with("2 seconds")) { Scratch { seconds: "2", ..scratch } } else { scratch }
+}
+
+/// A fault of the script `text` while it is in use.
+fn fails_in_use(kind: &str, text: &str, words: &[&str]) {
+    let scratch = scratch(words);
+    // A word in the command line of every process of this plug-in.
+    let text = text.replace("MARK", &scratch.dir.path().display().to_string());
+    scratch.install("pathwarp-bad", &text);
+    fails(kind, &scratch, words);
+    // The entry is in order, so that it is listed.
+    let (list, _) = scratch.expect(0, &["list"]);
+    assert!(list.contains("bad  ") && !list.contains("Broken"), "{kind}: {list}");
+}
+
+/// A fault of the script `text` before there is an entry: it is listed as broken.
+fn fails_at_start(kind: &str, text: &str, mode: u32, words: &[&str]) {
+    let scratch = scratch(words);
+    let text = text.replace("MARK", &scratch.dir.path().display().to_string());
+    let file = scratch.install("pathwarp-bad", &text);
+    fs::set_permissions(&file, fs::Permissions::from_mode(mode)).unwrap();
+    fails(kind, &scratch, words);
+    let (list, _) = scratch.expect(0, &["list"]);
+    let (_, broken) = list.split_once("Broken plug-ins").unwrap_or_else(|| panic!("{kind}: {list}"));
+    for word in words {
+        assert!(broken.contains(word), "{kind}: `{word}` not in:\n{list}");
+    }
+    let (check, stderr) = scratch.expect(3, &["check", "bad"]);
+    assert!(check.is_empty() && stderr.contains(words[0]), "{kind}: {check}{stderr}");
+}
+
+/// A script that shows its entry and then does this.
+fn then(commands: &str) -> String {
+    format!("#!/bin/sh\necho '{}'\n{commands}\n", entry("bad"))
+}
+
+#[test]
+fn crashes() {
+    fails_in_use("at once", &then("echo 'no such file' >&2; exit 7"), &["exit status: 7", "no such file"]);
+    fails_in_use("by a signal", &then("read -r line; kill -SEGV $$"), &["signal: 11"]);
+    fails_in_use(
+        "mid-batch",
+        &script("bad", "echo $line; [ $i -gt 3 ] && kill -9 $$"),
+        &["without giving the answer for", "signal: 9"],
+    );
+    fails_at_start("before its entry", "#!/bin/sh\nexit 3\n", 0o755, &["its entry as JSON", "exit status: 3"]);
+}
+
+#[test]
+fn hangs() {
+    let at_build = then("exec sh -c 'read x; sleep 1000; : MARK'");
+    let at_points = script("bad", "sh -c 'sleep 1000; : MARK'");
+    let before_its_entry = "#!/bin/sh\nsh -c 'sleep 1000; : MARK'\n";
+    // Signals that can be caught do not matter.
+    let stubborn = then("trap '' TERM INT HUP; sh -c 'sleep 1000; : MARK'");
+    // All of them wait, so they wait together.
+    std::thread::scope(|s| {
+        s.spawn(|| fails_in_use("at build", &at_build, &["`build` within 2 seconds"]));
+        s.spawn(|| fails_in_use("at points", &at_points, &["points within 2 seconds"]));
+        s.spawn(|| fails_at_start("before its entry", before_its_entry, 0o755, &["entry as JSON", "2 seconds"]));
+        s.spawn(|| fails_in_use("stubbornly", &stubborn, &["within 2 seconds"]));
+    });
+}
+
+#[test]
+fn floods() {
+    fails_in_use("in an answer", &script("bad", "yes 1 2"), &["points is followed by `1 2"]);
+    fails_in_use("at build", &then("exec yes xyz"), &["bytes where the answer to `build`"]);
+    fails_in_use("of errors", &then("read x; exec yes 'oh no' >&2"), &["bytes to standard error", "oh no"]);
+    fails_in_use(
+        "of errors beside answers",
+        &script("bad", "echo $line; head -c 2000000 /dev/zero >&2"),
+        &["standard error"],
+    );
+    fails_at_start("instead of an entry", "#!/bin/sh\necho '{'; exec yes\n", 0o755, &["bytes where its entry"]);
+}
+
+#[test]
+fn garbage() {
+    fails_at_start("no entry", "#!/bin/sh\necho hello\n", 0o755, &["`hello", "its entry as JSON"]);
+    fails_at_start("no JSON", "#!/bin/sh\necho '{\"a\": 1,}'\n", 0o755, &["wrong entry", "it is not JSON"]);
+    let binary = "#!/bin/sh\nhead -c 300 /dev/urandom | tr '{ \\n\\t\\r' x\nsleep 5\n";
+    fails_at_start("binary", binary, 0o755, &["its entry as JSON"]);
+    fails_in_use("words for numbers", &script("bad", "echo one two"), &["`one two`", "a line of 2 numbers"]);
+    fails_in_use("three numbers", &script("bad", "echo 1 2 3"), &["`1 2 3`", "a line of 2 numbers"]);
+    fails_in_use("an answer to build", &then("echo yes; sleep 5"), &["`build`"]);
+}
+
+#[test]
+fn wrong_entries() {
+    let at_start = |kind: &str, entry: &str, words: &[&str]| {
+        fails_at_start(kind, &format!("#!/bin/sh\ncat <<'E'\n{entry}\nE\n"), 0o755, words);
+    };
+    let good = entry("bad");
+    at_start("of another version", &good.replace("\"pathwarp-plugin\": 1", "\"pathwarp-plugin\": 3"), &["version 3"]);
+    at_start("without a version", "{\"name\": \"bad\"}", &["lacks \"pathwarp-plugin\": 2"]);
+    at_start("of another name", &entry("worse"), &["its name is `worse`"]);
+    at_start("with an unknown field", &good.replace("\"about\"", "\"colour\": 1, \"about\""), &["colour"]);
+    let with_param = |p: &str| good.replace("\"title\"", &format!("\"parameters\": [{p}], \"title\""));
+    at_start(
+        "with an unknown kind",
+        &with_param(r#"{"name": "a", "help": "A.", "kind": "colour"}"#),
+        &["`colour`", "kinds are"],
+    );
+    at_start(
+        "with an option's name",
+        &with_param(r#"{"name": "tolerance", "help": "A.", "kind": "number"}"#),
+        &["`tolerance`"],
+    );
+    let scratch = Scratch::new();
+    scratch.install("pathwarp-wave", &script("wave", "echo $line"));
+    let (list, _) = scratch.expect(0, &["list"]);
+    assert!(list.contains("has the name of a command, wave"), "{list}");
+    // The built-in one is the one that runs.
+    scratch.expect(0, &["wave", "in.svg", "-o", "out.svg", "--height", "3"]);
+}
+
+#[test]
+fn wrong_counts_and_values() {
+    fails_in_use("too many", &script("bad", "echo $line; [ $i = 0 ] && echo 5 5"), &["is followed by"]);
+    fails_in_use("too few", &script("bad", "[ $i = 0 ] || echo $line"), &["within 2 seconds"]);
+    fails_in_use("NaN", &script("bad", "echo nan 3"), &["NaN or infinity for the point"]);
+    fails_in_use("infinity", &script("bad", "echo 3 inf"), &["NaN or infinity for the point"]);
+    fails_in_use("refusal", &script("bad", "echo error no ink left"), &["no ink left"]);
+}
+
+#[test]
+fn closed_pipes_and_children() {
+    fails_in_use(
+        "closes its input",
+        &then("exec <&-; exec sh -c 'sleep 1000; : MARK'"),
+        &["closed its standard input"],
+    );
+    fails_in_use(
+        "closes its output",
+        &then("exec >&-; exec sh -c 'sleep 1000; : MARK'"),
+        &["closed its standard output"],
+    );
+    let forks = then("sh -c 'sleep 1000; : MARK' & exit 4");
+    fails_in_use("leaves a child that holds the pipes", &forks, &["exit status: 4"]);
+}
+
+#[test]
+fn never_starts() {
+    fails_at_start(
+        "not executable",
+        &script("bad", "echo $line"),
+        0o644,
+        &["is not executable; allow it with chmod +x"],
+    );
+    fails_at_start("no interpreter", "#!/no/such/interpreter\n", 0o755, &["cannot be started"]);
+    fails_at_start("no program", "\u{7f}ELF and then nothing", 0o755, &["cannot be started"]);
+    let scratch = Scratch::new();
+    let (_, stderr) = scratch.expect(3, &["bad", "in.svg", "--plugin", "./nothing.py"]);
+    assert!(stderr.contains("nothing.py: is not a file"), "{stderr}");
+}
+
+/// A shape or an input that fails because of a plug-in does not count as skipped.
+#[test]
+fn nothing_is_skipped_for_a_plug_in_that_fails() {
+    let scratch = Scratch::new();
+    scratch.install("pathwarp-bad", &script("bad", "echo nan nan"));
+    let (_, stderr) = scratch.expect(3, &["bad", "in.svg", "-o", "out.svg", "--on-error", "skip"]);
+    assert!(stderr.contains("NaN") && !scratch.file("out.svg").exists(), "{stderr}");
+    // With a domain of its own it may say so.
+    let partial = script("bad", "echo nan nan").replace("\"title\"", "\"domain\": \"partial\", \"title\"");
+    scratch.install("pathwarp-bad", &partial);
+    let (_, stderr) = scratch.expect(1, &["bad", "in.svg", "-o", "out.svg", "--on-error", "skip"]);
+    assert!(stderr.contains("is not warped") && stderr.contains("infinity"), "{stderr}");
+}
