@@ -50,16 +50,27 @@ pub(super) fn is_plain(value: &str) -> bool {
 
 /// Whether a value has variables or expressions.
 pub(super) fn has_functions(value: &str) -> bool {
-    value.contains('(') && FUNCTIONS.iter().any(|f| contains(value, f))
+    calls(value).any(|before| FUNCTIONS.iter().any(|f| ends_in(before, f)))
+}
+
+/// What stands before each end of a function's name, with the parenthesis.
+fn calls(value: &str) -> impl Iterator<Item = &[u8]> {
+    memchr::memchr_iter(b'(', value.as_bytes()).map(|i| &value.as_bytes()[..=i])
+}
+
+/// Whether a text ends in a function's name, in upper or lower case.
+fn ends_in(text: &[u8], function: &str) -> bool {
+    let start = text.len().checked_sub(function.len());
+    start.is_some_and(|start| text[start..].eq_ignore_ascii_case(function.as_bytes()))
 }
 
 fn contains(value: &str, function: &str) -> bool {
     find(value, function).is_some()
 }
 
-/// Finds the first occurrence of a function's name, in upper or lower case.
+/// Finds the first occurrence of a function's name, which ends in a parenthesis, in upper or lower case.
 fn find(value: &str, function: &str) -> Option<usize> {
-    value.as_bytes().windows(function.len()).position(|w| w.eq_ignore_ascii_case(function.as_bytes()))
+    calls(value).find(|before| ends_in(before, function)).map(|before| before.len() - function.len())
 }
 
 /// Whether usvg doesn't know a unit.

@@ -14,7 +14,7 @@ use wait4::Wait4 as _;
 const SECONDS: f64 = 5.0;
 const MEMORY: u64 = 500_000_000;
 /// Runs get a part of the work allowed, and must have refused after the same part of the time.
-const PART: f64 = 0.3;
+const PART: f64 = 0.1;
 /// Seconds for reading an input up to where its work is counted.
 const READING: f64 = 1.0;
 /// The seconds after which the program ends by itself.
@@ -51,6 +51,11 @@ impl Folder {
     /// With the default limits.
     pub fn whole(self) -> Self {
         Self { part: None, ..self }
+    }
+
+    /// With three times the part that other runs get: for what needs it to be done.
+    pub fn ample(self) -> Self {
+        Self { part: Some(3.0 * PART), ..self }
     }
 
     pub fn path(&self) -> &Path {

@@ -70,7 +70,7 @@ fn a_repeated_picture_is_stored_once() {
 #[test]
 fn polylines_are_counted() {
     let path = format!("<path d='M0 0{}'/>", "c9 90 9-90 1 1".repeat(20_000));
-    let folder = Folder::with(&[("a.svg", &svg(&path))]);
+    let folder = Folder::with(&[("a.svg", &svg(&path))]).ample();
     let fine = ["convert", "a.svg", "--dxf-curves", "polyline", "--tolerance", "1e-7", "-o", "o.dxf"];
     let (code, said) = folder.run(&fine);
     assert_eq!((code, said.contains("--limit work=")), (3, true), "{said}");

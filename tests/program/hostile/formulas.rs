@@ -88,7 +88,8 @@ fn names_in_recipes_are_counted() {
         ("short.toml", short.as_bytes()),
         ("few.svg", &svg(RECT)),
         ("many.svg", &many),
-    ]);
+    ])
+    .ample();
     let (code, said) = folder.run(&["run", "long.toml", "many.svg", "-o", "o.svg"]);
     assert_eq!((code, said.contains("--limit work=")), (3, true), "{said}");
     folder.run(&["run", "long.toml", "few.svg", "-o", "o.svg"]);

@@ -11,7 +11,7 @@ use std::io::Write as _;
 #[test]
 fn a_long_name_does_not_pad_all_lines() {
     let body = format!("<path id='{}' d='M0 0L1 1'/>{}", "n".repeat(300_000), "<path d='M0 0L1 1'/>".repeat(20_000));
-    let folder = Folder::with(&[("a.svg", &svg(&body))]);
+    let folder = Folder::with(&[("a.svg", &svg(&body))]).ample();
     for command in [&["paths", "a.svg"][..], &["compare", "a.svg", "a.svg"]] {
         assert_eq!(folder.run(command).0, 0, "{command:?}");
     }
@@ -30,7 +30,7 @@ fn a_file_larger_than_the_memory_is_an_error() {
 
 #[test]
 fn many_paths_of_one_name_are_numbered() {
-    let folder = Folder::with(&[("a.svg", &svg(&"<path d='M0 0L1 1'><title>a</title></path>".repeat(8000)))]);
+    let folder = Folder::with(&[("a.svg", &svg(&"<path d='M0 0L1 1'><title>a</title></path>".repeat(8000)))]).ample();
     assert_eq!(folder.run(&["convert", "a.svg", "--split", "-o", "s.svg"]).0, 0);
     for name in ["s-a.svg", "s-a-2.svg", "s-a-8000.svg"] {
         assert!(folder.path().join(name).exists(), "{name}");

@@ -46,7 +46,7 @@ fn pictures_and_gradients_are_counted() {
     let png = STANDARD.encode(picture.encode_png().unwrap());
     let pictures =
         |n: usize| svg(&format!("<image width='9' height='9' href='data:image/png;base64,{png}'/>").repeat(n));
-    let folder = Folder::with(&[("a.svg", &pictures(2000)), ("few.svg", &pictures(30))]);
+    let folder = Folder::with(&[("a.svg", &pictures(2000)), ("few.svg", &pictures(30))]).ample();
     let (code, said) = folder.run(&["swirl", "a.svg", "-o", "o.svg"]);
     assert_eq!((code, said.contains("--limit work=")), (4, true), "{said}");
     assert_eq!(folder.run(&["swirl", "few.svg", "-o", "o.svg"]).0, 0);
@@ -73,7 +73,7 @@ fn dashes_are_counted_before_they_are_made() {
     // More dashes than are drawn, of a path whose subpaths have fewer each.
     let lines: String = (0..70).map(|y| format!("M0 {y}H900")).collect();
     let body = format!("<path d='{lines}' fill='none' stroke='red' stroke-dasharray='.1'/>");
-    let folder = Folder::with(&[("a.svg", &svg(&body))]);
+    let folder = Folder::with(&[("a.svg", &svg(&body))]).ample();
     assert_eq!(folder.run(&["wave", "a.svg", "-o", "o.svg", "--strokes", "outline"]).0, 0);
 }
 

@@ -9,6 +9,8 @@ fn sheet(css: &str) -> String {
 
 #[test]
 fn long_sheets_are_read() {
+    let expect =
+        |body: &str, codes, words| Folder::with(&[("a.svg", &svg(body))]).ample().expect("a.svg", codes, words);
     expect(&sheet(&"rect{fill:red;a:1 2 #3}".repeat(8000)), [0, 0], "");
     expect(&sheet(&"rect{fill:red;a:1 2 #3}\n".repeat(20_000)), [0, 0], "");
     expect(&sheet(&"{}}{;:@\\".repeat(100_000)), [0, 0], "");
