@@ -2,6 +2,24 @@
 #![allow(dead_code, reason = "every test file uses a part of this")]
 
 use pathwarp_gimp::{GimpPath, Stroke};
+use std::io::{Read, Seek, SeekFrom};
+
+/// A file that counts the bytes read from it.
+pub(crate) struct Counted<F>(pub(crate) F, pub(crate) usize);
+
+impl<F: Read> Read for Counted<F> {
+    fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
+        let n = self.0.read(to)?;
+        self.1 += n;
+        Ok(n)
+    }
+}
+
+impl<F: Seek> Seek for Counted<F> {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.0.seek(to)
+    }
+}
 
 /// Builds big-endian data.
 #[derive(Default, Clone)]

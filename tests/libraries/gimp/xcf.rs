@@ -1,6 +1,6 @@
 //! Files of every version and form, plain and compressed, are read bit for bit, and rewritten without a change to any other byte.
 
-use crate::support::xcf::{self, Form, forms, item, paths_for, plain_paths, rich_paths, tiles, xcf};
+use crate::support::xcf::{self, Counted, Form, forms, item, paths_for, plain_paths, rich_paths, tiles, xcf};
 use pathwarp_gimp::{FileKind, GimpPath, Stroke, new_xcf, open, read, rewrite};
 use std::io::{Cursor, Read, Seek, SeekFrom, Write};
 use std::time::Instant;
@@ -76,23 +76,6 @@ fn xz(plain: &[u8]) -> Option<Vec<u8>> {
         .ok()?;
     child.stdin.take()?.write_all(plain).ok()?;
     Some(child.wait_with_output().ok()?.stdout)
-}
-
-/// A file that counts the bytes read from it.
-struct Counted(std::fs::File, usize);
-
-impl Read for Counted {
-    fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
-        let n = self.0.read(to)?;
-        self.1 += n;
-        Ok(n)
-    }
-}
-
-impl Seek for Counted {
-    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
-        self.0.seek(to)
-    }
 }
 
 #[test]

@@ -117,7 +117,7 @@ const FONT: &str = "crates/pathwarp-svg/fonts/OFL.txt";
 const RULE: &str = "------------------------------------------------------------------------";
 
 /// The licences and copyright notices of the program and of everything linked into it.
-fn licences_text(root: &Path) -> Result<String, ChoreError> {
+pub(super) fn licences_text(root: &Path) -> Result<String, ChoreError> {
     let metadata = metadata(root)?;
     let mut out = String::from("pathwarp is licensed under MIT or Apache-2.0, at your option.\n\n");
     for file in ["LICENSE-MIT", "LICENSE-APACHE"] {

@@ -5,7 +5,7 @@
 
 use crate::chore::{Chore, ChoreError, at, hex, path_option, workspace};
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use contents::{Tree, host};
+use contents::{Tree, host, licences_text};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -24,10 +24,18 @@ fn command() -> Command {
                 "Link the program statically and pack an archive (.tar.gz) that runs on any Linux of this processor",
             ),
         )
+        .arg(
+            path_option("licences", "FILE")
+                .help("Only write the licences of the program and of everything that is linked into it here"),
+        )
 }
 
 fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let root = workspace().canonicalize().map_err(|e| e.to_string())?;
+    if let Some(file) = arguments.get_one::<PathBuf>("licences") {
+        fs::write(file, licences_text(&root)?).map_err(at(file))?;
+        return Ok(format!("wrote {}", file.display()));
+    }
     let (time, linked_statically) = (&time(&root)?, arguments.get_flag("static"));
     let build = Build { root: &root, target: &root.join("target"), linked_statically, time };
     let program = match arguments.get_one::<PathBuf>("program") {
