@@ -2,18 +2,20 @@
 
 use crate::limits;
 use pathwarp::budget::Budget;
-use pathwarp::kurbo::{CubicBez, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect, Shape as _};
+use pathwarp::kurbo::{Point, Rect, Shape as _};
 use pathwarp::map::Map;
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp::refit::{Assurance, Options, RefittedPath, warp_path};
 use pathwarp::{Outline, Seg};
+use pathwarp_oracle::curves::Curved as _;
+use pathwarp_oracle::{Run, far};
 use std::sync::Arc;
 
 /// Samples of each source segment.
 const SAMPLES: usize = 16;
-/// Most segments of a result that is measured: each sample is compared with each segment.
+/// Most segments of a result that is measured.
 const MOST_SEGMENTS: usize = 100;
-/// Accuracy of nearest points, relative to the tolerance.
+/// Accuracy of the measure, relative to the tolerance.
 const ACCURACY: f64 = 1e-3;
 /// Rounding of coordinates, relative to the largest one.
 const ROUNDING: f64 = 1e-12;
@@ -75,10 +77,11 @@ fn same(a: &RefittedPath, b: &RefittedPath) -> bool {
 
 /// Measures the distance from the true image to the result.
 fn measure(path: &Outline, map: &dyn Map, warped: &RefittedPath, tolerance: f64) {
-    let pieces: Vec<PathSeg> = warped.path.segments().collect();
+    let pieces = warped.path.curves();
     if pieces.is_empty() || pieces.len() > MOST_SEGMENTS {
         return;
     }
+    let result = [Run::of(&pieces).sampled(64, tolerance)];
     for seg in path.segs() {
         for i in 0..=SAMPLES {
             let at = seg.eval(i as f64 / SAMPLES as f64);
@@ -88,10 +91,9 @@ fn measure(path: &Outline, map: &dyn Map, warped: &RefittedPath, tolerance: f64)
                 continue;
             }
             let estimated = if warped.report.assurance == Assurance::Checked { ESTIMATED } else { 1.0 };
-            let allowed = tolerance * (estimated + ACCURACY) + ROUNDING * size;
-            let found = distance(&pieces, image, ACCURACY * tolerance, allowed);
+            let (found, _) = far(&[image], &result);
             assert!(
-                found <= allowed,
+                found <= tolerance * (estimated + ACCURACY) + ROUNDING * size,
                 "{image:?}, the image of {at:?}, is {found} from the result; {:?} within {tolerance}",
                 warped.report
             );
@@ -104,35 +106,4 @@ fn derivative_size(map: &dyn Map, at: Point) -> f64 {
     let jet = map.jet(at);
     let size = jet.dx.hypot() + jet.dy.hypot();
     if size.is_finite() { size } else { f64::INFINITY }
-}
-
-/// The distance of a point from pieces; the search ends below `enough`.
-fn distance(pieces: &[PathSeg], p: Point, accuracy: f64, enough: f64) -> f64 {
-    let mut best = f64::INFINITY;
-    for piece in pieces {
-        best = best.min(piece.nearest(p, accuracy).distance_sq.sqrt());
-        if best > enough {
-            // The nearest point of a cubic is searched on approximating quadratics, which fail for huge curves.
-            best = best.min(sampled(&piece.to_cubic(), p));
-        }
-        if best <= enough {
-            break;
-        }
-    }
-    best
-}
-
-/// Distance by golden sections between samples. Every interval is searched: the nearest sample of a hairpin may be on its other branch.
-fn sampled(c: &CubicBez, p: Point) -> f64 {
-    const STEPS: usize = 64;
-    let at = |t: f64| c.eval(t).distance(p);
-    let search = |i: usize| {
-        let (mut low, mut high) = (i as f64 / STEPS as f64, (i + 1) as f64 / STEPS as f64);
-        for _ in 0..60 {
-            let (a, b) = (low + (high - low) * 0.382, low + (high - low) * 0.618);
-            if at(a) < at(b) { high = b } else { low = a }
-        }
-        at(0.5 * (low + high)).min(at(i as f64 / STEPS as f64))
-    };
-    (0..STEPS).map(search).fold(at(1.0), f64::min)
 }

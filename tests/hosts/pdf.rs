@@ -3,9 +3,11 @@
 use crate::support::geometry::{far, gap, outlines};
 use crate::support::{artwork, expect_code, sample};
 use pathwarp::kurbo::Point;
+use pathwarp_oracle::on_white;
 use pathwarp_raster::{Size, decode_png, render};
 use pathwarp_svg::usvg_tree::parse_tree;
 use pathwarp_svg::{Document, ReadOptions};
+use resvg::tiny_skia::IntRect;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -45,16 +47,11 @@ fn difference(folder: &Path, pdf: &Path, svg: &Path) -> Option<(f64, f64)> {
     let (width, height) = (ours.width().min(theirs.width()), ours.height().min(theirs.height()));
     assert!(ours.width() - width <= 1 && theirs.width() - width <= 1, "{} {}", ours.width(), theirs.width());
     assert!(ours.height() - height <= 1 && theirs.height() - height <= 1);
-    let (mut sum, mut far) = (0.0, 0.0);
-    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let [a, b] = [&ours, &theirs].map(|p| p.pixel(x, y).unwrap());
-        let [a, b] = [a, b].map(|p| [p.red(), p.green(), p.blue()].map(|c| c + (255 - p.alpha())));
-        let apart = [0, 1, 2].map(|c| f64::from(a[c].abs_diff(b[c])));
-        sum += apart.iter().sum::<f64>() / 3.0;
-        far += f64::from(u8::from(apart.iter().any(|d| *d > 64.0)));
-    }
-    let pixels = f64::from(width * height);
-    Some((sum / pixels, far / pixels))
+    let page = IntRect::from_xywh(0, 0, width, height).unwrap();
+    let [ours, theirs] = [ours, theirs].map(|p| on_white(p.clone_rect(page).unwrap()));
+    let d = pathwarp_oracle::difference(&ours, &theirs);
+    // All is opaque now.
+    Some((d.mean * 4.0 / 3.0, d.share(64)))
 }
 
 #[test]

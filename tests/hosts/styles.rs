@@ -9,8 +9,10 @@ use pathwarp::deform::Registry;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Frame};
 use pathwarp::refit;
+use pathwarp_oracle::difference;
 use pathwarp_raster::{Pixmap, decode_png};
 use pathwarp_svg::{Document, ReadOptions, WarpOptions};
+use resvg::tiny_skia::IntRect;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -165,16 +167,11 @@ fn shown(drawings: &[String], transform: &str, name: &str, folder: &Path) -> Pix
 /// For each drawing, the fraction of its pixels that differ by more than antialiasing.
 fn differences(a: &Pixmap, b: &Pixmap, drawings: usize) -> Vec<f64> {
     const VISIBLE: u8 = 90;
-    assert_eq!((a.width(), a.height()), (b.width(), b.height()));
-    let wide = a.width() as usize;
-    let differs = |x: usize, y: usize| {
-        let at = (y * wide + x) * 4;
-        a.data()[at..at + 4].iter().zip(&b.data()[at..at + 4]).any(|(p, q)| p.abs_diff(*q) > VISIBLE)
-    };
     let one = |i: usize| {
-        let (x0, y0) = (i % COLUMNS * SIDE, i / COLUMNS * SIDE);
-        let pixels = (0..SIDE * SIDE).filter(|k| differs(x0 + k % SIDE, y0 + k / SIDE));
-        pixels.count() as f64 / (SIDE * SIDE) as f64
+        let [x, y] = [i % COLUMNS, i / COLUMNS].map(|k| (k * SIDE) as i32);
+        let place = IntRect::from_xywh(x, y, SIDE as u32, SIDE as u32).unwrap();
+        let [a, b] = [a, b].map(|p| p.clone_rect(place).unwrap());
+        difference(&a, &b).share(VISIBLE)
     };
     (0..drawings).map(one).collect()
 }

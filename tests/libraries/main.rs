@@ -14,6 +14,7 @@
 
 mod bending;
 mod gimp;
+mod measures;
 mod psd;
 mod raster;
 mod solid;

@@ -1,8 +1,9 @@
 //! Lettering under deformations, through the program: baselines on curves, letters that keep their shape, stems that stay vertical.
 
 use crate::support::expect_code;
-use pathwarp::kurbo::{ParamCurveNearest, Point, Rect, Vec2};
+use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp::{Outline, Seg};
+use pathwarp_oracle::flat;
 use pathwarp_svg::{Document, ReadOptions};
 use std::fs;
 use std::path::Path;
@@ -35,7 +36,7 @@ fn run(svg: &str, args: &[&str]) -> (Outline, Outline, String) {
 
 /// The distance of `p` from an outline.
 fn away(outline: &Outline, p: Point) -> f64 {
-    outline.segs().map(|s| s.to_cubic().nearest(p, 1e-9).distance_sq.sqrt()).fold(f64::INFINITY, f64::min)
+    flat(outline, 1e-6).distance(p)
 }
 
 /// The x ranges of the feet: lines that lie on the baseline.

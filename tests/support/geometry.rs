@@ -1,7 +1,8 @@
 //! Curves as dense polylines, and the distance between two sets of them.
 
 use pathwarp::Seg;
-use pathwarp::kurbo::{Affine, Line, ParamCurveNearest as _, Point};
+use pathwarp::kurbo::{Affine, Point};
+use pathwarp_oracle::Polygon;
 use pathwarp_svg::{Document, ReadOptions};
 
 /// Millimetres per px.
@@ -59,31 +60,16 @@ pub fn outlines(svg: &[u8]) -> Vec<Vec<Point>> {
 
 /// The largest distance from a point of `a` to the lines of `b`.
 pub fn gap(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
-    /// Side of the cells in which lines are looked up.
-    const CELL: f64 = 0.5;
-    let cell = |p: Point| ((p.x / CELL).floor() as i64, (p.y / CELL).floor() as i64);
-    let mut cells = std::collections::HashMap::<_, Vec<Line>>::new();
-    for w in b.iter().flat_map(|l| l.windows(2)) {
-        let line = Line::new(w[0], w[1]);
-        let ((x0, y0), (x1, y1)) = (cell(w[0]), cell(w[1]));
-        for x in x0.min(x1)..=x0.max(x1) {
-            for y in y0.min(y1)..=y0.max(y1) {
-                cells.entry((x, y)).or_default().push(line);
-            }
-        }
-    }
-    let near = |p: Point| {
-        let (x, y) = cell(p);
-        let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
-        let lines = around.filter_map(|c| cells.get(&c)).flatten();
-        lines.map(|l| l.nearest(p, 1e-9).distance_sq.sqrt()).fold(f64::INFINITY, f64::min)
+    let edges = |lines: &[Vec<Point>]| -> Vec<[Point; 2]> {
+        lines.iter().flat_map(|l| l.windows(2)).map(|w| [w[0], w[1]]).collect()
     };
+    let lines = Polygon::new(edges(b));
     // Points on long lines, too.
-    let between = |w: &[Point]| {
-        let n = (w[0].distance(w[1]) / 0.1).ceil().max(1.0) as usize;
-        (0..=n).map(|i| w[0].lerp(w[1], i as f64 / n as f64)).map(near).fold(0.0, f64::max)
+    let between = |[p, q]: &[Point; 2]| {
+        let n = (p.distance(*q) / 0.1).ceil().max(1.0) as usize;
+        (0..=n).map(|i| lines.distance(p.lerp(*q, i as f64 / n as f64))).fold(0.0, f64::max)
     };
-    a.iter().flat_map(|l| l.windows(2)).map(between).fold(0.0, f64::max)
+    edges(a).iter().map(between).fold(0.0, f64::max)
 }
 
 /// A drawing on a page of 100 mm at some place: a path, a circle, and a group with a transform.

@@ -1,6 +1,6 @@
 //! Path data as curves: commands by svgtypes, arcs by the formulas of SVG's appendix. Nothing here is shared with the program's reader.
 
-use kurbo::{Point, Vec2};
+use kurbo::{BezPath, CubicBez, PathSeg, Point, Vec2};
 use svgtypes::{PathParser, PathSegment};
 
 /// A curve over [0, 1].
@@ -9,11 +9,10 @@ pub enum Curve {
     Line([Point; 2]),
     Quad([Point; 3]),
     Cubic([Point; 4]),
-    /// Centre, radii, cosine and sine of the rotation, first angle and sweep; with the ends as written.
+    /// Centre, two conjugate semi-axes, first angle and sweep; with the ends as written.
     Arc {
         center: Point,
-        radii: Vec2,
-        turned: Vec2,
+        axes: [Vec2; 2],
         from: f64,
         sweep: f64,
         ends: [Point; 2],
@@ -31,10 +30,9 @@ impl Curve {
                 mix(mix(ab, bc), mix(bc, cd))
             }
             Self::Arc { ends, .. } if t == 0.0 || t == 1.0 => ends[t as usize],
-            Self::Arc { center, radii, turned, from, sweep, .. } => {
+            Self::Arc { center, axes: [a, b], from, sweep, .. } => {
                 let (s, c) = (from + t * sweep).sin_cos();
-                let (u, v) = (radii.x * c, radii.y * s);
-                center + Vec2::new(turned.x * u - turned.y * v, turned.y * u + turned.x * v)
+                center + a * c + b * s
             }
         }
     }
@@ -80,7 +78,70 @@ impl Curve {
         let (from, to) = (angle(x - cx, y - cy), angle(-x - cx, -y - cy));
         let turn = std::f64::consts::TAU;
         let by = (to - from).rem_euclid(turn);
-        Some(Self::Arc { center, radii: r, turned, from, sweep: if sweep { by } else { by - turn }, ends })
+        let axes = [turned * r.x, Vec2::new(-turned.y, turned.x) * r.y];
+        Some(Self::Arc { center, axes, from, sweep: if sweep { by } else { by - turn }, ends })
+    }
+}
+
+impl From<PathSeg> for Curve {
+    fn from(seg: PathSeg) -> Self {
+        match seg {
+            PathSeg::Line(l) => Self::Line([l.p0, l.p1]),
+            PathSeg::Quad(q) => Self::Quad([q.p0, q.p1, q.p2]),
+            PathSeg::Cubic(c) => Self::from(c),
+        }
+    }
+}
+
+impl From<CubicBez> for Curve {
+    fn from(c: CubicBez) -> Self {
+        Self::Cubic([c.p0, c.p1, c.p2, c.p3])
+    }
+}
+
+/// What consists of curves.
+pub trait Curved {
+    /// The curves, one after the other.
+    fn curves(&self) -> Vec<Curve>;
+}
+
+impl Curved for BezPath {
+    fn curves(&self) -> Vec<Curve> {
+        self.segments().map(Curve::from).collect()
+    }
+}
+
+#[cfg(feature = "drawings")]
+mod outlines {
+    use super::{Curve, Curved};
+    use kurbo::PathSeg;
+    use pathwarp::{Outline, Seg};
+
+    impl Curved for Seg {
+        fn curves(&self) -> Vec<Curve> {
+            vec![match *self {
+                Seg::Line(l) => PathSeg::Line(l).into(),
+                Seg::Quad(q) => PathSeg::Quad(q).into(),
+                Seg::Cubic(c) => c.into(),
+                Seg::Arc(a) => {
+                    let at = |angle: f64| a.center + a.a * angle.cos() + a.b * angle.sin();
+                    let ends = [at(a.start), at(a.start + a.sweep)];
+                    Curve::Arc { center: a.center, axes: [a.a, a.b], from: a.start, sweep: a.sweep, ends }
+                }
+            }]
+        }
+    }
+
+    impl Curved for Vec<Seg> {
+        fn curves(&self) -> Vec<Curve> {
+            self.iter().flat_map(Curved::curves).collect()
+        }
+    }
+
+    impl Curved for Outline {
+        fn curves(&self) -> Vec<Curve> {
+            self.segs().flat_map(Curved::curves).collect()
+        }
     }
 }
 

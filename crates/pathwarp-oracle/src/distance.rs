@@ -1,167 +1,247 @@
-//! Distances and angles between curves, measured without the engine.
+//! The distance between two curves, in both directions.
+//!
+//! Both are sampled until no chord is farther from its arc than a tenth of a height, as the turns of the chords tell. Every sample of one
+//! is then compared with the other: first with its chords, and, farthest samples first, with the curve itself over every chord beside
+//! which the nearest point may lie. So cusps, hairpins and crossings need no good start. A sample's distance is true, and the
+//! largest one falls short of the true distance by no more than what the distance grows by between two samples.
 
-use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
-use pathwarp::Seg;
-use pathwarp::map::Map;
+use crate::curves::{Curve, Curved};
+use crate::polygon::{Polygon, to_edge};
+use kurbo::{Point, Vec2};
+use std::slice::from_ref;
 
-/// The symmetric distance between the image of `seg` and the cubics, from `samples` points in either direction, whose foot points
-/// are found by Newton steps from the nearest sample. Distances below `enough` are not refined.
-pub fn distance(seg: &Seg, map: &dyn Map, out: &[CubicBez], samples: usize, enough: f64) -> f64 {
-    let image = |t: f64| map.point(seg.eval(t));
-    let image_d = |t: f64| map.jet(seg.eval(t)).push(seg.deriv(t));
-    let n = samples;
-    let g: Vec<Point> = (0..=n).map(|i| image(i as f64 / n as f64)).collect();
-    let per = (n / out.len().max(1)).max(8);
-    let m = per * out.len();
-    let curve =
-        |k: usize| out[(k / per).min(out.len() - 1)].eval((k - per * (k / per).min(out.len() - 1)) as f64 / per as f64);
-    let c: Vec<Point> = (0..=m).map(curve).collect();
-    let a = one_sided(&g, &c, enough, |k, p| {
-        let mut best = f64::INFINITY;
-        for piece in [k.saturating_sub(1) / per, (k / per).min(out.len() - 1)] {
-            let cb = &out[piece.min(out.len() - 1)];
-            let d = cb.deriv();
-            let mut s = ((k as f64 - (piece * per) as f64) / per as f64).clamp(0.0, 1.0);
-            for _ in 0..8 {
-                let (r, v) = (cb.eval(s) - p, d.eval(s).to_vec2());
-                best = best.min(r.hypot());
-                s = (s - r.dot(v) / (v.hypot2() + 1e-300)).clamp(0.0, 1.0);
+/// A piece of a curve, and a parameter from 0 to 1 on it.
+pub type Place = (usize, f64);
+
+/// Maps points, many at a time.
+pub type Image<'a> = &'a (dyn Fn(&[Point], &mut [Point]) + 'a);
+
+/// A curve in pieces.
+pub struct Run<'a> {
+    pieces: usize,
+    at: Box<dyn Fn(&[Place], &mut [Point]) + 'a>,
+}
+
+impl<'a> Run<'a> {
+    /// A curve of so many pieces that a function describes.
+    pub fn new(pieces: usize, at: impl Fn(Place) -> Point + 'a) -> Self {
+        Self { pieces, at: Box::new(move |places, out| places.iter().zip(out).for_each(|(p, out)| *out = at(*p))) }
+    }
+
+    pub fn of(curves: &'a [Curve]) -> Self {
+        Self::image(curves, &|points, out| out.copy_from_slice(points))
+    }
+
+    /// The image of curves under a map.
+    pub fn image(curves: &'a [Curve], image: Image<'a>) -> Self {
+        let at = move |places: &[Place], out: &mut [Point]| {
+            let points: Vec<Point> = places.iter().map(|(i, t)| curves[*i].at(*t)).collect();
+            image(&points, out);
+        };
+        Self { pieces: curves.len(), at: Box::new(at) }
+    }
+
+    pub fn pieces(&self) -> usize {
+        self.pieces
+    }
+
+    pub fn at(&self, place: Place) -> Point {
+        let mut out = [Point::ORIGIN];
+        (self.at)(&[place], &mut out);
+        out[0]
+    }
+
+    fn points(&self, places: &[Place]) -> Vec<Point> {
+        let mut out = vec![Point::ORIGIN; places.len()];
+        (self.at)(places, &mut out);
+        out
+    }
+
+    /// Samples each piece `n` times, and more often where a chord may be farther from its arc than a tenth of `height`.
+    pub fn sampled(&self, n: usize, height: f64) -> Sampled<'_> {
+        const MOST: usize = 40_000;
+        let even = |i: usize| (0..=n).map(move |k| (i, k as f64 / n as f64));
+        let mut places: Vec<Place> = (0..self.pieces).flat_map(even).collect();
+        let mut points = self.points(&places);
+        let mut changed = vec![true; places.len()];
+        for _ in 0..40 {
+            let steps = steps(&places, &points);
+            let halved: Vec<usize> = (0..steps.len())
+                .filter(|&k| {
+                    let same = places[k].0 == places[k + 1].0 && places[k + 1].1 - places[k].1 > 1e-13;
+                    let looked_at =
+                        changed[k] || changed[k + 1] || (k > 0 && changed[k - 1]) || changed.get(k + 2) == Some(&true);
+                    same && looked_at && bulge(&steps, k) > 0.1 * height
+                })
+                .collect();
+            if halved.is_empty() || places.len() > MOST {
+                break;
             }
-            let lo = ((k as f64 - (piece * per) as f64 - 1.0) / per as f64).clamp(0.0, 1.0);
-            let hi = ((k as f64 - (piece * per) as f64 + 1.0) / per as f64).clamp(0.0, 1.0);
-            best = best.min(cb.eval(s).distance(p));
-            if best > enough {
-                best = best.min(golden(lo, hi, |s| cb.eval(s).distance(p)));
+            let middle = |k: usize| (places[k].0, 0.5 * (places[k].1 + places[k + 1].1));
+            let new: Vec<Place> = halved.iter().map(|k| middle(*k)).collect();
+            let images = self.points(&new);
+            let mut next = 0;
+            let (mut p, mut q, mut c) = (Vec::new(), Vec::new(), Vec::new());
+            for k in 0..places.len() {
+                (p.push(places[k]), q.push(points[k]), c.push(false));
+                if halved.get(next) == Some(&k) {
+                    (p.push(new[next]), q.push(images[next]), c.push(true));
+                    next += 1;
+                }
             }
+            (places, points, changed) = (p, q, c);
         }
-        best
-    });
-    let b = one_sided(&c, &g, enough, |k, p| {
-        let mut best = f64::INFINITY;
-        let mut t = k as f64 / n as f64;
-        for _ in 0..8 {
-            let (r, v) = (image(t) - p, image_d(t));
-            best = best.min(r.hypot());
-            t = (t - r.dot(v) / (v.hypot2() + 1e-300)).clamp(0.0, 1.0);
-        }
-        best = best.min(image(t).distance(p));
-        if best > enough {
-            let (lo, hi) = ((k as f64 - 1.0) / n as f64, (k as f64 + 1.0) / n as f64);
-            best = best.min(golden(lo.max(0.0), hi.min(1.0), |t| image(t).distance(p)));
-        }
-        best
-    });
-    a.max(b)
+        let steps = steps(&places, &points);
+        let to = |k: usize| if places[k].0 == places[k + 1].0 { points[k + 1] } else { points[k] };
+        let chords = Polygon::new((0..steps.len()).map(|k| [points[k], to(k)]).collect());
+        let rooms: Vec<f64> = (0..steps.len()).map(|k| 2.0 * bulge(&steps, k)).collect();
+        let room = rooms.iter().copied().fold(0.0, f64::max);
+        Sampled { run: self, places, points, chords, rooms, room }
+    }
 }
 
-/// As [`distance`], for the image of several consecutive segments.
-pub fn distance_of_run(segs: &[Seg], map: &dyn Map, out: &[CubicBez], per: usize, enough: f64) -> f64 {
-    // A segment without length would put many samples at one point.
-    let segs: Vec<Seg> = segs.iter().filter(|s| extent(&s.to_cubic()) > 1e-9).copied().collect();
-    let out: Vec<CubicBez> = out.iter().filter(|c| extent(c) > 1e-9).copied().collect();
-    let image = |t: f64| {
-        let k = (t as usize).min(segs.len() - 1);
-        map.point(segs[k].eval(t - k as f64))
+/// From each sample to the next of the same piece.
+fn steps(places: &[Place], points: &[Point]) -> Vec<Vec2> {
+    let step = |k: usize| if places[k].0 == places[k + 1].0 { points[k + 1] - points[k] } else { Vec2::ZERO };
+    (0..points.len().saturating_sub(1)).map(step).collect()
+}
+
+/// How far an arc may be from its chord: its height is an eighth of the chord times the turn to the next chord. The first and the last
+/// chord of a piece may hide a turn back, after which they are short.
+fn bulge(steps: &[Vec2], k: usize) -> f64 {
+    let own = steps[k];
+    let [before, after] =
+        [k.checked_sub(1), Some(k + 1)].map(|k| k.and_then(|k| steps.get(k)).copied().unwrap_or_default());
+    let turn = |other: Vec2| {
+        let (sin, cos) = (own.cross(other).abs(), own.dot(other));
+        // The tangent of a small angle is hardly more than the angle.
+        if sin < 0.2 * cos { sin / cos } else { sin.atan2(cos) }
     };
-    let curve = |t: f64| {
-        let k = (t as usize).min(out.len() - 1);
-        out[k].eval(t - k as f64)
-    };
-    let g: Vec<Point> = (0..=per * segs.len()).map(|i| image(i as f64 / per as f64)).collect();
-    let c: Vec<Point> = (0..=per * out.len()).map(|i| curve(i as f64 / per as f64)).collect();
-    let near =
-        |k: usize, n: usize| ((k as f64 - 1.0).max(0.0) / per as f64, ((k as f64 + 1.0) / per as f64).min(n as f64));
-    let a = one_sided(&g, &c, enough, |k, p| {
-        let (lo, hi) = near(k, out.len());
-        golden(lo, hi, |t| curve(t).distance(p))
-    });
-    let b = one_sided(&c, &g, enough, |k, p| {
-        let (lo, hi) = near(k, segs.len());
-        golden(lo, hi, |t| image(t).distance(p))
-    });
-    a.max(b)
+    let hidden = |other: Vec2| if own.hypot() < 0.4 * other.hypot() { other.hypot() } else { 0.0 };
+    let at_an_end = before == Vec2::ZERO || after == Vec2::ZERO;
+    let hidden = if at_an_end { hidden(before).max(hidden(after)) } else { 0.0 };
+    0.125 * (own.hypot() * turn(before).max(turn(after))).max(hidden)
 }
 
-fn extent(c: &CubicBez) -> f64 {
-    [c.p1, c.p2, c.p3].iter().map(|p| p.distance(c.p0)).fold(0.0, f64::max)
+/// A sampled curve: the samples and their places.
+pub struct Sampled<'a> {
+    pub run: &'a Run<'a>,
+    pub places: Vec<Place>,
+    pub points: Vec<Point>,
+    /// The lines between consecutive samples of a piece.
+    pub chords: Polygon,
+    /// How far the curve may be from each chord, generously, and the most of that.
+    rooms: Vec<f64>,
+    room: f64,
 }
 
-/// The minimum between `lo` and `hi` by golden-section search: slow, but robust at cusps.
-fn golden(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const G: f64 = 0.381_966_011_250_105;
-    let (mut a, mut b) = (lo + G * (hi - lo), hi - G * (hi - lo));
-    let (mut fa, mut fb) = (f(a), f(b));
-    for _ in 0..50 {
-        if fa < fb {
-            (hi, b, fb) = (b, a, fa);
-            a = lo + G * (hi - lo);
-            fa = f(a);
-        } else {
-            (lo, a, fa) = (a, b, fb);
-            b = hi - G * (hi - lo);
-            fb = f(b);
+impl Sampled<'_> {
+    /// Goes on from a chord to its neighbours as long as they are nearer to a point. Returns a distance that the curve has at most.
+    fn walk(&self, p: Point, chord: &mut usize) -> f64 {
+        let most = |k: usize| self.chords.to(k, p) + self.rooms[k];
+        let mut best = most(*chord);
+        loop {
+            let ahead = if *chord + 1 < self.rooms.len() { most(*chord + 1) } else { f64::INFINITY };
+            let behind = if *chord > 0 { most(*chord - 1) } else { f64::INFINITY };
+            if ahead <= best {
+                (best, *chord) = (ahead, *chord + 1);
+            } else if behind < best {
+                (best, *chord) = (behind, *chord - 1);
+            } else {
+                return best;
+            }
         }
     }
-    fa.min(fb)
-}
 
-fn one_sided(from: &[Point], to: &[Point], enough: f64, refine: impl Fn(usize, Point) -> f64) -> f64 {
-    let mut at = 0;
-    let mut worst = 0.0f64;
-    for p in from {
-        // Descend from the previous nearest sample. Search everywhere if the result is not good enough.
-        let d = |k: usize| to[k].distance_squared(*p);
-        loop {
-            let here = d(at);
-            if at + 1 < to.len() && d(at + 1) < here {
-                at += 1;
-            } else if at > 0 && d(at - 1) < here {
-                at -= 1;
-            } else {
+    /// The distance of a point from the arc over a chord. Each round looks at eight places of a bracket and goes on with those beside the
+    /// nearest, so that the lines between the last three are within 1e-10 of the arc's height.
+    fn beside(&self, p: Point, k: usize) -> f64 {
+        const INNER: usize = 8;
+        let ((i, mut from), (j, mut to)) = (self.places[k], self.places[k + 1]);
+        let [mut before, mut after] = [self.points[k], self.points[k + 1]];
+        let mut best = before.distance(p).min(after.distance(p));
+        if i != j {
+            return best;
+        }
+        let mut out = [Point::ORIGIN; INNER];
+        for _ in 0..8 {
+            let step = (to - from) / (INNER + 1) as f64;
+            let places: [Place; INNER] = std::array::from_fn(|m| (i, from + step * (m + 1) as f64));
+            (self.run.at)(&places, &mut out);
+            let distances = out.map(|q| q.distance_squared(p));
+            let m = (1..INNER).fold(0, |m, n| if distances[n] < distances[m] { n } else { m });
+            (from, to) = (places[m].1 - step, places[m].1 + step);
+            before = if m > 0 { out[m - 1] } else { before };
+            after = if m + 1 < INNER { out[m + 1] } else { after };
+            best = best.min(to_edge([before, out[m]], p)).min(to_edge([out[m], after], p));
+            if before.distance(after) <= 1e-5 * best {
                 break;
             }
         }
-        let mut e = d(at).sqrt();
-        if e > enough.min(worst) {
-            e = e.min(refine(at, *p));
+        best
+    }
+}
+
+/// A path as a polygon that is so close to it. Open subpaths stay open.
+pub fn flat(path: &dyn Curved, within: f64) -> Polygon {
+    Run::of(&path.curves()).sampled(8, 10.0 * within).chords
+}
+
+/// The largest distance of points from the curves `to`, with the farthest point.
+pub fn far<'a>(points: &[Point], to: &'a [Sampled<'a>]) -> (f64, Point) {
+    let mut all: Vec<(f64, Point, Option<Chord<'a>>)> = Vec::with_capacity(points.len());
+    let (mut near, mut last): (Option<Chord<'a>>, _) = (None, 0.0);
+    for p in points {
+        if p.is_nan() {
+            return (f64::NAN, *p);
         }
-        if e > enough && e > worst {
-            // Refine near the nearest chords between samples. The samples themselves may be further apart than the branches of
-            // a hairpin.
-            let chord = |k: usize| {
-                let (a, v) = (to[k], to[k + 1] - to[k]);
-                let s = ((*p - a).dot(v) / (v.hypot2() + 1e-300)).clamp(0.0, 1.0);
-                (a + v * s).distance(*p)
-            };
-            let mut near: Vec<(f64, usize)> = (0..to.len() - 1).map(|k| (chord(k), k)).collect();
-            near.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (_, k) in near.into_iter().take(8) {
-                if e > enough {
-                    e = e.min(refine(k, *p)).min(refine(k + 1, *p));
-                }
+        // The nearest chord is near that of the last point, mostly, and else found anew.
+        let mut most = near.as_mut().map_or(f64::INFINITY, |(s, k)| s.walk(*p, k));
+        if most > 4.0 * last {
+            for s in to {
+                s.chords.search(*p, most, |k, d| {
+                    if d + s.rooms[k] < most {
+                        (most, near) = (d + s.rooms[k], Some((s, k)));
+                    }
+                    most
+                });
             }
         }
-        worst = worst.max(e);
+        last = most;
+        all.push((most, *p, near));
+    }
+    all.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+    let mut worst = (0.0, Point::ORIGIN);
+    for (most, p, near) in all {
+        if most <= worst.0 {
+            break;
+        }
+        let d = exactly(p, to, near, worst.0);
+        if d > worst.0 {
+            worst = (d, p);
+        }
     }
     worst
 }
 
-/// The sharpest turn between consecutive cubics, in degrees.
-pub fn largest_turn(out: &[CubicBez]) -> f64 {
-    out.windows(2).map(|w| turn(arriving(&w[0]), leaving(&w[1]))).fold(0.0, f64::max)
+type Chord<'a> = (&'a Sampled<'a>, usize);
+
+/// The distance of a point from curves, of which one chord may be the nearest. Below `enough` it need not be exact.
+fn exactly(p: Point, to: &[Sampled<'_>], near: Option<Chord<'_>>, enough: f64) -> f64 {
+    let mut best = near.map_or(f64::INFINITY, |(s, k)| s.beside(p, k));
+    for s in to {
+        s.chords.search(p, best + s.room, |k, d| {
+            if best > enough && d - s.rooms[k] < best {
+                best = best.min(s.beside(p, k));
+            }
+            if best > enough { best + s.room } else { 0.0 }
+        });
+    }
+    best
 }
 
-/// The angle between two directions, in degrees.
-pub fn turn(a: Vec2, b: Vec2) -> f64 {
-    a.cross(b).atan2(a.dot(b)).abs().to_degrees()
-}
-
-/// The direction in which a cubic starts.
-pub fn leaving(c: &CubicBez) -> Vec2 {
-    [c.p1, c.p2, c.p3].iter().map(|p| *p - c.p0).find(|v| v.hypot() > 1e-9).unwrap_or_default()
-}
-
-/// The direction in which a cubic ends.
-pub fn arriving(c: &CubicBez) -> Vec2 {
-    [c.p2, c.p1, c.p0].iter().map(|p| c.p3 - *p).find(|v| v.hypot() > 1e-9).unwrap_or_default()
+/// The largest distance between two curves, in either direction, with the place that is so far away.
+pub fn apart(a: &Sampled<'_>, b: &Sampled<'_>) -> (f64, Point) {
+    let (there, back) = (far(&a.points, from_ref(b)), far(&b.points, from_ref(a)));
+    if there.0 > back.0 || there.0.is_nan() { there } else { back }
 }

@@ -1,13 +1,15 @@
 //! Helpers for the tests: affine maps that are treated as nonlinear, drawings as text, and comparison of renderings.
 
-use pathwarp::kurbo::{Affine, Point, Vec2};
+use crate::pictures::difference;
+use kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Formula, Real};
 use pathwarp::refit;
 use pathwarp_svg::usvg_tree::{self, parse_tree};
 use pathwarp_svg::{Document, ReadOptions, WarpOptions, WarpedDocument};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Tree;
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// An affine map that does not report its class, and is therefore treated like any smooth map.
 pub struct Hidden(pub Affine);
@@ -68,28 +70,30 @@ pub fn rendered(tree: &Tree, size: u32, t: Affine) -> Pixmap {
 /// Renders at four times the size and averages. The renderer's own antialiasing has few levels, and an edge on the border of
 /// two levels flips between them at the slightest change (the renderer's arcs are correct to a tenth of a unit).
 fn picture(tree: &Tree, size: u32, t: Affine) -> Pixmap {
-    const OVER: u32 = 4;
-    let large = rendered(tree, size * OVER, Affine::scale(f64::from(OVER)) * t);
+    const OVER: usize = 4;
+    let large = rendered(tree, size * OVER as u32, Affine::scale(OVER as f64) * t);
     let mut out = Pixmap::new(size, size).unwrap();
-    let (n, wide) = (size as usize, (size * OVER) as usize);
-    for (i, v) in out.data_mut().iter_mut().enumerate() {
-        let (x, y, k) = (i / 4 % n * OVER as usize, i / 4 / n * OVER as usize, i % 4);
-        let over = 0..OVER as usize;
-        let sum: u32 = over
-            .clone()
-            .flat_map(|dy| over.clone().map(move |dx| ((y + dy) * wide + x + dx) * 4 + k))
-            .map(|at| u32::from(large.data()[at]))
-            .sum();
-        *v = (sum / (OVER * OVER)) as u8;
+    let wide = 4 * size as usize;
+    for (row, lines) in out.data_mut().chunks_exact_mut(wide).zip(large.data().chunks_exact(OVER * OVER * wide)) {
+        let mut sums = vec![0u32; wide];
+        for line in lines.chunks_exact(OVER * wide) {
+            for (sum, pixels) in sums.chunks_exact_mut(4).zip(line.chunks_exact(4 * OVER)) {
+                pixels.iter().enumerate().for_each(|(i, v)| sum[i % 4] += u32::from(*v));
+            }
+        }
+        row.iter_mut().zip(sums).for_each(|(v, sum)| *v = (sum / (OVER * OVER) as u32) as u8);
     }
     out
 }
 
-/// Fraction of pixels that differ by more than 16 of 255.
-pub fn difference(a: &Pixmap, b: &Pixmap) -> f64 {
-    let off = |p: &[u8], q: &[u8]| p.iter().zip(q).any(|(x, y)| x.abs_diff(*y) > 16);
-    let n = a.data().chunks(4).zip(b.data().chunks(4)).filter(|(p, q)| off(p, q)).count();
-    n as f64 / f64::from(a.width() * a.height())
+/// A pixel differs if a channel is off by more than this.
+const VISIBLE: u8 = 16;
+
+/// Asserts that not more than a thousandth of the pixels differ.
+pub fn alike(what: &str, expected: &Pixmap, found: &Pixmap) {
+    let d = difference(expected, found);
+    assert!(d.painted > 0.0, "{what}: nothing to compare");
+    assert!(d.share(VISIBLE) <= 0.001, "{what}: {:.3} % of pixels differ", d.share(VISIBLE) * 100.0);
 }
 
 /// Warps `svg` by a hidden affine map and compares with the renderer's own transform of the original.
@@ -102,9 +106,7 @@ pub fn check(what: &str, svg: &str, map: Affine, options: &WarpOptions) -> Warpe
     let expected = picture(usvg_tree::tree(&document), SIZE, scale * px * map * px.inverse());
     let tree = parse_tree(warped.svg.as_bytes(), what, &self::options()).unwrap();
     let found = picture(&tree, SIZE, scale);
-    assert!(expected.data().iter().any(|v| *v != 0), "{what}: nothing to compare");
-    let share = difference(&expected, &found);
-    assert!(share <= 0.001, "{what}: {:.3} % of pixels differ\n{}", share * 100.0, warped.svg);
+    alike(&format!("{what}\n{}", warped.svg), &expected, &found);
     warped
 }
 
@@ -147,8 +149,9 @@ fn sources() -> &'static [Point] {
                 |c: u32, k: u32| FROM + (f64::from(c) + (f64::from(k) + 0.5) / f64::from(OVER)) / f64::from(SCALE);
             let to = Point::new(sub(pixel % wide, k % OVER), sub(pixel / wide, k / OVER));
             let mut p = to;
-            for _ in 0..12 {
-                p = Point::new(to.x - (p.y / 30.0).sin() * 6.0, to.y - (p.x / 25.0).sin() * 8.0);
+            for _ in 0..4 {
+                p.x = to.x - (p.y / 30.0).sin() * 6.0;
+                p.y = to.y - (p.x / 25.0).sin() * 8.0;
             }
             p
         });
@@ -156,43 +159,53 @@ fn sources() -> &'static [Point] {
     })
 }
 
-/// Compares a drawing warped by [`Bend`] with the original's rendering, sampled at four times the resolution through the
-/// inverse map. (The renderer rounds a pattern's tile to whole pixels, which moves the tiles apart. Tiles must therefore be whole
-/// at [`FINE`] pixels per unit here.)
-pub fn gap(svg: &str, warped: &str) -> Gap {
+/// A drawing's picture bent by [`Bend`]: its rendering at four times the resolution, sampled through the inverse map. (The renderer
+/// rounds a pattern's tile to whole pixels, which moves the tiles apart. Tiles must therefore be whole at [`FINE`] pixels per unit.)
+fn bent(svg: &str) -> Arc<Pixmap> {
+    static KNOWN: Mutex<BTreeMap<String, Arc<Pixmap>>> = Mutex::new(BTreeMap::new());
+    if let Some(known) = KNOWN.lock().unwrap().get(svg) {
+        return Arc::clone(known);
+    }
     let document = read(svg);
-    let window = |scale: u32| Affine::scale(f64::from(scale)) * Affine::translate((-FROM, -FROM));
-    let px = document.user_to_px();
-    let original = rendered(usvg_tree::tree(&document), SIDE * FINE, window(FINE) * px.inverse());
-    let tree = parse_tree(warped.as_bytes(), "warped", &options()).unwrap();
-    let found = picture(&tree, SIDE * SCALE, window(SCALE) * px.inverse());
-    let wide = (SIDE * FINE) as usize;
-    let data = original.data();
+    let original = rendered(usvg_tree::tree(&document), SIDE * FINE, window(FINE) * document.user_to_px().inverse());
+    let (wide, data) = ((SIDE * FINE) as usize, original.data());
     let at = |p: Point| {
         let q = window(FINE) * p - Vec2::new(0.5, 0.5);
-        let (i, j) = (q.x.floor().clamp(0.0, wide as f64 - 2.0), q.y.floor().clamp(0.0, wide as f64 - 2.0));
-        let (u, v) = ((q.x - i).clamp(0.0, 1.0), (q.y - j).clamp(0.0, 1.0));
-        let [above, below] = [j as usize, j as usize + 1].map(|j| &data[(j * wide + i as usize) * 4..][..8]);
-        let row = |row: &[u8], k: usize| f64::from(row[k]) * (1.0 - u) + f64::from(row[k + 4]) * u;
-        [0, 1, 2, 3].map(|k| row(above, k) * (1.0 - v) + row(below, k) * v)
+        let [x, y] = [q.x, q.y].map(|v| v.clamp(0.0, wide as f64 - 1.001));
+        let (i, j) = (x as usize, y as usize);
+        let [u, v] = [x - i as f64, y - j as f64].map(|v| v as f32);
+        let [above, below] = [j, j + 1].map(|j| &data[(j * wide + i) * 4..][..8]);
+        let mix = |a: u8, b: u8, t: f32| f32::from(a) + (f32::from(b) - f32::from(a)) * t;
+        [0, 1, 2, 3].map(|k| {
+            let [a, b] = [mix(above[k], above[k + 4], u), mix(below[k], below[k + 4], u)];
+            a + (b - a) * v
+        })
     };
-    let (mut sum, mut off, mut count) = (0.0, 0, 0);
-    for (samples, found) in sources().chunks((OVER * OVER) as usize).zip(found.data().chunks(4)) {
-        let mut wanted = [0.0; 4];
+    let mut out = Pixmap::new(SIDE * SCALE, SIDE * SCALE).unwrap();
+    for (samples, out) in sources().chunks((OVER * OVER) as usize).zip(out.data_mut().chunks_exact_mut(4)) {
+        let mut sums = [0.0; 4];
         for p in samples {
-            for (w, c) in wanted.iter_mut().zip(at(*p)) {
-                *w += c / f64::from(OVER * OVER);
-            }
+            sums.iter_mut().zip(at(*p)).for_each(|(sum, c)| *sum += c);
         }
-        let differences = [0, 1, 2, 3].map(|k| (wanted[k] - f64::from(found[k])).abs());
-        if wanted[3] > 0.0 || found[3] > 0 {
-            sum += differences.iter().sum::<f64>() / 4.0;
-            off += u32::from(differences.iter().any(|d| *d > 16.0));
-            count += 1;
-        }
+        out.iter_mut().zip(sums).for_each(|(out, sum)| *out = (sum / (OVER * OVER) as f32).round() as u8);
     }
-    assert!(count > 1000, "nothing to compare");
-    Gap { mean: sum / f64::from(count), share: f64::from(off) / f64::from(count) }
+    let out = Arc::new(out);
+    KNOWN.lock().unwrap().insert(svg.to_owned(), Arc::clone(&out));
+    out
+}
+
+/// From the units of a drawing to pixels of its visible area.
+fn window(scale: u32) -> Affine {
+    Affine::scale(f64::from(scale)) * Affine::translate((-FROM, -FROM))
+}
+
+/// Compares a drawing warped by [`Bend`] with the picture of the original, bent.
+pub fn gap(svg: &str, warped: &str) -> Gap {
+    let tree = parse_tree(warped.as_bytes(), "warped", &options()).unwrap();
+    let found = picture(&tree, SIDE * SCALE, window(SCALE) * read(svg).user_to_px().inverse());
+    let d = difference(&bent(svg), &found);
+    assert!(d.painted * f64::from((SIDE * SCALE).pow(2)) > 1000.0, "nothing to compare");
+    Gap { mean: d.mean / d.painted, share: d.share(VISIBLE) / d.painted }
 }
 
 /// Asserts that two drawings look the same.
@@ -202,6 +215,5 @@ pub fn same(what: &str, a: &str, b: &str) {
         let tree = parse_tree(svg.as_bytes(), what, &options()).unwrap();
         picture(&tree, SIZE, Affine::scale(f64::from(SIZE) / f64::from(tree.size().width())))
     });
-    let share = difference(&pictures[0], &pictures[1]);
-    assert!(share <= 0.001, "{what}: {:.3} % of pixels differ\n{a}", share * 100.0);
+    alike(&format!("{what}\n{a}"), &pictures[0], &pictures[1]);
 }

@@ -1,14 +1,33 @@
 //! What tests, benchmarks and fuzz targets measure with: distances both ways, painted areas, pictures. Nothing here shares code with what
 //! is measured.
 
-pub mod area;
-mod corpus;
 pub mod curves;
 mod distance;
-pub mod drawings;
-mod maps;
-pub mod measure;
+mod polygon;
+mod random;
+mod turns;
 
+pub use distance::{Image, Place, Run, Sampled, apart, far, flat};
+pub use polygon::Polygon;
+pub use random::Random;
+pub use turns::{arriving, kink, largest_turn, leaving, turn};
+
+#[cfg(feature = "drawings")]
+mod corpus;
+#[cfg(feature = "drawings")]
+pub mod drawings;
+#[cfg(feature = "drawings")]
+mod maps;
+#[cfg(feature = "drawings")]
+mod painted;
+#[cfg(feature = "drawings")]
+mod pictures;
+
+#[cfg(feature = "drawings")]
 pub use corpus::{corpus, cubics};
-pub use distance::{arriving, distance, distance_of_run, largest_turn, leaving, turn};
-pub use maps::{BOX, Bicubic, Fold, Rational, Ripple};
+#[cfg(feature = "drawings")]
+pub use maps::{BOX, Bicubic, Fold, Rational, Ripple, distance};
+#[cfg(feature = "drawings")]
+pub use painted::painted;
+#[cfg(feature = "drawings")]
+pub use pictures::{Difference, beyond_edges, difference, ink, on_white};

@@ -1,5 +1,7 @@
 //! Maps of a box: a mild and a strong bicubic, a rational one, a fold and a wave.
 
+use crate::curves::Curved;
+use crate::distance::{Run, apart};
 use kurbo::{Point, Vec2};
 use pathwarp::map::{Class, Formula, Jet, Map, RationalDegree, Real};
 
@@ -200,4 +202,13 @@ impl Formula for Ripple {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         (x, y + (x / 150.0).sin() * self.0)
     }
+}
+
+/// The distance between the image of a path and what was made of it, in either direction. Of each segment there are `n` samples, and as
+/// many of the result; more where they turn sharply for a distance of `tolerance`.
+pub fn distance(source: &dyn Curved, map: &dyn Map, result: &dyn Curved, n: usize, tolerance: f64) -> f64 {
+    let (source, result) = (source.curves(), result.curves());
+    let image = |points: &[Point], out: &mut [Point]| map.points(points, out);
+    let per = (n * source.len() / result.len().max(1)).max(8);
+    apart(&Run::image(&source, &image).sampled(n, tolerance), &Run::of(&result).sampled(per, tolerance)).0
 }

@@ -10,6 +10,7 @@ use crate::support::{inkscape_drawing, pathwarp, root};
 use drawings::DRAWINGS;
 use pathwarp::kurbo::Affine;
 use pathwarp_oracle::drawings::rendered;
+use pathwarp_oracle::on_white;
 use pathwarp_svg::usvg_tree::parse_tree;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -28,16 +29,10 @@ fn difference(a: &Path, b: &Path) -> f64 {
         let svg = fs::read(f).unwrap_or_else(|e| panic!("{}: {e}", f.display()));
         let tree = parse_tree(&svg, "picture", &pathwarp_oracle::drawings::options()).unwrap();
         let side = f64::from(tree.size().width().max(tree.size().height()));
-        let mut paper = rendered(&tree, SIZE, Affine::scale(f64::from(SIZE) / side));
-        // White below: transparent pixels have no colour.
-        for p in paper.data_mut().chunks_exact_mut(4) {
-            let rest = 255 - p[3];
-            p.iter_mut().for_each(|c| *c = c.saturating_add(rest));
-        }
-        paper
+        on_white(rendered(&tree, SIZE, Affine::scale(f64::from(SIZE) / side)))
     });
-    let sum: u64 = a.data().iter().zip(b.data()).map(|(x, y)| u64::from(x.abs_diff(*y))).sum();
-    sum as f64 / f64::from(SIZE * SIZE * 3)
+    // All is opaque now.
+    pathwarp_oracle::difference(&a, &b).mean * 4.0 / 3.0
 }
 
 /// Warps files in several ways, given as options. Returns the names of the results in the folder.

@@ -69,8 +69,7 @@ fn few_pieces_across_creases_are_within_the_tolerance() {
         let tolerance = 0.02;
         let outline = circle(40);
         let Ok(warped) = warp_path(&outline, &map, &Options::new(tolerance).with_merge(true)) else { continue };
-        let (segs, out) = (&outline.subpaths[0].segs, pathwarp_oracle::cubics(&warped.path));
-        let error = pathwarp_oracle::distance_of_run(segs, &*map, &out, 400, 0.9 * tolerance);
+        let error = pathwarp_oracle::distance(&outline, &*map, &warped.path, 400, tolerance);
         assert!(error <= 1.0001 * tolerance, "{name}: {} of the tolerance", error / tolerance);
     }
 }

@@ -185,22 +185,14 @@ fn the_sample_stays_within_the_tolerance() {
         for tolerance in TOLERANCES {
             for seg in segments() {
                 let w = warp_path(&single(seg), map.as_ref(), &Options::new(tolerance)).unwrap();
-                let e = pathwarp_oracle::distance(
-                    &seg,
-                    map.as_ref(),
-                    &pathwarp_oracle::cubics(&w.path),
-                    400,
-                    0.9 * tolerance,
-                );
+                let e = pathwarp_oracle::distance(&seg, map.as_ref(), &w.path, 400, tolerance);
                 assert!(e <= 1.0001 * tolerance, "{tolerance}: {} for {seg:?}", e / tolerance);
                 let reported = w.report.max_error;
-                assert!(e <= 1.0001 * reported.max(0.9 * tolerance), "{tolerance}: {e} > {reported} for {seg:?}");
+                assert!(e <= 1.0001 * reported.max(tolerance), "{tolerance}: {e} > {reported} for {seg:?}");
             }
             for outline in runs() {
                 let w = warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_merge(true)).unwrap();
-                let segs = &outline.subpaths[0].segs;
-                let out = pathwarp_oracle::cubics(&w.path);
-                let e = pathwarp_oracle::distance_of_run(segs, map.as_ref(), &out, 400, 0.9 * tolerance);
+                let e = pathwarp_oracle::distance(&outline, map.as_ref(), &w.path, 400, tolerance);
                 assert!(e <= 1.0001 * tolerance, "{tolerance}: merged {} for {outline:?}", e / tolerance);
             }
         }

@@ -1,42 +1,26 @@
 //! Free-form deformation against its definition (de Casteljau's algorithm, de Boor's recursion), and what is promised of its
 //! images and borders.
 
-use pathwarp::kurbo::{CubicBez, Line, ParamCurve, ParamCurveNearest, PathEl, Point, Rect, Shape, Vec2};
-use pathwarp::map::{Class, Creases, Jet, Lattice, LatticeMap, Map, RationalBezier};
+use pathwarp::kurbo::{CubicBez, Line, ParamCurve, PathEl, Point, Rect, Shape, Vec2};
+use pathwarp::map::{AffineMap, Class, Creases, Jet, Lattice, LatticeMap, Map, RationalBezier};
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Outline, Seg};
+use pathwarp_oracle::Random;
 
 const REGION: Rect = Rect::new(20.0, 10.0, 120.0, 90.0);
-
-/// Pseudo-random numbers in [-1, 1) (splitmix64).
-struct Random(u64);
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 /// All points moved by up to `by` (share of a cell), weights between 1/w and w.
 fn random(degree: [usize; 2], cells: [usize; 2], by: f64, w: f64, seed: u64) -> Lattice {
     let mut l = Lattice::regular(REGION, degree, cells);
-    let mut r = Random(seed);
+    let mut r = Random::new(seed);
     let step = Vec2::new(REGION.width() / l.columns() as f64, REGION.height() / l.rows() as f64) * by;
     for j in 0..l.rows() {
         for i in 0..l.columns() {
-            l.shift(i, j, Vec2::new(r.next() * step.x, r.next() * step.y));
-            l.set_weight(i, j, w.powf(r.next()));
+            l.shift(i, j, Vec2::new(r.between(-1.0, 1.0) * step.x, r.between(-1.0, 1.0) * step.y));
+            l.set_weight(i, j, w.powf(r.between(-1.0, 1.0)));
         }
     }
     l
-}
-
-fn nearest(path: &pathwarp::kurbo::BezPath, p: Point) -> f64 {
-    let squares = path.segments().map(|s| s.nearest(p, 1e-8).distance_sq);
-    squares.fold(f64::INFINITY, f64::min).sqrt()
 }
 
 fn casteljau(mut c: Vec<[f64; 3]>, t: f64) -> [f64; 3] {
@@ -256,9 +240,7 @@ fn spline_lattices_follow_their_definition_and_join_smoothly() {
     let art = Outline::from_svg("M0,0 L140,100 M30,80 A40,30 0 1 1 110,80").unwrap();
     let map = LatticeMap::new(&l, true);
     let w = warp_path(&art, &map, &Options::new(1e-3)).unwrap();
-    for p in art.segs().flat_map(|s| (0..=50).map(move |i| s.eval(f64::from(i) / 50.0))) {
-        assert!(nearest(&w.path, map.point(p)) < 1e-3 + 1e-9);
-    }
+    assert!(pathwarp_oracle::distance(&art, &map, &w.path, 50, 1e-3) < 1e-3 + 1e-9);
 }
 
 #[test]
@@ -304,9 +286,7 @@ fn the_inverse_undoes_and_says_where_it_cannot() {
         let art = Outline::from_svg("M10,50 L130,55 M70,50 m-20,0 a20,20 0 1 0 40,0 a20,20 0 1 0 -40,0").unwrap();
         let there = warp_path(&art, &map, &Options::new(1e-4)).unwrap();
         let again = warp_path(&Outline::from(&there.path), &*back, &Options::new(1e-4)).unwrap();
-        let points = again.path.segments().flat_map(|s| (0..=20).map(move |i| s.eval(f64::from(i) / 20.0)));
-        let source = art.to_bez_path(1e-7);
-        let worst = points.map(|p| nearest(&source, p)).fold(0.0, f64::max);
+        let worst = pathwarp_oracle::distance(&art, &AffineMap::IDENTITY, &again.path, 20, 1e-3);
         assert!(worst < 1e-3, "{degree:?} {cells:?} {worst}");
         assert!(again.path.bounding_box().is_finite());
     }

@@ -86,13 +86,7 @@ fn holds(segs: &[Seg], map: &dyn Map, tolerance: f64, certify: bool) -> Result<(
     prop_assert!(w.report.segments_out <= separate.report.segments_out);
     if w.report.over_budget.is_empty() {
         prop_assert!(w.report.max_error <= tolerance);
-        let out = pathwarp_oracle::cubics(&w.path);
-        let distance = |samples| pathwarp_oracle::distance_of_run(segs, map, &out, samples, 0.9 * tolerance);
-        // Few samples can put the nearest point between the wrong neighbours if the image hardly moves.
-        let mut e = distance(400);
-        if e > tolerance {
-            e = distance(4000);
-        }
+        let e = pathwarp_oracle::distance(&path, map, &w.path, 400, tolerance);
         prop_assert!(e <= tolerance * 1.0005 + 1e-9, "{} of {:?}", e / tolerance, w.report);
     }
     Ok(())

@@ -21,9 +21,8 @@ fn maps() -> [(&'static str, Box<dyn Map>); 3] {
 /// Number of segments, and error ÷ tolerance.
 fn measure(seg: Seg, map: &dyn Map, tolerance: f64) -> (usize, f64) {
     let w = warp_path(&single(seg), map, &Options::new(tolerance)).unwrap();
-    let out = pathwarp_oracle::cubics(&w.path);
     assert!(w.report.over_budget.is_empty(), "{seg:?}: budget");
-    (out.len(), pathwarp_oracle::distance(&seg, map, &out, 2000, 0.0) / tolerance)
+    (w.path.segments().count(), pathwarp_oracle::distance(&seg, map, &w.path, 2000, tolerance) / tolerance)
 }
 
 fn cubic(p: [(f64, f64); 4]) -> Seg {
@@ -52,7 +51,7 @@ fn corpus_has_no_violation() {
                 }
                 n += out.len();
                 over += w.report.over_budget.len();
-                let e = pathwarp_oracle::distance(seg, map.as_ref(), &out, 2000, 0.9 * tolerance) / tolerance;
+                let e = pathwarp_oracle::distance(seg, map.as_ref(), &w.path, 2000, tolerance) / tolerance;
                 worst = worst.max(e);
                 if e > 1.0001 {
                     bad += 1;
@@ -84,14 +83,17 @@ fn merged_corpus_has_no_violation() {
             for sub in outlines.iter().step_by(every).flat_map(|o| &o.subpaths).filter(|s| !s.segs.is_empty()) {
                 let o = Options::new(tolerance).with_merge(true);
                 let w = warp_path(&Outline { subpaths: vec![sub.clone()] }, map.as_ref(), &o).unwrap();
-                let out = pathwarp_oracle::cubics(&w.path);
                 (segs, n) = (segs + sub.segs.len(), n + w.report.segments_out);
-                let e =
-                    pathwarp_oracle::distance_of_run(&sub.segs, map.as_ref(), &out, 400, 0.9 * tolerance) / tolerance;
+                let e = pathwarp_oracle::distance(&sub.segs, map.as_ref(), &w.path, 400, tolerance) / tolerance;
                 worst = worst.max(e);
                 if e > 1.0001 {
                     bad += 1;
-                    println!("  {name} {tolerance}: {e:.4}, {} to {}: {}", sub.segs.len(), out.len(), w.path.to_svg());
+                    println!(
+                        "  {name} {tolerance}: {e:.4}, {} to {}: {}",
+                        sub.segs.len(),
+                        w.report.segments_out,
+                        w.path.to_svg()
+                    );
                 }
             }
             println!("{name} {tolerance}: out/in {:.4}, worst {worst:.4}", n as f64 / segs as f64);
@@ -123,7 +125,7 @@ fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
                 assert!(merged.report.segments_out <= plain.report.segments_out);
                 assert!(corners > 0 || merged.report.segments_out * 10 <= 6 * plain.report.segments_out, "{name}");
                 let out = pathwarp_oracle::cubics(&merged.path);
-                let e = pathwarp_oracle::distance_of_run(&sub.segs, map.as_ref(), &out, 400, 0.0);
+                let e = pathwarp_oracle::distance(&sub.segs, map.as_ref(), &merged.path, 400, tolerance);
                 assert!(e <= tolerance * 1.0001, "{name} {tolerance}: {e}");
                 let sharp = out.windows(2).filter(|w| {
                     pathwarp_oracle::turn(pathwarp_oracle::arriving(&w[0]), pathwarp_oracle::leaving(&w[1])) > 0.01
@@ -153,8 +155,7 @@ fn errors_beside_a_joint_at_which_the_cubic_turns_are_seen() {
     for (shape, (name, map), tolerance) in [(bookmark, &mild, 1.0), (card, &mild, 1.0), (hook, &rational, 0.1)] {
         let outline = Outline::from_svg(shape).unwrap();
         let merged = warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_merge(true)).unwrap();
-        let out = pathwarp_oracle::cubics(&merged.path);
-        let e = pathwarp_oracle::distance_of_run(&outline.subpaths[0].segs, map.as_ref(), &out, 400, 0.0) / tolerance;
+        let e = pathwarp_oracle::distance(&outline, map.as_ref(), &merged.path, 400, tolerance) / tolerance;
         assert!(e <= 1.0001, "{name}: {e}");
     }
 }
@@ -178,7 +179,7 @@ fn merged_pieces_are_proven_too() {
             assert!(r.segments_out <= plain.report.segments_out, "{name} {tolerance}");
             assert!(tolerance < 1.0 || r.segments_out < plain.report.segments_out, "{name}: nothing merged");
             assert!(r.assurance >= Assurance::Certified && r.max_error <= tolerance, "{name} {tolerance}");
-            let e = pathwarp_oracle::distance_of_run(&outline.subpaths[0].segs, map.as_ref(), &out, 400, 0.0);
+            let e = pathwarp_oracle::distance(&outline, map.as_ref(), &merged.path, 400, tolerance);
             assert!(e <= r.max_error * 1.0001 + 1e-9, "{name} {tolerance}: {e} > {}", r.max_error);
             assert!(pathwarp_oracle::largest_turn(&out) < 0.5, "{name} {tolerance}");
         }
@@ -411,7 +412,7 @@ fn proofs_hold_for_every_kind_of_segment() {
                 let r = &w.report;
                 assert!(r.over_budget.is_empty(), "{name} {tolerance} {seg:?}");
                 assert!(r.assurance >= Assurance::Certified && r.max_error <= tolerance, "{name} {tolerance} {seg:?}");
-                let e = pathwarp_oracle::distance(seg, map.as_ref(), &pathwarp_oracle::cubics(&w.path), 2000, 0.0);
+                let e = pathwarp_oracle::distance(seg, map.as_ref(), &w.path, 2000, tolerance);
                 assert!(e <= r.max_error * 1.0001 + 1e-9, "{name} {tolerance} {seg:?}: {e} > {}", r.max_error);
                 assert!(r.segments_out < 40, "{name} {tolerance} {seg:?}: {}", r.segments_out);
             }

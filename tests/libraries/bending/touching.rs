@@ -1,24 +1,16 @@
 //! Paths that touch the creases of a map, in a node or between nodes, without crossing them, as symmetrical logos do.
 
+use pathwarp::Outline;
 use pathwarp::deform::{Bend, Stretch};
-use pathwarp::kurbo::{CubicBez, ParamCurveNearest as _, PathSeg, Point};
+use pathwarp::kurbo::Point;
 use pathwarp::map::{Crease, Creases, Formula, Jet, Level, Map, Real};
 use pathwarp::refit::{Options, warp_path};
-use pathwarp::{Outline, Seg};
 use std::sync::Arc;
 
-/// The largest distance of the image's samples from the result, and of the result's from the image, nearly.
+/// The distance between the image and the result.
 fn apart(source: &Outline, map: &dyn Map, tolerance: f64, certify: bool) -> f64 {
     let w = warp_path(source, map, &Options::new(tolerance).with_certify(certify)).unwrap();
-    let out: Vec<CubicBez> = w.path.segments().map(|s: PathSeg| s.to_cubic()).collect();
-    let at = |s: &Seg| (0..=3000).map(|i| map.point(s.eval(f64::from(i) / 3000.0))).collect::<Vec<_>>();
-    let image: Vec<Point> = source.segs().flat_map(at).collect();
-    let near = |p: &Point| out.iter().map(|c| c.nearest(*p, 1e-9).distance_sq).fold(f64::INFINITY, f64::min).sqrt();
-    let there = image.iter().step_by(7).map(near).fold(0.0, f64::max);
-    let spacing = image.windows(2).map(|w| w[0].distance(w[1])).filter(|d| *d < 5.0).fold(0.0, f64::max);
-    let ends = out.iter().flat_map(|c| [c.p0, pathwarp::kurbo::ParamCurve::eval(c, 0.5)]);
-    let back = |p: Point| image.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min) - spacing;
-    there.max(ends.map(back).fold(0.0, f64::max))
+    pathwarp_oracle::distance(source, map, &w.path, 500, tolerance)
 }
 
 /// Shapes whose leftmost and rightmost points are the ends of the skeleton, to the last bit or nearly.

@@ -1,7 +1,8 @@
 //! Checks that every sample is as the README of the samples says, and visible.
 
 use pathwarp::kurbo::{BezPath, PathSeg, Shape};
-use pathwarp_raster::{Color, RenderOptions, Size, compare};
+use pathwarp_oracle::difference;
+use pathwarp_raster::{Color, RenderOptions, Size};
 use resvg::usvg;
 use std::{collections::HashSet, fs, path::PathBuf};
 
@@ -54,7 +55,7 @@ fn all_are_visible() {
         let picture = RenderOptions { size: Size::Width(300), background: Some(Color::WHITE) }.render(&tree).unwrap();
         let mut blank = picture.clone();
         blank.fill(Color::WHITE);
-        let inked = compare(&picture, &blank).unwrap().share_over(64);
+        let inked = difference(&picture, &blank).share(64);
         assert!(inked > 0.01, "{name}: only {inked} of the picture is drawn on");
     }
 }

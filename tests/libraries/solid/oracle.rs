@@ -21,12 +21,8 @@ fn build(name: &str, pairs: &[(&str, &str)]) -> Arc<dyn Map3> {
 
 /// Points all over the box.
 fn points() -> Vec<P> {
-    let mut seed = 12345u64;
-    let mut random = move || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64
-    };
-    (0..400).map(|_| std::array::from_fn(|a| BOX[0][a] + random() * (BOX[1][a] - BOX[0][a]))).collect()
+    let mut random = pathwarp_oracle::Random::new(12345);
+    (0..400).map(|_| std::array::from_fn(|a| random.between(BOX[0][a], BOX[1][a]))).collect()
 }
 
 /// Compares a map, for single points and batches, with a formula, and checks that its inverse leads back.

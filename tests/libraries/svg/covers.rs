@@ -2,10 +2,10 @@
 
 use pathwarp::kurbo::Affine;
 use pathwarp::refit;
+use pathwarp_oracle::beyond_edges;
 use pathwarp_oracle::drawings::{Hidden, drawing, options, read, rendered};
 use pathwarp_svg::usvg_tree::parse_tree;
 use pathwarp_svg::{Strokes, WarpOptions};
-use resvg::tiny_skia::Pixmap;
 
 const SHAPES: [&str; 24] = [
     // Leaves, petals, and closed paths of one, two and three segments.
@@ -48,23 +48,6 @@ const STYLES: [&str; 8] = [
     "stroke-dasharray='7 3 1 4' stroke-dashoffset='2' stroke-linecap='square' stroke-linejoin='bevel'",
     "stroke-dasharray='0 6' stroke-linecap='round' stroke-linejoin='round'",
 ];
-
-/// Pixels that are painted in one picture and bare in the other, their neighbours being so, too.
-fn beyond_edges(a: &Pixmap, b: &Pixmap) -> usize {
-    let (w, h) = (a.width() as usize, a.height() as usize);
-    let alpha = |p: &Pixmap, x: usize, y: usize| p.data()[4 * (y * w + x) + 3];
-    let all = |p: &Pixmap, x: usize, y: usize, of: fn(u8) -> bool| {
-        (y - 1..=y + 1).all(|y| (x - 1..=x + 1).all(|x| of(alpha(p, x, y))))
-    };
-    let off = |x: usize, y: usize| {
-        let full: fn(u8) -> bool = |v| v > 127;
-        let bare: fn(u8) -> bool = |v| v < 128;
-        (alpha(a, x, y) > 127) != (alpha(b, x, y) > 127)
-            && (all(a, x, y, full) || all(a, x, y, bare))
-            && (all(b, x, y, full) || all(b, x, y, bare))
-    };
-    (1..h - 1).map(|y| (1..w - 1).filter(|x| off(*x, y)).count()).sum()
-}
 
 fn check(size: u32, shapes: &[&str], styles: &[&str]) {
     let outlines = WarpOptions::new(refit::Options::new(100.0 / 8000.0)).with_strokes(Strokes::Outline);

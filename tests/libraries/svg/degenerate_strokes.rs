@@ -1,38 +1,24 @@
 //! Outlines of strokes along random degenerate paths, with every join and cap and with dashes.
 
-use pathwarp::kurbo::{Affine, ParamCurve as _, ParamCurveNearest as _, Point};
-use pathwarp::{Outline, Seg, refit};
-use pathwarp_oracle::area::Area;
+use pathwarp::kurbo::Affine;
+use pathwarp::{Outline, refit};
 use pathwarp_oracle::drawings::{Hidden, drawing, options, read};
+use pathwarp_oracle::{Polygon, Random, flat, painted as area_of};
 use pathwarp_svg::usvg_tree::parse_tree;
 use pathwarp_svg::{Strokes, WarpOptions};
 
-/// Numbers that look random and are the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % n
-    }
-
-    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
-        all[self.below(all.len() as u64) as usize]
-    }
-
-    fn coordinate(&mut self) -> f64 {
-        20.0 + self.below(6000) as f64 / 100.0
-    }
+fn coordinate(r: &mut Random) -> f64 {
+    20.0 + r.below(6000) as f64 / 100.0
 }
 
 /// Path data of one to four segments whose control points often coincide, lie on one line, or nearly so.
 fn path(r: &mut Random) -> String {
-    let mut at = [r.coordinate(), r.coordinate()];
+    let mut at = [coordinate(r), coordinate(r)];
     let mut d = format!("M{} {}", at[0], at[1]);
     for _ in 0..=r.below(4) {
         let kind = r.below(3);
         let mut points = Vec::new();
-        let through = [r.coordinate(), r.coordinate()];
+        let through = [coordinate(r), coordinate(r)];
         for _ in 0..=kind {
             let earlier = points.last().copied().unwrap_or(at);
             points.push(match r.below(6) {
@@ -43,23 +29,21 @@ fn path(r: &mut Random) -> String {
                     let t = r.below(300) as f64 / 100.0 - 1.0;
                     [at[0] + t * (through[0] - at[0]), at[1] + t * (through[1] - at[1])]
                 }
-                _ => [r.coordinate(), r.coordinate()],
+                _ => [coordinate(r), coordinate(r)],
             });
         }
         at = *points.last().unwrap();
         let all: Vec<String> = points.iter().map(|p| format!("{} {}", p[0], p[1])).collect();
-        d += &format!("{}{}", ["L", "Q", "C"][kind as usize], all.join(" "));
+        d += &format!("{}{}", ["L", "Q", "C"][kind], all.join(" "));
     }
     if r.below(4) == 0 { d + "Z" } else { d }
 }
 
 /// Largest distance of a point of the outline from the path, and of a point of the path from the area.
-fn extent(d: &str, area: &Area) -> (f64, f64) {
-    let segs: Vec<_> = Outline::from_svg_lossy(d).segs().map(Seg::to_cubic).collect();
-    let off = |p: &Point| segs.iter().map(|s| s.nearest(*p, 1e-6).distance_sq.sqrt()).fold(f64::INFINITY, f64::min);
-    let out = area.0.iter().flatten().step_by(5).map(off).fold(0.0, f64::max);
-    let inside = segs.iter().flat_map(|s| (0..=20).map(|i| s.eval(f64::from(i) / 20.0)));
-    (out, inside.map(|p| area.distance(p)).fold(0.0, f64::max))
+fn extent(d: &str, area: &Polygon) -> (f64, f64) {
+    let line = flat(&Outline::from_svg_lossy(d), 1e-4);
+    let out = area.edges.iter().map(|e| line.distance(e[0])).fold(0.0, f64::max);
+    (out, line.edges.iter().map(|e| area.outside(e[0])).fold(0.0, f64::max))
 }
 
 #[test]
@@ -67,7 +51,7 @@ fn two_thousand_degenerate_paths_have_outlines() {
     const TOLERANCE: f64 = 0.01;
     let o = WarpOptions::new(refit::Options::new(TOLERANCE)).with_strokes(Strokes::Outline);
     let map = Hidden(Affine::new([1.0, 0.0, 1e-9, 1.0, 0.0, 0.0]));
-    let mut r = Random(7);
+    let mut r = Random::new(7);
     let mut painted = 0;
     for _ in 0..2000 {
         let d = path(&mut r);
@@ -82,8 +66,8 @@ fn two_thousand_degenerate_paths_have_outlines() {
         let w = read(&svg).warp(&map, &o).unwrap();
         assert!(!w.svg.contains("NaN") && !w.svg.contains("inf"), "{d} {style}: {}", w.svg);
         let tree = parse_tree(w.svg.as_bytes(), "the outline", &options()).unwrap();
-        let area = Area::of(&tree);
-        if area.0.is_empty() {
+        let area = area_of(&tree);
+        if area.edges.is_empty() {
             continue;
         }
         painted += 1;
@@ -93,7 +77,7 @@ fn two_thousand_degenerate_paths_have_outlines() {
         assert!(out <= reach + TOLERANCE + 1e-3, "{d} {style}: {out} of {reach}");
         // A stroke without dashes covers its centre line, except in turns tighter than half the width, as in the renderer.
         if dashes == "none" && inside > TOLERANCE + 1e-3 {
-            let (_, bare) = extent(&d, &Area::of(&parse_tree(svg.as_bytes(), "the stroke", &options()).unwrap()));
+            let (_, bare) = extent(&d, &area_of(&parse_tree(svg.as_bytes(), "the stroke", &options()).unwrap()));
             assert!(width > 2.0 && inside <= bare + 0.01 * width, "{d} {style}: {inside} is bare\n{}", w.svg);
         }
     }

@@ -3,6 +3,7 @@
 
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_oracle::drawings::{Bend, drawing, options, read, rendered, warp_options};
+use pathwarp_oracle::ink;
 use pathwarp_svg::usvg_tree::{parse_tree, tree};
 use pathwarp_svg::{PageFit, Structure};
 
@@ -38,13 +39,8 @@ fn painted(svg: &str) -> (Rect, f64) {
     let (from, side) = (-30.0, 170.0);
     let window = Affine::scale(FINE) * Affine::translate((-from, -from));
     let t = parse_tree(svg.as_bytes(), "result", &options()).unwrap();
-    let picture = rendered(&t, (side * FINE) as u32, window);
-    let wide = picture.width() as usize;
-    let marked = picture.pixels().iter().enumerate().filter(|p| p.1.alpha() > 127).map(|p| p.0);
-    let boxes: Vec<Rect> =
-        marked.map(|i| Rect::from_origin_size(((i % wide) as f64, (i / wide) as f64), (1.0, 1.0))).collect();
-    let all = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap();
-    (Affine::scale(1.0 / FINE).transform_rect_bbox(all), boxes.len() as f64 / (FINE * FINE))
+    let (all, pixels) = ink(&rendered(&t, (side * FINE) as u32, window), 127);
+    (Affine::scale(1.0 / FINE).transform_rect_bbox(all), pixels as f64 / (FINE * FINE))
 }
 
 #[test]

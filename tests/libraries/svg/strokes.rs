@@ -1,11 +1,11 @@
 //! Strokes that stay strokes, and those that become outlines. The truth is independent of this project: the renderer's own
 //! stroker gives the exact stroke of the source, which the map bends point by point, and the area of the result.
 
-use pathwarp::kurbo::{Affine, Point, Vec2};
+use pathwarp::kurbo::Affine;
 use pathwarp::map::{Formula, Map, Real};
 use pathwarp::refit;
-use pathwarp_oracle::area::Area;
 use pathwarp_oracle::drawings::{Bend, Hidden, options, read};
+use pathwarp_oracle::painted;
 use pathwarp_svg::usvg_tree::parse_tree;
 use pathwarp_svg::{ShapeReport, Strokes, Structure, WarpOptions};
 
@@ -49,11 +49,9 @@ fn bent(svg: &str, map: &dyn Map, options: &WarpOptions) -> Bent {
     let to_units = document.user_to_px().inverse();
     let area = |svg: &str| {
         let tree = parse_tree(svg.as_bytes(), "a drawing", &self::options()).unwrap();
-        let mut all = Area::of(&tree);
-        all.0.iter_mut().flatten().for_each(|p| *p = to_units * *p);
-        all
+        painted(&tree).bent(|p| to_units * p)
     };
-    let apart = area(svg).bent(map).apart(&area(&w.svg));
+    let apart = area(svg).bent(|p| map.point(p)).apart(&area(&w.svg));
     Bent { svg: w.svg, report: w.shapes[0].clone(), apart }
 }
 
@@ -255,20 +253,6 @@ fn strokes_at_the_edge_of_the_domain_are_reported() {
     let keep = tolerance(1e-2).with_strokes(Strokes::Keep);
     let w = read(&page(body, "")).warp(&HalfPlane, &keep).unwrap();
     assert!(w.warnings.is_empty() && w.shapes[0].stroke_error.is_none(), "{:?}", w.warnings);
-}
-
-#[test]
-fn the_measure_measures() {
-    let square = |x: f64, side: f64| {
-        Area(vec![
-            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
-                .map(|(a, b)| Point::new(x, 0.0) + Vec2::new(a, b) * side)
-                .into(),
-        ])
-    };
-    assert_eq!(square(0.0, 1.0).apart(&square(0.0, 1.0)), 0.0);
-    assert!((square(0.0, 1.0).apart(&square(0.3, 1.0)) - 0.3).abs() < 1e-12);
-    assert!((square(0.0, 1.0).apart(&square(0.0, 2.0)) - 2.0_f64.sqrt()).abs() < 1e-12);
 }
 
 /// Closed strokes of one, two and three segments with corners: petals, lenses, leaves, drops.

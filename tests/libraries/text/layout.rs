@@ -205,15 +205,8 @@ fn other_files_are_errors() {
 /// Fonts that are truncated or altered give an error, or lettering with finite outlines.
 #[test]
 fn damaged_fonts_are_harmless() {
-    /// xorshift64 (Marsaglia, Journal of Statistical Software 8(14), 2003).
-    fn random(state: &mut u64) -> usize {
-        *state ^= *state << 13;
-        *state ^= *state >> 7;
-        *state ^= *state << 17;
-        (*state >> 33) as usize
-    }
     let finite = |path: &BezPath| path.iter().all(|el| el.end_point().is_none_or(Point::is_finite));
-    let mut state = 0x2545_F491_4F6C_DD1D;
+    let mut random = pathwarp_oracle::Random::new(1);
     let (mut set, mut refused) = (0, 0);
     for (name, text) in [
         ("cff.otf", "Hafilox"),
@@ -226,11 +219,11 @@ fn damaged_fonts_are_harmless() {
         for i in 0..240 {
             let mut bytes = sound.clone();
             if i % 4 == 0 {
-                bytes.truncate(random(&mut state) % sound.len());
+                bytes.truncate(random.below(sound.len()));
             } else {
                 for _ in 0..1 << (i % 6) {
-                    let at = random(&mut state) % bytes.len();
-                    bytes[at] = random(&mut state) as u8;
+                    let at = random.below(bytes.len());
+                    bytes[at] = random.below(256) as u8;
                 }
             }
             match Font::new(&bytes, 0).and_then(|f| layout(text, &[f], &em())) {

@@ -1,13 +1,10 @@
 //! The default command holds small contours to less than the drawing, and shared edges to the least.
 
 use super::REGISTRY;
-use super::paths::Random;
-use pathwarp::Outline;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp_cli::embed::Warper;
 use pathwarp_oracle::curves::{self, Curve};
-use pathwarp_oracle::measure::{far, sampled};
-use serde_json::Value;
+use pathwarp_oracle::{Random, Run, apart};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
@@ -33,25 +30,13 @@ pub fn paths(svg: &str) -> Vec<Vec<Curve>> {
 }
 
 /// Maps points, many at a time.
-type Points = dyn Fn(&[Point]) -> Vec<Point>;
+type Points = dyn Fn(&[Point], &mut [Point]);
 
 /// A result of the default command, with its tolerance and the map.
 pub fn bent(svg: &str, deformation: &str, values: &[(&str, &str)]) -> (String, f64, Box<Points>) {
     let warper = Warper::new(&REGISTRY, deformation, values).unwrap();
-    let done = warper.warp_drawing(svg.as_bytes(), None).unwrap();
-    let report: Value = serde_json::from_str(&done.report).unwrap();
-    for s in report["shapes"].as_array().unwrap() {
-        assert!(s["share"].as_f64().unwrap() <= 1.0, "{s}");
-    }
-    let f: Vec<f64> = report["frame"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
-    let frame = Rect::new(f[0], f[1], f[0] + f[2], f[1] + f[3]);
-    let points = warper.point_map(|| Some(frame), Outline::default).unwrap();
-    let image = move |ps: &[Point]| {
-        let mut out = vec![Point::ORIGIN; ps.len()];
-        points.points(ps, &mut out);
-        out
-    };
-    (String::from_utf8(done.bytes).unwrap(), report["tolerance"].as_f64().unwrap(), Box::new(image))
+    let super::Done { svg, tolerance, map } = super::done(&warper, svg, "").unwrap();
+    (svg, tolerance, Box::new(move |points, out| map.points(points, out)))
 }
 
 /// An A0 poster in millimetres: dots of 1.2 mm and letters of 3 mm, also within one path.
@@ -75,7 +60,7 @@ fn poster() -> String {
 
 #[test]
 fn dots_and_letters_of_a_poster_stay_round() {
-    let (svg, same) = (poster(), |ps: &[Point]| ps.to_vec());
+    let svg = poster();
     for (name, values) in [
         ("warp", &[("style", "flag"), ("bend", "50%")][..]),
         ("swirl", &[("angle", "200")]),
@@ -89,10 +74,8 @@ fn dots_and_letters_of_a_poster_stay_round() {
         let held = tolerances(&source, tolerance);
         assert!(held.iter().filter(|t| **t < 0.1 * tolerance).count() > 100);
         for ((s, w), held) in source.iter().zip(&written).zip(held) {
-            let (exact, ours) = ([sampled(s, &image, 200, held)], [sampled(w, &same, 200, held)]);
-            let there = |_: usize, (i, t): (usize, f64)| image(&[s[i].at(t)])[0];
-            let here = |_: usize, (i, t): (usize, f64)| w[i].at(t);
-            let a = far(&exact, &ours, &here, 0.85 * held).0.max(far(&ours, &exact, &there, 0.85 * held).0);
+            let (exact, ours) = (Run::image(s, &*image), Run::of(w));
+            let (a, _) = apart(&exact.sampled(200, held), &ours.sampled(200, held));
             assert!(a <= super::KEPT * held, "{name}: {a} for {held} near {:?}", s[0].at(0.0));
         }
     }

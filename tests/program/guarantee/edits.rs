@@ -1,10 +1,10 @@
 //! The promise of `simplify` and `outline`: few nodes within the distance, measured between the source text and what is written.
 
-use super::paths::{Random, drawn};
+use super::paths::drawn;
 use crate::support::pathwarp_in;
-use pathwarp::kurbo::{Point, Vec2};
+use pathwarp::kurbo::{Vec2};
 use pathwarp_oracle::curves::{self, Curve};
-use pathwarp_oracle::measure::{Image, Sampled, far, sampled};
+use pathwarp_oracle::{Random, Run, Sampled, far};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -26,11 +26,10 @@ fn data(svg: &str) -> Vec<Vec<Curve>> {
 
 /// The distance between two paths in both directions.
 fn apart(a: &[Vec<Curve>], b: &[Vec<Curve>], tolerance: f64) -> f64 {
-    let same: Image<'_> = &|ps: &[Point]| ps.to_vec();
-    let all = |p: &[Vec<Curve>]| -> Vec<Sampled> { p.iter().map(|s| sampled(s, same, 300, tolerance)).collect() };
-    let (x, y) = (all(a), all(b));
-    let there = far(&x, &y, &|s, (i, t)| b[s][i].at(t), 0.0).0;
-    there.max(far(&y, &x, &|s, (i, t)| a[s][i].at(t), 0.0).0)
+    let [a, b]: [Vec<Run<'_>>; 2] = [a, b].map(|p| p.iter().map(|s| Run::of(s)).collect());
+    let [a, b]: [Vec<Sampled<'_>>; 2] = [&a, &b].map(|p| p.iter().map(|s| s.sampled(300, tolerance)).collect());
+    let one = |a: &[Sampled<'_>], b: &[Sampled<'_>]| a.iter().map(|s| far(&s.points, b).0).fold(0.0, f64::max);
+    one(&a, &b).max(one(&b, &a))
 }
 
 /// A circle of radius 100 in `n` cubics, or as a polygon.

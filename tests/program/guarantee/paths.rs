@@ -1,51 +1,22 @@
 //! Paths for the measurement: symmetrical shapes, nodes on creases, loops, random curves, those of drawings; far from the origin or not.
 
+use pathwarp_oracle::Random;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// A generator that gives the same numbers on every machine.
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5DEE_CE66)
-    }
-
-    fn next(&mut self) -> u64 {
-        // xorshift*
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
-
-    /// 0 to 1.
-    fn share(&mut self) -> f64 {
-        self.next() as f64 / (1u64 << 48) as f64
-    }
-
-    pub fn between(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * self.share()
-    }
-
-    /// Often a multiple of an eighth of the page.
-    fn coordinate(&mut self) -> f64 {
-        match self.below(3) {
-            0 => self.below(9) as f64 * 12.5,
-            1 => (self.between(0.0, 100.0) * 10.0).round() / 10.0,
-            _ => self.between(0.0, 100.0),
-        }
+/// Often a multiple of an eighth of the page.
+fn coordinate(r: &mut Random) -> f64 {
+    match r.below(3) {
+        0 => r.below(9) as f64 * 12.5,
+        1 => (r.between(0.0, 100.0) * 10.0).round() / 10.0,
+        _ => r.between(0.0, 100.0),
     }
 }
 
 /// A path that is symmetrical about a vertical through `x` and reaches from `x − w` to `x + w`.
 fn symmetrical(r: &mut Random) -> String {
-    let (x, y, w) = (50.0, r.coordinate(), [50.0, 25.0, 12.5, 16.65, 33.3][r.below(5)]);
+    let (x, y, w) = (50.0, coordinate(r), [50.0, 25.0, 12.5, 16.65, 33.3][r.below(5)]);
     let h = r.between(0.2, 1.5) * w;
     let (l, m) = (x - w, x + w);
     match r.below(9) {
@@ -92,9 +63,9 @@ fn symmetrical(r: &mut Random) -> String {
 
 /// Curves through nodes that often lie on creases, with smooth joints among them.
 fn random(r: &mut Random) -> String {
-    let mut d = format!("M{} {}", r.coordinate(), r.coordinate());
+    let mut d = format!("M{} {}", coordinate(r), coordinate(r));
     for _ in 0..1 + r.below(6) {
-        let mut numbers = |n: usize| (0..n).fold(String::new(), |s, _| s + &format!(" {}", r.coordinate()));
+        let mut numbers = |n: usize| (0..n).fold(String::new(), |s, _| s + &format!(" {}", coordinate(r)));
         let next = match numbers(1).len() % 7 {
             0 => format!("L{}", numbers(2)),
             1 => format!("Q{}", numbers(4)),
@@ -111,8 +82,8 @@ fn random(r: &mut Random) -> String {
                 r.below(180),
                 r.below(2),
                 r.below(2),
-                r.coordinate(),
-                r.coordinate()
+                coordinate(r),
+                coordinate(r)
             );
         }
     }
@@ -121,10 +92,10 @@ fn random(r: &mut Random) -> String {
 
 /// Loops: petals, whole turns, curves that end where they start.
 fn loops(r: &mut Random) -> String {
-    let (x, y) = (r.coordinate(), r.coordinate());
+    let (x, y) = (coordinate(r), coordinate(r));
     let mut d = format!("M0 0H100V100H0ZM{x} {y}");
     for _ in 0..1 + r.below(3) {
-        let mut c = || r.coordinate();
+        let mut c = || coordinate(r);
         let _ = write!(d, "C{} {} {} {} {x} {y}", c(), c(), c(), c());
     }
     d + "Z"

@@ -1,50 +1,19 @@
 //! Strokes under maps: what is written covers the image of every point inside of the stroke, and of none outside, up to the tolerance.
 
-use super::paths::{Random, drawn, path};
+use super::paths::{drawn, path};
 use super::{Maps, maps};
-use pathwarp::Outline;
-use pathwarp::kurbo::{Point, Rect, Vec2};
+use pathwarp::kurbo::{Point, Vec2};
 use pathwarp_oracle::curves::{self, Curve};
-use pathwarp_oracle::measure::sampled;
-use serde_json::Value;
+use pathwarp_oracle::{Polygon, Random, Run};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Points that are tried on either side of each stroke.
 const PROBES: usize = 200;
 
-/// A polygon with the numbers by which windings around it are counted.
-struct Polygon(Vec<[Point; 2]>);
-
-impl Polygon {
-    /// Subpaths as chords that are within a tenth of `height` of them.
-    fn along(subpaths: &[Vec<Curve>], height: f64) -> Self {
-        let same = |ps: &[Point]| ps.to_vec();
-        let runs = subpaths.iter().map(|run| sampled(run, &same, 64, height).points);
-        Self(runs.flat_map(|p| p.windows(2).map(|w| [w[0], w[1]]).collect::<Vec<_>>()).collect())
-    }
-
-    fn winding(&self, p: Point) -> i32 {
-        let crossed = |[a, b]: &[Point; 2]| {
-            let is_left = (p.y - a.y) * (b.x - a.x) < (p.x - a.x) * (b.y - a.y);
-            match (a.y <= p.y, b.y <= p.y) {
-                (true, false) if !is_left => 1,
-                (false, true) if is_left => -1,
-                _ => 0,
-            }
-        };
-        self.0.iter().map(crossed).sum()
-    }
-}
-
-/// The distance of a point from the middle line, as chords of it.
-fn from_line(chords: &[[Point; 2]], p: Point) -> f64 {
-    let to = |[a, b]: &[Point; 2]| {
-        let along = *b - *a;
-        let t = if along.hypot2() > 0.0 { ((p - *a).dot(along) / along.hypot2()).clamp(0.0, 1.0) } else { 0.0 };
-        p.distance(*a + along * t)
-    };
-    chords.iter().map(to).fold(f64::INFINITY, f64::min)
+/// Subpaths as chords that are within a tenth of `height` of them.
+fn chords(subpaths: &[Vec<Curve>], height: f64) -> Polygon {
+    Polygon::new(subpaths.iter().flat_map(|run| Run::of(run).sampled(64, height).chords.edges).collect())
 }
 
 /// Points on the edges of a stroke, on either side, as far as other parts of it do not cover them.
@@ -83,28 +52,19 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
     );
     let mut warper = map.warper.clone();
     warper.set_option("strokes", "outline").unwrap();
-    let done = warper.warp_drawing(text.as_bytes(), None).ok()?;
-    let report: Value = serde_json::from_str(&done.report).unwrap();
-    let of = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
-    let tolerance = of(&report["tolerance"]);
-    if report["shapes"].as_array()?.iter().any(|s| s["over_budget"].as_array().is_some_and(|o| !o.is_empty())) {
-        return None;
-    }
-    let frame: Vec<f64> = report["frame"].as_array()?.iter().map(of).collect();
-    let frame = Rect::new(frame[0], frame[1], frame[0] + frame[2], frame[1] + frame[3]);
-    let out = String::from_utf8(done.bytes).unwrap();
-    let (written, style) = out.split_once("<path d=\"")?.1.split_once('>')?.0.split_once('"')?;
+    let done = super::done(&warper, &text, d)?;
+    let (tolerance, points) = (done.tolerance, &done.map);
+    let (written, style) = done.svg.split_once("<path d=\"")?.1.split_once('>')?.0.split_once('"')?;
     if style.contains("stroke=\"#000") || style.contains("stroke='#000") {
         // An affine map takes the stroke along as it is.
         return None;
     }
-    let written = Polygon::along(&curves::closed(curves::read(written)), 0.2 * tolerance);
-    let points = warper.point_map(|| Some(frame), || Outline::from_svg(d).unwrap_or_default()).ok()?;
+    let written = chords(&curves::closed(curves::read(written)), 0.2 * tolerance);
     let source = curves::read(d);
     if source.is_empty() {
         return None;
     }
-    let lines = Polygon::along(&source, 0.05 * tolerance);
+    let lines = chords(&source, 0.05 * tolerance);
     let edges = edges(r, &source, width);
     let mut jacobians = vec![[Vec2::ZERO; 2]; edges.len()];
     points.jacobians(&edges, &mut jacobians);
@@ -122,11 +82,11 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
     // A bend may lay one part of the plane on another.
     let overlaps = map.name.contains("bend ");
     for (edge, room) in chosen {
-        let middle = lines.0.iter().min_by(|a, b| from_line(&[**a], edge).total_cmp(&from_line(&[**b], edge))).unwrap();
+        let middle = lines.edges[lines.nearest(edge).1];
         let out = edge - middle[0].midpoint(middle[1]);
         for (by, inside) in [(-room, true), (room, false)] {
             let q = edge + out / out.hypot() * by;
-            let off = from_line(&lines.0, q) - 0.5 * width;
+            let off = lines.distance(q) - 0.5 * width;
             if (off < 0.0) != inside || off.abs() < 0.8 * room || (overlaps && !inside) {
                 continue;
             }
@@ -139,7 +99,7 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
                 continue;
             }
             all.decided += 1;
-            if (written.winding(image[0]) != 0) != inside {
+            if written.covers(image[0]) != inside {
                 all.wrong.push((image[0], inside));
             }
         }

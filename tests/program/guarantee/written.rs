@@ -1,10 +1,10 @@
 //! Rounding: smooth joints stay smooth, flat arcs stay in place, and what is far away has the shape it has near the origin.
 
 use super::contours::{bent, paths};
-use super::paths::{Random, path};
+use super::paths::path;
 use pathwarp::kurbo::{Point, Vec2};
 use pathwarp_oracle::curves::{self, Curve};
-use pathwarp_oracle::measure::{far, sampled};
+use pathwarp_oracle::{Random, Run, apart, far};
 use std::fmt::Write as _;
 
 /// A chain of cubics that is smooth at every node, with handles of any length.
@@ -50,7 +50,7 @@ fn short_handles_keep_smooth_joints_smooth() {
 
 #[test]
 fn flat_arcs_stay_in_place() {
-    let (mut r, same) = (Random::new(3), |ps: &[Point]| ps.to_vec());
+    let mut r = Random::new(3);
     for flat in [50.0, 800.0, 8e3, 1e5] {
         for _ in 0..10 {
             let (w, h) = (r.between(20.0, 50.0), r.between(20.0, 50.0));
@@ -67,10 +67,8 @@ fn flat_arcs_stay_in_place() {
             let (out, tolerance, image) = bent(&svg, "affine", &[("matrix", &matrix)]);
             let (source, written) = (curves::closed(paths(&svg)), curves::closed(paths(&out)));
             let fine = 0.01 * tolerance;
-            let (exact, ours) = ([sampled(&source[1], &image, 200, fine)], [sampled(&written[1], &same, 200, fine)]);
-            let there = |_: usize, (i, t): (usize, f64)| image(&[source[1][i].at(t)])[0];
-            let here = |_: usize, (i, t): (usize, f64)| written[1][i].at(t);
-            let off = far(&exact, &ours, &here, fine).0.max(far(&ours, &exact, &there, fine).0);
+            let (exact, ours) = (Run::image(&source[1], &*image), Run::of(&written[1]));
+            let (off, _) = apart(&exact.sampled(200, fine), &ours.sampled(200, fine));
             assert!(off < 0.05 * tolerance, "1 : {flat}: {off} of {tolerance}: {d} {matrix}");
         }
     }
@@ -108,12 +106,13 @@ fn a_cage_far_away_bends_as_it_does_near() {
             let there = [("shaper", &*cage(far_away, -far_away))];
             let (out, ..) = bent(&drawn(far_away, -far_away, &moved), "shaper", &there);
             let (source, written) = (curves::closed(curves::read(&moved)), curves::closed(paths(&out)));
-            let back = |ps: &[Point]| ps.iter().map(|p| *p - Vec2::new(far_away, -far_away)).collect::<Vec<_>>();
-            let image = |ps: &[Point]| image(&back(ps));
+            let away = Vec2::new(far_away, -far_away);
+            let near = |ps: &[Point]| ps.iter().map(|p| *p - away).collect::<Vec<_>>();
+            let image = |ps: &[Point], out: &mut [Point]| image(&near(ps), out);
+            let back = |ps: &[Point], out: &mut [Point]| out.copy_from_slice(&near(ps));
             for (s, w) in source.iter().zip(&written) {
-                let (exact, ours) = ([sampled(s, &image, 100, tolerance)], [sampled(w, &back, 100, tolerance)]);
-                let here = |_: usize, (i, t): (usize, f64)| back(&[w[i].at(t)])[0];
-                let off = far(&exact, &ours, &here, 0.5 * tolerance).0;
+                let (exact, ours) = (Run::image(s, &image), Run::image(w, &back));
+                let (off, _) = far(&exact.sampled(100, tolerance).points, &[ours.sampled(100, tolerance)]);
                 // The numbers of the source are known to a ten-millionth there.
                 assert!(off < 1.01 * tolerance + 1e-15 * far_away * 10.0, "{far_away}: {off} of {tolerance}: {d}");
             }

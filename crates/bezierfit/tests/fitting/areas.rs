@@ -1,8 +1,9 @@
 //! Offsets are at their distance from the source, and unions cover what their parts do, without crossing themselves.
 
-use super::polygon::{Polygon, Random, random_path};
+use super::common::random_path;
 use bezierfit::{Options, offset, stroke, union};
-use kurbo::{BezPath, Cap, Join, ParamCurve, ParamCurveNearest, PathSeg, Point, Shape, Stroke};
+use kurbo::{BezPath, Cap, Join, ParamCurve, PathSeg, Point, Shape, Stroke, Vec2};
+use pathwarp_oracle::{Polygon, Random, flat};
 
 const TOLERANCE: f64 = 0.02;
 
@@ -30,9 +31,8 @@ const OPEN: [&str; 8] = [
     "M30 30C80 75 20 75 70 30",
 ];
 
-fn distance(segs: &[PathSeg], p: Point) -> f64 {
-    segs.iter().map(|s| s.nearest(p, 1e-9).distance_sq).fold(f64::INFINITY, f64::min).sqrt()
-}
+/// By how much polygons may be off.
+const FLAT: f64 = 1e-4;
 
 fn samples(path: &BezPath) -> impl Iterator<Item = Point> + '_ {
     path.segments().flat_map(|s| (0..=20).map(move |i| s.eval(f64::from(i) / 20.0)))
@@ -45,14 +45,14 @@ fn grid() -> impl Iterator<Item = Point> {
 /// Returns how many results say that they are off.
 fn check_area(path: &BezPath) -> usize {
     let mut unresolved = 0;
-    let area = Polygon::of(path);
+    let area = flat(path, FLAT);
     // Only edges between what is inside and what is outside count, and no cracks that are narrower than the tolerance.
-    let edges = area.0.iter().filter(|l| {
-        let (middle, along) = (l.midpoint(), l.p1 - l.p0);
-        let aside = kurbo::Vec2::new(-along.y, along.x) * (TOLERANCE / along.hypot());
+    let parts = |[a, b]: &[Point; 2]| {
+        let (middle, along) = (a.midpoint(*b), *b - *a);
+        let aside = Vec2::new(-along.y, along.x) * (TOLERANCE / along.hypot());
         along.hypot() > 0.0 && area.covers(middle + aside) != area.covers(middle - aside)
-    });
-    let segs: Vec<PathSeg> = edges.map(|l| PathSeg::Line(*l)).collect();
+    };
+    let edges = Polygon::new(area.edges.iter().copied().filter(parts).collect());
     for by in [-26.0, -9.0, -2.0, -0.1, 0.1, 2.0, 9.0, 26.0] {
         let moved = offset(path, by, Join::Round, &Options::new(TOLERANCE)).unwrap();
         if !moved.report.unresolved.is_empty() {
@@ -61,12 +61,12 @@ fn check_area(path: &BezPath) -> usize {
         }
         let what = format!("{} by {by}: {}", path.to_svg(), moved.path.to_svg());
         for p in samples(&moved.path) {
-            let off = (distance(&segs, p) - by.abs()).abs();
+            let off = (edges.distance(p) - by.abs()).abs();
             assert!(off <= 1.02 * TOLERANCE, "{what}\n{p:?} is off by {off}");
         }
-        let outline = Polygon::of(&moved.path);
+        let outline = flat(&moved.path, FLAT);
         for p in grid() {
-            let to_edge = distance(&segs, p);
+            let to_edge = edges.distance(p);
             let inside = if by > 0.0 { area.covers(p) || to_edge < by } else { area.covers(p) && to_edge > -by };
             // What is left may be a sliver.
             let near = (to_edge - by.abs()).abs() < 3.0 * TOLERANCE || area.distance(p) < 1e-3;
@@ -86,9 +86,9 @@ fn areas_grow_and_shrink_by_their_distance() {
 /// Needles, edges along the axes and edges on each other, with which a sweep has most trouble: none of them panics.
 #[test]
 fn degenerate_areas_are_swept() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for _ in 0..60 {
-        let mut corner = || Point::new((random.share() * 5.0).round() * 20.0, (random.share() * 5.0).round() * 20.0);
+        let mut corner = || Point::new(random.below(6) as f64 * 20.0, random.below(6) as f64 * 20.0);
         let mut path = BezPath::new();
         for _ in 0..4 {
             path.move_to(corner());
@@ -108,7 +108,7 @@ fn degenerate_areas_are_swept() {
 #[test]
 #[ignore = "known fault: an area that has a needle, shrunk by 9, is off by 2.4 tolerances at one place, and the report does not say so"]
 fn random_areas_grow_and_shrink_by_their_distance() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let unresolved: usize = (0..16).map(|i| check_area(&random_path(&mut random, 2 * i))).sum();
     assert!(unresolved <= 3, "{unresolved} of 128");
 }
@@ -117,22 +117,22 @@ fn random_areas_grow_and_shrink_by_their_distance() {
 fn open_paths_run_beside_themselves() {
     for d in OPEN {
         let path = BezPath::from_svg(d).unwrap();
-        let segs: Vec<PathSeg> = path.segments().collect();
+        let (segs, line): (Vec<PathSeg>, _) = (path.segments().collect(), flat(&path, 1e-7));
         for by in [-12.0, -2.0, -0.1, 0.1, 2.0, 12.0] {
             let beside = offset(&path, by, Join::Round, &Options::new(TOLERANCE)).unwrap().path;
             let what = format!("{d} by {by}: {}", beside.to_svg());
             for p in samples(&beside) {
-                let off = (distance(&segs, p) - by.abs()).abs();
+                let off = (line.distance(p) - by.abs()).abs();
                 assert!(off <= 1.02 * TOLERANCE, "{what}\n{p:?} is off by {off}");
             }
             // Whatever is to the side of the path, and no nearer to any other part of it, is reached.
-            let result: Vec<PathSeg> = beside.segments().collect();
+            let result = flat(&beside, FLAT);
             for (s, i) in segs.iter().flat_map(|s| (1..40).map(move |i| (s, i))) {
                 let t = f64::from(i) / 40.0;
                 let along = (s.eval(t + 1e-6) - s.eval(t - 1e-6)) / s.eval(t + 1e-6).distance(s.eval(t - 1e-6));
-                let p = s.eval(t) + kurbo::Vec2::new(-along.y, along.x) * by;
-                if distance(&segs, p) > by.abs() - 1e-6 {
-                    let off = distance(&result, p);
+                let p = s.eval(t) + Vec2::new(-along.y, along.x) * by;
+                if line.distance(p) > by.abs() - 1e-6 {
+                    let off = result.distance(p);
                     assert!(off <= 3.0 * TOLERANCE, "{what}\n{p:?} is not reached by {off}");
                 }
             }
@@ -143,7 +143,7 @@ fn open_paths_run_beside_themselves() {
 /// Winding numbers of the union are 0 and 1, where those of the parts are zero and not; and no two of its segments cross.
 #[test]
 fn unions_are_simple() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for i in 0..60 {
         let path = random_path(&mut random, i);
         let join = [Join::Miter, Join::Round, Join::Bevel][i % 3];
@@ -151,28 +151,14 @@ fn unions_are_simple() {
         let parts = stroke(&path, &style, &Options::new(TOLERANCE)).unwrap().path;
         let whole = union(&parts, TOLERANCE).unwrap();
         let what = format!("{}, {style:?}", path.to_svg());
-        let (before, after) = (Polygon::of(&parts), Polygon::of(&whole));
+        let (before, after) = (flat(&parts, FLAT), flat(&whole, FLAT));
         let sign = grid().map(|p| after.winding(p)).find(|w| *w != 0).unwrap_or(1);
         for p in grid().filter(|p| before.distance(*p) > 2.0 * TOLERANCE && after.distance(*p) > 1e-3) {
             assert_eq!(after.winding(p), if before.covers(p) { sign } else { 0 }, "{what}\n{p:?}");
         }
-        assert_eq!(crossings(&whole), 0, "{what}\n{}", whole.to_svg());
-    }
-}
-
-/// Pairs of edges of the flattened outline that properly cross.
-fn crossings(path: &BezPath) -> usize {
-    let lines = &Polygon::of(path).0;
-    let side = |l: &kurbo::Line, p: Point| (l.p1 - l.p0).cross(p - l.p0) / l.length();
-    let apart = |a: &kurbo::Line, b: &kurbo::Line| {
         // By more than what flattening may have moved them.
-        let across = |l: &kurbo::Line, m: &kurbo::Line| {
-            let (s, t) = (side(l, m.p0), side(l, m.p1));
-            s * t < 0.0 && s.abs().min(t.abs()) > 1e-3
-        };
-        !(across(a, b) && across(b, a))
-    };
-    (0..lines.len()).map(|i| (0..i).filter(|j| !apart(&lines[i], &lines[*j])).count()).sum()
+        assert_eq!(after.crossings(1e-3), 0, "{what}\n{}", whole.to_svg());
+    }
 }
 
 /// An edge at a tip runs at the distance from it, however sharp it is: a miter that would reach too far is cut off.
@@ -191,7 +177,7 @@ fn tips_keep_their_distance() {
         let far = grown.bounding_box().x1 - tip.x;
         let wanted = (BY / half.sin()).min(4.0 * BY);
         assert!((far - wanted).abs() < 2.0 * TOLERANCE, "{degrees}°: {far} for {wanted}");
-        let nearest = grown.segments().map(|s| s.nearest(tip, 1e-9).distance_sq.sqrt()).fold(f64::INFINITY, f64::min);
+        let nearest = flat(&grown, FLAT).distance(tip);
         assert!((nearest - BY).abs() < 2.0 * TOLERANCE, "{degrees}°: {nearest}");
     }
 }

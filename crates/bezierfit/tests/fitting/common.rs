@@ -1,69 +1,80 @@
-//! Measurements that share nothing with the fitter.
+//! Curves to fit and to stroke, and their distances from what comes out.
 
 use bezierfit::Source;
-use kurbo::{BezPath, ParamCurve, ParamCurveNearest, Point, Vec2};
+use kurbo::{BezPath, Point, Vec2};
+use pathwarp_oracle::curves::Curved as _;
+use pathwarp_oracle::{Random, Run, apart, far};
+use std::cell::Cell;
 
-/// The distance of a point from a path.
-pub fn off(p: Point, path: &BezPath) -> f64 {
-    path.segments().map(|s| s.nearest(p, 1e-12).distance_sq).fold(f64::INFINITY, f64::min).sqrt()
+/// A curve by a function, with its breaks. It counts evaluations. The fitter, which is generic, is compiled for this curve only.
+pub struct Drawn<'a> {
+    eval: Box<dyn Fn(f64) -> (Point, Vec2) + 'a>,
+    pub breaks: Vec<f64>,
+    pub evaluations: Cell<usize>,
 }
 
-/// The Hausdorff distance between a curve and a path, by samples of both.
-pub fn distance(source: &impl Source, path: &BezPath) -> f64 {
-    const SAMPLES: usize = 4000;
-    let curve: Vec<Point> = (0..=SAMPLES).map(|i| source.eval(i as f64 / SAMPLES as f64).0).collect();
-    let there = curve.iter().map(|p| off(*p, path)).fold(0.0, f64::max);
-    // The way back: from samples that are nearer than their neighbours on to the nearest point beside them.
-    let nearest = |p: Point| {
-        let square: Vec<f64> = curve.iter().map(|q| q.distance_squared(p)).collect();
-        let mut best = square.iter().copied().fold(f64::INFINITY, f64::min).sqrt();
-        for i in 0..=SAMPLES {
-            let [before, after] = [i.saturating_sub(1), (i + 1).min(SAMPLES)];
-            let reach = best + curve[i].distance(curve[before]).max(curve[i].distance(curve[after]));
-            if square[i] > square[before] || square[i] > square[after] || square[i] > reach * reach {
-                continue;
-            }
-            let d = |t: f64| source.eval(t).0.distance(p);
-            let [mut low, mut high] = [before, after].map(|k| k as f64 / SAMPLES as f64);
-            for _ in 0..40 {
-                let (a, b) = (low + 0.38 * (high - low), high - 0.38 * (high - low));
-                *if d(a) < d(b) { &mut high } else { &mut low } = if d(a) < d(b) { b } else { a };
-            }
-            best = best.min(d(low));
-        }
-        best
-    };
-    let places = path.segments().flat_map(|s| (0..=40).map(move |i| s.eval(f64::from(i) / 40.0)));
-    there.max(places.map(nearest).fold(0.0, f64::max))
+impl<'a> Drawn<'a> {
+    pub fn new(eval: impl Fn(f64) -> (Point, Vec2) + 'a, breaks: Vec<f64>) -> Self {
+        Self { eval: Box::new(eval), breaks, evaluations: Cell::new(0) }
+    }
+}
+
+impl Source for Drawn<'_> {
+    fn eval(&self, t: f64) -> (Point, Vec2) {
+        self.evaluations.set(self.evaluations.get() + 1);
+        (self.eval)(t)
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.breaks.clone()
+    }
+}
+
+/// The distance between a curve and a path, both ways; they are sampled for distances like `tolerance`.
+pub fn distance(source: &dyn Source, path: &BezPath, tolerance: f64) -> f64 {
+    let (exact, segments) = (Run::new(1, |(_, t)| source.eval(t).0), path.curves());
+    let n = (100 * segments.len()).clamp(1000, 4000);
+    apart(&exact.sampled(n, tolerance), &Run::of(&segments).sampled(40, tolerance)).0
+}
+
+/// The largest distance of points from a path.
+pub fn off(points: &[Point], path: &BezPath) -> f64 {
+    far(points, &[Run::of(&path.curves()).sampled(40, 0.01)]).0
 }
 
 /// A sine of so many radians.
-pub fn wave(radians: f64) -> impl Fn(f64) -> (Point, Vec2) + Copy {
-    move |t: f64| {
+pub fn wave(radians: f64) -> Drawn<'static> {
+    let eval = move |t: f64| {
         let (s, c) = (radians * t).sin_cos();
         (Point::new(300.0 * t, 40.0 * s), Vec2::new(300.0, 40.0 * radians * c))
-    }
+    };
+    Drawn::new(eval, Vec::new())
 }
 
-/// Numbers that look random.
-pub struct Random(pub u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        // xorshift64*
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
+/// Lines, quadratics and cubics through random points, some of which coincide or nearly do; every second path is closed.
+#[cfg(feature = "area")]
+pub fn random_path(random: &mut Random, i: usize) -> BezPath {
+    let point = |r: &mut Random| Point::new(r.between(0.0, 100.0), r.between(0.0, 100.0));
+    let mut path = BezPath::new();
+    let mut at = point(random);
+    path.move_to(at);
+    for _ in 0..=random.below(4) {
+        let before = at;
+        let mut next = || match random.below(12) {
+            0 => before,
+            1 => before + (point(random) - before) * 1e-4,
+            _ => point(random),
+        };
+        let (a, b, c) = (next(), next(), next());
+        at = c;
+        match i % 5 {
+            0 => path.line_to(c),
+            1 => path.quad_to(a, c),
+            _ => path.curve_to(a, b, c),
+        }
     }
-
-    /// From −1 to 1.
-    pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    if i.is_multiple_of(2) {
+        path.close_path();
     }
-
-    /// From 0 to `n` − 1.
-    pub fn below(&mut self, n: u64) -> u64 {
-        (self.next() >> 33) % n
-    }
+    path
 }

@@ -1,34 +1,21 @@
 //! Curves on which fits hang, panic, leave the curve or cut corners elsewhere: each is covered within the tolerance, by a measurement of
 //! its own, with a bounded number of pieces and of evaluations.
 
-use super::common::{Random, distance};
+use super::common::{Drawn, distance, off};
 use bezierfit::{Degree, Fitted, Offset, Options, PathSource, Pieces, Source, fit, fit_points, simplify};
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, ParamCurveNearest, PathSeg, Point, Vec2};
-use std::cell::Cell;
+use pathwarp_oracle::Random;
 
 /// Fits a source, and checks the distance, the number of pieces and that of evaluations.
-fn check(name: &str, source: &impl Source, tolerance: f64, most: usize) -> Fitted {
-    let evaluations = Cell::new(0);
-    let counted = |t: f64| {
-        evaluations.set(evaluations.get() + 1);
-        source.eval(t)
-    };
-    struct Counted<'a, S, F>(&'a S, F);
-    impl<S: Source, F: Fn(f64) -> (Point, Vec2)> Source for Counted<'_, S, F> {
-        fn eval(&self, t: f64) -> (Point, Vec2) {
-            (self.1)(t)
-        }
-        fn breaks(&self) -> Vec<f64> {
-            self.0.breaks()
-        }
-    }
-    let fitted = fit(&Counted(source, counted), &Options::new(tolerance)).unwrap();
+fn check(name: &str, source: &dyn Source, tolerance: f64, most: usize) -> Fitted {
+    let counted = Drawn::new(|t| source.eval(t), source.breaks());
+    let fitted = fit(&counted, &Options::new(tolerance)).unwrap();
     let pieces = fitted.path.segments().count();
-    let error = distance(source, &fitted.path);
+    let error = distance(source, &fitted.path, tolerance);
     assert!(fitted.report.unresolved.is_empty(), "{name}: {:?}", fitted.report);
     assert!(error <= 1.001 * tolerance, "{name}: {} of the tolerance", error / tolerance);
     assert!(pieces <= most, "{name}: {pieces} pieces");
-    let spent = evaluations.get();
+    let spent = counted.evaluations.get();
     assert!(spent <= 5000 * most, "{name}: {spent} evaluations");
     fitted
 }
@@ -59,7 +46,7 @@ fn polygons_keep_their_corners() {
     // The same polygons as one curve, with what those fits were given: corners where its sides meet.
     for path in [sliver_and_fold(0), sliver_and_fold(1)] {
         let fitted = fit(&PathSource::new(&path).unwrap(), &Options::new(2.0)).unwrap();
-        let error = distance(&PathSource::new(&path).unwrap(), &fitted.path);
+        let error = distance(&PathSource::new(&path).unwrap(), &fitted.path, 2.0);
         assert!(error <= 2.0 && fitted.report.unresolved.is_empty(), "{error}");
     }
     let mixed = BezPath::from_svg("M0 0H50C77.6 0 100 22.4 100 50V100").unwrap();
@@ -83,7 +70,7 @@ fn flat_polygons_stay_flat() {
         for degree in [Degree::Cubic, Degree::Quadratic] {
             let options = Options::new(tolerance).with_degree(degree).with_corner(2.0);
             let fitted = fit_points(&points, false, &options).unwrap();
-            assert!(points.iter().all(|p| super::common::off(*p, &fitted.path) <= tolerance));
+            assert!(off(&points, &fitted.path) <= tolerance);
             let bounds = kurbo::Shape::bounding_box(&fitted.path);
             assert!(bounds.x0 >= 415.7 && bounds.x1 <= 494.0 && bounds.y0 > 323.0 && bounds.y1 < 326.5, "{bounds:?}");
         }
@@ -111,7 +98,7 @@ fn corners_between_smooth_runs_are_not_crossed() {
     path.close_path();
     for tolerance in [0.18, 0.3] {
         let simple = simplify(&path, &Options::new(tolerance)).unwrap();
-        let error = distance(&PathSource::new(&path).unwrap(), &simple.path);
+        let error = distance(&PathSource::new(&path).unwrap(), &simple.path, tolerance);
         assert!(error <= tolerance, "{error}");
         assert!(simple.path.segments().count() <= 40, "{}", simple.path.segments().count());
         for k in 0..10 {
@@ -148,7 +135,7 @@ fn spirals_loops_flat_ellipses_and_cusps_are_followed() {
         let (s, c) = (40.0 * t).sin_cos();
         (Point::new(100.0 * t * c, 100.0 * t * s), Vec2::new(c - 40.0 * t * s, s + 40.0 * t * c) * 100.0)
     };
-    check("spiral", &spiral, 0.01, 40);
+    check("spiral", &Drawn::new(spiral, Vec::new()), 0.01, 40);
     // A clothoid, its integrals summed by the midpoint rule between closed-form derivatives.
     let clothoid = |t: f64| {
         let phase = |u: f64| 12.0 * u * u;
@@ -158,12 +145,12 @@ fn spirals_loops_flat_ellipses_and_cusps_are_followed() {
             .fold(Vec2::ZERO, |a, b| a + b);
         ((sum * (100.0 * t / f64::from(n))).to_point(), Vec2::from_angle(phase(t)) * 100.0)
     };
-    check("clothoid", &clothoid, 0.01, 20);
+    check("clothoid", &Drawn::new(clothoid, Vec::new()), 0.01, 20);
     let ellipse = |t: f64| {
         let (s, c) = (std::f64::consts::TAU * t).sin_cos();
         (Point::new(1000.0 * c, s), Vec2::new(-1000.0 * s, c) * std::f64::consts::TAU)
     };
-    check("ellipse", &ellipse, 0.01, 24);
+    check("ellipse", &Drawn::new(ellipse, Vec::new()), 0.01, 24);
     let lissajous = |t: f64| {
         let u = std::f64::consts::TAU * t;
         let (x, y) = ((3.0 * u).sin(), (2.0 * u).sin());
@@ -172,27 +159,27 @@ fn spirals_loops_flat_ellipses_and_cusps_are_followed() {
             Vec2::new(300.0 * (3.0 * u).cos(), 200.0 * (2.0 * u).cos()) * std::f64::consts::TAU,
         )
     };
-    check("Lissajous", &lissajous, 0.01, 60);
+    check("Lissajous", &Drawn::new(lissajous, Vec::new()), 0.01, 60);
     // y² = x³, with the cusp inside.
     let cusp = |t: f64| {
         let u = 2.0 * t - 1.0;
         (Point::new(50.0 * u * u, 50.0 * u * u * u), Vec2::new(200.0 * u, 300.0 * u * u))
     };
-    check("cusp", &cusp, 0.01, 8);
+    check("cusp", &Drawn::new(cusp, Vec::new()), 0.01, 8);
     let near = |t: f64| {
         let u = 2.0 * t - 1.0;
         (Point::new(50.0 * u * u, 50.0 * u * u * u + 0.01 * u), Vec2::new(200.0 * u, 300.0 * u * u + 0.02))
     };
-    check("near-cusp", &near, 0.001, 16);
+    check("near-cusp", &Drawn::new(near, Vec::new()), 0.001, 16);
 }
 
 /// Closed and open curves far from the origin under x + 4 sin(y/16), y − xy/500: 20 units wide and 10,000 long, they turn back within a
 /// few units.
 #[test]
 fn hairpins_are_followed() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for k in 0..24 {
-        let mut point = || Point::new(50.0 + 50.0 * random.unit(), 50.0 + 50.0 * random.unit());
+        let mut point = || Point::new(random.between(0.0, 100.0), random.between(0.0, 100.0));
         let drop = CubicBez::new((50.0, 62.5), (16.7, 47.78587920056), (83.3, 47.78587920056), (50.0, 62.5));
         let cubic = if k == 0 { drop } else { CubicBez::new(point(), point(), point(), point()) };
         let around = kurbo::Shape::bounding_box(&cubic);
@@ -206,7 +193,7 @@ fn hairpins_are_followed() {
                 Vec2::new(d.x + 0.25 * cos * d.y, d.y - (d.x * y + x * d.y) / 500.0),
             )
         };
-        check("hairpin", &hairpin, 1e-4 * around.width().hypot(around.height()), 12);
+        check("hairpin", &Drawn::new(hairpin, Vec::new()), 1e-4 * around.width().hypot(around.height()), 12);
     }
 }
 
@@ -224,7 +211,7 @@ fn scale_does_not_matter() {
 fn what_is_not_finite_is_said() {
     let pole = |t: f64| (Point::new(t, 1.0 / (t - 0.5)), Vec2::new(1.0, -1.0 / (t - 0.5).powi(2)));
     let hole = |t: f64| if (0.4..0.6).contains(&t) { (Point::new(f64::NAN, 0.0), Vec2::ZERO) } else { pole(t) };
-    assert!(fit(&hole, &Options::new(0.01)).is_err());
+    assert!(fit(&Drawn::new(hole, Vec::new()), &Options::new(0.01)).is_err());
     let broken =
         BezPath::from_vec(vec![kurbo::PathEl::MoveTo(Point::ORIGIN), kurbo::PathEl::LineTo(Point::new(f64::NAN, 1.0))]);
     assert!(simplify(&broken, &Options::new(0.01)).is_err());
@@ -264,16 +251,14 @@ fn a_circle_of_any_number_of_cubics_is_four() {
 
 #[test]
 fn noise_ends_and_is_said() {
-    let evaluations = Cell::new(0);
     let noise = |t: f64| {
-        evaluations.set(evaluations.get() + 1);
         let phase = 1e7 * t * t;
         (Point::new(100.0 * t, 50.0 * phase.sin()), Vec2::new(100.0, 1e9 * t * phase.cos()))
     };
     for (degree, pieces) in
         [(Degree::Cubic, Pieces::Fewest), (Degree::Quadratic, Pieces::Fewest), (Degree::Cubic, Pieces::AtMost(3))]
     {
-        evaluations.set(0);
+        let noise = Drawn::new(noise, Vec::new());
         let fitted = fit(&noise, &Options::new(0.01).with_degree(degree).with_pieces(pieces));
         match (pieces, fitted) {
             (Pieces::Fewest, Ok(fitted)) => assert!(!fitted.report.unresolved.is_empty()),
@@ -282,6 +267,6 @@ fn noise_ends_and_is_said() {
             _ => {}
         }
         let most = if pieces == Pieces::Fewest { 1 } else { 60 } * bezierfit::MAX_EVALUATIONS;
-        assert!(evaluations.get() <= most, "{degree:?}: {}", evaluations.get());
+        assert!(noise.evaluations.get() <= most, "{degree:?}: {}", noise.evaluations.get());
     }
 }

@@ -16,7 +16,6 @@ mod areas;
 mod common;
 mod hard_cases;
 mod options;
-mod polygon;
 mod random;
 #[cfg(feature = "area")]
 mod strokes;

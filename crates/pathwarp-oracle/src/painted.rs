@@ -1,79 +1,15 @@
-//! Painted areas as polygons, with strokes expanded by the renderer's own stroker, and the distance between them.
+//! Painted areas as polygons, with strokes expanded by the renderer's own stroker.
 
-use pathwarp::kurbo::{CubicBez, ParamCurve as _, Point, QuadBez};
-use pathwarp::map::Map;
+use crate::polygon::Polygon;
+use kurbo::{CubicBez, ParamCurve as _, Point, QuadBez};
 use resvg::tiny_skia::{Path, PathBuilder, PathSegment, StrokeDash, Transform};
 use resvg::usvg::{self, Node, Tree};
 
-/// An area as polygons, by the nonzero rule.
-pub struct Area(pub Vec<Vec<Point>>);
-
-impl Area {
-    /// The painted area of a drawing's strokes, or of its fills if it has no strokes.
-    pub fn of(tree: &Tree) -> Self {
-        let mut paths = Vec::new();
-        collect(tree.root(), &mut paths);
-        Self(paths)
-    }
-
-    pub fn bent(&self, map: &dyn Map) -> Self {
-        Self(self.0.iter().map(|ring| ring.iter().map(|p| map.point(*p)).collect()).collect())
-    }
-
-    /// Distance of a point from the area.
-    pub fn distance(&self, p: Point) -> f64 {
-        Edges::of(self).distance(p)
-    }
-
-    /// Largest distance of a point of one area from the other.
-    pub fn apart(&self, other: &Self) -> f64 {
-        let one = |a: &Self, b: &Self| {
-            let mut edges = Edges::of(b);
-            a.0.iter().flatten().map(|p| edges.distance(*p)).fold(0.0, f64::max)
-        };
-        one(self, other).max(one(other, self))
-    }
-}
-
-/// The edges of an area.
-struct Edges {
-    all: Vec<(Point, Point)>,
-    /// The nearest one to the last point, which is near the next one, too.
-    last: usize,
-}
-
-impl Edges {
-    fn of(area: &Area) -> Self {
-        let ring =
-            |ring: &Vec<Point>| (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()])).collect::<Vec<_>>();
-        Self { all: area.0.iter().flat_map(ring).collect(), last: 0 }
-    }
-
-    fn distance(&mut self, p: Point) -> f64 {
-        let (mut winding, mut nearest) = (0, self.all.get(self.last).map_or(f64::INFINITY, |e| to_edge(*e, p)));
-        for (i, &(a, b)) in self.all.iter().enumerate() {
-            if a.y.min(b.y) > p.y + nearest || a.y.max(b.y) < p.y - nearest {
-                continue;
-            }
-            if (a.y <= p.y) != (b.y <= p.y) {
-                let side = (b - a).cross(p - a);
-                winding += if b.y > a.y { i32::from(side > 0.0) } else { -i32::from(side < 0.0) };
-            }
-            if a.x.min(b.x) <= p.x + nearest && a.x.max(b.x) >= p.x - nearest {
-                let d = to_edge((a, b), p);
-                if d < nearest {
-                    (nearest, self.last) = (d, i);
-                }
-            }
-        }
-        if winding != 0 { 0.0 } else { nearest }
-    }
-}
-
-fn to_edge((a, b): (Point, Point), p: Point) -> f64 {
-    let d = b - a;
-    let t = if d.hypot2() > 0.0 { ((p - a).dot(d) / d.hypot2()).clamp(0.0, 1.0) } else { 0.0 };
-    (p - (a + d * t)).hypot()
+/// The painted area of a drawing's strokes, or of its fills if it has no strokes.
+pub fn painted(tree: &Tree) -> Polygon {
+    let mut rings = Vec::new();
+    collect(tree.root(), &mut rings);
+    Polygon::of_rings(rings.iter().map(Vec::as_slice))
 }
 
 fn collect(g: &usvg::Group, out: &mut Vec<Vec<Point>>) {

@@ -1,0 +1,91 @@
+//! How sharply curves turn at their joints.
+
+use crate::curves::Curve;
+use crate::distance::Sampled;
+use kurbo::{CubicBez, Point, Vec2};
+
+/// The sharpest turn between consecutive cubics, in degrees.
+pub fn largest_turn(out: &[CubicBez]) -> f64 {
+    out.windows(2).map(|w| turn(arriving(&w[0]), leaving(&w[1]))).fold(0.0, f64::max)
+}
+
+/// The angle between two directions, in degrees.
+pub fn turn(a: Vec2, b: Vec2) -> f64 {
+    a.cross(b).atan2(a.dot(b)).abs().to_degrees()
+}
+
+/// The direction in which a cubic starts.
+pub fn leaving(c: &CubicBez) -> Vec2 {
+    [c.p1, c.p2, c.p3].iter().map(|p| *p - c.p0).find(|v| v.hypot() > 1e-9).unwrap_or_default()
+}
+
+/// The direction in which a cubic ends.
+pub fn arriving(c: &CubicBez) -> Vec2 {
+    [c.p2, c.p1, c.p0].iter().map(|p| c.p3 - *p).find(|v| v.hypot() > 1e-9).unwrap_or_default()
+}
+
+/// The sharpest turn, in degrees, at a joint of what was written where the exact image is smooth.
+pub fn kink(exact: &Sampled<'_>, written: &[Curve], (closed, room): (bool, f64)) -> (f64, Point) {
+    /// Share of a curve over which directions are taken.
+    const STEP: f64 = 1e-4;
+    // What is too short to be seen has no direction.
+    let written: Vec<&Curve> = written.iter().filter(|c| c.at(0.0).distance(c.at(0.5)) > 1e-3 * room).collect();
+    let (n, m) = (written.len(), exact.run.pieces());
+    let is_short = |i: usize| {
+        let [a, b, c] = [0.0, 0.3, 0.5].map(|t| exact.run.at((i, t)));
+        a.distance(b).max(a.distance(c)) <= 1e-3 * room
+    };
+    let short: Vec<bool> = (0..m).map(is_short).collect();
+    // The next curve with a length, `by` curves on each time.
+    let beyond =
+        |from: usize, by: usize| (1..=m).map(|k| (from + k * by) % m).find(|i| closed && !short[*i]).unwrap_or(from);
+    let mut worst = (0.0, Point::ORIGIN);
+    for i in (if closed { 0 } else { 1 })..n {
+        let (a, b) = (written[(i + n - 1) % n], written[i]);
+        let (into, away) = (a.directions()[1], b.directions()[0]);
+        let turn = into.cross(away).atan2(into.dot(away));
+        let p = b.at(0.0);
+        if turn.abs().to_degrees() <= 0.5 {
+            continue;
+        }
+        // The places of the source that come near the joint: where the path meets itself, several.
+        let reach = room + exact.points.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+        let near = (0..exact.points.len()).filter(|k| exact.points[*k].distance(p) <= reach).map(|k| exact.places[k]);
+        let near = near.filter(|(at, _)| !short[*at]);
+        let mut corner = 0.0_f64;
+        for (at, t) in near {
+            // The image just before and after, across a joint of the source.
+            let (before, after) = match t {
+                0.0 => ((beyond(at, m - 1), 1.0), (at, 0.0)),
+                1.0 => ((at, 1.0), (beyond(at, 1), 0.0)),
+                t => ((at, t), (at, t)),
+            };
+            // Far enough on both sides for a crease near the sample.
+            let ahead = if t < 0.5 { STEP } else { -STEP };
+            let pair = [t, t + ahead].map(|t| exact.run.at((at, t)));
+            let beside = (reach * STEP / pair[0].distance(pair[1])).clamp(2.0 * STEP, 0.05);
+            let q = [
+                (before.0, before.1 - beside - STEP),
+                (before.0, before.1 - beside),
+                (after.0, after.1 + beside),
+                (after.0, after.1 + beside + STEP),
+            ]
+            .map(|place| exact.run.at(place));
+            let (u, v) = (q[1] - q[0], q[3] - q[2]);
+            // At a tear the image leaves for the other side, whatever the directions.
+            let torn = q[1].distance(q[2]) > 10.0 * (2.0 * beside / STEP) * u.hypot().max(v.hypot());
+            let turned = if torn || u == Vec2::ZERO || v == Vec2::ZERO {
+                std::f64::consts::PI
+            } else {
+                u.cross(v).atan2(u.dot(v)).abs()
+            };
+            corner = corner.max(turned);
+        }
+        // Beside the joint, a curve turns as well.
+        let off = turn.abs() - 2.0 * corner;
+        if corner.to_degrees() < 0.25 && off > worst.0 {
+            worst = (off, p);
+        }
+    }
+    (worst.0.to_degrees(), worst.1)
+}
