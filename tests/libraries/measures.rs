@@ -47,6 +47,17 @@ fn errors_at_hairpins_cusps_and_jumps_are_found() {
     assert!((between(&two, &one, 64, 1e-3) - 1.0).abs() < 0.1);
 }
 
+/// Where a map tears, the line from one side's limit to the other's counts as part of the image, wherever the tear is.
+#[test]
+fn a_jump_is_a_line() {
+    for tear in [0.0, 0.3711, 0.5, 1.0] {
+        let torn = Run::new(1, move |(_, t)| Point::new(if t > tear { t + 5.0 } else { t }, 0.0));
+        let whole = [Curve::Line([Point::ORIGIN, torn.at((0, 1.0))])];
+        let found = apart(&torn.sampled(30, 1e-3), &Run::of(&whole).sampled(500, 1e-3)).0;
+        assert!(found < 1e-9, "{tear}: {found}");
+    }
+}
+
 #[test]
 fn no_number_is_no_distance() {
     let hole = Run::new(1, |(_, t)| Point::new(t, if t > 0.5 { f64::NAN } else { 0.0 }));

@@ -153,28 +153,28 @@ impl Sampled<'_> {
         }
     }
 
-    /// The distance of a point from the arc over a chord. Each round looks at eight places of a bracket and goes on with those beside the
-    /// nearest, so that the lines between the last three are within 1e-10 of the arc's height.
+    /// The distance of a point from the arc over a chord. Each round divides a bracket by nine and goes on with the nearest part and its
+    /// neighbours, so that the lines between the last places are within 1e-9 of the arc's height. At a jump, the line across it counts.
     fn beside(&self, p: Point, k: usize) -> f64 {
-        const INNER: usize = 8;
+        const PARTS: usize = 9;
         let ((i, mut from), (j, mut to)) = (self.places[k], self.places[k + 1]);
-        let [mut before, mut after] = [self.points[k], self.points[k + 1]];
-        let mut best = before.distance(p).min(after.distance(p));
+        let mut points = [Point::ORIGIN; PARTS + 1];
+        (points[0], points[PARTS]) = (self.points[k], self.points[k + 1]);
         if i != j {
-            return best;
+            return points[0].distance(p).min(points[PARTS].distance(p));
         }
-        let mut out = [Point::ORIGIN; INNER];
-        for _ in 0..8 {
-            let step = (to - from) / (INNER + 1) as f64;
-            let places: [Place; INNER] = std::array::from_fn(|m| (i, from + step * (m + 1) as f64));
-            (self.run.at)(&places, &mut out);
-            let distances = out.map(|q| q.distance_squared(p));
-            let m = (1..INNER).fold(0, |m, n| if distances[n] < distances[m] { n } else { m });
-            (from, to) = (places[m].1 - step, places[m].1 + step);
-            before = if m > 0 { out[m - 1] } else { before };
-            after = if m + 1 < INNER { out[m + 1] } else { after };
-            best = best.min(to_edge([before, out[m]], p)).min(to_edge([out[m], after], p));
-            if before.distance(after) <= 1e-5 * best {
+        let mut best = f64::INFINITY;
+        for _ in 0..10 {
+            let place = |m: usize| from + (to - from) * m as f64 / PARTS as f64;
+            let places: [Place; PARTS - 1] = std::array::from_fn(|m| (i, place(m + 1)));
+            (self.run.at)(&places, &mut points[1..PARTS]);
+            let parts: [f64; PARTS] = std::array::from_fn(|m| to_edge([points[m], points[m + 1]], p));
+            let m = (1..PARTS).fold(0, |m, n| if parts[n] < parts[m] { n } else { m });
+            best = parts[m];
+            let bracket = [m.saturating_sub(1), (m + 2).min(PARTS)];
+            [from, to] = bracket.map(place);
+            [points[0], points[PARTS]] = bracket.map(|m| points[m]);
+            if points[0].distance(points[PARTS]) <= 1e-5 * best {
                 break;
             }
         }

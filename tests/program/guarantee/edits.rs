@@ -2,7 +2,7 @@
 
 use super::paths::drawn;
 use crate::support::pathwarp_in;
-use pathwarp::kurbo::{Vec2};
+use pathwarp::kurbo::Vec2;
 use pathwarp_oracle::curves::{self, Curve};
 use pathwarp_oracle::{Random, Run, Sampled, far};
 use std::f64::consts::TAU;
