@@ -81,7 +81,8 @@ fn measure(path: &Outline, map: &dyn Map, warped: &RefittedPath, tolerance: f64)
     if pieces.is_empty() || pieces.len() > MOST_SEGMENTS {
         return;
     }
-    let result = [Run::of(&pieces).sampled(64, tolerance)];
+    let result = Run::of(&pieces);
+    let result = [result.sampled(64, tolerance)];
     for seg in path.segs() {
         for i in 0..=SAMPLES {
             let at = seg.eval(i as f64 / SAMPLES as f64);
