@@ -16,10 +16,13 @@ pub type Place = (usize, f64);
 /// Maps points, many at a time.
 pub type Image<'a> = &'a (dyn Fn(&[Point], &mut [Point]) + 'a);
 
+/// The points at many places.
+type At<'a> = Box<dyn Fn(&[Place], &mut [Point]) + 'a>;
+
 /// A curve in pieces.
 pub struct Run<'a> {
     pieces: usize,
-    at: Box<dyn Fn(&[Place], &mut [Point]) + 'a>,
+    at: At<'a>,
 }
 
 impl<'a> Run<'a> {
@@ -81,15 +84,15 @@ impl<'a> Run<'a> {
             let new: Vec<Place> = halved.iter().map(|k| middle(*k)).collect();
             let images = self.points(&new);
             let mut next = 0;
-            let (mut p, mut q, mut c) = (Vec::new(), Vec::new(), Vec::new());
+            let mut all = Vec::with_capacity(places.len() + new.len());
             for k in 0..places.len() {
-                (p.push(places[k]), q.push(points[k]), c.push(false));
+                all.push((places[k], (points[k], false)));
                 if halved.get(next) == Some(&k) {
-                    (p.push(new[next]), q.push(images[next]), c.push(true));
+                    all.push((new[next], (images[next], true)));
                     next += 1;
                 }
             }
-            (places, points, changed) = (p, q, c);
+            (places, (points, changed)) = all.into_iter().unzip();
         }
         let steps = steps(&places, &points);
         let to = |k: usize| if places[k].0 == places[k + 1].0 { points[k + 1] } else { points[k] };
