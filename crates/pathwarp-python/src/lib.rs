@@ -22,6 +22,8 @@ mod _native {
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
+        // NumPy's functions are looked up with the first array, which panics where Ctrl-C comes meanwhile: so that is done here.
+        drop(numpy::PyArray1::<f64>::zeros(m.py(), 0, false));
         m.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }
