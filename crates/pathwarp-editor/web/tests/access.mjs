@@ -1,5 +1,5 @@
 // Keyboard alone, names for screen readers, small and large screens, dark and light.
-import { AXE, becomes, check, choose, edit, folder, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { AXE, becomes, check, choose, edit, folder, middle, open, paths, quiet, sample, withoutPause } from "./harness.mjs";
 
 async function within(test, options) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
@@ -20,10 +20,11 @@ export const keyboard_alone = () => within(async (page) => {
   const key = await page.evaluate(() => document.activeElement.dataset.key);
   check(key, "no handle can be reached with Tab");
   const [x, y] = await middle(page, key);
-  await page.keyboard.press("Shift+ArrowUp");
-  await page.keyboard.press("ArrowRight");
+  await withoutPause(page, async () => {
+    await page.keyboard.press("Shift+ArrowUp");
+    await page.keyboard.press("ArrowRight");
+  });
   await page.waitForFunction(() => !document.querySelector("#undo").disabled);
-  await quiet(page);
   const [nx, ny] = await middle(page, key);
   check(Math.abs(nx - x - 1) < 0.6 && Math.abs(ny - y + 10) < 0.6, `moved by ${nx - x},${ny - y}`);
   check((await paths(page)) !== before, "the picture did not follow");
@@ -121,7 +122,7 @@ export async function axe_finds_nothing() {
       await page.keyboard.press("Escape");
       await page.keyboard.press("Control+s");
       await page.waitForSelector("#toast.on");
-      await page.waitForTimeout(300);
+      await page.evaluate(() => Promise.all(document.getAnimations().map((a) => a.finished)));
       await judge("with a message");
       await page.keyboard.press("Control+Shift+s");
       await judge("with the dialog for saving");

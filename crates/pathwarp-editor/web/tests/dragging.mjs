@@ -65,7 +65,7 @@ export const settings_of_text_shapes = async () => {
     await page.click("#start-over");
     await page.locator(".card", { hasText: /^Grid$/ }).click();
     await page.waitForFunction(() => document.querySelector("#steps").textContent.includes("Grid"));
-    await page.waitForTimeout(1000);
+    await quiet(page, 20);
     check((await page.textContent("#steps")).includes("Grid"), "an earlier answer took the place of a later choice");
     check(page.problems.length === 0, page.problems.join("; "));
   } finally {

@@ -1,7 +1,7 @@
 // Saving, opening again, drafts, dropped files, two pages, the end of the server.
-import { chmodSync, existsSync, readFileSync, readdirSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
-import { OWN, becomes, changes, check, choose, drag, edit, folder, middle, open, paths, program, quiet, root, sample } from "./harness.mjs";
+import { OWN, awaited, becomes, changes, check, choose, drag, edit, folder, middle, open, paths, program, quiet, root, sample, standIn } from "./harness.mjs";
 
 async function within(file, test, ...args) {
   const dir = folder({ "logo.svg": file ?? sample("logo.svg") });
@@ -104,7 +104,7 @@ export const the_program_ends_with_the_page = () => within(null, async ({ page, 
   await page.reload();
   await page.waitForSelector(".knob");
   await page.goto("about:blank");
-  const code = await Promise.race([editor.ended, new Promise((r) => setTimeout(() => r("still running"), 9000))]);
+  const code = await awaited(editor.ended, "the end of the program");
   check(code === 0, `exit ${code}`);
 });
 
@@ -121,49 +121,50 @@ export const a_port_is_chosen_and_ctrl_c_ends = async () => {
   const editor = await edit(`${dir}/logo.svg`, "--port", String(port));
   check(new URL(editor.address).port === String(port), editor.address);
   editor.child.kill("SIGINT");
-  const code = await Promise.race([editor.ended, new Promise((r) => setTimeout(() => r("still running"), 5000))]);
+  const code = await awaited(editor.ended, "the end of the program");
   check(code === 130, `exit ${code}`);
 };
 
 /** Starts the program with a stand-in for the browser, and ends it by Ctrl-C. Returns what it has said, and the addresses opened. */
 async function started(display, browser, ...args) {
-  const dir = folder({ "logo.svg": sample("logo.svg"), browser: '#!/bin/sh\necho "$1" >> opened\n' });
-  chmodSync(`${dir}/browser`, 0o755);
-  const env = { ...process.env, ...OWN, DISPLAY: display, WAYLAND_DISPLAY: "", BROWSER: browser ?? `${dir}/browser` };
+  const dir = folder({ "logo.svg": sample("logo.svg") });
+  const { path, opened } = standIn(dir);
+  const env = { ...process.env, ...OWN, DISPLAY: display, WAYLAND_DISPLAY: "", BROWSER: browser ?? path };
   const child = spawn(program, ["edit", "logo.svg", ...args], { cwd: dir, env, stdio: ["ignore", "pipe", "pipe"] });
-  let [out, said] = ["", ""];
-  child.stdout.on("data", (text) => (out += text));
+  let [out, said, address] = ["", "", ""];
+  opened.then((text) => (address = text));
   child.stderr.on("data", (text) => (said += text));
-  for (let i = 0; i < 100 && !out.includes("\n"); i++) await new Promise((r) => setTimeout(r, 50));
-  await new Promise((r) => setTimeout(r, 700));
+  await awaited(new Promise((resolve) => child.stdout.on("data", (text) => (out += text).includes("\n") && resolve())), "the address");
+  // The program answers when it has opened what it opens.
+  await awaited(fetch(out.trim()), "the page");
+  if (display && !browser && args.length === 0) await awaited(opened, "the browser");
   child.kill("SIGINT");
-  await new Promise((r) => child.once("close", r));
-  return { out, said, opened: existsSync(`${dir}/opened`) ? readFileSync(`${dir}/opened`, "utf8") : "" };
+  await awaited(new Promise((r) => child.once("close", r)), "the end of the program");
+  return { out, said, address };
 }
 
 /** The address is all that is printed; a browser opens only where it can be seen, and Ctrl-C needs no words. */
 export async function a_browser_is_opened_where_there_is_a_display() {
-  const address = /^http:\/\/127\.0\.0\.1:\d+\/\?token=\S+\n$/;
+  const line = /^http:\/\/127\.0\.0\.1:\d+\/\?token=\S+\n$/;
   const shown = await started(":99");
-  check(address.test(shown.out) && shown.opened === shown.out && shown.said === "", JSON.stringify(shown));
+  check(line.test(shown.out) && `${shown.address}\n` === shown.out && shown.said === "", JSON.stringify(shown));
   for (const [display, ...args] of [[""], [":99", "--no-open"]]) {
-    const { out, said, opened } = await started(display, undefined, ...args);
-    check(address.test(out) && opened === "" && said === "", `${display} ${args}: ${out}${said}${opened}`);
+    const { out, said, address } = await started(display, undefined, ...args);
+    check(line.test(out) && address === "" && said === "", `${display} ${args}: ${out}${said}${address}`);
   }
   const { out, said } = await started(":99", "/nothing/here");
-  check(address.test(out) && /^warning: no browser can be started/.test(said), out + said);
+  check(line.test(out) && /^warning: no browser can be started/.test(said), out + said);
 }
 
 export const a_program_that_was_stopped_goes_on = () => within(null, async ({ page, editor }) => {
   await drag(page, "shaper/0.0/2", 20, 30);
   editor.child.kill("SIGSTOP");
-  // Longer than the program waits for a page to come back.
+  // Longer than the program waits for a page to come back; any longer time will do.
   await page.waitForTimeout(6000);
   editor.child.kill("SIGCONT");
-  await page.waitForTimeout(500);
-  check(!(await page.isVisible("#gone")), "the page has lost the program");
   const before = await paths(page);
   await drag(page, "shaper/0.0/2", 20, 30);
+  check(!(await page.isVisible("#gone")), "the page has lost the program");
   check((await paths(page)) !== before, "the picture does not follow any more");
 });
 
@@ -286,8 +287,9 @@ export const nodes_are_shown = () => within(null, async ({ page }) => {
   const [x, y] = await middle(page, "shaper/0.0/2");
   await page.mouse.move(x, y);
   await page.mouse.down();
+  const still = await paths(page);
   for (let i = 1; i < 9; i++) await page.mouse.move(x + 3 * i, y - 4 * i);
-  await page.waitForTimeout(400);
+  await changes(page, still);
   const [, dragged] = await shown();
   check(dragged >= nodes, `${dragged} nodes while it is dragged`);
   await page.mouse.up();

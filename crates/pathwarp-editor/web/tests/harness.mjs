@@ -2,6 +2,7 @@
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, copyFileSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join, basename } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -17,6 +18,20 @@ const FLAGS = [
   // A page that is swapped in counts as one from elsewhere.
   ...(process.env.ASSETS ? ["--disable-features=LocalNetworkAccessChecks"] : []),
 ];
+
+/** The last resort, in ms: what has not happened by then never will, however busy a machine is. */
+const LAST_RESORT = 1000000;
+
+/** Waits for a promise that a hang would never keep. */
+export const awaited = (promise, what) => Promise.race([promise, new Promise((_, fail) => setTimeout(() => fail(new Error(`${what}: never`)), LAST_RESORT))]);
+
+/** A program in a folder that stands in for the browser, and a promise of the address that it is asked to open. */
+export function standIn(dir) {
+  const [path, socket] = [join(dir, "browser"), join(dir, "socket")];
+  writeFileSync(path, `#!${process.execPath}\nrequire("net").connect("${socket}").end(process.argv[2]);\n`, { mode: 0o755 });
+  const server = createServer().listen(socket).unref();
+  return { path, opened: new Promise((resolve) => server.once("connection", (c) => c.once("data", (text) => resolve(String(text))))) };
+}
 
 const temporary = [];
 
@@ -87,6 +102,7 @@ const launch = () => process.env.TESTED_IN === "firefox"
 export async function open(address, options = {}) {
   browser ??= launch();
   const context = await (await browser).newContext({ viewport: { width: 1280, height: 800 }, ...options });
+  context.setDefaultTimeout(LAST_RESORT);
   const page = await context.newPage();
   page.problems = [];
   page.requests = [];
@@ -132,13 +148,34 @@ export async function middle(page, key) {
 /** The handles of the page, by key. */
 export const keys = (page) => page.$$eval(".knob", (all) => all.map((k) => k.dataset.key));
 
-/** Waits until the server has nothing left to answer. */
-export async function quiet(page) {
-  await page.waitForTimeout(60);
-  await page.waitForFunction(() => !document.querySelector(".knob.held"));
-  await page.waitForTimeout(150);
-  // One answer may lead to the next question.
-  for (let i = 0; i < 2; i++) await page.waitForFunction(() => document.querySelector("#view").getAttribute("aria-busy") !== "true");
+/** Waits until the page holds no handle and asks the server nothing in so many frames, one after the other. */
+export const quiet = (page, frames = 6) => page.evaluate((frames) => new Promise((done) => {
+  let still = 0;
+  const look = () => {
+    const isBusy = document.querySelector(".knob.held") || document.querySelector("#view").getAttribute("aria-busy") === "true";
+    still = isBusy ? 0 : still + 1;
+    if (still > frames) done();
+    else requestAnimationFrame(look);
+  };
+  look();
+}), frames);
+
+/** Does something within what the page takes for a moment, however long it takes: keys that follow each other. */
+export async function withoutPause(page, act) {
+  await page.evaluate(() => {
+    const { setTimeout, clearTimeout } = window;
+    const waiting = new Map();
+    let last = 1e9;
+    window.setTimeout = (then) => (waiting.set(++last, then), last);
+    window.clearTimeout = (id) => waiting.delete(id) || clearTimeout(id);
+    window.goOn = () => {
+      Object.assign(window, { setTimeout, clearTimeout });
+      waiting.forEach((then) => then());
+    };
+  });
+  await act();
+  await page.evaluate(() => window.goOn());
+  await quiet(page);
 }
 
 /** Waits until the picture is another than this one. */
@@ -168,13 +205,8 @@ export async function choose(page, name, section = "") {
 }
 
 /** Waits until the picture is this one. */
-export async function becomes(page, picture, message) {
-  for (let i = 0; i < 100; i++) {
-    if ((await paths(page)) === picture) return;
-    await page.waitForTimeout(50);
-  }
-  throw new Error(message);
-}
+export const becomes = (page, picture, message) => page.waitForFunction((wanted) => Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) path"), (p) => p.getAttribute("d")).join("|") === wanted, picture)
+  .catch((e) => { throw new Error(`${message}: ${e.message}`); });
 
 export function check(condition, message) {
   if (!condition) throw new Error(message);

@@ -1,36 +1,33 @@
 // *Bend by hand…* as Inkscape calls it, without Inkscape: the program waits for the page and prints the drawing that the user keeps.
 import { spawn } from "node:child_process";
-import { chmodSync, existsSync, readFileSync, writeFileSync } from "node:fs";
-import { check, choose, drag, emptyFolder, open, paths, program, quiet } from "./harness.mjs";
+import { writeFileSync } from "node:fs";
+import { awaited, check, choose, drag, emptyFolder, open, paths, program, quiet, standIn } from "./harness.mjs";
 
 const DRAWING = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 200">
 <path id="a" d="M20,20h160v60h-160z"/><path id="b" style="fill:#c03030" d="M220,20h160v60h-160z"/></svg>`;
 
-/** Calls the effect. A program in the place of the browser writes the address of the page to a file. */
+/** Calls the effect. A program in the place of the browser tells the address of the page. */
 async function call(svg, ...ids) {
   const dir = emptyFolder();
   writeFileSync(`${dir}/ink_ext_1.svg`, svg);
-  writeFileSync(`${dir}/browser`, `#!/bin/sh\necho "$1" > ${dir}/address.new && mv ${dir}/address.new ${dir}/address\n`);
-  chmodSync(`${dir}/browser`, 0o755);
+  const browser = standIn(dir);
   const args = [...ids.map((id) => `--id=${id}`), "--inkscape-action=hand", `${dir}/ink_ext_1.svg`];
-  const child = spawn(program, args, { stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, BROWSER: `${dir}/browser`, DOCUMENT_PATH: "/home/me/poster.svg" } });
+  const child = spawn(program, args, { stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, BROWSER: browser.path, DOCUMENT_PATH: "/home/me/poster.svg" } });
   process.once("exit", () => child.kill("SIGKILL"));
   let [out, said] = ["", ""];
   child.stdout.on("data", (text) => (out += text));
   child.stderr.on("data", (text) => (said += text));
   const ended = new Promise((resolve) => child.once("close", (code) => resolve({ code, out, said })));
-  for (let i = 0; i < 200 && !existsSync(`${dir}/address`); i++) await new Promise((r) => setTimeout(r, 50));
-  check(existsSync(`${dir}/address`), `no page was opened: ${said}`);
-  return { page: await open(readFileSync(`${dir}/address`, "utf8").trim()), ended };
+  const opened = await awaited(Promise.race([browser.opened, ended]), "the page");
+  check(typeof opened === "string", `no page was opened: ${said}`);
+  return { page: await open(opened), ended };
 }
-
-const within = (promise) => Promise.race([promise, new Promise((r) => setTimeout(() => r({ said: "still running" }), 15000))]);
 
 async function kept(svg, act, ...ids) {
   const { page, ended } = await call(svg, ...ids);
   await act(page);
   await page.click("#save");
-  const { code, out, said } = await within(ended);
+  const { code, out, said } = await awaited(ended, "the end of the program");
   check(code === 0 && said === "", `${code}: ${said}`);
   await page.waitForFunction(() => document.querySelector("#gone").textContent.includes("Inkscape has the result"));
   check(page.problems.length === 0, page.problems.join("; "));
@@ -72,6 +69,6 @@ export async function inkscape_keeps_its_drawing_when_the_page_is_closed() {
   await drag(page, "shaper/0.0/2", 30, -40);
   check((await paths(page)) !== before, "the picture did not follow");
   await page.context().close();
-  const { code, out, said } = await within(ended);
+  const { code, out, said } = await awaited(ended, "the end of the program");
   check(code === 0 && out === "" && said === "", `${code}: ${out}${said}`);
 }

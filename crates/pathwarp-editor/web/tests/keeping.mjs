@@ -1,7 +1,7 @@
 // Nothing is lost: drafts of several drawings, typed values, the end of the program and its return, folders that cannot be written.
 import { createServer } from "node:http";
 import { chmodSync, copyFileSync, existsSync, readFileSync, readdirSync, rmSync, statSync } from "node:fs";
-import { becomes, check, choose, drag, editWith, emptyFolder, folder, open, paths, program, quiet, sample } from "./harness.mjs";
+import { awaited, becomes, check, choose, drag, editWith, emptyFolder, folder, open, paths, program, quiet, sample } from "./harness.mjs";
 
 /** Runs a test on a logo, with a folder for state of its own. `start` starts the program again. */
 async function within(test, variables = {}, isReadOnly = false) {
@@ -121,7 +121,7 @@ export const without_the_program_nothing_changes = () => within(async ({ dir, pa
     data.items.add(new File(["<svg/>"], "dropped.svg"));
     document.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
   });
-  await page.waitForTimeout(300);
+  await quiet(page, 20);
   check([await paths(page), (await stepNames(page)).join()].join() === before.join(), "the page has changed");
   const again = await start();
   check(again.address === editor.address, `${again.address} is not ${editor.address}`);
@@ -158,8 +158,12 @@ export const strangers_at_the_port_learn_no_token = () => within(async ({ page, 
   await editor.stop();
   await page.waitForSelector("#gone:not([hidden])");
   const asked = [];
+  // Once it has looked for the program three times, it would have told its token.
+  let enough;
+  const looked = new Promise((resolve) => (enough = resolve));
   const stranger = createServer((request, answer) => {
     asked.push(`${request.url} ${JSON.stringify(request.headers)}`);
+    if (asked.length > 2) enough();
     answer.end("0".repeat(64));
   });
   stranger.on("upgrade", (request, socket) => {
@@ -168,9 +172,8 @@ export const strangers_at_the_port_learn_no_token = () => within(async ({ page, 
   });
   await new Promise((done) => stranger.listen(Number(port), "127.0.0.1", done));
   try {
-    for (let i = 0; i < 100 && asked.length === 0; i++) await page.waitForTimeout(100);
-    await page.waitForTimeout(2500);
-    check(asked.length > 0 && asked.every((a) => !a.includes(token)), asked.join("\n"));
+    await awaited(looked, "the page looks for the program");
+    check(asked.every((a) => !a.includes(token)), asked.join("\n"));
     check(await page.isVisible("#gone"), "the page takes a stranger for the program");
     const again = new URL((await start()).address);
     check(again.port !== port && again.searchParams.get("token") !== token, String(again));

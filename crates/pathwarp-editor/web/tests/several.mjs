@@ -1,5 +1,5 @@
 // Several points at once: selected by a frame, clicks or a line, and moved, turned and scaled together.
-import { becomes, changes, check, choose, drag, edit, folder, keys, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { becomes, changes, check, choose, drag, edit, folder, keys, middle, open, paths, quiet, sample, withoutPause } from "./harness.mjs";
 
 async function within(shape, test) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
@@ -71,11 +71,11 @@ export const points_in_a_frame = () => within("Grid", async (page) => {
 
   await page.locator('.knob[data-key="at/5"]').focus();
   const unmoved = await paths(page);
-  for (let i = 0; i < 3; i++) await page.keyboard.press("Shift+ArrowLeft");
-  await changes(page, unmoved);
   // Keys that follow each other are one change after a pause.
-  await page.waitForTimeout(700);
-  await quiet(page);
+  await withoutPause(page, async () => {
+    for (let i = 0; i < 3; i++) await page.keyboard.press("Shift+ArrowLeft");
+    await changes(page, unmoved);
+  });
   moved(scaled, await places(page), (k, [x, y]) => (mine.includes(k) ? [x - 30, y] : null));
   for (let i = 0; i < 3; i++) await page.click("#undo");
   await becomes(page, picture, "each was to be one change");
