@@ -1,18 +1,17 @@
 //! The browser, for tests of the editor's page and of how others read drawings.
 
 use crate::support::root;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use pathwarp_raster::{Pixmap, decode_png};
+use serde_json::{Value, json};
+use std::io::Write as _;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
-/// Chromium, if it is installed.
-pub fn chromium() -> Option<&'static str> {
-    let browsers = [
-        "/usr/bin/chromium-headless-shell",
-        "/usr/bin/chromium",
-        "/usr/bin/chromium-browser",
-        "/usr/bin/google-chrome",
-    ];
-    browsers.into_iter().find(|b| Path::new(b).exists())
+fn has_chromium() -> bool {
+    let names = ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"];
+    names.iter().any(|name| Path::new("/usr/bin").join(name).exists())
 }
 
 /// Whether Firefox is where the page's tests look for it.
@@ -28,9 +27,21 @@ pub fn missing() -> Option<&'static str> {
         Some("node")
     } else if !["playwright-core", "ws", "axe-core"].iter().all(|name| modules.join(name).is_dir()) {
         Some("playwright-core, ws and axe-core (npm ci in crates/pathwarp-editor/web)")
-    } else if chromium().is_none() {
+    } else if !has_chromium() {
         Some("Chromium")
     } else {
         None
     }
+}
+
+/// What Chromium shows of a page of this size in px. The script starts it anew where it takes no picture.
+pub fn shown(page: &Path, [width, height]: [usize; 2]) -> Pixmap {
+    let mut node = Command::new("node");
+    node.arg(root().join("crates/xtask/src/browser/pages.mjs")).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut node = node.spawn().unwrap();
+    let asked = json!({ "file": page, "size": [width, height], "scale": 1 });
+    writeln!(node.stdin.take().unwrap(), "{asked}").unwrap();
+    let answer: Value = serde_json::from_slice(&node.wait_with_output().unwrap().stdout).unwrap();
+    let png = answer["png"].as_str().unwrap_or_else(|| panic!("{}: {answer}", page.display()));
+    decode_png(&STANDARD.decode(png).unwrap()).unwrap()
 }

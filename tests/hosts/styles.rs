@@ -1,8 +1,8 @@
 //! Style that usvg does not read, as Chromium shows it: a drawing moved by the browser beside the drawing moved by pathwarp.
 //!
-//! Skipped where Chromium is not installed.
+//! Skipped where the browser is not installed.
 
-use crate::browser::chromium;
+use crate::browser;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::deform::Registry;
@@ -15,7 +15,6 @@ use pathwarp_svg::{Document, ReadOptions, WarpOptions};
 use resvg::tiny_skia::IntRect;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 const MATRIX: &str = "0.8,0.2,-0.3,0.9,20,4";
 
@@ -126,7 +125,7 @@ const COLUMNS: usize = 6;
 
 /// Shows drawings side by side in Chromium, each under a transform of the browser.
 fn shown(drawings: &[String], transform: &str, name: &str, folder: &Path) -> Pixmap {
-    let mut page = "<body style='margin:0'>".to_owned();
+    let mut page = "<body style='margin:0;background:white'>".to_owned();
     for (i, svg) in drawings.iter().enumerate() {
         let file = format!("{name}{i}.svg");
         fs::write(folder.join(&file), svg).unwrap();
@@ -136,32 +135,9 @@ fn shown(drawings: &[String], transform: &str, name: &str, folder: &Path) -> Pix
              style='width:{SIDE}px;transform-origin:0 0;transform:{transform}'></div>"
         );
     }
-    let (html, png) = (folder.join(format!("{name}.html")), folder.join(format!("{name}.png")));
+    let html = folder.join(format!("{name}.html"));
     fs::write(&html, page).unwrap();
-    let attempt = |number: usize| {
-        let out = Command::new(chromium().unwrap())
-            .args([
-                "--headless",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--hide-scrollbars",
-                "--allow-file-access-from-files",
-            ])
-            .arg(format!("--window-size={},{}", COLUMNS * SIDE, drawings.len().div_ceil(COLUMNS) * SIDE))
-            .arg(format!("--user-data-dir={}", folder.join(format!("profile{number}")).display()))
-            .arg(format!("--screenshot={}", png.display()))
-            .arg(format!("file://{}", html.display()))
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&out.stderr);
-        if !out.status.success() {
-            return Err(said.into_owned());
-        }
-        fs::read(&png).map_err(|e| format!("{e}: {said}"))
-    };
-    // On a busy machine a browser now and then takes no picture; a new one does.
-    let picture = attempt(0).or_else(|_| attempt(1)).or_else(|_| attempt(2)).unwrap();
-    decode_png(&picture).unwrap()
+    browser::shown(&html, [COLUMNS * SIDE, drawings.len().div_ceil(COLUMNS) * SIDE])
 }
 
 /// For each drawing, the fraction of its pixels that differ by more than antialiasing.
@@ -178,8 +154,8 @@ fn differences(a: &Pixmap, b: &Pixmap, drawings: usize) -> Vec<f64> {
 
 #[test]
 fn style_is_read_as_browsers_read_it() {
-    if chromium().is_none() {
-        crate::support::skipped("style is not compared with browsers without Chromium");
+    if let Some(what) = browser::missing() {
+        crate::support::skipped(format_args!("style is not compared with browsers without {what}"));
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -5,7 +5,6 @@ use crate::support::xcf::Counted;
 use crate::{MEMORY, alone};
 use pathwarp_gimp::{GimpPath, open, read, rewrite, salvage};
 use serde_json::Value;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 fn folders() -> Vec<PathBuf> {
@@ -58,10 +57,11 @@ fn sound_files_agree_bit_for_bit_and_damaged_ones_fail() {
     for (name, bytes, expected) in samples("", &[".xcf", ".xcf.gz"]) {
         MEMORY.reset_peak_usage();
         let before = MEMORY.current_usage();
-        let mut counted = Counted(Cursor::new(&bytes), 0);
-        let found = open(&mut counted);
-        let (count, peak) = (counted.1, MEMORY.peak_usage() - before);
-        assert!(count <= 2 * bytes.len() && peak < 50 << 20, "{name}: {count} bytes are read, and {peak} bytes held");
+        let mut file = Counted::of(&bytes);
+        let found = open(&mut file);
+        let peak = MEMORY.peak_usage() - before;
+        file.assert_little(&name);
+        assert!(file.bytes <= 2 * bytes.len() && peak < 50 << 20, "{name}: {} bytes are read, and {peak} bytes held", file.bytes);
         if expected["paths"].is_array() {
             same(&name, &found.unwrap_or_else(|e| panic!("{name}: {e}")).paths, &expected);
             good += 1;

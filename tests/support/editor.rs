@@ -1,12 +1,12 @@
 //! The editor as its page meets it: the program, and messages over its socket.
 
+use super::events::LAST_RESORT;
 use super::pathwarp_program;
 use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
 
 /// A running editor. It ends with the test.
 pub struct Editor {
@@ -14,6 +14,8 @@ pub struct Editor {
     pub port: u16,
     /// The token's query.
     pub query: String,
+    /// Without a page the editor ends after seconds, which a test may take between two requests.
+    page: Option<TcpStream>,
 }
 
 impl Drop for Editor {
@@ -42,12 +44,14 @@ impl Editor {
         let address = address.expect("the editor names its address");
         let (port, query) = address.split_once("/?").unwrap();
         let query = query.split_whitespace().next().unwrap().to_owned();
-        Self { child, port: port.parse().unwrap(), query }
+        let mut out = Self { child, port: port.parse().unwrap(), query, page: None };
+        out.page = Some(out.socket());
+        out
     }
 
     pub fn connect(&self) -> TcpStream {
         let stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(200))).unwrap();
+        stream.set_read_timeout(Some(LAST_RESORT)).unwrap();
         stream
     }
 

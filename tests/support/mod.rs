@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test file uses another part of this")]
 
 pub mod editor;
+pub mod events;
 pub mod geometry;
 pub mod gimp;
 #[cfg(unix)]
@@ -109,6 +110,14 @@ pub fn words(line: &str) -> Vec<String> {
     }
     out.extend(word);
     out
+}
+
+/// The words of an example, whose outputs are called `out.…`, with these in a folder.
+pub fn words_into(folder: &Path, example: &str) -> Vec<String> {
+    let inside = |w: String| {
+        if w.starts_with("out") && w.contains('.') { folder.join(w).display().to_string() } else { w }
+    };
+    words(example).into_iter().map(inside).collect()
 }
 
 /// A drawing of Inkscape's with the given content.

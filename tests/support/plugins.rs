@@ -1,9 +1,10 @@
 //! A folder of plug-ins, and runs of the program with it.
 
+use crate::support::events::{Heard, Pipe, awaited};
 use crate::support::pathwarp_program;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
@@ -12,6 +13,8 @@ pub struct Scratch {
     pub dir: TempDir,
     /// Seconds that a program has for an answer: enough on any machine, unless a test waits for them.
     pub seconds: &'static str,
+    /// Held by the processes of scripts that hold it.
+    held: Pipe,
 }
 
 impl Scratch {
@@ -20,7 +23,19 @@ impl Scratch {
         fs::create_dir(dir.path().join("plug-ins")).unwrap();
         let drawing = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='M10,10 C40,0 60,30 90,10 L80,90 Q40,60 10,80 Z'/></svg>";
         fs::write(dir.path().join("in.svg"), drawing).unwrap();
-        Self { dir, seconds: "60" }
+        let held = Pipe::new(dir.path().join("held"));
+        Self { dir, seconds: "1000", held }
+    }
+
+    /// The same shell script, with a pipe that is open until the last of its processes has ended. It needs a listener, or else waits.
+    pub fn holding(&self, script: &str) -> String {
+        let open = format!("#!/bin/sh\nexec 9>'{}'\n", self.held.path().display());
+        script.replacen("#!/bin/sh\n", &open, 1)
+    }
+
+    /// Listens to the scripts that hold the pipe.
+    pub fn listen(&self) -> Heard {
+        self.held.hear()
     }
 
     pub fn file(&self, name: &str) -> PathBuf {
@@ -46,7 +61,8 @@ impl Scratch {
     }
 
     pub fn run(&self, args: &[&str]) -> Output {
-        self.command(args).output().unwrap()
+        let mut command = self.command(args);
+        awaited("the program ends", move || command.output()).unwrap()
     }
 
     /// Runs the program, asserts its exit code, and returns standard output and standard error.
@@ -85,15 +101,6 @@ done
 "#,
         entry = entry(name)
     )
-}
-
-/// Returns `true` if a process has `word` in its command line.
-pub fn is_running(word: &str) -> bool {
-    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
-    let of = |p: &Path| fs::read(p.join("cmdline")).unwrap_or_default();
-    processes
-        .filter(|p| p.file_name().to_str().is_some_and(|n| n.bytes().all(|b| b.is_ascii_digit())))
-        .any(|p| text(&of(&p.path())).contains(word))
 }
 
 /// The path of Python 3, if there is one.

@@ -2,22 +2,48 @@
 #![allow(dead_code, reason = "every test file uses a part of this")]
 
 use pathwarp_gimp::{GimpPath, Stroke};
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Cursor, Read, Result, Seek, SeekFrom};
 
-/// A file that counts the bytes read from it.
-pub(crate) struct Counted<F>(pub(crate) F, pub(crate) usize);
+/// A file that counts what is read of it.
+pub(crate) struct Counted<R> {
+    file: R,
+    pub(crate) bytes: usize,
+    /// Times that it was read or sought in.
+    pub(crate) calls: usize,
+}
 
-impl<F: Read> Read for Counted<F> {
-    fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
-        let n = self.0.read(to)?;
-        self.1 += n;
+impl<R> Counted<R> {
+    pub(crate) fn new(file: R) -> Self {
+        Self { file, bytes: 0, calls: 0 }
+    }
+}
+
+impl<'a> Counted<Cursor<&'a [u8]>> {
+    pub(crate) fn of(bytes: &'a [u8]) -> Self {
+        Self::new(Cursor::new(bytes))
+    }
+
+    /// Asserts that reading took a time in proportion to the file: no number in it asks for more calls than there are bytes.
+    #[track_caller]
+    pub(crate) fn assert_little(&self, of: &str) {
+        let most = self.file.get_ref().len() + 64;
+        assert!(self.calls <= most, "{of}: {} calls for {most} bytes", self.calls);
+    }
+}
+
+impl<R: Read> Read for Counted<R> {
+    fn read(&mut self, to: &mut [u8]) -> Result<usize> {
+        let n = self.file.read(to)?;
+        self.bytes += n;
+        self.calls += 1;
         Ok(n)
     }
 }
 
-impl<F: Seek> Seek for Counted<F> {
-    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
-        self.0.seek(to)
+impl<R: Seek> Seek for Counted<R> {
+    fn seek(&mut self, to: SeekFrom) -> Result<u64> {
+        self.calls += 1;
+        self.file.seek(to)
     }
 }
 

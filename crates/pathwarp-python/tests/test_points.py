@@ -140,4 +140,4 @@ def _mapped(_):
 def test_a_forked_process_has_its_own_threads():
     here = _mapped(0)
     with multiprocessing.get_context("fork").Pool(2) as pool:
-        assert pool.map_async(_mapped, range(4)).get(timeout=60) == [here] * 4
+        assert pool.map_async(_mapped, range(4)).get(timeout=1000) == [here] * 4

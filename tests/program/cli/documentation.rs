@@ -1,6 +1,6 @@
 //! Every command line in help runs, and help knows every deformation.
 
-use crate::support::{expect_code, words};
+use crate::support::{expect_code, words_into};
 use std::fs;
 use std::path::Path;
 
@@ -17,11 +17,7 @@ fn every_example_in_help_runs() {
 
 /// Runs a command line of the documentation with its output in `dir`.
 fn run_into(dir: &Path, command: &str) {
-    let inside = |w: String| {
-        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w }
-    };
-    let args: Vec<String> = words(command).into_iter().map(inside).collect();
-    expect_code(0, &args);
+    expect_code(0, &words_into(dir, command));
     // A drawing, or of a photograph a photograph.
     let out = dir.join(if command.ends_with(" -o out.jpg") { "out.jpg" } else { "out.svg" });
     let result = fs::read(&out).unwrap();

@@ -5,31 +5,30 @@
 #![cfg(unix)]
 
 use super::common::{files_below, text};
+use crate::support::events::Pipe;
 use crate::support::{pathwarp_in, pathwarp_program, sample, start_in};
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::Path;
 use std::process::{Child, Command};
-use std::time::Duration;
 
 /// Batches that are disturbed, each at its own moment, unless the environment asks for more.
 const MOMENTS: u32 = 12;
 /// Inputs of a batch.
 const FILES: usize = 16;
 
-const BATCH: [&str; 11] = [
-    "warp",
-    "--style",
-    "flag",
-    "-r",
-    "art",
-    "--out-dir",
-    "out",
-    "--preview",
-    "out/{stem}.png",
-    "--report",
-    "out/r.json",
-];
+const BATCH: [&str; 9] =
+    ["warp", "--style", "flag", "--out-dir", "out", "--preview", "out/{stem}.png", "--report", "out/r.json"];
+
+/// The batch's words: the inputs by name, as a pipe among them is not found in a folder.
+fn batch() -> Vec<String> {
+    BATCH.iter().map(|w| (*w).to_owned()).chain((0..FILES).map(|i| format!("art/{i:03}.svg"))).collect()
+}
+
+fn run_batch(folder: &Path) -> std::process::Output {
+    pathwarp_in(folder, &batch().iter().map(String::as_str).collect::<Vec<_>>(), b"")
+}
 
 fn moments() -> u32 {
     std::env::var("PATHWARP_FAULTS").ok().and_then(|n| n.parse().ok()).unwrap_or(MOMENTS)
@@ -45,7 +44,7 @@ fn artwork(folder: &Path) {
 
 /// The files of an undisturbed batch.
 fn undisturbed(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let out = pathwarp_in(folder, &BATCH, b"");
+    let out = run_batch(folder);
     assert!(out.status.success(), "{}", text(&out.stderr));
     let all = contents(&folder.join("out"));
     assert_eq!(all.len(), 2 * FILES + 1);
@@ -53,15 +52,22 @@ fn undisturbed(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
-/// Waits until a batch has written a part of its files, and a little longer. The golden ratio spreads the moments evenly.
-fn wait_for(moment: u32, batch: &mut Child, folder: &Path) {
+/// Starts a batch, and waits until it reads one of its inputs, which is a pipe. The golden ratio spreads these evenly over the others;
+/// it is never the first, which is finished before the others are begun.
+fn start_up_to(moment: u32, folder: &Path) -> (Child, File) {
     let part = (f64::from(moment) * 0.618_033_988_749_895).fract();
-    let (wanted, out) = (((2 * FILES) as f64 * part) as usize, folder.join("out"));
-    let written = || if out.exists() { files_below(&out) } else { Vec::new() };
-    while written().iter().filter(|f| !f.starts_with('.')).count() < wanted && batch.try_wait().unwrap().is_none() {
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    std::thread::sleep(Duration::from_millis(u64::from(moment % 16)));
+    let input = folder.join(format!("art/{:03}.svg", 1 + ((FILES - 1) as f64 * part) as usize));
+    fs::remove_file(&input).unwrap();
+    let pipe = Pipe::new(input);
+    let child = start_in(folder, &batch().iter().map(String::as_str).collect::<Vec<_>>());
+    let open = pipe.is_read("the batch comes to the pipe");
+    (child, open)
+}
+
+/// Lets a batch go on that waits for an input.
+fn go_on(mut pipe: File) {
+    // A batch that has ended breaks the pipe.
+    let _ = pipe.write_all(&fs::read(sample("logo.svg")).unwrap());
 }
 
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -95,17 +101,25 @@ fn killed_batches_leave_whole_files() {
     let (mut some, mut left_over) = (0, 0);
     for moment in 0..moments() {
         let signal = ["KILL", "TERM", "INT"][moment as usize % 3];
-        let mut child = start_in(dir.path(), &BATCH);
-        wait_for(moment, &mut child, dir.path());
+        let (mut child, pipe) = start_up_to(moment, dir.path());
+        // Every second batch ends where it waits, the others somewhere behind.
+        let waiting = if moment % 2 == 0 {
+            Some(pipe)
+        } else {
+            go_on(pipe);
+            None
+        };
         let _ = Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status();
         child.wait().unwrap();
+        drop(waiting);
+        artwork(dir.path());
         let (named, temporary) = assert_whole(dir.path(), &whole, &format!("{signal} at moment {moment}"));
         some += usize::from(named > 0 && named < whole.len());
         left_over += temporary;
         assert!(signal == "KILL" || temporary == 0, "{signal} leaves temporary files");
-        if moment % 2 == 0 {
+        if moment % 4 < 2 {
             // The next run cleans up and ends as if nothing had happened.
-            let out = pathwarp_in(dir.path(), &BATCH, b"");
+            let out = run_batch(dir.path());
             assert!(out.status.success(), "{}", text(&out.stderr));
             let after = assert_whole(dir.path(), &whole, &format!("after {signal} at moment {moment}"));
             assert_eq!(after, (whole.len(), 0), "after {signal} at moment {moment}");
@@ -123,11 +137,11 @@ fn inputs_may_vanish() {
     let whole = undisturbed(dir.path());
     for moment in 0..moments().div_ceil(4) {
         artwork(dir.path());
-        let mut child = start_in(dir.path(), &BATCH);
-        wait_for(moment, &mut child, dir.path());
+        let (child, pipe) = start_up_to(moment, dir.path());
         for i in (0..FILES).filter(|i| i % 3 == moment as usize % 3) {
             let _ = fs::remove_file(dir.path().join(format!("art/{i:03}.svg")));
         }
+        go_on(pipe);
         let end = child.wait_with_output().unwrap();
         assert!(matches!(end.status.code(), Some(0 | 1)), "{}", text(&end.stderr));
         let (_, temporary) = assert_whole(dir.path(), &whole, "vanished inputs");
@@ -148,7 +162,7 @@ fn a_write_that_fails_leaves_nothing_of_its_file() {
         let end = Command::new("sh")
             .args(["-c", &script, "sh"])
             .arg(pathwarp_program())
-            .args(BATCH)
+            .args(batch())
             .current_dir(dir.path())
             .output();
         let end = end.unwrap();
@@ -175,7 +189,7 @@ fn full_and_read_only_file_systems() {
     let unshared = Command::new("unshare")
         .args(["--user", "--map-root-user", "--mount", "sh", "-c", script, "sh"])
         .arg(pathwarp_program())
-        .args(BATCH)
+        .args(batch())
         .current_dir(dir.path())
         .output();
     let Some(end) = unshared.ok().filter(|o| o.status.success()) else {

@@ -106,7 +106,7 @@ fn solids_take_drawings_from_pipes() {
     let folder = folder();
     let done = shell(
         &folder,
-        "mkfifo p.svg && (cat a.svg > p.svg &) && timeout 20 pathwarp solid ffd p.svg --extrude 5 -o o.obj",
+        "mkfifo p.svg && (cat a.svg > p.svg &) && timeout 1000 pathwarp solid ffd p.svg --extrude 5 -o o.obj",
     );
     assert!(done.status.success(), "{done:?}");
 }

@@ -1,62 +1,61 @@
 //! Plug-ins that fail: each is ended within its limits and named, nothing is written, and no process is left.
 
-use crate::support::plugins::{Scratch, entry, is_running, script};
+use crate::support::plugins::{Scratch, entry, script};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::time::{Duration, Instant};
+
+/// The seconds of a program that is silent, and what is said of it. A shell starts in a thousandth of that.
+const SILENT: (&str, &str) = ("10", "within 10 seconds");
 
 /// Runs the plug-in `bad` and asserts that the error names it and says `words`.
 fn fails(kind: &str, scratch: &Scratch, words: &[&str]) {
-    let started = Instant::now();
     let (_, stderr) = scratch.expect(3, &["bad", "in.svg", "-o", "out.svg"]);
     for word in [&["pathwarp-bad"], words].concat() {
         assert!(stderr.contains(word), "{kind}: `{word}` not in:\n{stderr}");
     }
     assert!(!scratch.file("out.svg").exists(), "{kind}");
-    assert!(started.elapsed() < Duration::from_secs(300), "{kind}: {:?}", started.elapsed());
-    let here = scratch.dir.path().display().to_string();
-    let gone = (0..3000).any(|_| {
-        let running = is_running(&here);
-        if running {
-            std::thread::sleep(Duration::from_millis(10));
-        }
-        !running
-    });
-    assert!(gone, "{kind}: a process of {here} is left");
 }
 
-/// A folder for a fault. Only a program that is silent is given two seconds.
+/// A folder for a fault.
 fn scratch(words: &[&str]) -> Scratch {
-    let scratch = Scratch::new();
-    if words.iter().any(|w| w.ends_with("2 seconds")) { Scratch { seconds: "2", ..scratch } } else { scratch }
+    let mut scratch = Scratch::new();
+    if words.contains(&SILENT.1) {
+        scratch.seconds = SILENT.0;
+    }
+    scratch
 }
 
 /// A fault of the script `text` while it is in use.
 fn fails_in_use(kind: &str, text: &str, words: &[&str]) {
     let scratch = scratch(words);
-    // A word in the command line of every process of this plug-in.
-    let text = text.replace("MARK", &scratch.dir.path().display().to_string());
-    scratch.install("pathwarp-bad", &text);
+    scratch.install("pathwarp-bad", &scratch.holding(text));
+    let processes = scratch.listen();
     fails(kind, &scratch, words);
     // The entry is in order, so that it is listed.
     let (list, _) = scratch.expect(0, &["list"]);
     assert!(list.contains("bad  ") && !list.contains("Broken"), "{kind}: {list}");
+    processes.end(&format!("{kind}: no process is left"));
 }
 
 /// A fault of the script `text` before there is an entry: it is listed as broken.
 fn fails_at_start(kind: &str, text: &str, mode: u32, words: &[&str]) {
     let scratch = scratch(words);
-    let text = text.replace("MARK", &scratch.dir.path().display().to_string());
-    let file = scratch.install("pathwarp-bad", &text);
+    let file = scratch.install("pathwarp-bad", &scratch.holding(text));
     fs::set_permissions(&file, fs::Permissions::from_mode(mode)).unwrap();
-    fails(kind, &scratch, words);
-    let (list, _) = scratch.expect(0, &["list"]);
+    let processes = scratch.listen();
+    // A silent program is waited for three times, so all of these wait together.
+    let ((list, _), (check, stderr)) = std::thread::scope(|s| {
+        let list = s.spawn(|| scratch.expect(0, &["list"]));
+        let check = s.spawn(|| scratch.expect(3, &["check", "bad"]));
+        fails(kind, &scratch, words);
+        (list.join().unwrap(), check.join().unwrap())
+    });
     let (_, broken) = list.split_once("Broken plug-ins").unwrap_or_else(|| panic!("{kind}: {list}"));
     for word in words {
         assert!(broken.contains(word), "{kind}: `{word}` not in:\n{list}");
     }
-    let (check, stderr) = scratch.expect(3, &["check", "bad"]);
     assert!(check.is_empty() && stderr.contains(words[0]), "{kind}: {check}{stderr}");
+    processes.end(&format!("{kind}: no process is left"));
 }
 
 /// A script that shows its entry and then does this.
@@ -78,17 +77,17 @@ fn crashes() {
 
 #[test]
 fn hangs() {
-    let at_build = then("exec sh -c 'read x; sleep 1000; : MARK'");
-    let at_points = script("bad", "sh -c 'sleep 1000; : MARK'");
-    let before_its_entry = "#!/bin/sh\nsh -c 'sleep 1000; : MARK'\n";
+    let at_build = then("exec sh -c 'read x; sleep 9999'");
+    let at_points = script("bad", "sh -c 'sleep 9999'");
+    let before_its_entry = "#!/bin/sh\nsh -c 'sleep 9999'\n";
     // Signals that can be caught do not matter.
-    let stubborn = then("trap '' TERM INT HUP; sh -c 'sleep 1000; : MARK'");
+    let stubborn = then("trap '' TERM INT HUP; sh -c 'sleep 9999'");
     // All of them wait, so they wait together.
     std::thread::scope(|s| {
-        s.spawn(|| fails_in_use("at build", &at_build, &["`build` within 2 seconds"]));
-        s.spawn(|| fails_in_use("at points", &at_points, &["points within 2 seconds"]));
-        s.spawn(|| fails_at_start("before its entry", before_its_entry, 0o755, &["entry as JSON", "2 seconds"]));
-        s.spawn(|| fails_in_use("stubbornly", &stubborn, &["within 2 seconds"]));
+        s.spawn(|| fails_in_use("at build", &at_build, &["the answer to `build`", SILENT.1]));
+        s.spawn(|| fails_in_use("at points", &at_points, &["points", SILENT.1]));
+        s.spawn(|| fails_at_start("before its entry", before_its_entry, 0o755, &["entry as JSON", SILENT.1]));
+        s.spawn(|| fails_in_use("stubbornly", &stubborn, &[SILENT.1]));
     });
 }
 
@@ -148,7 +147,7 @@ fn wrong_entries() {
 #[test]
 fn wrong_counts_and_values() {
     fails_in_use("too many", &script("bad", "echo $line; [ $i = 0 ] && echo 5 5"), &["is followed by"]);
-    fails_in_use("too few", &script("bad", "[ $i = 0 ] || echo $line"), &["within 2 seconds"]);
+    fails_in_use("too few", &script("bad", "[ $i = 0 ] || echo $line"), &[SILENT.1]);
     fails_in_use("NaN", &script("bad", "echo nan 3"), &["NaN or infinity for the point"]);
     fails_in_use("infinity", &script("bad", "echo 3 inf"), &["NaN or infinity for the point"]);
     fails_in_use("refusal", &script("bad", "echo error no ink left"), &["no ink left"]);
@@ -156,17 +155,9 @@ fn wrong_counts_and_values() {
 
 #[test]
 fn closed_pipes_and_children() {
-    fails_in_use(
-        "closes its input",
-        &then("exec <&-; exec sh -c 'sleep 1000; : MARK'"),
-        &["closed its standard input"],
-    );
-    fails_in_use(
-        "closes its output",
-        &then("exec >&-; exec sh -c 'sleep 1000; : MARK'"),
-        &["closed its standard output"],
-    );
-    let forks = then("sh -c 'sleep 1000; : MARK' & exit 4");
+    fails_in_use("closes its input", &then("exec <&-; exec sh -c 'sleep 9999'"), &["closed its standard input"]);
+    fails_in_use("closes its output", &then("exec >&-; exec sh -c 'sleep 9999'"), &["closed its standard output"]);
+    let forks = then("sh -c 'sleep 9999' & exit 4");
     fails_in_use("leaves a child that holds the pipes", &forks, &["exit status: 4"]);
 }
 

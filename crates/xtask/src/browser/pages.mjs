@@ -9,9 +9,10 @@ const { chromium } = createRequire(new URL("../../../pathwarp-editor/web/package
 const executablePath = ["/usr/bin/chromium-headless-shell", "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((p) => existsSync(p));
 // Letters have their exact places and no coloured edges, and linked files are read.
 const args = ["--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--allow-file-access-from-files", "--font-render-hinting=none", "--disable-lcd-text"];
-const TIMEOUT = 60000;
+// The last resort in ms: a browser that does nothing for so long hangs, on any machine.
+const TIMEOUT = 1000000;
 // On a busy machine a browser now and then takes no picture ("Unable to capture screenshot"); a new one does.
-const ATTEMPTS = 3;
+const ATTEMPTS = 10;
 
 /** The page's extent in px, and the matrix from user units to px. */
 const asked = () => {
