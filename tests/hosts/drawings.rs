@@ -39,7 +39,7 @@ fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
         }
     }
     fs::write(art.join("broken.svg"), "<svg xmlns='http://www.w3.org/2000/svg'><g></svg>").unwrap();
-    // The arguments are: expr FILE … -o RESULT --limit ….
+    // The arguments are: expr FILE … -o RESULT.
     let loop_ = "in=$2; while [ \"$1\" != -o ]; do shift; done\n";
     for (name, body) in
         [("emptied", "sed 's/<path[^>]*>//' \"$in\" >\"$2\""), ("unbent", "cp \"$in\" \"$2\""), ("none", ":")]

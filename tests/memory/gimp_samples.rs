@@ -5,6 +5,7 @@ use crate::support::xcf::Counted;
 use crate::{MEMORY, alone};
 use pathwarp_gimp::{GimpPath, open, read, rewrite, salvage};
 use serde_json::Value;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 fn folders() -> Vec<PathBuf> {
@@ -61,7 +62,11 @@ fn sound_files_agree_bit_for_bit_and_damaged_ones_fail() {
         let found = open(&mut file);
         let peak = MEMORY.peak_usage() - before;
         file.assert_little(&name);
-        assert!(file.bytes <= 2 * bytes.len() && peak < 50 << 20, "{name}: {} bytes are read, and {peak} bytes held", file.bytes);
+        assert!(
+            file.bytes <= 2 * bytes.len() && peak < 50 << 20,
+            "{name}: {} bytes are read, and {peak} bytes held",
+            file.bytes
+        );
         if expected["paths"].is_array() {
             same(&name, &found.unwrap_or_else(|e| panic!("{name}: {e}")).paths, &expected);
             good += 1;

@@ -90,10 +90,7 @@ fn every_deformation_matches_its_reference() {
                 };
                 sheet.draw_pixmap(x, y, picture.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
                 if let Some(d) = off_by([0.0; 2]).filter(|d| !acceptable(d)) {
-                    off.push(format!(
-                        "{example}, on {sample}: {:.3} % of the pixels differ",
-                        100.0 * d.share(VISIBLE)
-                    ));
+                    off.push(format!("{example}, on {sample}: {:.3} % of the pixels differ", 100.0 * d.share(VISIBLE)));
                 }
                 for moved in [[0.5, 0.0], [0.0, 0.5]] {
                     let found = off_by(moved);
@@ -183,7 +180,7 @@ fn straight(
         let map = Registry::builtin().get("shaper").unwrap().build_from(&args, &Frame::new(frame)).unwrap().map;
         let warped = doc.warp(&map, &WarpOptions::new(refit::Options::new(tolerance * diagonal(frame)))).unwrap();
         let d = difference(&draw(&bytes, [0.0; 2]), &draw(warped.svg.as_bytes(), [0.0; 2]));
-        assert!(d.max_channel <= channel, "{name}, {shaper}: off by {}", d.max_channel);
+        assert!(d.most() <= channel, "{name}, {shaper}: off by {}", d.most());
         let after = Document::read(warped.svg.as_bytes(), &name, &read).unwrap();
         // One cubic represents a quarter of an ellipse.
         let cubics = |s: &Seg| match s {

@@ -42,9 +42,7 @@ fn warped(folder: &Path, files: &[PathBuf], ways: &[&str]) -> Vec<String> {
         for way in ways {
             let name = format!("{}{way}", file.file_stem().unwrap().display()).replace([' ', '#'], "_");
             let to = folder.join(format!("{name}.svg")).display().to_string();
-            // Some of the examples take seconds where programs run that are built for debugging.
-            let mut args =
-                vec!["warp", "--style", "arch", file.to_str().unwrap(), "-q", "-o", &to, "--limit", "seconds=60"];
+            let mut args = vec!["warp", "--style", "arch", file.to_str().unwrap(), "-q", "-o", &to];
             args.extend(way.split_whitespace());
             let done = pathwarp(&args);
             // 1: something in the file cannot be warped, and is reported.

@@ -1,13 +1,15 @@
 //! Surfaces that the boundary of a region crosses: their images are cut along it, and are right on both sides up to the cut.
 
-use pathwarp::budget::{Budget, Limits};
+use pathwarp::budget::{Budget, Limit, Limits};
 use pathwarp::param::Args;
 use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
-use pathwarp_solid::map::Chain3;
+use pathwarp_solid::map::{Chain3, Crease3, Creases3, Jet3, Map3};
 use pathwarp_solid::mesh::topology;
 use pathwarp_solid::patch::{Surface, TrimCurve, bpt, deform_patches, tessellate_image};
 use pathwarp_solid::{Box3, Frame3};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const EYE: DVec3 = DVec3::new(32.0, 32.0, 400.0);
 /// The factor by which the fourth corner is pushed away.
@@ -354,4 +356,48 @@ fn trimmed_surfaces_are_cut() {
         });
         assert_eq!(missing.count(), 0, "{name}");
     }
+}
+
+/// A map that counts how often somebody asks on which side of a crease a point is.
+struct Asked {
+    map: Arc<dyn Map3>,
+    times: Arc<AtomicUsize>,
+}
+
+impl Map3 for Asked {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        self.map.jet(p)
+    }
+
+    fn creases(&self, out: &mut Creases3) {
+        let mut own = Creases3::default();
+        self.map.creases(&mut own);
+        for crease in own.items().iter().cloned() {
+            let times = Arc::clone(&self.times);
+            let level = move |p: DVec3| {
+                times.fetch_add(1, Ordering::Relaxed);
+                (crease.level)(p)
+            };
+            out.push(Crease3 { level: Arc::new(level), kind: crease.kind });
+        }
+    }
+}
+
+/// A map that tears the teapot apart at the sides of a box takes endless searches for the places: each costs a unit of work or more,
+/// so that no clock has to end them.
+#[test]
+fn searches_for_creases_are_counted() {
+    let teapot = bpt::read(include_bytes!("../../../samples/solid/newell.bpt")).unwrap();
+    let frame = Frame3::new(Box3::around(teapot.iter().flat_map(|s| s.points.iter().copied())).unwrap());
+    let args =
+        [("eye", "50%,60%,600%"), ("reference", "20%,20%,20% 80%,80%,80%"), ("push", "1,1,1:1.2"), ("local", "true")];
+    let map = Registry3::builtin().get("anamorph").unwrap().build_from(&Args::from_pairs(&args), &frame).unwrap().map;
+    let times = Arc::new(AtomicUsize::new(0));
+    let mut chain = Chain3::default();
+    chain.push(Arc::new(Asked { map, times: Arc::clone(&times) }));
+    let most = 2e6;
+    let budget = Budget::new(Limits::default().with(Limit::Work, most));
+    let e = deform_patches(&mut teapot.clone(), &chain, 1e-3, &budget).unwrap_err();
+    let times = times.load(Ordering::Relaxed) as f64;
+    assert!(e.to_string().contains("`work`") && times > 1e4 && times < most, "{e}: {times} questions");
 }

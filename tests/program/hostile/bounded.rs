@@ -17,10 +17,9 @@ const MEMORY: u64 = 500_000_000;
 const PART: f64 = 0.1;
 /// Seconds for reading an input up to where its work is counted.
 const READING: f64 = 1.0;
-/// The seconds after which the program ends by itself.
-const LAST_RESORT: f64 = 4.5;
 /// Processor time depends on the machine and on what else it runs, work does not. A run gets this many times the time promised, so that
-/// only work that nobody counts takes too long. `PATHWARP_PROMISE=1` asks for the promise itself, on a quiet machine.
+/// only work that nobody counts takes too long. `PATHWARP_PROMISE=1` asks for the promise itself, on
+/// a quiet machine.
 const MARGIN: f64 = 10.0;
 /// Address space may be reserved without being used, for the stacks of threads.
 const ADDRESSES: u64 = 2 * MEMORY;
@@ -71,7 +70,6 @@ impl Folder {
         let limited = format!("ulimit -v {kilobytes} && ulimit -t {seconds} && exec \"$0\" \"$@\"");
         let mut command = Command::new("sh");
         command.arg("-c").arg(limited).arg(pathwarp_program()).args(args).current_dir(self.path());
-        command.args(["--limit", &format!("seconds={}", LAST_RESORT * margin)]);
         if let Some(part) = self.part {
             command.args(["--limit", &format!("work={}", part * Limits::default().of(Limit::Work))]);
         }

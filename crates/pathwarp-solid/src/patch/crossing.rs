@@ -3,7 +3,9 @@
 use super::surface::BezierPatch;
 use crate::map::{Creases3, Jet3, Level3, Map3};
 use glam::{DMat3, DVec3};
+use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::map::CreaseKind;
+use std::cell::Cell;
 
 /// Places along u and along v at which the side of a crease is determined.
 const PLACES: usize = 24;
@@ -18,6 +20,28 @@ const SIDE: f64 = 1e-9;
 /// A patch is not cut this close to its sides.
 const RIM: f64 = 0.02;
 
+/// A patch that counts the points that searches ask for: how many they take is known only afterwards.
+pub(super) struct Searched<'a> {
+    patch: &'a BezierPatch,
+    points: Cell<usize>,
+}
+
+impl<'a> Searched<'a> {
+    pub(super) fn new(patch: &'a BezierPatch) -> Self {
+        Self { patch, points: Cell::new(0) }
+    }
+
+    fn point(&self, u: f64, v: f64) -> DVec3 {
+        self.points.set(self.points.get() + 1);
+        self.patch.point(u, v)
+    }
+
+    /// Counts the work since the last call.
+    pub(super) fn spend(&self, budget: &Budget) -> Result<(), Exceeded> {
+        budget.spend(self.points.take() as f64 * self.patch.work_of_points())
+    }
+}
+
 /// The i-th place. All are inside the patch, as curves may end on its sides without crossing it.
 fn place(i: usize) -> f64 {
     (i as f64 + 0.5) / PLACES as f64
@@ -28,13 +52,8 @@ pub(super) fn levels(creases: &Creases3) -> Vec<Level3> {
     creases.items().iter().filter(|c| c.kind == CreaseKind::Kink).map(|c| c.level.clone()).collect()
 }
 
-/// The work of [`crossing`], which also compares both sides of each level set at some places.
-pub(super) fn work(levels: &[Level3]) -> f64 {
-    (PLACES * (PLACES + 4 * levels.len()).min(9 * PLACES)) as f64
-}
-
 /// The level sets across which the derivative really jumps somewhere on the patch.
-pub(super) fn crossing(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Vec<Level3> {
+pub(super) fn crossing(patch: &Searched<'_>, map: &dyn Map3, levels: &[Level3]) -> Vec<Level3> {
     let grid: Vec<_> = (0..PLACES * PLACES).map(|k| patch.point(place(k % PLACES), place(k / PLACES))).collect();
     let mut out = Vec::new();
     for level in levels {
@@ -51,7 +70,7 @@ pub(super) fn crossing(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -
 }
 
 /// A place at which the map itself jumps across a level set, searched for along the edges of a coarse grid.
-pub(super) fn tear(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Option<DVec3> {
+pub(super) fn tear(patch: &Searched<'_>, map: &dyn Map3, levels: &[Level3]) -> Option<DVec3> {
     /// Lines of the grid, including the sides.
     const LINES: usize = 8;
     let at = |k: usize| [k % LINES, k / LINES].map(|i| i as f64 / (LINES - 1) as f64);
@@ -70,7 +89,7 @@ pub(super) fn tear(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Op
 }
 
 /// Two places close to a level set, one on either side, on the line between two places that it separates.
-fn beside(patch: &BezierPatch, level: &Level3, a: [f64; 2], b: [f64; 2]) -> [DVec3; 2] {
+fn beside(patch: &Searched<'_>, level: &Level3, a: [f64; 2], b: [f64; 2]) -> [DVec3; 2] {
     let between = |t: f64| patch.point(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
     let t = bisected(|t| level(between(t)), 0.0, 1.0);
     let off = BESIDE * PLACES as f64;
@@ -87,7 +106,7 @@ fn moved_apart(p: &Jet3, q: &Jet3, apart: f64) -> bool {
 }
 
 /// Whether the value or the derivative jumps at the level set between two places.
-fn jumps(patch: &BezierPatch, map: &dyn Map3, level: &Level3, a: [f64; 2], b: [f64; 2]) -> bool {
+fn jumps(patch: &Searched<'_>, map: &dyn Map3, level: &Level3, a: [f64; 2], b: [f64; 2]) -> bool {
     let [from, to] = beside(patch, level, a, b);
     let (p, q) = (map.jet(from), map.jet(to));
     size(p.d - q.d) > JUMP * size(p.d).max(size(q.d)) || moved_apart(&p, &q, from.distance(to))
@@ -105,14 +124,14 @@ fn bisected(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
 
 /// Curves v = g(u) across a whole patch, one above the other.
 pub(super) struct Graphs<'a> {
-    patch: &'a BezierPatch,
+    patch: &'a Searched<'a>,
     /// For each curve its level set, and its height at every [`place`].
     curves: Vec<(Level3, Vec<f64>)>,
 }
 
 impl<'a> Graphs<'a> {
     /// The curves, if every line u = const meets the same ones in the same order, and none is too steep.
-    pub(super) fn new(patch: &'a BezierPatch, levels: &[Level3]) -> Option<Self> {
+    pub(super) fn new(patch: &'a Searched<'a>, levels: &[Level3]) -> Option<Self> {
         let mut curves: Vec<(usize, Vec<f64>)> = Vec::new();
         for i in 0..PLACES {
             let u = place(i);
@@ -133,13 +152,18 @@ impl<'a> Graphs<'a> {
     }
 
     /// No curves.
-    pub(super) fn none(patch: &'a BezierPatch) -> Self {
+    pub(super) fn none(patch: &'a Searched<'a>) -> Self {
         Self { patch, curves: Vec::new() }
     }
 
     /// The number of curves.
     pub(super) fn count(&self) -> usize {
         self.curves.len()
+    }
+
+    /// Counts the searches since the last call.
+    pub(super) fn spend(&self, budget: &Budget) -> Result<(), Exceeded> {
+        self.patch.spend(budget)
     }
 
     /// Height and slope of the lower and of the upper side of a layer, at `u`.
@@ -175,7 +199,7 @@ impl<'a> Graphs<'a> {
 }
 
 /// The indices of the level sets that the line u = const meets, with the values of v there, in order.
-fn met(patch: &BezierPatch, levels: &[Level3], u: f64) -> Vec<(usize, f64)> {
+fn met(patch: &Searched<'_>, levels: &[Level3], u: f64) -> Vec<(usize, f64)> {
     let mut out = Vec::new();
     for (n, level) in levels.iter().enumerate() {
         let f = |v: f64| level(patch.point(u, v));
@@ -199,7 +223,7 @@ fn met(patch: &BezierPatch, levels: &[Level3], u: f64) -> Vec<(usize, f64)> {
 
 /// A value of u, not too close to 0 or 1, at which a level set meets the side v = 0 or v = 1. To the left and right of it, curves are more
 /// likely to be graphs.
-pub(super) fn cut(patch: &BezierPatch, levels: &[Level3]) -> Option<f64> {
+pub(super) fn cut(patch: &Searched<'_>, levels: &[Level3]) -> Option<f64> {
     let inside = RIM..=1.0 - RIM;
     for v in [0.0, 1.0] {
         for level in levels {

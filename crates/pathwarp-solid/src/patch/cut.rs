@@ -4,7 +4,7 @@
 //! crease meets its sides, or else in the middle, and the new parts are treated the same way. A part without a crease keeps its exact image
 //! if it has one. Trimming loops are cut along with the parts, and parts outside them are left out.
 
-use super::crossing::Graphs;
+use super::crossing::{Graphs, Searched};
 use super::part::Sided;
 use super::refit::{Cells, Corner, INSIDE, MAX_CELLS};
 use super::surface::{BezierPatch, Surface};
@@ -55,7 +55,9 @@ impl Cutter<'_> {
         let across = breaks[0].len() - 1;
         let mut crossed = Vec::with_capacity(pieces.len());
         for piece in pieces {
-            crossed.push(self.crossing(piece, self.levels)?);
+            let searched = Searched::new(piece);
+            crossed.push(crossing::crossing(&searched, self.map, self.levels));
+            searched.spend(self.budget)?;
         }
         if crossed.iter().all(Vec::is_empty) && !self.is_torn(pieces, across)? {
             return Ok(None);
@@ -71,11 +73,6 @@ impl Cutter<'_> {
             part.name.clone_from(&surface.name);
         }
         Ok(Some(out))
-    }
-
-    fn crossing(&self, patch: &BezierPatch, levels: &[Level3]) -> Result<Vec<Level3>, Exceeded> {
-        self.budget.spend(crossing::work(levels))?;
-        Ok(crossing::crossing(patch, self.map, levels))
     }
 
     /// Whether the images of any two neighbouring patches do not join.
@@ -112,17 +109,20 @@ impl Cutter<'_> {
             return Ok(());
         }
         let patch = &part.patch;
-        let crossing = self.crossing(patch, levels)?;
-        let max_cells = if cuts[0] < MAX_HALVINGS && cuts[1] < MAX_CUTS { ENOUGH } else { MAX_CELLS };
         let turned = part.transposed();
-        if let Some((surfaces, off)) = self.whole(part, &turned, &crossing, max_cells)?
+        let searched = [patch, &turned.patch].map(Searched::new);
+        let crossing = crossing::crossing(&searched[0], self.map, levels);
+        searched[0].spend(self.budget)?;
+        let max_cells = if cuts[0] < MAX_HALVINGS && cuts[1] < MAX_CUTS { ENOUGH } else { MAX_CELLS };
+        if let Some((surfaces, off)) = self.whole([part, &turned], &searched, &crossing, max_cells)?
             && (off <= self.tolerance || max_cells == MAX_CELLS)
         {
             out.distance = out.distance.max(off);
             out.surfaces.extend(surfaces);
             return Ok(());
         }
-        let (u, v) = (crossing::cut(patch, &crossing), crossing::cut(&turned.patch, &crossing));
+        let [u, v] = searched.each_ref().map(|patch| crossing::cut(patch, &crossing));
+        searched.iter().try_for_each(|patch| patch.spend(self.budget))?;
         let parts = match (u, v) {
             (Some(u), _) => vec![([0.0, 0.0], [u, 1.0]), ([u, 0.0], [1.0, 1.0])],
             (None, Some(v)) => vec![([0.0, 0.0], [1.0, v]), ([0.0, v], [1.0, 1.0])],
@@ -140,19 +140,19 @@ impl Cutter<'_> {
     }
 
     /// The image of a part without further cuts, with up to `max_cells` cells along a layer, and its distance from the exact image. `None` if
-    /// a crease crosses it that is not a graph, unless the part must not be cut further.
+    /// a crease crosses it that is not a graph, unless the part must not be cut further. The part is also given turned.
     fn whole(
         &self,
-        part: &Part,
-        turned: &Part,
+        [part, turned]: [&Part; 2],
+        searched: &[Searched<'_>; 2],
         crossing: &[Level3],
         max_cells: usize,
     ) -> Result<Option<(Vec<Surface>, f64)>, Exceeded> {
         if !crossing.is_empty() {
-            if let Some(graphs) = Graphs::new(&part.patch, crossing) {
+            if let Some(graphs) = Graphs::new(&searched[0], crossing) {
                 return self.layers(part, &graphs, self.map, max_cells).map(Some);
             }
-            if let Some(graphs) = Graphs::new(&turned.patch, crossing) {
+            if let Some(graphs) = Graphs::new(&searched[1], crossing) {
                 let (images, off) = self.layers(turned, &graphs, self.map, max_cells)?;
                 return Ok(Some((images.into_iter().map(transposed).collect(), off)));
             }
@@ -171,7 +171,7 @@ impl Cutter<'_> {
             Some(image) => Ok(Some((vec![image], 0.0))),
             None => {
                 let side = Sided::new(&part.patch, self.map);
-                self.layers(part, &Graphs::none(&part.patch), &side.map, max_cells).map(Some)
+                self.layers(part, &Graphs::none(&searched[0]), &side.map, max_cells).map(Some)
             }
         }
     }
@@ -189,7 +189,9 @@ impl Cutter<'_> {
                 Some(trims.clone())
             } else {
                 self.budget.spend((WORK * trims.count()) as f64)?;
-                trims.layer(graphs, k, FRACTION * self.tolerance / max_derivative(&surface, n))
+                let own = trims.layer(graphs, k, FRACTION * self.tolerance / max_derivative(&surface, n));
+                graphs.spend(self.budget)?;
+                own
             };
             if own.as_ref().is_some_and(Trims::is_empty) {
                 continue;
@@ -211,8 +213,9 @@ impl Cutter<'_> {
         let layers = Layers { patch: &part.patch, graphs, map };
         let mut n = 1;
         loop {
-            self.budget.spend(layers.work(n) * (graphs.count() + 1) as f64)?;
+            self.budget.spend(refit::work(&part.patch, n) * (graphs.count() + 1) as f64)?;
             let fits: Vec<Cells> = (0..=graphs.count()).map(|k| layers.fit(k, n)).collect();
+            graphs.spend(self.budget)?;
             let off = fits.iter().fold(0.0, |d: f64, c| d.max(c.distance));
             if off <= self.tolerance || n >= max_cells {
                 let surfaces = match &part.trims {
@@ -307,11 +310,6 @@ struct Rung {
 }
 
 impl Layers<'_> {
-    /// The work of fitting n × n cells to a layer.
-    fn work(&self, n: usize) -> f64 {
-        refit::work(self.patch, n) + 16.0 * (n * refit::PLACES) as f64
-    }
-
     /// Fits n × n cells to a layer and measures their distance from the image.
     fn fit(&self, layer: usize, n: usize) -> Cells {
         let at = |i: usize| i as f64 / n as f64;

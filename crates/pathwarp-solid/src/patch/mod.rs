@@ -12,6 +12,7 @@ mod tessellate;
 mod trims;
 
 use crate::map::{Chain3, Creases3, Map3};
+use crossing::Searched;
 use cut::Cutter;
 use glam::DVec3;
 use part::Sided;
@@ -80,7 +81,11 @@ pub fn deform_patches(
         let (pieces, breaks) = surface.pieces();
         examine(n, &pieces, map, &creases, &mut out, budget)?;
         if out.torn_at.is_none() {
-            out.torn_at = pieces.iter().find_map(|p| crossing::tear(p, map, &levels));
+            for piece in &pieces {
+                let searched = Searched::new(piece);
+                out.torn_at = out.torn_at.or_else(|| crossing::tear(&searched, map, &levels));
+                searched.spend(budget)?;
+            }
         }
         let mut image = Some(surface.clone());
         for step in map.steps() {

@@ -106,13 +106,14 @@ impl Cells {
 
     /// Measures the distance from an image, given as a function of the number of the column, u and v.
     pub(super) fn measure(&mut self, image: impl Fn(usize, f64, f64) -> DVec3) {
-        let n = self.n;
-        for j in 0..n * PLACES {
-            for i in 0..n * PLACES {
-                let (u, v) = ((i as f64 + 0.5) / (n * PLACES) as f64, (j as f64 + 0.5) / (n * PLACES) as f64);
-                let off = self
-                    .cell(i / PLACES, j / PLACES)
-                    .point(u * n as f64 - (i / PLACES) as f64, v * n as f64 - (j / PLACES) as f64);
+        let places = self.n * PLACES;
+        for k in 0..self.n * self.n {
+            let (column, row) = (k % self.n, k / self.n);
+            let cell = self.cell(column, row);
+            for l in 0..PLACES * PLACES {
+                let (i, j) = (column * PLACES + l % PLACES, row * PLACES + l / PLACES);
+                let (u, v) = ((i as f64 + 0.5) / places as f64, (j as f64 + 0.5) / places as f64);
+                let off = cell.point(u * self.n as f64 - column as f64, v * self.n as f64 - row as f64);
                 let off = off.distance(image(i, u, v));
                 self.distance = if off.is_nan() { f64::INFINITY } else { self.distance.max(off) };
             }

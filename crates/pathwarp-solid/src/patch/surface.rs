@@ -137,9 +137,15 @@ pub struct BezierPatch {
 }
 
 impl BezierPatch {
-    /// The work of computing a point, in evaluations of a map.
+    /// The work of computing a point and its image, in evaluations of a map.
     pub(super) fn work(&self) -> usize {
         2 + (self.degree[0] + 1) * (self.degree[1] + 1) / 2
+    }
+
+    /// The work of computing a point alone.
+    pub(super) fn work_of_points(&self) -> f64 {
+        let [m, n] = self.degree.map(|d| d as f64 + 1.0);
+        1.0 + 0.025 * n * m * m
     }
 
     /// The value in homogeneous coordinates, and its derivatives by u and v.
@@ -158,7 +164,11 @@ impl BezierPatch {
     /// The point at u and v.
     #[must_use]
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
-        let [p, ..] = self.homogeneous(u, v);
+        let mut row = [DVec4::ZERO; MAX_DEGREE + 1];
+        for (slot, points) in row.iter_mut().zip(self.points.chunks(self.degree[0] + 1)) {
+            *slot = value(points, u);
+        }
+        let p = value(&row[..=self.degree[1]], v);
         p.xyz() / p.w
     }
 
@@ -175,6 +185,16 @@ impl BezierPatch {
     pub fn bounds(&self) -> Option<Box3> {
         Box3::around(self.points.iter().map(|p| p.xyz() / p.w))
     }
+}
+
+/// A point of a Bézier curve, by the arithmetic of [`curve`].
+fn value(points: &[DVec4], t: f64) -> DVec4 {
+    let between = |a: DVec4, b: DVec4| a * (1.0 - t) + b * t;
+    if let [a, b, c, d] = *points {
+        let [p, q, r] = [between(a, b), between(b, c), between(c, d)];
+        return between(between(p, q), between(q, r));
+    }
+    curve(points.iter().copied(), t).0
 }
 
 /// A point of a Bézier curve, and the derivative. The arithmetic is the same from both ends, so patches with a common edge agree on it to the

@@ -4,7 +4,7 @@ use super::surface::{BezierPatch, Surface};
 use crate::map::{Chain3, Map3};
 use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
-use pathwarp::budget::{Budget, Exceeded};
+use pathwarp::budget::{Budget, Exceeded, cost};
 use std::collections::HashMap;
 
 /// Quads along a side of a patch if no distance is given.
@@ -46,7 +46,7 @@ pub fn tessellate_image(
             side *= 2;
         }
     }
-    budget.spend((work * (side + 1) * (side + 1)) as f64)?;
+    budget.spend((work * (side + 1) * (side + 1)) as f64 + cost::SEGMENT * (patches.len() * side * side) as f64)?;
     let mut mesh = Mesh::default();
     let mut places: HashMap<[u64; 3], u32> = HashMap::new();
     let mut last = None;
