@@ -14,12 +14,11 @@ use wait4::Wait4 as _;
 const SECONDS: f64 = 5.0;
 const MEMORY: u64 = 500_000_000;
 /// Runs get a part of the work allowed, and must have refused after the same part of the time.
-const PART: f64 = 0.1;
+const PART: f64 = 0.03;
 /// Seconds for reading an input up to where its work is counted.
 const READING: f64 = 1.0;
 /// Processor time depends on the machine and on what else it runs, work does not. A run gets this many times the time promised, so that
-/// only work that nobody counts takes too long. `PATHWARP_PROMISE=1` asks for the promise itself, on
-/// a quiet machine.
+/// only work that nobody counts takes too long. `PATHWARP_PROMISE=1` asks for the promise itself, on a quiet machine.
 const MARGIN: f64 = 10.0;
 /// Address space may be reserved without being used, for the stacks of threads.
 const ADDRESSES: u64 = 2 * MEMORY;
@@ -52,9 +51,9 @@ impl Folder {
         Self { part: None, ..self }
     }
 
-    /// With three times the part that other runs get: for what needs it to be done.
+    /// With ten times the part that other runs get: for what needs it to be done.
     pub fn ample(self) -> Self {
-        Self { part: Some(3.0 * PART), ..self }
+        Self { part: Some(10.0 * PART), ..self }
     }
 
     pub fn path(&self) -> &Path {

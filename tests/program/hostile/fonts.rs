@@ -148,7 +148,7 @@ fn glyphs_without_an_end_are_refused() {
     let plain = || vec![triangle(), triangle(), triangle()];
     let layered = of_glyphs(&plain(), vec![("COLR", doubled(40))]);
     for font in [of_glyphs(&nested, Vec::new()), of_subroutines(), layered] {
-        let folder = lettered(&font, "a");
+        let folder = lettered(&font, "a").ample();
         folder.expect("a.svg", [3, 3], "takes 200000 points or more");
         let installed = Folder::with(&[("a.ttf", &font), ("a.svg", &svg("<text y='50' font-family='E'>a</text>"))]);
         for command in [["swirl", "o.svg"], ["render", "o.png"]] {

@@ -81,7 +81,7 @@ fn dashes_are_counted_before_they_are_made() {
 fn paths_that_control_a_map_are_counted() {
     let long = curves(16_000);
     let skeleton = svg(&format!("<path id='k' d='{long}'/>"));
-    let folder = Folder::with(&[("a.svg", &fs::read(sample("logo.svg")).unwrap()), ("k.svg", &skeleton)]);
+    let folder = Folder::with(&[("a.svg", &fs::read(sample("logo.svg")).unwrap()), ("k.svg", &skeleton)]).ample();
     for along in ["k.svg#k", &curves(9000)] {
         let (code, said) = folder.run(&["bend", "a.svg", "--along", along, "-o", "o.svg"]);
         assert_eq!((code, said.contains("--limit work=")), (4, true), "{said}");
