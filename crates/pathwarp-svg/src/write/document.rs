@@ -64,6 +64,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
         out.blank = page::is_blank(input, shown);
     }
     out.page = change.map(|(before, after)| [before, after]);
+    out.back = page::back(input);
     Ok(())
 }
 
