@@ -97,10 +97,10 @@ impl PageNews {
     /// Says that the page is another by `--fit auto`, or that the result is on it by `--fit shrink`.
     pub(crate) fn note(&self) -> Option<String> {
         if let Some(by) = self.shrunk {
-            return Some(format!(
-                "the result is scaled to {} % and moved back onto its page",
-                three_figures(100.0 * by)
-            ));
+            return Some(match three_figures(100.0 * by).as_str() {
+                "100" => "the result is moved back onto its page".to_owned(),
+                by => format!("the result is scaled to {by} % and moved back onto its page"),
+            });
         }
         let [before, after] = self.change.filter(|_| self.by_itself)?;
         let size = |r: Rect| format!("{} × {}", trimmed(r.width(), 2), trimmed(r.height(), 2));
@@ -120,8 +120,10 @@ impl PageNews {
     pub(crate) fn warnings(&self) -> Vec<String> {
         let arrivals = self.arrivals.as_ref().map(ToString::to_string);
         let overhang = self.overhang.filter(|_| !self.is_blank).map(|o| overhang(o, self.stays));
-        let blank =
-            self.is_blank.then(|| "nothing is on the page of the result; --fit page sets it to the artwork".to_owned());
+        let blank = self.is_blank.then(|| {
+            "nothing is on the page of the result; --fit page sets it to the artwork, --fit shrink moves that back"
+                .to_owned()
+        });
         [arrivals, overhang, blank].into_iter().flatten().collect()
     }
 }

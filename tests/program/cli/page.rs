@@ -336,7 +336,7 @@ fn results_are_scaled_back_into_their_pages() {
             assert!(run(&format!("{line} --fit none"), &svg).2.contains("--fit shrink"));
             let (code, out, said) = run(&format!("{line} --fit shrink"), &svg);
             assert_eq!((code, said.lines().count()), (Some(0), 1), "{page} {line}: {said}");
-            assert!(said.contains("the result is scaled to"), "{said}");
+            assert!(said.contains("moved back onto its page"), "{said}");
             let root = |svg: &str| ["viewBox", "width", "height"].map(|name| root_attr(svg, name));
             assert_eq!(root(&out), root(&svg), "{line}");
             let (ink, near) = (boxed(&out), 4e-4 * w.max(h));
