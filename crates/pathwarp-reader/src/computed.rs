@@ -36,6 +36,19 @@ pub(super) struct Inherited {
     pub(super) words: Arc<Words>,
 }
 
+/// Paint in the author's words; `None` for the initial value.
+type Said<'a> = Vec<(Cow<'a, str>, Option<Cow<'a, str>>)>;
+
+impl Inherited {
+    /// Takes down what an element says about paint, among other properties. Returns what holds for it.
+    fn saying(&mut self, said: Said<'_>) -> Arc<Words> {
+        for (name, value) in said.into_iter().filter(|s| Words::hold(&s.0)) {
+            Arc::make_mut(&mut self.words).say(&name, value.as_deref());
+        }
+        Arc::clone(&self.words)
+    }
+}
+
 /// The style of an element.
 #[derive(Debug, Default)]
 pub(super) struct Computed<'a> {
@@ -333,8 +346,7 @@ struct Declared<'v, 'a, 'i> {
     seen: HashSet<Cow<'a, str>>,
     /// Properties that inherit, but for which usvg doesn't know the keyword `inherit`. They are left out.
     dropped: HashSet<&'static str>,
-    /// Paint in the author's words; `None` for the initial value.
-    said: Vec<(&'static str, Option<Cow<'a, str>>)>,
+    said: Said<'a>,
     /// Strongest first, until all declarations have been added.
     style: Vec<(Cow<'a, str>, Cow<'a, str>)>,
     out: Computed<'a>,
@@ -426,8 +438,8 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         if Words::hold(p.name) {
             match wide(raw.trim()).map(|wide| resolved(wide, p)) {
                 Some(None) => {}
-                Some(Some(_)) => self.said.push((p.name, None)),
-                None => self.said.push((p.name, Some(raw.clone()))),
+                Some(Some(_)) => self.said.push((p.name.into(), None)),
+                None => self.said.push((p.name.into(), Some(raw.clone()))),
             }
         }
     }
@@ -513,10 +525,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
 
     /// Applies the rules specific to texts, dashes, markers and `use` elements.
     fn finish(mut self, node: Node<'a, '_>, inherited: &mut Inherited) -> Computed<'a> {
-        let tag = self.tag;
-        let mut out = self.out;
-        let mut say = |name: &str, value: Option<&str>| Arc::make_mut(&mut inherited.words).say(name, value);
-        self.said.iter().for_each(|(name, value)| say(name, value.as_deref()));
+        let (tag, mut out, mut said) = (self.tag, self.out, self.said);
         let mut style = std::mem::take(&mut self.style);
         if tag == "use" {
             out.attributes.extend(size_of_use(node, &self.values.units));
@@ -556,13 +565,13 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             out.attributes.retain(|a| new.iter().all(|n| n.0 != a.0));
             out.attributes.extend(new.into_iter().map(|(name, v)| (name, Some(v))));
         }
-        let styled = |style: &[(Cow<'a, str>, Cow<'a, str>)], name: &str| {
+        let styled = |name: &str| {
             let found = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.to_string());
             found.or_else(|| out.value(node, name).map(ToOwned::to_owned))
         };
         for (name, dashes) in DASHES.iter().zip(&mut inherited.dashes) {
             let own = self.seen.contains(*name) || node.attributes().any(|a| a.name() == *name);
-            if let Some(v) = own.then(|| styled(&style, name)).flatten().filter(|v| v.trim() != "inherit") {
+            if let Some(v) = own.then(|| styled(name)).flatten().filter(|v| v.trim() != "inherit") {
                 *dashes = Some(v.into());
             }
         }
@@ -579,10 +588,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             let attributes = changes.attributes.into_iter().filter(|(name, v)| attribute(node, name) != Some(v));
             out.attributes.extend(attributes.map(|(name, v)| (name, Some(v))));
             out.unsupported.extend(changes.unsupported.iter().map(|d| ignored(d)));
-            changes.style.iter().filter(|(n, _)| Words::hold(n)).for_each(|(n, v)| say(n, Some(v)));
+            said.extend(changes.style.iter().map(|(n, v)| (n.clone().into(), Some(v.clone().into()))));
             style.extend(changes.style.into_iter().map(|(n, v)| (n.into(), v.into())));
         }
-        out.words = Arc::clone(&inherited.words);
+        out.words = inherited.saying(said);
         if let Some(dashes) = scaled_dashes(node, &out, inherited) {
             style.retain(|s| !DASHES.contains(&s.0.as_ref()));
             style.extend(DASHES.iter().zip(dashes).map(|(name, value)| (Cow::Borrowed(*name), value.into())));
