@@ -111,9 +111,13 @@ fn drawings() -> Vec<String> {
 }
 
 fn moved(svg: &str) -> String {
+    warped(svg, 100.0, "affine", &[("matrix", MATRIX)])
+}
+
+fn warped(svg: &str, side: f64, deformation: &str, args: &[(&str, &str)]) -> String {
     let doc = Document::read(svg.as_bytes(), "styled.svg", &ReadOptions::default()).unwrap();
-    let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
-    let map = Registry::builtin().get("affine").unwrap().build_from(&Args::from_pairs(&[("matrix", MATRIX)]), &frame);
+    let frame = Frame::new(Rect::new(0.0, 0.0, side, side));
+    let map = Registry::builtin().get(deformation).unwrap().build_from(&Args::from_pairs(args), &frame);
     let warped = doc.warp(&map.unwrap().map, &WarpOptions::new(refit::Options::new(1e-3))).unwrap();
     assert!(warped.skipped.is_empty(), "{svg}: {:?}", warped.skipped);
     warped.svg
@@ -173,4 +177,64 @@ fn style_is_read_as_browsers_read_it() {
     let still = shown(&originals, "none", "still", folder.path());
     let off = differences(&expected, &still, originals.len());
     assert!(off.iter().all(|o| *o > 0.01), "{off:?}");
+}
+
+/// Icons as sets of them are written, in `THEME`.
+const ICONS: &[(&str, &str)] = &[
+    (
+        "fill='none' stroke='currentColor' stroke-width='2' stroke-linecap='round' stroke-linejoin='round'",
+        "<circle cx='12' cy='12' r='9'/><polyline points='8 12 11 15 16 9'/><line x1='12' y1='1' x2='12' y2='3'/>",
+    ),
+    (
+        "class='icon' fill='none' stroke='currentColor' stroke-width='1.5'",
+        "<style>.icon{color:THEME}.thin{stroke-width:1;stroke-dasharray:2 1}</style><rect x='3' y='6' width='18' height='13' rx='2'/>\
+         <path class='thin' d='M3 10H21'/><path d='M7 15a3 3 0 0 1 6 0' stroke-linecap='round'/>",
+    ),
+    (
+        "fill='currentColor'",
+        "<path d='M12 2L22 20H2Z'/><path d='M5 4H19' stroke='currentColor' stroke-opacity='.5' stroke-width='2'/>",
+    ),
+    (
+        "style='fill:var(--inside, none);stroke:var(--line);stroke-width:2;--line:THEME'",
+        "<ellipse cx='12' cy='12' rx='10' ry='6'/><g style='--inside:THEME'><circle cx='12' cy='12' r='3' style='fill:var(--inside)'/></g>",
+    ),
+    (
+        "stroke='currentColor'",
+        "<defs><path id='a' d='M4 12H18M13 7L18 12L13 17' fill='none' stroke-width='2'/></defs><use href='#a'/><use href='#a' y='6'/>",
+    ),
+];
+
+/// Under each of three warps, an icon takes a new colour as it does before the warp.
+#[test]
+fn icons_can_be_themed_after_a_warp() {
+    if chromium().is_none() {
+        crate::support::skipped("themed icons are not compared in browsers without Chromium");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let svg = |color: &str, (root, body): &(&str, &str)| {
+        let style = if root.contains("style=") || root.contains("class=") { "" } else { "style='color:THEME'" };
+        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 24 24' width='24' height='24' {style} {root}>{body}</svg>")
+            .replace("THEME", color)
+    };
+    let [old, new] = ["#0a6e31", "#ff2060"];
+    let (mut before, mut after, mut plain) = (Vec::new(), Vec::new(), Vec::new());
+    for (deformation, args) in
+        [("warp", &[("style", "arch")]), ("warp", &[("style", "flag")]), ("swirl", &[("angle", "70")])]
+    {
+        for icon in ICONS {
+            let bent = |color| warped(&svg(color, icon), 24.0, deformation, args);
+            before.push(bent(new));
+            plain.push(bent(old));
+            after.push(bent(old).replace(old, new));
+        }
+    }
+    let [before, after, plain] = [(&before, "before"), (&after, "after"), (&plain, "plain")]
+        .map(|(all, name)| shown(all, "none", name, folder.path()));
+    let drawings = 3 * ICONS.len();
+    for (i, off) in differences(&before, &after, drawings).into_iter().enumerate() {
+        assert!(off < 1e-3, "{:.2} % of the pixels differ: {:?}", off * 100.0, ICONS[i % ICONS.len()]);
+    }
+    // All of them have changed.
+    assert!(differences(&plain, &after, drawings).into_iter().all(|off| off > 0.01));
 }

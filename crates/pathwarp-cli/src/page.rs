@@ -8,7 +8,7 @@ use pathwarp::kurbo::Rect;
 use pathwarp::recipe::Recipe;
 use pathwarp_svg::{Document, Overhang, PageFit, Warning};
 
-/// Side of the largest square page that is an icon's, in units of the viewBox or px.
+/// Side of the largest square page that is an icon's, in px.
 const ICON: f64 = 64.0;
 /// Largest relative difference of a page's sides from those of a square, or of a sheet of paper.
 const SAME: f64 = 0.005;
@@ -37,13 +37,12 @@ pub(crate) fn stays(doc: &Document, options: &CommonOptions, recipe: &Recipe) ->
     }
     let (units, px) = (doc.view_box(), doc.size_px());
     let (units, px) = ([units.width(), units.height()], [px.width, px.height]);
-    let is_icon = |[w, h]: [f64; 2]| is_near(w, h) && w.max(h) <= ICON;
-    if is_icon(units) || is_icon(px) && is_near(units[0], units[1]) {
+    if !doc.is_measured() && is_near(px[0], px[1]) && px[0] <= ICON && is_near(units[0], units[1]) {
         return Some("it is an icon's");
     }
     // Programs write mm, inches or points as plain numbers, too.
     let plain = [MM_PER_PX, 1.0, 25.4, 25.4 / 72.0].map(|unit| units.map(|v| v * unit));
-    let is_paper = plain.into_iter().chain([px.map(|v| v * MM_PER_PX)]).any(is_paper);
+    let is_paper = plain.into_iter().filter(|_| !doc.is_measured()).chain([px.map(|v| v * MM_PER_PX)]).any(is_paper);
     is_paper.then_some("it is a sheet of paper")
 }
 
@@ -66,6 +65,8 @@ fn is_paper([w, h]: [f64; 2]) -> bool {
 pub(crate) struct PageNews {
     /// The page before and after, in user units, if it is adapted.
     pub(crate) change: Option<[Rect; 2]>,
+    /// The share of its size that the result was scaled to for staying on its page.
+    pub(crate) shrunk: Option<f64>,
     /// The change was the program's decision.
     pub(crate) by_itself: bool,
     /// The artwork extends past the page and did not before.
@@ -84,6 +85,7 @@ impl PageNews {
         let at = warped.warnings.iter().position(|w| matches!(w, Warning::Arrivals(_)));
         Self {
             change: warped.page,
+            shrunk: warped.back.map(|to| to.determinant().sqrt()),
             by_itself: fit == PageFit::Auto,
             overhang: warped.overhang,
             stays,
@@ -92,8 +94,14 @@ impl PageNews {
         }
     }
 
-    /// Says that the page is another by `--fit auto`.
+    /// Says that the page is another by `--fit auto`, or that the result is on it by `--fit shrink`.
     pub(crate) fn note(&self) -> Option<String> {
+        if let Some(by) = self.shrunk {
+            return Some(match three_figures(100.0 * by).as_str() {
+                "100" => "the result is moved back onto its page".to_owned(),
+                by => format!("the result is scaled to {by} % and moved back onto its page"),
+            });
+        }
         let [before, after] = self.change.filter(|_| self.by_itself)?;
         let size = |r: Rect| format!("{} × {}", trimmed(r.width(), 2), trimmed(r.height(), 2));
         let (old, new) = (size(before), size(after));
@@ -112,8 +120,10 @@ impl PageNews {
     pub(crate) fn warnings(&self) -> Vec<String> {
         let arrivals = self.arrivals.as_ref().map(ToString::to_string);
         let overhang = self.overhang.filter(|_| !self.is_blank).map(|o| overhang(o, self.stays));
-        let blank =
-            self.is_blank.then(|| "nothing is on the page of the result; --fit page sets it to the artwork".to_owned());
+        let blank = self.is_blank.then(|| {
+            "nothing is on the page of the result; --fit page sets it to the artwork, --fit shrink moves that back"
+                .to_owned()
+        });
         [arrivals, overhang, blank].into_iter().flatten().collect()
     }
 }
@@ -126,7 +136,7 @@ fn overhang(o: Overhang, stays: Option<&str>) -> String {
     let stays = stays.map_or_else(String::new, |why| format!("; the page stays, as {why}"));
     format!(
         "the artwork extends past the page by up to {} units ({} %; {}){stays}; --fit grow enlarges the page, --fit page fits it to the \
-         artwork",
+         artwork, --fit shrink scales the result back into it",
         three_figures(most),
         three_figures(100.0 * o.share),
         sides.join(", ")
@@ -171,7 +181,7 @@ impl PageCounts {
         let past = self.most.as_ref().map(|(share, file)| {
             format!(
                 "the artwork of {} of {inputs} inputs extends past the page, most that of {file} ({} %); --fit grow enlarges the pages, \
-                 --fit page fits them to the artwork",
+                 --fit page fits them to the artwork, --fit shrink scales the results back into them",
                 self.past,
                 three_figures(100.0 * share)
             )

@@ -6,12 +6,14 @@ use crate::sheet::{Declaration, simple};
 use crate::table::{Kind, Property, Sign, length_attribute, of_attribute, property};
 use crate::text::{self, Letters, TextStyle};
 use crate::value::{self, Custom, Units, reference};
+use crate::words::Words;
 use crate::{color, range};
 use pathwarp::kurbo::Affine;
 use roxmltree::Node;
 use std::borrow::Cow;
 use std::collections::HashSet;
 use std::rc::Rc;
+use std::sync::Arc;
 
 pub(super) const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
 
@@ -31,6 +33,20 @@ pub(super) struct Inherited {
     /// Values of [`DASHES`].
     pub(super) dashes: [Option<Rc<str>>; 2],
     pub(super) text: TextStyle,
+    pub(super) words: Arc<Words>,
+}
+
+/// Paint in the author's words; `None` for the initial value.
+type Said<'a> = Vec<(Cow<'a, str>, Option<Cow<'a, str>>)>;
+
+impl Inherited {
+    /// Takes down what an element says about paint, among other properties. Returns what holds for it.
+    fn saying(&mut self, said: Said<'_>) -> Arc<Words> {
+        for (name, value) in said.into_iter().filter(|s| Words::hold(&s.0)) {
+            Arc::make_mut(&mut self.words).say(&name, value.as_deref());
+        }
+        Arc::clone(&self.words)
+    }
 }
 
 /// The style of an element.
@@ -49,6 +65,7 @@ pub(super) struct Computed<'a> {
     pub(super) notes: Vec<&'static str>,
     /// The first number out of range.
     pub(super) far: Option<String>,
+    pub(super) words: Arc<Words>,
 }
 
 /// The geometry properties that Chromium takes from style sheets. Nested viewports take none, and a `use` takes no size.
@@ -88,6 +105,7 @@ pub(super) fn computed<'a>(
     let own: Vec<(String, String)> = variables.map(|d| (d.name.to_string(), d.value.to_string())).collect();
     if !own.is_empty() {
         inherited.custom = Rc::new(value::custom(&own, &inherited.custom));
+        Arc::make_mut(&mut inherited.words).declare_variables(node.range().start);
     }
     let is_server =
         matches!(tag, "linearGradient" | "radialGradient" | "pattern" | "mask" | "filter" | "marker" | "clipPath");
@@ -328,6 +346,7 @@ struct Declared<'v, 'a, 'i> {
     seen: HashSet<Cow<'a, str>>,
     /// Properties that inherit, but for which usvg doesn't know the keyword `inherit`. They are left out.
     dropped: HashSet<&'static str>,
+    said: Said<'a>,
     /// Strongest first, until all declarations have been added.
     style: Vec<(Cow<'a, str>, Cow<'a, str>)>,
     out: Computed<'a>,
@@ -336,7 +355,8 @@ struct Declared<'v, 'a, 'i> {
 impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     fn new(tag: &'v str, values: &'v Values<'v, 'a, 'i>) -> Self {
         let (seen, dropped) = (HashSet::new(), HashSet::new());
-        Self { tag, geometry: &[], values, seen, dropped, style: Vec::new(), out: Computed::default() }
+        let (said, style) = (Vec::new(), Vec::new());
+        Self { tag, geometry: &[], values, seen, dropped, said, style, out: Computed::default() }
     }
 
     /// Adds a declaration weaker than all before it. The strongest valid declaration of a property wins.
@@ -389,6 +409,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             },
         };
         self.seen.insert(p.name.into());
+        self.say(p, &d.value);
         match p.kind {
             Kind::Transform => self.out.transform.push(Declaration { value, ..d.clone() }),
             Kind::Geometry(_) if self.geometry.contains(&p.name) => {
@@ -408,6 +429,17 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             _ => {
                 self.out.unsupported.extend(unsupported(p.name, &value));
                 self.style.push((d.name.clone(), value));
+            }
+        }
+    }
+
+    /// Takes down a valid value of a property of paint.
+    fn say(&mut self, p: &'static Property, raw: &Cow<'a, str>) {
+        if Words::hold(p.name) {
+            match wide(raw.trim()).map(|wide| resolved(wide, p)) {
+                Some(None) => {}
+                Some(Some(_)) => self.said.push((p.name.into(), None)),
+                None => self.said.push((p.name.into(), Some(raw.clone()))),
             }
         }
     }
@@ -451,7 +483,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
     }
 
-    fn attribute(&mut self, p: &'static Property, raw: &str) {
+    fn attribute(&mut self, p: &'static Property, raw: &'a str) {
         if matches!(p.kind, Kind::Transform) {
             if let Cow::Owned(new) = self.near(raw) {
                 self.out.attributes.push((p.name, Some(new)));
@@ -480,6 +512,9 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 new => new,
             },
         };
+        if new.is_some() {
+            self.say(p, &raw.into());
+        }
         let is_length =
             is_geometry || matches!(p.kind, Kind::Length(_) | Kind::Dashes | Kind::FontSize | Kind::Spacing);
         let new = new.map(|v| if is_length { self.near(&v).into_owned() } else { v.into_owned() });
@@ -490,8 +525,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
 
     /// Applies the rules specific to texts, dashes, markers and `use` elements.
     fn finish(mut self, node: Node<'a, '_>, inherited: &mut Inherited) -> Computed<'a> {
-        let tag = self.tag;
-        let mut out = self.out;
+        let (tag, mut out, mut said) = (self.tag, self.out, self.said);
         let mut style = std::mem::take(&mut self.style);
         if tag == "use" {
             out.attributes.extend(size_of_use(node, &self.values.units));
@@ -531,13 +565,13 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             out.attributes.retain(|a| new.iter().all(|n| n.0 != a.0));
             out.attributes.extend(new.into_iter().map(|(name, v)| (name, Some(v))));
         }
-        let styled = |style: &[(Cow<'a, str>, Cow<'a, str>)], name: &str| {
+        let styled = |name: &str| {
             let found = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.to_string());
             found.or_else(|| out.value(node, name).map(ToOwned::to_owned))
         };
         for (name, dashes) in DASHES.iter().zip(&mut inherited.dashes) {
             let own = self.seen.contains(*name) || node.attributes().any(|a| a.name() == *name);
-            if let Some(v) = own.then(|| styled(&style, name)).flatten().filter(|v| v.trim() != "inherit") {
+            if let Some(v) = own.then(|| styled(name)).flatten().filter(|v| v.trim() != "inherit") {
                 *dashes = Some(v.into());
             }
         }
@@ -554,8 +588,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             let attributes = changes.attributes.into_iter().filter(|(name, v)| attribute(node, name) != Some(v));
             out.attributes.extend(attributes.map(|(name, v)| (name, Some(v))));
             out.unsupported.extend(changes.unsupported.iter().map(|d| ignored(d)));
+            said.extend(changes.style.iter().map(|(n, v)| (n.clone().into(), Some(v.clone().into()))));
             style.extend(changes.style.into_iter().map(|(n, v)| (n.into(), v.into())));
         }
+        out.words = inherited.saying(said);
         if let Some(dashes) = scaled_dashes(node, &out, inherited) {
             style.retain(|s| !DASHES.contains(&s.0.as_ref()));
             style.extend(DASHES.iter().zip(dashes).map(|(name, value)| (Cow::Borrowed(*name), value.into())));

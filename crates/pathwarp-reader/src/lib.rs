@@ -31,8 +31,10 @@ mod table;
 mod text;
 mod tree;
 mod value;
+mod words;
 pub mod xml;
 
 pub use guard::guarded;
 pub use range::LARGEST;
 pub use rewrite::{Change, Plain, ReadError, resolve};
+pub use words::{PaintProperty, Words};

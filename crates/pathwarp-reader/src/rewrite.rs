@@ -4,6 +4,7 @@ use crate::sheet::declarations;
 use crate::text::{Letters, Rewritten, joined, rewritten};
 use crate::tree::{Styled, Tree, styled};
 use crate::value::{percent_decoded, safe_id};
+use crate::words::Words;
 use crate::xml::{self, escape, name_end};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -14,6 +15,7 @@ use roxmltree::{Document, NS_XML_URI, Node};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Bytes of style that take as long to write as one comparison.
 const WRITTEN: usize = 16;
@@ -60,6 +62,8 @@ pub struct Plain {
     pub far: Vec<(usize, String)>,
     /// The properties that the style sheets declare.
     pub declared: BTreeSet<String>,
+    /// What is said about paint, for each element.
+    pub words: Vec<Arc<Words>>,
     /// Small differences from what browsers show: a sentence, and the element or name it is about.
     pub notes: BTreeSet<(&'static str, String)>,
     /// Whether elements were written out in place of the entities that hold them. `changes` does not list these.
@@ -167,7 +171,8 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     let Tree { styles, sheets, unsupported, declared, mut notes } = styled(doc, &nodes, budget)?;
     let unsupported = unsupported.into_iter().map(|why| (None, why)).collect();
     notes.extend(hints(text).map(|hint| (hint, String::new())));
-    let mut out = Plain { unsupported, declared, notes, ..Plain::default() };
+    let said = styles.iter().map(|s| Arc::clone(&s.computed.words)).collect();
+    let mut out = Plain { unsupported, declared, words: said, notes, ..Plain::default() };
     let mut all: Vec<(Change, String)> = Vec::new();
     let mut paths = String::new();
     // If any id is renamed, edited drawings keep all references as they are written here.

@@ -14,6 +14,7 @@ use roxmltree::{Document, Node, NodeId};
 use selectors::context::SelectorCaches;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Size of a drawing that specifies none (CSS 2.1, section 10.3.2).
 const REPLACED: (f64, f64) = (300.0, 150.0);
@@ -112,7 +113,8 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
 /// The state that the root element inherits.
 fn at_root(doc: &Document<'_>) -> Inherited {
     let (custom, text) = (Rc::new(Custom::new()), TextStyle::default());
-    Inherited { in_symbol: false, marked: false, custom, units: root_units(doc), dashes: [None, None], text }
+    let (dashes, words) = ([None, None], Arc::default());
+    Inherited { in_symbol: false, marked: false, custom, units: root_units(doc), dashes, text, words }
 }
 
 /// The rules of a drawing, the indices of the elements that are sheets, and their unsupported features.

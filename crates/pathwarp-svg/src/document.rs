@@ -137,6 +137,12 @@ impl Document {
         self.drawing.page
     }
 
+    /// Whether the file gives its page a size in mm, cm, in, pt or pc.
+    #[must_use]
+    pub fn is_measured(&self) -> bool {
+        self.drawing.is_measured()
+    }
+
     /// The images that the drawing links to and that were not read.
     #[must_use]
     pub fn unread_images(&self) -> UnreadImages {

@@ -17,5 +17,6 @@ mod seen;
 mod strokes;
 mod structure;
 mod style;
+mod themes;
 mod unsupported;
 mod vector_images;

@@ -69,7 +69,7 @@ fn similarity_scales_strokes_and_anything_else_outlines_them() {
         w.svg
     );
     let w = warp(&svg, oblique());
-    assert!(w.svg.contains("<g ") && w.svg.contains("fill=\"#ff0000\""), "{}", w.svg);
+    assert!(w.svg.contains("<g ") && w.svg.contains("fill=\"red\""), "{}", w.svg);
 }
 
 #[test]

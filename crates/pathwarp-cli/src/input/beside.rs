@@ -6,7 +6,7 @@ use crate::bitmap::encode;
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use pathwarp::deform::{Built, Role};
-use pathwarp::kurbo::{Point, Rect, Shape};
+use pathwarp::kurbo::Point;
 use pathwarp::map::Map;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe};
 use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
@@ -31,12 +31,11 @@ pub(super) fn preview(
     let mut left = Panel::new(usvg_tree::tree(doc), doc.user_to_px(), doc.view_box());
     let mut right = Panel::new(usvg_tree::tree(&after), after.user_to_px(), after.view_box());
     let everything = Selection::default();
-    // The view holds all artwork, including what the warp moved off the page.
-    let artwork = [doc, &after].into_iter().filter_map(|d| d.artwork_box(&everything));
+    // All artwork is shown, including what the warp moved off the page.
+    for (panel, doc) in [(&mut left, doc), (&mut right, &after)] {
+        *panel = doc.artwork_box(&everything).into_iter().fold(panel.clone(), Panel::showing);
+    }
     let whole = &built.whole;
-    let guides = whole.steps.iter().flat_map(|s| s.explanation.overlays.iter().map(|o| o.path.bounding_box()));
-    let seen = artwork.chain(guides).filter(Rect::is_finite);
-    let view = seen.fold(doc.view_box().union(after.view_box()), |all, r| all.union(r));
     for (i, step) in whole.steps.iter().enumerate() {
         let at = |end: fn(&[usize]) -> Option<&usize>| built.parts.iter().any(|p| end(&p.indices) == Some(&i));
         let (is_first, is_last) = (at(<[usize]>::first), at(<[usize]>::last));
@@ -54,7 +53,7 @@ pub(super) fn preview(
             *panel = panel.clone().with(PreviewOverlay::new(kind, o.path.clone()));
         }
     }
-    encode(Preview::new(left, right).view(view).render_within(&doc.budget().limits())?, format, quality)
+    encode(Preview::new(left, right).render_within(&doc.budget().limits())?, format, quality)
 }
 
 /// Refuses steps that write such a file for artwork which other steps have bent in several ways.

@@ -45,6 +45,7 @@ impl PictureArtwork {
             (!options.exclude.is_empty(), "exclude"),
             (options.embed_recipe, "embed-recipe"),
             (options.preview.is_some(), "preview"),
+            (options.page == PageFit::Shrink, "fit shrink"),
             (options.page_width.is_some() || options.page_height.is_some(), "page-width"),
             (options.kerf.is_some(), "kerf"),
         ] {

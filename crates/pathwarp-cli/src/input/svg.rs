@@ -15,8 +15,8 @@ use crate::units::units_per_px;
 use crate::{advice, export, watch};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
-use pathwarp::kurbo::{Rect, Size};
-use pathwarp::map::Map;
+use pathwarp::kurbo::{Affine, Rect, Size};
+use pathwarp::map::{AffineMap, Map};
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::{Error, Outline, refit};
@@ -151,10 +151,22 @@ impl SvgArtwork {
         let bends: Vec<(&dyn Map, &WarpOptions)> =
             parts.iter().zip(&options).map(|(built, options)| (&built.map as &dyn Map, options)).collect();
         let mut warped = self.doc.warp_each(&bends)?;
+        if let (Some(back), Some(own)) = (warped.back, options.first()) {
+            warped.svg = self.moved(&warped.svg, back, own)?;
+        }
         if let Some(original) = &self.original {
             warped.svg = original.without_ids(&warped.svg);
         }
         Ok((options, warped))
+    }
+
+    /// A result, all of it scaled and moved.
+    fn moved(&self, svg: &str, to: Affine, own: &WarpOptions) -> Result<String, Error> {
+        let doc = Document::read(svg.as_bytes(), &self.name, &self.read)?;
+        let refit = refit::Options::new(own.refit.tolerance).with_budget(doc.budget().clone());
+        let options = WarpOptions::new(refit).with_precision(own.precision).with_text(own.text);
+        let options = options.with_structure(own.structure).with_clones(own.clones);
+        Ok(doc.warp(&AffineMap(to), &options)?.svg)
     }
 
     /// The drawing bent within the tolerance, which may be a length of the result's page, with its recipe. Returns the options for each part

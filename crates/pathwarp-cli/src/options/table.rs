@@ -334,11 +334,12 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("none", |o| o.page = PageFit::None),
                 ("grow", |o| o.page = PageFit::Grow),
                 ("page", |o| o.page = PageFit::PageWithMargin),
+                ("shrink", |o| o.page = PageFit::Shrink),
             ]),
-            "Page: leave it unchanged (none), grow it to hold the warped artwork, or make it the bounding box of the \
-             artwork with the margin of the original (page). auto grows it, to whole units, where artwork leaves it, and says \
-             so; the pages of icons (square, up to 64 units), of paper sizes, of batches, and those that steps refer to stay, with \
-             a warning if artwork extends past them",
+            "Page: leave it unchanged (none), grow it to hold the warped artwork, make it the bounding box of the artwork with the \
+             margin of the original (page), or scale the result back into it (shrink). auto grows it, to whole units and with its margin, \
+             where artwork leaves it, and says so; the pages of icons (square, up to 64 px), of paper sizes, of batches, and those that \
+             steps refer to stay, with a warning if artwork extends past them",
         )
     },
     stored(

@@ -1,7 +1,8 @@
 //! Draws a drawing and its warped result side by side.
 //!
 //! Both panels show the same part of the plane at the same scale, so that a shape that did not move is in the same place in
-//! both. That part is the bounding box of both pages and all overlays. Artwork outside its page is shown on the grey around it.
+//! both. That part is the bounding box of both pages and all overlays. Where the two lie so far apart that they would be small in it,
+//! each panel shows its own. Artwork outside its page is shown on the grey around it.
 
 mod overlay;
 
@@ -28,6 +29,9 @@ const MARGIN: f64 = 20.0;
 /// Space between the panels, in nominal pixels.
 const GAP: f64 = 4.0;
 
+/// Panels show parts of the plane of their own where one of both would be so many times as long as the longer of the two.
+const APART: f64 = 1.5;
+
 /// A drawing with its overlays.
 #[derive(Debug, Clone)]
 pub struct Panel<'a> {
@@ -35,6 +39,7 @@ pub struct Panel<'a> {
     user_to_px: Affine,
     page: Rect,
     overlays: Vec<PreviewOverlay>,
+    artwork: Option<Rect>,
 }
 
 impl<'a> Panel<'a> {
@@ -44,7 +49,7 @@ impl<'a> Panel<'a> {
     /// `user_to_px` maps the latter to the former. `page` is the page of the drawing: its `viewBox`, or the box of its `width`
     /// and `height`.
     pub fn new(tree: &'a usvg::Tree, user_to_px: Affine, page: Rect) -> Self {
-        Self { tree, user_to_px, page, overlays: Vec::new() }
+        Self { tree, user_to_px, page, overlays: Vec::new(), artwork: None }
     }
 
     /// Adds an overlay on top of the artwork and of earlier overlays.
@@ -54,9 +59,17 @@ impl<'a> Panel<'a> {
         self
     }
 
-    /// Bounding box of the page and all overlays, in root user units.
+    /// Shows this area, in root user units, whether it lies on the page or not.
+    #[must_use]
+    pub fn showing(mut self, artwork: Rect) -> Self {
+        self.artwork = Some(self.artwork.map_or(artwork, |a| a.union(artwork)));
+        self
+    }
+
+    /// Bounding box of the page, all overlays and whatever else is shown, in root user units.
     fn bounds(&self) -> Rect {
-        self.overlays.iter().filter_map(PreviewOverlay::bounds).fold(self.page.abs(), |a, b| a.union(b))
+        let overlays = self.overlays.iter().filter_map(PreviewOverlay::bounds);
+        overlays.chain(self.artwork).fold(self.page.abs(), |a, b| a.union(b))
     }
 }
 
@@ -82,26 +95,18 @@ pub struct Preview<'a> {
     before: Panel<'a>,
     after: Panel<'a>,
     panel_size: u32,
-    view: Option<Rect>,
 }
 
 impl<'a> Preview<'a> {
     /// Puts `before` on the left and `after` on the right.
     pub fn new(before: Panel<'a>, after: Panel<'a>) -> Self {
-        Self { before, after, panel_size: DEFAULT_PANEL, view: None }
+        Self { before, after, panel_size: DEFAULT_PANEL }
     }
 
     /// Sets the longer side of each panel in pixels; the default is 600.
     #[must_use]
     pub fn panel_size(mut self, pixels: u32) -> Self {
         self.panel_size = pixels;
-        self
-    }
-
-    /// Shows this part of the plane (in root user units) instead of the pages and all overlays.
-    #[must_use]
-    pub fn view(mut self, view: Rect) -> Self {
-        self.view = Some(view);
         self
     }
 
@@ -118,19 +123,32 @@ impl<'a> Preview<'a> {
     /// # Errors
     /// As for [`Preview::render`]; also if drawing takes more than the limits allow.
     pub fn render_within(&self, limits: &Limits) -> Result<Pixmap, Error> {
-        let view = self.view.unwrap_or_else(|| self.before.bounds().union(self.after.bounds())).abs();
-        let layout = PanelLayout::new(view, self.panel_size)?;
+        let views = self.views();
+        let layout = PanelLayout::new(views[0], self.panel_size)?;
         let budget = Budget::new(*limits);
         let mut picture = new_pixmap(2.0 * layout.width + layout.gap, layout.height, limits)?;
         picture.fill(Color::from_rgba8(0xc4, 0xc8, 0xcf, 0xff));
         let second = layout.width + layout.gap;
-        for (panel, left) in [(&self.before, 0.0), (&self.after, second)] {
-            let drawn = layout.draw(panel, &budget)?;
+        for (panel, view, left) in [(&self.before, views[0], 0.0), (&self.after, views[1], second)] {
+            let drawn = PanelLayout::new(view, self.panel_size)?.draw(panel, &budget)?;
             #[expect(clippy::cast_possible_truncation, reason = "within the picture")]
             let left = left as i32;
             picture.draw_pixmap(left, 0, drawn.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
         }
         Ok(picture)
+    }
+}
+
+impl Preview<'_> {
+    /// The parts of the plane that the panels show. Both are of the same size.
+    fn views(&self) -> [Rect; 2] {
+        let all = [self.before.bounds(), self.after.bounds()];
+        let both = all[0].union(all[1]);
+        let size = all[0].size().max(all[1].size());
+        if both.width() <= APART * size.width && both.height() <= APART * size.height {
+            return [both; 2];
+        }
+        all.map(|own| Rect::from_center_size(own.center(), size))
     }
 }
 
@@ -245,6 +263,29 @@ mod tests {
         let edge = rgb(&picture, 580, 60);
         assert!(edge[0] > edge[2] + 100, "{edge:?}");
         assert_eq!(rgb(&picture, 604 + 580, 60), [0xec, 0xee, 0xf1]);
+    }
+
+    /// The result looks as it would where the drawing was.
+    #[test]
+    fn a_result_far_away_is_shown_at_the_same_scale() {
+        let tree = tree();
+        let panel = |x: f64, y: f64| {
+            let to_px = Affine::scale(2.0) * Affine::translate((-x, -y));
+            Panel::new(&tree, to_px, PAGE + kurbo::Vec2::new(x, y))
+        };
+        let stayed = Preview::new(panel(0.0, 0.0), panel(0.0, 0.0)).render().unwrap();
+        for (x, y) in [(1000.0, 0.0), (0.0, -90.0), (-80.0, 3000.0)] {
+            let moved = Preview::new(panel(0.0, 0.0), panel(x, y)).render().unwrap();
+            assert!(moved.data() == stayed.data(), "{x} {y}");
+        }
+        // One that is near stays in one view with the drawing.
+        let near = Preview::new(panel(0.0, 0.0), panel(40.0, 0.0)).render().unwrap();
+        assert_eq!(rgb(&near, 604 + 20 + 80, near.height() / 2), [0xec, 0xee, 0xf1]);
+        // Both have room for the larger one.
+        let large = panel(1000.0, 0.0).showing(Rect::new(900.0, 0.0, 1100.0, 50.0));
+        let picture = Preview::new(panel(0.0, 0.0), large).render().unwrap();
+        assert_eq!((picture.width(), picture.height()), (1204, 180));
+        assert_eq!(rgb(&picture, 300 - 70, 90), [0, 0, 255]);
     }
 
     #[test]

@@ -143,8 +143,8 @@ pub enum PageFit {
     /// Leave it unchanged.
     #[default]
     None,
-    /// If artwork on the page leaves it, extend the page to hold that artwork, outwards to whole user units. If nothing is left on
-    /// the page, set it to the bounding box of the warped artwork with the margin of the original, outwards to whole user units.
+    /// If artwork on the page leaves it, extend the page to hold that artwork with the margin of the original, outwards to whole user
+    /// units. If nothing is left on the page, set it to the bounding box of the warped artwork with that margin.
     Auto,
     /// Extend the page to hold all of the warped artwork.
     Grow,
@@ -153,6 +153,9 @@ pub enum PageFit {
     /// Set the page to the bounding box of the warped artwork with the margin of the original: the smallest distance between the
     /// original artwork and the edge of its page.
     PageWithMargin,
+    /// Leave it unchanged, and say how artwork that leaves it would get back
+    /// ([`WarpedDocument::back`](crate::WarpedDocument::back)).
+    Shrink,
     /// Move the page to the origin, with its size unchanged.
     Origin,
 }

@@ -4,7 +4,7 @@ use super::fits::PaintFit;
 use super::gradients::NewGradient;
 use super::pictures::{BentImage, PictureError};
 use crate::source::number::path_data_by;
-use pathwarp::kurbo::{BezPath, Rect};
+use pathwarp::kurbo::{Affine, BezPath, Rect};
 use pathwarp::refit::{Assurance, PathReport};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{self, Display};
@@ -27,6 +27,9 @@ pub struct WarpedDocument {
     pub overhang: Option<Overhang>,
     /// The visible area before and after, in root user units, if the page is adapted.
     pub page: Option<[Rect; 2]>,
+    /// With [`PageFit::Shrink`](crate::PageFit::Shrink), what scales and moves the result so that its artwork lies on the page, with the
+    /// margin of the original.
+    pub back: Option<Affine>,
     /// Names of the elements whose filters' drawing became a picture, and of those whose filters follow a fit that looks right.
     pub filters: [Vec<String>; 2],
     /// Whether nothing of the result lies on its page.

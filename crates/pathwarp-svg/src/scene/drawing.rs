@@ -1,6 +1,6 @@
 //! A drawing: its source text, usvg's tree, and the scene resolved from both.
 
-use super::geometry::{GeometryReader, MM_PER_INCH, stretch};
+use super::geometry::{Dimension, GeometryReader, MM_PER_INCH, stretch};
 use super::lettering::{self, TextLine};
 use super::model::{Group, Node, Part, PartRole, Scene};
 use super::resolve::{self, Tiling};
@@ -65,6 +65,7 @@ impl Drawing {
             Ok((read?, shallow))
         })?;
         let ((tree, letters, missed, scene), shallow) = read;
+        let page = page_size(&source, &tree, dpi);
         Ok(Self {
             name: name.to_owned(),
             source: Arc::new(source),
@@ -73,7 +74,7 @@ impl Drawing {
             lines: OnceLock::new(),
             far: OnceLock::new(),
             missed,
-            page: Size::new(f64::from(tree.size().width()), f64::from(tree.size().height())),
+            page,
             shallow,
             tree: Arc::new(tree),
             letters: Arc::new(letters),
@@ -193,23 +194,27 @@ impl Drawing {
 
     /// The visible area, if the file specifies the size of its page.
     pub(crate) fn specified_area(&self) -> Option<Rect> {
-        let length = |name| {
-            let text = self.source.attr(0, name);
-            text.and_then(|t| Length::from_str(t.trim()).ok()).is_some_and(|l| l.unit != LengthUnit::Percent)
-        };
-        let specified = self.source.attr(0, "viewBox").is_some() || length("width") && length("height");
+        let sides = ["width", "height"].map(|name| page_length(&self.source, name));
+        let specified = self.source.attr(0, "viewBox").is_some() || self.shares_window() || !sides.contains(&None);
         specified.then(|| self.visible_area())
+    }
+
+    /// Whether the page is a share of the window, which goes on to the right and downwards as far as there is artwork.
+    pub(crate) fn shares_window(&self) -> bool {
+        let is_share = |name| page_length(&self.source, name).is_some_and(|l| l.unit == LengthUnit::Percent);
+        self.source.attr(0, "viewBox").is_none() && (is_share("width") || is_share("height"))
     }
 
     /// A millimetre in root user units, if the file specifies the size of its page in physical units.
     pub(crate) fn millimetre(&self) -> Option<f64> {
+        self.is_measured().then(|| self.dpi / MM_PER_INCH / stretch(self.scene().to_px))
+    }
+
+    /// Whether the file specifies the size of its page in physical units.
+    pub(crate) fn is_measured(&self) -> bool {
         use LengthUnit::{Cm, In, Mm, Pc, Pt};
-        let physical = |name| {
-            let length = Length::from_str(self.source.attr(0, name)?.trim()).ok()?;
-            Some(matches!(length.unit, Mm | Cm | In | Pt | Pc))
-        };
-        let measured = ["width", "height"].into_iter().any(|name| physical(name) == Some(true));
-        measured.then(|| self.dpi / MM_PER_INCH / stretch(self.scene().to_px))
+        let lengths = ["width", "height"].map(|name| page_length(&self.source, name));
+        lengths.into_iter().flatten().any(|l| matches!(l.unit, Mm | Cm | In | Pt | Pc))
     }
 
     /// The visible page in root user units.
@@ -241,6 +246,23 @@ impl Drawing {
         let far = Far::of(&self.source, self.scene(), self.shapes());
         self.far.get_or_init(|| far)
     }
+}
+
+/// The size of the page in px. If a side is a share of the window, usvg takes the artwork's extent for both.
+fn page_size(source: &SourceText, tree: &usvg::Tree, dpi: f64) -> Size {
+    let drawn = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
+    let reader = GeometryReader { source, dpi, page: drawn };
+    let own = |name, of| {
+        page_length(source, name).filter(|l| l.unit != LengthUnit::Percent && source.attr(0, "viewBox").is_none())?;
+        reader.length(0, name, of)?
+    };
+    let [w, h] = [own("width", Dimension::Width), own("height", Dimension::Height)];
+    if w.is_some() == h.is_some() { drawn } else { Size::new(w.unwrap_or(drawn.width), h.unwrap_or(drawn.height)) }
+}
+
+/// The `width` or `height` of the page, as it is written.
+fn page_length(source: &SourceText, name: &str) -> Option<Length> {
+    Length::from_str(source.attr(0, name)?.trim()).ok()
 }
 
 /// Parts that are out of range, with the reasons.

@@ -50,7 +50,7 @@ pub(crate) struct GeometryReader<'a> {
 }
 
 impl GeometryReader<'_> {
-    fn length(&self, e: ElementId, name: &str, of: Dimension) -> Option<Option<f64>> {
+    pub(super) fn length(&self, e: ElementId, name: &str, of: Dimension) -> Option<Option<f64>> {
         let Some(text) = self.source.attr(e, name) else { return Some(None) };
         // An invalid value counts as absent.
         let Ok(l) = Length::from_str(text.trim()) else { return Some(None) };

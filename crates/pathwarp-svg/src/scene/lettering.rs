@@ -385,15 +385,19 @@ fn numbers<const N: usize>(reader: &GeometryReader<'_>, e: ElementId, name: &str
 /// The source element of each outline of a text, by the text's element.
 pub(crate) type Owners = HashMap<ElementId, Vec<ElementId>>;
 
-/// Finds the owners of all letters in texts that contain named elements. To do so, it has usvg resolve the drawing again with every
-/// element of these texts in a colour of its own.
+/// Finds the owners of all letters in texts that contain named elements, or elements whose colours can be changed elsewhere. To do so, it
+/// has usvg resolve the drawing again with every element of these texts in a colour of its own.
 pub(crate) fn owners(source: &SourceText, name: &str, options: &ReadOptions) -> Result<Owners, Error> {
     let mut out = Owners::new();
     if source.unpatchable.is_some() {
         return Ok(out);
     }
     let texts = (0..source.elements.len()).filter(|&e| source.elements[e].tag == "text");
-    let named: Vec<ElementId> = texts.filter(|&t| inside(source, t).any(|e| is_named(source, e))).collect();
+    let says = |e: ElementId| source.words.get(e);
+    let depends = |e: ElementId| says(e).is_some_and(|words| words.depends());
+    let themed = |t| inside(source, t).any(|e| says(e) != says(t) && (depends(e) || depends(t)));
+    let named: Vec<ElementId> =
+        texts.filter(|&t| themed(t) || inside(source, t).any(|e| is_named(source, e))).collect();
     if named.is_empty() {
         return Ok(out);
     }

@@ -8,7 +8,7 @@ use super::threads::{both, map_parallel};
 use pathwarp::budget::Budget;
 use pathwarp::{Error, Outline};
 use pathwarp_reader::xml::{self, escape};
-use pathwarp_reader::{Change, Plain, ReadError, resolve};
+use pathwarp_reader::{Change, Plain, ReadError, Words, resolve};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
@@ -40,6 +40,8 @@ pub(crate) struct SourceText {
     pub(crate) far: Vec<(ElementId, String)>,
     /// Unsupported style: the element, or `None` for style sheets, and a message.
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
+    /// What the file says about the paint of each element.
+    pub(crate) words: Vec<Arc<Words>>,
     /// Small differences from what browsers show: a sentence, and the element or name it is about.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
     /// Mesh gradients by id.
@@ -74,6 +76,7 @@ impl SourceText {
             far: plain.far,
             unsupported_style: plain.unsupported,
             declared: plain.declared,
+            words: plain.words,
             notes: plain.notes,
             unpatchable: parsed.unpatchable.or(plain.expanded.then_some(Unpatchable::Entities)),
             ..parsed

@@ -56,7 +56,8 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
     note_private(input, &mut notes);
     note_style_sheets(input, &mut notes);
     out.warnings.extend(notes.warnings());
-    if input.options.overhang {
+    out.back = page::back(input);
+    if input.options.overhang && out.back.is_none() {
         let shown = change.map_or_else(|| input.drawing.visible_area(), |(_, after)| after);
         let arrived = page::arrivals(input, shown);
         out.warnings.extend((!arrived.is_empty()).then_some(Warning::Arrivals(arrived)));

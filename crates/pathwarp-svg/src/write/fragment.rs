@@ -7,8 +7,9 @@ use super::defs::{Definitions, filter_key, has_usable_stops, server_key};
 use super::input::WriteInput;
 use super::layers::Layer;
 use super::markup::{
-    self, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
+    self, CssPaint, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
 };
+use super::place::Place;
 use super::{boxes, filter, mesh};
 use crate::bend::fits::{EmbeddedImage, FilterOutcome};
 use crate::bend::gradients::NewGradient;
@@ -22,6 +23,7 @@ use crate::source::markup::Tag;
 use crate::source::mesh::MeshGradient;
 use crate::source::number::{MAX_DECIMALS, matrix, outline_data, short};
 use pathwarp::kurbo::{Affine, Rect};
+use pathwarp_reader::PaintProperty::{self, Fill, FillOpacity, Stroke, StrokeOpacity};
 use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -46,6 +48,8 @@ pub(super) struct Writer<'a> {
     pub(super) input: WriteInput<'a>,
     pub(super) markup: Markup<'a>,
     pub(super) defs: Definitions,
+    /// Where new elements go that keep their authors' words about paint.
+    pub(super) place: Option<Place<'a>>,
     pub(super) skipped: &'a mut Vec<Skipped>,
     pub(super) notes: &'a mut Notes,
 }
@@ -60,7 +64,7 @@ impl<'a> Writer<'a> {
     ) -> Self {
         let markup = Markup::new(input.source, in_source);
         let defs = Definitions::new(input.source, input.scene, in_source);
-        Self { input, markup, defs, skipped, notes }
+        Self { input, markup, defs, place: None, skipped, notes }
     }
 
     fn push_nodes(&mut self, nodes: &[Node], out: &mut String) {
@@ -80,8 +84,11 @@ impl<'a> Writer<'a> {
             Node::Part(i) => self.part(*i),
             Node::Image(i) => image(&self.input, &self.markup, self.skipped, *i),
             Node::Text { element, content, .. } => {
+                let place = self.place.map(|p| p.of_text(self.input.source, *element));
+                let around = std::mem::replace(&mut self.place, place);
                 let id = element.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
                 let inner = self.group(content, "");
+                self.place = around;
                 self.markup.named_group(&id, inner)
             }
         }
@@ -187,7 +194,7 @@ impl<'a> Writer<'a> {
             return self.markup.path(&d, &id, &properties);
         };
         let (top, over) = match outlined {
-            Some((outline, stroke)) => (warped.text(outline), self.outlined(p, stroke, warped)),
+            Some((outline, _)) => (warped.text(outline), self.outlined(i)),
             None => {
                 let mut over = properties.clone();
                 over.retain(|p| !p.0.starts_with("fill"));
@@ -235,8 +242,8 @@ impl<'a> Writer<'a> {
                 let rule = if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" };
                 self.clipped_to(&area, rule, &content, i)
             }
-            (Some(f), None) => {
-                let fill = Some(self.paint(f.paint(), p, Some(warped)));
+            (Some(_), None) => {
+                let fill = self.fill(i);
                 let paints = CssPaints { fill, stroke: None };
                 let properties = markup::part_style(&self.markup, p, paints, stroke_scale(Some(warped)));
                 self.markup.path(&area, "", &properties)
@@ -248,15 +255,17 @@ impl<'a> Writer<'a> {
         let p = self.input.part(i);
         let opacity = p.stroke.as_ref().map_or(1.0, |s| s.opacity().get());
         let content = self.piece(self.input.stroke_tiles(i), warped.stroke_image.as_ref(), opacity);
-        let Some(s) = &p.stroke else { return String::new() };
+        if p.stroke.is_none() {
+            return String::new();
+        }
         match (&warped.stroke, content) {
             (StrokeOutcome::Outlined(o), Some(content)) => self.clipped_to(&warped.text(o), "nonzero", &content, i),
             (StrokeOutcome::Outlined(o), None) => {
-                let properties = self.outlined(p, s, warped);
+                let properties = self.outlined(i);
                 self.markup.path(&warped.text(o), "", &properties)
             }
             (StrokeOutcome::Scaled(scale), _) => {
-                let stroke = Some(self.paint(s.paint(), p, Some(warped)));
+                let stroke = self.stroke(i, false);
                 let properties = markup::part_style(&self.markup, p, CssPaints { fill: None, stroke }, *scale);
                 self.markup.path(d, "", &properties)
             }
@@ -285,15 +294,49 @@ impl<'a> Writer<'a> {
     pub(super) fn properties(&mut self, i: usize) -> Properties {
         let p = self.input.part(i);
         let warped = self.input.warped(i);
-        let fill = p.fill.as_ref().map(|f| self.paint(f.paint(), p, warped));
-        let stroke = p.stroke.as_ref().map(|s| self.paint(s.paint(), p, warped));
+        let (fill, stroke) = (self.fill(i), self.stroke(i, false));
         markup::part_style(&self.markup, p, CssPaints { fill, stroke }, stroke_scale(warped))
     }
 
     /// The presentation of an expanded stroke.
-    fn outlined(&mut self, p: &Part, stroke: &usvg::Stroke, warped: &WarpedPart) -> Properties {
-        let paint = self.paint(stroke.paint(), p, Some(warped));
-        markup::outlined(&self.markup, p, stroke, paint)
+    fn outlined(&mut self, i: usize) -> Properties {
+        let p = self.input.part(i);
+        self.stroke(i, true).map_or_else(Properties::new, |css| markup::outlined(&self.markup, p, css))
+    }
+
+    fn fill(&mut self, i: usize) -> Option<CssPaint> {
+        let fill = self.input.part(i).fill.as_ref()?;
+        Some(self.css_paint(i, [Fill, FillOpacity], (fill.paint(), fill.opacity()), false))
+    }
+
+    /// The paint of a stroke, which may be that of an outline's interior.
+    fn stroke(&mut self, i: usize, as_fill: bool) -> Option<CssPaint> {
+        let stroke = self.input.part(i).stroke.as_ref()?;
+        Some(self.css_paint(i, [Stroke, StrokeOpacity], (stroke.paint(), stroke.opacity()), as_fill))
+    }
+
+    /// A paint in the author's words if they mean the same in the place of the new element, else as it is resolved. It is that of
+    /// another property if it `moves`.
+    fn css_paint(
+        &mut self,
+        i: usize,
+        [of, its]: [PaintProperty; 2],
+        (paint, opacity): (&Paint, usvg::Opacity),
+        moves: bool,
+    ) -> CssPaint {
+        let p = self.input.part(i);
+        let said = self.place.filter(|_| matches!(paint, Paint::Color(_)));
+        if let Some((place, words)) = said.and_then(|place| Some((place, place.words_of(self.input.source, p)?))) {
+            let inherits = |of| place.is_parent && !moves && words.inherits(of, place.words);
+            let value =
+                |of| if inherits(of) { Some(None) } else { Some(Some(words.taken_over(of, place.words)?.to_owned())) };
+            let opacity = if words.says(its) || inherits(its) { value(its) } else { Some(Some("1".to_owned())) };
+            if let Some((paint, opacity)) = value(of).zip(opacity) {
+                return CssPaint { paint, opacity };
+            }
+        }
+        let paint = self.paint(paint, p, self.input.warped(i));
+        CssPaint { paint: Some(paint), opacity: Some(short(f64::from(opacity.get()))) }
     }
 
     /// A paint as a CSS value.
@@ -424,7 +467,9 @@ impl<'a> Writer<'a> {
         if t != Affine::IDENTITY {
             head = head.with("patternTransform", &matrix(t));
         }
+        let around = self.place.take();
         let inner = self.group(&tile.root, "");
+        self.place = around;
         self.defs.push(&head.around(&inner));
         format!("url(#{id})")
     }
@@ -528,7 +573,9 @@ impl<'a> Writer<'a> {
             let id = self.mask_id(next);
             properties.push(("mask", format!("url(#{id})")));
         }
+        let around = self.place.take();
         let mut inner = self.group(&m.root, "");
+        self.place = around;
         if let Some(edge) = boxes::edge(&self.input, i) {
             let id = self.defs.new_id(&format!("{}-edge", m.id));
             let path = self.markup.path(&edge, "", &Properties::new());
@@ -616,7 +663,9 @@ impl<'a> Writer<'a> {
             return String::new();
         };
         let id = self.defs.new_id("picture");
+        let around = self.place.take();
         let text = self.group(picture, &format!(" id=\"{id}\""));
+        self.place = around;
         self.defs.push(&text);
         format!(" {}=\"#{id}\"", self.markup.link())
     }

@@ -112,11 +112,17 @@ pub(super) fn push_all<const N: usize>(out: &mut String, parts: [&str; N]) {
     }
 }
 
-/// Paints of a part as CSS values; `None` for a paint that is missing or not written.
+/// A paint and its opacity as CSS values; `None` for what is inherited.
+pub(super) struct CssPaint {
+    pub(super) paint: Option<String>,
+    pub(super) opacity: Option<String>,
+}
+
+/// Paints of a part; `None` for a paint that is missing or not written.
 #[derive(Default)]
 pub(super) struct CssPaints {
-    pub(super) fill: Option<String>,
-    pub(super) stroke: Option<String>,
+    pub(super) fill: Option<CssPaint>,
+    pub(super) stroke: Option<CssPaint>,
 }
 
 /// Properties common to the fill and the expanded stroke of a part.
@@ -143,10 +149,10 @@ fn shared(markup: &Markup<'_>, p: &Part) -> Properties {
 }
 
 /// Properties of an expanded stroke.
-pub(super) fn outlined(markup: &Markup<'_>, p: &Part, stroke: &usvg::Stroke, paint: String) -> Properties {
+pub(super) fn outlined(markup: &Markup<'_>, p: &Part, stroke: CssPaint) -> Properties {
     let mut out = shared(markup, p);
-    out.push(("fill", paint));
-    out.push(("fill-opacity", short(f64::from(stroke.opacity().get()))));
+    out.extend(stroke.paint.map(|v| ("fill", v)));
+    out.extend(stroke.opacity.map(|v| ("fill-opacity", v)));
     out.push(("fill-rule", "nonzero".into()));
     out.push(("stroke", "none".into()));
     out.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || markup.may_inherit(n));
@@ -157,16 +163,16 @@ pub(super) fn outlined(markup: &Markup<'_>, p: &Part, stroke: &usvg::Stroke, pai
 pub(super) fn part_style(markup: &Markup<'_>, p: &Part, paints: CssPaints, scale: f64) -> Properties {
     let mut all = shared(markup, p);
     match (&p.fill, paints.fill) {
-        (Some(f), Some(paint)) => {
-            all.push(("fill", paint));
-            all.push(("fill-opacity", short(f64::from(f.opacity().get()))));
+        (Some(f), Some(css)) => {
+            all.extend(css.paint.map(|v| ("fill", v)));
+            all.extend(css.opacity.map(|v| ("fill-opacity", v)));
             all.push(("fill-rule", if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" }.into()));
         }
         _ => all.push(("fill", "none".into())),
     }
     match (&p.stroke, paints.stroke) {
-        (Some(s), Some(paint)) => {
-            push_stroke(s, paint, scale, &mut all);
+        (Some(s), Some(css)) => {
+            push_stroke(s, css, scale, &mut all);
             if p.fixed_width {
                 all.push(("vector-effect", "non-scaling-stroke".into()));
             }
@@ -182,9 +188,9 @@ pub(super) fn part_style(markup: &Markup<'_>, p: &Part, paints: CssPaints, scale
     all
 }
 
-fn push_stroke(s: &usvg::Stroke, paint: String, scale: f64, all: &mut Properties) {
-    all.push(("stroke", paint));
-    all.push(("stroke-opacity", short(f64::from(s.opacity().get()))));
+fn push_stroke(s: &usvg::Stroke, css: CssPaint, scale: f64, all: &mut Properties) {
+    all.extend(css.paint.map(|v| ("stroke", v)));
+    all.extend(css.opacity.map(|v| ("stroke-opacity", v)));
     all.push(("stroke-width", short(f64::from(s.width().get()) * scale)));
     let cap = match s.linecap() {
         LineCap::Butt => "butt",

@@ -12,4 +12,5 @@ pub(crate) mod lettering;
 mod markup;
 mod mesh;
 mod page;
+mod place;
 pub(crate) mod shadows;

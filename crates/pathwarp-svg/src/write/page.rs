@@ -37,7 +37,7 @@ struct Measure<'a> {
 fn adapted(input: &WriteInput<'_>) -> Option<Rect> {
     let page = input.drawing.visible_area();
     let shown = match input.options.page {
-        PageFit::None => return None,
+        PageFit::None | PageFit::Shrink => return None,
         PageFit::Origin => Rect::from_origin_size(Point::ORIGIN, page.size()),
         PageFit::Auto => held(input, page)?,
         PageFit::Grow => page.union(artwork(input, Some(page))?),
@@ -57,25 +57,51 @@ fn held(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
     }
     let all = artwork(input, Some(page))?;
     let slack = SLIVER * page.width().max(page.height());
+    let margin = margin(input, page);
     let outwards = |r: Rect| {
+        let r = r.inflate(margin, margin);
         let [x0, y0] = [r.x0, r.y0].map(|v| (v + slack).floor());
         let [x1, y1] = [r.x1, r.y1].map(|v| (v - slack).ceil());
         Rect::new(x0, y0, x1, y1)
     };
     if !shows(input, &input.scene.root, seen_part(page)) {
-        let margin = margin(input, page);
-        return Some(outwards(artwork(input, None)?.inflate(margin, margin)));
+        return Some(outwards(artwork(input, None)?));
     }
-    // Curves are off by up to the tolerance.
-    let near = slack + input.options.refit.tolerance;
-    let whole = outwards(all);
+    let near = page.inflate(near(input, page), near(input, page));
+    if holds(near, all) {
+        return None;
+    }
+    let (kept, whole) = (all.inflate(margin, margin), outwards(all));
     let out = Rect::new(
-        if all.x0 < page.x0 - near { whole.x0 } else { page.x0 },
-        if all.y0 < page.y0 - near { whole.y0 } else { page.y0 },
-        if all.x1 > page.x1 + near { whole.x1 } else { page.x1 },
-        if all.y1 > page.y1 + near { whole.y1 } else { page.y1 },
+        if kept.x0 < near.x0 { whole.x0 } else { page.x0 },
+        if kept.y0 < near.y0 { whole.y0 } else { page.y0 },
+        if kept.x1 > near.x1 { whole.x1 } else { page.x1 },
+        if kept.y1 > near.y1 { whole.y1 } else { page.y1 },
     );
-    Some(out)
+    (out.origin() != page.origin() || !input.drawing.shares_window()).then_some(out)
+}
+
+/// The distance by which artwork may extend past a page: a sliver, and as much as curves are off.
+fn near(input: &WriteInput<'_>, page: Rect) -> f64 {
+    SLIVER * page.width().max(page.height()) + input.options.refit.tolerance
+}
+
+/// What takes the artwork back onto its page, if it leaves it.
+pub(super) fn back(input: &WriteInput<'_>) -> Option<Affine> {
+    let page = input.drawing.specified_area().filter(|_| input.options.page == PageFit::Shrink && moved(input))?;
+    let all = artwork(input, Some(page))?;
+    let near = near(input, page);
+    if holds(page.inflate(near, near), all) {
+        return None;
+    }
+    let margin = margin(input, page);
+    let room = page.inflate(-margin, -margin);
+    let by = (room.width() / all.width()).min(room.height() / all.height()).min(1.0);
+    let (center, half) = (all.center(), all.size() * (0.5 * by));
+    let x = center.x.clamp(room.x0 + half.width, (room.x1 - half.width).max(room.x0 + half.width));
+    let y = center.y.clamp(room.y0 + half.height, (room.y1 - half.height).max(room.y0 + half.height));
+    let to = Affine::translate((x, y)) * Affine::scale(by) * Affine::translate(-center.to_vec2());
+    (by > 0.0 && to.is_finite()).then_some(to)
 }
 
 /// The part of a page in which something has to lie to be seen.
@@ -101,13 +127,14 @@ fn moved(input: &WriteInput<'_>) -> bool {
 pub(super) fn attributes(source: &SourceText, (page, shown): (Rect, Rect)) -> Vec<(&'static str, String)> {
     let view = [shown.x0, shown.y0, shown.width(), shown.height()].map(short).join(" ");
     let mut out = vec![("viewBox", view)];
-    let sides = [("width", shown.width() / page.width()), ("height", shown.height() / page.height())];
-    for (name, ratio) in sides {
-        let text = source.attr(0, name);
-        if let Some(l) = text.and_then(|t| Length::from_str(t.trim()).ok())
-            && l.unit != LengthUnit::Percent
-        {
-            out.push((name, format!("{}{}", short(l.number * ratio), unit(l.unit))));
+    let sides = [("width", shown.width(), page.width()), ("height", shown.height(), page.height())];
+    for (name, after, before) in sides {
+        let Some(l) = source.attr(0, name).and_then(|t| Length::from_str(t.trim()).ok()) else { continue };
+        if l.unit != LengthUnit::Percent {
+            out.push((name, format!("{}{}", short(l.number * after / before), unit(l.unit))));
+        } else if source.attr(0, "viewBox").is_none() {
+            // Beside a viewBox, a share of the window would be a scale.
+            out.push((name, short(after)));
         }
     }
     out

@@ -13,6 +13,7 @@ use crate::write::boxes;
 use crate::write::fragment::bent;
 use crate::write::input::WriteInput;
 use crate::write::markup::{bent_attributes, bent_url, dashes, part_data};
+use crate::write::place::Place;
 use pathwarp::kurbo::Affine;
 use pathwarp_reader::xml::escape;
 use std::collections::{BTreeMap, BTreeSet};
@@ -117,7 +118,7 @@ pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     let outlined = p.stroke.is_some() && warped.stroke.outline().is_some();
     let separate_fill = warped.fill.as_ref().is_some_and(|f| !f.elements().is_empty());
     if k.input.in_pieces(i) || outlined || separate_fill || k.around.contains_key(&e) {
-        let content = k.writer.part(i);
+        let content = k.written_inside(e, |w| w.part(i));
         let content = k.between_pictures(e, content);
         k.make_group(e, content);
         return;
@@ -186,7 +187,7 @@ fn marked_shape(k: &mut Keeper<'_, '_>, e: ElementId, nodes: &[&Node]) {
     if !nodes.iter().any(|n| k.changed(n)) {
         return;
     }
-    let content = nodes.iter().map(|n| k.writer.node(n)).collect();
+    let content = k.written_inside(e, |w| nodes.iter().map(|n| w.node(n)).collect());
     let content = k.between_pictures(e, content);
     k.make_group(e, content);
     for name in MARKERS {
@@ -267,7 +268,9 @@ pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     let title = el.title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
     k.fragments.insert(e);
     let lead = title + &keeper::kept(source, e);
+    k.writer.place = Place::of_copy(source, e);
     let text = k.writer.group_with(g, &head, &lead);
+    k.writer.place = None;
     k.edits.replace(e, text);
 }
 

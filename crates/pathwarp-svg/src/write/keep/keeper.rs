@@ -8,6 +8,7 @@ use crate::source::text::SourceText;
 use crate::write::defs::Replaced;
 use crate::write::fragment::Writer;
 use crate::write::input::WriteInput;
+use crate::write::place::Place;
 use pathwarp::kurbo::Affine;
 use std::collections::{BTreeSet, HashMap};
 
@@ -83,6 +84,14 @@ impl<'a, 'w> Keeper<'a, 'w> {
             Some([beneath, above]) => format!("{beneath}{content}{above}"),
             None => content,
         }
+    }
+
+    /// What is written to an element that becomes the group around it.
+    pub(super) fn written_inside(&mut self, e: ElementId, write: impl FnOnce(&mut Writer<'a>) -> String) -> String {
+        self.writer.place = Place::inside(self.source, e);
+        let text = write(self.writer);
+        self.writer.place = None;
+        text
     }
 
     pub(super) fn remove_geometry(&mut self, e: ElementId) {

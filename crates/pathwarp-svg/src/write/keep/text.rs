@@ -62,10 +62,13 @@ pub(super) fn text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners
     let words = words(source, e);
     let inner = if owners.len() == content.children.len() {
         let spans = span_tree(source, e, owners);
-        let written = SpanWriter { k, spans: &spans, content, seen: Vec::new() }.items(0);
+        let written = SpanWriter { k, spans: &spans, content, owners, seen: Vec::new() }.items(0);
         k.writer.group_around(content, &written)
     } else {
-        k.writer.group(content, "")
+        k.written_inside(e, |w| {
+            w.place = w.place.map(|p| p.of_text(source, Some(e)));
+            w.group(content, "")
+        })
     };
     let inner = k.between_pictures(e, inner);
     let title = source.elements[e].title.as_ref().unwrap_or(&words);
@@ -106,6 +109,7 @@ struct SpanWriter<'s, 'k, 'a, 'w> {
     k: &'k mut Keeper<'a, 'w>,
     spans: &'s SpanTree,
     content: &'s Group,
+    owners: &'s [ElementId],
     /// Elements written so far.
     seen: Vec<ElementId>,
 }
@@ -116,7 +120,13 @@ impl SpanWriter<'_, '_, '_, '_> {
         let mut out = String::new();
         for item in &spans.0[span].content {
             match *item {
-                SpanItem::Outline(i) => out.push_str(&self.k.writer.node(&self.content.children[i])),
+                SpanItem::Outline(i) => {
+                    let (node, owner) = (&self.content.children[i], self.owners[i]);
+                    out.push_str(&self.k.written_inside(spans.0[0].element, |w| {
+                        w.place = w.place.map(|p| p.spoken_by(owner));
+                        w.node(node)
+                    }));
+                }
                 SpanItem::Span(s) => out.push_str(&self.span(s)),
             }
         }
