@@ -35,15 +35,15 @@ fn edits_come_before_the_bend() {
     }
 }
 
-/// A drawing that is only offset has the page of `offset`, and a bend adds to that.
+/// A drawing that is only offset has the page of `offset`, and a bend adds to that. The margin is 4 units.
 #[test]
 fn the_page_grows_with_the_artwork() {
     let source = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 300 100'><path d='M4,4H296V96H4Z'/></svg>";
     let offset = run(&["offset", "-", "--by", "10"], source.as_bytes());
-    assert!(offset.contains("viewBox='-6 -6 312 112'"), "{offset}");
+    assert!(offset.contains("viewBox='-10 -10 320 120'"), "{offset}");
     assert_eq!(run(&["affine", "-", "--outset", "10"], source.as_bytes()), offset);
     let moved = run(&["affine", "-", "--outset", "10", "--move-x", "20"], source.as_bytes());
-    assert!(moved.contains("viewBox='0 -6 326 112'"), "{moved}");
+    assert!(moved.contains("viewBox='0 -10 330 120'"), "{moved}");
     let simple = run(&["affine", "-", "--simplify", "1"], source.as_bytes());
     assert!(simple.contains("viewBox='0 0 300 100'"), "{simple}");
 }

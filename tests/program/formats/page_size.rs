@@ -81,9 +81,9 @@ fn a_size_in_a_style_gives_way() {
         for (more, [width, height]) in [
             (&["--page-width", "80mm"][..], ["80mm", "40mm"]),
             (&["--page-height", "60"], ["120px", "60px"]),
-            (&[], ["200px", "120px"]),
+            (&[], ["200px", "140px"]),
         ] {
-            // Without a size, the page grows by a fifth of its height.
+            // Without a size, the page grows by ten units and the margin of ten.
             let down = if more.is_empty() { "20" } else { "0" };
             let out = run(&[&["affine", "-", "--move-y", down], more].concat(), &svg);
             let text = std::str::from_utf8(&out).unwrap();

@@ -173,6 +173,7 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
 /// The least distance between the original artwork and the edge of its page; 0 if it has no page or extends past it.
 fn margin(input: &WriteInput<'_>, page: Rect) -> f64 {
     let Some(b) = original(input, None).filter(|_| input.drawing.specified_area().is_some()) else { return 0.0 };
+    let page = input.options.grown.unwrap_or(page);
     let sides = [b.x0 - page.x0, b.y0 - page.y0, page.x1 - b.x1, page.y1 - b.y1];
     sides.into_iter().fold(f64::INFINITY, f64::min).max(0.0)
 }
