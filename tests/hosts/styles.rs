@@ -10,7 +10,7 @@ use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Frame};
 use pathwarp::refit;
 use pathwarp_oracle::difference;
-use pathwarp_raster::{Pixmap, decode_png};
+use pathwarp_raster::Pixmap;
 use pathwarp_svg::{Document, ReadOptions, WarpOptions};
 use resvg::tiny_skia::IntRect;
 use std::fs;
@@ -207,8 +207,8 @@ const ICONS: &[(&str, &str)] = &[
 /// Under each of three warps, an icon takes a new colour as it does before the warp.
 #[test]
 fn icons_can_be_themed_after_a_warp() {
-    if chromium().is_none() {
-        crate::support::skipped("themed icons are not compared in browsers without Chromium");
+    if let Some(what) = browser::missing() {
+        crate::support::skipped(format_args!("themes are not compared with browsers without {what}"));
         return;
     }
     let folder = tempfile::tempdir().unwrap();

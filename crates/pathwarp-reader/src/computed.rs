@@ -409,7 +409,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             },
         };
         self.seen.insert(p.name.into());
-        self.say(p, &d.value);
+        self.say(p, d.value.clone());
         match p.kind {
             Kind::Transform => self.out.transform.push(Declaration { value, ..d.clone() }),
             Kind::Geometry(_) if self.geometry.contains(&p.name) => {
@@ -434,12 +434,12 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     }
 
     /// Takes down a valid value of a property of paint.
-    fn say(&mut self, p: &'static Property, raw: &Cow<'a, str>) {
+    fn say(&mut self, p: &'static Property, raw: Cow<'a, str>) {
         if Words::hold(p.name) {
             match wide(raw.trim()).map(|wide| resolved(wide, p)) {
                 Some(None) => {}
                 Some(Some(_)) => self.said.push((p.name.into(), None)),
-                None => self.said.push((p.name.into(), Some(raw.clone()))),
+                None => self.said.push((p.name.into(), Some(raw))),
             }
         }
     }
@@ -513,7 +513,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             },
         };
         if new.is_some() {
-            self.say(p, &raw.into());
+            self.say(p, raw.into());
         }
         let is_length =
             is_geometry || matches!(p.kind, Kind::Length(_) | Kind::Dashes | Kind::FontSize | Kind::Spacing);
