@@ -181,6 +181,15 @@ fn resolved(wide: Wide, p: &Property) -> Option<&'static str> {
     }
 }
 
+/// Whether a browser takes a declaration, rather than the one before it. Those with variables or expressions are taken.
+pub(super) fn is_valid(d: &Declaration<'_>, units: Units, ids: &Ids<'_, '_>) -> bool {
+    let Some(p) = property(&d.name).filter(|_| wide(&d.value).is_none() && !value::has_functions(&d.value)) else {
+        return true;
+    };
+    let values = Values { custom: Rc::default(), units, font: units.font, absolute: false, ids };
+    values.of(p, &d.value, d.strict).is_some()
+}
+
 /// Computes single values.
 struct Values<'d, 'a, 'i> {
     custom: Rc<Custom>,

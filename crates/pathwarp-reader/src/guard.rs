@@ -1,11 +1,12 @@
 //! Preserves the style of an edited drawing by overriding rules of its sheets that now match other elements.
 
-use crate::computed::MARKERS;
+use crate::computed::{MARKERS, is_valid};
 use crate::element::{Looks, applying};
+use crate::ids::Ids;
 use crate::rewrite::ReadError;
 use crate::sheet::{Declaration, declarations};
 use crate::table::of_attribute;
-use crate::tree::rules;
+use crate::tree::{root_units, rules};
 use crate::xml::{self, escape};
 use pathwarp::budget::Budget;
 use roxmltree::Node;
@@ -37,6 +38,8 @@ pub fn guarded(
         return Ok(None);
     }
     let looks = Looks::within(budget);
+    let (units, ids) = (root_units(&was), Ids::new(&was));
+    let valid = |d: &Declaration<'_>| is_valid(d, units, &ids);
     let (mut was_caches, mut is_caches) = (SelectorCaches::default(), SelectorCaches::default());
     let origins: HashMap<usize, usize> = kept.iter().map(|(element, at)| (*at, *element)).collect();
     let mut out = String::new();
@@ -54,7 +57,7 @@ pub fn guarded(
         if then == now {
             continue;
         }
-        let added = corrections(node, [&then, &old.iter().collect()], [&now, &new.iter().collect()]);
+        let added = corrections(node, [&then, &old.iter().collect()], [&now, &new.iter().collect()], &valid);
         if added.is_empty() {
             continue;
         }
@@ -83,8 +86,13 @@ pub fn guarded(
 }
 
 /// Computes the declarations that restore an element's style, as the text of an attribute. Either side lists the rules that
-/// apply, weakest first, and the element's own declarations.
-fn corrections(node: Node<'_, '_>, then: [&Vec<&Declaration<'_>>; 2], now: [&Vec<&Declaration<'_>>; 2]) -> String {
+/// apply, weakest first, and the element's own declarations. Those that are not `valid` do not count.
+fn corrections(
+    node: Node<'_, '_>,
+    then: [&Vec<&Declaration<'_>>; 2],
+    now: [&Vec<&Declaration<'_>>; 2],
+    valid: &dyn Fn(&Declaration<'_>) -> bool,
+) -> String {
     let concerned = then[0].iter().chain(now[0]).flat_map(|d| match d.name.as_ref() {
         "marker" => MARKERS.to_vec(),
         name => vec![name],
@@ -94,7 +102,7 @@ fn corrections(node: Node<'_, '_>, then: [&Vec<&Declaration<'_>>; 2], now: [&Vec
     for name in concerned {
         let last = |all: &[&Declaration<'_>]| {
             let of = |d: &&&Declaration<'_>| d.name == name || d.name == "marker" && MARKERS.contains(&name);
-            all.iter().rev().find(of).map(|d| (d.value.to_string(), d.important))
+            all.iter().rev().filter(of).find(|d| valid(d)).map(|d| (d.value.to_string(), d.important))
         };
         let winner = |[rules, own]: [&Vec<&Declaration<'_>>; 2]| match (last(rules), last(own)) {
             (Some(rule), Some(own)) => Some(if rule.1 && !own.1 { rule } else { own }),
@@ -172,6 +180,17 @@ mod tests {
             1
         );
         assert_eq!(mended("g{fill:red}", "<g/>", "<g/>", &[(2, "<g/>")]), "<g/>");
+    }
+
+    /// Browsers take the last valid declaration.
+    #[test]
+    fn invalid_declarations_do_not_count() {
+        let css = "circle{fill:teal;fill:nonsense;stroke:rgb(1,2)}";
+        assert_eq!(mended(css, "<circle/>", "<g/>", &[(2, "<g")]), "<g style=\"fill:teal\"/>");
+        assert_eq!(
+            mended(css, "<circle style='fill:5'/>", "<g style='fill:5'/>", &[(2, "<g")]).matches("fill:teal").count(),
+            1
+        );
     }
 
     #[test]

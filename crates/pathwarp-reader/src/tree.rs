@@ -158,7 +158,7 @@ fn is_sheet(node: &Node<'_, '_>) -> bool {
 }
 
 /// The units of the root element. The window has the size of the drawing.
-fn root_units(doc: &Document<'_>) -> Units {
+pub(super) fn root_units(doc: &Document<'_>) -> Units {
     let root = doc.root_element();
     let units = Units { font: MEDIUM, root_font: MEDIUM, window: REPLACED, viewport: REPLACED };
     let inner = view_box(root).unwrap_or(REPLACED);
