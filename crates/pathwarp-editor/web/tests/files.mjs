@@ -256,7 +256,9 @@ export const steps_are_added_moved_and_removed = () => within(null, async ({ pag
 export const the_page_grows = () => within(null, async ({ dir, page }) => {
   const sheet = () => page.$eval("#stage .sheet", (s) => { const b = s.getBoundingClientRect(); return [b.top, b.bottom, b.left, b.right]; });
   const [before, [x, y]] = [await sheet(), await middle(page, "shaper/0.0/2")];
-  const grown = (now) => now[0] < before[0] - 20 && now.slice(1).every((v, i) => Math.abs(v - before[i + 1]) < 0.5);
+  // The artwork comes a little nearer to the left side as well, whose margin stays.
+  const grown = ([top, bottom, left, right]) => top < before[0] - 20 && left > before[2] - 6 && left < before[2] + 0.5
+    && Math.abs(bottom - before[1]) < 0.5 && Math.abs(right - before[3]) < 0.5;
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x, y - 90, { steps: 12 });
