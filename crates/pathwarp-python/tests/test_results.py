@@ -115,7 +115,7 @@ def test_messages_are_in_pythons_names():
     def warnings(**values):
         return pathwarp.warp_svg(LOGO, "affine", **values).warnings
 
-    assert warnings(move_x=5000) == ['nothing is on the page of the result; fit="page" sets it to the artwork']
+    assert warnings(move_x=5000) == ['nothing is on the page of the result; fit="page" sets it to the artwork, fit="shrink" moves that back']
     assert 'fit="grow" enlarges the page' in warnings(move_x=50)[0]
     assert "precision=0 is too coarse" in "".join(pathwarp.warp_svg(LOGO, "arc", precision=0).warnings)
     notes = pathwarp.warp_svg(LOGO, "arc", explain=True, strokes="outline").notes
