@@ -77,7 +77,7 @@ fn outlines_cover_what_strokes_cover() {
 }
 
 #[test]
-#[ignore = "takes minutes: cargo test --release -p pathwarp-svg --test drawings covers -- --ignored"]
+#[ignore = "takes minutes: cargo test --release -p pathwarp-cli --test libraries covers -- --ignored"]
 fn outlines_cover_what_strokes_cover_at_four_thousand_pixels() {
     check(4000, &SHAPES, &STYLES);
 }

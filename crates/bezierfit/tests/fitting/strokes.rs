@@ -102,7 +102,7 @@ fn strands_that_nearly_touch_leave_nothing_bare() {
 }
 
 #[test]
-#[ignore = "takes a minute: cargo test --release -p bezierfit --test strokes -- --ignored"]
+#[ignore = "takes a minute: cargo test --release -p bezierfit --test fitting strokes -- --ignored"]
 fn round_strokes_of_two_thousand_random_paths_cover_what_is_near_them() {
     check_random(2, 2000);
 }
