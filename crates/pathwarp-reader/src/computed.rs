@@ -181,7 +181,7 @@ fn resolved(wide: Wide, p: &Property) -> Option<&'static str> {
     }
 }
 
-/// Whether a browser takes a declaration, rather than the one before it. Those with variables or expressions are taken.
+/// Returns `true` if browsers accept the value of a declaration. Values with variables or expressions count as accepted.
 pub(super) fn is_valid(d: &Declaration<'_>, units: Units, ids: &Ids<'_, '_>) -> bool {
     let Some(p) = property(&d.name).filter(|_| wide(&d.value).is_none() && !value::has_functions(&d.value)) else {
         return true;

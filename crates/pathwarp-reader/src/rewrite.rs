@@ -62,7 +62,7 @@ pub struct Plain {
     pub far: Vec<(usize, String)>,
     /// The properties that the style sheets declare.
     pub declared: BTreeSet<String>,
-    /// What is said about paint, for each element.
+    /// The declarations about paint that win, for each element in document order.
     pub words: Vec<Arc<Words>>,
     /// Small differences from what browsers show: a sentence, and the element or name it is about.
     pub notes: BTreeSet<(&'static str, String)>,

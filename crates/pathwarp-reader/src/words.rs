@@ -43,7 +43,7 @@ impl Words {
         self.scope = scope;
     }
 
-    /// Whether a property is one of these.
+    /// Returns `true` for the name of a property in [`PaintProperty`].
     pub(super) fn hold(name: &str) -> bool {
         NAMES.contains(&name)
     }
@@ -63,13 +63,13 @@ impl Words {
         self.said[p as usize].as_ref()
     }
 
-    /// Whether anything is said of a property.
+    /// Returns `true` if a declaration of this property, own or inherited, gives it a value.
     #[must_use]
     pub fn says(&self, p: PaintProperty) -> bool {
         self.word(p).is_some()
     }
 
-    /// Whether a fill or stroke depends on variables or on `color`.
+    /// Returns `true` if the fill or the stroke depends on variables or on `color`.
     #[must_use]
     pub fn depends(&self) -> bool {
         let text = |p| self.word(p).map_or("", |w| w.text.as_str());
@@ -77,7 +77,7 @@ impl Words {
         depends(text(PaintProperty::Fill)) || depends(text(PaintProperty::Stroke))
     }
 
-    /// Whether an element inside of `place` inherits what is said here of a property.
+    /// Returns `true` if a child of an element with the words `place` would inherit the value that this property has here.
     #[must_use]
     pub fn inherits(&self, p: PaintProperty, place: &Self) -> bool {
         let same = |p| is_same(self.word(p), place.word(p));
@@ -103,8 +103,7 @@ impl Words {
         (holds && !refers(text)).then_some(text)
     }
 
-    /// What is said of a copy, by a `use` with the words `copy`, of an element with these words. `around` has those of the parent of the
-    /// original.
+    /// Returns the words of a copy of this element, made by a `use` with the words `copy`. The original's parent has the words `around`.
     #[must_use]
     pub fn copied(&self, around: &Self, copy: &Self) -> Self {
         let mut out = self.clone();
@@ -120,17 +119,17 @@ impl Words {
     }
 }
 
-/// Whether two elements have a value from the same declaration.
+/// Returns `true` if two elements take a value from one and the same declaration.
 fn is_same(a: Option<&Arc<Word>>, b: Option<&Arc<Word>>) -> bool {
     a.map(Arc::as_ptr) == b.map(Arc::as_ptr)
 }
 
-/// Whether a value refers to other elements, such as gradients.
+/// Returns `true` if a value refers to other elements, such as gradients.
 fn refers(value: &str) -> bool {
     ["url(", "context-"].iter().any(|other| mentions(value, other))
 }
 
-/// Whether a value has a word, in upper or lower case.
+/// Returns `true` if a value contains a word, in upper or lower case.
 fn mentions(value: &str, word: &str) -> bool {
     value.as_bytes().windows(word.len()).any(|w| w.eq_ignore_ascii_case(word.as_bytes()))
 }

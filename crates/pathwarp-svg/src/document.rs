@@ -137,7 +137,7 @@ impl Document {
         self.drawing.page
     }
 
-    /// Whether the file gives its page a size in mm, cm, in, pt or pc.
+    /// Returns `true` if the file gives its page a size in mm, cm, in, pt or pc.
     #[must_use]
     pub fn is_measured(&self) -> bool {
         self.drawing.is_measured()

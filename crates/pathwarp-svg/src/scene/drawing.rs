@@ -199,7 +199,7 @@ impl Drawing {
         specified.then(|| self.visible_area())
     }
 
-    /// Whether the page is a share of the window, which goes on to the right and downwards as far as there is artwork.
+    /// Returns `true` if the page is a share of the window. Such a page goes on to the right and downwards as far as there is artwork.
     pub(crate) fn shares_window(&self) -> bool {
         let is_share = |name| page_length(&self.source, name).is_some_and(|l| l.unit == LengthUnit::Percent);
         self.source.attr(0, "viewBox").is_none() && (is_share("width") || is_share("height"))
@@ -210,7 +210,7 @@ impl Drawing {
         self.is_measured().then(|| self.dpi / MM_PER_INCH / stretch(self.scene().to_px))
     }
 
-    /// Whether the file specifies the size of its page in physical units.
+    /// Returns `true` if the file specifies the size of its page in physical units.
     pub(crate) fn is_measured(&self) -> bool {
         use LengthUnit::{Cm, In, Mm, Pc, Pt};
         let lengths = ["width", "height"].map(|name| page_length(&self.source, name));
@@ -261,7 +261,7 @@ fn page_size(source: &SourceText, tree: &usvg::Tree, dpi: f64) -> Size {
 }
 
 /// The `width` or `height` of the page, as it is written.
-fn page_length(source: &SourceText, name: &str) -> Option<Length> {
+pub(crate) fn page_length(source: &SourceText, name: &str) -> Option<Length> {
     Length::from_str(source.attr(0, name)?.trim()).ok()
 }
 

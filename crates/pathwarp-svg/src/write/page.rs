@@ -7,6 +7,7 @@ use crate::bend::fits::EmbeddedImage;
 use crate::bend::options::PageFit;
 use crate::bend::outcome::{Overhang, PartOutcome, WarpedPart};
 use crate::scene::areas::{self, clip_box, is_seen, overlap};
+use crate::scene::drawing::page_length;
 use crate::scene::model::{Group, Node, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::number::short;
@@ -14,8 +15,7 @@ use crate::source::select::Selection;
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Affine, Point, Rect};
 use std::collections::BTreeSet;
-use std::str::FromStr;
-use svgtypes::{Length, LengthUnit};
+use svgtypes::LengthUnit;
 
 /// Smallest visible overhang as a fraction of the page: one pixel in a thousand.
 const VISIBLE: f64 = 1e-3;
@@ -67,7 +67,7 @@ fn held(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
     if !shows(input, &input.scene.root, seen_part(page)) {
         return Some(outwards(artwork(input, None)?));
     }
-    let near = page.inflate(near(input, page), near(input, page));
+    let near = tolerated(input, page);
     if holds(near, all) {
         return None;
     }
@@ -81,17 +81,17 @@ fn held(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
     (out.origin() != page.origin() || !input.drawing.shares_window()).then_some(out)
 }
 
-/// The distance by which artwork may extend past a page: a sliver, and as much as curves are off.
-fn near(input: &WriteInput<'_>, page: Rect) -> f64 {
-    SLIVER * page.width().max(page.height()) + input.options.refit.tolerance
+/// The area that the artwork of a page may cover: the page, and around it a sliver and as much as curves are off.
+fn tolerated(input: &WriteInput<'_>, page: Rect) -> Rect {
+    let by = SLIVER * page.width().max(page.height()) + input.options.refit.tolerance;
+    page.inflate(by, by)
 }
 
 /// What takes the artwork back onto its page, if it leaves it.
 pub(super) fn back(input: &WriteInput<'_>) -> Option<Affine> {
     let page = input.drawing.specified_area().filter(|_| input.options.page == PageFit::Shrink && moved(input))?;
     let all = artwork(input, Some(page))?;
-    let near = near(input, page);
-    if holds(page.inflate(near, near), all) {
+    if holds(tolerated(input, page), all) {
         return None;
     }
     let margin = margin(input, page);
@@ -129,7 +129,7 @@ pub(super) fn attributes(source: &SourceText, (page, shown): (Rect, Rect)) -> Ve
     let mut out = vec![("viewBox", view)];
     let sides = [("width", shown.width(), page.width()), ("height", shown.height(), page.height())];
     for (name, after, before) in sides {
-        let Some(l) = source.attr(0, name).and_then(|t| Length::from_str(t.trim()).ok()) else { continue };
+        let Some(l) = page_length(source, name) else { continue };
         if l.unit != LengthUnit::Percent {
             out.push((name, format!("{}{}", short(l.number * after / before), unit(l.unit))));
         } else if source.attr(0, "viewBox").is_none() {
