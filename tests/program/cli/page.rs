@@ -3,7 +3,8 @@
 use super::common::text;
 use crate::support::pathwarp_in;
 use pathwarp::Outline;
-use pathwarp::kurbo::Rect;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp_raster::decode_png;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -368,4 +369,26 @@ fn a_page_of_the_window_grows_at_its_scale() {
         let (page, said) = moved(root, BOX, line);
         assert_eq!((page.as_str(), said.contains("grew")), (grown, !grown.starts_with('|')), "{root} {line}: {said}");
     }
+}
+
+/// The lines that a preview draws over the result are moved back with it: the cage lies on the edge of a square that fills it.
+#[test]
+fn lines_of_a_preview_are_moved_back_with_the_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let svg =
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path fill='blue' d='M10,10H90V90H10Z'/></svg>";
+    let cage = "-100%,-50% 200%,-50% 200%,150% -100%,150%";
+    let args = ["shaper", "-", "--shaper", cage, "--fit", "shrink", "--preview", "p.png", "-o", "o.svg"];
+    assert_eq!(pathwarp_in(folder.path(), &args, svg.as_bytes()).status.code(), Some(0));
+    let picture = decode_png(&fs::read(folder.path().join("p.png")).unwrap()).unwrap();
+    let result = picture.width() / 2 + 4;
+    let boxed = |is: fn([u8; 3]) -> bool| {
+        let pixels = (0..picture.height()).flat_map(|y| (result..picture.width()).map(move |x| (x, y)));
+        let found = pixels.filter(|&(x, y)| picture.pixel(x, y).is_some_and(|p| is([p.red(), p.green(), p.blue()])));
+        let points = found.map(|(x, y)| Point::new(f64::from(x), f64::from(y)));
+        points.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b)).unwrap()
+    };
+    let (square, lines) = (boxed(|[r, _, b]| b > 200 && r < 60), boxed(|[r, _, b]| r > 180 && b < 80));
+    let near = square.inflate(12.0, 12.0);
+    assert!(square.width() > 100.0 && lines.width() > 100.0 && near.union(lines) == near, "{lines} around {square}");
 }

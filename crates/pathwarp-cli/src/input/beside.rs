@@ -6,7 +6,7 @@ use crate::bitmap::encode;
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use pathwarp::deform::{Built, Role};
-use pathwarp::kurbo::Point;
+use pathwarp::kurbo::{Affine, Point};
 use pathwarp::map::Map;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe};
 use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
@@ -18,10 +18,10 @@ use std::path::{Path, PathBuf};
 pub(crate) const PREVIEW: Choice<'_> = Choice { what: "a preview is", among: PICTURES };
 
 /// Draws the picture for a file, with a quality if it is a JPEG. Bases are drawn over the source; targets and cages over the
-/// result.
+/// result, which `back` has moved as a whole after all steps.
 pub(super) fn preview(
     doc: &Document,
-    warped: &str,
+    (warped, back): (&str, Affine),
     built: &BuiltParts,
     read: &ReadOptions,
     (file, quality): (&Path, Option<u8>),
@@ -43,14 +43,14 @@ pub(super) fn preview(
         for o in &step.explanation.overlays {
             // The guides of a middle step lie in a plane that neither panel shows. A cage whose result goes to a target is
             // only a pattern, so it is drawn over the source.
-            let (panel, kind) = match o.role {
-                Role::Base if is_first => (&mut left, OverlayKind::Base),
-                Role::Cage if is_first && has_target => (&mut left, OverlayKind::Cage),
-                Role::Cage if is_last => (&mut right, OverlayKind::Cage),
-                Role::Target if is_last => (&mut right, OverlayKind::Target),
+            let (panel, kind, to) = match o.role {
+                Role::Base if is_first => (&mut left, OverlayKind::Base, Affine::IDENTITY),
+                Role::Cage if is_first && has_target => (&mut left, OverlayKind::Cage, Affine::IDENTITY),
+                Role::Cage if is_last => (&mut right, OverlayKind::Cage, back),
+                Role::Target if is_last => (&mut right, OverlayKind::Target, back),
                 _ => continue,
             };
-            *panel = panel.clone().with(PreviewOverlay::new(kind, o.path.clone()));
+            *panel = panel.clone().with(PreviewOverlay::new(kind, to * &o.path));
         }
     }
     encode(Preview::new(left, right).render_within(&doc.budget().limits())?, format, quality)

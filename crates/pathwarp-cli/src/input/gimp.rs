@@ -151,7 +151,7 @@ impl GimpArtwork {
         let before: Vec<GimpPath> = self.selected.iter().map(|&i| self.path(i).clone()).collect();
         let (before, after) = (to_svg(canvas, &before, None), to_svg(canvas, &warped.paths(self), None));
         let doc = Document::read(before.as_bytes(), &self.file_name(), &ReadOptions::default())?;
-        beside::preview(&doc, &after, built, &ReadOptions::default(), file)
+        beside::preview(&doc, (&after, Affine::IDENTITY), built, &ReadOptions::default(), file)
     }
 }
 

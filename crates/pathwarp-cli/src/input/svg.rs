@@ -545,8 +545,8 @@ impl FileArtwork for SvgArtwork {
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
         let files = files.collect::<Result<_, _>>()?;
         let preview = common.preview.as_deref();
-        let preview =
-            preview.map(|file| beside::preview(&self.doc, &warped.svg, built, &self.read, (file, common.quality)));
+        let shown = (warped.svg.as_str(), warped.back.unwrap_or_default());
+        let preview = preview.map(|file| beside::preview(&self.doc, shown, built, &self.read, (file, common.quality)));
         let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
         warnings.extend(result.warnings);
         Ok(WarpedArtwork {
