@@ -79,8 +79,8 @@ impl Limit {
         }
     }
 
-    /// The value for inputs of up to a mebibyte. All of the work takes a second or two, and at most 13 (docs/reliability.md): it has ten times
-    /// as many, since a slow or busy machine takes longer for the same.
+    /// The value for inputs of up to a mebibyte. All of the work usually takes a few seconds; the limit of seconds is more than ten times as
+    /// high, since a slow or busy machine takes longer for the same.
     fn base(self) -> f64 {
         match self {
             Self::Bytes => 32e6,

@@ -513,7 +513,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::List { name: "NAME=N", push: |o, text| limit(text, &mut o.reading.limits) },
             "Raise or lower a limit on the work that an input may cause, such as work=1e9, or memory=none; may be given \
          several times. The limits are bytes, elements, pixels (of pictures), work, memory (in bytes) and, as the last resort, \
-         seconds (of processor time, 130 at first: ten times what all of the work takes); without this option they grow with \
+         seconds (of processor time, 130 at first, more than ten times what all of the work usually takes); without this option they grow with \
          the size of the input and its pictures",
         )
     },
