@@ -10,11 +10,11 @@ use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Frame};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit;
-use pathwarp_cli::Bender;
+use pathwarp_engine::bitmap::Bender;
 use pathwarp_fuzz::{bounded, let_libraries_panic, limits};
 use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::{
-    Document, Gradients, Images, OnError, PageFit, Patterns, ReadOptions, Selection, Strokes, Structure, WarpOptions,
+    Document, Gradients, Images, OnError, PageFit, Painter, Patterns, ReadOptions, Selection, Strokes, Structure, WarpOptions,
     usvg_tree,
 };
 use std::sync::Arc;
@@ -50,7 +50,8 @@ fn options(choice: u8, built: &BuiltRecipe, document: &Document) -> WarpOptions 
         .with_on_error(OnError::Skip)
         .with_strokes(if bit(16) { Strokes::Outline } else { Strokes::Auto })
         .with_structure(if bit(32) { Structure::Flatten } else { Structure::Auto })
-        .with_gradients(if bit(64) { Gradients::Exact(bender.clone()) } else { Gradients::Fit })
+        .with_gradients(if bit(64) { Gradients::Exact } else { Gradients::Fit })
+        .with_painter(Some(Painter::new(bender.clone())))
         .with_patterns(if bit(64) { Patterns::Instantiate } else { Patterns::Auto })
         .with_page(if bit(128) { PageFit::Grow } else { PageFit::None })
         .with_images(if bit(64) { Images::Warp(bender) } else { Images::Keep })

@@ -9,7 +9,7 @@ use crate::raw::{
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp_cli::embed::Warper;
+use pathwarp_engine::Warper;
 use std::ffi::{CStr, c_char};
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 #![expect(unsafe_code, reason = "C's pointers can only be read and written so")]
 
-use pathwarp_cli::embed::{Error, ErrorKind};
+use pathwarp_engine::{Error, ErrorKind};
 use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -13,43 +13,24 @@
 //! result (the messages and the report say why); 2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
 //! On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.
 
-mod advice;
-mod bitmap;
-mod catalogue;
-pub mod coming_from;
+mod arguments;
 mod commands;
-mod editing;
-mod edits;
-pub mod embed;
-mod export;
-mod failure;
-mod filters;
-mod first_steps;
-mod format;
-mod framed;
+mod ending;
 mod inkscape;
-mod input;
+mod interruption;
 mod mistakes;
-mod options;
-mod output;
-mod page;
 mod pipeline;
 mod plugins;
-mod readable;
-mod recipe_file;
-mod references;
-mod report;
+mod report_file;
 mod sources;
 mod steps;
-mod temporaries;
 mod terminal;
-mod units;
 mod watch;
 
-pub use bitmap::Bender;
-
-use failure::{Failure, Status};
+use ending::{Ending, Status};
 use pathwarp::deform::Registry;
+use pathwarp_engine::advice::Flags;
+use pathwarp_engine::failure::Failure;
 use std::ffi::OsString;
 use std::panic::{self, AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -60,6 +41,7 @@ use std::process::ExitCode;
 pub fn main_with(registry: Registry) -> ExitCode {
     keep_sweeps_quiet();
     watch::allow();
+    interruption::handle();
     run(&registry, std::env::args_os())
 }
 
@@ -86,22 +68,22 @@ pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> Exi
     let args: Vec<OsString> = args.into_iter().collect();
     let dispatch = || {
         if inkscape::is_call(&args) {
-            inkscape::run(registry, &args, commands::convert_file)
+            Ok(inkscape::run(registry, &args, commands::convert_file)?)
         } else {
             commands::dispatch(registry, &args)
         }
     };
     // A panic of a library is an error of the file that caused it. Temporary files are removed on the way.
-    let outcome = catch_unwind(AssertUnwindSafe(dispatch))
-        .unwrap_or_else(|_| Err(Failure::Input("the program failed (see the message above); please report it".into())));
+    let outcome = catch_unwind(AssertUnwindSafe(dispatch)).unwrap_or_else(|_| {
+        Err(Ending::from(Failure::Input("the program failed (see the message above); please report it".into())))
+    });
     match outcome {
         Ok(Status::Complete) => ExitCode::SUCCESS,
         Ok(Status::Partial) => ExitCode::from(1),
-        Err(failure) => {
-            let flags = advice::Flags::of(registry);
-            let flags = flags.and(advice::Flags::of(&pathwarp_solid::deform::Registry3::builtin()));
-            failure.show(&flags);
-            ExitCode::from(failure.code())
+        Err(ending) => {
+            let flags = Flags::of(registry).and(Flags::of(&pathwarp_solid::deform::Registry3::builtin()));
+            ending.show(&flags);
+            ExitCode::from(ending.code())
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Words that new users type: commands and options of other programs, values apart from their units, names without quotes.
 
-use crate::advice::likely;
-use crate::catalogue::Catalogue;
-use crate::coming_from;
-use crate::format::Format;
-use crate::input::split_reference;
+use pathwarp_engine::advice::likely;
+use pathwarp_engine::catalogue::Catalogue;
+use pathwarp_engine::coming_from;
+use pathwarp_engine::format::Format;
+use pathwarp_engine::input::split_reference;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 

@@ -1,12 +1,13 @@
 //! Plug-ins that are programs: those of the user's folder and those named by `--plugin`, added to the registry.
 
-use crate::failure::Failure;
-use crate::format::Format;
-use crate::options::OPTIONS;
-use crate::steps::INVERSE;
-use crate::{temporaries, terminal};
+use crate::interruption;
+use crate::terminal;
 use clap::Arg;
 use pathwarp::deform::{Deformation, Registry};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::format::Format;
+use pathwarp_engine::options::OPTIONS;
+use pathwarp_engine::steps::INVERSE;
 use pathwarp_plugin::{Broken, Plugin, Reserved};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -97,7 +98,7 @@ pub(crate) fn load(
     let wanted = need_installed(registry, &args);
     if wanted || !files.is_empty() {
         // From here on programs run, which an interruption must end.
-        temporaries::on_interruption_remove_all();
+        interruption::handle();
     }
     if wanted {
         let afresh = args.get(2).filter(|_| args.get(1).is_some_and(|a| a == "check")).and_then(|n| n.to_str());

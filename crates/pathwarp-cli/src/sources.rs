@@ -1,8 +1,8 @@
 //! Sources are never overwritten unasked: the files that a command reads, checked against those it writes.
 
-use crate::failure::Failure;
-use crate::input::{display, split_reference};
-use crate::output::{behind, is_device, is_stdout};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::input::{display, split_reference};
+use pathwarp_engine::output::{behind, is_device, is_stdout};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};

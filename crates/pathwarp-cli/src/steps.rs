@@ -1,12 +1,15 @@
 //! Steps of a recipe from the words of a command line.
 
-use crate::catalogue::Catalogue;
-use crate::failure::Failure;
-use crate::options::Given;
+use crate::arguments;
+use crate::ending::Ending;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::deform::Info;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
+use pathwarp_engine::catalogue::Catalogue;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::Given;
+use pathwarp_engine::steps::{INVERSE, assign, in_lower_case};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
@@ -20,26 +23,6 @@ pub(crate) struct ChainPart {
 /// Other names of a deformation.
 pub(crate) fn aliases(name: &str) -> Option<&'static str> {
     (name == "projective").then_some("perspective")
-}
-
-/// Where a step keeps the values of an option.
-pub(crate) type OfStep = fn(&mut Step) -> &mut Vec<String>;
-
-/// Options that apply to the whole chain if one part gives them, and else to the step of each part that does.
-pub(crate) const OF_STEPS: [(&str, OfStep); 2] = [("select", |s| &mut s.select), ("exclude", |s| &mut s.exclude)];
-
-/// Gives the steps of parts what is theirs alone: the selection, if several parts have one.
-pub(crate) fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mut Given)>) {
-    let mut parts: Vec<_> = parts.into_iter().collect();
-    for (name, of) in OF_STEPS {
-        if parts.iter().filter(|(_, options)| options.gives(name)).count() < 2 {
-            continue;
-        }
-        for (steps, options) in &mut parts {
-            let values = options.take(name);
-            steps.iter_mut().for_each(|step| of(step).extend(values.iter().cloned()));
-        }
-    }
 }
 
 /// The steps of all parts, and the options that hold for the whole chain.
@@ -56,11 +39,11 @@ pub(crate) fn parts(
     catalogue: &dyn Catalogue,
     words: &[&[OsString]],
     options: &[Arg],
-) -> Result<Vec<ChainPart>, Failure> {
+) -> Result<Vec<ChainPart>, Ending> {
     words.iter().map(|words| part(catalogue, words, options)).collect()
 }
 
-fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Result<ChainPart, Failure> {
+fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Result<ChainPart, Ending> {
     let mut c = Command::new("pathwarp … +")
         .no_binary_name(true)
         .disable_help_flag(true)
@@ -73,11 +56,8 @@ fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Resul
     }
     let mut m = c.try_get_matches_from(words)?;
     let (name, sub) = m.remove_subcommand().ok_or_else(|| Failure::usage("a deformation must follow `+`"))?;
-    Ok(ChainPart { step: step(catalogue, &name, &sub), options: Given::options(&sub) })
+    Ok(ChainPart { step: step(catalogue, &name, &sub), options: arguments::given(&sub) })
 }
-
-/// The switch that every deformation has.
-pub(crate) const INVERSE: &str = "inverse";
 
 const HEADING: &str = "Options";
 
@@ -132,11 +112,4 @@ pub(crate) fn param_values(params: &[Param], m: &ArgMatches) -> Args {
         }
     }
     args
-}
-
-/// A name that differs from a known one only in case, as that one.
-pub(crate) fn in_lower_case(p: &Param, value: &str) -> String {
-    let (Kind::NameOrFile(names) | Kind::Choice(names)) = p.kind else { return value.to_owned() };
-    let same = names.iter().find(|n| n.eq_ignore_ascii_case(value));
-    same.map_or_else(|| value.to_owned(), |n| (*n).to_owned())
 }

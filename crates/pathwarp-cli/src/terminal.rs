@@ -1,7 +1,11 @@
 //! Messages on standard error; coloured only on a terminal.
 
-use crate::readable;
 use anstyle::{AnsiColor, Style};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::output::is_stdout;
+use pathwarp_engine::readable;
+use std::io::{self, IsTerminal as _};
+use std::path::Path;
 
 const ERROR: Style = AnsiColor::Red.on_default().bold();
 const WARNING: Style = AnsiColor::Yellow.on_default().bold();
@@ -21,4 +25,24 @@ pub(crate) fn warning(message: &str) {
 
 pub(crate) fn note(message: &str) {
     print(NOTE, "note", message);
+}
+
+/// Refuses to write what is not text to a terminal.
+pub(crate) fn refuse_terminal(target: Option<&Path>, what: &str, extension: &str) -> Result<(), Failure> {
+    let names_terminal = target.is_none_or(is_stdout) && io::stdout().is_terminal();
+    if !names_terminal {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "{what} would be written to the terminal; name a file with -o OUT.{extension}, or redirect it: > OUT.{extension}"
+    )))
+}
+
+/// Width of the column of names in a table.
+pub(crate) fn column<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+    /// That of the heading.
+    const LEAST: usize = 4;
+    /// Longer names break out of their column: one long name would pad all lines.
+    const MOST: usize = 60;
+    names.map(|n| n.chars().count()).max().unwrap_or(LEAST).clamp(LEAST, MOST)
 }

@@ -4,7 +4,9 @@
 //! they take forever to read, and nothing can interrupt them, so a thread looks at the process from time to time. Ending it so
 //! is like an interruption: temporary files are removed, and no output is half written.
 
-use crate::{temporaries, terminal};
+use crate::{interruption, terminal};
+use pathwarp_engine::meter;
+
 use cpu_time::ProcessTime;
 use memory_stats::memory_stats;
 use pathwarp::budget::{Exceeded, Limit, Limits};
@@ -21,10 +23,8 @@ const TOO_MUCH: i32 = 3;
 /// The inputs under way and their limits.
 struct Watched {
     limits: Limits,
-    /// Size of the inputs that are being worked on.
-    bytes: usize,
-    /// Pixels of the pictures that are read and made for them.
-    pixels: f64,
+    /// Bytes and pixels that were counted before the inputs that are being worked on.
+    before: [u64; 2],
     /// Number of these inputs beyond the first.
     more: usize,
     /// Processor time when the last input was finished.
@@ -56,7 +56,7 @@ pub(crate) fn begin(limits: Limits) {
         }
         return;
     }
-    *watched = Some(Watched { limits, bytes: 0, pixels: 0.0, more: 0, since: Duration::ZERO, rests: false });
+    *watched = Some(Watched { limits, before: meter::counted(), more: 0, since: Duration::ZERO, rests: false });
     drop(watched);
     // Without a thread, work is still counted.
     let _ = std::thread::Builder::new().stack_size(1 << 17).spawn(watch);
@@ -66,20 +66,6 @@ pub(crate) fn begin(limits: Limits) {
 pub(crate) fn rest() {
     if let Some(watched) = lock().as_mut() {
         watched.rests = true;
-    }
-}
-
-/// Adds the size of a file that is read: larger ones may take longer.
-pub(crate) fn count_input(bytes: usize) {
-    if let Some(watched) = lock().as_mut() {
-        watched.bytes = watched.bytes.saturating_add(bytes);
-    }
-}
-
-/// Adds a picture: large ones may take longer, whatever the size of the file.
-pub(crate) fn count_pixels(pixels: f64) {
-    if let Some(watched) = lock().as_mut() {
-        watched.pixels += pixels;
     }
 }
 
@@ -101,7 +87,7 @@ impl Drop for InBatch {
             watched.more = watched.more.saturating_sub(1);
             watched.since = used();
             if watched.more == 0 {
-                (watched.bytes, watched.pixels) = (0, 0.0);
+                watched.before = meter::counted();
             }
         }
     }
@@ -120,8 +106,8 @@ fn watch() {
     loop {
         std::thread::sleep(INTERVAL);
         let Some(exceeded) = lock().as_ref().and_then(Watched::exceeded) else { continue };
-        temporaries::remove_all_and(|| {
-            let raise = crate::advice::raise(&exceeded);
+        interruption::end_after_cleaning(|| {
+            let raise = pathwarp_engine::advice::raise(&exceeded);
             terminal::error(&format!("the run takes {exceeded}; no further output was written; {raise}"));
             std::process::exit(TOO_MUCH);
         });
@@ -135,7 +121,9 @@ impl Watched {
             return None;
         }
         let inputs = self.more.max(1);
-        let limits = self.limits.for_input(self.bytes / inputs).for_pixels(self.pixels / inputs as f64);
+        let now = meter::counted();
+        let [bytes, pixels] = [0, 1].map(|i| now[i].saturating_sub(self.before[i]) as f64 / inputs as f64);
+        let limits = self.limits.for_input(bytes as usize).for_pixels(pixels);
         let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err().map(Exceeded::cut_short);
         let memory = || memory_stats().map_or(0, |m| m.physical_mem);
         check(Limit::Seconds, used().saturating_sub(self.since).as_secs_f64())

@@ -14,6 +14,7 @@
 mod catalogue;
 mod command_line;
 mod draft;
+mod editing;
 mod grips;
 mod guard;
 mod host;
@@ -30,6 +31,7 @@ mod stretch;
 mod words;
 
 pub use command_line::selectors;
+pub use editing::EngineHost;
 pub use host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Purpose, Summary};
 pub use server::{News, Options, serve};
 pub use words::Words;

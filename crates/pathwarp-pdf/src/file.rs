@@ -13,14 +13,10 @@ use std::collections::HashMap;
 use std::io::Write as _;
 use std::sync::Arc;
 
-/// Draws a group. Patterns, masks and images call this for groups that they contain.
-pub(crate) type DrawGroup = fn(&mut File<'_>, &mut Stream, &usvg::Group);
-
 /// A PDF under construction.
 pub(crate) struct File<'a> {
     pub(crate) pdf: Pdf,
     pub(crate) options: &'a Options<'a>,
-    pub(crate) draw: DrawGroup,
     /// Number of groups that became pictures.
     pub(crate) pictures: usize,
     /// Number of these with fewer pixels than requested.
@@ -97,7 +93,7 @@ const BLEND_MODES: [(usvg::BlendMode, BlendMode); 15] = [
 ];
 
 impl<'a> File<'a> {
-    pub(crate) fn new(options: &'a Options<'a>, draw: DrawGroup) -> Self {
+    pub(crate) fn new(options: &'a Options<'a>) -> Self {
         let mut pdf = Pdf::new();
         pdf.set_version(1, 7);
         // Bytes above 127 make programs treat the file as binary.
@@ -105,7 +101,6 @@ impl<'a> File<'a> {
         Self {
             pdf,
             options,
-            draw,
             pictures: 0,
             coarser: 0,
             budget: Budget::new(options.limits),

@@ -1,6 +1,7 @@
 //! Draws images. A JPEG stays as it is; other bitmaps are stored without loss.
 
 use crate::file::{File, deflated};
+use crate::group;
 use crate::stream::Stream;
 use kurbo::{Affine, Rect};
 use pathwarp::budget::cost;
@@ -24,7 +25,7 @@ pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, image: &Image) {
             let size = Rect::new(0.0, 0.0, f64::from(tree.size().width()), f64::from(tree.size().height()));
             let object = file.group(size, stream.shift, |file, stream| {
                 stream.clip(&kurbo::Shape::to_path(&size, 1.0), FillRule::NonZero);
-                (file.draw)(file, stream, tree.root());
+                group::draw(file, stream, tree.root());
             });
             stream.object(object);
             return;

@@ -52,7 +52,7 @@ pub struct Written {
 /// # Errors
 /// Its pictures exceed the limits, or the renderer fails on a filter.
 pub fn write(tree: &usvg::Tree, options: &Options<'_>) -> Result<Written, Error> {
-    let mut file = File::new(options, group::draw);
+    let mut file = File::new(options);
     let [catalog, pages, page, info, content] = [(); 5].map(|()| file.new_ref());
     let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
     let unit = (width.max(height) * POINTS_PER_PX / MAX_SIDE).ceil().max(1.0);

@@ -2,6 +2,7 @@
 
 use crate::file::{File, MaskKind, State, deflated};
 use crate::gradient::Gradient;
+use crate::group;
 use crate::stream::{Stream, affine, from_usvg, has_area, matrix, pdf_rect, rect, roomy};
 use kurbo::{Affine, BezPath, PathEl, Rect};
 use pdf_writer::types::{LineCapStyle, LineJoinStyle, PaintType, TilingType};
@@ -163,7 +164,7 @@ fn offset(dashes: &[f32], offset: f32) -> f32 {
 /// Adds a pattern. `to_start` maps the user space of the painted path to that at the start of the content stream.
 fn add_pattern(file: &mut File<'_>, pattern: &usvg::Pattern, to_start: Affine) -> Ref {
     let mut stream = Stream::new();
-    (file.draw)(file, &mut stream, pattern.root());
+    group::draw(file, &mut stream, pattern.root());
     let (bytes, used) = stream.finish();
     let bytes = deflated(&bytes);
     let tile = pattern.rect();

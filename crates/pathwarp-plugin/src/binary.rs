@@ -19,9 +19,9 @@ const REFUSED: u8 = 1;
 /// Size in bytes of the length prefix and the kind.
 const HEAD: usize = 5;
 
+/// A body has at most [`MAX_POINTS`](crate::fault::MAX_POINTS) points, or the values of one step, so that its length fits.
 fn head(kind: u8, body: usize, out: &mut Vec<u8>) {
-    let length = u32::try_from(body + 1).unwrap_or(u32::MAX);
-    out.extend_from_slice(&length.to_le_bytes());
+    out.extend_from_slice(&(body as u32 + 1).to_le_bytes());
     out.push(kind);
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
     head(kind, 16 * points.len(), out);
     let start = out.len();
     out.resize(start + 16 * points.len(), 0);
-    let places = out.get_mut(start..).unwrap_or_default().as_chunks_mut::<8>().0;
+    let places = out[start..].as_chunks_mut::<8>().0;
     for (place, number) in places.iter_mut().zip(points.iter().flat_map(|p| [p.x, p.y])) {
         *place = number.to_le_bytes();
     }
@@ -69,11 +69,11 @@ pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &dyn Fn() -> S
     }
 }
 
-/// The body of a whole message.
+/// The body of a whole message, which [`length`] has measured.
 pub(crate) fn body(bytes: &[u8]) -> Result<&[u8], Fault> {
-    let body = bytes.get(HEAD..).unwrap_or_default();
-    match bytes.get(HEAD - 1) {
-        Some(&REFUSED) => Err(Fault::Refused(String::from_utf8_lossy(body).into_owned())),
+    let (head, body) = bytes.split_at(HEAD);
+    match head[HEAD - 1] {
+        REFUSED => Err(Fault::Refused(String::from_utf8_lossy(body).into_owned())),
         _ => Ok(body),
     }
 }

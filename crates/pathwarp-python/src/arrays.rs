@@ -3,7 +3,7 @@
 use numpy::ndarray::{ArrayView2, ArrayViewMut2, ArrayViewMut3, Axis};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Point, Rect, Vec2};
-use pathwarp_cli::embed::PointMap;
+use pathwarp_engine::PointMap;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 

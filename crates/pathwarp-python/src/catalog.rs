@@ -2,7 +2,6 @@
 
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Kind, Param};
-use pathwarp_cli::embed;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
@@ -17,7 +16,7 @@ pub(crate) fn catalog() -> String {
 /// The names of the options of a warp, with their help and the words that they can be.
 #[pyfunction]
 pub(crate) fn option_help() -> Vec<(&'static str, String, Vec<&'static str>)> {
-    embed::option_names().map(|(name, help)| (name, help, embed::option_words(name))).collect()
+    pathwarp_engine::option_names().map(|(name, help)| (name, help, pathwarp_engine::option_words(name))).collect()
 }
 
 fn deformation(registry: &Registry, info: &Info) -> Value {
@@ -29,7 +28,7 @@ fn deformation(registry: &Registry, info: &Info) -> Value {
     };
     // A preset's name may belong to a deformation, or to another's preset.
     let own = |name: &&&str| {
-        let meaning = embed::preset(registry, name).is_some_and(|(i, ..)| i.name == info.name);
+        let meaning = pathwarp_engine::preset(registry, name).is_some_and(|(i, ..)| i.name == info.name);
         registry.get(name).is_none() && meaning
     };
     let presets: Vec<&&str> = names.iter().filter(own).collect();

@@ -1,6 +1,6 @@
 //! Errors as the exceptions of `pathwarp._errors`.
 
-use pathwarp_cli::embed::{Error, ErrorKind};
+use pathwarp_engine::{Error, ErrorKind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -1,5 +1,5 @@
 //! The native half of the Python package `pathwarp`. The other half, in `python/pathwarp`, turns Python's values into the text
-//! that [`pathwarp_cli::embed`] takes, so that both the command line and Python mean the same by them.
+//! that [`pathwarp_engine`] takes, so that both the command line and Python mean the same by them.
 
 mod arrays;
 mod catalog;

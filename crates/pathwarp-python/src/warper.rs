@@ -1,4 +1,4 @@
-//! The class `Warper`: [`pathwarp_cli::embed::Warper`] for Python. Work is done without the interpreter's lock.
+//! The class `Warper`: [`pathwarp_engine::Warper`] for Python. Work is done without the interpreter's lock.
 
 use crate::errors::{exception, usage};
 use crate::threads::{on_threads, on_threads_alone};
@@ -7,7 +7,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonl
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::refit::Assurance;
-use pathwarp_cli::embed::{self, Error, PointMap};
+use pathwarp_engine::{Error, PointMap};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Deformations one after another, with options.
 #[pyclass(frozen, module = "pathwarp._native")]
-pub(crate) struct Warper(embed::Warper);
+pub(crate) struct Warper(pathwarp_engine::Warper);
 
 /// Verbs, coordinates and report of a path.
 type VerbsOut<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>);
@@ -29,19 +29,19 @@ type VerbsOut<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>);
 impl Warper {
     #[new]
     fn new(py: Python<'_>, name: &str, values: Vec<(String, String)>) -> PyResult<Self> {
-        done(py, py.detach(|| embed::Warper::new(&Registry::builtin(), name, &values))).map(Self)
+        done(py, py.detach(|| pathwarp_engine::Warper::new(&Registry::builtin(), name, &values))).map(Self)
     }
 
     /// An edit of shapes, such as `simplify`.
     #[staticmethod]
     fn edit(py: Python<'_>, name: &str, values: Vec<(String, String)>) -> PyResult<Self> {
-        done(py, embed::Warper::edit(&Registry::builtin(), name, &values)).map(Self)
+        done(py, pathwarp_engine::Warper::edit(&Registry::builtin(), name, &values)).map(Self)
     }
 
     /// The recipe in the text of a recipe file.
     #[staticmethod]
     fn from_recipe(py: Python<'_>, text: &str, folder: PathBuf, external: bool) -> PyResult<Self> {
-        let read = || embed::Warper::from_recipe(&Registry::builtin(), text, &folder, external);
+        let read = || pathwarp_engine::Warper::from_recipe(&Registry::builtin(), text, &folder, external);
         done(py, py.detach(read)).map(Self)
     }
 
@@ -196,7 +196,7 @@ impl Warper {
             drawings.par_iter().filter_map(warp).collect()
         })?;
         tell()?;
-        let result = |warped: Result<embed::Drawing, Error>| match warped {
+        let result = |warped: Result<pathwarp_engine::Drawing, Error>| match warped {
             Ok(d) => (PyBytes::new(py, &d.bytes), d.report, d.warnings, d.notes).into_bound_py_any(py),
             Err(e) => match exception(py, &e) {
                 e if e.is_instance_of::<PyException>(py) => e.into_bound_py_any(py),
@@ -238,7 +238,7 @@ fn done<T>(py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
 }
 
 /// The report of a path.
-fn report<'py>(py: Python<'py>, warped: &embed::Path) -> PyResult<Bound<'py, PyDict>> {
+fn report<'py>(py: Python<'py>, warped: &pathwarp_engine::Path) -> PyResult<Bound<'py, PyDict>> {
     let r = &warped.path.report;
     let out = PyDict::new(py);
     out.set_item("segments_in", r.segments_in)?;

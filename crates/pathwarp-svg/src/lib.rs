@@ -81,7 +81,7 @@ pub use bend::outcome::{Overhang, ShapeReport, Skipped, Warning, WarpedDocument}
 pub use bend::path::{WarpedPath, edit_path, warp_path};
 pub use bend::pictures::{
     BentImage, FilterDrawing, FilterPainter, FilterRequest, GradientColors, GradientPainter, GradientRequest,
-    ImageRequest, ImageWarper, Images, PictureError, SeenColor,
+    ImageRequest, ImageWarper, Images, Painter, PictureError, SeenColor,
 };
 pub use document::{Document, DrawingPart};
 pub use embed::Origin;

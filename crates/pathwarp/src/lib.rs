@@ -32,6 +32,30 @@
 // Without the presets, the parts that only they use have no caller.
 #![cfg_attr(not(feature = "serde"), allow(dead_code, unused_imports))]
 
+/// Setters that take a value and return the changed deformation: `height(height: f64);` sets the field of that name,
+/// `center(c: Point) => center: Some(c);` sets fields to expressions.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! setters {
+    (@one $(#[$about:meta])* $name:ident($value:ident: $type:ty)) => {
+        $(#[$about])*
+        #[must_use]
+        pub fn $name(self, $value: $type) -> Self {
+            Self { $name: $value, ..self }
+        }
+    };
+    (@one $(#[$about:meta])* $name:ident($($value:ident: $type:ty),+) => $($field:ident: $set:expr),+) => {
+        $(#[$about])*
+        #[must_use]
+        pub fn $name(self, $($value: $type),+) -> Self {
+            Self { $($field: $set,)+ ..self }
+        }
+    };
+    ($($(#[$about:meta])* $name:ident $values:tt $(=> $($field:ident: $set:expr),+)?;)*) => {
+        $($crate::setters! { @one $(#[$about])* $name $values $(=> $($field: $set),+)? })*
+    };
+}
+
 mod anchors;
 pub mod budget;
 pub mod check;

@@ -59,7 +59,7 @@ fn register(list: &str, module: &str, ty: &str) -> Result<String, ChoreError> {
     let list = insert(list, "mod ", &format!("mod {module};")).ok_or(unknown)?;
     let list = insert(&list, "pub use ", &format!("pub use {module}::{ty};")).ok_or(unknown)?;
     let at = list.find(END_OF_LIST).ok_or(unknown)?;
-    Ok(format!("{}        Arc::new({module}::Entry),\n{}", &list[..at], &list[at..]))
+    Ok(format!("{}        Arc::new({module}::ENTRY),\n{}", &list[..at], &list[at..]))
 }
 
 /// Inserts a line into the sorted block of lines that start with `start`.
@@ -78,30 +78,17 @@ fn type_name(name: &str) -> String {
     name.split('-').map(word).collect()
 }
 
-const TEMPLATE: &str = r#"//! One sentence that says what NAME does to artwork.
-//!
-//! The formula and its source (paper and equation):
-//! x' = x, y' = y + h·sin(2π·x/l).
+const TEMPLATE: &str = r#"//! One sentence that says what NAME does to artwork: x' = x, y' = y + h·sin(2π·x/l). The source: paper and equation.
 
-use super::entry::{Built, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{Formula, Real};
-use crate::param::{Axis, Param, Settings};
+use crate::param::{Axis, Param};
 use kurbo::Rect;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// One sentence that says what NAME does to artwork.
-///
-/// x' = x, y' = y + h·sin(2π·x/l).
-///
-/// ```
-/// use pathwarp::{deform::TYPE, kurbo::{Point, Rect}, map::Map};
-///
-/// let wave = TYPE::new(Rect::new(0.0, 0.0, 100.0, 100.0)).height(3.0).length(40.0).build()?;
-/// assert!(wave.map.point(Point::new(10.0, 5.0)).distance(Point::new(10.0, 8.0)) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
+/// One sentence that says what NAME does to artwork: x' = x, y' = y + h·sin(2π·x/l).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TYPE {
     height: f64,
@@ -115,80 +102,42 @@ impl TYPE {
         Self { height: 0.1 * frame.height(), length: 0.5 * frame.width() }
     }
 
-    /// Sets h, user units.
-    #[must_use]
-    pub fn height(self, height: f64) -> Self {
-        Self { height, ..self }
+    setters! {
+        /// Sets h, user units.
+        height(height: f64);
+        /// Sets l, 1e-3 to 1e9 user units.
+        length(length: f64);
     }
 
-    /// Sets l, 1e-3 to 1e9 user units.
-    #[must_use]
-    pub fn length(self, length: f64) -> Self {
-        Self { length, ..self }
-    }
-
-    /// Builds the map.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] for a length out of range.
+    /// Builds the map, or refuses a length out of range.
     pub fn build(&self) -> Result<Built, Error> {
-        let length = within("length", self.length, 1e-3, 1e9)?;
-        Ok(Built::new(Arc::new(TYPEMap { height: self.height, length })))
+        within("length", self.length, 1e-3, 1e9)?;
+        Ok(Built::new(Arc::new(*self)))
+    }
+}
+
+/// The derivatives follow from the formula.
+impl Formula for TYPE {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y + (x / self.length * TAU).sin() * self.height)
     }
 }
 
 static INFO: Info = Info::new("NAME", "one line for the menu")
     .group("New")
     .about("Say in plain sentences what it does and when to use it.")
-    .source("paper and equation")
     .params(&[
         Param::length("height", Axis::Y, "Height of the wave.").default("10%").slider(0.0, 100.0),
         Param::length("length", Axis::X, "Length of the wave.").default("50%").within(1e-3, 1e9).slider(1.0, 1000.0),
     ])
-    .examples(&[
-        Example { what: "As it comes", command: "NAME samples/logo.svg -o out.svg" },
-        Example { what: "One long wave", command: "NAME samples/lettering.svg --length 100% --height 20% -o out.svg" },
-    ])
-    // Properties of every instance.
+    .examples(&[Example { what: "As it comes", command: "NAME samples/logo.svg -o out.svg" }])
     .laws(&[Law::Identity(&[("height", "0")]), Law::Area(&[], 1.0)])
     // Known values in the frame 0,0,100,100: the crest, a quarter of the wave along.
     .cases(&[Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 8.0), tolerance: 1e-12 }]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        TYPE { height: s.number("height")?, length: s.number("length")? }.build()
-    }
-}
-
-/// The map; its derivatives follow from the formula.
-struct TYPEMap {
-    height: f64,
-    length: f64,
-}
-
-impl Formula for TYPEMap {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        (x, y + (x / self.length * TAU).sin() * self.height)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn is_sound() {
-        let faults = crate::check::entry(&Entry);
-        assert!(faults.is_empty(), "{faults:#?}");
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry =
+    Entry::new(&INFO, |s| TYPE { height: s.number("height")?, length: s.number("length")? }.build());
 "#;
 
 #[cfg(test)]

@@ -145,7 +145,7 @@ impl Crate {
     }
 }
 
-/// The circles among files: every set of files that import one another, each sorted.
+/// The circles between folders: every set of files that import one another and are not all in one folder, each sorted.
 pub fn circles(arrows: &Arrows) -> Vec<Vec<String>> {
     let reach: BTreeMap<&String, BTreeSet<&String>> = arrows
         .keys()
@@ -163,7 +163,8 @@ pub fn circles(arrows: &Arrows) -> Vec<Vec<String>> {
     for file in arrows.keys().filter(|f| reach[f].contains(f)) {
         out.insert(arrows.keys().filter(|other| together(file, other)).cloned().collect());
     }
-    out.into_iter().collect()
+    let folder = |file: &String| file.rsplit_once('/').map_or(String::new(), |(folder, _)| folder.to_owned());
+    out.into_iter().filter(|files| files.iter().any(|f| folder(f) != folder(&files[0]))).collect()
 }
 
 /// Collects every path with a known start.
@@ -178,6 +179,12 @@ impl<'ast> Visit<'ast> for Paths<'_> {
     fn visit_macro(&mut self, call: &'ast syn::Macro) {
         self.tokens(call.tokens.clone());
         visit::visit_macro(self, call);
+    }
+
+    fn visit_attribute(&mut self, attribute: &'ast Attribute) {
+        if let syn::Meta::List(list) = &attribute.meta {
+            self.tokens(list.tokens.clone());
+        }
     }
 
     fn visit_item_use(&mut self, _: &'ast syn::ItemUse) {}

@@ -61,7 +61,7 @@ fn every_block_of_commands_runs() {
 #[test]
 fn every_command_for_a_word_of_another_program_runs() {
     let dir = tempfile::tempdir().unwrap();
-    for word in pathwarp_cli::coming_from::all() {
+    for word in pathwarp_engine::coming_from::all() {
         // The editor waits for its reader, and nothing is installed here.
         let runs = |c: &&str| !c.starts_with("edit ") && !c.starts_with("install ") && !c.contains("IN.svg");
         if let Some(command) = word.command.filter(runs) {

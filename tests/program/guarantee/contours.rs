@@ -2,7 +2,7 @@
 
 use super::REGISTRY;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp_cli::embed::Warper;
+use pathwarp_engine::Warper;
 use pathwarp_oracle::curves::{self, Curve};
 use pathwarp_oracle::{Random, Run, apart};
 use std::collections::HashMap;

@@ -14,7 +14,7 @@ use paths::{drawn, path};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp_cli::embed::{PointMap, Warper};
+use pathwarp_engine::{PointMap, Warper};
 use pathwarp_oracle::{Random, Run, apart, curves, kink};
 use serde_json::Value;
 use std::collections::BTreeMap;

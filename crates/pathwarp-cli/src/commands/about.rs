@@ -1,16 +1,17 @@
 //! What the program says of itself: `list`, `schema`, `man`, `completions`, and help that fits a screen.
 
-use crate::catalogue::Catalogue as _;
 use crate::commands::args::switch;
-use crate::failure::{Failure, Status};
-use crate::options::OPTIONS;
-use crate::output::{self, PendingFile};
+use crate::ending::Status;
 use crate::plugins::Plugins;
-use crate::{advice, readable};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use clap_complete::Shell;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Axis, Kind, Param};
+use pathwarp_engine::catalogue::Catalogue as _;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::OPTIONS;
+use pathwarp_engine::output::{self, PendingFile};
+use pathwarp_engine::{advice, readable};
 use serde_json::{Map, Value, json};
 use std::ffi::OsString;
 use std::fmt::Write as _;

@@ -1,9 +1,9 @@
 //! Arguments of subcommands: switches, words, and the files that many of them read and write.
 
-use crate::failure::Failure;
-use crate::output::is_stdout;
 use crate::sources::Files;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::output::is_stdout;
 use std::path::{Path, PathBuf};
 
 /// The id of the option for the output file.

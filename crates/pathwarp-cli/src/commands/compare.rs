@@ -1,13 +1,16 @@
 //! `pathwarp compare A.svg B.svg`: measures the distance between two drawings, path by path and pixel by pixel.
 
+use crate::arguments;
+use crate::arguments::reading_args;
 use crate::commands::args::{file_arg, given_file, switch};
-use crate::failure::{Failure, Status};
-use crate::options::{Given, reading_args};
-use crate::{input, output, readable};
+use crate::ending::Status;
+use crate::terminal;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::budget::Exceeded;
 use pathwarp::distance;
 use pathwarp::kurbo::Rect;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::{input, output, readable};
 use pathwarp_raster::{Color, RenderOptions, Size};
 use pathwarp_svg::{Document, NamedPath, usvg_tree};
 use rayon::prelude::*;
@@ -76,7 +79,7 @@ struct Pixels {
 }
 
 pub(super) fn compare_files(m: &ArgMatches) -> Result<Status, Failure> {
-    let reading = Given::reading(m)?;
+    let reading = arguments::reading(m)?;
     let document = |name: &str| input::document(given_file(m, name)?, &reading);
     let (a, b) = (document("A")?, document("B")?);
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
@@ -212,7 +215,7 @@ fn match_by_place(a: &[NamedPath], b: &[NamedPath], counterparts: &mut [Option<u
 fn table(c: &Comparison) -> String {
     let mut out = String::new();
     let ids: Vec<_> = c.paths.iter().map(|p| readable::name(&p.id)).collect();
-    let width = output::column(ids.iter().map(AsRef::as_ref));
+    let width = terminal::column(ids.iter().map(AsRef::as_ref));
     let _ = writeln!(out, "{:width$}  segments      distance", "id");
     for (p, id) in c.paths.iter().zip(ids) {
         let d = p.distance.map_or_else(|| "empty".to_owned(), |d| format!("{d:.6}"));

@@ -1,19 +1,23 @@
 //! What is in a file, taken out of it: `convert` copies paths into another format, or a drawing into a PDF or DXF; `paths` lists them;
 //! `unwarp` restores the source of a drawing that was written with `--embed-recipe`.
 
+use crate::arguments;
+use crate::arguments::{reading_args, some_options};
 use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
 use crate::commands::gimp_paths;
-use crate::export::{self, Exported};
-use crate::failure::{Failure, Status};
-use crate::format::{Choice, Format};
-use crate::input;
-use crate::input::GimpFile;
-use crate::options::{CommonOptions, Given, reading_args, some_options};
-use crate::output;
-use crate::{advice, readable, terminal};
+use crate::ending::Status;
+use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::decimal::trimmed;
 use pathwarp::kurbo::Point;
+use pathwarp_engine::export::{self, Exported};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::format::{Choice, Format};
+use pathwarp_engine::input;
+use pathwarp_engine::input::GimpFile;
+use pathwarp_engine::options::CommonOptions;
+use pathwarp_engine::output;
+use pathwarp_engine::{advice, readable};
 use pathwarp_gimp::GimpPath;
 use pathwarp_svg::Origin;
 use serde::Serialize;
@@ -54,7 +58,7 @@ pub(super) fn convert(m: &ArgMatches) -> Result<Status, Failure> {
     let split = m.get_flag("split");
     // The files that --split writes are checked below.
     let target = target(m, (!split).then_some(file))?;
-    convert_file(file, target, &Given::options(m).read()?, split, m.get_flag("salvage"))
+    convert_file(file, target, &arguments::given(m).read()?, split, m.get_flag("salvage"))
 }
 
 /// Copies the paths of a file into another format, or each to its own file, or a drawing into a PDF or DXF; without a target to standard
@@ -142,7 +146,7 @@ struct ListedStroke {
 
 pub(super) fn list_paths(m: &ArgMatches) -> Result<Status, Failure> {
     let file = given_file(m, "FILE")?;
-    let reading = Given::reading(m)?;
+    let reading = arguments::reading(m)?;
     let is_json = m.get_flag("json");
     if let Some(gimp) = GimpFile::open(file, m.get_flag("salvage"), &reading.limits)? {
         // For GIMP files the JSON holds only stored data.
@@ -200,7 +204,7 @@ fn stroke(closed: bool, with_handles: impl Iterator<Item = [Point; 3]>) -> Liste
 fn table(paths: &[ListedPath]) -> String {
     let mut out = String::new();
     let names: Vec<_> = paths.iter().map(|p| readable::name(&p.name)).collect();
-    let width = output::column(names.iter().map(AsRef::as_ref));
+    let width = terminal::column(names.iter().map(AsRef::as_ref));
     let what = if paths.iter().any(|p| p.visible.is_some()) { "visible" } else { "element" };
     let _ = writeln!(out, "{:width$}  {what:8}  {:7}  {:>7}  x y width height", "name", "closed", "anchors");
     for (p, name) in paths.iter().zip(names) {
@@ -245,7 +249,7 @@ pub(super) fn unwarp(m: &ArgMatches) -> Result<Status, Failure> {
     let target = target(m, [file])?;
     let name = input::display(file);
     let bytes = input::bytes(file)?;
-    let limits = Given::reading(m)?.limits.for_input(bytes.len());
+    let limits = arguments::reading(m)?.limits.for_input(bytes.len());
     let origin = Origin::of_file(&bytes, &name, &limits).map_err(|e| Failure::from(e).about(&name))?;
     let lacks =
         |what: &str| Failure::Input(format!("{name}: holds no {what}; only drawings written with --embed-recipe do"));

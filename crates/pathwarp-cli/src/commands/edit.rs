@@ -1,14 +1,18 @@
 //! `pathwarp edit FILE`: bends a drawing by hand in the browser.
 
+use crate::arguments;
 use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
-use crate::editing::EditorHost;
-use crate::failure::{Failure, Status};
-use crate::options::{self, Given};
+use crate::ending::Status;
+use crate::interruption;
 use crate::plugins::Plugins;
-use crate::{input, output, temporaries, terminal};
+use crate::terminal;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
+use pathwarp_editor::EngineHost;
 use pathwarp_editor::{News, Options, Purpose};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::Given;
+use pathwarp_engine::{input, output};
 use std::sync::Arc;
 
 pub(super) fn edit_command() -> Command {
@@ -24,7 +28,7 @@ pub(super) fn edit_command() -> Command {
                 .help("Listen on this port of 127.0.0.1 [default: that of the last run on the drawing, or a free one]"),
         )
         .arg(switch("no-open", "Only print the page's address"))
-        .args(options::reading_args())
+        .args(arguments::reading_args())
         .after_help(
             "The first line on standard output is the address of the page. Only this computer can open it, and only with the token \
              in the address. The program ends when the page is closed, or with Ctrl-C. Steps that are not saved yet are kept in \
@@ -48,9 +52,9 @@ pub(super) fn edit(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Re
         open: !m.get_flag("no-open"),
     };
     // Ctrl-C is the usual end of this command.
-    temporaries::on_interruption_end_quietly();
+    interruption::end_quietly();
     let host = Arc::new(
-        EditorHost::new(registry.clone(), Given::default(), Given::options(m)).with_plugins(plugins.options()),
+        EngineHost::new(registry.clone(), Given::default(), arguments::given(m)).with_plugins(plugins.options()),
     );
     let announce = |news: &News<'_>| match news {
         News::Address(address) => drop(output::to_stdout(format!("{address}\n").as_bytes())),

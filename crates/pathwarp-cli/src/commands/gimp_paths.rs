@@ -1,14 +1,15 @@
 //! Paths copied from one file into another, as GIMP stores them.
 
-use crate::export;
-use crate::failure::{Failure, Status};
-use crate::format::Format;
-use crate::input::{self, GimpFile, resized};
-use crate::options::{CommonOptions, Reading};
-use crate::output::{self, PendingFile};
+use crate::ending::Status;
 use crate::sources::Files;
 use crate::terminal;
 use pathwarp::kurbo::Affine;
+use pathwarp_engine::export;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::format::Format;
+use pathwarp_engine::input::{self, GimpFile, resized};
+use pathwarp_engine::options::{CommonOptions, Reading};
+use pathwarp_engine::output::{self, PendingFile};
 use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
 use pathwarp_svg::{NamedPath, ReadOptions};
 use std::collections::{HashMap, HashSet};

@@ -1,12 +1,13 @@
 //! `pathwarp install gimp|inkscape`: installs the plug-in, with a copy of this program, in another program's folder.
 
 use crate::commands::args::switch;
-use crate::failure::{Failure, Status};
+use crate::ending::Status;
 use crate::inkscape::inx::{self, Program};
-use crate::output::{self, PendingFile};
 use crate::terminal;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::output::{self, PendingFile};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{self, Stdio};

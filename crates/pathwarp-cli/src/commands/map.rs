@@ -1,12 +1,10 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
-use crate::catalogue::Catalogue as _;
+use crate::arguments;
+use crate::arguments::reading_args;
 use crate::commands::args::switch;
-use crate::failure::{Failure, Status};
-use crate::input::{self, PlainArtwork};
-use crate::options::{CommonOptions, Given, reading_args, rect};
-use crate::pipeline::Session;
-use crate::{output, references, steps};
+use crate::ending::{Ending, Status};
+use crate::steps;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::GeometryError;
 use pathwarp::budget::Budget;
@@ -16,6 +14,12 @@ use pathwarp::map::{Creases, Jet, Map};
 use pathwarp::outline::Outline;
 use pathwarp::param::Frame;
 use pathwarp::recipe::Recipe;
+use pathwarp_engine::catalogue::Catalogue as _;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::input::{self, PlainArtwork};
+use pathwarp_engine::options::{CommonOptions, Given, rect};
+use pathwarp_engine::session::Session;
+use pathwarp_engine::{output, references};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -91,9 +95,9 @@ pub(super) fn print_images<const N: usize, const M: usize>(
 }
 
 /// Runs `map`; `later` holds the parts of the chain after each `+`.
-pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
-    let reading = Given::reading(m)?;
-    let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
+pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Ending> {
+    let reading = arguments::reading(m)?;
+    let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required").into()) };
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
     recipe.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
     references::resolve_files(registry, &mut recipe, &reading)?;
@@ -118,13 +122,13 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let mut jets = vec![Jet::default(); points.len()];
     map.jets(&points, &mut jets);
     if let Some(e) = built.failure() {
-        return Err(Failure::of_recipe(e));
+        return Err(Failure::of_recipe(e).into());
     }
     let image = |(p, j): (&Point, &Jet)| {
         let defined = creases.defined_at(*p) && j.p.is_finite();
         (defined.then_some([j.p.x, j.p.y]), [j.dx.x, j.dx.y, j.dy.x, j.dy.y])
     };
-    print_images(m, points.iter().zip(&jets).map(image))
+    Ok(print_images(m, points.iter().zip(&jets).map(image))?)
 }
 
 /// Characters of a wrong line that a message shows.

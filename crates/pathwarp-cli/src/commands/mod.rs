@@ -17,14 +17,16 @@ mod warp;
 
 pub(crate) use convert::convert_file;
 
-use crate::edits::{OFFSET, OUTLINE, SIMPLIFY};
-use crate::failure::{Failure, Status};
-use crate::options::Given;
+use crate::arguments;
+use crate::ending::{Ending, Status};
 use crate::plugins::{self, Plugins};
-use crate::{advice, coming_from, mistakes, output, watch};
+use crate::{mistakes, watch};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command};
 use pathwarp::deform::Registry;
+use pathwarp_engine::edits::{OFFSET, OUTLINE, SIMPLIFY};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::{advice, coming_from, output};
 use std::ffi::OsString;
 
 /// The placeholder of a path reference in help.
@@ -87,7 +89,7 @@ fn root() -> Command {
 struct Subcommand {
     name: &'static str,
     declare: fn(&Registry) -> Command,
-    run: fn(&Call<'_>) -> Result<Status, Failure>,
+    run: fn(&Call<'_>) -> Result<Status, Ending>,
 }
 
 /// A parsed command line.
@@ -103,53 +105,57 @@ struct Call<'a> {
 const fn subcommand(
     name: &'static str,
     declare: fn(&Registry) -> Command,
-    run: fn(&Call<'_>) -> Result<Status, Failure>,
+    run: fn(&Call<'_>) -> Result<Status, Ending>,
 ) -> Subcommand {
     Subcommand { name, declare, run }
 }
 
 /// The subcommands that are not deformations, in the order of the help.
 static OTHERS: &[Subcommand] = &[
-    subcommand("edit", |_| edit::edit_command(), |c| edit::edit(c.registry, c.plugins, c.matches)),
-    subcommand("run", warp::run_command, |c| warp::run_recipe(c.registry, c.matches, c.words)),
-    subcommand("list", |_| about::list_command(), |c| about::list(c.registry, c.plugins, c.matches)),
+    subcommand("edit", |_| edit::edit_command(), |c| Ok(edit::edit(c.registry, c.plugins, c.matches)?)),
+    subcommand("run", warp::run_command, |c| Ok(warp::run_recipe(c.registry, c.matches, c.words)?)),
+    subcommand("list", |_| about::list_command(), |c| Ok(about::list(c.registry, c.plugins, c.matches)?)),
     subcommand("map", map::map_command, |c| map::map(c.registry, c.matches, c.later)),
     subcommand("solid", |_| solid::solid_command(), |c| solid::solid(c.matches, c.later)),
-    subcommand("unwarp", |_| convert::unwarp_command(), |c| convert::unwarp(c.matches)),
-    subcommand("schema", |_| about::schema_command(), |c| about::print_schema(c.registry)),
-    subcommand("text", text::text_command, |c| text::text(c.registry, c.matches, c.words)),
-    subcommand("paths", |_| convert::paths_command(), |c| convert::list_paths(c.matches)),
+    subcommand("unwarp", |_| convert::unwarp_command(), |c| Ok(convert::unwarp(c.matches)?)),
+    subcommand("schema", |_| about::schema_command(), |c| Ok(about::print_schema(c.registry)?)),
+    subcommand("text", text::text_command, |c| Ok(text::text(c.registry, c.matches, c.words)?)),
+    subcommand("paths", |_| convert::paths_command(), |c| Ok(convert::list_paths(c.matches)?)),
     subcommand(
         SIMPLIFY.name,
         |_| warp::simplify_command(),
-        |c| warp::edit_shapes(c.registry, &SIMPLIFY, c.matches, c.words),
+        |c| Ok(warp::edit_shapes(c.registry, &SIMPLIFY, c.matches, c.words)?),
     ),
-    subcommand(OFFSET.name, |_| warp::offset_command(), |c| warp::edit_shapes(c.registry, &OFFSET, c.matches, c.words)),
+    subcommand(
+        OFFSET.name,
+        |_| warp::offset_command(),
+        |c| Ok(warp::edit_shapes(c.registry, &OFFSET, c.matches, c.words)?),
+    ),
     subcommand(
         OUTLINE.name,
         |_| warp::outline_command(),
-        |c| warp::edit_shapes(c.registry, &OUTLINE, c.matches, c.words),
+        |c| Ok(warp::edit_shapes(c.registry, &OUTLINE, c.matches, c.words)?),
     ),
-    subcommand("convert", |_| convert::convert_command(), |c| convert::convert(c.matches)),
-    subcommand("render", |_| render::render_command(), |c| render::render(c.matches)),
-    subcommand("gallery", render::gallery_command, |c| render::gallery(c.registry, c.matches)),
-    subcommand("compare", |_| compare::compare_command(), |c| compare::compare_files(c.matches)),
-    subcommand("check", |_| plugin::check_command(), |c| plugin::check(c.registry, c.plugins, c.matches)),
+    subcommand("convert", |_| convert::convert_command(), |c| Ok(convert::convert(c.matches)?)),
+    subcommand("render", |_| render::render_command(), |c| Ok(render::render(c.matches)?)),
+    subcommand("gallery", render::gallery_command, |c| Ok(render::gallery(c.registry, c.matches)?)),
+    subcommand("compare", |_| compare::compare_command(), |c| Ok(compare::compare_files(c.matches)?)),
+    subcommand("check", |_| plugin::check_command(), |c| Ok(plugin::check(c.registry, c.plugins, c.matches)?)),
     subcommand(
         "new-plugin",
         |_| plugin::new_plugin_command(),
         |c| {
             let taken = |name: &str| name == "help" || other(name).is_some() || c.registry.get(name).is_some();
-            plugin::new_plugin(c.matches, taken)
+            Ok(plugin::new_plugin(c.matches, taken)?)
         },
     ),
-    subcommand("install", |_| install::install_command(), |c| install::install(c.registry, c.matches)),
+    subcommand("install", |_| install::install_command(), |c| Ok(install::install(c.registry, c.matches)?)),
     subcommand(
         "completions",
         |_| about::completions_command(),
-        |c| about::completions(c.registry, build(c.registry), c.matches),
+        |c| Ok(about::completions(c.registry, build(c.registry), c.matches)?),
     ),
-    subcommand("man", |_| about::man_command(), |c| about::man(build(c.registry), c.matches)),
+    subcommand("man", |_| about::man_command(), |c| Ok(about::man(build(c.registry), c.matches)?)),
 ];
 
 fn other(name: &str) -> Option<&'static Subcommand> {
@@ -157,14 +163,14 @@ fn other(name: &str) -> Option<&'static Subcommand> {
 }
 
 /// Runs the subcommand that `args` names; the first of them is the program's name.
-pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
+pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Ending> {
     let (args, plugins) = plugins::load(registry, args, &OTHERS.iter().map(|o| o.name).collect::<Vec<_>>())?;
     let result = dispatched(&plugins.added_to(registry), &args, &plugins);
     plugins.tell();
     result
 }
 
-fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Result<Status, Failure> {
+fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Result<Status, Ending> {
     // Each part after a lone `+` is a command line of its own.
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
@@ -174,7 +180,7 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
         return Ok(Status::Complete);
     }
     if let Some(said) = mistakes::single_dashed(args, || options_of(registry, args)) {
-        return Err(Failure::Usage(said));
+        return Err(Failure::Usage(said).into());
     }
     let mut command = build_for(registry, first.get(1));
     if first.iter().any(|a| a == "-h") {
@@ -182,11 +188,11 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     }
     let matches = command
         .try_get_matches_from(first)
-        .map_err(|e| broken(plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
+        .map_err(|e| broken(plugins, first).map_or_else(|| suggested(registry, first, e), Ending::from))?;
     let Some((name, m)) = matches.subcommand() else {
-        return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
+        return Err(Failure::usage("no command given; `pathwarp list` shows the deformations").into());
     };
-    let reading = Given::reading(m)?;
+    let reading = arguments::reading(m)?;
     // An editor may be open for hours; it counts the work of every picture.
     if name != "edit" {
         watch::begin(reading.limits);
@@ -194,7 +200,7 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return warp::deform(registry, name, m, first, &later).map_err(|e| match e {
-            Failure::Clap(e) => suggested(registry, args, e),
+            Ending::Clap(e) => suggested(registry, args, e),
             other => other,
         });
     }
@@ -202,7 +208,7 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
         reading.check()?;
     }
     if !["run", "map", "solid"].contains(&name) && !later.is_empty() {
-        return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
+        return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")).into());
     }
     let missing = || Failure::usage(format!("there is no command {name}"));
     (other(name).ok_or_else(missing)?.run)(&Call { registry, plugins, matches: m, words: first, later: &later })
@@ -232,7 +238,7 @@ fn broken(plugins: &Plugins, args: &[OsString]) -> Option<Failure> {
 
 /// Adds to an error of clap what is most likely meant: commands and options of other programs, quotes around `#NAME`, which shells
 /// take for a comment.
-fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> Failure {
+fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> Ending {
     let context = |kind: ContextKind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.clone()),
         _ => None,
@@ -243,7 +249,7 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             let asked = args.get(2..).filter(|words| is_help && !words.is_empty()).map(joined);
             let word = asked.or_else(|| context(ContextKind::InvalidSubcommand)).unwrap_or_default();
             if let Some(meant) = mistakes::command(registry, &word) {
-                return Failure::usage(meant);
+                return Failure::usage(meant).into();
             }
             let whole = build(registry);
             let foreign: Vec<String> = coming_from::all().map(|w| w.words[0].to_lowercase()).collect();
@@ -252,7 +258,7 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             let unknown = advice::unknown("command", &word, known);
             let join = if unknown.ends_with('?') { " " } else { "; " };
             let unknown = unknown + join + "`pathwarp list` shows all deformations";
-            return if is_help { Failure::usage(unknown) } else { error.into() };
+            return if is_help { Failure::usage(unknown).into() } else { error.into() };
         }
         ErrorKind::InvalidValue if context(ContextKind::InvalidArg).is_some_and(|arg| arg.contains(PATHREF)) => {
             Some("shells take a word that starts with # for a comment; quote it: '#NAME'".to_owned())
@@ -261,11 +267,12 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             let arg = context(ContextKind::InvalidArg).unwrap_or_default();
             let known = options_of(registry, args);
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            return Failure::usage(if arg.starts_with('-') {
+            let said = if arg.starts_with('-') {
                 format!("there is no option {arg}; {}", mistakes::option(&arg, &known))
             } else {
                 format!("{arg} is one word too many; {}", mistakes::surplus(&arg, args, &known))
-            });
+            };
+            return Failure::usage(said).into();
         }
         _ => None,
     };

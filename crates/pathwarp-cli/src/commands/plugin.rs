@@ -1,15 +1,16 @@
 //! For authors of plug-ins: `new-plugin` writes one to start from, `check` checks it, or a deformation built in, as the tests do.
 
-use crate::failure::{Failure, Status};
-use crate::output::{self, PendingFile};
+use crate::ending::Status;
 use crate::plugins::{Plugins, is_file_name};
-use crate::{advice, readable};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::check::{Check, frame, report};
 use pathwarp::deform::{Deformation, Registry};
 use pathwarp::kurbo::Point;
 use pathwarp::map::{Jet, Map};
 use pathwarp::param::Args;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::output::{self, PendingFile};
+use pathwarp_engine::{advice, readable};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,15 +1,18 @@
 //! Pictures: `render` draws an SVG file, `gallery` artwork under every preset of a set on one sheet.
 
-use crate::bitmap::{Background, background, encode};
+use crate::arguments;
+use crate::arguments::{reading_args, some_options};
 use crate::commands::args::{choice, file_arg, given_file, out_arg, target};
-use crate::failure::{Failure, Status};
-use crate::format::{Choice, Format, PICTURES};
-use crate::options::{Given, reading_args, some_options};
-use crate::{advice, export, input, output, terminal};
+use crate::ending::Status;
+use crate::terminal;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::param::{Args, Axis, Frame, Kind};
 use pathwarp::refit;
+use pathwarp_engine::bitmap::{Background, background, encode};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::format::{Choice, Format, PICTURES};
+use pathwarp_engine::{advice, export, input, output};
 use pathwarp_raster::{Picture, RenderOptions, Size};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
 use pathwarp_svg::{Document, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument, usvg_tree};
@@ -56,7 +59,7 @@ pub(super) fn render_command() -> Command {
 pub(super) fn render(m: &ArgMatches) -> Result<Status, Failure> {
     let file = given_file(m, "INPUT")?;
     let target = target(m, [file])?;
-    let options = Given::options(m).read()?;
+    let options = arguments::given(m).read()?;
     let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
     let size = if let Some(&w) = m.get_one::<u32>("width") {
         Size::Width(w)
@@ -65,7 +68,7 @@ pub(super) fn render(m: &ArgMatches) -> Result<Status, Failure> {
     } else {
         m.get_one::<f32>("scale").map_or(Size::Native, |s| Size::Scale(*s))
     };
-    output::refuse_terminal(target, "the picture", format.extension())?;
+    terminal::refuse_terminal(target, "the picture", format.extension())?;
     let background = match m.get_one::<Background>("background") {
         Some(Background(None)) if format == Format::Jpeg => {
             return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
@@ -174,7 +177,7 @@ fn cell(text: &str) -> Result<(f64, f64), String> {
 pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
     let file = given_file(m, "INPUT")?;
     let target = target(m, [file])?;
-    let options = Given::options(m).read()?;
+    let options = arguments::given(m).read()?;
     let format = Choice { what: "a sheet is", among: SHEETS }.format(target, options.format)?;
     if format.of_picture(None).is_some() && (options.page_width.is_some() || options.page_height.is_some()) {
         return Err(Failure::usage(

@@ -1,23 +1,28 @@
 //! Commands that warp files: `pathwarp DEFORMATION …` by one deformation or a chain, `run` by a saved recipe, and the edits `simplify`,
 //! `offset` and `outline`.
 
+use crate::arguments;
+use crate::arguments::{inputs_arg, reading_args, some_options};
 use crate::commands::args::{file_arg, given_file, switch};
-use crate::edits::{EditChoice, EditInfo, OFFSET, OUTLINE, SIMPLIFY, still};
-use crate::failure::{Failure, Status};
-use crate::options::{self, Given, OPTIONS, inputs_arg, reading_args, some_options};
-use crate::steps::{self, ChainPart, INVERSE};
-use crate::{mistakes, pipeline, recipe_file};
+use crate::ending::{Ending, Status};
+use crate::steps::{self, ChainPart};
+use crate::{mistakes, pipeline};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::Kind;
 use pathwarp::recipe::{Recipe, Step};
+use pathwarp_engine::edits::{EditChoice, EditInfo, OFFSET, OUTLINE, SIMPLIFY, still};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::{Given, OPTIONS};
+use pathwarp_engine::recipe_file;
+use pathwarp_engine::steps::INVERSE;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
 pub(super) fn deformation_command(info: &Info) -> Command {
-    described(info).args(options::args())
+    described(info).args(arguments::args())
 }
 
 /// The subcommand of a deformation, of the plane or of space, with its help and its own parameters.
@@ -42,13 +47,13 @@ pub(super) fn deform(
     m: &ArgMatches,
     words: &[OsString],
     later: &[&[OsString]],
-) -> Result<Status, Failure> {
-    let first = ChainPart { step: steps::step(registry, name, m), options: Given::inputs_and_options(m) };
+) -> Result<Status, Ending> {
+    let first = ChainPart { step: steps::step(registry, name, m), options: arguments::given(m) };
     let mut parts = vec![first];
-    parts.extend(steps::parts(registry, later, &options::options_without_inputs().collect::<Vec<_>>())?);
+    parts.extend(steps::parts(registry, later, &arguments::options_without_inputs().collect::<Vec<_>>())?);
     let (recipe, given) = steps::chained(parts)?;
     mistaken(words, &given)?;
-    pipeline::run(registry, &recipe, &given, None)
+    Ok(pipeline::run(registry, &recipe, &given, None)?)
 }
 
 /// Refuses inputs that are parts of something else.
@@ -64,7 +69,7 @@ pub(super) fn run_command(registry: &Registry) -> Command {
         .arg(
             switch(INVERSE, "Apply the inverse of every step, the last first (give --frame: the source's box)"),
         )
-        .args(options::args())
+        .args(arguments::args())
         .args(parameters(registry))
         .args_override_self(true)
         .after_help(
@@ -118,9 +123,9 @@ fn override_parameters(registry: &Registry, recipe: &mut Recipe, m: &ArgMatches)
 
 pub(super) fn run_recipe(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
     let file = given_file(m, "RECIPE")?;
-    let mut saved = recipe_file::read(registry, file, Given::reading(m)?.external)?;
+    let mut saved = recipe_file::read(registry, file, arguments::reading(m)?.external)?;
     override_parameters(registry, &mut saved.recipe, m)?;
-    let given = saved.options.overridden_by(&Given::inputs_and_options(m));
+    let given = saved.options.overridden_by(&arguments::given(m));
     mistaken(words, &given)?;
     // The command line alone has no conflicts, so one that shows up now involves the recipe.
     given.check_conflicts().map_err(|e| Failure::file(file, format!("[options] {e}")))?;
@@ -219,7 +224,7 @@ pub(super) fn edit_shapes(
     m: &ArgMatches,
     words: &[OsString],
 ) -> Result<Status, Failure> {
-    let mut given = Given::inputs_and_options(m);
+    let mut given = arguments::given(m);
     given.check_conflicts().map_err(Failure::Usage)?;
     mistaken(words, &given)?;
     given.edit = Some(EditChoice { info, args: steps::param_values(info.params, m) });

@@ -4,14 +4,14 @@ use super::line::{exclusions, referred, settled};
 use super::names::{CHAIN, joined, split};
 use super::restoring::{Restoration, as_by_hand, remembering, restored};
 use super::stage::{Scope, Stage, folder};
-use crate::editing::EditorHost;
-use crate::failure::Failure;
-use crate::options::{Given, OPTIONS};
-use crate::steps::INVERSE;
-use crate::temporaries::Temporary;
 use crate::watch;
 use pathwarp::recipe::Recipe;
+use pathwarp_editor::EngineHost;
 use pathwarp_editor::{Options, Purpose, selectors};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::{Given, OPTIONS};
+use pathwarp_engine::steps::INVERSE;
+use pathwarp_engine::temporaries::Temporary;
 use pathwarp_svg::objects::{Guides, Object, objects};
 use std::io::Write as _;
 use std::path::Path;
@@ -96,7 +96,7 @@ fn edited(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -
         port: None,
         open: true,
     };
-    let host = Arc::new(EditorHost::new(stage.registry.clone(), Given::default().keeping_pages(), given));
+    let host = Arc::new(EngineHost::new(stage.registry.clone(), Given::default().keeping_pages(), given));
     watch::rest();
     pathwarp_editor::serve(host, &options, |_| ()).map_err(Failure::Input)
 }

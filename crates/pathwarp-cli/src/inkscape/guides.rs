@@ -3,9 +3,9 @@
 use super::line::word;
 use super::names::{AUTOMATIC, GUIDES};
 use super::stage::Call;
-use crate::failure::Failure;
 use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param};
+use pathwarp_engine::failure::Failure;
 use pathwarp_svg::objects::Object;
 use std::collections::HashSet;
 

@@ -4,9 +4,9 @@ use crate::inkscape::names::{
     ACTION, ADD, AGAIN, AUTOMATIC, CHANGES, DEFORMATION, DISCARD, FILE, GUIDES, NONE, PERCENT, REPLACE, SHOW, UNIT,
     UNITS, WARNINGS,
 };
-use crate::options::{CommonOption, OPTIONS, OptionValue};
 use pathwarp::deform::{Guides, Info, Registry};
 use pathwarp::param::{Kind, Param};
+use pathwarp_engine::options::{CommonOption, OPTIONS, OptionValue};
 use std::fmt::Write as _;
 
 /// All descriptions: file name and content.

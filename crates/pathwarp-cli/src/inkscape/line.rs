@@ -2,13 +2,13 @@
 
 use super::names::{CHAIN, FILE, NONE, PERCENT, UNIT, UNITS};
 use super::stage::{Call, Outcome, Stage};
-use crate::advice;
-use crate::failure::Failure;
-use crate::input::split_reference;
-use crate::options::{CommonOption, OPTIONS};
-use crate::steps::INVERSE;
 use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param, is_inline};
+use pathwarp_engine::advice;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::input::split_reference;
+use pathwarp_engine::options::{CommonOption, OPTIONS};
+use pathwarp_engine::steps::INVERSE;
 use pathwarp_svg::objects::Object;
 
 /// Words that leave out what is locked.

@@ -12,13 +12,15 @@ mod names;
 mod restoring;
 mod stage;
 
-use crate::advice::{self, Flags};
-use crate::failure::{Failure, Status};
-use crate::{output, plugins, readable};
+use crate::ending::Status;
+use crate::plugins;
 use guides::sorted;
 use line::{allowed, by_id, changed, exclusions, existing, referred, settled, words_of_deformation, words_of_options};
 use names::{ADD, AGAIN, CHAIN, CHANGES, DISCARD, REPLACE, SHOW, is_job, joined, split};
 use pathwarp::deform::Registry;
+use pathwarp_engine::advice::{self, Flags};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::{output, readable};
 use pathwarp_svg::objects::{self, Guides, Object, objects};
 use restoring::{Restoration, Returned, as_by_hand, remembering, restored};
 use stage::{Call, Convert, GuidePaths, Job, Scope, Stage};

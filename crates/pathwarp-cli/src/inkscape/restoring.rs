@@ -3,8 +3,8 @@
 use super::line::{allowed, existing, referred};
 use super::names::split;
 use super::stage::{GuidePaths, Scope, Stage};
-use crate::failure::Failure;
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
+use pathwarp_engine::failure::Failure;
 use pathwarp_svg::objects::{self, Guides, Memory, RestoredObject};
 use pathwarp_svg::{Document, Selection};
 use std::collections::BTreeMap;

@@ -2,15 +2,19 @@
 
 use super::inx::labelled;
 use super::names::{ACTION, CHAIN, DEFORMATION, WARNINGS};
-use crate::advice::Flags;
-use crate::failure::{Failure, Status};
-use crate::options::{CommonOptions, Given, options_without_inputs};
-use crate::report::FileReport;
-use crate::{input, pipeline, references, steps, terminal, watch};
+use crate::arguments::options_without_inputs;
+use crate::ending::{Ending, Status};
+use crate::{steps, terminal, watch};
 use pathwarp::Error;
 use pathwarp::budget::Limits;
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
+use pathwarp_engine::advice::Flags;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::meter;
+use pathwarp_engine::options::{CommonOptions, Given};
+use pathwarp_engine::report::FileReport;
+use pathwarp_engine::{input, references};
 use pathwarp_raster::Picture;
 use pathwarp_svg::objects::Guides;
 use pathwarp_svg::{Document, ReadOptions};
@@ -69,7 +73,8 @@ impl Stage<'_> {
     ) -> Result<Outcome, Failure> {
         let words: Vec<OsString> = words.iter().map(OsString::from).collect();
         let parts: Vec<&[OsString]> = words.split(|w| w == CHAIN).collect();
-        let parts = steps::parts(self.registry, &parts, &options_without_inputs().collect::<Vec<_>>())?;
+        let parts = steps::parts(self.registry, &parts, &options_without_inputs().collect::<Vec<_>>())
+            .map_err(Ending::into_failure)?;
         let (mut recipe, mut own) = steps::chained(parts)?;
         // What the recipe selects, it selects in this scope.
         let selected = own.take("select");
@@ -83,7 +88,7 @@ impl Stage<'_> {
         let reading = given.read()?.reading;
         watch::begin(reading.limits);
         let _watched = watch::InBatch::begin();
-        watch::count_input(svg.len());
+        meter::count_input(svg.len());
         reading.check()?;
         if let Some(guides) = guides {
             guides.look_up(self, &mut recipe)?;
@@ -91,7 +96,8 @@ impl Stage<'_> {
         references::resolve_files(self.registry, &mut recipe, &reading)?;
         // The drawing is open on the page that it has.
         let name = &self.call.file;
-        let (bytes, warped) = pipeline::warp_bytes(self.registry, &recipe, &given, None, name, svg.as_bytes())?;
+        let (bytes, warped) =
+            pathwarp_engine::session::warp_bytes(self.registry, &recipe, &given, None, name, svg.as_bytes())?;
         let FileReport { frame, baseline, warnings, skipped, .. } = warped.report;
         let skipped = skipped.into_iter().map(|s| format!("{} is not warped: {}", s.id, s.why));
         Ok(Outcome {

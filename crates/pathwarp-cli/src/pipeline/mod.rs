@@ -1,28 +1,30 @@
 //! The one run of every deformation: the outputs are planned, each input is opened, built, warped and reported
-//! (`session.rs`), and its files are put in place, all or none. Of several inputs, each is finished on its own.
+//! ([`Session`]), and its files are put in place, all or none. Of several inputs, each is finished on its own.
 
 mod links;
 mod plan;
-mod session;
 
 pub(crate) use plan::{Folders, InputFile, Inputs, Job};
-pub(crate) use session::{Framed, Ready, Session, warp_bytes};
 
-use crate::advice::Flags;
-use crate::failure::{Failure, Status};
-use crate::input::{Input, PREVIEW, WarpedResult, display};
-use crate::options::{CommonOptions, Given, OnFailure};
-use crate::output::{self, Draft, PendingFile};
-use crate::page::{PageCounts, PageNews};
-use crate::report::{FileReport, ReportFile};
-use crate::{readable, recipe_file, references, temporaries, terminal, watch};
+use crate::ending::Status;
+use crate::interruption;
+use crate::report_file::ReportFile;
+use crate::{terminal, watch};
 use indicatif::{ProgressBar, ProgressStyle};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
 use pathwarp::recipe::Recipe;
+use pathwarp_engine::advice::Flags;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::input::{Input, PREVIEW, WarpedResult, display};
+use pathwarp_engine::options::{CommonOptions, Given, OnFailure};
+use pathwarp_engine::output::{self, Draft, PendingFile};
+use pathwarp_engine::page::{PageCounts, PageNews};
+use pathwarp_engine::report::FileReport;
+use pathwarp_engine::session::{Session, Warped};
+use pathwarp_engine::{readable, recipe_file, references};
 use pathwarp_svg::PageFit;
 use rayon::prelude::*;
-use session::Warped;
 use std::convert;
 use std::io::IsTerminal;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -166,7 +168,7 @@ fn one(
     let mut run = run.map_err(|f| f.about(&name))?;
     if !files_wait {
         PendingFile::commit_all(std::mem::take(&mut run.files))?;
-        temporaries::count_finished();
+        interruption::count_finished();
     }
     Ok(run)
 }

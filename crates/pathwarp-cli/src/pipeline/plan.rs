@@ -1,15 +1,15 @@
 //! The plan of a run: which output each input gets, checked before anything is read or written.
 
-use crate::catalogue::Catalogue;
-use crate::failure::Failure;
-use crate::format::Format;
-use crate::input::{svg_name, unreadable};
-use crate::options::CommonOptions;
-use crate::output::is_device;
-use crate::readable;
-use crate::references::{files_read, files_written};
 use crate::sources::Files;
 use pathwarp::recipe::{Recipe, Step};
+use pathwarp_engine::catalogue::Catalogue;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::format::Format;
+use pathwarp_engine::input::{svg_name, unreadable};
+use pathwarp_engine::options::CommonOptions;
+use pathwarp_engine::output::is_device;
+use pathwarp_engine::readable;
+use pathwarp_engine::references::{files_read, files_written};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;

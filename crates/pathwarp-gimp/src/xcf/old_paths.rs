@@ -89,7 +89,7 @@ pub(super) fn encode(strokes: &[Stroke], tattoo: Option<u32>) -> Vec<u8> {
     let listed: Vec<TypedPoint> = strokes.iter().flat_map(listed).collect();
     let mut out = vec![if closed { CLOSED } else { OPEN }];
     out.extend(u32::from(closed).to_be_bytes());
-    out.extend(u32::try_from(listed.len()).unwrap_or(u32::MAX).to_be_bytes());
+    out.extend((listed.len() as u32).to_be_bytes());
     // The format, a word that is always 1, and in format 3 the tattoo.
     let format: u32 = if tattoo.is_some() { 3 } else { 2 };
     for word in [format, 1].into_iter().chain(tattoo) {

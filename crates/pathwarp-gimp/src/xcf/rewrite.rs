@@ -98,9 +98,9 @@ fn edits(input: &mut ByteSource<'_>, xcf: &Xcf, strokes: &[(usize, Vec<Stroke>)]
     with_pointers(input, xcf, edits)
 }
 
-/// A length or count as a big-endian word.
+/// A length or count as a big-endian word: of a part of a file of paths, which is far smaller than four gigabytes.
 fn word(n: usize) -> Vec<u8> {
-    u32::try_from(n).unwrap_or(u32::MAX).to_be_bytes().to_vec()
+    (n as u32).to_be_bytes().to_vec()
 }
 
 /// The growth of the file by the edits before `place`, in bytes.
@@ -118,8 +118,9 @@ fn update_lengths(xcf: &Xcf, edits: &mut Vec<ByteEdit>) {
         });
         // The length word of `PROP_PATHS` may have been wrong before; correct it only if the block changes its size.
         if grown != 0 || (changed && *property != PROP_PATHS) {
+            // A block does not shrink below its head of eight bytes.
             let content = (span.end - span.start) as i64 - 8 + grown;
-            let bytes = word(usize::try_from(content).unwrap_or(usize::MAX));
+            let bytes = word(content as usize);
             edits.push(ByteEdit { span: span.start + 4..span.start + 8, bytes });
         }
     }
@@ -328,7 +329,8 @@ pub fn new_xcf(size: [u32; 2], paths: &[GimpPath]) -> Vec<u8> {
     push(&mut out, &[size[0], size[1], BASE_TYPE, PROP_RESOLUTION, 8]);
     push(&mut out, &[PIXELS_PER_INCH.to_bits(); 2]);
     let mut block = Vec::new();
-    let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    // Paths in memory have far fewer points than a word counts.
+    let count = |n: usize| n as u32;
     push(&mut block, &[1, 0, count(paths.len())]);
     for (i, p) in paths.iter().enumerate() {
         push(&mut block, &[count(p.name.len() + 1)]);

@@ -123,7 +123,7 @@ fn points(input: &mut ByteSource<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>
         let now = left.min(CHUNK);
         let start = input.at();
         let bytes = input.vec(u64::from(now) * size, "a stroke's points")?;
-        for (i, p) in bytes.chunks_exact(usize::try_from(size).unwrap_or(usize::MAX)).enumerate() {
+        for (i, p) in bytes.chunks_exact(size as usize).enumerate() {
             let at = start + i as u64 * size;
             let kind = u32::from_be_bytes(word(p, 0));
             let expected = if out.len() % 3 == 1 { ANCHOR } else { CONTROL };
@@ -143,7 +143,7 @@ pub(super) fn encode(strokes: &[Stroke]) -> Vec<u8> {
     let mut out = Vec::new();
     for s in strokes {
         // Points read from a file were counted in 32 bits, and refitting makes far fewer.
-        let n = u32::try_from(s.points.len()).unwrap_or(u32::MAX);
+        let n = s.points.len() as u32;
         for word in [BEZIER, u32::from(s.closed), 2, n] {
             out.extend(word.to_be_bytes());
         }

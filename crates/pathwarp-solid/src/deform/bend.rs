@@ -17,6 +17,7 @@ use pathwarp::Error;
 use pathwarp::deform::{Example, Info};
 use pathwarp::map::bspline;
 use pathwarp::param::{Kind, Param};
+use pathwarp::setters;
 use std::sync::Arc;
 
 /// The curve that a model follows.
@@ -74,16 +75,11 @@ impl Bend3 {
         Self { bounds, spine, axis: 0, through: None, handles: Vec::new() }
     }
 
-    /// Sets the axis of the model that follows the curve: 0, 1 or 2.
-    #[must_use]
-    pub fn axis(self, axis: usize) -> Self {
-        Self { axis: axis.min(2), ..self }
-    }
-
-    /// Sets a point of the line that becomes the curve. Defaults to the middle of the box.
-    #[must_use]
-    pub fn through(self, p: DVec3) -> Self {
-        Self { through: Some(p), ..self }
+    setters! {
+        /// Sets the axis of the model that follows the curve: 0, 1 or 2.
+        axis(axis: usize) => axis: axis.min(2);
+        /// Sets a point of the line that becomes the curve. Defaults to the middle of the box.
+        through(p: DVec3) => through: Some(p);
     }
 
     /// Sets handles of a skeleton of Bézier pieces. Handles of the first level that are not set are perpendicular to their legs,

@@ -10,6 +10,7 @@ use glam::DVec3;
 use pathwarp::Error;
 use pathwarp::deform::{Example, Info, SavedFile};
 use pathwarp::param::{Kind, Param};
+use pathwarp::setters;
 use pathwarp::solve::{misses, smallest_change};
 use serde::Deserialize;
 use std::sync::Arc;
@@ -87,17 +88,12 @@ impl Ffd3 {
         self
     }
 
-    /// Freezes layers of control points along the left, right, bottom, top, back and front face. One layer avoids a tear at the
-    /// face, and k + 1 layers keep k derivatives continuous.
-    #[must_use]
-    pub fn freeze(self, layers: [usize; 6]) -> Self {
-        Self { frozen: layers, ..self }
-    }
-
-    /// Sets whether the map continues outside the box.
-    #[must_use]
-    pub fn extend(self, extended: bool) -> Self {
-        Self { extended, ..self }
+    setters! {
+        /// Freezes layers of control points along the left, right, bottom, top, back and front face. One layer avoids a tear at the
+        /// face, and k + 1 layers keep k derivatives continuous.
+        freeze(layers: [usize; 6]) => frozen: layers;
+        /// Sets whether the map continues outside the box.
+        extend(extended: bool) => extended: extended;
     }
 
     /// Builds the map. Pins that are missed give warnings.

@@ -14,6 +14,7 @@ use pathwarp::Error;
 use pathwarp::decimal::trimmed;
 use pathwarp::deform::{Example, Info};
 use pathwarp::param::{Kind, Param};
+use pathwarp::setters;
 use std::sync::Arc;
 
 /// Wraps a model round a cylinder.
@@ -45,23 +46,14 @@ impl Wrap3 {
         Self { bounds, radius, level: false, surface: None, far: None }
     }
 
-    /// Lays the cylinder's axis along x instead of y.
-    #[must_use]
-    pub fn level(self, level: bool) -> Self {
-        Self { level, ..self }
-    }
-
-    /// Sets the z that comes to lie on the cylinder, where lengths are kept. Defaults to the back of the box.
-    #[must_use]
-    pub fn surface(self, z: f64) -> Self {
-        Self { surface: Some(z), ..self }
-    }
-
-    /// Wraps round a cone with this radius at the top. The one given to [`new`](Self::new) is that at the bottom (or at the left, if
-    /// the axis is level).
-    #[must_use]
-    pub fn cone(self, radius: f64) -> Self {
-        Self { far: Some(radius), ..self }
+    setters! {
+        /// Lays the cylinder's axis along x instead of y.
+        level(level: bool);
+        /// Sets the z that comes to lie on the cylinder, where lengths are kept. Defaults to the back of the box.
+        surface(z: f64) => surface: Some(z);
+        /// Wraps round a cone with this radius at the top. The one given to [`new`](Self::new) is that at the bottom (or at the left, if
+        /// the axis is level).
+        cone(radius: f64) => far: Some(radius);
     }
 
     /// Builds the map. A model longer than the circumference gives a warning.

@@ -14,7 +14,7 @@ pub struct FlatShape {
     pub name: String,
     /// Vertices, y up.
     pub points: Vec<[f64; 2]>,
-    /// Triangles, all counter-clockwise or all clockwise.
+    /// Triangles of places in `points`, all counter-clockwise or all clockwise.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -34,7 +34,7 @@ impl FlatShape {
     }
 
     fn at(&self, i: u32) -> [f64; 2] {
-        self.points.get(i as usize).copied().unwrap_or_default()
+        self.points[i as usize]
     }
 
     /// The largest coordinate.
@@ -44,9 +44,9 @@ impl FlatShape {
 
     /// Adds the vertices and triangles of another shape.
     fn append(&mut self, other: &Self) {
-        let first = u32::try_from(self.points.len()).unwrap_or(u32::MAX);
+        let first = self.points.len() as u32;
         self.points.extend_from_slice(&other.points);
-        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| first.saturating_add(i))));
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| first + i)));
     }
 
     /// The same shape, counter-clockwise, without triangles that repeat a vertex. Triangles without area stay: they hold the shape
@@ -120,7 +120,7 @@ impl FlatShape {
                     vertex
                 } else {
                     self.points.push(at);
-                    u32::try_from(self.points.len() - 1).unwrap_or(u32::MAX)
+                    self.points.len() as u32 - 1
                 };
                 for n in fan {
                     let corner = old.triangles[n].iter().position(|i| *i == vertex).unwrap_or_default();

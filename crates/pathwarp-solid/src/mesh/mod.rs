@@ -174,8 +174,7 @@ impl Topology {
     /// The Euler number V − E + F: 2 for a ball, 0 for a ring.
     #[must_use]
     pub fn euler(&self) -> i64 {
-        let signed = |n: usize| i64::try_from(n).unwrap_or(i64::MAX);
-        signed(self.vertices) - signed(self.edges) + signed(self.faces)
+        self.vertices as i64 - self.edges as i64 + self.faces as i64
     }
 }
 
@@ -189,7 +188,7 @@ pub fn topology(mesh: &Mesh) -> Topology {
         .positions
         .iter()
         .map(|p| {
-            let next = u32::try_from(places.len()).unwrap_or(u32::MAX);
+            let next = places.len() as u32;
             *places.entry(key(p)).or_insert(next)
         })
         .collect();

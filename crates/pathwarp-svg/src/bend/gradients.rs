@@ -68,7 +68,7 @@ impl BentGradient {
             return None;
         }
         let shading = Shading::of(paint)?;
-        let strict = matches!(options.gradients, Gradients::Exact(_));
+        let strict = options.gradients == Gradients::Exact;
         let (least, share) = if strict { (VISIBLE, 0.0) } else { (NOTICEABLE, NOTICEABLE_SHARE) };
         let fill = p.fill.as_ref().filter(|f| std::ptr::eq(f.paint(), paint));
         let width = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get()));
@@ -138,7 +138,7 @@ impl PaintedGradient {
         target: &BezPath,
         unpainted: &mut Option<PictureError>,
     ) -> Option<BentImage> {
-        let (Gradients::Exact(painter) | Gradients::Auto(painter)) = &t.options().gradients else { return None };
+        let painter = t.options().painter.as_ref()?;
         let request = GradientRequest {
             colors: &|places, colors| self.shading.colors(places, colors),
             area: self.area,
@@ -153,7 +153,7 @@ impl PaintedGradient {
             strict: self.strict,
             sharp: self.sharp,
         };
-        painter.paint(&request).map_err(|why| *unpainted = Some(why)).ok()
+        painter.gradient(&request).map_err(|why| *unpainted = Some(why)).ok()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Options for warping a document.
 
-use super::pictures::{FilterPainter, GradientPainter, Images};
+use super::pictures::{Images, Painter};
 use crate::scene::model::{Part, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::select::Selection;
@@ -65,8 +65,8 @@ pub enum OnError {
     Skip,
 }
 
-/// Treatment of gradients.
-#[derive(Clone, Default)]
+/// Treatment of gradients. Without a [painter](WarpOptions::painter), those that may become pictures follow the fit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Gradients {
     /// Transform them by the map's best affine fit over the painted shape.
@@ -74,36 +74,15 @@ pub enum Gradients {
     Fit,
     /// Replace a gradient by a picture, bent pixel by pixel, if the affine fit would look wrong: if its colour is off by more
     /// than 3 % over more than 1 % of the shape.
-    Auto(Arc<dyn GradientPainter>),
+    Auto,
     /// As [`Auto`](Self::Auto), but replace a gradient if its colour is off by more than 0.6 % anywhere.
-    Exact(Arc<dyn GradientPainter>),
+    Exact,
     /// Leave them unchanged.
     Keep,
 }
 
-impl fmt::Debug for Gradients {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Fit => "Fit",
-            Self::Auto(_) => "Auto",
-            Self::Exact(_) => "Exact",
-            Self::Keep => "Keep",
-        })
-    }
-}
-
-impl PartialEq for Gradients {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Fit, Self::Fit) | (Self::Keep, Self::Keep) => true,
-            (Self::Exact(a), Self::Exact(b)) | (Self::Auto(a), Self::Auto(b)) => Arc::ptr_eq(a, b),
-            _ => false,
-        }
-    }
-}
-
-/// Treatment of filters.
-#[derive(Clone, Default)]
+/// Treatment of filters. Without a [painter](WarpOptions::painter), all follow the fit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Filters {
     /// Transform them with what they are applied to by the map's best affine fit.
@@ -111,29 +90,9 @@ pub enum Filters {
     Affine,
     /// Replace what a filter draws by a picture, bent pixel by pixel, if the affine fit would look wrong: if it would be off by
     /// more than 3 % over more than 1 % of what is painted. A shape beneath or above a shadow stays a shape.
-    Auto(Arc<dyn FilterPainter>),
+    Auto,
     /// Replace it in any case.
-    Picture(Arc<dyn FilterPainter>),
-}
-
-impl fmt::Debug for Filters {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Affine => "Affine",
-            Self::Auto(_) => "Auto",
-            Self::Picture(_) => "Picture",
-        })
-    }
-}
-
-impl PartialEq for Filters {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Affine, Self::Affine) => true,
-            (Self::Auto(a), Self::Auto(b)) | (Self::Picture(a), Self::Picture(b)) => Arc::ptr_eq(a, b),
-            _ => false,
-        }
-    }
+    Picture,
 }
 
 /// Treatment of the page.
@@ -223,6 +182,8 @@ pub struct WarpOptions {
     pub gradients: Gradients,
     /// Treatment of filters.
     pub filters: Filters,
+    /// Paints the pictures that replace gradients and filters.
+    pub painter: Option<Painter>,
     /// Treatment of patterns.
     pub patterns: Patterns,
     /// Treatment of the page: viewBox, width and height. If it changes, lengths in percent of it become numbers, except in style
@@ -263,6 +224,7 @@ impl WarpOptions {
             on_error: OnError::default(),
             gradients: Gradients::default(),
             filters: Filters::default(),
+            painter: None,
             patterns: Patterns::default(),
             page: PageFit::default(),
             copies: Vec::new(),
@@ -308,7 +270,7 @@ impl WarpOptions {
 
     /// Whether gradients may become pictures.
     pub(crate) fn paints_gradients(&self) -> bool {
-        matches!(self.gradients, Gradients::Exact(_) | Gradients::Auto(_))
+        self.painter.is_some() && matches!(self.gradients, Gradients::Exact | Gradients::Auto)
     }
 }
 
@@ -324,6 +286,7 @@ setters! { WarpOptions,
     on_error: OnError, with_on_error;
     gradients: Gradients, with_gradients;
     filters: Filters, with_filters;
+    painter: Option<Painter>, with_painter;
     patterns: Patterns, with_patterns;
     page: PageFit, with_page;
     copies: Vec<Affine>, with_copies;

@@ -198,3 +198,37 @@ pub struct SeenColor {
     /// Red, green, blue and alpha, 0 to 1, premultiplied.
     pub color: [f64; 4],
 }
+
+/// Paints bent gradients and what filters draw.
+#[derive(Clone)]
+pub struct Painter(Arc<dyn PaintsBoth>);
+
+trait PaintsBoth: GradientPainter + FilterPainter {}
+impl<P: GradientPainter + FilterPainter> PaintsBoth for P {}
+
+impl Painter {
+    /// A painter of both.
+    pub fn new(painter: Arc<impl GradientPainter + FilterPainter + 'static>) -> Self {
+        Self(painter)
+    }
+
+    pub(crate) fn gradient(&self, request: &GradientRequest<'_>) -> Result<BentImage, PictureError> {
+        GradientPainter::paint(&*self.0, request)
+    }
+
+    pub(crate) fn filter(&self, request: &FilterRequest<'_>) -> Result<Option<Vec<Option<BentImage>>>, PictureError> {
+        FilterPainter::paint(&*self.0, request)
+    }
+}
+
+impl fmt::Debug for Painter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Painter")
+    }
+}
+
+impl PartialEq for Painter {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}

@@ -59,11 +59,8 @@ fn outcome(
 ) -> Option<FilterOutcome> {
     let s = &input.scene.slots[slot];
     let bend = &input.bends.each[fits::bend_of(s, input.scene, input.bends, input.of)?];
-    let (painter, always) = match &bend.options.filters {
-        Filters::Affine => return None,
-        Filters::Auto(painter) => (painter, false),
-        Filters::Picture(painter) => (painter, true),
-    };
+    let painter = bend.options.painter.as_ref().filter(|_| bend.options.filters != Filters::Affine)?;
+    let always = bend.options.filters == Filters::Picture;
     let repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
     let unfit = nests(group) || displaces(group) || !takes_pictures(input, slot);
     if bend.is_identity() || s.before || repeated || unfit {
@@ -103,7 +100,7 @@ fn outcome(
         to_px: input.scene.to_px,
         among,
     };
-    let Some(mut pictures) = painter.paint(&request).ok()?.map(Vec::into_iter) else {
+    let Some(mut pictures) = painter.filter(&request).ok()?.map(Vec::into_iter) else {
         return Some(FilterOutcome::Fits);
     };
     let mut next = || pictures.next().flatten();

@@ -2,10 +2,10 @@
 //!
 //! x' = a·x + c·y + e, y' = b·x + d·y + f. By parts, about a fixed point O: first scale, then skew, then rotate, then move.
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law};
 use crate::error::Error;
 use crate::map::AffineMap;
-use crate::param::{Axis, Kind, Param, Settings};
+use crate::param::{Axis, Kind, Param};
 use kurbo::{Affine as Matrix, Point, Vec2};
 use std::sync::Arc;
 
@@ -58,34 +58,17 @@ impl Affine {
         }
     }
 
-    /// Sets the scale across and down.
-    #[must_use]
-    pub fn scale(self, x: f64, y: f64) -> Self {
-        Self { scale: Vec2::new(x, y), ..self }
-    }
-
-    /// Sets the angles by which verticals and horizontals turn, degrees.
-    #[must_use]
-    pub fn skew(self, x: f64, y: f64) -> Self {
-        Self { skew: Vec2::new(x, y), ..self }
-    }
-
-    /// Sets the rotation, degrees, clockwise on the screen.
-    #[must_use]
-    pub fn rotate(self, angle: f64) -> Self {
-        Self { rotate: angle, ..self }
-    }
-
-    /// Sets the shift, user units.
-    #[must_use]
-    pub fn shift(self, by: impl Into<Vec2>) -> Self {
-        Self { shift: by.into(), ..self }
-    }
-
-    /// Sets the point that scale, skew and rotation leave in place. Default: the origin.
-    #[must_use]
-    pub fn about(self, point: impl Into<Point>) -> Self {
-        Self { about: point.into(), ..self }
+    setters! {
+        /// Sets the scale across and down.
+        scale(x: f64, y: f64) => scale: Vec2::new(x, y);
+        /// Sets the angles by which verticals and horizontals turn, degrees.
+        skew(x: f64, y: f64) => skew: Vec2::new(x, y);
+        /// Sets the rotation, degrees, clockwise on the screen.
+        rotate(angle: f64) => rotate: angle;
+        /// Sets the shift, user units.
+        shift(by: impl Into<Vec2>) => shift: by.into();
+        /// Sets the point that scale, skew and rotation leave in place. Default: the origin.
+        about(point: impl Into<Point>) => about: point.into();
     }
 
     /// The error for a matrix that leaves no area, naming the parameter to blame.
@@ -181,36 +164,28 @@ points are moved exactly; no node is added.")
         Case { args: &[("skew-x", "45"), ("about", "0,0")], at: (0.0, 2.0), to: (2.0, 2.0), tolerance: 1e-14 },
     ]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let matrix = match s.numbers_if("matrix")? {
-            Some(v) => {
-                let parts = ["scale-x", "scale-y", "skew-x", "skew-y", "rotate", "move-x", "move-y", "about"];
-                if let Some(part) = parts.iter().find(|p| s.given(p)) {
-                    return Err(Error::usage("matrix", "", format!("is the whole map; it cannot go with `{part}`")));
-                }
-                Some(Matrix::new(std::array::from_fn(|i| v[i])))
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let matrix = match s.numbers_if("matrix")? {
+        Some(v) => {
+            let parts = ["scale-x", "scale-y", "skew-x", "skew-y", "rotate", "move-x", "move-y", "about"];
+            if let Some(part) = parts.iter().find(|p| s.given(p)) {
+                return Err(Error::usage("matrix", "", format!("is the whole map; it cannot go with `{part}`")));
             }
-            None => None,
-        };
-        let affine = Affine {
-            matrix,
-            scale: Vec2::new(s.number("scale-x")?, s.number("scale-y")?),
-            skew: Vec2::new(s.number("skew-x")?, s.number("skew-y")?),
-            rotate: s.number("rotate")?,
-            shift: Vec2::new(s.number("move-x")?, s.number("move-y")?),
-            about: s.point("about")?,
-        };
-        affine.build()
-    }
-}
+            Some(Matrix::new(std::array::from_fn(|i| v[i])))
+        }
+        None => None,
+    };
+    let affine = Affine {
+        matrix,
+        scale: Vec2::new(s.number("scale-x")?, s.number("scale-y")?),
+        skew: Vec2::new(s.number("skew-x")?, s.number("skew-y")?),
+        rotate: s.number("rotate")?,
+        shift: Vec2::new(s.number("move-x")?, s.number("move-y")?),
+        about: s.point("about")?,
+    };
+    affine.build()
+});
 
 /// Removes whole turns, so that they are the identity to the last bit.
 fn without_whole_turns(degrees: f64) -> f64 {

@@ -8,12 +8,12 @@
 //! twice the leading coefficient times u plus the middle one is −det F', so the root is chosen by the side of the fold that the
 //! corners lie on. G. Wolberg, *Digital Image Warping* (1990), §3.6.
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs};
 use crate::anchors::{self, Anchors, FourToFour};
 use crate::error::Error;
 use crate::map::rational_bezier::Scaled;
 use crate::map::{AffineMap, Chain, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
-use crate::param::{Param, Settings};
+use crate::param::Param;
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -105,18 +105,8 @@ with the side that lies lowest on the screen, left to right, unless --base-as-dr
 
 const FOUR: Pairs = &[("target", "0,100 95,90 75,20 15,5")];
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        Bilinear { corners: anchors::four_to_four(s)? }.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Bilinear { corners: anchors::four_to_four(s)? }.build());
 
 /// P + u·a + v·b + uv·c over the unit square.
 #[derive(Debug, Clone, Copy)]
@@ -234,12 +224,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Built {
-        Entry.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap()
+        ENTRY.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap()
     }
 
     #[test]

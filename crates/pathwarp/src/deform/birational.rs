@@ -5,7 +5,7 @@
 //! 2016, equations 11-13 and 26): see [`map::Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
 //! CAGD 2015.
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Explanation, Info, Law, Pairs, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Pairs, Role};
 use super::ffd::{MAX_CELLS, MAX_DEGREE};
 use crate::error::{Error, GeometryError, within};
 use crate::map::{self, AffineMap, Class, Map, Rows};
@@ -59,16 +59,11 @@ impl Birational {
         Self { rows: Rows::LeftRight, ..Self::top_bottom(region, left, right) }
     }
 
-    /// Takes the rows for B-splines of this degree, 1 to 10, with at least one point more than that and at most 64.
-    #[must_use]
-    pub fn spline(self, degree: usize) -> Self {
-        Self { spline: Some(degree), ..self }
-    }
-
-    /// Accepts points outside the lines that join the rows' ends: the map is infinite somewhere then.
-    #[must_use]
-    pub fn allow_poles(self, allow_poles: bool) -> Self {
-        Self { allow_poles, ..self }
+    setters! {
+        /// Takes the rows for B-splines of this degree, 1 to 10, with at least one point more than that and at most 64.
+        spline(degree: usize) => spline: Some(degree);
+        /// Accepts points outside the lines that join the rows' ends: the map is infinite somewhere then.
+        allow_poles(allow_poles: bool);
     }
 
     /// Builds the map.
@@ -216,44 +211,36 @@ keeps clear of the points where the map is infinite. With --spline, rows of many
 
 const BENT: Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,100 60,70 95,110")];
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let [top, bottom, left, right] = ["top", "bottom", "left", "right"].map(|n| row(s, n));
-        let (rows, first, second) = match (top?, bottom?, left?, right?) {
-            (Some(a), Some(b), None, None) => (Rows::TopBottom, a, b),
-            (None, None, Some(a), Some(b)) => (Rows::LeftRight, a, b),
-            (None, None, None, None) => {
-                let hint =
-                    "with `bottom`, a row of equally many points, left to right (or `left` and `right`, top to bottom)";
-                return Err(Error::missing("top", hint));
-            }
-            (None, Some(_), None, None) => return Err(facing("top", "bottom")),
-            (Some(_), None, None, None) => return Err(facing("bottom", "top")),
-            (None, None, None, Some(_)) => return Err(facing("left", "right")),
-            (None, None, Some(_), None) => return Err(facing("right", "left")),
-            _ => {
-                let name = if s.given("left") { "left" } else { "right" };
-                return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with `top` and `bottom`"));
-            }
-        };
-        let birational = Birational {
-            region: s.rect_if("region")?.unwrap_or(s.frame().rect),
-            rows,
-            first,
-            second,
-            spline: s.number_if("spline")?.map(|d| d as usize),
-            allow_poles: s.flag("allow-poles")?,
-        };
-        birational.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let [top, bottom, left, right] = ["top", "bottom", "left", "right"].map(|n| row(s, n));
+    let (rows, first, second) = match (top?, bottom?, left?, right?) {
+        (Some(a), Some(b), None, None) => (Rows::TopBottom, a, b),
+        (None, None, Some(a), Some(b)) => (Rows::LeftRight, a, b),
+        (None, None, None, None) => {
+            let hint =
+                "with `bottom`, a row of equally many points, left to right (or `left` and `right`, top to bottom)";
+            return Err(Error::missing("top", hint));
+        }
+        (None, Some(_), None, None) => return Err(facing("top", "bottom")),
+        (Some(_), None, None, None) => return Err(facing("bottom", "top")),
+        (None, None, None, Some(_)) => return Err(facing("left", "right")),
+        (None, None, Some(_), None) => return Err(facing("right", "left")),
+        _ => {
+            let name = if s.given("left") { "left" } else { "right" };
+            return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with `top` and `bottom`"));
+        }
+    };
+    let birational = Birational {
+        region: s.rect_if("region")?.unwrap_or(s.frame().rect),
+        rows,
+        first,
+        second,
+        spline: s.number_if("spline")?.map(|d| d as usize),
+        allow_poles: s.flag("allow-poles")?,
+    };
+    birational.build()
+});
 
 fn facing(missing: &str, given: &str) -> Error {
     Error::missing(missing, format!("the row that faces `{given}`, with as many points"))

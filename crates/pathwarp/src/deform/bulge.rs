@@ -9,12 +9,12 @@
 //!
 //! Both are smooth at the centre, being smooth in r². Elementary.
 
-use super::entry::{Built, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{
     AffineMap, Class, Cost, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real, increasing_root,
 };
-use crate::param::{Axis, Kind, Param, Settings};
+use crate::param::{Axis, Kind, Param};
 use kurbo::{Affine, Point, Vec2};
 use std::f64::consts::LN_2;
 use std::sync::Arc;
@@ -46,16 +46,11 @@ impl Bulge {
         Self { center: center.into(), radius, amount: 0.7, sharp: false }
     }
 
-    /// Sets the amount, −1 to 1: the scale at the centre is 2^amount, so that negative amounts pinch.
-    #[must_use]
-    pub fn amount(self, amount: f64) -> Self {
-        Self { amount, ..self }
-    }
-
-    /// Ends with a kink at the rim. A sharp pinch is the exact inverse of the sharp bulge.
-    #[must_use]
-    pub fn sharp(self, sharp: bool) -> Self {
-        Self { sharp, ..self }
+    setters! {
+        /// Sets the amount, −1 to 1: the scale at the centre is 2^amount, so that negative amounts pinch.
+        amount(amount: f64);
+        /// Ends with a kink at the rim. A sharp pinch is the exact inverse of the sharp bulge.
+        sharp(sharp: bool);
     }
 
     /// Builds the map.
@@ -120,19 +115,11 @@ undoes its bulge exactly.")
         },
     ]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let (center, radius, amount) = (s.point("center")?, s.number("radius")?, s.number("amount")?);
-        Bulge { center, radius, amount, sharp: s.choice("edge")? == "sharp" }.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let (center, radius, amount) = (s.point("center")?, s.number("radius")?, s.number("amount")?);
+    Bulge { center, radius, amount, sharp: s.choice("edge")? == "sharp" }.build()
+});
 
 /// The formula inside the disc, continued outside.
 #[derive(Debug, Clone, Copy)]
@@ -262,12 +249,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Arc<dyn Map> {
-        Entry.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap().map
+        ENTRY.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap().map
     }
 
     #[test]

@@ -30,6 +30,28 @@ pub trait Deformation: Send + Sync {
     }
 }
 
+/// A deformation of this crate: its description, and the function that builds it for settings.
+pub(crate) struct Entry {
+    info: &'static Info,
+    build: fn(&Settings<'_>) -> Result<Built, Error>,
+}
+
+impl Entry {
+    pub(super) const fn new(info: &'static Info, build: fn(&Settings<'_>) -> Result<Built, Error>) -> Self {
+        Self { info, build }
+    }
+}
+
+impl Deformation for Entry {
+    fn info(&self) -> &Info {
+        self.info
+    }
+
+    fn build(&self, settings: &Settings<'_>) -> Result<Built, Error> {
+        (self.build)(settings)
+    }
+}
+
 /// The description of a deformation.
 ///
 /// Written as a constant, so that help, recipes, schema and docs all come from one table:
@@ -374,10 +396,9 @@ impl Built {
         self.explanation.overlays.push(Overlay { role, path });
     }
 
-    /// Sets the explanation.
-    #[must_use]
-    pub fn explained(self, explanation: Explanation) -> Self {
-        Self { explanation, ..self }
+    setters! {
+        /// Sets the explanation.
+        explained(explanation: Explanation) => explanation: explanation;
     }
 }
 

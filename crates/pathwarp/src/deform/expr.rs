@@ -4,11 +4,11 @@
 //! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each. A branch is the list with
 //! every side resolved.
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law};
 use crate::error::Error;
 use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
 use crate::map::{Class, Cost, Crease, Creases, Dual, Jet, Level, Map};
-use crate::param::{Kind, Param, Settings};
+use crate::param::{Kind, Param};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
@@ -178,20 +178,12 @@ sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b)
         },
     ]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let formula = |name| s.texts(name).last().filter(|_| s.given(name)).map(|t| (*t).to_owned());
-        let definitions = s.texts("let").into_iter().map(str::to_owned).collect();
-        Expr { frame: s.frame().rect, x: formula("x"), y: formula("y"), definitions }.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let formula = |name| s.texts(name).last().filter(|_| s.given(name)).map(|t| (*t).to_owned());
+    let definitions = s.texts("let").into_iter().map(str::to_owned).collect();
+    Expr { frame: s.frame().rect, x: formula("x"), y: formula("y"), definitions }.build()
+});
 
 /// Defines the built-in names.
 fn builtin<'a>(p: &mut Program, r: Rect) -> Option<Names<'a>> {
@@ -317,12 +309,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Arc<dyn Map>, Error> {
-        Entry.build_from(&Args::from_pairs(pairs), &check::frame()).map(|b| b.map)
+        ENTRY.build_from(&Args::from_pairs(pairs), &check::frame()).map(|b| b.map)
     }
 
     /// Every function's value and derivatives, through the parser.

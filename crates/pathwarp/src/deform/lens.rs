@@ -14,10 +14,10 @@
 //! Kannala & Brandt, *A generic camera model and calibration method for conventional, wide-angle, and fish-eye lenses*, IEEE
 //! PAMI 28 (2006), equations (1)–(5).
 
-use super::entry::{Built, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Kind, Param, Settings};
+use crate::param::{Kind, Param};
 use kurbo::{Affine, Point, Rect};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -54,35 +54,18 @@ impl Lens {
         Self { frame, center: frame.center(), from, to, field: 110.0, keep_middle: false }
     }
 
-    /// Sets the lens that the artwork is drawn with.
-    #[must_use]
-    pub fn from(self, from: LensModel) -> Self {
-        Self { from, ..self }
-    }
-
-    /// Sets the lens to redraw it with.
-    #[must_use]
-    pub fn to(self, to: LensModel) -> Self {
-        Self { to, ..self }
-    }
-
-    /// Sets the angle of view across the diagonal of the artwork's box, 0.01 to 359 degrees. Rectilinear and orthographic
-    /// lenses see less than 180.
-    #[must_use]
-    pub fn field(self, field: f64) -> Self {
-        Self { field, ..self }
-    }
-
-    /// Sets the point that the lens looks at.
-    #[must_use]
-    pub fn center(self, center: impl Into<Point>) -> Self {
-        Self { center: center.into(), ..self }
-    }
-
-    /// Keeps the scale in the middle instead of the position of the corners.
-    #[must_use]
-    pub fn keep_middle(self, keep_middle: bool) -> Self {
-        Self { keep_middle, ..self }
+    setters! {
+        /// Sets the lens that the artwork is drawn with.
+        from(from: LensModel);
+        /// Sets the lens to redraw it with.
+        to(to: LensModel);
+        /// Sets the angle of view across the diagonal of the artwork's box, 0.01 to 359 degrees. Rectilinear and orthographic
+        /// lenses see less than 180.
+        field(field: f64);
+        /// Sets the point that the lens looks at.
+        center(center: impl Into<Point>) => center: center.into();
+        /// Keeps the scale in the middle instead of the position of the corners.
+        keep_middle(keep_middle: bool);
     }
 
     /// Builds the map.
@@ -187,26 +170,18 @@ lenses, IEEE PAMI 28, 2006, equations (1)-(5)")
         },
     ]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let lens = Lens {
-            frame: s.frame().rect,
-            center: s.point("center")?,
-            from: LensModel::named(s.choice("from")?),
-            to: LensModel::named(s.choice("to")?),
-            field: s.number("field")?,
-            keep_middle: s.choice("keep")? == "middle",
-        };
-        lens.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let lens = Lens {
+        frame: s.frame().rect,
+        center: s.point("center")?,
+        from: LensModel::named(s.choice("from")?),
+        to: LensModel::named(s.choice("to")?),
+        field: s.number("field")?,
+        keep_middle: s.choice("keep")? == "middle",
+    };
+    lens.build()
+});
 
 impl LensModel {
     fn named(name: &str) -> Self {
@@ -316,12 +291,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-        Entry.build_from(&Args::from_pairs(pairs), &check::frame())
+        ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
     #[test]

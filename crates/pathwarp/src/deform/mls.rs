@@ -12,7 +12,7 @@
 //! nearest handle k, held fixed; and means are counted from pₖ, so that nothing cancels near it. *At* pₖ, M is made from the
 //! other handles alone, since p̂ₖ there is of second order: F(pₖ) = qₖ with that M for derivative (for α ≥ 1).
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
 use crate::anchors;
 use crate::error::{Error, GeometryError, within};
 use crate::map::{AffineMap, Cost, Formula, Real};
@@ -48,16 +48,11 @@ impl Mls {
         Self { handles, stiffness: Stiffness::Rigid, alpha: 1.0, mark: bounds.width().hypot(bounds.height()) / 100.0 }
     }
 
-    /// Sets the kind of local map. Default: rigid.
-    #[must_use]
-    pub fn stiffness(self, stiffness: Stiffness) -> Self {
-        Self { stiffness, ..self }
-    }
-
-    /// Sets α, 1 to 4: the influence of a pair falls off with this power of the squared distance. Default: 1.
-    #[must_use]
-    pub fn alpha(self, alpha: f64) -> Self {
-        Self { alpha, ..self }
+    setters! {
+        /// Sets the kind of local map. Default: rigid.
+        stiffness(stiffness: Stiffness);
+        /// Sets α, 1 to 4: the influence of a pair falls off with this power of the squared distance. Default: 1.
+        alpha(alpha: f64);
     }
 
     /// Builds the map.
@@ -184,24 +179,16 @@ const THREE: Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,1
 /// Limit on handles: every point of the artwork visits all of them.
 const MAX_HANDLES: usize = 1000;
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let stiffness = match s.choice("kind")? {
-            "similar" => Stiffness::Similar,
-            "affine" => Stiffness::Affine,
-            _ => Stiffness::Rigid,
-        };
-        let mark = s.frame().extent(Axis::Diagonal) / 100.0;
-        Mls { handles: handles(s)?, stiffness, alpha: s.number("alpha")?, mark }.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let stiffness = match s.choice("kind")? {
+        "similar" => Stiffness::Similar,
+        "affine" => Stiffness::Affine,
+        _ => Stiffness::Rigid,
+    };
+    let mark = s.frame().extent(Axis::Diagonal) / 100.0;
+    Mls { handles: handles(s)?, stiffness, alpha: s.number("alpha")?, mark }.build()
+});
 
 fn handles(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
     let mut out = Vec::new();
@@ -394,12 +381,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-        Entry.build_from(&Args::from_pairs(pairs), &check::frame())
+        ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
     /// Continuous and finite with its derivative on, and next to, every handle.

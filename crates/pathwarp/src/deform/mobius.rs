@@ -11,13 +11,13 @@
 //! rational of degree 2n, exactly. The inverse is (d·w − b)/(a − c·w). Ahlfors, *Complex Analysis* (3rd ed. 1979), §3.3;
 //! Needham, *Visual Complex Analysis* (1997), chapter 3.
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Explanation, Info, Law, Overlay, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Overlay, Role};
 use crate::anchors;
 use crate::error::{Error, GeometryError, show};
 use crate::map::rational_bezier::Scaled;
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
 use crate::outline::Outline;
-use crate::param::{Kind, NamedPath, Param, Settings};
+use crate::param::{Kind, NamedPath, Param};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -169,44 +169,36 @@ const DEFAULT_DISTANCE: f64 = 1.6;
 /// A pole farther away than this many diagonals counts as none: the map is a similitude.
 const FAR: f64 = 1e12;
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let frame = s.frame().rect;
-        let mobius = match (s.numbers_if("coefficients")?, s.path_if("from")?, s.path_if("to")?) {
-            (Some(v), None, None) if !s.given("pole") => {
-                Mobius::by_coefficients(frame, std::array::from_fn(|i| Vec2::new(v[2 * i], v[2 * i + 1])))
-            }
-            (None, Some(from), Some(to)) if !s.given("pole") => {
-                let shown = |role, path: &NamedPath| Overlay { role, path: path.outline.to_bez_path(0.0) };
-                let overlays = vec![shown(Role::Base, &from), shown(Role::Target, &to)];
-                Mobius { overlays, ..Mobius::by_points(frame, three(&from)?, three(&to)?) }
-            }
-            (None, None, None) => {
-                let below = Vec2::new(0.0, DEFAULT_DISTANCE * frame.width().hypot(frame.height()));
-                let pole = if s.given("pole") { s.point("pole")? } else { frame.center() + below };
-                Mobius::by_pole(frame, pole)
-            }
-            (Some(_), ..) => {
-                return Err(Error::usage("coefficients", "", "are the whole map: omit `pole`, `from` and `to`"));
-            }
-            (None, Some(_), Some(_)) => {
-                return Err(Error::usage("pole", "", "follows from `from` and `to`: omit it"));
-            }
-            (None, from, _) => {
-                let (given, missing) = if from.is_some() { ("from", "to") } else { ("to", "from") };
-                return Err(Error::missing(missing, format!("`{given}` goes with it")));
-            }
-        };
-        mobius.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let frame = s.frame().rect;
+    let mobius = match (s.numbers_if("coefficients")?, s.path_if("from")?, s.path_if("to")?) {
+        (Some(v), None, None) if !s.given("pole") => {
+            Mobius::by_coefficients(frame, std::array::from_fn(|i| Vec2::new(v[2 * i], v[2 * i + 1])))
+        }
+        (None, Some(from), Some(to)) if !s.given("pole") => {
+            let shown = |role, path: &NamedPath| Overlay { role, path: path.outline.to_bez_path(0.0) };
+            let overlays = vec![shown(Role::Base, &from), shown(Role::Target, &to)];
+            Mobius { overlays, ..Mobius::by_points(frame, three(&from)?, three(&to)?) }
+        }
+        (None, None, None) => {
+            let below = Vec2::new(0.0, DEFAULT_DISTANCE * frame.width().hypot(frame.height()));
+            let pole = if s.given("pole") { s.point("pole")? } else { frame.center() + below };
+            Mobius::by_pole(frame, pole)
+        }
+        (Some(_), ..) => {
+            return Err(Error::usage("coefficients", "", "are the whole map: omit `pole`, `from` and `to`"));
+        }
+        (None, Some(_), Some(_)) => {
+            return Err(Error::usage("pole", "", "follows from `from` and `to`: omit it"));
+        }
+        (None, from, _) => {
+            let (given, missing) = if from.is_some() { ("from", "to") } else { ("to", "from") };
+            return Err(Error::missing(missing, format!("`{given}` goes with it")));
+        }
+    };
+    mobius.build()
+});
 
 /// The three distinct anchors of a path.
 fn three(path: &NamedPath) -> Result<[Point; 3], Error> {
@@ -323,12 +315,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-        Entry.build_from(&Args::from_pairs(pairs), &check::frame())
+        ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
     /// The circle through three points of the image holds all other points of the image.

@@ -12,10 +12,10 @@
 //! direction, exact up to the ray opposite the middle. A whole turn meets itself there; artwork that crosses it is cut and joined
 //! by a straight line, and the recipe warns of it. Elementary.
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Seam};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Seam};
 use crate::error::{Error, show, within};
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Axis, Kind, Param, Settings, word_space};
+use crate::param::{Axis, Kind, Param, word_space};
 use kurbo::{Point, Rect, Vec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
@@ -51,47 +51,22 @@ impl Polar {
         Self { frame, sweep: 60.0, inner: None, outer: None, turn: 0.0, center: None, conformal: false, gap: 0.0 }
     }
 
-    /// Sets the angle that the artwork's width is bent into, −360 to 360 degrees; negative bends downwards.
-    #[must_use]
-    pub fn sweep(self, sweep: f64) -> Self {
-        Self { sweep, ..self }
-    }
-
-    /// Sets the radius of the inner edge, user units. Without it, the inner edge keeps its length.
-    #[must_use]
-    pub fn inner(self, inner: f64) -> Self {
-        Self { inner: Some(inner), ..self }
-    }
-
-    /// Sets the radius of the outer edge, user units. Without it, heights are kept.
-    #[must_use]
-    pub fn outer(self, outer: f64) -> Self {
-        Self { outer: Some(outer), ..self }
-    }
-
-    /// Sets an angle to turn the result by, degrees, clockwise on the screen.
-    #[must_use]
-    pub fn turn(self, turn: f64) -> Self {
-        Self { turn, ..self }
-    }
-
-    /// Sets the centre of the ring. Without it, the middle of the artwork stays in place.
-    #[must_use]
-    pub fn center(self, center: impl Into<Point>) -> Self {
-        Self { center: Some(center.into()), ..self }
-    }
-
-    /// Keeps angles: heights grow with the radius.
-    #[must_use]
-    pub fn conformal(self, conformal: bool) -> Self {
-        Self { conformal, ..self }
-    }
-
-    /// Sets the space between the ends of a whole turn, user units of the source: the artwork is bent into that much less than
-    /// 360°. Smaller sweeps have no such gap.
-    #[must_use]
-    pub fn gap(self, gap: f64) -> Self {
-        Self { gap, ..self }
+    setters! {
+        /// Sets the angle that the artwork's width is bent into, −360 to 360 degrees; negative bends downwards.
+        sweep(sweep: f64);
+        /// Sets the radius of the inner edge, user units. Without it, the inner edge keeps its length.
+        inner(inner: f64) => inner: Some(inner);
+        /// Sets the radius of the outer edge, user units. Without it, heights are kept.
+        outer(outer: f64) => outer: Some(outer);
+        /// Sets an angle to turn the result by, degrees, clockwise on the screen.
+        turn(turn: f64);
+        /// Sets the centre of the ring. Without it, the middle of the artwork stays in place.
+        center(center: impl Into<Point>) => center: Some(center.into());
+        /// Keeps angles: heights grow with the radius.
+        conformal(conformal: bool);
+        /// Sets the space between the ends of a whole turn, user units of the source: the artwork is bent into that much less than
+        /// 360°. Smaller sweeps have no such gap.
+        gap(gap: f64);
     }
 
     /// Builds the map.
@@ -243,28 +218,20 @@ const RING: Pairs = &[("sweep", "360"), ("inner", "10"), ("outer", "60"), ("cent
 const SMILE: Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("center", "50,15")];
 const SMILE_AT_0: Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let polar = Polar {
-            frame: s.frame().rect,
-            sweep: s.number("sweep")?,
-            inner: s.number_if("inner")?,
-            outer: s.number_if("outer")?,
-            turn: s.number("turn")?,
-            center: if s.given("center") { Some(s.point("center")?) } else { None },
-            conformal: s.choice("spacing")? == "conformal",
-            gap: s.number_if("gap")?.or_else(|| word_space(&s.frame().letters)).unwrap_or(0.0),
-        };
-        polar.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let polar = Polar {
+        frame: s.frame().rect,
+        sweep: s.number("sweep")?,
+        inner: s.number_if("inner")?,
+        outer: s.number_if("outer")?,
+        turn: s.number("turn")?,
+        center: if s.given("center") { Some(s.point("center")?) } else { None },
+        conformal: s.choice("spacing")? == "conformal",
+        gap: s.number_if("gap")?.or_else(|| word_space(&s.frame().letters)).unwrap_or(0.0),
+    };
+    polar.build()
+});
 
 /// A turn is whole if it lacks less than this share.
 const WHOLE: f64 = 1e-9;
@@ -405,12 +372,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-        Entry.build_from(&Args::from_pairs(pairs), &check::frame())
+        ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
     #[test]

@@ -3,10 +3,10 @@
 //! (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs (Heckbert, *Fundamentals of Texture Mapping and
 //! Image Warping*, 1989, §2.2). Straight lines stay straight.
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law};
 use crate::anchors::{self, FourToFour};
 use crate::error::Error;
-use crate::param::{Param, Settings};
+use crate::param::Param;
 use kurbo::Point;
 use std::sync::Arc;
 
@@ -96,15 +96,5 @@ unless --base-as-drawn or --target-as-drawn say otherwise.")
         Case { args: &[("target", "0,100 100,100 75,0 25,0")], at: (100.0, 0.0), to: (75.0, 0.0), tolerance: 1e-12 },
     ]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        Projective { corners: anchors::four_to_four(s)? }.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Projective { corners: anchors::four_to_four(s)? }.build());

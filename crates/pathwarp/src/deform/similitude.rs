@@ -2,11 +2,11 @@
 //!
 //! In complex numbers z ↦ P + (z − A)·(Q − P)/(B − A).
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Role};
 use crate::anchors::{self, Anchors};
 use crate::error::{Error, GeometryError};
 use crate::map::AffineMap;
-use crate::param::{Param, Settings};
+use crate::param::Param;
 use kurbo::Point;
 use std::sync::Arc;
 
@@ -93,24 +93,16 @@ turned, scaled evenly and shifted; nothing is bent, and no node is added.")
         },
     ]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let two = |name: &str| -> Result<[Point; 2], Error> {
-            let path = s.path_if(name)?.ok_or_else(|| Error::missing(name, "a path with two anchors"))?;
-            match anchors::two_or_four(&path)? {
-                Anchors::Two(p) => Ok(p),
-                Anchors::Four(q) => {
-                    Err(GeometryError::anchor_count(&path.name, &q, "two (for four, use projective)").into())
-                }
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let two = |name: &str| -> Result<[Point; 2], Error> {
+        let path = s.path_if(name)?.ok_or_else(|| Error::missing(name, "a path with two anchors"))?;
+        match anchors::two_or_four(&path)? {
+            Anchors::Two(p) => Ok(p),
+            Anchors::Four(q) => {
+                Err(GeometryError::anchor_count(&path.name, &q, "two (for four, use projective)").into())
             }
-        };
-        Similitude { from: two("base")?, to: two("target")? }.build()
-    }
-}
+        }
+    };
+    Similitude { from: two("base")?, to: two("target")? }.build()
+});

@@ -9,10 +9,10 @@
 //! r is kept, so areas are kept (the map is a shear in r²/2 and θ) and the inverse is the same swirl with −α. Elementary; the
 //! twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius for the axis.
 
-use super::entry::{Built, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Axis, Kind, Param, Settings};
+use crate::param::{Axis, Kind, Param};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
@@ -41,16 +41,11 @@ impl Swirl {
         Self { center: center.into(), radius, angle: 45.0, falloff: Falloff::Soft }
     }
 
-    /// Sets α, the angle at the centre, degrees, clockwise on the screen.
-    #[must_use]
-    pub fn angle(self, angle: f64) -> Self {
-        Self { angle, ..self }
-    }
-
-    /// Sets how the angle falls off.
-    #[must_use]
-    pub fn falloff(self, falloff: Falloff) -> Self {
-        Self { falloff, ..self }
+    setters! {
+        /// Sets α, the angle at the centre, degrees, clockwise on the screen.
+        angle(angle: f64);
+        /// Sets how the angle falls off.
+        falloff(falloff: Falloff);
     }
 
     /// Builds the map.
@@ -132,24 +127,16 @@ themselves, no area changes, and outside the radius nothing moves (with --fallof
         },
     ]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let falloff = match s.choice("falloff")? {
-            "sharp" => Falloff::Sharp,
-            "endless" => Falloff::Endless,
-            _ => Falloff::Soft,
-        };
-        let (center, radius, angle) = (s.point("center")?, s.number("radius")?, s.number("angle")?);
-        Swirl { center, radius, angle, falloff }.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let falloff = match s.choice("falloff")? {
+        "sharp" => Falloff::Sharp,
+        "endless" => Falloff::Endless,
+        _ => Falloff::Soft,
+    };
+    let (center, radius, angle) = (s.point("center")?, s.number("radius")?, s.number("angle")?);
+    Swirl { center, radius, angle, falloff }.build()
+});
 
 /// The formula inside the disc, continued outside.
 #[derive(Debug, Clone, Copy)]
@@ -223,7 +210,7 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
@@ -231,7 +218,7 @@ mod tests {
     fn the_centre_turns_by_the_whole_angle() {
         for falloff in ["soft", "sharp", "endless"] {
             let b =
-                Entry.build_from(&Args::from_pairs(&[("falloff", falloff), ("angle", "90")]), &check::frame()).unwrap();
+                ENTRY.build_from(&Args::from_pairs(&[("falloff", falloff), ("angle", "90")]), &check::frame()).unwrap();
             let j = b.map.jet(Point::new(50.0, 50.0));
             assert!((j.dx - kurbo::Vec2::new(0.0, 1.0)).hypot() < 1e-12, "{falloff}: {j:?}");
             assert!((j.dy - kurbo::Vec2::new(-1.0, 0.0)).hypot() < 1e-12, "{falloff}: {j:?}");

@@ -9,10 +9,10 @@
 //! The shear leaves s alone: its determinant is 1, and its inverse is the same wave with −h. Both are elementary; waves of this
 //! kind are in A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, as profiles of offsets along an axis.
 
-use super::entry::{Built, Case, Deformation, Example, Info, Law};
+use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{Class, Formula, Map, Real};
-use crate::param::{Axis, Frame, Kind, Param, Settings};
+use crate::param::{Axis, Frame, Kind, Param};
 use kurbo::{Affine, Rect, Vec2};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -48,40 +48,19 @@ impl Wave {
         Self { frame, height, length, angle: 0.0, phase: 0.0, grow: 0.0, push: false }
     }
 
-    /// Sets h, the distance of a crest from the middle, user units.
-    #[must_use]
-    pub fn height(self, height: f64) -> Self {
-        Self { height, ..self }
-    }
-
-    /// Sets λ, the distance from crest to crest, 1e-3 to 1e9 user units.
-    #[must_use]
-    pub fn length(self, length: f64) -> Self {
-        Self { length, ..self }
-    }
-
-    /// Sets the direction of the wave, degrees: 0 to the right, 90 downwards.
-    #[must_use]
-    pub fn angle(self, angle: f64) -> Self {
-        Self { angle, ..self }
-    }
-
-    /// Sets φ, the phase at which the artwork begins, degrees: 0 in the middle, 90 on a crest.
-    #[must_use]
-    pub fn phase(self, phase: f64) -> Self {
-        Self { phase, ..self }
-    }
-
-    /// Sets g, the share of the height that is missing at the start, 0 to 1.
-    #[must_use]
-    pub fn grow(self, grow: f64) -> Self {
-        Self { grow, ..self }
-    }
-
-    /// Moves points along the wave instead of across it.
-    #[must_use]
-    pub fn push(self, push: bool) -> Self {
-        Self { push, ..self }
+    setters! {
+        /// Sets h, the distance of a crest from the middle, user units.
+        height(height: f64);
+        /// Sets λ, the distance from crest to crest, 1e-3 to 1e9 user units.
+        length(length: f64);
+        /// Sets the direction of the wave, degrees: 0 to the right, 90 downwards.
+        angle(angle: f64);
+        /// Sets φ, the phase at which the artwork begins, degrees: 0 in the middle, 90 on a crest.
+        phase(phase: f64);
+        /// Sets g, the share of the height that is missing at the start, 0 to 1.
+        grow(grow: f64);
+        /// Moves points along the wave instead of across it.
+        push(push: bool);
     }
 
     /// Builds the map.
@@ -169,27 +148,19 @@ stay straight, and no area changes. With --grow the wave starts flat and reaches
         },
     ]);
 
-/// The registry's entry: reads the typed deformation from text.
-pub(super) struct Entry;
-
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let wave = Wave {
-            frame: s.frame().rect,
-            height: s.number("height")?,
-            length: s.number("length")?,
-            angle: s.number("angle")?,
-            phase: s.number("phase")?,
-            grow: s.number("grow")?,
-            push: s.choice("kind")? == "push",
-        };
-        wave.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let wave = Wave {
+        frame: s.frame().rect,
+        height: s.number("height")?,
+        length: s.number("length")?,
+        angle: s.number("angle")?,
+        phase: s.number("phase")?,
+        grow: s.number("grow")?,
+        push: s.choice("kind")? == "push",
+    };
+    wave.build()
+});
 
 /// The map.
 #[derive(Clone)]
@@ -237,14 +208,14 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Entry);
+        let faults = check::entry(&ENTRY);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     #[test]
     fn a_push_that_folds_warns_and_has_no_closed_inverse() {
         let build = |h: &str| {
-            Entry.build_from(&Args::from_pairs(&[("kind", "push"), ("length", "40"), ("height", h)]), &check::frame())
+            ENTRY.build_from(&Args::from_pairs(&[("kind", "push"), ("length", "40"), ("height", h)]), &check::frame())
         };
         let (gentle, steep) = (build("6").unwrap(), build("7").unwrap());
         assert!(

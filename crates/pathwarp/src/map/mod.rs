@@ -174,16 +174,11 @@ impl<'a> Cost<'a> {
         Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
     }
 
-    /// The same cost for a map that should be asked in batches.
-    #[must_use]
-    pub fn batched(self, by: &'a dyn Batches) -> Self {
-        Self { batches: Some(by), ..self }
-    }
-
-    /// The same cost for a map that searches.
-    #[must_use]
-    pub fn searching(self, by: &'a dyn Searches) -> Self {
-        Self { searches: Some(by), ..self }
+    setters! {
+        /// The same cost for a map that should be asked in batches.
+        batched(by: &'a dyn Batches) => batches: Some(by);
+        /// The same cost for a map that searches.
+        searching(by: &'a dyn Searches) => searches: Some(by);
     }
 }
 

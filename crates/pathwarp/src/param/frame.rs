@@ -38,22 +38,13 @@ impl Frame {
         }
     }
 
-    /// Adds letters.
-    #[must_use]
-    pub fn with_letters(self, letters: Arc<[Letter]>) -> Self {
-        Self { letters, ..self }
-    }
-
-    /// Sets the user units per px along x and y.
-    #[must_use]
-    pub fn with_units_per_px(self, units_per_px: [f64; 2]) -> Self {
-        Self { units_per_px, ..self }
-    }
-
-    /// Sets the page.
-    #[must_use]
-    pub fn with_page(self, page: Rect) -> Self {
-        Self { page: Some(page), ..self }
+    setters! {
+        /// Adds letters.
+        with_letters(letters: Arc<[Letter]>) => letters: letters;
+        /// Sets the user units per px along x and y.
+        with_units_per_px(units_per_px: [f64; 2]) => units_per_px: units_per_px;
+        /// Sets the page.
+        with_page(page: Rect) => page: Some(page);
     }
 
     /// The length of a px along `axis`, in user units. Along the diagonal: as SVG defines it, the root mean square.

@@ -72,52 +72,23 @@ impl Options {
         if self.suited { suited(self.tolerance, contour.diagonal()) } else { self.tolerance }
     }
 
-    /// Sets [`Options::tolerance`].
-    #[must_use]
-    pub fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
-    }
-
-    /// Sets [`Options::certify`].
-    #[must_use]
-    pub fn with_certify(self, certify: bool) -> Self {
-        Self { certify, ..self }
-    }
-
-    /// Sets [`Options::merge`].
-    #[must_use]
-    pub fn with_merge(self, merge: bool) -> Self {
-        Self { merge, ..self }
-    }
-
-    /// Sets [`Options::corner`].
-    #[must_use]
-    pub fn with_corner(self, corner: f64) -> Self {
-        Self { corner: corner.clamp(0.0, MAX_CORNER), ..self }
-    }
-
-    /// Sets [`Options::shared`].
-    #[must_use]
-    pub fn with_shared(self, shared: Arc<SharedEdges>) -> Self {
-        Self { shared, ..self }
-    }
-
-    /// Sets [`Options::suited`].
-    #[must_use]
-    pub fn with_suited(self, suited: bool) -> Self {
-        Self { suited, ..self }
-    }
-
-    /// Sets [`Options::spans`].
-    #[must_use]
-    pub fn with_spans(self, spans: impl Into<Arc<[Span]>>) -> Self {
-        Self { spans: spans.into(), ..self }
-    }
-
-    /// Sets [`Options::budget`].
-    #[must_use]
-    pub fn with_budget(self, budget: Arc<Budget>) -> Self {
-        Self { budget, ..self }
+    setters! {
+        /// Sets [`Options::tolerance`].
+        with_tolerance(tolerance: f64) => tolerance: tolerance;
+        /// Sets [`Options::certify`].
+        with_certify(certify: bool) => certify: certify;
+        /// Sets [`Options::merge`].
+        with_merge(merge: bool) => merge: merge;
+        /// Sets [`Options::corner`].
+        with_corner(corner: f64) => corner: corner.clamp(0.0, MAX_CORNER);
+        /// Sets [`Options::shared`].
+        with_shared(shared: Arc<SharedEdges>) => shared: shared;
+        /// Sets [`Options::suited`].
+        with_suited(suited: bool) => suited: suited;
+        /// Sets [`Options::spans`].
+        with_spans(spans: impl Into<Arc<[Span]>>) => spans: spans.into();
+        /// Sets [`Options::budget`].
+        with_budget(budget: Arc<Budget>) => budget: budget;
     }
 }
 

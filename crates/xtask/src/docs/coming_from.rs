@@ -2,7 +2,7 @@
 
 use crate::chore::{ChoreError, at};
 use crate::shell;
-use pathwarp_cli::coming_from::{ForeignWord, all};
+use pathwarp_engine::coming_from::{ForeignWord, all};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;

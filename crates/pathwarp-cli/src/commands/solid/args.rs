@@ -1,11 +1,11 @@
 //! Arguments that the subcommands of `solid` share.
 
-use crate::failure::Failure;
-use crate::options::{INPUT, some_options};
-use crate::units::MM_PER_PX;
+use crate::arguments::{INPUT, some_options};
 use clap::{Arg, ArgMatches, value_parser};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length, LengthUnit};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::units::MM_PER_PX;
 use pathwarp_solid::Box3;
 use pathwarp_solid::glam::DVec3;
 use std::path::PathBuf;

@@ -3,17 +3,17 @@
 use super::args::Own;
 use super::model::{ModelFormat, NAMES, mesh_file, pending, unread};
 use super::report::Run;
-use crate::advice::{self, Flags};
-use crate::bitmap::{self, Pixel, encode};
-use crate::failure::Failure;
-use crate::input::PREVIEW;
-use crate::options::CommonOptions;
-use crate::output::PendingFile;
 use crate::pipeline::Job;
 use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::param::Axis;
 use pathwarp::recipe::Recipe;
 use pathwarp::{Error, GeometryError};
+use pathwarp_engine::advice::{self, Flags};
+use pathwarp_engine::bitmap::{self, Pixel, encode};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::input::PREVIEW;
+use pathwarp_engine::options::CommonOptions;
+use pathwarp_engine::output::PendingFile;
 use pathwarp_raster::Pixmap;
 use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
@@ -353,7 +353,7 @@ impl<'a> Preview<'a> {
     fn file(&self, file: &Path, quality: Option<u8>, budget: &Budget) -> Result<PendingFile, Failure> {
         let format = PREVIEW.format(Some(file), None)?;
         let whole = 2 * SIDE + GAP;
-        let size = u32::try_from(whole).unwrap_or(u32::MAX);
+        let size = whole as u32;
         let too_large = || Failure::Output(format!("{}: too large to draw", file.display()));
         let mut picture = Pixmap::new(size, size).ok_or_else(too_large)?;
         picture.data_mut().fill(u8::MAX);

@@ -6,19 +6,22 @@ mod model;
 mod report;
 mod warp;
 
-use crate::catalogue::Catalogue;
+use crate::arguments;
+use crate::arguments::reading_args;
 use crate::commands::args::{file_arg, given_file, switch};
 use crate::commands::map::{points_args, print_images, read_points};
-use crate::failure::{Failure, Status};
-use crate::options::{Given, reading_args};
-use crate::steps::{self, INVERSE};
-use crate::{output, recipe_file, references};
+use crate::ending::{Ending, Status};
+use crate::steps;
 use args::{Own, frame_arg, given_frame, model_args, options};
 use clap::{ArgMatches, Command};
 use pathwarp::GeometryError;
 use pathwarp::budget::Budget;
 use pathwarp::deform::Info;
 use pathwarp::recipe::Recipe;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::Given;
+use pathwarp_engine::steps::INVERSE;
+use pathwarp_engine::{output, recipe_file, references};
 use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::map::{Creases3, Jet3, Map3};
@@ -26,20 +29,6 @@ use pathwarp_solid::{Box3, Frame3, recipe};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::sync::Arc;
-
-impl Catalogue for Registry3 {
-    fn infos(&self) -> Vec<&Info> {
-        self.entries().iter().map(|e| &e.about().info).collect()
-    }
-
-    fn info(&self, name: &str) -> Option<&Info> {
-        self.get(name).map(|e| &e.about().info)
-    }
-
-    fn is_solid(&self) -> bool {
-        true
-    }
-}
 
 const ABOUT: &str = "Deform solids: meshes, curved surfaces and points in space";
 
@@ -65,9 +54,9 @@ pub(super) fn solid_command() -> Command {
 }
 
 /// Runs a subcommand; `later` holds the parts of a chain after each `+`.
-pub(super) fn solid(m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
+pub(super) fn solid(m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Ending> {
     let registry = Registry3::builtin();
-    let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
+    let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required").into()) };
     match name {
         "map" => map(&registry, m, later),
         _ if registry.get(name).is_some() => {
@@ -77,14 +66,14 @@ pub(super) fn solid(m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Fai
                 recipe.steps.push(part.step);
                 given = given.joined(&part.options)?;
             }
-            let given = given.joined(&Given::inputs_and_options(m))?;
-            warp::run(&registry, &recipe, &given, &Own::read(m)?, None)
+            let given = given.joined(&arguments::given(m))?;
+            Ok(warp::run(&registry, &recipe, &given, &Own::read(m)?, None)?)
         }
         _ if !later.is_empty() => {
-            Err(Failure::usage(format!("{name} is not a deformation of space; `+` chains deformations")))
+            Err(Failure::usage(format!("{name} is not a deformation of space; `+` chains deformations")).into())
         }
-        "run" => run_recipe(&registry, m),
-        _ => list(&registry),
+        "run" => Ok(run_recipe(&registry, m)?),
+        _ => Ok(list(&registry)?),
     }
 }
 
@@ -123,9 +112,9 @@ fn map_command(registry: &Registry3) -> Command {
 }
 
 /// Runs `map`; `later` holds the parts of the chain after each `+`.
-fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
-    let reading = Given::reading(m)?;
-    let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
+fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Ending> {
+    let reading = arguments::reading(m)?;
+    let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required").into()) };
     let mut steps = Recipe { steps: vec![steps::step(registry, name, m)] };
     steps.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
     references::resolve_files(registry, &mut steps, &reading)?;
@@ -141,13 +130,13 @@ fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<St
     let mut jets = vec![Jet3::default(); points.len()];
     map.jets(&points, &mut jets);
     if let Some(e) = built.exceeded() {
-        return Err(Failure::of_recipe(GeometryError::Limit(e).into()));
+        return Err(Failure::of_recipe(GeometryError::Limit(e).into()).into());
     }
     let image = |(p, j): (&DVec3, &Jet3)| {
         let defined = creases.defined_at(*p) && j.p.is_finite();
         (defined.then_some(j.p.to_array()), j.d.to_cols_array())
     };
-    print_images(m, points.iter().zip(&jets).map(image))
+    Ok(print_images(m, points.iter().zip(&jets).map(image))?)
 }
 
 fn run_command() -> Command {
@@ -160,8 +149,8 @@ fn run_command() -> Command {
 
 fn run_recipe(registry: &Registry3, m: &ArgMatches) -> Result<Status, Failure> {
     let file = given_file(m, "RECIPE")?;
-    let saved = recipe_file::read(registry, file, Given::reading(m)?.external)?;
-    let given = saved.options.overridden_by(&Given::inputs_and_options(m));
+    let saved = recipe_file::read(registry, file, arguments::reading(m)?.external)?;
+    let given = saved.options.overridden_by(&arguments::given(m));
     let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
     warp::run(registry, &recipe, &given, &Own::read(m)?, Some(file))
 }

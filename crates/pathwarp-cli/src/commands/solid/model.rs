@@ -1,13 +1,13 @@
 //! Models: read from a file and written to one; their formats; drawings as models, true to size in millimetres.
 
-use crate::failure::Failure;
-use crate::options::Reading;
-use crate::output::PendingFile;
-use crate::units::MM_PER_PX;
-use crate::{advice, input};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Point};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::Reading;
+use pathwarp_engine::output::PendingFile;
+use pathwarp_engine::units::MM_PER_PX;
+use pathwarp_engine::{advice, input};
 use pathwarp_solid::artwork::{self, NamedShape};
 use pathwarp_solid::mesh::{
     FlatShape, Mark, Mesh, MeshError, MeshFault, NONE, PolygonKind, extrude, gltf, obj, ply, stl,

@@ -1,8 +1,8 @@
 //! The report on a solid, `--report FILE`. The field names are the JSON's.
 
-use crate::failure::Failure;
-use crate::readable;
 use pathwarp::recipe::Recipe;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::readable;
 use pathwarp_solid::Box3;
 use pathwarp_solid::mesh::{Deformed, Mesh, Topology, topology};
 use pathwarp_solid::patch::{DeformedPatches, Surface};

@@ -3,19 +3,20 @@
 mod on_path;
 mod style;
 
+use crate::arguments;
+use crate::arguments::{reading_args, some_options};
 use crate::commands::args::{choice, out_arg, switch, target};
-use crate::failure::{Failure, Status};
-use crate::format::{Choice, DRAWINGS};
-use crate::options::Reading;
-use crate::options::{Given, reading_args, some_options};
-use crate::readable::listed;
-use crate::{advice, export, input, mistakes, output, terminal};
+use crate::ending::Status;
+use crate::{mistakes, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use pathwarp::budget::{Exceeded, Limit, Limits, cost};
 use pathwarp::deform::Registry;
-use pathwarp::param::LengthUnit;
-use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering, write_set_lines};
-use pathwarp_text::{Font, OutlinedText, TextLimits, TextStyle, layout_within};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::format::{Choice, DRAWINGS};
+use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out, read_font};
+use pathwarp_engine::readable::listed;
+use pathwarp_engine::{export, input, output};
+use pathwarp_svg::{FontFile, LetteringOptions, write_lettering, write_set_lines};
+use pathwarp_text::Font;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -33,7 +34,7 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
     let target = target(m, read.chain(names.iter().map(Path::new)))?;
-    let options = Given::options(m).read()?;
+    let options = arguments::given(m).read()?;
     let format = Choice { what: "lettering is", among: DRAWINGS }.format(target, options.format)?;
     let texts = both_texts(m)?;
     let em = Em::given(m)?;
@@ -41,7 +42,7 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let weight = m.get_one::<String>("weight").map(|w| style::weight_of(w)).transpose()?;
     let (italic, synthesize) = (m.get_flag("italic"), m.get_flag("synthesize"));
     let read = options.reading.read_options();
-    let find = |name: &&str| style::find_font(name, weight.unwrap_or(style::REGULAR), italic, &read);
+    let find = |name: &&str| find_font(name, weight.unwrap_or(REGULAR), italic, &read);
     let files: Vec<FontFile> = names.iter().map(find).collect::<Result<_, _>>()?;
     let mut chosen: Vec<Font<'_>> = Vec::with_capacity(files.len() + 1);
     for (name, file) in names.iter().zip(&files) {
@@ -83,52 +84,6 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let result = export::drawing(svg, format, &read, &options, None)?;
     output::write(target, &result.bytes)?;
     Ok(Status::partial_if(!lacking.is_empty()))
-}
-
-/// Sets words in a family, or in the bundled font, as a drawing in mm, and lists the characters that neither has.
-pub(crate) fn set_plainly(
-    words: &str,
-    family: Option<&str>,
-    style: &TextStyle,
-    reading: &Reading,
-) -> Result<(String, Vec<char>), Failure> {
-    let read = reading.read_options();
-    let file = family.map(|name| style::find_font(name, style::REGULAR, false, &read)).transpose()?;
-    let own = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
-    let fonts: Vec<Font<'_>> = own.into_iter().chain([bundled()?]).collect();
-    let text = laid_out(words, &fonts, style, &reading.limits.for_input(words.len()))?;
-    let options = LetteringOptions { fill: None, margin: 0.0, unit: Some(LengthUnit::Mm) };
-    Ok((write_lettering(&text, &options)?, text.missing))
-}
-
-fn read_font<'a>(name: &str, file: &'a FontFile) -> Result<Font<'a>, Failure> {
-    Font::new(&file.bytes, file.index).map_err(|e| Failure::Input(format!("{name}: {e}")))
-}
-
-fn bundled() -> Result<Font<'static>, Failure> {
-    Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))
-}
-
-fn laid_out(words: &str, fonts: &[Font<'_>], style: &TextStyle, limits: &Limits) -> Result<OutlinedText, Failure> {
-    let max = |cost: f64| (limits.of(Limit::Work) / cost) as usize;
-    let max = TextLimits { letters: max(cost::LETTER), segments: max(cost::SEGMENT) };
-    layout_within(words, fonts, style, &max).map_err(|e| failure(&e, limits))
-}
-
-/// Maps an error of the layout: a bad option is wrong usage, anything else a problem of the font or the text.
-fn failure(e: &pathwarp_text::Error, limits: &Limits) -> Failure {
-    use pathwarp_text::Error as E;
-    match e {
-        E::Style { .. } | E::Empty => Failure::usage(e.to_string()),
-        E::Setting { .. } => Failure::usage(format!("--script or --language: {e}")),
-        &E::TooLarge { needed, most, .. } => {
-            let work = limits.of(Limit::Work);
-            let needed = work * needed as f64 / most as f64;
-            let exceeded = Exceeded { limit: Limit::Work, most: work, needed, cut: true };
-            Failure::Input(format!("{e}; {}", advice::raise(&exceeded)))
-        }
-        _ => Failure::Input(e.to_string()),
-    }
 }
 
 /// The warning about characters that no font has.

@@ -5,12 +5,7 @@
 //! ring. `--inside` swaps what touches the path, so that the ring is within it.
 
 use super::style::Em;
-use crate::advice::Flags;
-use crate::failure::Failure;
-use crate::input::{self, PlainArtwork};
-use crate::options::{CommonOptions, Given};
-use crate::pipeline::Session;
-use crate::{references, steps};
+use crate::steps;
 use clap::{Arg, ArgAction, ArgMatches};
 use pathwarp::budget::Budget;
 use pathwarp::deform::Registry;
@@ -20,6 +15,12 @@ use pathwarp::outline::EllipticArc;
 use pathwarp::param::{Args, Frame, Kind, Letter, NamedPath, Param, Settings};
 use pathwarp::recipe::{Recipe, Step};
 use pathwarp::{GeometryError, Outline, Seg, Subpath, refit};
+use pathwarp_engine::advice::Flags;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::input::{self, PlainArtwork};
+use pathwarp_engine::options::{CommonOptions, Given};
+use pathwarp_engine::references;
+use pathwarp_engine::session::Session;
 use pathwarp_svg::SetLine;
 use pathwarp_text::OutlinedText;
 use std::f64::consts::{PI, TAU};

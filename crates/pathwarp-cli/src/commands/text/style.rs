@@ -1,13 +1,11 @@
 //! The style: size, spacing, and the fonts, found by file or family, at their weight and variations.
 
-use crate::failure::Failure;
-use crate::input;
 use clap::ArgMatches;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit, Settings};
-use pathwarp_svg::{FontFile, ReadOptions, family_styles};
+use pathwarp_engine::failure::Failure;
+use pathwarp_svg::{ReadOptions, family_styles};
 use pathwarp_text::{Align, Direction, Font, Ligatures, TextStyle, Variation, features, variations};
-use std::path::Path;
 
 /// The size of the em, and the unit that it and the whole page have.
 pub(super) struct Em {
@@ -99,9 +97,6 @@ const WEIGHTS: [(&str, u16); 9] = [
     ("extrabold", 800),
     ("black", 900),
 ];
-/// The weight of a family's regular font.
-pub(super) const REGULAR: u16 = 400;
-
 /// The style asked for.
 pub(super) struct Wanted {
     pub(super) weight: Option<u16>,
@@ -226,25 +221,4 @@ pub(super) fn check_style(font: &Font<'_>, name: &str, wanted: &Wanted, read: &R
         (false, _) => ", or make it with --synthesize",
     };
     Err(Failure::usage(format!("{problem}, only {shown}; name a font that has it with --font{advice}")))
-}
-
-/// Finds a font by its file or by its family.
-pub(super) fn find_font(name: &str, weight: u16, italic: bool, options: &ReadOptions) -> Result<FontFile, Failure> {
-    let read = |path: &Path, index| input::bytes(path).map(|bytes| FontFile { bytes, index });
-    let path = Path::new(name);
-    if path.is_file() {
-        return read(path, 0);
-    }
-    if let Some((file, index)) = name.rsplit_once('#')
-        && let Ok(index) = index.parse()
-    {
-        return read(Path::new(file), index);
-    }
-    let kinds = ["ttf", "otf", "ttc", "otc", "woff", "woff2", "pfb"];
-    let looks_like_file = name.contains(['/', '\\'])
-        || path.extension().and_then(|e| e.to_str()).is_some_and(|e| kinds.iter().any(|k| e.eq_ignore_ascii_case(k)));
-    if looks_like_file {
-        return read(path, 0);
-    }
-    Ok(pathwarp_svg::find_font(name, weight, italic, options)?)
 }

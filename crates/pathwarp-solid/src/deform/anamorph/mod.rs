@@ -21,6 +21,7 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 use pathwarp::Error;
 use pathwarp::deform::{Example, Info, Pairs};
 use pathwarp::param::{Kind, Param};
+use pathwarp::setters;
 use std::sync::Arc;
 
 pub use reference::Reference3;
@@ -94,10 +95,9 @@ impl Anamorph3 {
         self
     }
 
-    /// Moves only what is inside the reference.
-    #[must_use]
-    pub fn local(self, local: bool) -> Self {
-        Self { local, ..self }
+    setters! {
+        /// Moves only what is inside the reference.
+        local(local: bool);
     }
 
     /// Builds the map.

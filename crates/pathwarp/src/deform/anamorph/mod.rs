@@ -25,7 +25,7 @@ mod surface;
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, InSpace, Info, Law, Pairs, Role, SpaceFile};
+use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pairs, Role, SpaceFile};
 use crate::error::{Error, within};
 use crate::map::{AffineMap, Chain, Local, Map};
 use crate::param::{Axis, Kind, Param, Settings};
@@ -101,40 +101,19 @@ impl Anamorph {
         }
     }
 
-    /// Sets the eye, or its foot in the drawing.
-    #[must_use]
-    pub fn eye(self, eye: impl Into<Point>) -> Self {
-        Self { eye: eye.into(), eye_given: true, ..self }
-    }
-
-    /// Sets the distance of the eye in front of the drawing, 1e-6 to 1e9 user units.
-    #[must_use]
-    pub fn distance(self, distance: f64) -> Self {
-        Self { distance: Some(distance), ..self }
-    }
-
-    /// Sets the height of the eye above the artwork's bottom edge, instead of its foot.
-    #[must_use]
-    pub fn eye_height(self, height: f64) -> Self {
-        Self { eye_height: Some(height), ..self }
-    }
-
-    /// Sets the apparent width of the artwork. Default: as drawn.
-    #[must_use]
-    pub fn picture_width(self, width: f64) -> Self {
-        Self { picture_width: Some(width), ..self }
-    }
-
-    /// Sets the length of the result on a floor or ramp. Needs the [`eye_height`](Self::eye_height).
-    #[must_use]
-    pub fn length(self, length: f64) -> Self {
-        Self { length: Some(length), ..self }
-    }
-
-    /// Sets the surface that the artwork is projected onto. Needs the [`distance`](Self::distance).
-    #[must_use]
-    pub fn onto(self, surface: Onto) -> Self {
-        Self { onto: Some(surface), ..self }
+    setters! {
+        /// Sets the eye, or its foot in the drawing.
+        eye(eye: impl Into<Point>) => eye: eye.into(), eye_given: true;
+        /// Sets the distance of the eye in front of the drawing, 1e-6 to 1e9 user units.
+        distance(distance: f64) => distance: Some(distance);
+        /// Sets the height of the eye above the artwork's bottom edge, instead of its foot.
+        eye_height(height: f64) => eye_height: Some(height);
+        /// Sets the apparent width of the artwork. Default: as drawn.
+        picture_width(width: f64) => picture_width: Some(width);
+        /// Sets the length of the result on a floor or ramp. Needs the [`eye_height`](Self::eye_height).
+        length(length: f64) => length: Some(length);
+        /// Sets the surface that the artwork is projected onto. Needs the [`distance`](Self::distance).
+        onto(surface: Onto) => onto: Some(surface);
     }
 
     /// Gives the eye's view of the surface, which is the artwork itself.
@@ -143,10 +122,9 @@ impl Anamorph {
         Self { look: Look::Eye, ..self }
     }
 
-    /// Gives the view of a camera at (x, y), z in front of the drawing, that looks at its middle.
-    #[must_use]
-    pub fn view(self, x: f64, y: f64, z: f64) -> Self {
-        Self { look: Look::From([x, y, z]), ..self }
+    setters! {
+        /// Gives the view of a camera at (x, y), z in front of the drawing, that looks at its middle.
+        view(x: f64, y: f64, z: f64) => look: Look::From([x, y, z]);
     }
 
     fn with_net(mut self, change: impl FnOnce(&mut PushedNet)) -> Self {
@@ -194,10 +172,9 @@ impl Anamorph {
         self.with_net(|net| net.pushes.push(Push::Prescribe(point, factor)))
     }
 
-    /// Moves only artwork inside the reference. The eye must lie in the drawing.
-    #[must_use]
-    pub fn local(self, local: bool) -> Self {
-        Self { local, ..self }
+    setters! {
+        /// Moves only artwork inside the reference. The eye must lie in the drawing.
+        local(local: bool);
     }
 
     /// Builds the map, and for an eye in front of the drawing its surface ([`Built::space`]).
@@ -338,8 +315,6 @@ impl Anamorph {
         Ok(Scene { frame: scale.transform_rect_bbox(drawn), scale, eye })
     }
 }
-
-pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("anamorph", "draw artwork that looks right from one place: road markings, mugs, domes")
     .group("Perspective and anamorphosis")
@@ -501,37 +476,32 @@ const PUSHED: Pairs = &[("eye", "0,0"), ("reference", "0,0 100,0 0,100"), ("push
 const LOCAL: Pairs =
     &[("eye", "50,200"), ("reference", "0,100 100,100 50,0"), ("point", "50,40:1.25"), ("local", "true")];
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let files = |param: &'static str, filled: bool| {
-            s.texts(param).into_iter().map(move |name| SpaceFile { param, name: name.to_owned(), filled })
-        };
-        let anamorph = Anamorph {
-            frame: s.frame().rect,
-            eye: s.point("eye")?,
-            eye_given: s.given("eye"),
-            distance: s.number_if("distance")?,
-            eye_height: s.number_if("eye-height")?,
-            picture_width: s.number_if("picture-width")?,
-            length: s.number_if("length")?,
-            onto: s.texts("onto").pop().map(|text| onto(s, text)).transpose()?,
-            look: look(s)?,
-            net: net(s)?,
-            local: s.flag("local")?,
-            files: files("mesh", true).chain(files("curves", false)).collect(),
-            units_per_px: s.frame().units_per_px,
-        };
-        // The surface as typed, rather than in user units.
-        anamorph.build().map_err(|e| match (e, s.texts("onto").pop()) {
-            (Error::Usage { param, problem, .. }, Some(text)) if param == "onto" => Error::usage("onto", text, problem),
-            (e, _) => e,
-        })
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let files = |param: &'static str, filled: bool| {
+        s.texts(param).into_iter().map(move |name| SpaceFile { param, name: name.to_owned(), filled })
+    };
+    let anamorph = Anamorph {
+        frame: s.frame().rect,
+        eye: s.point("eye")?,
+        eye_given: s.given("eye"),
+        distance: s.number_if("distance")?,
+        eye_height: s.number_if("eye-height")?,
+        picture_width: s.number_if("picture-width")?,
+        length: s.number_if("length")?,
+        onto: s.texts("onto").pop().map(|text| onto(s, text)).transpose()?,
+        look: look(s)?,
+        net: net(s)?,
+        local: s.flag("local")?,
+        files: files("mesh", true).chain(files("curves", false)).collect(),
+        units_per_px: s.frame().units_per_px,
+    };
+    // The surface as typed, rather than in user units.
+    anamorph.build().map_err(|e| match (e, s.texts("onto").pop()) {
+        (Error::Usage { param, problem, .. }, Some(text)) if param == "onto" => Error::usage("onto", text, problem),
+        (e, _) => e,
+    })
+});
 
 fn look(s: &Settings<'_>) -> Result<Look, Error> {
     let Some(text) = s.texts("view").pop() else {

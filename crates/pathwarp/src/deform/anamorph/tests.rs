@@ -4,6 +4,7 @@ use super::dilation::{Dilation, Reference};
 use super::surface::{Round, Space, SpacePlane, Sphere};
 use super::*;
 use crate::check;
+use crate::deform::Deformation;
 use crate::map::{Class, Dual, Homography, RationalBezier};
 use crate::outline::Seg;
 use crate::param::{Args, Frame, Settings};
@@ -31,13 +32,13 @@ impl Deformation for With {
         &self.0
     }
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        Entry.build(s)
+        ENTRY.build(s)
     }
 }
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Entry);
+    let faults = check::entry(&ENTRY);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -79,7 +80,7 @@ fn is_sound_on_every_surface() {
 }
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Entry.build_from(&Args::from_pairs(pairs), &check::frame())
+    ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
 }
 
 const FOOT: Point = Point::new(40.0, 30.0);
@@ -278,7 +279,7 @@ const METRE: f64 = 96.0 / 0.0254;
 #[test]
 fn a_road_marking_ten_metres_long() {
     let frame = Frame::new(Rect::new(100.0, 40.0, 400.0, 240.0));
-    let args = |pairs: &[(&str, &str)]| Entry.build_from(&Args::from_pairs(pairs), &frame).unwrap().map;
+    let args = |pairs: &[(&str, &str)]| ENTRY.build_from(&Args::from_pairs(pairs), &frame).unwrap().map;
     let road = [("eye-height", "1.6m"), ("distance", "20m"), ("onto", "plane:floor")];
     let m = args(&[&road[..], &[("length", "10m")]].concat());
     let (near, far) = (m.point((250.0, 240.0).into()), m.point((250.0, 40.0).into()));

@@ -22,7 +22,7 @@ mod skeleton;
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
 use crate::error::{Error, show, within};
 use crate::outline::Outline;
 use crate::param::{Axis, Kind, Letter, NamedPath, NamedText, Param, Settings, is_spiral};
@@ -123,84 +123,35 @@ impl Bend {
         }
     }
 
-    /// Takes the skeleton's anchors as control points of a uniform B-spline of this degree, 1 to 3.
-    #[must_use]
-    pub fn spline(self, degree: usize) -> Self {
-        Self { spline: Some(degree), ..self }
-    }
-
-    /// Takes the skeleton in the direction it was drawn, a closed one from its start.
-    #[must_use]
-    pub fn as_drawn(self, as_drawn: bool) -> Self {
-        Self { as_drawn, ..self }
-    }
-
-    /// Runs the skeleton the other way.
-    #[must_use]
-    pub fn reverse(self, reverse: bool) -> Self {
-        Self { reverse, ..self }
-    }
-
-    /// Sets the lengths of the artwork.
-    #[must_use]
-    pub fn stretch(self, stretch: Stretch) -> Self {
-        Self { stretch, ..self }
-    }
-
-    /// Sets the part of the artwork that comes to the same part of the skeleton.
-    #[must_use]
-    pub fn align(self, align: Align) -> Self {
-        Self { align, ..self }
-    }
-
-    /// Sets a shift along the skeleton, user units.
-    #[must_use]
-    pub fn offset(self, offset: f64) -> Self {
-        Self { offset, ..self }
-    }
-
-    /// Sets the least space between copies, user units.
-    #[must_use]
-    pub fn gap(self, gap: f64) -> Self {
-        Self { gap, ..self }
-    }
-
-    /// Sets the y of the line that lies on the skeleton. Default: the middle of the box.
-    #[must_use]
-    pub fn baseline(self, y: f64) -> Self {
-        Self { baseline: y, ..self }
-    }
-
-    /// Sets a factor for heights, 1e-6 to 1e6.
-    #[must_use]
-    pub fn width(self, width: f64) -> Self {
-        Self { width, ..self }
-    }
-
-    /// Runs by the parameter of each piece, with the normals of the control polygon's legs for handles: a polynomial map.
-    #[must_use]
-    pub fn by_parameter(self, by_parameter: bool) -> Self {
-        Self { by_parameter, ..self }
-    }
-
-    /// Sets the paper's handles: for every piece of degree n the n handles of the first level, then n−1 of the second, and so
-    /// on; deeper levels may be omitted. A handle is the image of the artwork's height. The skeleton is taken as drawn.
-    #[must_use]
-    pub fn handles(self, pieces: Vec<Vec<Vec<Vec2>>>) -> Self {
-        Self { handles: Some(pieces), ..self }
-    }
-
-    /// Measures lengths at half the artwork's height instead of on the skeleton.
-    #[must_use]
-    pub fn even(self, even: bool) -> Self {
-        Self { even, ..self }
-    }
-
-    /// Sets letters one by one instead of bending them; their places are in
-    /// [`Placement::letters`](crate::deform::Placement::letters).
-    #[must_use]
-    pub fn letters(self, letters: Arc<[Letter]>, setting: LetterSetting) -> Self {
-        Self { letters, setting: Some(setting), ..self }
+    setters! {
+        /// Takes the skeleton's anchors as control points of a uniform B-spline of this degree, 1 to 3.
+        spline(degree: usize) => spline: Some(degree);
+        /// Takes the skeleton in the direction it was drawn, a closed one from its start.
+        as_drawn(as_drawn: bool);
+        /// Runs the skeleton the other way.
+        reverse(reverse: bool);
+        /// Sets the lengths of the artwork.
+        stretch(stretch: Stretch);
+        /// Sets the part of the artwork that comes to the same part of the skeleton.
+        align(align: Align);
+        /// Sets a shift along the skeleton, user units.
+        offset(offset: f64);
+        /// Sets the least space between copies, user units.
+        gap(gap: f64);
+        /// Sets the y of the line that lies on the skeleton. Default: the middle of the box.
+        baseline(y: f64) => baseline: y;
+        /// Sets a factor for heights, 1e-6 to 1e6.
+        width(width: f64);
+        /// Runs by the parameter of each piece, with the normals of the control polygon's legs for handles: a polynomial map.
+        by_parameter(by_parameter: bool);
+        /// Sets the paper's handles: for every piece of degree n the n handles of the first level, then n−1 of the second, and so
+        /// on; deeper levels may be omitted. A handle is the image of the artwork's height. The skeleton is taken as drawn.
+        handles(pieces: Vec<Vec<Vec<Vec2>>>) => handles: Some(pieces);
+        /// Measures lengths at half the artwork's height instead of on the skeleton.
+        even(even: bool);
+        /// Sets letters one by one instead of bending them; their places are in
+        /// [`Placement::letters`](crate::deform::Placement::letters).
+        letters(letters: Arc<[Letter]>, setting: LetterSetting) => letters: letters, setting: Some(setting);
     }
 
     /// Builds the map. Corners, folds and artwork longer than the skeleton give warnings.
@@ -367,8 +318,6 @@ fn explain(built: &mut Built, map: &BendMap, corners: &[Corner], rect: Rect) {
     }
 }
 
-pub(in crate::deform) struct Entry;
-
 static INFO: Info = Info::new("bend", "bend artwork along a path")
     .baseline("baseline")
     .group("Bends")
@@ -513,50 +462,45 @@ const PARAMETER: Pairs = &[("along", "M0,0 Q30,-40 60,0"), ("by", "parameter"), 
 const EIGHTH: f64 = 50.0 + 50.0 * std::f64::consts::FRAC_PI_4;
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let missing = || Error::missing("along", "the path to bend the artwork along");
-        let frame = s.frame();
-        let (handles, handles_name) = s.file_if("handles")?.map(handles).transpose()?.unzip();
-        let bend = Bend {
-            frame: frame.rect,
-            along: s.path_if("along")?.ok_or_else(missing)?,
-            spline: s.number_if("spline")?.map(|d| d as usize),
-            as_drawn: s.flag("as-drawn")? || s.texts("along").last().is_some_and(|t| is_spiral(t)),
-            reverse: s.flag("reverse")?,
-            stretch: match s.choice("stretch")? {
-                "scale" => Stretch::Scale,
-                "fit" => Stretch::Fit,
-                "repeat" => Stretch::Repeat,
-                _ => Stretch::Keep,
-            },
-            align: match s.choice("align")? {
-                "start" => Align::Start,
-                "end" => Align::End,
-                _ => Align::Middle,
-            },
-            offset: s.number("offset")?,
-            gap: s.number("gap")?,
-            baseline: match frame.baseline {
-                Some(y) if !s.given("baseline") => y,
-                _ => frame.rect.y1 - s.number("baseline")?,
-            },
-            width: s.number("width")?,
-            by_parameter: s.choice("by")? == "parameter",
-            handles,
-            handles_name: handles_name.unwrap_or_else(|| "handles".into()),
-            even: s.choice("spacing")? == "even",
-            setting: setting(s)?,
-            letters: Arc::clone(&frame.letters),
-            around_letters: frame.baseline.is_some(),
-        };
-        bend.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let missing = || Error::missing("along", "the path to bend the artwork along");
+    let frame = s.frame();
+    let (handles, handles_name) = s.file_if("handles")?.map(handles).transpose()?.unzip();
+    let bend = Bend {
+        frame: frame.rect,
+        along: s.path_if("along")?.ok_or_else(missing)?,
+        spline: s.number_if("spline")?.map(|d| d as usize),
+        as_drawn: s.flag("as-drawn")? || s.texts("along").last().is_some_and(|t| is_spiral(t)),
+        reverse: s.flag("reverse")?,
+        stretch: match s.choice("stretch")? {
+            "scale" => Stretch::Scale,
+            "fit" => Stretch::Fit,
+            "repeat" => Stretch::Repeat,
+            _ => Stretch::Keep,
+        },
+        align: match s.choice("align")? {
+            "start" => Align::Start,
+            "end" => Align::End,
+            _ => Align::Middle,
+        },
+        offset: s.number("offset")?,
+        gap: s.number("gap")?,
+        baseline: match frame.baseline {
+            Some(y) if !s.given("baseline") => y,
+            _ => frame.rect.y1 - s.number("baseline")?,
+        },
+        width: s.number("width")?,
+        by_parameter: s.choice("by")? == "parameter",
+        handles,
+        handles_name: handles_name.unwrap_or_else(|| "handles".into()),
+        even: s.choice("spacing")? == "even",
+        setting: setting(s)?,
+        letters: Arc::clone(&frame.letters),
+        around_letters: frame.baseline.is_some(),
+    };
+    bend.build()
+});
 
 /// The levels of handles of every piece, and the file's name.
 type Handles = (Vec<Vec<Vec<Vec2>>>, String);

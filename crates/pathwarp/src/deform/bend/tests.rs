@@ -9,19 +9,19 @@ use kurbo::Point;
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Entry);
+    let faults = check::entry(&ENTRY);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Entry.build_from(&Args::from_pairs(pairs), &check::frame())
+    ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
 }
 
 fn with_handles(pairs: &[(&str, &str)], json: &str) -> Result<Built, Error> {
     let mut args = Args::from_pairs(pairs);
     args.push("handles", "h.json");
     args.resolve_files(INFO.params, |_| Ok(json.to_owned()))?;
-    Entry.build_from(&args, &check::frame())
+    ENTRY.build_from(&args, &check::frame())
 }
 
 /// Derivatives against differences and branches against the map, on every kind of skeleton, away from the joints.
@@ -251,7 +251,7 @@ fn letters_stand_on_a_circle() {
     let frame = || check::frame().on_baseline(90.0).with_letters([letter(20.0), letter(65.0)].into());
     let set = |how: &str| {
         let args = [("along", "M-100,0 A100,100 0 0 1 100,0"), ("glyphs", how)];
-        Entry.build_from(&Args::from_pairs(&args), &frame()).unwrap().placement.letters
+        ENTRY.build_from(&Args::from_pairs(&args), &frame()).unwrap().placement.letters
     };
     for (k, middle) in [(0, 25.0), (1, 70.0)] {
         let (sin, cos) = ((middle - 50.0) / 100.0_f64).sin_cos();

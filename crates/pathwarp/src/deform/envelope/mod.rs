@@ -10,7 +10,7 @@ mod fit;
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Variant};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Variant};
 use crate::error::{Error, show, within};
 use crate::map::{Coons, Jet, Map, Pace, Side, Sides};
 use crate::outline::{Outline, Seg, Subpath};
@@ -117,53 +117,28 @@ impl Envelope {
         self.side(3, curve)
     }
 
-    /// Sets the distance of the facing side, user units, if bottom or top is drawn alone: it is the same curve again.
-    /// Default: the height of the box.
-    #[must_use]
-    pub fn height(self, height: f64) -> Self {
-        Self { height: Some(height), ..self }
-    }
-
-    /// Joins the ends of two curves by curves that meet both at right angles, instead of straight lines.
-    #[must_use]
-    pub fn square(self, square: bool) -> Self {
-        Self { square, ..self }
-    }
-
-    /// Sets the spacing along the sides. Default: even by length.
-    #[must_use]
-    pub fn spread(self, spread: Spread) -> Self {
-        Self { spread: Some(spread), ..self }
-    }
-
-    /// Sets the corners of a closed path: the points nearest to these.
-    #[must_use]
-    pub fn corners(self, points: [impl Into<Point>; 4]) -> Self {
-        Self { corners: Some(Corners::Points(points.map(Into::into))), ..self }
-    }
-
-    /// Sets the corners of a closed path by the numbers of its nodes, from 1.
-    #[must_use]
-    pub fn corner_nodes(self, nodes: [usize; 4]) -> Self {
-        Self { corners: Some(Corners::Nodes(nodes)), ..self }
-    }
-
-    /// Sets the bottom side of a closed path: 1 to 4, from its first corner on as drawn.
-    #[must_use]
-    pub fn bottom_side(self, side: usize) -> Self {
-        Self { bottom_side: Some(side), ..self }
-    }
-
-    /// Runs the bottom the other way, so that the result is mirrored.
-    #[must_use]
-    pub fn reverse(self, reverse: bool) -> Self {
-        Self { reverse, ..self }
-    }
-
-    /// Sets the lines that stay straight. Default: [`Keep::Auto`].
-    #[must_use]
-    pub fn keep(self, keep: Keep) -> Self {
-        Self { keep, ..self }
+    setters! {
+        /// Sets the distance of the facing side, user units, if bottom or top is drawn alone: it is the same curve again.
+        /// Default: the height of the box.
+        height(height: f64) => height: Some(height);
+        /// Joins the ends of two curves by curves that meet both at right angles, instead of straight lines.
+        square(square: bool);
+        /// Sets the spacing along the sides. Default: even by length.
+        spread(spread: Spread) => spread: Some(spread);
+        /// Sets the corners of a closed path: the points nearest to these.
+        corners(points: [impl Into<Point>; 4]) => corners: Some(Corners::Points(points.map(Into::into)));
+        /// Sets the corners of a closed path by the numbers of its nodes, from 1.
+        corner_nodes(nodes: [usize; 4]) => corners: Some(Corners::Nodes(nodes));
+        /// Sets the bottom side of a closed path: 1 to 4, from its first corner on as drawn.
+        bottom_side(side: usize) => bottom_side: Some(side);
+        /// Runs the bottom the other way, so that the result is mirrored.
+        reverse(reverse: bool);
+        /// Sets the lines that stay straight. Default: [`Keep::Auto`].
+        keep(keep: Keep);
+        /// Says that the artwork is lettering, which has stems to be kept upright.
+        lettering(lettering: bool);
+        /// Gives points of the artwork, where its distortion is visible. Default: the whole box.
+        artwork(ink: impl Into<Arc<[Point]>>) => ink: ink.into();
     }
 
     /// In columns or rows, ends the artwork where the shape is still this share of its greatest height (width), 0 to below 1.
@@ -177,18 +152,6 @@ impl Envelope {
     #[must_use]
     pub fn padding(self, padding: f64) -> Self {
         Self { room: Room { padding, ..self.room }, ..self }
-    }
-
-    /// Says that the artwork is lettering, which has stems to be kept upright.
-    #[must_use]
-    pub fn lettering(self, lettering: bool) -> Self {
-        Self { lettering, ..self }
-    }
-
-    /// Gives points of the artwork, where its distortion is visible. Default: the whole box.
-    #[must_use]
-    pub fn artwork(self, ink: impl Into<Arc<[Point]>>) -> Self {
-        Self { ink: ink.into(), ..self }
     }
 
     /// Builds the map. Sides that cross, and folds, give warnings.
@@ -285,8 +248,6 @@ impl Envelope {
         curves.ring()
     }
 }
-
-pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("envelope", "put artwork into any closed shape, or between curves")
     .group("Envelopes")
@@ -410,39 +371,34 @@ const CAGE: Pairs = &[("envelope", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z"), ("b
 const UPRIGHT: Pairs = &[("bottom", "M0,100 Q50,20 100,100"), ("height", "50"), ("keep", "verticals")];
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let mut curves: [Option<NamedPath>; 4] = Default::default();
+    for (curve, name) in curves.iter_mut().zip(SIDES) {
+        *curve = s.path_if(name)?;
     }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let mut curves: [Option<NamedPath>; 4] = Default::default();
-        for (curve, name) in curves.iter_mut().zip(SIDES) {
-            *curve = s.path_if(name)?;
-        }
-        let spread = match s.choice("by")? {
-            "parameter" => Spread::Parameter,
-            "extent" => Spread::Extent,
-            _ => Spread::Length,
-        };
-        let envelope = Envelope {
-            frame: s.frame().rect,
-            shape: s.path_if("envelope")?,
-            curves,
-            height: s.number_if("height")?,
-            square: s.choice("sides")? == "square",
-            spread: s.given("by").then_some(spread),
-            corners: corners(s)?,
-            bottom_side: s.number_if("bottom-side")?.map(|n| n as usize),
-            reverse: s.flag("reverse")?,
-            keep: Keep::named(s.choice("keep")?),
-            room: Room { ends: s.number_if("ends")?, padding: s.number("padding")? },
-            lettering: !s.frame().letters.is_empty(),
-            ink: Arc::clone(&s.frame().ink),
-        };
-        envelope.build()
-    }
-}
+    let spread = match s.choice("by")? {
+        "parameter" => Spread::Parameter,
+        "extent" => Spread::Extent,
+        _ => Spread::Length,
+    };
+    let envelope = Envelope {
+        frame: s.frame().rect,
+        shape: s.path_if("envelope")?,
+        curves,
+        height: s.number_if("height")?,
+        square: s.choice("sides")? == "square",
+        spread: s.given("by").then_some(spread),
+        corners: corners(s)?,
+        bottom_side: s.number_if("bottom-side")?.map(|n| n as usize),
+        reverse: s.flag("reverse")?,
+        keep: Keep::named(s.choice("keep")?),
+        room: Room { ends: s.number_if("ends")?, padding: s.number("padding")? },
+        lettering: !s.frame().letters.is_empty(),
+        ink: Arc::clone(&s.frame().ink),
+    };
+    envelope.build()
+});
 
 /// Reads the corners: four numbers of nodes, or points.
 fn corners(s: &Settings<'_>) -> Result<Option<Corners>, Error> {

@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 const SQUARE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
 
 fn built(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(SQUARE))
+    ENTRY.build_from(&Args::from_pairs(pairs), &Frame::new(SQUARE))
 }
 
 fn map(pairs: &[(&str, &str)]) -> Arc<dyn Map> {

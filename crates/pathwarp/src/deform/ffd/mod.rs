@@ -14,7 +14,7 @@
 mod file;
 mod save;
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Instead, Law, Role, SavedFile};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Instead, Law, Role, SavedFile};
 use crate::error::{Error, show, within};
 use crate::map::{AffineMap, Class, Lattice, LatticeMap, Map};
 use crate::param::{Axis, Kind, NamedText, Param, Settings};
@@ -121,17 +121,12 @@ impl Ffd {
         self
     }
 
-    /// Keeps so many columns and rows along the left, right, top and bottom side in place: 1 avoids a tear at the region's
-    /// border there, k + 1 keeps k derivatives continuous.
-    #[must_use]
-    pub fn freeze(self, left: usize, right: usize, top: usize, bottom: usize) -> Self {
-        Self { frozen: [left, right, top, bottom], ..self }
-    }
-
-    /// Lets the map continue outside the region.
-    #[must_use]
-    pub fn extend(self, extended: bool) -> Self {
-        Self { extended, ..self }
+    setters! {
+        /// Keeps so many columns and rows along the left, right, top and bottom side in place: 1 avoids a tear at the region's
+        /// border there, k + 1 keeps k derivatives continuous.
+        freeze(left: usize, right: usize, top: usize, bottom: usize) => frozen: [left, right, top, bottom];
+        /// Lets the map continue outside the region.
+        extend(extended: bool) => extended: extended;
     }
 
     /// Builds the map. Borders that tear the artwork and pins that are missed give warnings.
@@ -355,8 +350,6 @@ fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Poi
 
 // The registry's entry: reads an [`Ffd`] from text.
 
-pub(in crate::deform) struct Entry;
-
 static INFO: Info = Info::new("ffd", "pull artwork about by a grid of control points")
     .group("Lattices and nets")
     .by_hand(ByHand {
@@ -443,28 +436,23 @@ laid onto that."),
         Case { args: &[("degree", "2x2"), ("cells", "2x2"), ("move", "1,1:8,0")], at: (50.0, 50.0), to: (52.0, 50.0), tolerance: 1e-13 },
     ]);
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let own_region = s.rect_if("region")?;
+    let (grid, from_file) = grid(s)?;
+    let ffd = Ffd {
+        grid,
+        changes: changes(s)?,
+        pins: pins(s)?,
+        frozen: frozen(s)?,
+        extended: s.flag("extend")? || (own_region.is_none() && !from_file),
+    };
+    let (mut built, lattice) = ffd.build_with_lattice()?;
+    if let Some(name) = s.texts("save-lattice").last() {
+        built.saves.push(SavedFile { name: (*name).to_owned(), text: save::write(&lattice) });
     }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let own_region = s.rect_if("region")?;
-        let (grid, from_file) = grid(s)?;
-        let ffd = Ffd {
-            grid,
-            changes: changes(s)?,
-            pins: pins(s)?,
-            frozen: frozen(s)?,
-            extended: s.flag("extend")? || (own_region.is_none() && !from_file),
-        };
-        let (mut built, lattice) = ffd.build_with_lattice()?;
-        if let Some(name) = s.texts("save-lattice").last() {
-            built.saves.push(SavedFile { name: (*name).to_owned(), text: save::write(&lattice) });
-        }
-        Ok(built)
-    }
-}
+    Ok(built)
+});
 
 /// Reads the initial grid. The flag is `true` if a file gave it its region.
 fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {

@@ -10,7 +10,7 @@ mod quilt;
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Instead, Law, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Instead, Law, Role};
 use crate::error::{Error, GeometryError, with_area};
 use crate::map::Class;
 use crate::param::{Kind, NamedText, Param, Settings};
@@ -67,16 +67,11 @@ impl Mesh {
         self
     }
 
-    /// Makes the joints smooth; the points beside them move.
-    #[must_use]
-    pub fn smooth(self, smooth: bool) -> Self {
-        Self { smooth, ..self }
-    }
-
-    /// Sets the artwork's box, if it differs from the mesh's: artwork far outside the mesh gives a warning.
-    #[must_use]
-    pub fn frame(self, frame: Rect) -> Self {
-        Self { frame: Some(frame), ..self }
+    setters! {
+        /// Makes the joints smooth; the points beside them move.
+        smooth(smooth: bool);
+        /// Sets the artwork's box, if it differs from the mesh's: artwork far outside the mesh gives a warning.
+        frame(frame: Rect) => frame: Some(frame);
     }
 
     /// Builds the map. Kinks at the joints give a warning.
@@ -123,8 +118,6 @@ lays it onto the artwork",
 }
 
 // The registry's entry: reads a [`Mesh`] from text.
-
-pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("mesh", "bend artwork by a mesh of bicubic patches, or by a Photoshop warp")
     .group("Lattices and nets")
@@ -206,38 +199,30 @@ M0,33.333333333333336 C33.333333333333336,33.333333333333336 66.66666666666667,3
 M0,66.66666666666667 C33.333333333333336,66.66666666666667 66.66666666666667,66.66666666666667 100,66.66666666666667 \
 M0,100 C33.333333333333336,100 66.66666666666667,100 100,100";
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let frame = s.frame().rect;
-        let given: Vec<&str> = ["net", "mesh", "psd"].into_iter().filter(|n| s.given(n)).collect();
-        let [source] = given[..] else {
-            return Err(Error::missing(
-                "net",
-                "a path (`net`), a file (`mesh`) or a Photoshop file (`psd`): one of them",
-            ));
-        };
-        let region = with_area(s.rect_if("region")?.unwrap_or(frame))?;
-        let (quilt, layer) = if source == "net" {
-            let path = s.path_if("net")?.ok_or_else(|| Error::missing("net", "a path"))?;
-            (Quilt::from_path(&path, region)?, None)
-        } else {
-            let file = s.file_if(source)?.ok_or_else(|| Error::missing(source, "its file"))?;
-            match from_file(s, source, file, region)? {
-                Contents::Style(built) => return Ok(built),
-                Contents::Quilt(quilt, layer) => (quilt, layer),
-            }
-        };
-        let mut built = Mesh { source: Source::Quilt(quilt), smooth: s.flag("smooth")?, frame: Some(frame) }.build()?;
-        if let Some(layer) = layer {
-            built.explanation.notes.insert(0, format!("layer {layer}"));
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let frame = s.frame().rect;
+    let given: Vec<&str> = ["net", "mesh", "psd"].into_iter().filter(|n| s.given(n)).collect();
+    let [source] = given[..] else {
+        return Err(Error::missing("net", "a path (`net`), a file (`mesh`) or a Photoshop file (`psd`): one of them"));
+    };
+    let region = with_area(s.rect_if("region")?.unwrap_or(frame))?;
+    let (quilt, layer) = if source == "net" {
+        let path = s.path_if("net")?.ok_or_else(|| Error::missing("net", "a path"))?;
+        (Quilt::from_path(&path, region)?, None)
+    } else {
+        let file = s.file_if(source)?.ok_or_else(|| Error::missing(source, "its file"))?;
+        match from_file(s, source, file, region)? {
+            Contents::Style(built) => return Ok(built),
+            Contents::Quilt(quilt, layer) => (quilt, layer),
         }
-        Ok(built)
+    };
+    let mut built = Mesh { source: Source::Quilt(quilt), smooth: s.flag("smooth")?, frame: Some(frame) }.build()?;
+    if let Some(layer) = layer {
+        built.explanation.notes.insert(0, format!("layer {layer}"));
     }
-}
+    Ok(built)
+});
 
 /// Reads a mesh or a Photoshop file.
 #[cfg(feature = "serde")]

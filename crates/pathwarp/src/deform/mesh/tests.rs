@@ -8,7 +8,7 @@ use kurbo::{CubicBez, ParamCurve, Vec2};
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Entry);
+    let faults = check::entry(&ENTRY);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -17,8 +17,8 @@ fn with(name: &str, text: &str, more: &[(&str, &str)]) -> Result<Built, Error> {
     for (n, v) in more {
         args.push(n, *v);
     }
-    args.resolve_files(Entry.info().params, |_| Ok(text.to_owned())).unwrap();
-    Entry.build_from(&args, &Frame::new(Rect::new(10.0, 20.0, 110.0, 80.0)))
+    args.resolve_files(ENTRY.info().params, |_| Ok(text.to_owned())).unwrap();
+    ENTRY.build_from(&args, &Frame::new(Rect::new(10.0, 20.0, 110.0, 80.0)))
 }
 
 /// Two columns, two rows, some points moved.
@@ -171,6 +171,6 @@ fn faults_are_named() {
     ragged[2].pop();
     assert!(fault(&json(&ragged, "")).contains("row 2"));
     assert!(fault("{\"points\": 3}").contains("file.json:1:"));
-    let none = Entry.build_from(&Args::new(), &check::frame()).map(|_| ()).unwrap_err().to_string();
+    let none = ENTRY.build_from(&Args::new(), &check::frame()).map(|_| ()).unwrap_err().to_string();
     assert!(none.contains("net is needed"));
 }

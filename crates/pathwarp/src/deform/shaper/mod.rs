@@ -8,7 +8,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Explanation, Info, Law, Pairs, Role, Variant};
+use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Pairs, Role, Variant};
 use crate::anchors::{self, Anchors, Arrangement};
 use crate::error::{Error, GeometryError, show, within};
 use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net, complete_net};
@@ -78,10 +78,9 @@ impl Shaper {
         }
     }
 
-    /// Sets the bottom side of the closed path: 1 to 4, in the order they were drawn.
-    #[must_use]
-    pub fn bottom(self, side: usize) -> Self {
-        Self { bottom: Bottom::Side(side), ..self }
+    setters! {
+        /// Sets the bottom side of the closed path: 1 to 4, in the order they were drawn.
+        bottom(side: usize) => bottom: Bottom::Side(side);
     }
 
     /// Takes the side that lies lowest on the screen for the bottom, however much that distorts.
@@ -90,34 +89,17 @@ impl Shaper {
         Self { bottom: Bottom::Lowest, ..self }
     }
 
-    /// Runs the bottom side the other way, so that the result is mirrored.
-    #[must_use]
-    pub fn reverse(self, reverse: bool) -> Self {
-        Self { reverse, ..self }
-    }
-
-    /// Sets the box that is laid onto the shaper, corner on corner, if there is no [`base`](Self::base).
-    #[must_use]
-    pub fn frame(self, frame: Rect) -> Self {
-        Self { frame: Some(frame), ..self }
-    }
-
-    /// Sets two or four anchors in the source: they are laid onto the shaper's bottom corners, or all four.
-    #[must_use]
-    pub fn base(self, base: &Outline) -> Self {
-        Self { base: Some(NamedPath { name: "base".into(), outline: base.clone() }), ..self }
-    }
-
-    /// Sets two or four anchors that the shaper's bottom corners, or all four, are taken to. Default: they stay.
-    #[must_use]
-    pub fn target(self, target: &Outline) -> Self {
-        Self { target: Some(NamedPath { name: "target".into(), outline: target.clone() }), ..self }
-    }
-
-    /// Takes the anchors of base and target in the order they were drawn, instead of left to right, the lowest side first.
-    #[must_use]
-    pub fn as_drawn(self, base: bool, target: bool) -> Self {
-        Self { base_as_drawn: base, target_as_drawn: target, ..self }
+    setters! {
+        /// Runs the bottom side the other way, so that the result is mirrored.
+        reverse(reverse: bool);
+        /// Sets the box that is laid onto the shaper, corner on corner, if there is no [`base`](Self::base).
+        frame(frame: Rect) => frame: Some(frame);
+        /// Sets two or four anchors in the source: they are laid onto the shaper's bottom corners, or all four.
+        base(base: &Outline) => base: Some(NamedPath { name: "base".into(), outline: base.clone() });
+        /// Sets two or four anchors that the shaper's bottom corners, or all four, are taken to. Default: they stay.
+        target(target: &Outline) => target: Some(NamedPath { name: "target".into(), outline: target.clone() });
+        /// Takes the anchors of base and target in the order they were drawn, instead of left to right, the lowest side first.
+        as_drawn(base: bool, target: bool) => base_as_drawn: base, target_as_drawn: target;
     }
 
     /// Builds the map.
@@ -436,8 +418,6 @@ fn centred(points: [Point; 4]) -> [Vec2; 4] {
     points.map(|p| p.to_vec2() - mean)
 }
 
-pub(in crate::deform) struct Entry;
-
 static INFO: Info = Info::new("shaper", "bend artwork into a closed path of four curved sides")
     .group("Envelopes")
     .by_hand(ByHand {
@@ -531,43 +511,38 @@ corners of the artwork's box.",
 
 const CASE: Pairs = &[("shaper", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z")];
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let cage = match (s.path_if("shaper")?, s.paths("net")?) {
-            (Some(_), rows) if !rows.is_empty() => {
-                let problem = "cannot go with `shaper`: one of them gives the net";
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let cage = match (s.path_if("shaper")?, s.paths("net")?) {
+        (Some(_), rows) if !rows.is_empty() => {
+            let problem = "cannot go with `shaper`: one of them gives the net";
+            return Err(Error::usage("net", rows[0].name.clone(), problem));
+        }
+        (Some(path), _) => Cage::Path(path),
+        (None, rows) if !rows.is_empty() => {
+            if s.given("bottom") || s.given("reverse-shaper") {
+                let problem = "is taken as given; `bottom` and `reverse-shaper` go with `shaper`";
                 return Err(Error::usage("net", rows[0].name.clone(), problem));
             }
-            (Some(path), _) => Cage::Path(path),
-            (None, rows) if !rows.is_empty() => {
-                if s.given("bottom") || s.given("reverse-shaper") {
-                    let problem = "is taken as given; `bottom` and `reverse-shaper` go with `shaper`";
-                    return Err(Error::usage("net", rows[0].name.clone(), problem));
-                }
-                Cage::Net(Box::new(from_rows(&rows)?), rows[0].name.clone())
-            }
-            _ => {
-                let hint = "the closed path of four sides to bend the artwork into (or `net` with 16 points)";
-                return Err(Error::missing("shaper", hint));
-            }
-        };
-        let shaper = Shaper {
-            cage,
-            bottom: bottom(s)?,
-            reverse: s.flag("reverse-shaper")?,
-            base: s.path_if("base")?,
-            base_as_drawn: s.flag("base-as-drawn")?,
-            target: s.path_if("target")?,
-            target_as_drawn: s.flag("target-as-drawn")?,
-            frame: Some(s.frame().rect),
-        };
-        shaper.build()
-    }
-}
+            Cage::Net(Box::new(from_rows(&rows)?), rows[0].name.clone())
+        }
+        _ => {
+            let hint = "the closed path of four sides to bend the artwork into (or `net` with 16 points)";
+            return Err(Error::missing("shaper", hint));
+        }
+    };
+    let shaper = Shaper {
+        cage,
+        bottom: bottom(s)?,
+        reverse: s.flag("reverse-shaper")?,
+        base: s.path_if("base")?,
+        base_as_drawn: s.flag("base-as-drawn")?,
+        target: s.path_if("target")?,
+        target_as_drawn: s.flag("target-as-drawn")?,
+        frame: Some(s.frame().rect),
+    };
+    shaper.build()
+});
 
 fn bottom(s: &Settings<'_>) -> Result<Bottom, Error> {
     match s.texts("bottom").last() {

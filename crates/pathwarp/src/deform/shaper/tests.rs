@@ -7,7 +7,7 @@ use kurbo::ParamCurve;
 const CAGE: &str = "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z";
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0)))
+    ENTRY.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0)))
 }
 
 /// Criterion: the box's sides land on the shaper's arcs to 1e-9.
@@ -97,7 +97,7 @@ fn a_tilted_cage_does_not_turn_wide_artwork_on_its_side() {
             let mut pairs = vec![("shaper", path.as_str())];
             pairs.extend(extra);
             let args = Args::from_pairs(&pairs);
-            Entry.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, 80.0, 20.0))).unwrap()
+            ENTRY.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, 80.0, 20.0))).unwrap()
         };
         let built = build(&[]);
         for p in [(0.0, 20.0), (80.0, 0.0), (30.0, 5.0)] {

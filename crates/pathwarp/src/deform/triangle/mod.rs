@@ -12,7 +12,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Info, Law, Pairs, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
 use super::ffd::Change;
 use crate::error::{Error, GeometryError, within};
 use crate::map::{AffineMap, Class, Local, Map, Plane, Quotient};
@@ -61,10 +61,9 @@ impl Triangle {
         Self { frame: Some(frame), extended: true, ..Self::new(corners) }
     }
 
-    /// Sets the degree n, 1 to 10.
-    #[must_use]
-    pub fn degree(self, degree: usize) -> Self {
-        Self { degree, ..self }
+    setters! {
+        /// Sets the degree n, 1 to 10.
+        degree(degree: usize);
     }
 
     /// Puts control point (i, j, k) at a place.
@@ -88,10 +87,9 @@ impl Triangle {
         self
     }
 
-    /// Lets the map continue outside the triangle.
-    #[must_use]
-    pub fn extend(self, extended: bool) -> Self {
-        Self { extended, ..self }
+    setters! {
+        /// Lets the map continue outside the triangle.
+        extend(extended: bool) => extended: extended;
     }
 
     /// Builds the map. A side that tears the artwork gives a warning.
@@ -344,8 +342,6 @@ impl TriangleNet {
     }
 }
 
-pub(in crate::deform) struct Entry;
-
 static INFO: Info = Info::new("triangle", "pull artwork about by a triangular net of control points")
     .group("Lattices and nets")
     .by_hand(ByHand {
@@ -435,17 +431,12 @@ second at the bottom left, and the map continues outside it.",
 
 const SIX: Pairs = &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30")];
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let over = over(s)?;
-        let extended = over.extended || s.flag("extend")?;
-        Triangle { degree: s.number("degree")? as usize, changes: changes(s)?, extended, ..over }.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let over = over(s)?;
+    let extended = over.extended || s.flag("extend")?;
+    Triangle { degree: s.number("degree")? as usize, changes: changes(s)?, extended, ..over }.build()
+});
 
 /// Reads the reference triangle; the default lies about the artwork's box, twice as wide and twice as high.
 fn over(s: &Settings<'_>) -> Result<Triangle, Error> {

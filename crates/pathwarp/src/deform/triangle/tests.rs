@@ -7,12 +7,12 @@ use crate::outline::Seg;
 use crate::param::Args;
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Entry.build_from(&Args::from_pairs(pairs), &check::frame())
+    ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
 }
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Entry);
+    let faults = check::entry(&ENTRY);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -70,7 +70,7 @@ fn degree_one_is_affine_and_with_weights_projective() {
     let corners = ["2,0,0:0,10", "0,2,0:0,20", "0,0,2:0,0", "1,1,0:0,15", "1,0,1:0,5", "0,1,1:0,10"];
     let mut args = Args::from_pairs(&[("extend", "true")]);
     corners.iter().for_each(|c| args.push("move", *c));
-    let m = Entry.build_from(&args, &check::frame()).unwrap().map;
+    let m = ENTRY.build_from(&args, &check::frame()).unwrap().map;
     assert!(matches!(m.class(), Class::Affine(_)));
 }
 

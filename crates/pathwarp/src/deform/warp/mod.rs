@@ -8,7 +8,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Deformation, Example, Gallery, Info, Law, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Role};
 use super::envelope::{self, Keep, Ring};
 use super::shaper::rows_path;
 use crate::anchors;
@@ -51,30 +51,17 @@ impl Warp {
         Self { frame, style, bend: 0.5, horizontal: 0.0, vertical: 0.0, sideways: false, keep: Keep::Nothing }
     }
 
-    /// Sets the bend, 1 for 100 %; negative bends the other way. Bends beyond 1 continue by the same formula, up to the style's
-    /// [limit](Style::limit).
-    #[must_use]
-    pub fn bend(self, bend: f64) -> Self {
-        Self { bend, ..self }
-    }
-
-    /// Sets the horizontal and the vertical distortion, −1 to 1: the right (lower) side grows by this share, the left (upper)
-    /// one shrinks.
-    #[must_use]
-    pub fn distort(self, horizontal: f64, vertical: f64) -> Self {
-        Self { horizontal, vertical, ..self }
-    }
-
-    /// Turns the style sideways.
-    #[must_use]
-    pub fn sideways(self, sideways: bool) -> Self {
-        Self { sideways, ..self }
-    }
-
-    /// Sets the lines that stay straight: the artwork is put between the style's sides then.
-    #[must_use]
-    pub fn keep(self, keep: Keep) -> Self {
-        Self { keep, ..self }
+    setters! {
+        /// Sets the bend, 1 for 100 %; negative bends the other way. Bends beyond 1 continue by the same formula, up to the style's
+        /// [limit](Style::limit).
+        bend(bend: f64);
+        /// Sets the horizontal and the vertical distortion, −1 to 1: the right (lower) side grows by this share, the left (upper)
+        /// one shrinks.
+        distort(horizontal: f64, vertical: f64) => horizontal: horizontal, vertical: vertical;
+        /// Turns the style sideways.
+        sideways(sideways: bool);
+        /// Sets the lines that stay straight: the artwork is put between the style's sides then.
+        keep(keep: Keep);
     }
 
     /// Builds the map.
@@ -482,8 +469,6 @@ fn selected(at: &str) -> Result<Vec<(usize, usize)>, StyleError> {
     Ok(rows.flat_map(|j| columns.clone().map(move |c| (j, c))).collect())
 }
 
-pub(in crate::deform) struct Entry;
-
 /// The built-in styles, in the order of drawing programs' menus.
 const NAMES: &[&str] = &[
     "arc",
@@ -593,24 +578,19 @@ transformation from 16 control points, equation (7)")
         },
     ]);
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let warp = Warp {
-            frame: s.frame().rect,
-            style: style(s)?,
-            bend: s.number("bend")?,
-            horizontal: s.number("horizontal")?,
-            vertical: s.number("vertical")?,
-            sideways: s.choice("axis")? == "vertical",
-            keep: Keep::named(s.choice("keep")?),
-        };
-        warp.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let warp = Warp {
+        frame: s.frame().rect,
+        style: style(s)?,
+        bend: s.number("bend")?,
+        horizontal: s.number("horizontal")?,
+        vertical: s.number("vertical")?,
+        sideways: s.choice("axis")? == "vertical",
+        keep: Keep::named(s.choice("keep")?),
+    };
+    warp.build()
+});
 
 /// Reads the style, by name or from a file.
 fn style(s: &Settings<'_>) -> Result<Style, Error> {

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Entry);
+    let faults = check::entry(&ENTRY);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -294,7 +294,7 @@ fn distortions_come_in_order() {
 }
 
 fn build(pairs: &[(&str, &str)]) -> Built {
-    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(5.0, 7.0, 5.0 + W, 7.0 + H))).unwrap()
+    ENTRY.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(5.0, 7.0, 5.0 + W, 7.0 + H))).unwrap()
 }
 
 /// A drawing: every node of the result that comes from one of the source lies where the table's net puts it, and the box's own
@@ -360,13 +360,13 @@ fn one_net_is_certified() {
 fn files_of_ones_own_and_their_faults() {
     let with = |text: &str| {
         let mut args = Args::from_pairs(&[("style", "my.json"), ("bend", "50%")]);
-        args.resolve_files(Entry.info().params, |_| Ok(text.to_owned())).unwrap();
-        Entry.build_from(&args, &check::frame())
+        args.resolve_files(ENTRY.info().params, |_| Ok(text.to_owned())).unwrap();
+        ENTRY.build_from(&args, &check::frame())
     };
     let flag = r#"{ "name": "f", "family": "points", "moves": [{ "at": "*,1", "y": "2*b*h" }, { "at": "*,2", "y": "-2*b*h" }] }"#;
     let (own, ours) = (
         with(flag).unwrap().map,
-        Entry.build_from(&Args::from_pairs(&[("style", "flag")]), &check::frame()).unwrap().map,
+        ENTRY.build_from(&Args::from_pairs(&[("style", "flag")]), &check::frame()).unwrap().map,
     );
     for p in [(10.0, 10.0), (60.0, 30.0), (95.0, 99.0)] {
         assert!(own.point(p.into()).distance(ours.point(p.into())) < 1e-12);
@@ -383,19 +383,19 @@ fn files_of_ones_own_and_their_faults() {
         assert!(fault.contains(part), "{fault}");
     }
     let refused = |pairs: &[(&str, &str)]| {
-        Entry.build_from(&Args::from_pairs(pairs), &check::frame()).map(|_| ()).unwrap_err().to_string()
+        ENTRY.build_from(&Args::from_pairs(pairs), &check::frame()).map(|_| ()).unwrap_err().to_string()
     };
     assert!(refused(&[("style", "flags")]).contains("arc-lower"));
     assert!(refused(&[("bend", "191%")]).contains("-190% to 190%"));
     // Styles without arcs have no limit.
-    assert!(Entry.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
+    assert!(ENTRY.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
 }
 
 /// `keep verticals`: vertical within 0.1° where the style's sides allow it, for styles whose own map does not keep them.
 #[test]
 fn kept_verticals_are_upright() {
     let build = |pairs: &[(&str, &str)]| {
-        Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 200.0, 100.0)))
+        ENTRY.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 200.0, 100.0)))
     };
     for style in ["arch", "arc-lower", "arc-upper", "bulge", "flag", "rise", "fish"] {
         for bend in ["-50%", "20%", "50%"] {

@@ -9,7 +9,7 @@ mod shape;
 mod tests;
 
 use super::bend::{Align, Bend, Stretch};
-use super::entry::{Built, ByHand, Case, Deformation, Example, Gallery, Info, Law, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Role};
 use crate::anchors;
 use crate::error::{Error, with_area, within};
 use crate::map::{AffineMap, Along, Guide, TileRow, Tiled, tiled};
@@ -73,35 +73,18 @@ impl WordArt {
         self
     }
 
-    /// Runs by the guides' parameters, instead of evenly by length.
-    #[must_use]
-    pub fn by_parameter(self, by_parameter: bool) -> Self {
-        Self { by_parameter, ..self }
-    }
-
-    /// Sets the y of the lines between bands, rising, one less than there are bands. Default: even.
-    #[must_use]
-    pub fn split(self, heights: &[f64]) -> Self {
-        Self { split: Some(heights.to_vec()), ..self }
-    }
-
-    /// Sets the box that the shape is drawn in.
-    #[must_use]
-    pub fn shape_box(self, shape_box: ShapeBox) -> Self {
-        Self { shape_box, ..self }
-    }
-
-    /// Keeps the artwork this far off the guides, along its verticals, and off their ends, user units. Default: 0.
-    #[must_use]
-    pub fn padding(self, padding: f64) -> Self {
-        Self { padding, ..self }
-    }
-
-    /// Sets the artwork's letters. By default the artwork is divided between their lines, and fewer lines than guides take the
-    /// first guides only.
-    #[must_use]
-    pub fn letters(self, letters: Arc<[Letter]>) -> Self {
-        Self { letters, ..self }
+    setters! {
+        /// Runs by the guides' parameters, instead of evenly by length.
+        by_parameter(by_parameter: bool);
+        /// Sets the y of the lines between bands, rising, one less than there are bands. Default: even.
+        split(heights: &[f64]) => split: Some(heights.to_vec());
+        /// Sets the box that the shape is drawn in.
+        shape_box(shape_box: ShapeBox);
+        /// Keeps the artwork this far off the guides, along its verticals, and off their ends, user units. Default: 0.
+        padding(padding: f64);
+        /// Sets the artwork's letters. By default the artwork is divided between their lines, and fewer lines than guides take the
+        /// first guides only.
+        letters(letters: Arc<[Letter]>);
     }
 
     /// Builds the map.
@@ -303,8 +286,6 @@ fn outline(segs: &[Seg]) -> Outline {
     Outline { subpaths: vec![Subpath { start, segs: segs.to_vec(), closed: false }] }
 }
 
-pub(in crate::deform) struct Entry;
-
 /// The names, in the standard's families.
 const NAMES: &[&str] = &[
     "plain",
@@ -451,40 +432,35 @@ X,Y,W,H (user units or %).",
 
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-impl Deformation for Entry {
-    fn info(&self) -> &Info {
-        &INFO
-    }
-
-    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let name = s.texts("preset").last().copied().unwrap_or_default();
-        let shape = match s.file_if("preset")? {
-            Some(file) => TextShape::from_file(&file.name, &file.text)?,
-            None => TextShape::named(name).ok_or_else(|| {
-                Error::advised(
-                    "preset",
-                    name,
-                    "is not a text shape",
-                    format!("; there are {}, and files", NAMES.join(", ")),
-                )
-            })?,
-        };
-        let wordart = WordArt {
-            frame: s.frame().rect,
-            adjusted: adjusted(s, &shape)?,
-            shape,
-            by_parameter: s.choice("by")? == "parameter",
-            split: if s.given("split") { Some(split(s)?) } else { None },
-            shape_box: match s.texts("box").last() {
-                Some(&"fit") => ShapeBox::Fit,
-                _ => s.rect_if("box")?.map_or(ShapeBox::Artwork, ShapeBox::Given),
-            },
-            padding: s.number("padding")?,
-            letters: Arc::clone(&s.frame().letters),
-        };
-        wordart.build()
-    }
-}
+/// Reads the deformation from text.
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+    let name = s.texts("preset").last().copied().unwrap_or_default();
+    let shape = match s.file_if("preset")? {
+        Some(file) => TextShape::from_file(&file.name, &file.text)?,
+        None => TextShape::named(name).ok_or_else(|| {
+            Error::advised(
+                "preset",
+                name,
+                "is not a text shape",
+                format!("; there are {}, and files", NAMES.join(", ")),
+            )
+        })?,
+    };
+    let wordart = WordArt {
+        frame: s.frame().rect,
+        adjusted: adjusted(s, &shape)?,
+        shape,
+        by_parameter: s.choice("by")? == "parameter",
+        split: if s.given("split") { Some(split(s)?) } else { None },
+        shape_box: match s.texts("box").last() {
+            Some(&"fit") => ShapeBox::Fit,
+            _ => s.rect_if("box")?.map_or(ShapeBox::Artwork, ShapeBox::Given),
+        },
+        padding: s.number("padding")?,
+        letters: Arc::clone(&s.frame().letters),
+    };
+    wordart.build()
+});
 
 /// Reads the adjust values; those not given have their defaults.
 fn adjusted(s: &Settings<'_>, shape: &TextShape) -> Result<Vec<f64>, Error> {

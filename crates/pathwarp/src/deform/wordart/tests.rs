@@ -8,7 +8,7 @@ use kurbo::{CubicBez, Line, ParamCurve, ParamCurveArclen, PathSeg, Point, QuadBe
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Entry);
+    let faults = check::entry(&ENTRY);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -16,7 +16,7 @@ const W: f64 = 300.0;
 const H: f64 = 120.0;
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, W, H)))
+    ENTRY.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, W, H)))
 }
 
 fn default_guides(name: &str) -> Guides {
@@ -308,8 +308,8 @@ fn names_and_limits() {
 fn files_of_ones_own() {
     let with = |text: &str| {
         let mut args = Args::from_pairs(&[("preset", "my.json"), ("adj", "30%")]);
-        args.resolve_files(Entry.info().params, |_| Ok(text.to_owned())).unwrap();
-        Entry.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, W, H)))
+        args.resolve_files(ENTRY.info().params, |_| Ok(text.to_owned())).unwrap();
+        ENTRY.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, W, H)))
     };
     let head = r#"{ "name": "roof", "adj": [{ "name": "a", "default": 0, "least": 0, "most": 50000 }], "#;
     let own =

@@ -1,0 +1,105 @@
+//! The common options as clap's arguments, and as a parsed command line gives them.
+
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::{CommonOption, Given, LeadingMinus, OPTIONS, OptionValue, Reading};
+use std::ffi::OsStr;
+use std::path::PathBuf;
+
+/// The inputs and options of a parsed command line. The command may have only some of them.
+pub(crate) fn given(m: &ArgMatches) -> Given {
+    let is_declared = m.try_contains_id(INPUT).is_ok();
+    let inputs = is_declared.then(|| m.get_many::<PathBuf>(INPUT)).flatten().into_iter().flatten().cloned();
+    Given::new(inputs.collect(), values(OPTIONS.iter(), m))
+}
+
+/// The options about reading that a command line of [`reading_args`] gives.
+///
+/// # Errors
+/// A value with its own syntax cannot be parsed.
+pub(crate) fn reading(m: &ArgMatches) -> Result<Reading, Failure> {
+    Ok(Given::new(Vec::new(), values(OPTIONS.iter().filter(|o| o.reading), m)).read()?.reading)
+}
+
+fn values(
+    options: impl Iterator<Item = &'static CommonOption>,
+    m: &ArgMatches,
+) -> Vec<(&'static CommonOption, Vec<std::ffi::OsString>)> {
+    let mut values = Vec::new();
+    for option in options {
+        let is_declared = m.try_contains_id(option.name).is_ok();
+        if !is_declared || m.value_source(option.name) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        let typed = match option.value {
+            OptionValue::Switch(_) => vec!["true".into()],
+            OptionValue::Choice(_) => {
+                m.get_raw(option.name).into_iter().flatten().map(OsStr::to_ascii_lowercase).collect()
+            }
+            _ => m.get_raw(option.name).into_iter().flatten().map(OsStr::to_owned).collect(),
+        };
+        values.push((option, typed));
+    }
+    values
+}
+
+/// The id of the positional argument for the inputs.
+pub(crate) const INPUT: &str = "INPUT";
+
+/// The inputs and the common options.
+pub(crate) fn args() -> impl Iterator<Item = Arg> {
+    let help = "SVG files (also .svgz), PNG, JPEG or WebP pictures, or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none \
+                reads standard input";
+    std::iter::once(inputs_arg().help(help)).chain(options_without_inputs())
+}
+
+/// The inputs of a command that reads drawings.
+pub(crate) fn inputs_arg() -> Arg {
+    let help =
+        "SVG files (also .svgz), or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none reads standard input";
+    Arg::new(INPUT).num_args(0..).value_parser(value_parser!(PathBuf)).help(help)
+}
+
+/// The common options, without the inputs.
+pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
+    let is_there = |name: &&str| OPTIONS.iter().any(|o| o.name == *name);
+    OPTIONS.iter().map(move |o| {
+        let conflicts = o.conflicts.iter().copied().filter(is_there);
+        arg(o).help_heading("Common options").conflicts_with_all(conflicts)
+    })
+}
+
+/// Those of the common options that a command shares, with these names.
+pub(crate) fn some_options(names: &[&str]) -> impl Iterator<Item = Arg> {
+    OPTIONS.iter().filter(|o| names.contains(&o.name)).map(arg)
+}
+
+/// The options about reading drawings, for commands that have no other common options.
+pub(crate) fn reading_args() -> impl Iterator<Item = Arg> {
+    OPTIONS.iter().filter(|o| o.reading).map(|o| arg(o).help_heading("Reading"))
+}
+
+fn arg(option: &CommonOption) -> Arg {
+    let mut arg = Arg::new(option.name).long(option.name).visible_aliases(option.alias).help(option.help());
+    if let Some(c) = option.short {
+        arg = arg.short(c);
+    }
+    match &option.value {
+        OptionValue::Switch(_) => arg.action(ArgAction::SetTrue),
+        OptionValue::Choice(_) => {
+            let words = option.words();
+            arg.value_name(words.join("|")).value_parser(words).ignore_case(true).hide_possible_values(true)
+        }
+        OptionValue::Whole { name, range, .. } => {
+            let (least, most) = (i64::from(*range.start()), i64::from(*range.end()));
+            arg.value_name(*name).value_parser(value_parser!(u16).range(least..=most))
+        }
+        OptionValue::Text { name, minus, .. } => arg
+            .value_name(*name)
+            .allow_negative_numbers(*minus == LeadingMinus::Number)
+            .allow_hyphen_values(*minus == LeadingMinus::Any),
+        OptionValue::List { name, .. } => arg.value_name(*name).action(ArgAction::Append),
+        OptionValue::File { name, .. } => arg.value_name(*name).value_parser(value_parser!(PathBuf)),
+    }
+}

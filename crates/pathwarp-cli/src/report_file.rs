@@ -1,0 +1,96 @@
+//! The report, `--report FILE`. A run writes it input by input, so that a large batch need not be held in memory.
+
+use pathwarp::recipe::Recipe;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::CommonOptions;
+use pathwarp_engine::output::{Draft, PendingFile};
+use pathwarp_engine::readable;
+use pathwarp_engine::report::FileReport;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Sums over all inputs.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct Totals {
+    pub(crate) inputs: usize,
+    /// Number of inputs that could not be warped.
+    pub(crate) failed: usize,
+    pub(crate) shapes: usize,
+    pub(crate) segments_in: usize,
+    pub(crate) segments_out: usize,
+    pub(crate) max_error: f64,
+    pub(crate) folds: usize,
+    pub(crate) skipped: usize,
+    pub(crate) seconds: f64,
+}
+
+impl Totals {
+    /// Adds one input.
+    pub(crate) fn add(&mut self, input: &FileReport) {
+        self.inputs += 1;
+        self.failed += usize::from(input.error.is_some());
+        self.skipped += input.skipped.len();
+        for s in &input.shapes {
+            self.shapes += 1;
+            self.segments_in += s.shape.path.segments_in;
+            self.segments_out += s.shape.path.segments_out;
+            self.max_error = self.max_error.max(s.shape.path.max_error);
+            self.folds += s.fold.count;
+        }
+    }
+}
+
+/// A report under way.
+pub(crate) struct ReportFile {
+    draft: Draft,
+    totals: Totals,
+    started: Instant,
+}
+
+impl ReportFile {
+    /// Starts the report of a run of `recipe`.
+    pub(crate) fn new(
+        mut draft: Draft,
+        recipe: &Recipe,
+        options: &CommonOptions,
+        started: Instant,
+    ) -> Result<Self, Failure> {
+        let deformations = || recipe.steps.iter().map(|s| s.deformation.as_str()).collect();
+        let steps: Vec<&str> = options.edit.as_ref().map_or_else(deformations, |e| vec![e.info.name]);
+        let head = [
+            ("tool", json(&"pathwarp")?),
+            ("version", json(&env!("CARGO_PKG_VERSION"))?),
+            ("steps", indented(&json(&steps)?, 1)),
+        ];
+        draft.write(b"{\n")?;
+        for (name, value) in head {
+            draft.write(format!("  \"{name}\": {value},\n").as_bytes())?;
+        }
+        draft.write(b"  \"inputs\": [")?;
+        Ok(Self { draft, totals: Totals::default(), started })
+    }
+
+    /// Adds one input.
+    pub(crate) fn add(&mut self, input: &FileReport) -> Result<(), Failure> {
+        let comma = if self.totals.inputs > 0 { "," } else { "" };
+        self.totals.add(input);
+        self.draft.write(format!("{comma}\n    {}", indented(&json(input)?, 2)).as_bytes())
+    }
+
+    /// Adds the totals.
+    pub(crate) fn finish(mut self) -> Result<PendingFile, Failure> {
+        self.totals.seconds = self.started.elapsed().as_secs_f64();
+        let totals = indented(&json(&self.totals)?, 1);
+        self.draft.write(format!("\n  ],\n  \"totals\": {totals}\n}}\n").as_bytes())?;
+        self.draft.finish()
+    }
+}
+
+fn json(value: &impl Serialize) -> Result<String, Failure> {
+    readable::json(value).map_err(|e| Failure::Output(format!("the report: {e}")))
+}
+
+/// JSON that stands `levels` deep in other JSON. Texts in it hold no raw newlines.
+fn indented(json: &str, levels: usize) -> String {
+    json.replace('\n', &format!("\n{}", "  ".repeat(levels)))
+}

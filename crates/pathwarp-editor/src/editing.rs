@@ -1,0 +1,401 @@
+//! Drawings in the editor, on the engine.
+
+use crate::host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary};
+use crate::words::Words;
+use pathwarp::Outline;
+use pathwarp::deform::{Info, Registry};
+use pathwarp::kurbo::Rect;
+use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp_engine::advice::Flags;
+use pathwarp_engine::bitmap::{background, encode};
+use pathwarp_engine::export::Exported;
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::first_steps::First;
+use pathwarp_engine::format::{Choice, DRAWINGS, Format, PICTURES};
+use pathwarp_engine::framed::framed;
+use pathwarp_engine::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which};
+use pathwarp_engine::lettering::set_plainly;
+use pathwarp_engine::options::{CommonOptions, Given};
+use pathwarp_engine::output::PendingFile;
+use pathwarp_engine::report::ReportedShape;
+use pathwarp_engine::session::{Framed, Ready, Session};
+use pathwarp_engine::steps::OF_STEPS;
+use pathwarp_engine::{coming_from, first_steps, recipe_file, references};
+use pathwarp_raster::{Picture, RenderOptions, Size};
+use pathwarp_svg::{Document, Origin, ReadOptions, Turned, families, usvg_tree};
+use pathwarp_text::TextStyle;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A drawing in the editor.
+struct EditedArtwork {
+    svg: SvgArtwork,
+    /// The drawing with an id for every element, so that the page can tell what is clicked; `None` where all have one.
+    shown: Option<SvgArtwork>,
+    registry: Arc<Registry>,
+    given: Given,
+    options: CommonOptions,
+    flags: Arc<Flags>,
+    /// The options that name plug-ins.
+    plugins: Vec<(String, String)>,
+    /// The folder of the drawing, where its results go.
+    folder: PathBuf,
+    /// The frame for the guides and the baseline of the last picture, and what was done before bending.
+    framed: Option<Framed>,
+    first: First,
+}
+
+impl EditedArtwork {
+    fn new(
+        svg: SvgArtwork,
+        shown: Option<SvgArtwork>,
+        registry: &Arc<Registry>,
+        given: Given,
+        options: CommonOptions,
+        flags: &Arc<Flags>,
+    ) -> Self {
+        Self {
+            svg,
+            shown,
+            registry: Arc::clone(registry),
+            given,
+            options,
+            flags: Arc::clone(flags),
+            plugins: Vec::new(),
+            folder: PathBuf::new(),
+            framed: None,
+            first: Vec::new(),
+        }
+    }
+
+    fn with_plugins(self, options: &[(String, String)]) -> Self {
+        Self { plugins: options.to_vec(), ..self }
+    }
+
+    fn in_folder(self, folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), ..self }
+    }
+
+    /// Looks up files, and applies `work` to the drawing, as a file or for the page, and the session with these steps.
+    fn with_steps<T>(
+        &mut self,
+        recipe: &Recipe,
+        is_file: bool,
+        work: impl FnOnce(&Session<'_>, &mut SvgArtwork, Ready) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let (mut resolved, given, first) = self.told(recipe)?;
+        references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
+        if self.first != first {
+            (self.framed, self.first) = (None, first);
+            self.options = given.read()?;
+        }
+        let given = &given;
+        let Self { svg, shown, registry, options, framed, .. } = self;
+        let svg = shown.as_mut().filter(|_| !is_file).unwrap_or(svg);
+        svg.renew_budget();
+        svg.restore(options);
+        let session = Session { registry, recipe: &resolved, options, given };
+        let ready = session.ready(svg, Some(framed))?;
+        work(&session, svg, ready)
+    }
+
+    /// The steps and options as the command line has them.
+    fn told(&self, recipe: &Recipe) -> Result<(Recipe, Given, First), Failure> {
+        let (recipe, first) = first_steps::taken(recipe);
+        let mut given = self.given.clone();
+        for (name, value) in &first {
+            given.set(name, value).map_err(Failure::Usage)?;
+        }
+        Ok((recipe, given, first))
+    }
+
+    fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
+        let told = first_steps::taken(recipe).0;
+        self.with_steps(recipe, false, |session, svg, ready| bent(session, svg, ready, &told, fineness))
+    }
+
+    /// The result as a file of this format; for a picture, as the SVG that it is drawn from.
+    fn finished(&mut self, recipe: &Recipe, format: Format) -> Result<Exported, Failure> {
+        let (told, folder) = (first_steps::taken(recipe).0, self.folder.clone());
+        self.with_steps(recipe, true, |session, svg, ready| {
+            let embeds = matches!(format, Format::Svg | Format::Svgz);
+            let text = || {
+                let (line, given) = on_a_line(&told, session.given)?;
+                recipe_file::write(session.registry, &line, &given, &folder)
+            };
+            let request = WarpRequest {
+                recipe: &told,
+                built: &ready.built,
+                options: session.options,
+                tolerance: session.tolerance(svg, &ready.frame)?,
+                suited: session.options.tolerance.is_none(),
+                embedded_recipe: embeds.then(text).transpose()?,
+                same_view: false,
+                edit: None,
+            };
+            svg.set_format(if format.of_picture(None).is_none() { format } else { Format::Svg });
+            let written = svg.written(&request);
+            svg.set_format(Format::Svg);
+            ready.checked(written)
+        })
+    }
+
+    /// The result as the file `to`, and what its format cannot hold.
+    fn written(
+        &mut self,
+        recipe: &Recipe,
+        to: &Path,
+        picture: &PictureOptions,
+    ) -> Result<(Vec<u8>, Vec<String>), Failure> {
+        let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
+        let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
+        let Exported { bytes, warnings } = self.finished(recipe, format)?;
+        if format.of_picture(None).is_none() {
+            return Ok((bytes, warnings));
+        }
+        let limits = self.options.reading.limits.for_input(bytes.len());
+        let tree =
+            usvg_tree::parse_tree(&bytes, "the result", &ReadOptions::default().with_turned(Some(Picture::turned)))?;
+        let size = picture.scale.map_or(Size::Width(picture.width), Size::Scale);
+        let background = picture.background.as_deref().map(background).transpose().map_err(Failure::usage)?;
+        let background = background.and_then(|b| b.0);
+        let drawn = RenderOptions { size, background }.render_within(&tree, &limits)?;
+        Ok((encode(drawn, format, None)?, warnings))
+    }
+
+    fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+        result.map_err(|f| f.message(&self.flags))
+    }
+}
+
+/// What selects the whole drawing.
+const WHOLE: &str = "svg";
+
+/// A recipe and options as a command line has them: what the only step selects is an option, and beside steps for parts, others name the
+/// whole drawing.
+fn on_a_line(recipe: &Recipe, given: &Given) -> Result<(Recipe, Given), Failure> {
+    let (mut recipe, mut given) = (recipe.clone(), given.clone());
+    if let [step] = &mut *recipe.steps {
+        for (option, of) in OF_STEPS {
+            std::mem::take(of(step)).iter().try_for_each(|s| given.set(option, s)).map_err(Failure::Usage)?;
+        }
+    } else if recipe.steps.iter().any(|s| !s.select.is_empty()) {
+        recipe.steps.iter_mut().filter(|s| s.select.is_empty()).for_each(|s| s.select.push(WHOLE.into()));
+    }
+    Ok((recipe, given))
+}
+
+/// Bends the drawing by these steps; `given` are the same as the user wrote them.
+fn bent(
+    session: &Session<'_>,
+    svg: &SvgArtwork,
+    ready: Ready,
+    given: &Recipe,
+    fineness: Fineness,
+) -> Result<Bent, Failure> {
+    let exact = session.tolerance(svg, &ready.frame)?;
+    let is_draft = matches!(fineness, Fineness::Draft(_));
+    let request = WarpRequest {
+        recipe: given,
+        built: &ready.built,
+        options: session.options,
+        tolerance: if let Fineness::Draft(draft) = fineness { draft.max(exact) } else { exact },
+        suited: session.options.tolerance.is_none() && !is_draft,
+        embedded_recipe: None,
+        same_view: true,
+        edit: None,
+    };
+    if is_draft {
+        let (svg, page) = ready.checked(svg.draft(&request))?;
+        let Ready { recipe: resolved, built, .. } = ready;
+        return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
+    }
+    let tolerance = request.tolerance;
+    let warped = ready.checked(svg.warp(&request))?;
+    let WarpedResult::Bytes(bytes) = warped.result else {
+        return Err(Failure::Input("the result is not a drawing".into()));
+    };
+    let edited = svg.edited();
+    let svg = String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?;
+    let Ready { recipe: resolved, built, .. } = ready;
+    let shapes = &warped.shapes;
+    let fold = |s: &ReportedShape| s.fold.at.map(|at| (s.shape.id.clone(), at));
+    let bent = [0, 1].map(|i| shapes.iter().map(|s| [s.shape.path.segments_in, s.shape.path.segments_out][i]).sum());
+    let edited = edited.unwrap_or(bent);
+    let summary = Summary {
+        segments_in: edited[0],
+        segments_out: if shapes.is_empty() { edited[1] } else { bent[1] },
+        max_error: shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max),
+        tolerance,
+        folds: shapes.iter().filter_map(fold).collect(),
+    };
+    let own = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
+    let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
+    warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
+    warnings.extend(warped.skipped.iter().map(|s| format!("{} is not bent: {}", s.id, s.why)));
+    let page = warped.page.change.map(|[_, after]| after);
+    Ok(Bent { svg, page, resolved, built: built.whole, summary: Some(summary), warnings })
+}
+
+impl Artwork for EditedArtwork {
+    fn document(&self) -> &Document {
+        self.svg.document()
+    }
+
+    fn frame(&self) -> Rect {
+        let known = self.framed.as_ref().map(|f| f.frame.rect);
+        known.or_else(|| self.svg.bounding_box(Which::All)).unwrap_or_else(|| self.document().view_box())
+    }
+
+    fn outlines(&self) -> Vec<&Outline> {
+        self.svg.outlines(Which::All)
+    }
+
+    fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
+        let bent = self.bent(recipe, fineness);
+        self.said(bent)
+    }
+
+    fn written(
+        &mut self,
+        recipe: &Recipe,
+        to: &Path,
+        picture: &PictureOptions,
+    ) -> Result<(Vec<u8>, Vec<String>), String> {
+        let written = Self::written(self, recipe, to, picture);
+        self.said(written)
+    }
+
+    fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
+        let settled = self.with_steps(recipe, true, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
+        self.said(settled)
+    }
+
+    fn as_told(&self, recipe: &Recipe) -> Result<(Recipe, Vec<(String, String)>), String> {
+        let (recipe, given, _) = self.said(self.told(recipe))?;
+        let stored = given.stored().flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v)));
+        let options = stored.chain(self.plugins.iter().cloned()).collect();
+        Ok((recipe, options))
+    }
+
+    fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
+        let told = self.told(recipe).and_then(|(recipe, given, _)| on_a_line(&recipe, &given));
+        self.said(told.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, &self.folder)))
+    }
+}
+
+/// The engine with a registry and options, for drawings that are opened.
+pub struct EngineHost {
+    registry: Arc<Registry>,
+    /// Options where neither the user nor the drawing gives any.
+    usual: Given,
+    /// The options as given.
+    given: Given,
+    /// The options that name plug-ins.
+    plugins: Vec<(String, String)>,
+    flags: Arc<Flags>,
+}
+
+impl fmt::Debug for EngineHost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("EngineHost").finish_non_exhaustive()
+    }
+}
+
+impl EngineHost {
+    /// A host with options where neither the user nor the drawing gives any, and those that the user gives.
+    #[must_use]
+    pub fn new(registry: Registry, usual: Given, given: Given) -> Self {
+        let flags = Arc::new(Flags::of(&registry));
+        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags }
+    }
+
+    /// Names plug-ins in command lines by these options.
+    #[must_use]
+    pub fn with_plugins(self, options: Vec<(String, String)>) -> Self {
+        Self { plugins: options, ..self }
+    }
+
+    fn open_drawing(&self, file: &Path, bytes: &[u8]) -> Result<Opened, Failure> {
+        let reading = self.given.read()?.reading;
+        reading.check()?;
+        let limits = reading.limits.for_input(bytes.len());
+        let framed = framed(bytes, &limits).map_err(|e| Failure::file(file, e.message(&self.flags)))?;
+        let bytes = framed.as_deref().unwrap_or(bytes);
+        let origin = Origin::of_file(bytes, "the drawing", &limits).unwrap_or(None);
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let (source, saved) = match &origin {
+            Some(origin) => {
+                let saved = recipe_file::from_text(&*self.registry, &origin.recipe, folder, reading.external);
+                (origin.source.as_slice(), Some(saved.map_err(|e| Failure::file(file, e))?))
+            }
+            None => (bytes, None),
+        };
+        let is_result = saved.is_some();
+        let (recipe, given) = match saved {
+            Some(mut saved) => {
+                if let [step] = &mut *saved.recipe.steps {
+                    OF_STEPS.iter().for_each(|(option, of)| of(step).extend(saved.options.take(option)));
+                }
+                saved.recipe.steps.iter_mut().filter(|s| s.select == [WHOLE]).for_each(|s| s.select.clear());
+                first_steps::put(&mut saved.recipe, |name| saved.options.take(name).pop());
+                (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given))
+            }
+            None => (Recipe::default(), self.usual.overridden_by(&self.given)),
+        };
+        let options = given.read()?;
+        let svg = SvgArtwork::read(source, file, &options, None)?;
+        let named = svg.document().with_ids();
+        let shown = (named != svg.document().text()).then(|| SvgArtwork::read(named.as_bytes(), file, &options, None));
+        let artwork = EditedArtwork::new(svg, shown.transpose()?, &self.registry, given, options, &self.flags);
+        let artwork = artwork.with_plugins(&self.plugins).in_folder(folder);
+        Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
+    }
+
+    fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+        result.map_err(|f| f.message(&self.flags))
+    }
+}
+
+impl Host for EngineHost {
+    fn registry(&self) -> &Registry {
+        &self.registry
+    }
+
+    fn turned(&self) -> Option<Turned> {
+        Some(Picture::turned)
+    }
+
+    fn first(&self) -> &[Info] {
+        &first_steps::FIRST
+    }
+
+    fn foreign_words(&self) -> Vec<(&str, &str)> {
+        let named = coming_from::all().filter_map(|w| Some((w.subcommand()?, w.words)));
+        named.flat_map(|(name, words)| words.into_iter().map(move |w| (w, name))).collect()
+    }
+
+    fn families(&self) -> Vec<String> {
+        self.given.read().map(|o| families(&o.reading.read_options())).unwrap_or_default()
+    }
+
+    fn set_words(&self, words: &Words) -> Result<(String, Vec<char>), String> {
+        let letter_spacing = 0.01 * words.spacing * words.size;
+        let style = TextStyle { size: words.size, letter_spacing, ..TextStyle::default() };
+        let set = |options: CommonOptions| set_plainly(&words.text, words.font.as_deref(), &style, &options.reading);
+        self.said(self.given.read().and_then(set))
+    }
+
+    fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String> {
+        self.said(self.open_drawing(file, bytes))
+    }
+
+    fn reference(&self, file: &Path) -> String {
+        recipe_file::from_here(file)
+    }
+
+    fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String> {
+        self.said(PendingFile::new(to, bytes).and_then(|file| PendingFile::commit_all(vec![file])))
+    }
+}

@@ -1,0 +1,234 @@
+//! Advice in flags, added to the errors and warnings of the libraries, which know no command line.
+
+use crate::catalogue::Catalogue;
+use crate::readable::three_figures;
+use pathwarp::budget::Exceeded;
+use pathwarp::kurbo::Rect;
+use pathwarp::param::Kind;
+use pathwarp::{Error, GeometryError};
+use pathwarp_svg::{LetteringFrameError, UnreadImages, Warning};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The message of an error of the libraries: parameters as flags, with the options that help.
+pub(crate) fn error(e: &Error, flags: &Flags) -> String {
+    match e {
+        // The value is quoted as the user typed it, so only the problem is searched for parameters.
+        Error::Usage { param, value, problem, advice } => {
+            // A likely name says more than the list of all.
+            let likely = flags.likely(param, value).filter(|_| !advice.is_empty());
+            let advice = likely.map_or_else(|| flags.in_text(advice), |name| format!("; did you mean {name}?"));
+            Error::usage(&format!("--{param}"), value, flags.in_text(problem) + &advice).to_string()
+        }
+        Error::Missing { param, hint } => Error::missing(&format!("--{param}"), flags.in_text(hint)).to_string(),
+        Error::Input { limit: Some(exceeded), .. } => format!("{e}; {}", raise(exceeded)),
+        Error::Input { place, problem, .. } => Error::input(place, flags.in_text(problem)).to_string(),
+        Error::Geometry(g) => geometry(g, flags),
+        _ => flags.in_text(&e.to_string()),
+    }
+}
+
+fn geometry(e: &GeometryError, flags: &Flags) -> String {
+    let message = flags.in_text(&flags.in_front(&e.to_string()));
+    match e {
+        GeometryError::Limit(exceeded) => format!("{message}; allow a larger --tolerance, or {}", raise(exceeded)),
+        GeometryError::Infinity { .. } => format!("{message} (--on-error skip)"),
+        GeometryError::FlatFrame { .. } => format!("{message} (--frame X,Y,W,H, or --base where there is one)"),
+        _ => message,
+    }
+}
+
+/// Names the option that raises a limit.
+pub fn raise(exceeded: &Exceeded) -> String {
+    let enough = exceeded.enough();
+    let value = if enough.is_finite() { format!("{enough:.0}") } else { "none".to_owned() };
+    let guess = if exceeded.cut { ", ten times as much, as the whole amount is not known" } else { "" };
+    format!("if you trust the file, raise the limit with --limit {}={value}{guess}", exceeded.limit)
+}
+
+/// The message of an error about a picture, with advice.
+pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
+    match e {
+        pathwarp_raster::Error::TooLarge { exceeded, .. } | pathwarp_raster::Error::TooMuch(exceeded) => {
+            format!("{e}; {}", raise(exceeded))
+        }
+        _ => e.to_string(),
+    }
+}
+
+/// The message of an error about a surface in space, with advice.
+pub fn surface(e: &pathwarp_solid::artwork::Error) -> String {
+    match e {
+        pathwarp_solid::artwork::Error::TooMany { exceeded, .. } => {
+            format!("{e}; allow a larger --tolerance, or {}", raise(exceeded))
+        }
+        _ => e.to_string(),
+    }
+}
+
+/// Describes artwork that the page cuts off and the map stretches, with the frame that prevents it.
+pub(crate) fn stretched(uncut: Rect, stretch: f64) -> String {
+    // Three figures, rounded outwards.
+    let digits = (2.0 - uncut.width().max(uncut.height()).log10().floor()).clamp(0.0, 9.0) as usize;
+    let unit = 0.1f64.powi(digits as i32);
+    let [x0, y0] = [uncut.x0, uncut.y0].map(|v| (v / unit).floor() * unit);
+    let [x1, y1] = [uncut.x1, uncut.y1].map(|v| (v / unit).ceil() * unit);
+    format!(
+        "the page cuts shapes off, and the map, whose frame is what the page shows, stretches the hidden parts {} times as much as the \
+         rest; --frame {x0:.digits$},{y0:.digits$},{:.digits$},{:.digits$} has room for them",
+        three_figures(stretch),
+        x1 - x0,
+        y1 - y0
+    )
+}
+
+/// A warning about fonts that are missing.
+fn missing_fonts(families: &[String]) -> Option<String> {
+    (!families.is_empty()).then(|| Warning::MissingFonts(families.to_vec()).to_string())
+}
+
+/// Lists what a picture of a drawing lacks: fonts, images, and what else is not drawn, of which the first are named; and what browsers
+/// show a little otherwise.
+pub fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String], notes: &[String]) -> Vec<String> {
+    const NAMED: usize = 10;
+    let mut out: Vec<String> = missing_fonts(fonts).into_iter().chain(unread(images)).collect();
+    out.extend(undrawn.iter().take(NAMED).cloned());
+    let more = undrawn.len().saturating_sub(NAMED);
+    out.extend((more > 0).then(|| format!("and {more} more")));
+    out.extend_from_slice(notes);
+    out
+}
+
+/// Describes images that were not read because they lie outside of the drawing's folder.
+pub(crate) fn outside(unread: &UnreadImages) -> Option<String> {
+    let n = unread.outside.len();
+    let what = if n == 1 { "1 linked image lies".to_owned() } else { format!("{n} linked images lie") };
+    (n > 0).then(|| format!("{what} outside of the drawing's folder; --allow-external reads images from anywhere"))
+}
+
+/// Lists the images that were not read.
+fn unread(unread: &UnreadImages) -> Vec<String> {
+    let unreadable = unread.unreadable.iter().map(|link| format!("the image {link} cannot be read"));
+    let outside_links = unread.outside.iter().map(|link| format!("the image {link} was not read"));
+    unreadable.chain(outside_links).chain(outside(unread)).collect()
+}
+
+/// Describes why there is no frame around lettering, with the options that help.
+pub(crate) fn lettering_frame(error: &LetteringFrameError) -> String {
+    let advice = match error {
+        LetteringFrameError::NoLettering => "write it with `pathwarp text`, or use --frame X,Y,W,H or artwork",
+        LetteringFrameError::NotLevel { .. } => "rotate it first, or use --frame artwork",
+        LetteringFrameError::NoHeight => "use --frame baseline-ascent, ink or artwork",
+        _ => "use --frame artwork",
+    };
+    format!("cannot make a frame: {error}; {advice}")
+}
+
+/// The parameters that messages may name.
+pub struct Flags {
+    params: BTreeSet<&'static str>,
+    /// The names that a parameter's value may have.
+    names: BTreeMap<&'static str, Vec<&'static str>>,
+}
+
+impl Flags {
+    /// The parameters of all deformations.
+    pub fn of(catalogue: &dyn Catalogue) -> Self {
+        let params = || catalogue.infos().into_iter().flat_map(|i| i.params);
+        let mut names: BTreeMap<&'static str, Vec<&'static str>> = BTreeMap::new();
+        for p in params() {
+            if let Kind::NameOrFile(values) | Kind::Choice(values) = p.kind {
+                names.entry(p.name).or_default().extend(values);
+            }
+        }
+        Self { params: params().map(|p| p.name).collect(), names }
+    }
+
+    /// The parameters of both.
+    pub fn and(mut self, other: Self) -> Self {
+        self.params.extend(other.params);
+        for (name, values) in other.names {
+            self.names.entry(name).or_default().extend(values);
+        }
+        self
+    }
+
+    /// The name that a wrong value of the parameter `param` most likely means.
+    pub fn likely(&self, param: &str, value: &str) -> Option<&'static str> {
+        likely(&value.to_lowercase(), self.names.get(param)?.iter().copied())
+    }
+
+    /// Puts dashes before a message that begins with a parameter: `base: …`, `base file.svg has …`.
+    pub(crate) fn in_front(&self, message: &str) -> String {
+        let name = message.split([' ', ':']).next().unwrap_or_default();
+        if self.params.contains(name) { format!("--{message}") } else { message.to_owned() }
+    }
+
+    /// Replaces `` `name` `` and `` `name value` `` by `--name` and `--name value` where `name` is a parameter.
+    pub fn in_text(&self, message: &str) -> String {
+        let is_param = |span: &str| {
+            let mut words = span.split(' ');
+            let known = words.next().is_some_and(|w| w.len() > 1 && self.params.contains(w));
+            known && words.count() < 2 && !span.ends_with(' ')
+        };
+        let parts: Vec<&str> = message.split('`').collect();
+        let mut out = String::with_capacity(message.len() + 2);
+        for (i, part) in parts.iter().enumerate() {
+            // Every second part is quoted, except behind a last unpaired quote.
+            let quoted = i % 2 == 1;
+            let closed = i + 1 < parts.len();
+            if quoted && closed && is_param(part) {
+                out.push_str("--");
+                out.push_str(part);
+                continue;
+            }
+            if quoted {
+                out.push('`');
+            }
+            out.push_str(part);
+            if quoted && closed {
+                out.push('`');
+            }
+        }
+        out
+    }
+}
+
+/// Returns the message that there is no `what` called `name`, with the known name that is most like it.
+pub fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    match likely(name, known) {
+        Some(likely) => format!("there is no {what} `{name}`; did you mean `{likely}`?"),
+        None => format!("there is no {what} `{name}`"),
+    }
+}
+
+/// Returns the known name that is most like `name`, if any is like it.
+pub fn likely<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    /// Names below this similarity are not suggested.
+    const LIKELY: f64 = 0.8;
+    let likeness = known.map(|k| (strsim::jaro_winkler(name, k), k)).filter(|(l, _)| *l >= LIKELY);
+    likeness.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, likely)| likely)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::deform::Registry;
+
+    #[test]
+    fn parameters_become_flags() {
+        let flags = Flags::of(&Registry::builtin());
+        assert_eq!(flags.in_text("use `by length`; see `stretch`"), "use --by length; see --stretch");
+        assert_eq!(flags.in_front("base: anchors 1 and 2 coincide"), "--base: anchors 1 and 2 coincide");
+        assert_eq!(flags.in_front("#based has 3 anchors"), "#based has 3 anchors");
+        let unknown = "there is no `wobble`, `along the way` or `by";
+        assert_eq!(flags.in_text(unknown), unknown);
+    }
+
+    #[test]
+    fn likely_names_are_suggested_and_others_are_not() {
+        let known = ["tolerance", "strokes", "select"];
+        let message = |name: &str| unknown("option", name, known.into_iter());
+        assert!(message("tolerence").ends_with("did you mean `tolerance`?"), "{}", message("tolerence"));
+        assert_eq!(message("xyz"), "there is no option `xyz`");
+    }
+}

@@ -1,0 +1,169 @@
+//! Words of other programs and plain words, and what to use here: the table `coming_from.txt`.
+
+use crate::catalogue::Catalogue;
+use pathwarp::param::Kind;
+use std::collections::HashSet;
+use std::fmt::Write as _;
+
+const TABLE: &str = include_str!("coming_from.txt");
+/// Separates the parts of a menu path.
+const STEP: char = '›';
+
+/// A word for something that pathwarp may do.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ForeignWord {
+    /// The program that has it; `None` for plain words.
+    pub program: Option<&'static str>,
+    /// Its names there; the first is the usual one. Menu paths have ` › ` in them.
+    pub words: Vec<&'static str>,
+    /// What to know about it here; may be empty.
+    pub text: &'static str,
+    /// The command line after `pathwarp`, on samples. `None` if there is nothing like it yet.
+    pub command: Option<&'static str>,
+}
+
+impl ForeignWord {
+    /// The subcommand to use.
+    #[must_use]
+    pub fn subcommand(&self) -> Option<&'static str> {
+        self.command?.split(' ').next()
+    }
+
+    /// Returns `true` if this is what a user calls `wanted`, which is [`plain`]: the whole name, or a part of its menu path.
+    fn is_called(&self, wanted: &str) -> bool {
+        self.words.iter().any(|w| plain(w) == wanted || w.split(STEP).any(|part| plain(part) == wanted))
+    }
+
+    /// Returns `true` if all words of `wanted` are in one of the names, or in the name of the program.
+    fn mentions(&self, wanted: &str) -> bool {
+        self.words.iter().any(|w| {
+            let known = plain(&format!("{} {w}", self.program.unwrap_or_default()));
+            let known: HashSet<&str> = known.split(' ').collect();
+            wanted.split(' ').all(|w| known.contains(w))
+        })
+    }
+
+    /// The command line on a drawing of the reader's.
+    fn line(&self) -> Option<String> {
+        let words = self.command?.split(' ').enumerate();
+        let own = words.map(|(i, w)| if i == 1 && w.starts_with("samples/") { "IN.svg" } else { w });
+        Some(format!("pathwarp {}", own.collect::<Vec<_>>().join(" ").replace(" -o out.", " -o OUT.")))
+    }
+}
+
+/// The whole table.
+pub fn all() -> impl Iterator<Item = ForeignWord> {
+    let mut program = None;
+    TABLE.lines().filter_map(move |line| {
+        if let Some(name) = line.strip_prefix("## ") {
+            program = Some(name).filter(|name| *name != "Plain words");
+        }
+        let mut columns = line.split('|').map(str::trim);
+        let (words, text, command) = (columns.next()?, columns.next()?, columns.next()?);
+        let command = Some(command).filter(|c| !c.is_empty());
+        let is_row = !line.starts_with('#');
+        is_row.then(|| ForeignWord { program, words: words.split(';').map(str::trim).collect(), text, command })
+    })
+}
+
+/// The entries that are called `word`, plain ones first.
+fn named(word: &str) -> Vec<ForeignWord> {
+    let wanted = plain(word);
+    let mut named: Vec<ForeignWord> = all().filter(|w| !wanted.is_empty() && w.is_called(&wanted)).collect();
+    named.sort_by_key(|w| w.program.is_some());
+    named
+}
+
+/// The entries that `word` may mean: those of that name, or else those that mention it.
+fn found(word: &str) -> Vec<ForeignWord> {
+    let (named, wanted) = (named(word), plain(word));
+    if named.is_empty() && !wanted.is_empty() { all().filter(|w| w.mentions(&wanted)).collect() } else { named }
+}
+
+/// The styles and presets called `word`, with their command lines.
+fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
+    let name = plain(word).replace(' ', "-");
+    let params = catalogue.infos().into_iter().flat_map(|info| info.params.iter().map(move |p| (info.name, p)));
+    let has = params.filter(|(_, p)| matches!(p.kind, Kind::NameOrFile(names) if names.contains(&name.as_str())));
+    let lines = has.map(|(d, p)| format!("a {0} of {d}: pathwarp {d} IN.svg --{0} {name} -o OUT.svg", p.name));
+    let lines: Vec<String> = lines.collect();
+    (!lines.is_empty()).then(|| format!("{word} is {}", lines.join("; or ")))
+}
+
+/// What a word may mean that was typed as a command.
+pub fn meant(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
+    let preset = presets(catalogue, word);
+    // Programs call by the name of a preset what it is.
+    let is_meant = |w: &ForeignWord| w.program.is_none() || preset.is_none() && w.command.is_some();
+    let entry = named(word).into_iter().find(is_meant);
+    let line = entry.as_ref().and_then(ForeignWord::line);
+    match (preset, line, entry) {
+        (Some(preset), Some(line), _) => Some(format!("{preset}; or use {line}")),
+        (Some(preset), None, _) => Some(preset),
+        (None, Some(line), _) => Some(format!("there is no command {word}; use {line}")),
+        (None, None, Some(entry)) => {
+            Some(format!("there is no command {word}: {}", entry.text.trim_start_matches("Not there: ")))
+        }
+        (None, None, None) => None,
+    }
+}
+
+/// A name in small letters, without signs and without words that say only what it is.
+fn plain(name: &str) -> String {
+    const KINDS: [&str; 5] = ["tool", "effect", "filter", "panel", "lpe"];
+    let name = name.to_lowercase();
+    let words = name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty() && !KINDS.contains(w));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// What `pathwarp help WORD` says; `title` returns what a subcommand does. `None` if the word is unknown.
+pub fn help(catalogue: &dyn Catalogue, word: &str, title: impl Fn(&str) -> Option<String>) -> Option<String> {
+    let mut out = presets(catalogue, word).map(|p| p + "\n\n").unwrap_or_default();
+    for entry in found(word) {
+        let program = entry.program.map(|p| format!("{p}, ")).unwrap_or_default();
+        let _ = write!(out, "{program}{}:", entry.words[0]);
+        if let Some((name, title)) = entry.subcommand().and_then(|name| Some((name, title(name)?))) {
+            let _ = write!(out, " {name} — {title}");
+        }
+        let text = Some(entry.text).filter(|t| !t.is_empty()).map(|t| format!("\n  {t}")).unwrap_or_default();
+        let line = entry.line().map(|line| format!("\n    {line}")).unwrap_or_default();
+        let _ = write!(out, "{text}{line}\n\n");
+    }
+    (!out.is_empty()).then(|| {
+        out + "`pathwarp help NAME` describes a command. The page docs/coming-from.md shows all words with pictures.\n"
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_found_as_people_type_them() {
+        let commands = |word: &str| found(word).iter().map(ForeignWord::subcommand).collect::<Vec<_>>();
+        assert_eq!(commands("puppet-warp tool"), [Some("mls"); 2]);
+        assert_eq!(commands("Rotate"), [Some("affine")]);
+        assert_eq!(commands("Free Distort"), [Some("projective")]);
+        assert_eq!(commands("make with top object"), [Some("envelope")]);
+        assert_eq!(commands("Pattern along Path LPE"), [Some("bend")]);
+        assert!(commands("LIQUIFY").len() > 4 && commands("liquify").contains(&Some("swirl")));
+        assert_eq!(commands("zipper"), [None]);
+        assert!(commands("lattice deformation inkscape").contains(&Some("ffd")));
+        assert!(commands("").is_empty() && commands("›").is_empty() && commands("unheard-of").is_empty());
+    }
+
+    #[test]
+    fn every_line_is_a_row() {
+        let rows = TABLE.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty());
+        assert_eq!(rows.clone().count(), all().count());
+        assert!(rows.clone().all(|l| l.matches('|').count() == 2));
+        for w in all() {
+            assert!(w.words.iter().all(|w| !w.is_empty()), "{w:?}");
+            assert!(w.command.is_some() || w.text.starts_with("Not there"), "{w:?}");
+            for name in &w.words {
+                assert!(found(name).contains(&w), "{name}");
+            }
+        }
+    }
+}

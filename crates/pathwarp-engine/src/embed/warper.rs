@@ -1,0 +1,385 @@
+//! [`Warper`]: a recipe with its options, applied in memory.
+
+use super::error::{Error, guarded};
+use super::{PointMap, check_option, meaning, option_names};
+use crate::edits::{EDITS, EditChoice, still};
+use crate::failure::Failure;
+use crate::input::PlainArtwork;
+use crate::options::{CommonOptions, FrameChoice, Given, Reading};
+use crate::report::Fold;
+use crate::session::{Session, warp_bytes};
+use crate::steps::{self, in_lower_case};
+use crate::{advice, recipe_file, references};
+use pathwarp::Outline;
+use pathwarp::budget::Budget;
+use pathwarp::deform::Registry;
+use pathwarp::fit::{self, Degree};
+use pathwarp::fold::Survey;
+use pathwarp::kurbo::{PathEl, Rect};
+use pathwarp::param::{Args, Frame, Kind, Param};
+use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
+use pathwarp::refit::{self, Assurance};
+use pathwarp_svg::{Edit, WarpedPath};
+use std::fmt;
+use std::path::Path as FilePath;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Options of a warp that a path without a drawing can have.
+const PATH_OPTIONS: [&str; 6] = ["frame", "tolerance", "certify", "merge", "precision", "limit"];
+
+/// What lacks where there is no box.
+const NEEDS_FRAME: &str = "which percentages and defaults refer to: give it (--frame X,Y,W,H)";
+
+/// Deformations one after another, with the options of a warp.
+#[derive(Clone)]
+pub struct Warper {
+    registry: Registry,
+    /// The values as given.
+    typed: Recipe,
+    /// The same with the contents of files.
+    resolved: Recipe,
+    given: Given,
+    /// It was inverted: its frame is the source's, which nothing else tells.
+    inverted: bool,
+    /// Ends the work once it is `true`.
+    stop: Option<&'static AtomicBool>,
+}
+
+impl fmt::Debug for Warper {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Warper").field("recipe", &self.typed).finish_non_exhaustive()
+    }
+}
+
+/// The image of a path.
+#[derive(Debug, Clone, PartialEq)]
+#[must_use]
+pub struct Path {
+    /// The path and its statistics.
+    pub path: WarpedPath,
+    /// Number of orientation changes along the path if it folds, at least 1; else 0.
+    pub folds: usize,
+    /// Warnings of the deformations.
+    pub warnings: Vec<String>,
+    /// The tolerance of the fit.
+    pub tolerance: f64,
+}
+
+/// A warped drawing or picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[must_use]
+pub struct Drawing {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// What was done, shape by shape: the entry of this input in the JSON that `--report` writes.
+    pub report: String,
+    /// The warnings of the report.
+    pub warnings: Vec<String>,
+    /// The decisions that the option `explain` asks for.
+    pub notes: Vec<String>,
+}
+
+impl Warper {
+    /// One deformation, or a preset such as `arc`, with values as a user would type them. Files that the values name are read.
+    ///
+    /// # Errors
+    /// There is no such deformation or parameter, or a file cannot be read.
+    pub fn new(registry: &Registry, name: &str, values: &[(impl AsRef<str>, impl AsRef<str>)]) -> Result<Self, Error> {
+        let (info, preset) = meaning(registry, name).map_err(Error::usage)?;
+        let mut args = Args::new();
+        if let Some((param, value)) = preset {
+            args.push(param, value);
+            if values.iter().any(|(given, _)| given.as_ref() == param) {
+                return Err(Error::usage(format!("{param}: `{name}` is one already")));
+            }
+        }
+        typed(name, info.params, values, &mut args)?;
+        Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
+    }
+
+    /// An edit of shapes, as by the command of this name: `simplify`, `offset` or `outline`, with values as a user would type them.
+    ///
+    /// # Errors
+    /// There is no such edit or parameter.
+    pub fn edit(registry: &Registry, name: &str, values: &[(impl AsRef<str>, impl AsRef<str>)]) -> Result<Self, Error> {
+        let missing = || Error::usage(advice::unknown("edit", name, EDITS.iter().map(|e| e.name)));
+        let info = *EDITS.iter().find(|e| e.name == name).ok_or_else(missing)?;
+        let mut args = Args::new();
+        typed(name, info.params, values, &mut args)?;
+        let mut given = Given::default();
+        given.edit = Some(EditChoice { info, args });
+        Self::of(registry, still(), given)
+    }
+
+    /// The recipe in the text of a recipe file. Paths in it refer to `folder`; absolute ones are allowed only if `external`.
+    ///
+    /// # Errors
+    /// The text is not a recipe, or a file cannot be read.
+    pub fn from_recipe(registry: &Registry, text: &str, folder: &FilePath, external: bool) -> Result<Self, Error> {
+        let saved = guarded(registry, || {
+            let parsed = recipe_file::from_text(registry, text, folder, external);
+            parsed.map_err(|e| Failure::Input(format!("the recipe: {e}")))
+        })?;
+        Self::of(registry, saved.recipe, saved.options)
+    }
+
+    fn of(registry: &Registry, typed: Recipe, given: Given) -> Result<Self, Error> {
+        let mut resolved = typed.clone();
+        guarded(registry, || references::resolve_files(registry, &mut resolved, &Reading::default()))?;
+        Ok(Self { registry: registry.clone(), typed, resolved, given, inverted: false, stop: None })
+    }
+
+    /// Sets an option of the command line, without its dashes; a switch has the value `true`. An option that may be given several
+    /// times gets one more value.
+    ///
+    /// # Errors
+    /// There is no such option, it is one of the program, or the value is wrong.
+    pub fn set_option(&mut self, name: &str, value: &str) -> Result<(), Error> {
+        let about = |e: Error| e.about(name, value);
+        check_option(name).map_err(|e| about(Error::usage(e)))?;
+        let mut given = self.given.clone();
+        given.set(name, value).map_err(|e| about(Error::usage(e)))?;
+        guarded(&self.registry, || given.read()).map_err(about)?;
+        self.given = given;
+        Ok(())
+    }
+
+    /// This recipe and then another. Options of both are kept; the later one's win. If both select, each holds for its own.
+    #[must_use]
+    pub fn then(&self, later: &Self) -> Self {
+        let joined = |a: &Recipe, b: &Recipe| {
+            let mut steps = [&a.steps[..], &b.steps[..]].concat();
+            let (first, second) = steps.split_at_mut(a.steps.len());
+            let (mut of_first, mut of_second) = (self.given.clone(), later.given.clone());
+            steps::assign([(first, &mut of_first), (second, &mut of_second)]);
+            (Recipe { steps }, of_first.overridden_by(&of_second))
+        };
+        let (typed, given) = joined(&self.typed, &later.typed);
+        let (resolved, _) = joined(&self.resolved, &later.resolved);
+        Self { typed, resolved, given, inverted: self.inverted || later.inverted, ..self.clone() }
+    }
+
+    /// The recipe that undoes this one. It needs the option `frame`, the box of the source, before it is used.
+    #[must_use]
+    pub fn inverted(&self) -> Self {
+        Self { typed: self.typed.inverted(), resolved: self.resolved.inverted(), inverted: true, ..self.clone() }
+    }
+
+    /// The same, ended by a switch: once it is `true`, work stops with an error of the kind [`ErrorKind::Limit`](super::ErrorKind::Limit).
+    #[must_use]
+    pub fn stopped_by(&self, switch: &'static AtomicBool) -> Self {
+        Self { stop: Some(switch), ..self.clone() }
+    }
+
+    /// The names of the deformations.
+    pub fn steps(&self) -> impl Iterator<Item = &str> {
+        self.typed.steps.iter().map(|s| s.deformation.as_str())
+    }
+
+    /// The value of the option `frame`, if it is given.
+    #[must_use]
+    pub fn frame(&self) -> Option<String> {
+        self.given.stored().find(|(name, _)| *name == "frame").and_then(|(_, mut values)| values.pop())
+    }
+
+    /// The text of a recipe file for `folder`.
+    ///
+    /// # Errors
+    /// The current folder cannot be read.
+    pub fn to_recipe(&self, folder: &FilePath) -> Result<String, Error> {
+        guarded(&self.registry, || recipe_file::write(&self.registry, &self.typed, &self.given, folder))
+    }
+
+    /// Builds the recipe for points. `bounds` returns their box, to which percentages refer unless the option `frame` is given.
+    /// Later steps of a chain, and inverses, look at the points themselves, which `cloud` returns as one polyline.
+    ///
+    /// # Errors
+    /// A value is wrong, or the geometry does not allow the deformation.
+    pub fn point_map(
+        &self,
+        bounds: impl FnOnce() -> Option<Rect>,
+        cloud: impl FnOnce() -> Outline,
+    ) -> Result<PointMap, Error> {
+        guarded(&self.registry, || {
+            let options = self.options()?;
+            let bounds = match options.frame {
+                // Without a point nothing depends on the box.
+                FrameChoice::Default | FrameChoice::Artwork => bounds().unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0)),
+                _ => Rect::ZERO,
+            };
+            let frame = plain_frame(&options, || Some(bounds))?;
+            let alone = self.typed.steps.len() == 1 && !self.typed.steps.iter().any(|s| s.inverse);
+            let outline = if alone { Outline::default() } else { cloud() };
+            let built_in =
+                |frame: &Frame| self.build(&options, frame, &outline, &Arc::new(Budget::new(options.reading.limits)));
+            let built = built_in(&frame).map_err(|failure| {
+                // If a box with a size mends it, that is what lacks.
+                let roomy = Frame::new(bounds.inflate(1.0, 1.0));
+                let flat = frame.rect.is_zero_area();
+                let lacks = flat && !matches!(options.frame, FrameChoice::Rect(_)) && built_in(&roomy).is_ok();
+                if lacks {
+                    Failure::usage(format!("the box of the points has no size, {NEEDS_FRAME}"))
+                } else {
+                    failure
+                }
+            })?;
+            // Points are mapped as often as the program around this likes.
+            Ok(PointMap::new(built.unlimited()))
+        })
+    }
+
+    /// Bends a path: SVG path data.
+    ///
+    /// # Errors
+    /// The data is malformed, a value is wrong, or the geometry does not allow the deformation.
+    pub fn warp_path(&self, data: &str) -> Result<Path, Error> {
+        let outline = guarded(&self.registry, || Ok(Outline::from_svg(data).map_err(pathwarp::Error::from)?))?;
+        self.warp_outline(&outline)
+    }
+
+    /// Bends an outline.
+    ///
+    /// # Errors
+    /// As [`Warper::warp_path`].
+    pub fn warp_outline(&self, outline: &Outline) -> Result<Path, Error> {
+        self.bent(outline, 1.0)
+    }
+
+    /// Bends an outline to lines and quadratics, as TrueType has them: half of the tolerance is for the cubics, half for theirs.
+    ///
+    /// # Errors
+    /// As [`Warper::warp_path`].
+    pub fn warp_outline_to_quadratics(&self, outline: &Outline) -> Result<Path, Error> {
+        let mut bent = self.bent(outline, 0.5)?;
+        let cubic = |el: &PathEl| matches!(el, PathEl::CurveTo(..));
+        if bent.path.path.elements().iter().any(cubic) {
+            let options = fit::Options::new(bent.tolerance).with_degree(Degree::Quadratic);
+            let fitted = fit::simplify(&bent.path.path, &options).map_err(|e| Error::usage(e.to_string()))?;
+            bent.path.path = fitted.path;
+            bent.path.data = bent.path.path.to_svg();
+            let report = &mut bent.path.report;
+            report.max_error += fitted.report.max_error;
+            report.segments_out = bent.path.path.segments().count();
+            report.assurance = Assurance::Checked;
+        }
+        Ok(bent)
+    }
+
+    /// Bends an outline within a share of the tolerance.
+    fn bent(&self, outline: &Outline, share: f64) -> Result<Path, Error> {
+        guarded(&self.registry, || {
+            if let Some(other) = self.given.names().find(|name| !PATH_OPTIONS.contains(name)) {
+                let known = PATH_OPTIONS.join(", ");
+                return Err(Failure::usage(format!("{other} is not an option of a single path, which has {known}")));
+            }
+            let options = self.options()?;
+            let bounds = outline.bounding_box();
+            let frame = plain_frame(&options, || bounds)?;
+            let tolerance = share * options.tolerance_for(bounds, &frame)?;
+            let budget = Arc::new(Budget::new(options.reading.limits));
+            let built = self.build(&options, &frame, outline, &budget)?;
+            let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
+            let refit = refit.with_suited(options.tolerance.is_none());
+            let copies = &built.placement.copies;
+            let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };
+            let (refit, digits) = (refit.with_budget(budget), options.precision);
+            let path = match options.edit.as_ref().map(|e| e.read(&frame)).transpose()? {
+                None => pathwarp_svg::warp_path(&repeated, &built.map, &refit, digits),
+                Some(Edit::Outline) => return Err(Failure::usage("a path has no stroke that could become an outline")),
+                Some(edit) => pathwarp_svg::edit_path(outline, edit, &refit, digits),
+            };
+            let path = path.map_err(pathwarp::Error::from)?;
+            let survey = Survey::new(&built.map, repeated.bounding_box(), repeated.segs().count());
+            let orientation = survey.orientation_of_copies(outline, copies, true);
+            let folds = Fold::of(&orientation, &orientation).count;
+            built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;
+            let warnings = built.steps.into_iter().flat_map(|s| s.explanation.warnings).collect();
+            Ok(Path { path, folds, warnings, tolerance })
+        })
+    }
+
+    /// Warps a drawing (SVG, also compressed) or a picture (PNG, JPEG, WebP). `name` is its name in messages; linked pictures are
+    /// looked up beside it. Without a name there are none. The page stays unless the option `fit` is given.
+    ///
+    /// # Errors
+    /// The drawing cannot be read, a value is wrong, or the geometry does not allow the deformation.
+    pub fn warp_drawing(&self, bytes: &[u8], name: Option<&FilePath>) -> Result<Drawing, Error> {
+        guarded(&self.registry, || {
+            self.options()?;
+            self.given.check_conflicts().map_err(Failure::Usage)?;
+            let name = name.unwrap_or(FilePath::new(""));
+            let (bytes, done) = warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, name, bytes)?;
+            let report = serde_json::to_string(&done.report).map_err(|e| Failure::Output(e.to_string()))?;
+            Ok(Drawing { bytes, report, warnings: done.report.warnings, notes: done.notes })
+        })
+    }
+
+    /// The options as read, with the switch. An inverse needs a frame.
+    fn options(&self) -> Result<CommonOptions, Failure> {
+        let mut options = self.given.read()?;
+        if self.inverted && matches!(options.frame, FrameChoice::Default) {
+            return Err(Failure::usage(format!("an inverse does not know the box of the source, {NEEDS_FRAME}")));
+        }
+        options.reading.stop(self.stop);
+        Ok(options)
+    }
+
+    /// Builds the recipe for an outline without a drawing.
+    fn build(
+        &self,
+        options: &CommonOptions,
+        frame: &Frame,
+        outline: &Outline,
+        budget: &Arc<Budget>,
+    ) -> Result<BuiltRecipe, Failure> {
+        let session = Session { registry: &self.registry, recipe: &self.resolved, options, given: &self.given };
+        let (frame, budget) = (frame.clone(), Arc::clone(budget));
+        let ready = session.ready(&mut PlainArtwork { outlines: vec![outline], frame, budget }, None)?;
+        Ok(ready.built.whole)
+    }
+}
+
+/// Adds values for the parameters of the deformation or edit `name`.
+fn typed(
+    name: &str,
+    params: &[Param],
+    values: &[(impl AsRef<str>, impl AsRef<str>)],
+    args: &mut Args,
+) -> Result<(), Error> {
+    for (param, value) in values {
+        let (param, value) = (param.as_ref(), value.as_ref());
+        let Some(declared) = params.iter().find(|p| p.name == param) else {
+            return Err(Error::usage(format!("{name}: {}", unknown(params, param))).about(param, value));
+        };
+        if declared.kind == Kind::Save {
+            return Err(Error::usage(format!("{param} writes a file, which only the program does")));
+        }
+        if !(declared.kind == Kind::Flag && value == "false") {
+            args.push(param, in_lower_case(declared, value));
+        }
+    }
+    Ok(())
+}
+
+/// Describes a parameter that there is not. Options are often given beside parameters, so theirs may be meant.
+fn unknown(params: &[Param], param: &str) -> String {
+    if check_option(param).is_ok() {
+        return format!("`{param}` is an option, not a parameter; give it as an option");
+    }
+    let names: Vec<&str> = params.iter().map(|p| p.name).collect();
+    let known = names.iter().copied().chain(option_names().map(|(name, _)| name));
+    let unknown = advice::unknown("parameter", param, known);
+    if unknown.ends_with('?') { unknown } else { format!("{unknown}; there are {}", names.join(", ")) }
+}
+
+/// The frame for artwork that is not a drawing.
+fn plain_frame(options: &CommonOptions, bounds: impl FnOnce() -> Option<Rect>) -> Result<Frame, Failure> {
+    let rect = match options.frame {
+        FrameChoice::Default | FrameChoice::Artwork => bounds().unwrap_or(Rect::ZERO),
+        FrameChoice::Rect(typed) => typed.rect([1.0; 2]),
+        FrameChoice::ViewBox => return Err(Failure::usage("--frame: there is no drawing that has a viewbox")),
+        FrameChoice::Lettering(_) => return Err(Failure::usage("--frame: there is no drawing that holds lettering")),
+    };
+    Ok(Frame::new(rect))
+}

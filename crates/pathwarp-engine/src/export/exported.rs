@@ -1,0 +1,20 @@
+//! What an export gives.
+
+/// A drawing in some format.
+pub struct Exported {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// Messages about content that the format cannot express.
+    pub warnings: Vec<String>,
+}
+
+impl From<Vec<u8>> for Exported {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self { bytes, warnings: Vec::new() }
+    }
+}
+
+/// A number with the noun in the singular or plural.
+pub(super) fn counted(n: usize, one: &str, more: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { more })
+}

@@ -1,0 +1,63 @@
+//! Drawings in the formats besides SVG.
+
+mod dxf;
+mod exported;
+mod kerf;
+mod pdf;
+
+pub use exported::Exported;
+
+use crate::failure::Failure;
+use crate::format::Format;
+use crate::options::CommonOptions;
+use pathwarp::param::LengthUnit;
+use pathwarp_svg::{Document, ReadOptions, compressed};
+use std::path::Path;
+
+/// Writes a document in another format.
+type Writer = fn(&Document, &CommonOptions, Option<f64>) -> Result<Exported, Failure>;
+
+/// A drawing with the page that the options ask for.
+fn resized(doc: &Document, options: &CommonOptions) -> String {
+    let Some(scale) = options.page_scale(doc.size_px()) else { return doc.text().to_owned() };
+    // SVG knows neither metres nor plain numbers that are not px.
+    let (name, unit) = match scale.unit {
+        LengthUnit::Cm => ("cm", LengthUnit::Cm),
+        LengthUnit::In => ("in", LengthUnit::In),
+        LengthUnit::Pt => ("pt", LengthUnit::Pt),
+        LengthUnit::Pc => ("pc", LengthUnit::Pc),
+        LengthUnit::Mm | LengthUnit::M | LengthUnit::Q => ("mm", LengthUnit::Mm),
+        _ => ("", LengthUnit::Px),
+    };
+    doc.resized(scale.by, name, unit.px().unwrap_or(1.0))
+}
+
+/// The drawing `svg` in a format. `read` says how to read it, `tolerance` (user units) how close the lines of a DXF follow
+/// curves; by default it is that of the options.
+pub fn drawing(
+    svg: String,
+    format: Format,
+    read: &ReadOptions,
+    options: &CommonOptions,
+    tolerance: Option<f64>,
+) -> Result<Exported, Failure> {
+    if options.kerf.is_some() && format != Format::Dxf {
+        let advice = "in other formats, `pathwarp offset --by` moves outlines by half of it";
+        return Err(Failure::usage(format!("--kerf is for a DXF; {advice}")));
+    }
+    let resizes = options.page_width.is_some() || options.page_height.is_some();
+    let write: Option<Writer> = match format {
+        Format::Pdf => Some(pdf::write),
+        Format::Dxf => Some(dxf::write),
+        _ => None,
+    };
+    let parsed = |text: &str| Document::read(text.as_bytes(), "the result", read);
+    let svg = if resizes { resized(&parsed(&svg)?, options) } else { svg };
+    if format == Format::Svgz {
+        return Ok(compressed(&svg).map_err(|e| Failure::file(Path::new("the result"), e))?.into());
+    }
+    let Some(write) = write else { return Ok(svg.into_bytes().into()) };
+    // PDF and its reader know single precision only.
+    let there = parsed(&svg)?;
+    write(&there.moved_to_origin()?.map_or(Ok(there), |near| parsed(&near))?, options, tolerance)
+}

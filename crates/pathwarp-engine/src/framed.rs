@@ -1,0 +1,33 @@
+//! Photographs as drawings: a page of the picture's size with the picture on it.
+
+use crate::failure::Failure;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use pathwarp::budget::Limits;
+use pathwarp_raster::{Picture, PictureFormat};
+use std::borrow::Cow;
+
+/// A drawing of a PNG, JPEG or WebP alone, a px for each of its pixels; `None` for other files. Not every program turns images of
+/// drawings as their metadata say, so the pixels are turned.
+pub fn framed(bytes: &[u8], limits: &Limits) -> Result<Option<Vec<u8>>, Failure> {
+    if !Picture::sniff(bytes) {
+        return Ok(None);
+    }
+    let (media_type, format) = match bytes {
+        [0xff, ..] => ("image/jpeg", PictureFormat::Jpeg { quality: PictureFormat::QUALITY }),
+        [b'R', ..] => ("image/webp", PictureFormat::WebP),
+        _ => ("image/png", PictureFormat::Png),
+    };
+    let upright = Picture::read_within(bytes, limits)?;
+    let shown = if Picture::is_turned(bytes, limits) {
+        Cow::Owned(upright.remade(upright.pixmap.clone(), false).write(format)?)
+    } else {
+        Cow::Borrowed(bytes)
+    };
+    let (width, height) = (upright.pixmap.width(), upright.pixmap.height());
+    let size = format!("width=\"{width}\" height=\"{height}\"");
+    let image = format!("<image id=\"picture\" {size} href=\"data:{media_type};base64,{}\"/>", STANDARD.encode(shown));
+    let svg =
+        format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size} viewBox=\"0 0 {width} {height}\">{image}</svg>");
+    Ok(Some(svg.into_bytes()))
+}

@@ -1,0 +1,106 @@
+//! Files beside the result: the picture of `--preview`, and the artwork on a surface in space as OBJ, a mesh of the filled shapes or
+//! curves.
+
+use crate::advice;
+use crate::bitmap::encode;
+use crate::failure::Failure;
+use crate::format::{Choice, PICTURES};
+use pathwarp::deform::{Built, Role};
+use pathwarp::kurbo::{Affine, Point};
+use pathwarp::map::Map;
+use pathwarp::recipe::{BuiltParts, BuiltRecipe};
+use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
+use pathwarp_solid::artwork::{self, NamedShape};
+use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
+use std::path::{Path, PathBuf};
+
+/// The formats of previews.
+pub const PREVIEW: Choice<'_> = Choice { what: "a preview is", among: PICTURES };
+
+/// Draws the picture for a file, with a quality if it is a JPEG. Bases are drawn over the source; targets and cages over the
+/// result, which `back` has moved as a whole after all steps.
+pub(super) fn preview(
+    doc: &Document,
+    (warped, back): (&str, Affine),
+    built: &BuiltParts,
+    read: &ReadOptions,
+    (file, quality): (&Path, Option<u8>),
+) -> Result<Vec<u8>, Failure> {
+    let format = PREVIEW.format(Some(file), None)?;
+    let after = Document::read(warped.as_bytes(), "the result", read)?;
+    let mut left = Panel::new(usvg_tree::tree(doc), doc.user_to_px(), doc.view_box());
+    let mut right = Panel::new(usvg_tree::tree(&after), after.user_to_px(), after.view_box());
+    let everything = Selection::default();
+    // All artwork is shown, including what the warp moved off the page.
+    for (panel, doc) in [(&mut left, doc), (&mut right, &after)] {
+        *panel = doc.artwork_box(&everything).into_iter().fold(panel.clone(), Panel::showing);
+    }
+    let whole = &built.whole;
+    for (i, step) in whole.steps.iter().enumerate() {
+        let at = |end: fn(&[usize]) -> Option<&usize>| built.parts.iter().any(|p| end(&p.indices) == Some(&i));
+        let (is_first, is_last) = (at(<[usize]>::first), at(<[usize]>::last));
+        let has_target = step.explanation.overlays.iter().any(|o| o.role == Role::Target);
+        for o in &step.explanation.overlays {
+            // The guides of a middle step lie in a plane that neither panel shows. A cage whose result goes to a target is
+            // only a pattern, so it is drawn over the source.
+            let (panel, kind, to) = match o.role {
+                Role::Base if is_first => (&mut left, OverlayKind::Base, Affine::IDENTITY),
+                Role::Cage if is_first && has_target => (&mut left, OverlayKind::Cage, Affine::IDENTITY),
+                Role::Cage if is_last => (&mut right, OverlayKind::Cage, back),
+                Role::Target if is_last => (&mut right, OverlayKind::Target, back),
+                _ => continue,
+            };
+            *panel = panel.clone().with(PreviewOverlay::new(kind, to * &o.path));
+        }
+    }
+    encode(Preview::new(left, right).render_within(&doc.budget().limits())?, format, quality)
+}
+
+/// Refuses steps that write such a file for artwork which other steps have bent in several ways.
+pub(super) fn check_surface(built: &BuiltParts) -> Result<(), Failure> {
+    let asks = |(i, step): (usize, &Built)| {
+        let file = step.space.as_ref()?.files.first()?;
+        let parts = built.parts.iter().filter(|p| p.indices.contains(&i)).count();
+        (parts > 1).then_some((file.param, i))
+    };
+    match built.whole.steps.iter().enumerate().find_map(asks) {
+        Some((param, i)) => Err(Failure::usage(format!(
+            "--{param} writes one surface, but step {} holds for parts that other steps bend in different ways; run it by itself",
+            i + 1
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// The first parameter that asks for such a file.
+pub(super) fn surface_requested(built: &BuiltRecipe) -> Option<&'static str> {
+    built.steps.iter().filter_map(|s| s.space.as_ref()).find_map(|s| s.files.first()).map(|f| f.param)
+}
+
+/// The files that the recipe's steps ask for, with their text.
+pub(super) fn surface_files(
+    doc: &Document,
+    built: &BuiltRecipe,
+    options: &WarpOptions,
+) -> Result<Vec<(PathBuf, String)>, Failure> {
+    let mut out = Vec::new();
+    for (i, step) in built.steps.iter().enumerate() {
+        let Some(space) = &step.space else { continue };
+        let before = &built.steps[..i];
+        let place = |p: Point| (space.place)(before.iter().fold(p, |q, s| s.map.point(q)));
+        let shapes: Vec<_> = doc.selected(&options.selection).collect();
+        for file in &space.files {
+            let wanted = shapes.iter().filter(|s| s.filled || !file.filled);
+            let wanted: Vec<NamedShape<'_>> =
+                wanted.map(|s| NamedShape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect();
+            let made = if file.filled {
+                artwork::filled(&wanted, &place, options.refit.tolerance, doc.budget())
+            } else {
+                artwork::outlines(&wanted, &place, options.refit.tolerance, doc.budget())
+            };
+            let text = made.map_err(|e| Failure::Geometry(format!("--{}: {}", file.param, advice::surface(&e))))?;
+            out.push((PathBuf::from(&file.name), text));
+        }
+    }
+    Ok(out)
+}

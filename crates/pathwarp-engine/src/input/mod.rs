@@ -1,0 +1,66 @@
+//! Input files: the kinds of artwork and what the pipeline asks of each, and the readers of other files.
+
+mod artwork;
+mod before;
+mod beside;
+mod crop;
+mod files;
+mod gimp;
+mod gimp_file;
+mod picture;
+mod svg;
+
+pub use artwork::{Artwork, Baseline, FileArtwork, PlainArtwork, WarpRequest, WarpedResult, Which};
+pub use beside::PREVIEW;
+pub use files::{
+    bytes, described, display, document, document_of, no_document, not_a_drawing, read_data_file, read_options,
+    split_reference, unreadable,
+};
+pub use gimp::file_name;
+pub use gimp::{outline, svg_name};
+pub use gimp_file::{GimpFile, resized};
+pub use svg::SvgArtwork;
+
+use crate::failure::Failure;
+use crate::options::CommonOptions;
+use pathwarp_raster::Picture;
+use picture::PictureArtwork;
+use std::path::Path;
+
+/// An input file.
+pub struct Input(Box<dyn FileArtwork>);
+
+impl Input {
+    /// Opens an input and checks that the options and the target suit its kind.
+    pub fn open(input: &Path, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
+        if let (None, Some(bytes)) = (&options.into, files::ordinary_bytes(input)?) {
+            return Self::of_bytes(&bytes, input, options, target);
+        }
+        if let Some(paths) = gimp::open(input, options, target)? {
+            return Ok(Self(paths));
+        }
+        if options.into.is_some() {
+            let file = display(input);
+            return Err(Failure::usage(format!("--into copies an XCF with its paths warped; {file} is not an XCF")));
+        }
+        Self::of_bytes(&bytes(input)?, input, options, target)
+    }
+
+    /// A drawing or picture with this content. `input` is its name.
+    pub(crate) fn of_bytes(
+        bytes: &[u8],
+        input: &Path,
+        options: &CommonOptions,
+        target: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        if Picture::sniff(bytes) {
+            return Ok(Self(Box::new(PictureArtwork::read(bytes, input, options, target)?)));
+        }
+        Ok(Self(Box::new(SvgArtwork::read(bytes, input, options, target)?)))
+    }
+
+    /// What it holds, to be warped.
+    pub fn artwork(&mut self) -> &mut dyn FileArtwork {
+        &mut *self.0
+    }
+}

@@ -1,0 +1,553 @@
+//! SVG drawings as artwork.
+
+use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
+use super::before::{Edited, Original, Wanted};
+use super::beside;
+use super::files::{display, not_a_drawing, read_options};
+use crate::bitmap::Bender;
+use crate::failure::Failure;
+use crate::format::{Choice, DRAWINGS, Format};
+use crate::options::{CommonOptions, FrameChoice};
+use crate::output::PendingFile;
+use crate::page::{self, PageNews};
+use crate::report::{Fold, ReportedShape, SkippedShape};
+use crate::units::units_per_px;
+use crate::{advice, export, meter};
+use pathwarp::budget::{Budget, Limit};
+use pathwarp::fold::{self, Orientation, Survey};
+use pathwarp::kurbo::{Affine, Rect, Size};
+use pathwarp::map::{AffineMap, Map};
+use pathwarp::param::Frame;
+use pathwarp::recipe::{BuiltRecipe, Step};
+use pathwarp::{Error, Outline, refit};
+use pathwarp_svg::{
+    Document, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
+    Selection, ShapeReport, Strokes, WarpOptions, WarpedDocument,
+};
+use rayon::prelude::*;
+use std::cell::LazyCell;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// With fewer segments, starting threads takes longer than looking for folds.
+const WORTH_THREADS: usize = 5000;
+
+/// Pages that differ by less have the same scale.
+const SAME_SCALE: f64 = 1e-3;
+
+/// Resolution of bitmaps in a draft.
+const DRAFT_DPI: f64 = 24.0;
+
+/// An SVG drawing. Its plane is root user space.
+pub struct SvgArtwork {
+    name: String,
+    doc: Document,
+    read: ReadOptions,
+    selection: Selection,
+    /// What each step holds for, and what each set of steps does; empty if all hold for everything.
+    steps: Vec<Selection>,
+    parts: Vec<Selection>,
+    /// The format of the result.
+    format: Format,
+    /// The drawing as it was read, if `doc` is an edited one.
+    original: Option<Original>,
+}
+
+impl SvgArtwork {
+    /// Reads a drawing; `input` is its name, and `target` that of the result, whose extension says the format.
+    pub fn read(bytes: &[u8], input: &Path, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
+        let format = format(options, input, target).map_err(|e| not_a_drawing(bytes, input, e))?;
+        let (name, read) = (display(input), read_options(input, &options.reading));
+        let of_pictures = [
+            (options.crop, "crop", "--fit page fits the page of a drawing"),
+            (options.image_size.is_some(), "size", "--page-width gives the page of a drawing its size"),
+        ];
+        if let Some((_, option, instead)) = of_pictures.into_iter().find(|(given, ..)| *given) {
+            return Err(Failure::usage(format!("--{option} is for PNG, JPEG and WebP files; {instead}")));
+        }
+        let doc = Document::read(bytes, &name, &read).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
+        meter::count_pixels(doc.budget().taken(Limit::Pixels));
+        let selection = selection(options);
+        doc.check_selection(&selection)?;
+        Ok(Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format, original: None })
+    }
+
+    /// Counts the work from here on anew, for a drawing that is bent again and again.
+    pub fn renew_budget(&mut self) {
+        self.doc.renew_budget();
+        if let Some(original) = &mut self.original {
+            original.document.renew_budget();
+        }
+    }
+
+    /// Undoes a division into parts.
+    pub fn restore(&mut self, options: &CommonOptions) {
+        (self.selection, self.steps, self.parts) = (selection(options), Vec::new(), Vec::new());
+    }
+
+    /// The drawing as it was read.
+    pub fn document(&self) -> &Document {
+        self.original.as_ref().map_or(&self.doc, |o| &o.document)
+    }
+
+    /// The segments of the drawing before and after its edits, if it was edited before bending.
+    pub fn edited(&self) -> Option<[usize; 2]> {
+        let count = |d: &Document, s: &Selection| d.selected(s).map(|s| s.outline.segs().count()).sum();
+        let original = self.original.as_ref()?;
+        Some([count(&original.document, original.wanted.whole()), count(&self.doc, &self.selection)])
+    }
+
+    /// The result for a look at it while something is dragged: within the tolerance, but not merged into few nodes, and with gradients
+    /// and bitmaps in the coarse.
+    /// Returns it with the page that it would have.
+    pub fn draft(&self, request: &WarpRequest<'_>) -> Result<(String, Option<Rect>), Failure> {
+        let draft = |k: usize, built: &BuiltRecipe| {
+            let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
+            options.filters = Filters::Affine;
+            options.refit = options.refit.with_merge(false);
+            if let Images::Warp(_) = options.images {
+                let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
+                options.images = Images::Warp(Arc::new(bender.with_budget(self.doc.budget().clone())));
+            }
+            options
+        };
+        let warped = self.bent(&request.built.parts, draft)?.1;
+        Ok((warped.svg, warped.page.map(|[_, after]| after)))
+    }
+
+    /// The result in its format, without looking for folds.
+    pub fn written(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
+        let (_, warped, tolerance) = self.warped(request)?;
+        export::drawing(warped.svg, self.format, &self.read, request.options, Some(tolerance))
+    }
+
+    /// Changes the format of the result.
+    pub fn set_format(&mut self, format: Format) {
+        self.format = format;
+    }
+
+    /// The selection that is meant.
+    fn selection(&self, which: Which) -> &Selection {
+        let own = match which {
+            Which::All => None,
+            Which::Step(i) => self.steps.get(i),
+            Which::Part(k) => self.parts.get(k),
+        };
+        own.unwrap_or(&self.selection)
+    }
+
+    /// Bends every part of the drawing. Returns the options for each, too.
+    fn bent(
+        &self,
+        parts: &[BuiltRecipe],
+        options: impl Fn(usize, &BuiltRecipe) -> WarpOptions,
+    ) -> Result<(Vec<WarpOptions>, WarpedDocument), Error> {
+        let options: Vec<WarpOptions> = parts.iter().enumerate().map(|(k, built)| options(k, built)).collect();
+        let bends: Vec<(&dyn Map, &WarpOptions)> =
+            parts.iter().zip(&options).map(|(built, options)| (&built.map as &dyn Map, options)).collect();
+        let mut warped = self.doc.warp_each(&bends)?;
+        if let (Some(back), Some(own)) = (warped.back, options.first()) {
+            warped.svg = self.moved(&warped.svg, back, own)?;
+        }
+        if let Some(original) = &self.original {
+            warped.svg = original.without_ids(&warped.svg);
+        }
+        Ok((options, warped))
+    }
+
+    /// A result, all of it scaled and moved.
+    fn moved(&self, svg: &str, to: Affine, own: &WarpOptions) -> Result<String, Error> {
+        let doc = Document::read(svg.as_bytes(), &self.name, &self.read)?;
+        let refit = refit::Options::new(own.refit.tolerance).with_budget(doc.budget().clone());
+        let options = WarpOptions::new(refit).with_precision(own.precision).with_text(own.text);
+        let options = options.with_structure(own.structure).with_clones(own.clones);
+        Ok(doc.warp(&AffineMap(to), &options)?.svg)
+    }
+
+    /// The drawing bent within the tolerance, which may be a length of the result's page, with its recipe. Returns the options for each part
+    /// and the tolerance, too.
+    fn warped(&self, request: &WarpRequest<'_>) -> Result<(Vec<WarpOptions>, WarpedDocument, f64), Failure> {
+        let WarpRequest { built, options: common, mut tolerance, .. } = *request;
+        let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        // The scale of the result's page is known once the artwork is on it.
+        if common.has_tolerance_of_result()
+            && let Some(scale) = common.page_scale(self.size_px(warped.page))
+            && (scale.by - 1.0).abs() > SAME_SCALE
+        {
+            tolerance /= scale.by;
+            let finer = WarpRequest { tolerance, edit: request.edit, embedded_recipe: None, ..*request };
+            (options, warped) = self.bent(&built.parts, |k, part| self.warp_options(&finer, k, part))?;
+        }
+        if let Some(recipe) = &request.embedded_recipe {
+            let origin = Origin { recipe: recipe.clone(), source: self.document().source().to_vec() };
+            warped.svg = origin.embed(&warped.svg)?;
+        }
+        Ok((options, warped, tolerance))
+    }
+
+    /// The options for a part of the drawing.
+    fn warp_options(&self, request: &WarpRequest<'_>, k: usize, built: &BuiltRecipe) -> WarpOptions {
+        let WarpRequest { options, tolerance, .. } = request;
+        let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
+        let bender = Arc::new(bender);
+        // Of a picture, a cutter would see nothing; cutters and plotters follow the shape alone.
+        let (gradients, filters) = match options.gradients {
+            _ if self.format != Format::Dxf => (options.gradients, options.filters),
+            Gradients::Keep => (Gradients::Keep, Filters::Affine),
+            _ => (Gradients::Fit, Filters::Affine),
+        };
+        let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
+        let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
+        let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
+        let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
+        let warp = WarpOptions::new(refit)
+            .with_precision(options.precision)
+            .with_strokes(match options.strokes {
+                // A cutter follows the middle of a stroke.
+                Strokes::Auto if self.format == Format::Dxf => Strokes::Keep,
+                given => given,
+            })
+            .with_union(options.union)
+            .with_text(options.text)
+            .with_structure(options.structure)
+            .with_selection(self.selection(Which::Part(k)).clone())
+            .with_on_error(options.on_failure.of_shapes())
+            .with_gradients(gradients)
+            .with_filters(filters)
+            .with_painter(Some(Painter::new(Arc::clone(&bender))))
+            .with_patterns(options.patterns)
+            .with_page(if self.stays(request).is_some() { PageFit::None } else { options.page })
+            .with_same_view(request.same_view)
+            .with_grown(self.original.as_ref().and_then(|o| o.grown))
+            .with_clones(options.clones)
+            .with_copies(built.placement.copies.clone())
+            .with_letters(letters)
+            .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
+        request.edit.map_or(warp.clone(), |e| warp.editing(e))
+    }
+
+    /// What each step selects.
+    fn selections(&self, steps: &[Step]) -> Vec<Selection> {
+        let own = |s: &Step| Selection {
+            select: s.select.clone(),
+            exclude: s.exclude.clone(),
+            guides: self.selection.guides.clone(),
+            ..Selection::default()
+        };
+        steps.iter().map(own).collect()
+    }
+
+    /// The size of the result's page in px, which is the source's, or `after` instead of `before` in its units.
+    fn size_px(&self, page: Option<[Rect; 2]>) -> Size {
+        let Size { width, height } = self.doc.size_px();
+        page.map_or(Size { width, height }, |[before, after]| {
+            Size::new(width * after.width() / before.width(), height * after.height() / before.height())
+        })
+    }
+
+    /// The reason why the page stays although it could grow.
+    fn stays(&self, request: &WarpRequest<'_>) -> Option<&'static str> {
+        let may_grow = request.options.page == PageFit::Auto;
+        may_grow.then(|| page::stays(&self.doc, request.options, request.recipe)).flatten()
+    }
+
+    /// The orientation under the map of every shape of a part.
+    fn orientations(
+        &self,
+        k: usize,
+        built: &BuiltRecipe,
+        options: &WarpOptions,
+    ) -> Result<Vec<(&str, Orientation)>, Error> {
+        let bounds = self.bounding_box(Which::Part(k));
+        let copies = &built.placement.copies;
+        let shapes: Vec<_> = self.doc.selected(&options.selection).collect();
+        let segments: usize = shapes.iter().map(|s| s.outline.segs().count()).sum();
+        let all_copies = bounds.and_then(|b| match copies.as_slice() {
+            [] => Some(b),
+            places => places.iter().map(|m| m.transform_rect_bbox(b)).reduce(|a, b| a.union(b)),
+        });
+        let survey = Survey::new(&built.map, all_copies, segments * copies.len().max(1));
+        let filled = shapes.iter().filter(|s| s.filled).count();
+        survey.spend(filled, segments, copies.len(), self.doc.budget())?;
+        // A letter that is placed on its own can fold only in a later step.
+        let placed = self.doc.placed(options);
+        let orientation = |(s, placed): (&'_ pathwarp_svg::Shape, &Option<Outline>)| match placed {
+            Some(outline) => fold::orientation(outline, s.filled, &built.after),
+            None => survey.orientation_of_copies(&s.outline, copies, s.filled),
+        };
+        let all: Vec<Orientation> = if survey.samples() && segments >= WORTH_THREADS {
+            shapes.par_iter().map(|s| *s).zip(&placed).map(orientation).collect()
+        } else {
+            shapes.iter().copied().zip(&placed).map(orientation).collect()
+        };
+        Ok(shapes.iter().map(|s| s.id.as_str()).zip(all).collect())
+    }
+
+    /// The same of every picture.
+    fn picture_orientations(
+        &self,
+        k: usize,
+        built: &BuiltRecipe,
+        options: &WarpOptions,
+    ) -> Result<Vec<(String, Orientation)>, Error> {
+        let pictures = self.doc.picture_edges(&options.selection);
+        if pictures.is_empty() || matches!(options.images, Images::Keep) {
+            return Ok(Vec::new());
+        }
+        let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), 4 * pictures.len());
+        survey.spend(pictures.len(), 4 * pictures.len(), 1, self.doc.budget())?;
+        let orientation = |o: &Outline| survey.orientation_of_copies(o, &built.placement.copies, true);
+        Ok(pictures.into_iter().map(|(name, edge)| (name, orientation(&edge))).collect())
+    }
+
+    /// The folds of the shapes and pictures of a part: those of shapes by their ids, and the warnings.
+    fn folds(
+        &self,
+        k: usize,
+        built: &BuiltRecipe,
+        options: &WarpOptions,
+        warped: &WarpedDocument,
+    ) -> Result<(HashMap<&str, Fold>, Vec<String>), Error> {
+        // Parts of one text or `use` share an id and count as one shape in the report.
+        let mut by_id: HashMap<&str, Orientation> = HashMap::new();
+        let mut all = Orientation::default();
+        for (id, o) in self.orientations(k, built, options)? {
+            all = all.and(&o);
+            let sum = by_id.entry(id).or_default();
+            *sum = sum.and(&o);
+        }
+        let pictures = self.picture_orientations(k, built, options)?;
+        all = pictures.iter().fold(all, |all, (_, o)| all.and(o));
+        let (mut out, mut warnings) = (HashMap::new(), Vec::new());
+        let places = &built.placement;
+        let survey = LazyCell::new(|| Survey::new(&built.map, None, 1));
+        let lettering = LazyCell::new(|| self.doc.lettering(&options.selection));
+        let letters = LazyCell::new(|| {
+            // Letters that are placed one by one do not follow the map.
+            let letters = if places.letters.is_empty() { lettering.letters() } else { &[] };
+            artwork::letters_by_shape(self.doc.selected(&options.selection).map(|s| (&*s.id, &*s.outline)), letters)
+        });
+        for (name, o) in &pictures {
+            warnings.extend(o.folded_against(&all).map(|at| artwork::fold_warning(name, &[], at)));
+        }
+        for s in &warped.shapes {
+            let Some((&id, o)) = by_id.get_key_value(s.id.as_str()).filter(|(id, _)| !out.contains_key(**id)) else {
+                continue;
+            };
+            let fold = Fold::of(o, &all);
+            if let Some(at) = fold.at {
+                let orientation = |o: &Outline| survey.orientation_of_copies(o, &places.copies, true);
+                let letters = artwork::folded(letters.get(id), &all, orientation);
+                warnings.push(artwork::fold_warning(id, &letters, at));
+            }
+            out.insert(id, fold);
+        }
+        Ok((out, warnings))
+    }
+
+    /// The report of every shape, and the fold warnings.
+    fn shape_reports(
+        &self,
+        parts: &[BuiltRecipe],
+        options: &[WarpOptions],
+        warped: &WarpedDocument,
+    ) -> Result<(Vec<ReportedShape>, Vec<String>), Error> {
+        let (mut folds, mut warnings) = (Vec::new(), Vec::new());
+        for (k, (built, options)) in parts.iter().zip(options).enumerate() {
+            let (of_part, warned) = self.folds(k, built, options, warped)?;
+            folds.push(of_part);
+            warnings.extend(warned);
+        }
+        let report = |s: &ShapeReport| {
+            let own = folds.iter().enumerate().find_map(|(k, folds)| Some((k, folds.get(s.id.as_str())?)));
+            let steps =
+                own.filter(|_| !self.parts.is_empty()).map(|(k, _)| parts[k].indices.iter().map(|i| i + 1).collect());
+            let fold = own.map_or(Fold { count: 0, at: None }, |(_, fold)| fold.clone());
+            ReportedShape { shape: s.clone(), steps, fold }
+        };
+        Ok((warped.shapes.iter().map(report).collect(), warnings))
+    }
+}
+
+/// The selection that holds for all steps.
+fn selection(options: &CommonOptions) -> Selection {
+    Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() }
+}
+
+/// The format of the result. An extension that says none may be the input's own, which then is SVG, too.
+fn format(options: &CommonOptions, input: &Path, target: Option<&Path>) -> Result<Format, Failure> {
+    let is_own = |t: &&Path| Format::of(t).is_none() && t.extension() == input.extension();
+    let named = if target.as_ref().is_some_and(is_own) { None } else { target };
+    let format = Choice { what: "a drawing is", among: DRAWINGS }.format(named, options.format)?;
+    if options.embed_recipe && !matches!(format, Format::Svg | Format::Svgz) {
+        let word = format.extension();
+        return Err(Failure::usage(format!("--embed-recipe is for SVG files; a .{word} has no place for the source")));
+    }
+    Ok(format)
+}
+
+impl Artwork for SvgArtwork {
+    fn path_named(&self, name: &str) -> Result<Outline, Error> {
+        Ok(self.document().path(name)?.outline)
+    }
+
+    fn remove_guides(&mut self, guides: Vec<String>) {
+        self.selection.guides = guides;
+    }
+
+    fn edit_first(&mut self, options: &CommonOptions, steps: &[Step]) -> Result<(), Failure> {
+        if !options.edits_first() {
+            if let Some(original) = self.original.take() {
+                self.doc = original.document;
+            }
+            return Ok(());
+        }
+        let steps = if steps.iter().any(Step::is_selective) { self.selections(steps) } else { Vec::new() };
+        let wanted = Wanted::new(self.document(), options, self.selection.clone(), steps)?;
+        if self.original.as_ref().is_some_and(|o| o.wanted == wanted) {
+            return Ok(());
+        }
+        let Edited { document: doc, grown, warnings } =
+            wanted.done(self.document(), &self.name, &self.read, options)?;
+        let edited = std::mem::replace(&mut self.doc, doc);
+        let document = self.original.take().map_or(edited, |o| o.document);
+        self.original = Some(Original { document, wanted, grown, warnings });
+        Ok(())
+    }
+
+    fn divide(&mut self, steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure> {
+        let mut all = self.selections(steps);
+        all.iter().try_for_each(|s| self.doc.check_selection(s))?;
+        // What is selected for the whole recipe restricts every step.
+        let whole = all.len();
+        all.push(self.selection.clone());
+        let mut divisions = self.doc.divide(&all);
+        divisions.retain_mut(|d| d.among.pop_if(|last| *last == whole).is_some() && !d.among.is_empty());
+        let of_step =
+            |i: usize| self.doc.united(divisions.iter().filter(|d| d.among.contains(&i)).map(|d| &d.selection));
+        self.steps = (0..whole).map(of_step).collect();
+        let (among, parts) = divisions.into_iter().map(|d| (d.among, d.selection)).unzip();
+        self.parts = parts;
+        self.selection = self.doc.united(self.parts.iter());
+        Ok(among)
+    }
+
+    fn bounding_box(&self, which: Which) -> Option<Rect> {
+        self.doc.seen_box(self.selection(which))
+    }
+
+    fn painted_box(&self) -> Option<Rect> {
+        self.doc.painted_box(&self.selection)
+    }
+
+    fn uncut_box(&self, which: Which, bounds: Rect) -> Option<Rect> {
+        self.doc.uncut_box(self.selection(which), bounds)
+    }
+
+    fn frame(
+        &self,
+        which: Which,
+        choice: FrameChoice,
+        bounds: Option<Rect>,
+        baseline: Baseline,
+    ) -> Result<Frame, Failure> {
+        let artwork = || Frame::new(bounds.unwrap_or_else(|| self.doc.view_box()));
+        let plain = match choice {
+            FrameChoice::Default | FrameChoice::Artwork => Some(artwork()),
+            FrameChoice::ViewBox => Some(Frame::new(self.doc.view_box())),
+            FrameChoice::Rect(r) => Some(Frame::new(r.rect(self.units_per_px()))),
+            FrameChoice::Lettering(_) => None,
+        };
+        // Finding the lettering takes longer than reading the drawing.
+        let lettering = match (&plain, baseline) {
+            (Some(frame), Baseline::None) => return Ok(frame.clone()),
+            _ => self.doc.lettering(self.selection(which)),
+        };
+        let frame = match (choice, plain) {
+            (FrameChoice::Lettering(kind), _) => {
+                lettering.frame(kind).map_err(|e| Error::input(&self.name, advice::lettering_frame(&e)))?
+            }
+            (FrameChoice::Default, _) if baseline == Baseline::Open && lettering.is_all() && lettering.is_level() => {
+                lettering.frame(LetteringFrame::BaselineAscent).unwrap_or_else(|_| artwork())
+            }
+            (_, plain) => plain.unwrap_or_else(artwork),
+        };
+        Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
+    }
+
+    fn units_per_px(&self) -> [f64; 2] {
+        units_per_px(&self.doc)
+    }
+
+    fn page(&self) -> Option<Rect> {
+        Some(self.doc.view_box())
+    }
+
+    fn budget(&self) -> &Arc<Budget> {
+        self.doc.budget()
+    }
+
+    fn outlines(&self, which: Which) -> Vec<&Outline> {
+        self.doc.selected(self.selection(which)).map(|s| &*s.outline).collect()
+    }
+}
+
+/// The warning about gradients that became pictures.
+fn pictured(shapes: &[ReportedShape]) -> Option<String> {
+    match shapes.iter().map(|s| s.shape.pictures).sum() {
+        0 => None,
+        1 => Some("a gradient became a picture; --gradients fit keeps it vector".into()),
+        n => Some(format!("{n} gradients became pictures; --gradients fit keeps them vector")),
+    }
+}
+
+impl FileArtwork for SvgArtwork {
+    fn file_name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
+        let WarpRequest { built, options: common, .. } = request;
+        let (options, mut warped, tolerance) = self.warped(request)?;
+        let page = PageNews::of(&mut warped, common.page, self.stays(request));
+        let (shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;
+        let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
+        warnings.extend(self.original.iter().flat_map(|o| &o.warnings).cloned());
+        let empty = !self.doc.has_artwork(&self.selection);
+        if empty {
+            warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
+        }
+        warnings.extend(pictured(&shapes));
+        warnings.extend(match warped.filters[0].len() {
+            0 => None,
+            1 => Some("a filter became a picture; --filters affine keeps it".into()),
+            n => Some(format!("{n} filters became pictures; --filters affine keeps them")),
+        });
+        warnings.extend(folds);
+        warnings.extend(advice::outside(&self.doc.unread_images()));
+        beside::check_surface(built)?;
+        let parts = built.parts.iter().zip(&options);
+        let surfaces = parts.map(|(part, options)| beside::surface_files(&self.doc, part, options));
+        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?.concat();
+        let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
+        let files = files.collect::<Result<_, _>>()?;
+        let preview = common.preview.as_deref();
+        let shown = (warped.svg.as_str(), warped.back.unwrap_or_default());
+        let preview = preview.map(|file| beside::preview(&self.doc, shown, built, &self.read, (file, common.quality)));
+        let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
+        warnings.extend(result.warnings);
+        Ok(WarpedArtwork {
+            result: WarpedResult::Bytes(result.bytes),
+            shapes,
+            skipped: warped.skipped.into_iter().map(|s| SkippedShape { id: s.id, why: s.why }).collect(),
+            warnings,
+            files,
+            preview: preview.transpose()?,
+            partial: empty,
+            page,
+            filters: warped.filters,
+            tolerance: Some(tolerance),
+        })
+    }
+}

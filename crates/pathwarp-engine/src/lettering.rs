@@ -1,0 +1,84 @@
+//! Words set as outlines: fonts found by file or family, and laid out within the limits.
+
+use crate::advice;
+use crate::failure::Failure;
+use crate::input;
+use crate::options::Reading;
+use pathwarp::budget::{Exceeded, Limit, Limits, cost};
+use pathwarp::param::LengthUnit;
+use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, bundled_font, write_lettering};
+use pathwarp_text::{Font, OutlinedText, TextLimits, TextStyle, layout_within};
+use std::path::Path;
+
+/// The weight of a family's regular font.
+pub const REGULAR: u16 = 400;
+
+/// Finds a font by its file or by its family.
+pub fn find_font(name: &str, weight: u16, italic: bool, options: &ReadOptions) -> Result<FontFile, Failure> {
+    let read = |path: &Path, index| input::bytes(path).map(|bytes| FontFile { bytes, index });
+    let path = Path::new(name);
+    if path.is_file() {
+        return read(path, 0);
+    }
+    if let Some((file, index)) = name.rsplit_once('#')
+        && let Ok(index) = index.parse()
+    {
+        return read(Path::new(file), index);
+    }
+    let kinds = ["ttf", "otf", "ttc", "otc", "woff", "woff2", "pfb"];
+    let looks_like_file = name.contains(['/', '\\'])
+        || path.extension().and_then(|e| e.to_str()).is_some_and(|e| kinds.iter().any(|k| e.eq_ignore_ascii_case(k)));
+    if looks_like_file {
+        return read(path, 0);
+    }
+    Ok(pathwarp_svg::find_font(name, weight, italic, options)?)
+}
+
+/// Sets words in a family, or in the bundled font, as a drawing in mm, and lists the characters that neither has.
+pub fn set_plainly(
+    words: &str,
+    family: Option<&str>,
+    style: &TextStyle,
+    reading: &Reading,
+) -> Result<(String, Vec<char>), Failure> {
+    let read = reading.read_options();
+    let file = family.map(|name| find_font(name, REGULAR, false, &read)).transpose()?;
+    let own = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
+    let fonts: Vec<Font<'_>> = own.into_iter().chain([bundled()?]).collect();
+    let text = laid_out(words, &fonts, style, &reading.limits.for_input(words.len()))?;
+    let options = LetteringOptions { fill: None, margin: 0.0, unit: Some(LengthUnit::Mm) };
+    Ok((write_lettering(&text, &options)?, text.missing))
+}
+
+/// The font in a file that `name` names.
+pub fn read_font<'a>(name: &str, file: &'a FontFile) -> Result<Font<'a>, Failure> {
+    Font::new(&file.bytes, file.index).map_err(|e| Failure::Input(format!("{name}: {e}")))
+}
+
+/// The bundled font.
+pub fn bundled() -> Result<Font<'static>, Failure> {
+    Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))
+}
+
+/// Lays out words within the limits.
+pub fn laid_out(words: &str, fonts: &[Font<'_>], style: &TextStyle, limits: &Limits) -> Result<OutlinedText, Failure> {
+    let max = |cost: f64| (limits.of(Limit::Work) / cost) as usize;
+    let max = TextLimits { letters: max(cost::LETTER), segments: max(cost::SEGMENT) };
+    layout_within(words, fonts, style, &max).map_err(|e| failure(&e, limits))
+}
+
+/// Maps an error of the layout: a bad option is wrong usage, anything else a problem of the font or the text.
+fn failure(e: &pathwarp_text::Error, limits: &Limits) -> Failure {
+    use pathwarp_text::Error as E;
+    match e {
+        E::Style { .. } | E::Empty => Failure::usage(e.to_string()),
+        E::Setting { .. } => Failure::usage(format!("--script or --language: {e}")),
+        &E::TooLarge { needed, most, .. } => {
+            let work = limits.of(Limit::Work);
+            let needed = work * needed as f64 / most as f64;
+            let exceeded = Exceeded { limit: Limit::Work, most: work, needed, cut: true };
+            Failure::Input(format!("{e}; {}", advice::raise(&exceeded)))
+        }
+        _ => Failure::Input(e.to_string()),
+    }
+}

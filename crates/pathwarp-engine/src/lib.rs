@@ -1,0 +1,50 @@
+//! The engine of pathwarp: from artwork, deformations and options to a result and a report. The command line, the editor, C, Python and
+//! Inkscape are front ends of it.
+//!
+//! A [`Warper`] is a recipe with its options, given as text, as on a command line. It maps points, bends paths and warps drawings in
+//! memory. Nothing is printed, and no file is written. Panics become errors.
+//!
+//! ```
+//! use pathwarp::deform::Registry;
+//! use pathwarp_engine::Warper;
+//!
+//! let mut warper = Warper::new(&Registry::builtin(), "arc", &[("bend", "40%")])?;
+//! warper.set_option("tolerance", "0.01")?;
+//! let warped = warper.warp_path("M0,0 H100 V50 H0 Z")?;
+//! assert!(warped.path.data.starts_with('M') && warped.path.report.max_error <= 0.01);
+//! # Ok::<(), pathwarp_engine::Error>(())
+//! ```
+//!
+//! A front end that reads and writes files takes the same road in parts: [`options`] are read, an [`Input`](input::Input) is opened, a
+//! [`Session`](session::Session) builds the steps for it and warps it, and [`output`] puts the files in place.
+
+#![expect(missing_debug_implementations, reason = "front ends show none of the parts")]
+
+pub mod advice;
+pub mod bitmap;
+pub mod catalogue;
+pub mod coming_from;
+pub mod edits;
+mod embed;
+pub mod export;
+pub mod failure;
+mod filters;
+pub mod first_steps;
+pub mod format;
+pub mod framed;
+pub mod input;
+pub mod lettering;
+pub mod meter;
+pub mod options;
+pub mod output;
+pub mod page;
+pub mod readable;
+pub mod recipe_file;
+pub mod references;
+pub mod report;
+pub mod session;
+pub mod steps;
+pub mod temporaries;
+pub mod units;
+
+pub use embed::{Details, Drawing, Error, ErrorKind, Path, PointMap, Warper, option_names, option_words, preset};

@@ -1,0 +1,630 @@
+//! The table of common options: each is declared here, and nowhere else.
+
+use super::common::{
+    CommonOptions, OnFailure, family_name, frame, image_size, limit, positive, positive_length, side_of_page,
+    some_length,
+};
+use crate::format::Format;
+use pathwarp_svg::{Clones, Filters, Gradients, PageFit, Patterns, Strokes, Structure, TextMode};
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+/// An option without short name, default and conflicts, stored in recipes.
+const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
+    CommonOption {
+        name,
+        short: None,
+        alias: None,
+        value,
+        default: None,
+        stored: true,
+        reading: false,
+        conflicts: &[],
+        help,
+    }
+}
+
+/// An option that names files or changes what is printed; recipes do not store it.
+const fn of_the_run(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
+    CommonOption { stored: false, ..stored(name, value, help) }
+}
+
+/// A family for one of CSS's generic names.
+const fn family(
+    name: &'static str,
+    set: fn(&mut CommonOptions, &str) -> Result<(), String>,
+    help: &'static str,
+) -> CommonOption {
+    let value = OptionValue::Text { name: "FAMILY", minus: LeadingMinus::No, set };
+    CommonOption { reading: true, ..stored(name, value, help) }
+}
+
+/// Fonts besides the installed ones.
+const fn fonts(name: &'static str, value: &'static str, help: &'static str) -> CommonOption {
+    let value = OptionValue::List {
+        name: value,
+        push: |o, path| {
+            o.reading.fonts.paths.push(path.into());
+            Ok(())
+        },
+    };
+    CommonOption { reading: true, ..of_the_run(name, value, help) }
+}
+
+/// All common options, in the order of help.
+pub static OPTIONS: &[CommonOption] = &[
+    CommonOption {
+        short: Some('o'),
+        ..of_the_run(
+            "out",
+            OptionValue::File { name: "OUT", set: |o, file| o.out = Some(file).filter(|f| f.as_os_str() != "-") },
+            "Write the result to this file, in the format of its extension (--format); - or none writes to standard \
+             output. {stem} in the name stands for the input's name without extension",
+        )
+    },
+    CommonOption {
+        default: Some("auto"),
+        conflicts: &["into"],
+        ..of_the_run(
+            "format",
+            OptionValue::Choice(&[
+                ("auto", |o| o.format = None),
+                ("svg", |o| o.format = Some(Format::Svg)),
+                ("svgz", |o| o.format = Some(Format::Svgz)),
+                ("pdf", |o| o.format = Some(Format::Pdf)),
+                ("dxf", |o| o.format = Some(Format::Dxf)),
+                ("png", |o| o.format = Some(Format::Png)),
+                ("jpg", |o| o.format = Some(Format::Jpeg)),
+                ("webp", |o| o.format = Some(Format::WebP)),
+                ("json", |o| o.format = Some(Format::PointList)),
+            ]),
+            "Format of the result: of a drawing svg, svgz, pdf or dxf (outlines in mm), of a picture png, jpg or webp \
+             (without loss), of GIMP paths also json. auto goes by the extension; to standard output drawings are \
+             written as svg, pictures as png. With --out-dir it names the files, too",
+        )
+    },
+    CommonOption {
+        conflicts: &["out"],
+        ..of_the_run(
+            "out-dir",
+            OptionValue::File { name: "DIR", set: |o, dir| o.out_dir = Some(dir) },
+            "Write the results of several inputs to this folder, under their own names, or under another, such as \
+             DIR/{stem}-bent.svg; missing folders are created",
+        )
+    },
+    CommonOption {
+        conflicts: &["out-dir"],
+        ..of_the_run(
+            "in-place",
+            OptionValue::Switch(|o| o.in_place = true),
+            "Overwrite the inputs; without it, an output that is also an input is an error",
+        )
+    },
+    CommonOption {
+        short: Some('r'),
+        ..of_the_run(
+            "recursive",
+            OptionValue::Switch(|o| o.recursive = true),
+            "Warp the SVG files (.svg, .svgz) in folders and the folders below; --out-dir gets the same folders",
+        )
+    },
+    of_the_run(
+        "dry-run",
+        OptionValue::Switch(|o| o.dry_run = true),
+        "Print which file would be written for each input, and write none",
+    ),
+    CommonOption {
+        conflicts: &["out", "out-dir"],
+        ..of_the_run(
+            "into",
+            OptionValue::File { name: "COPY.xcf", set: |o, copy| o.into = Some(copy) },
+            "For an XCF: write a copy of it with its paths warped and every other byte kept",
+        )
+    },
+    stored(
+        "salvage",
+        OptionValue::Switch(|o| o.salvage = true),
+        "Read the paths before the damage in a damaged GIMP file",
+    ),
+    stored(
+        "simplify",
+        OptionValue::Text {
+            name: "D",
+            minus: LeadingMinus::Any,
+            set: |o, text| {
+                o.simplify = some_length(text)?;
+                if o.simplify.is_some_and(|l| l.value < 0.0) { Err(format!("`{text}` is below zero")) } else { Ok(()) }
+            },
+        },
+        "Before bending, give paths the fewest nodes within this distance, such as 0.2mm or 0.1% (of the artwork's diagonal), as \
+         `pathwarp simplify` does",
+    ),
+    stored(
+        "outset",
+        OptionValue::Text {
+            name: "D",
+            minus: LeadingMinus::Any,
+            set: |o, text| some_length(text).map(|d| o.outset = d),
+        },
+        "Before bending, let areas grow by this distance, as `pathwarp offset` does; below zero, they shrink",
+    ),
+    CommonOption {
+        default: Some("1e-4 of the artwork's diagonal, and for small contours 2e-3 of their own"),
+        ..stored(
+            "tolerance",
+            OptionValue::Text {
+                name: "D",
+                minus: LeadingMinus::Number,
+                set: |o, text| positive_length(text).map(|d| o.tolerance = Some(d)),
+            },
+            "Largest distance between the exact curve and the output: user units, or a length such as 0.05mm. If it is given, it holds for \
+             all contours alike",
+        )
+    },
+    stored(
+        "certify",
+        OptionValue::Switch(|o| o.certify = true),
+        "Prove the distance where the deformation allows it, instead of measuring it",
+    ),
+    CommonOption {
+        default: Some("on"),
+        ..stored(
+            "merge",
+            OptionValue::Choice(&[("on", |o| o.merge = true), ("off", |o| o.merge = false)]),
+            "Join pieces across smooth joints where that saves nodes; off keeps every node of the source",
+        )
+    },
+    CommonOption {
+        default: Some("artwork; baseline-ascent if a deformation with a baseline gets only lettering"),
+        ..stored(
+            "frame",
+            OptionValue::Text {
+                name: "artwork|viewbox|baseline-ascent|baseline-capheight|…|X,Y,W,H",
+                minus: LeadingMinus::Any,
+                set: |o, text| frame(text).map(|f| o.frame = f),
+            },
+            "Box that percentages and defaults refer to. For lettering (text, or output of `pathwarp text`) also \
+             baseline-ascent, baseline-capheight, baseline-xheight (from the baseline up, between the ends of the \
+             lines), ascent-descent, or ink (the bounding box of the letters). X, Y, W and H may have units, such as 20mm",
+        )
+    },
+    stored(
+        "select",
+        OptionValue::List {
+            name: "SEL",
+            push: |o, text| {
+                o.select.push(text.to_owned());
+                Ok(())
+            },
+        },
+        "Warp only these: #id, .class, an element's tag, a label, or a place as reports have it (path at 12:5); may be given several times. In several parts of a chain, each \
+         holds for its own step",
+    ),
+    stored(
+        "exclude",
+        OptionValue::List {
+            name: "SEL",
+            push: |o, text| {
+                o.exclude.push(text.to_owned());
+                Ok(())
+            },
+        },
+        "Leave these unchanged; takes the same values as --select",
+    ),
+    CommonOption {
+        default: Some("enough for a hundredth of the tolerance; a tenth of that of small contours"),
+        ..stored(
+            "precision",
+            OptionValue::Whole { name: "N", range: 0..=15, set: |o, n| o.precision = u8::try_from(n).ok() },
+            "Decimals of coordinates",
+        )
+    },
+    CommonOption {
+        default: Some("auto"),
+        ..stored(
+            "strokes",
+            OptionValue::Choice(&[
+                ("auto", |o| o.strokes = Strokes::Auto),
+                ("keep", |o| o.strokes = Strokes::Keep),
+                ("scale", |o| o.strokes = Strokes::Scale),
+                ("outline", |o| o.strokes = Strokes::Outline),
+            ]),
+            "Strokes: keep their width, scale it by the local stretch, or convert them to outlines that are \
+             warped; auto keeps them in a DXF, where cutters follow their middle, and else scales if the edges are then within the tolerance, the width is right within 2 %, or the \
+             stroke is a hairline (no wider than the tolerance or, on a page measured in mm, cm, in, pt or pc, than \
+             0.1 mm), and outlines elsewhere",
+        )
+    },
+    stored(
+        "union",
+        OptionValue::Switch(|o| o.union = true),
+        "Make outlines of strokes simple, and in a DXF those of filled shapes, as cutters need them: no overlaps and no inner loops within a path",
+    ),
+    CommonOption {
+        default: Some("outline"),
+        ..stored(
+            "text",
+            OptionValue::Choice(&[("outline", |o| o.text = TextMode::Outline), ("skip", |o| o.text = TextMode::Skip)]),
+            "Text: warp its outlines, or leave it unchanged",
+        )
+    },
+    fonts("font-file", "FILE", "Use this font for text, too; may be given several times"),
+    fonts("fonts-dir", "DIR", "Use the fonts in this folder and the folders below, too; may be given several times"),
+    CommonOption {
+        reading: true,
+        ..stored(
+            "no-system-fonts",
+            OptionValue::Switch(|o| o.reading.fonts.no_system = true),
+            "Use only the fonts that are given or embedded in the drawing, and the bundled Noto Sans",
+        )
+    },
+    family(
+        "serif-family",
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.serif = Some(n)),
+        "The family that serif stands for",
+    ),
+    family(
+        "sans-serif-family",
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.sans_serif = Some(n)),
+        "The family that sans-serif stands for",
+    ),
+    family(
+        "cursive-family",
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.cursive = Some(n)),
+        "The family that cursive stands for",
+    ),
+    family(
+        "fantasy-family",
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.fantasy = Some(n)),
+        "The family that fantasy stands for",
+    ),
+    family(
+        "monospace-family",
+        |o, name| family_name(name).map(|n| o.reading.fonts.generic.monospace = Some(n)),
+        "The family that monospace stands for",
+    ),
+    CommonOption {
+        default: Some("auto"),
+        ..stored(
+            "gradients",
+            OptionValue::Choice(&[
+                ("auto", |o| o.gradients = Gradients::Auto),
+                ("exact", |o| o.gradients = Gradients::Exact),
+                ("fit", |o| o.gradients = Gradients::Fit),
+                ("keep", |o| o.gradients = Gradients::Keep),
+            ]),
+            "Gradients follow the best affine fit. Where its colours would be off by more than 3 % (auto) or 0.6 % \
+             (exact), the nearest gradient with more stops takes its place, or else a picture clipped to the shape; fit never \
+             makes pictures, keep leaves them unchanged",
+        )
+    },
+    CommonOption {
+        default: Some("auto"),
+        ..stored(
+            "filters",
+            OptionValue::Choice(&[
+                ("auto", |o| o.filters = Filters::Auto),
+                ("affine", |o| o.filters = Filters::Affine),
+                ("picture", |o| o.filters = Filters::Picture),
+            ]),
+            "Filters follow the best affine fit (affine). Where that would look wrong (auto) or in any case (picture), a picture \
+             shows what they draw; a shape with a shadow or glow stays a shape",
+        )
+    },
+    CommonOption {
+        default: Some("auto"),
+        ..stored(
+            "patterns",
+            OptionValue::Choice(&[
+                ("auto", |o| o.patterns = Patterns::Auto),
+                ("instantiate", |o| o.patterns = Patterns::Instantiate),
+                ("fit", |o| o.patterns = Patterns::Fit),
+                ("keep", |o| o.patterns = Patterns::Keep),
+            ]),
+            "Patterns: warp every tile, follow the best affine fit, or stay unchanged; auto warps the tiles where the \
+             difference is visible and they are not too many",
+        )
+    },
+    CommonOption {
+        default: Some("auto"),
+        ..stored(
+            "fit",
+            OptionValue::Choice(&[
+                ("auto", |o| o.page = PageFit::Auto),
+                ("none", |o| o.page = PageFit::None),
+                ("grow", |o| o.page = PageFit::Grow),
+                ("page", |o| o.page = PageFit::PageWithMargin),
+                ("shrink", |o| o.page = PageFit::Shrink),
+            ]),
+            "Page: leave it unchanged (none), grow it to hold the warped artwork, make it the bounding box of the artwork with the \
+             margin of the original (page), or scale the result back into it (shrink). auto grows it, to whole units and with its margin, \
+             where artwork leaves it, and says so; the pages of icons (square, up to 64 px), of paper sizes, of batches, and those that \
+             steps refer to stay, with a warning if artwork extends past them",
+        )
+    },
+    stored(
+        "page-width",
+        OptionValue::Text {
+            name: "LENGTH",
+            minus: LeadingMinus::Any,
+            set: |o, text| side_of_page(text).map(|l| o.page_width = Some(l)),
+        },
+        "Width of the result's page, such as 80mm; its height is in proportion. A --tolerance and --kerf with units are lengths of the result \
+         then, while lengths in parameters are those of the source",
+    ),
+    stored(
+        "page-height",
+        OptionValue::Text {
+            name: "LENGTH",
+            minus: LeadingMinus::Any,
+            set: |o, text| side_of_page(text).map(|l| o.page_height = Some(l)),
+        },
+        "Height of the result's page; with --page-width, the page is as large as fits inside both",
+    ),
+    CommonOption {
+        default: Some("copy"),
+        ..stored(
+            "clones",
+            OptionValue::Choice(&[("copy", |o| o.clones = Clones::Copy), ("follow", |o| o.clones = Clones::Follow)]),
+            "Clones (use) that are not warped themselves, of shapes that are: copy what they showed, so that they look as \
+             before, or let them follow the warped shape",
+        )
+    },
+    CommonOption {
+        default: Some("auto"),
+        ..stored(
+            "structure",
+            OptionValue::Choice(&[
+                ("auto", |o| o.structure = Structure::Auto),
+                ("keep", |o| o.structure = Structure::Keep),
+                ("flatten", |o| o.structure = Structure::Flatten),
+            ]),
+            "Document: keep its text and structure where possible, fail if they cannot be kept, or write a new \
+             flat document",
+        )
+    },
+    CommonOption {
+        default: Some("warp"),
+        ..stored(
+            "images",
+            OptionValue::Choice(&[("warp", |o| o.warp_images = true), ("keep", |o| o.warp_images = false)]),
+            "Bitmaps in a drawing: warp their pixels, or place them by the best affine fit",
+        )
+    },
+    CommonOption {
+        default: Some("high enough to keep every detail"),
+        ..stored(
+            "image-dpi",
+            OptionValue::Text {
+                name: "N",
+                minus: LeadingMinus::No,
+                set: |o, text| positive(text).map(|dpi| o.image_dpi = Some(dpi)),
+            },
+            "Resolution of the warped bitmaps in a drawing, in pixels per inch of the drawing; also of what filters draw in \
+             a PDF (there 300 by default)",
+        )
+    },
+    CommonOption {
+        conflicts: &["fit"],
+        ..stored(
+            "crop",
+            OptionValue::Switch(|o| o.crop = true),
+            "Cut a warped PNG, JPEG or WebP to the image of the frame: of the corners given to a perspective, of what a cage around part of \
+             a photograph holds (--inverse), or else of the whole picture. If that is upright, it gets as many pixels as the frame's \
+             sides have in the photograph. Without it, --fit page (as auto) shows all of the warped picture, none keeps the photograph's edges",
+        )
+    },
+    CommonOption {
+        alias: Some("size"),
+        default: Some("the size of the warped picture"),
+        ..stored(
+            "image-size",
+            OptionValue::Text {
+                name: "W[xH]",
+                minus: LeadingMinus::No,
+                set: |o, text| image_size(text).map(|size| o.image_size = Some(size)),
+            },
+            "Size in pixels of a warped PNG, JPEG or WebP",
+        )
+    },
+    stored(
+        "keep-location",
+        OptionValue::Switch(|o| o.keep_location = true),
+        "Keep the place where a photograph was taken in its EXIF data; without it, they come along without the place and the thumbnail",
+    ),
+    CommonOption {
+        default: Some("spline"),
+        ..stored(
+            "dxf-curves",
+            OptionValue::Choice(&[("spline", |o| o.dxf_polylines = false), ("polyline", |o| o.dxf_polylines = true)]),
+            "Curves in a DXF: splines, or for programs that know none, polylines within the tolerance; either way, \
+             each contour is one entity. Lines, arcs and circles are exact in both",
+        )
+    },
+    of_the_run(
+        "kerf",
+        OptionValue::Text {
+            name: "D",
+            minus: LeadingMinus::Any,
+            set: |o, text| positive_length(text).map(|d| o.kerf = Some(d)),
+        },
+        "Width of the cut, such as 0.2mm: the outer contours of a DXF grow by half of it and holes shrink, so that parts have \
+         their size; open lines stay",
+    ),
+    CommonOption {
+        default: Some("92"),
+        ..stored(
+            "quality",
+            OptionValue::Whole { name: "N", range: 1..=100, set: |o, n| o.quality = u8::try_from(n).ok() },
+            "Quality of a JPEG, from 1 (small) to 100 (fine)",
+        )
+    },
+    CommonOption {
+        default: Some("continue"),
+        ..stored(
+            "on-error",
+            OptionValue::Choice(&[
+                ("continue", |o| o.on_failure = OnFailure::Continue),
+                ("stop", |o| o.on_failure = OnFailure::Stop),
+                ("skip", |o| o.on_failure = OnFailure::Skip),
+            ]),
+            "If an input cannot be read or one of its shapes cannot be warped: continue with the other inputs, stop \
+             and write nothing, or skip only the shape and leave it unchanged",
+        )
+    },
+    of_the_run(
+        "report",
+        OptionValue::File { name: "FILE", set: |o, file| o.report = Some(file) },
+        "Write a report of every shape as JSON; - writes it to standard output",
+    ),
+    of_the_run(
+        "write-recipe",
+        OptionValue::File { name: "FILE", set: |o, file| o.write_recipe = Some(file) },
+        "Save this command line as a recipe for `pathwarp run`; - writes it to standard output",
+    ),
+    of_the_run(
+        "embed-recipe",
+        OptionValue::Switch(|o| o.embed_recipe = true),
+        "Store the recipe and the source in the output's <metadata>; `pathwarp unwarp` restores them",
+    ),
+    of_the_run(
+        "preview",
+        OptionValue::File { name: "FILE", set: |o, file| o.preview = Some(file) },
+        "Draw the artwork, its guides and the result as a picture (.png, .jpg or .webp; - is a PNG on standard output)",
+    ),
+    of_the_run(
+        "explain",
+        OptionValue::Switch(|o| o.explain = true),
+        "Print the decisions made for you: corners, sides, directions",
+    ),
+    CommonOption {
+        short: Some('j'),
+        default: Some("one per core"),
+        ..of_the_run(
+            "jobs",
+            OptionValue::Whole { name: "N", range: 1..=u16::MAX, set: |o, n| o.jobs = Some(n.into()) },
+            "Number of threads; the output does not depend on it",
+        )
+    },
+    CommonOption {
+        reading: true,
+        ..of_the_run(
+            "limit",
+            OptionValue::List { name: "NAME=N", push: |o, text| limit(text, &mut o.reading.limits) },
+            "Raise or lower a limit on the work that an input may cause, such as work=1e9, or memory=none; may be given \
+         several times. The limits are bytes, elements, pixels (of pictures), work, memory (in bytes) and, as the last resort, \
+         seconds (of processor time, 130 at first, more than ten times what all of the work usually takes); without this option they grow with \
+         the size of the input and its pictures",
+        )
+    },
+    CommonOption {
+        reading: true,
+        ..of_the_run(
+            "allow-external",
+            OptionValue::Switch(|o| o.reading.external = true),
+            "Read linked pictures and drawings from anywhere, not only beside the input or in folders below it, and let a \
+         recipe name files by absolute paths",
+        )
+    },
+    CommonOption {
+        reading: true,
+        ..of_the_run(
+            "base-dir",
+            OptionValue::File { name: "DIR", set: |o, folder| o.reading.base = Some(folder) },
+            "The folder that links to pictures and drawings are relative to, instead of the input's",
+        )
+    },
+    CommonOption {
+        short: Some('q'),
+        ..of_the_run("quiet", OptionValue::Switch(|o| o.quiet = true), "Print no warnings and no progress")
+    },
+];
+
+/// One common option.
+pub struct CommonOption {
+    /// Long name, and the key in a recipe's `[options]`.
+    pub name: &'static str,
+    /// Its letter on a command line.
+    pub short: Option<char>,
+    /// Another long name, on the command line only.
+    pub alias: Option<&'static str>,
+    /// What it takes.
+    pub value: OptionValue,
+    /// Default, in words for help. The default of a [`Choice`](OptionValue::Choice) is one of its words.
+    pub default: Option<&'static str>,
+    /// Recipes store the option: it shapes the result, rather than naming files or changing what is printed.
+    pub stored: bool,
+    /// Every command that reads drawings has the option.
+    pub reading: bool,
+    /// Options that cannot be given together with this one.
+    pub conflicts: &'static [&'static str],
+    /// What it does, in a sentence.
+    pub help: &'static str,
+}
+
+/// Sets an option whose value needs no parsing.
+pub(crate) type Set = fn(&mut CommonOptions);
+
+/// The kind of value an option takes, and how it updates [`CommonOptions`].
+#[expect(missing_docs, reason = "names, ranges and setters")]
+pub enum OptionValue {
+    /// Present or absent; takes no value.
+    Switch(Set),
+    /// One of these words.
+    Choice(&'static [(&'static str, Set)]),
+    /// A whole number in a range.
+    Whole { name: &'static str, range: RangeInclusive<u16>, set: fn(&mut CommonOptions, u16) },
+    /// Text with its own syntax. The error names the fault without the option.
+    Text { name: &'static str, minus: LeadingMinus, set: fn(&mut CommonOptions, &str) -> Result<(), String> },
+    /// Text; may be given several times.
+    List { name: &'static str, push: fn(&mut CommonOptions, &str) -> Result<(), String> },
+    /// A file or folder.
+    File { name: &'static str, set: fn(&mut CommonOptions, PathBuf) },
+}
+
+/// Values that may start with a minus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "names, ranges and setters")]
+pub enum LeadingMinus {
+    No,
+    /// If it is a number.
+    Number,
+    Any,
+}
+
+impl CommonOption {
+    /// The help text with the default.
+    pub fn help(&self) -> String {
+        match self.default {
+            Some(d) => format!("{} [default: {d}]", self.help),
+            None => self.help.to_owned(),
+        }
+    }
+
+    /// Returns `true` if the option may be given several times.
+    pub(crate) fn repeats(&self) -> bool {
+        matches!(self.value, OptionValue::List { .. })
+    }
+
+    /// The words of a choice.
+    pub fn words(&self) -> Vec<&'static str> {
+        match &self.value {
+            OptionValue::Choice(words) => words.iter().map(|(word, _)| *word).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Checks a value as far as the kind alone decides: `Ok` if it is one of the words, in the range, or `true` for a switch.
+    pub(crate) fn check(&self, value: &str) -> Result<(), String> {
+        match &self.value {
+            OptionValue::Switch(_) if value != "true" => Err(format!("`{value}` is neither true nor false")),
+            OptionValue::Choice(words) if !words.iter().any(|(word, _)| *word == value) => {
+                Err(format!("`{value}` is not one of {}", self.words().join(", ")))
+            }
+            OptionValue::Whole { range, .. } if !value.parse().is_ok_and(|n| range.contains(&n)) => {
+                Err(format!("`{value}` is not a whole number from {} to {}", range.start(), range.end()))
+            }
+            _ => Ok(()),
+        }
+    }
+}

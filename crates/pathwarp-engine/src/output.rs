@@ -1,0 +1,288 @@
+//! Output: files, each written completely or not at all, and standard output.
+
+use crate::failure::Failure;
+use crate::temporaries::{self, Temporary};
+use std::fs::{File, Metadata};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// An output with its content. Nothing appears under its name before [`PendingFile::commit_all`].
+pub struct PendingFile {
+    content: Content,
+    to: PathBuf,
+}
+
+enum Content {
+    /// A temporary file, to be renamed.
+    File(Temporary),
+    /// The bytes for a device or pipe (`/dev/null`, `/dev/stdout`): renaming would replace it by a file.
+    Device(Vec<u8>),
+    Stdout(Vec<u8>),
+}
+
+impl PendingFile {
+    /// Writes `bytes` to a temporary file beside `to`; `-` is standard output.
+    pub fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
+        match Place::of(to) {
+            Place::Stdout => Ok(Self::stdout(bytes.to_vec())),
+            Place::Device => Ok(Self { content: Content::Device(bytes.to_vec()), to: to.to_owned() }),
+            place => Self::in_place(place, to, |file| file.write_all(bytes).map_err(|e| cannot_be_written(&e))),
+        }
+    }
+
+    /// The bytes for standard output.
+    pub fn stdout(bytes: Vec<u8>) -> Self {
+        Self { content: Content::Stdout(bytes), to: PathBuf::from("-") }
+    }
+
+    /// Calls `write` with a temporary file beside `to`.
+    pub(crate) fn with_writer(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
+        Self::in_place(Place::of(to), to, write)
+    }
+
+    fn in_place(place: Place, to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
+        let (to, temporary, mut file) = place.temporary(to)?;
+        write(&mut file).map_err(|e| Failure::output(&to, e))?;
+        Ok(Self { content: Content::File(temporary), to })
+    }
+
+    /// Puts all outputs in place. If one cannot be, the files before it are put back as they were.
+    pub fn commit_all(all: Vec<Self>) -> Result<(), Failure> {
+        // Print first: printing cannot be undone, and if it fails, no file is in place yet.
+        let (files, streams): (Vec<Self>, Vec<Self>) =
+            all.into_iter().partition(|p| matches!(p.content, Content::File(_)));
+        for stream in streams {
+            stream.print()?;
+        }
+        let _gate = temporaries::hold();
+        let alone = files.len() == 1;
+        let mut placed = Vec::with_capacity(files.len());
+        for file in files {
+            let to = file.to.clone();
+            match file.put_in_place(alone) {
+                Ok(done) => placed.push(done),
+                Err(e) => {
+                    placed.into_iter().rev().for_each(Placed::undo);
+                    return Err(Failure::output(&to, cannot_be_written(&e)));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn print(self) -> Result<(), Failure> {
+        match self.content {
+            Content::Stdout(bytes) => to_stdout(&bytes),
+            Content::Device(bytes) => {
+                let opened = std::fs::OpenOptions::new().append(true).open(&self.to);
+                let written = opened.and_then(|mut to| to.write_all(&bytes));
+                written.map_err(|e| Failure::output(&self.to, cannot_be_written(&e)))
+            }
+            Content::File(_) => Ok(()),
+        }
+    }
+
+    /// Renames a file to its final name. A file that is not `alone` keeps what it replaces, to be able to put it back.
+    fn put_in_place(self, alone: bool) -> io::Result<Placed> {
+        let backup =
+            if !alone && self.to.exists() { Some(Temporary::backup(&self.to, folder(&self.to))?) } else { None };
+        if let Content::File(temporary) = self.content {
+            temporary.rename(&self.to)?;
+        }
+        Ok(Placed { to: self.to, backup })
+    }
+}
+
+/// An output that is written piece by piece.
+pub struct Draft {
+    sink: Sink,
+    to: PathBuf,
+}
+
+enum Sink {
+    File(Temporary, BufWriter<File>),
+    /// For a stream, which gets nothing before everything has succeeded.
+    Bytes(Vec<u8>),
+}
+
+impl Draft {
+    /// Creates a temporary file beside `to`; `-` is standard output.
+    pub fn new(to: &Path) -> Result<Self, Failure> {
+        match Place::of(to) {
+            Place::Stdout | Place::Device => Ok(Self { sink: Sink::Bytes(Vec::new()), to: to.to_owned() }),
+            place => {
+                let (to, temporary, file) = place.temporary(to)?;
+                Ok(Self { sink: Sink::File(temporary, BufWriter::new(file)), to })
+            }
+        }
+    }
+
+    /// Adds to the output.
+    pub fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let written = match &mut self.sink {
+            Sink::File(_, file) => file.write_all(bytes),
+            Sink::Bytes(all) => all.write_all(bytes),
+        };
+        written.map_err(|e| Failure::output(&self.to, cannot_be_written(&e)))
+    }
+
+    /// The output, complete.
+    pub fn finish(self) -> Result<PendingFile, Failure> {
+        match self.sink {
+            Sink::File(temporary, mut file) => {
+                file.flush().map_err(|e| Failure::output(&self.to, cannot_be_written(&e)))?;
+                Ok(PendingFile { content: Content::File(temporary), to: self.to })
+            }
+            Sink::Bytes(bytes) => PendingFile::new(&self.to, &bytes),
+        }
+    }
+}
+
+/// The kinds of places that an output's name may stand for.
+enum Place {
+    Stdout,
+    Device,
+    Folder,
+    /// A file, which may not exist yet. Of a symbolic link, what it points to: the link is kept.
+    File(PathBuf),
+}
+
+impl Place {
+    /// Asks the system once, unless `to` is a symbolic link.
+    fn of(to: &Path) -> Self {
+        if is_stdout(to) {
+            return Self::Stdout;
+        }
+        let found = to.symlink_metadata();
+        let is_link = found.as_ref().is_ok_and(Metadata::is_symlink);
+        match if is_link { to.metadata() } else { found } {
+            Ok(m) if m.is_dir() => Self::Folder,
+            Ok(m) if !m.is_file() => Self::Device,
+            _ if is_link => Self::of_link(to),
+            _ => Self::File(to.to_owned()),
+        }
+    }
+
+    /// The place behind a link to a file, or to nothing yet.
+    fn of_link(link: &Path) -> Self {
+        let file = behind(link);
+        if is_descriptor(&file) {
+            // Keep what the open file holds so far; it may have no name any more.
+            return if file.ends_with("1") { Self::Stdout } else { Self::Device };
+        }
+        Self::File(link.canonicalize().unwrap_or(file))
+    }
+
+    /// A temporary file beside the file, and the file.
+    fn temporary(self, to: &Path) -> Result<(PathBuf, Temporary, File), Failure> {
+        let file = match self {
+            Self::File(file) => file,
+            Self::Folder => return Err(Failure::output(to, "is a folder; name a file, or use --out-dir")),
+            Self::Device | Self::Stdout => {
+                return Err(Failure::output(to, "is a device, not a file; name a file"));
+            }
+        };
+        let folder = folder(&file);
+        match Temporary::create_in(folder) {
+            Ok((temporary, content)) => {
+                like_the_old(&file, &content).map_err(|e| Failure::output(&file, cannot_be_written(&e)))?;
+                Ok((file, temporary, content))
+            }
+            Err(_) if !folder.is_dir() => Err(Failure::output(folder, "does not exist; create the folder first")),
+            Err(e) => Err(Failure::output(&file, cannot_be_written(&e))),
+        }
+    }
+}
+
+/// Gives a new file the permissions of the one that it will replace, which may be private.
+#[cfg(unix)]
+fn like_the_old(old: &Path, new: &File) -> io::Result<()> {
+    use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, fchown};
+    /// Without the bits that let a program run as its owner.
+    const PERMISSIONS: u32 = 0o777;
+    let Ok(old) = old.metadata() else { return Ok(()) };
+    let own = new.metadata()?;
+    if (old.uid(), old.gid()) != (own.uid(), own.gid()) {
+        // Only some users may give files away. Others own what they write.
+        let _ = fchown(new, Some(old.uid()), Some(old.gid()));
+    }
+    new.set_permissions(std::fs::Permissions::from_mode(old.mode() & PERMISSIONS))
+}
+
+#[cfg(not(unix))]
+fn like_the_old(_: &Path, _: &File) -> io::Result<()> {
+    Ok(())
+}
+
+/// The file that a chain of symbolic links leads to, which may not exist.
+pub fn behind(link: &Path) -> PathBuf {
+    /// The system follows no more.
+    const MOST_LINKS: usize = 40;
+    let mut at = link.to_owned();
+    for _ in 0..MOST_LINKS {
+        // A descriptor is a link to the name that its file once had.
+        let Some(next) = at.read_link().ok().filter(|_| !is_descriptor(&at)) else { break };
+        at = folder(&at).join(next);
+    }
+    at
+}
+
+/// Returns `true` for a name of an open file, such as that behind `/dev/stdout`.
+fn is_descriptor(file: &Path) -> bool {
+    cfg!(unix) && ["/proc/self/fd", "/dev/fd"].iter().any(|fds| folder(file) == Path::new(fds))
+}
+
+/// A file in place.
+struct Placed {
+    to: PathBuf,
+    /// The file it replaced.
+    backup: Option<Temporary>,
+}
+
+impl Placed {
+    /// Puts back the file that was there. An error on the way back has no remedy; the first error is reported.
+    fn undo(self) {
+        let _ = match self.backup {
+            Some(old) => old.rename(&self.to),
+            None => std::fs::remove_file(&self.to),
+        };
+    }
+}
+
+fn folder(file: &Path) -> &Path {
+    match file.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    }
+}
+
+fn cannot_be_written(e: &io::Error) -> String {
+    format!("cannot be written: {e}")
+}
+
+/// Returns `true` if `to` stands for standard output.
+pub fn is_stdout(to: &Path) -> bool {
+    to.as_os_str() == "-"
+}
+
+/// Returns `true` if `to` exists and is neither a file nor a folder: a pipe, a terminal.
+pub fn is_device(to: &Path) -> bool {
+    to.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir())
+}
+
+/// Writes one result: to the file `target`, or to standard output if there is none.
+pub fn write(target: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
+    match target {
+        Some(to) => PendingFile::commit_all(vec![PendingFile::new(to, bytes)?]),
+        None => to_stdout(bytes),
+    }
+}
+
+/// Writes to standard output. The reader may close the pipe early; ignore that.
+pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => other.map_err(|e| Failure::stdout(&e)),
+    }
+}

@@ -1,0 +1,223 @@
+//! The page of a drawing under `--fit`: which pages stay as they are, and what is said about the page.
+
+use crate::options::{CommonOptions, FrameChoice};
+use crate::readable::three_figures;
+use crate::units::MM_PER_PX;
+use pathwarp::decimal::trimmed;
+use pathwarp::kurbo::Rect;
+use pathwarp::recipe::Recipe;
+use pathwarp_svg::{Document, Overhang, PageFit, Warning};
+
+/// Side of the largest square page that is an icon's, in px.
+const ICON: f64 = 64.0;
+/// Largest relative difference of a page's sides from those of a square, or of a sheet of paper.
+const SAME: f64 = 0.005;
+
+/// The largest sheets of the series A and B of ISO 216 and the series B of JIS P 0138, in mm. The next sheet of a series is half of it.
+const SERIES: [[f64; 2]; 3] = [[841.0, 1189.0], [1000.0, 1414.0], [1030.0, 1456.0]];
+/// The last number of a series.
+const LAST: usize = 10;
+/// Letter, Legal, and business cards (Europe, ISO 7810 ID-1, North America, China, Australia, Japan), in mm.
+const SHEETS: [[f64; 2]; 8] = [
+    [215.9, 279.4],
+    [215.9, 355.6],
+    [55.0, 85.0],
+    [53.98, 85.6],
+    [50.8, 88.9],
+    [54.0, 90.0],
+    [55.0, 90.0],
+    [55.0, 91.0],
+];
+
+/// Returns the reason why the page of a drawing stays under `--fit auto`, if it does.
+pub(crate) fn stays(doc: &Document, options: &CommonOptions, recipe: &Recipe) -> Option<&'static str> {
+    let mut values = recipe.steps.iter().flat_map(|s| s.args.iter()).flat_map(|(_, values)| values);
+    if options.frame == FrameChoice::ViewBox || values.any(|v| v.contains("%page")) {
+        return Some("the steps refer to it");
+    }
+    let (units, px) = (doc.view_box(), doc.size_px());
+    let (units, px) = ([units.width(), units.height()], [px.width, px.height]);
+    if !doc.is_measured() && is_near(px[0], px[1]) && px[0] <= ICON && is_near(units[0], units[1]) {
+        return Some("it is an icon's");
+    }
+    // Programs write mm, inches or points as plain numbers, too.
+    let plain = [MM_PER_PX, 1.0, 25.4, 25.4 / 72.0].map(|unit| units.map(|v| v * unit));
+    let is_paper = plain.into_iter().filter(|_| !doc.is_measured()).chain([px.map(|v| v * MM_PER_PX)]).any(is_paper);
+    is_paper.then_some("it is a sheet of paper")
+}
+
+fn is_near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * b
+}
+
+/// Returns `true` for the size of a sheet of paper in mm, either way round.
+fn is_paper([w, h]: [f64; 2]) -> bool {
+    let is = |[a, b]: [f64; 2]| is_near(w.min(h), a) && is_near(w.max(h), b);
+    let in_series = |largest: [f64; 2]| {
+        let half = |[a, b]: &[f64; 2]| Some([(0.5 * b).floor(), *a]);
+        std::iter::successors(Some(largest), half).take(LAST + 1).any(is)
+    };
+    SHEETS.into_iter().any(is) || SERIES.into_iter().any(in_series)
+}
+
+/// What became of a page.
+#[derive(Debug, Clone, Default)]
+pub struct PageNews {
+    /// The page before and after, in user units, if it is adapted.
+    pub change: Option<[Rect; 2]>,
+    /// The share of its size that the result was scaled to for staying on its page.
+    pub(crate) shrunk: Option<f64>,
+    /// The change was the program's decision.
+    pub(crate) by_itself: bool,
+    /// The artwork extends past the page and did not before.
+    pub(crate) overhang: Option<Overhang>,
+    /// Why the page stays where it could have grown.
+    pub(crate) stays: Option<&'static str>,
+    /// Nothing of the result lies on the page.
+    pub is_blank: bool,
+    /// What has come onto the page.
+    pub arrivals: Option<Warning>,
+}
+
+impl PageNews {
+    /// Takes the news out of the result of a warp.
+    pub(crate) fn of(warped: &mut pathwarp_svg::WarpedDocument, fit: PageFit, stays: Option<&'static str>) -> Self {
+        let at = warped.warnings.iter().position(|w| matches!(w, Warning::Arrivals(_)));
+        Self {
+            change: warped.page,
+            shrunk: warped.back.map(|to| to.determinant().sqrt()),
+            by_itself: fit == PageFit::Auto,
+            overhang: warped.overhang,
+            stays,
+            is_blank: warped.blank,
+            arrivals: at.map(|at| warped.warnings.remove(at)),
+        }
+    }
+
+    /// Says that the page is another by `--fit auto`, or that the result is on it by `--fit shrink`.
+    pub fn note(&self) -> Option<String> {
+        if let Some(by) = self.shrunk {
+            return Some(match three_figures(100.0 * by).as_str() {
+                "100" => "the result is moved back onto its page".to_owned(),
+                by => format!("the result is scaled to {by} % and moved back onto its page"),
+            });
+        }
+        let [before, after] = self.change.filter(|_| self.by_itself)?;
+        let size = |r: Rect| format!("{} × {}", trimmed(r.width(), 2), trimmed(r.height(), 2));
+        let (old, new) = (size(before), size(after));
+        Some(if before.union(after) == after {
+            format!("the page grew from {old} to {new}; --fit none keeps it")
+        } else {
+            let at = |r: Rect| format!("{},{}", trimmed(r.x0, 2), trimmed(r.y0, 2));
+            format!(
+                "nothing is left on the page, {old} at {}, so it moved to the artwork, {new} at {}; --fit none keeps it",
+                at(before),
+                at(after)
+            )
+        })
+    }
+
+    /// The warnings about the page.
+    pub fn warnings(&self) -> Vec<String> {
+        let arrivals = self.arrivals.as_ref().map(ToString::to_string);
+        let overhang = self.overhang.filter(|_| !self.is_blank).map(|o| overhang(o, self.stays));
+        let blank = self.is_blank.then(|| {
+            "nothing is on the page of the result; --fit page sets it to the artwork, --fit shrink moves that back"
+                .to_owned()
+        });
+        [arrivals, overhang, blank].into_iter().flatten().collect()
+    }
+}
+
+/// Describes artwork that extends past the page, with the options that change it.
+fn overhang(o: Overhang, stays: Option<&str>) -> String {
+    let names = ["left", "top", "right", "bottom"];
+    let sides: Vec<&str> = names.iter().zip(o.by).filter(|(_, by)| *by > 0.0).map(|(name, _)| *name).collect();
+    let most = o.by.into_iter().fold(0.0, f64::max);
+    let stays = stays.map_or_else(String::new, |why| format!("; the page stays, as {why}"));
+    format!(
+        "the artwork extends past the page by up to {} units ({} %; {}){stays}; --fit grow enlarges the page, --fit page fits it to the \
+         artwork, --fit shrink scales the result back into it",
+        three_figures(most),
+        three_figures(100.0 * o.share),
+        sides.join(", ")
+    )
+}
+
+/// What became of the pages of a batch: one warning of each kind for all.
+#[derive(Debug, Default)]
+pub struct PageCounts {
+    past: usize,
+    /// The largest share of the page's size by which artwork extends past it, and the input that has it.
+    most: Option<(f64, String)>,
+    /// The number of inputs, and the first.
+    blank: (usize, Option<String>),
+    arrivals: (usize, Option<String>),
+}
+
+impl PageCounts {
+    /// Counts the input `file`.
+    pub fn add(&mut self, news: &PageNews, file: &str) {
+        if let Some(o) = news.overhang {
+            self.past += 1;
+            if self.most.as_ref().is_none_or(|(most, _)| o.share > *most) {
+                self.most = Some((o.share, file.to_owned()));
+            }
+        }
+        for (has, (count, first)) in [(news.is_blank, &mut self.blank), (news.arrivals.is_some(), &mut self.arrivals)] {
+            *count += usize::from(has);
+            if has && first.is_none() {
+                *first = Some(file.to_owned());
+            }
+        }
+    }
+
+    /// Returns `true` if nothing is on a page.
+    pub fn are_blank(&self) -> bool {
+        self.blank.0 > 0
+    }
+
+    /// The warnings about a batch of so many inputs.
+    pub fn warnings(&self, inputs: usize) -> Vec<String> {
+        let past = self.most.as_ref().map(|(share, file)| {
+            format!(
+                "the artwork of {} of {inputs} inputs extends past the page, most that of {file} ({} %); --fit grow enlarges the pages, \
+                 --fit page fits them to the artwork, --fit shrink scales the results back into them",
+                self.past,
+                three_figures(100.0 * share)
+            )
+        });
+        let (blank, arrivals) = (&self.blank, &self.arrivals);
+        let blank = blank.1.as_ref().map(|file| {
+            format!(
+                "nothing is on the page of {} of {inputs} results, such as that of {file}; --fit page sets the pages to the artwork",
+                blank.0
+            )
+        });
+        let arrivals = arrivals.1.as_ref().map(|file| {
+            format!(
+                "in {} of {inputs} inputs, such as {file}, shapes that lay off the page have moved onto it",
+                arrivals.0
+            )
+        });
+        [past, blank, arrivals].into_iter().flatten().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_paper;
+
+    #[test]
+    fn sheets_of_paper_are_known_within_half_a_percent() {
+        // ISO 216, table 1: A5, A10, B5, B10; Letter; a business card; and A4 by a little.
+        for sheet in
+            [[148.0, 210.0], [37.0, 26.0], [176.0, 250.0], [44.0, 31.0], [215.9, 279.4], [85.0, 55.0], [210.9, 298.2]]
+        {
+            assert!(is_paper(sheet), "{sheet:?}");
+        }
+        for other in [[100.0, 100.0], [200.0, 100.0], [212.0, 297.0], [210.0, 300.0], [640.0, 480.0]] {
+            assert!(!is_paper(other), "{other:?}");
+        }
+    }
+}

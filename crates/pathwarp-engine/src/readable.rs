@@ -1,0 +1,106 @@
+//! Text that came from files, made fit for a terminal: without control characters, which could move the cursor or rename the window,
+//! and not as long as a file.
+
+use pathwarp::decimal::trimmed;
+use serde::Serialize;
+use std::borrow::Cow;
+
+/// Most characters of a message that are shown. An id or a name in it can be as long as its file.
+const LONGEST: usize = 2000;
+/// The part of them before the gap; the end of a message says what to do.
+const HEAD: usize = 1400;
+
+/// A name for a table: control characters are written as escapes.
+pub fn name(name: &str) -> Cow<'_, str> {
+    escaped(name, is_unsafe_in_names)
+}
+
+/// A message, whose lines and tabs are kept, and which has a gap in its middle if it is very long.
+pub fn message(message: &str) -> Cow<'_, str> {
+    let length = message.chars().count();
+    if length <= LONGEST {
+        return escaped(message, is_unsafe);
+    }
+    let head: String = message.chars().take(HEAD).collect();
+    let tail: String = message.chars().skip(length - (LONGEST - HEAD)).collect();
+    let left_out = length - LONGEST;
+    Cow::Owned(format!("{} … ({left_out} characters) … {}", escaped(&head, is_unsafe), escaped(&tail, is_unsafe)))
+}
+
+/// Writes JSON, indented, and escapes the control characters that JSON allows as they are.
+pub fn json(value: &impl Serialize) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(value).map(escaped_json)
+}
+
+/// Control characters stand in the texts of JSON only.
+fn escaped_json(mut json: String) -> String {
+    if json.contains(is_unsafe) {
+        let escaped = |c: char| if is_unsafe(c) { format!("\\u{:04x}", u32::from(c)) } else { c.into() };
+        json = json.chars().map(escaped).collect();
+    }
+    json
+}
+
+fn is_unsafe(c: char) -> bool {
+    is_unsafe_in_names(c) && c != '\n' && c != '\t'
+}
+
+/// Control characters, and those that change the order of what is shown (Unicode annex 9, table 4).
+fn is_unsafe_in_names(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+fn escaped(text: &str, is_escaped: fn(char) -> bool) -> Cow<'_, str> {
+    if !text.contains(is_escaped) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_escaped(c) { out.extend(c.escape_default()) } else { out.push(c) }
+    }
+    Cow::Owned(out)
+}
+
+/// Formats a positive number with three significant figures.
+pub(crate) fn three_figures(v: f64) -> String {
+    /// No page is so small that more would matter.
+    const MOST_DECIMALS: f64 = 12.0;
+    trimmed(v, (2.0 - v.log10().floor()).clamp(0.0, MOST_DECIMALS) as usize)
+}
+
+/// Lists the first `most` names, and how many more there are.
+pub fn listed(names: &[impl AsRef<str>], most: usize) -> String {
+    let shown: Vec<&str> = names.iter().take(most).map(AsRef::as_ref).collect();
+    let more = names.len().saturating_sub(most);
+    shown.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_shown_and_do_nothing() {
+        assert_eq!(name("plain “ünï” name"), "plain “ünï” name");
+        assert_eq!(name("\x1b[31mred\nline\u{9b}2J"), "\\u{1b}[31mred\\nline\\u{9b}2J");
+        assert_eq!(message("a\nb\tc\x07"), "a\nb\tc\\u{7}");
+        assert_eq!(name("a\u{202e}gvs.svg"), "a\\u{202e}gvs.svg");
+        assert_eq!(escaped_json("{\"a\": \"\u{9b}31m\u{7f}ä\"\n}".into()), "{\"a\": \"\\u009b31m\\u007fä\"\n}");
+    }
+
+    #[test]
+    fn long_messages_keep_both_ends() {
+        let long = format!("error in {}: do this", "ä".repeat(500_000));
+        let shown = message(&long);
+        assert!(shown.starts_with("error in ä") && shown.ends_with("ä: do this"), "{shown}");
+        assert!(shown.chars().count() < LONGEST + 50, "{shown}");
+        let short = "x".repeat(LONGEST);
+        assert_eq!(message(&short), short);
+    }
+
+    #[test]
+    fn three_figures_of_any_size() {
+        assert_eq!(three_figures(0.012_345), "0.0123");
+        assert_eq!(three_figures(1200.0), "1200");
+    }
+}

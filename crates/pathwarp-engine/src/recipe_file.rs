@@ -1,0 +1,273 @@
+//! Recipe files.
+//!
+//! ```toml
+//! pathwarp = 1
+//!
+//! [options]            # common options of the command line, without the dashes
+//! tolerance = "0.01"
+//!
+//! [[step]]
+//! deformation = "shaper"
+//! shaper = "cage.svg#flag"   # relative to the recipe's own folder
+//! reverse-shaper = true
+//! select = ["#banner"]       # also exclude: this step holds for a part of the drawing only
+//! ```
+//!
+//! A recipe for solids has `solid = true` below the version.
+
+use crate::advice;
+use crate::catalogue::Catalogue;
+use crate::failure::Failure;
+use crate::input::{split_reference, unreadable};
+use crate::options::Given;
+use pathwarp::param::{Args, Kind, Param};
+use pathwarp::recipe::{Recipe, Step};
+use serde::{Deserialize, Serialize};
+use std::path::{Component, Path, PathBuf};
+use toml::Value;
+
+/// The version of the format.
+const VERSION: i64 = 1;
+
+/// Keys of a step that are not parameters of its deformation.
+const DEFORMATION: &str = "deformation";
+const INVERSE: &str = "inverse";
+const SELECT: &str = "select";
+const EXCLUDE: &str = "exclude";
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RecipeFile {
+    pathwarp: i64,
+    /// The steps deform solids, not drawings.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    solid: bool,
+    #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
+    options: toml::Table,
+    #[serde(default)]
+    step: Vec<toml::Table>,
+}
+
+/// A recipe with the common options stored in its file.
+pub struct SavedRecipe {
+    /// The steps.
+    pub recipe: Recipe,
+    /// The options beside them.
+    pub options: Given,
+}
+
+/// Reads a recipe file. Relative paths in it refer to the file's folder; absolute ones are allowed only if `external`.
+pub fn read(catalogue: &dyn Catalogue, file: &Path, external: bool) -> Result<SavedRecipe, Failure> {
+    let bytes = std::fs::read(file).map_err(|e| Failure::file(file, unreadable(file, &e)))?;
+    if bytes.trim_ascii_start().starts_with(b"<") {
+        let name = file.display();
+        return Err(Failure::Input(format!("{name} is a drawing, not a recipe; write: run RECIPE.toml {name}")));
+    }
+    let text = String::from_utf8(bytes).map_err(|_| Failure::file(file, "is no recipe: it is not text"))?;
+    let place = Folder { path: file.parent().unwrap_or(Path::new("")), external };
+    parse(catalogue, &text, &place).map_err(|e| Failure::file(file, e))
+}
+
+/// Reads the text of a recipe that stands in the file of a drawing. Paths as in [`read`].
+pub fn from_text(catalogue: &dyn Catalogue, text: &str, folder: &Path, external: bool) -> Result<SavedRecipe, String> {
+    parse(catalogue, text, &Folder { path: folder, external })
+}
+
+/// The folder of a recipe.
+struct Folder<'a> {
+    path: &'a Path,
+    /// Files anywhere may be named.
+    external: bool,
+}
+
+fn parse(catalogue: &dyn Catalogue, text: &str, folder: &Folder<'_>) -> Result<SavedRecipe, String> {
+    let file: RecipeFile = toml::from_str(text).map_err(|e| e.to_string())?;
+    if file.pathwarp != VERSION {
+        return Err(format!("has version {}; this program reads version {VERSION}", file.pathwarp));
+    }
+    match (file.solid, catalogue.is_solid()) {
+        (true, false) => return Err("deforms solids (solid = true); run it with `pathwarp solid run`".into()),
+        (false, true) => {
+            return Err("deforms drawings; run it with `pathwarp run` (one for solids has solid = true)".into());
+        }
+        _ => {}
+    }
+    if file.step.is_empty() {
+        return Err("has no [[step]]".into());
+    }
+    let mut options = Given::default();
+    for (name, value) in &file.options {
+        let texts =
+            texts(value).ok_or_else(|| format!("[options] {name}: must be a text, number, switch or list of them"))?;
+        // `false` leaves an option at its default.
+        for text in texts.iter().filter(|t| *t != "false") {
+            options.push(name, text).map_err(|e| format!("[options] {e}"))?;
+        }
+    }
+    let step = |(i, t): (usize, &toml::Table)| step(catalogue, t, folder).map_err(|e| format!("step {}: {e}", i + 1));
+    let steps: Result<Vec<Step>, String> = file.step.iter().enumerate().map(step).collect();
+    Ok(SavedRecipe { recipe: Recipe { steps: steps? }, options })
+}
+
+fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> Result<Step, String> {
+    let name = table.get(DEFORMATION).and_then(Value::as_str).ok_or("has no `deformation = \"NAME\"`")?;
+    let infos = catalogue.infos();
+    let known = infos.iter().map(|i| i.name);
+    let info = catalogue.info(name).ok_or_else(|| advice::unknown("deformation", name, known))?;
+    let mut step = Step::new(name, Args::new());
+    for (key, value) in table {
+        match key.as_str() {
+            DEFORMATION => {}
+            INVERSE => step.inverse = value.as_bool().ok_or("inverse must be true or false")?,
+            SELECT | EXCLUDE if catalogue.is_solid() => {
+                return Err(format!("{key} is for drawings; a step holds for the whole of a solid"));
+            }
+            SELECT | EXCLUDE => {
+                let list = if key == SELECT { &mut step.select } else { &mut step.exclude };
+                *list = texts(value).ok_or_else(|| format!("{key}: must be a text or a list of them"))?;
+            }
+            key => {
+                let params = info.params;
+                let param = params.iter().find(|p| p.name == key).ok_or_else(|| {
+                    let known: Vec<_> = params.iter().map(|p| p.name).collect();
+                    format!("{name} has no parameter `{key}`; its parameters are {}", known.join(", "))
+                })?;
+                for v in texts(value).ok_or_else(|| format!("{key}: must be a text, number, switch or list of them"))? {
+                    if param.kind == Kind::Flag && v == "false" {
+                        continue;
+                    }
+                    if param.kind == Kind::Save {
+                        return Err(format!(
+                            "{key} is not for recipes, which write no files; give it on the command line"
+                        ));
+                    }
+                    step.args.push(key, from_folder(param, v, folder).map_err(|e| format!("{key}: {e}"))?);
+                }
+            }
+        }
+    }
+    Ok(step)
+}
+
+/// The values of a key as they would be typed on the command line.
+fn texts(value: &Value) -> Option<Vec<String>> {
+    let text = |v: &Value| match v {
+        Value::String(s) => Some(s.clone()),
+        Value::Integer(i) => Some(i.to_string()),
+        Value::Float(f) => Some(f.to_string()),
+        Value::Boolean(b) => Some(b.to_string()),
+        _ => None,
+    };
+    match value {
+        Value::Array(list) => list.iter().map(text).collect(),
+        v => text(v).map(|v| vec![v]),
+    }
+}
+
+/// Returns `true` if a value names a file, so that its meaning depends on the folder.
+fn names_file(param: &Param, value: &str) -> bool {
+    match param.kind {
+        Kind::File | Kind::Save => true,
+        Kind::NameOrFile(_) => param.reads_file(value),
+        Kind::Path => !value.starts_with('#') && !pathwarp::param::is_inline(value),
+        _ => false,
+    }
+}
+
+/// A value with its path relative to the current folder. A path must lead to a regular file, and be relative unless the user
+/// allows others.
+fn from_folder(param: &Param, value: String, folder: &Folder<'_>) -> Result<String, String> {
+    if !names_file(param, &value) {
+        return Ok(value);
+    }
+    let path = Path::new(&value);
+    if (path.is_absolute() || path.has_root()) && !folder.external {
+        return Err(format!(
+            "`{value}` is absolute; name it relative to the recipe, or allow it with --allow-external"
+        ));
+    }
+    let placed = folder.path.join(path);
+    let file = if placed.exists() { placed.clone() } else { split_reference(&placed.to_string_lossy()).0 };
+    // A file that does not exist gets its error where it is read.
+    if file.exists() && !file.is_file() {
+        return Err(format!("`{value}` is not a regular file"));
+    }
+    Ok(placed.display().to_string())
+}
+
+/// The text of a recipe file in `folder` with these steps and the options that recipes store.
+pub fn write(catalogue: &dyn Catalogue, recipe: &Recipe, given: &Given, folder: &Path) -> Result<String, Failure> {
+    let here = std::env::current_dir().map_err(|e| Failure::Input(e.to_string()))?;
+    let same_place = folder.as_os_str().is_empty()
+        || matches!((folder.canonicalize(), here.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    let mut file =
+        RecipeFile { pathwarp: VERSION, solid: catalogue.is_solid(), options: toml::Table::new(), step: Vec::new() };
+    for (name, values) in given.stored() {
+        file.options.insert(name.to_owned(), value(values));
+    }
+    for s in &recipe.steps {
+        let mut t = toml::Table::new();
+        t.insert(DEFORMATION.into(), Value::String(s.deformation.clone()));
+        if s.inverse {
+            t.insert(INVERSE.into(), Value::Boolean(true));
+        }
+        for (key, selectors) in [(SELECT, &s.select), (EXCLUDE, &s.exclude)] {
+            if !selectors.is_empty() {
+                t.insert(key.into(), Value::Array(selectors.iter().cloned().map(Value::String).collect()));
+            }
+        }
+        let params = catalogue.info(&s.deformation).map_or(&[][..], |i| i.params);
+        for (name, values) in s.args.iter() {
+            let param = params.iter().find(|p| p.name == name);
+            if param.is_some_and(|p| p.kind == Kind::Save) {
+                continue;
+            }
+            let placed = values.iter().map(|v| match param {
+                Some(p) if (!same_place || Path::new(v).is_absolute()) && names_file(p, v) => {
+                    relative(&here.join(v), &here.join(folder))
+                }
+                _ => v.clone(),
+            });
+            t.insert(name.to_owned(), value(placed.collect()));
+        }
+        file.step.push(t);
+    }
+    toml::to_string(&file).map_err(|e| Failure::Input(e.to_string()))
+}
+
+/// The path of a file relative to the current folder, as steps name files.
+pub fn from_here(file: &Path) -> String {
+    std::env::current_dir().map_or_else(|_| file.display().to_string(), |here| relative(&here.join(file), &here))
+}
+
+/// The path of a file relative to a folder, as recipes name files; the absolute path where there is none, on another drive. A
+/// reference `FILE#NAME` keeps its name.
+fn relative(file: &Path, folder: &Path) -> String {
+    let (path, name) = if file.exists() {
+        (file.to_owned(), None)
+    } else {
+        let text = file.to_string_lossy();
+        let (path, name) = split_reference(&text);
+        (path, name.map(ToOwned::to_owned))
+    };
+    let (path, folder) = (path.canonicalize().unwrap_or(path), folder.canonicalize().unwrap_or(folder.to_owned()));
+    let common = path.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
+    let up = folder.components().skip(common).map(|_| Component::ParentDir);
+    let relative: PathBuf = up.chain(path.components().skip(common)).collect();
+    let shown = if common == 0 { path.display().to_string() } else { relative.display().to_string() };
+    name.map_or_else(|| shown.clone(), |n| format!("{shown}#{n}"))
+}
+
+/// Typed values as TOML: a single one as a string or `true`, several as a list.
+fn value(mut values: Vec<String>) -> Value {
+    match values.pop() {
+        Some(only) if values.is_empty() => {
+            if only == "true" {
+                Value::Boolean(true)
+            } else {
+                Value::String(only)
+            }
+        }
+        last => Value::Array(values.into_iter().chain(last).map(Value::String).collect()),
+    }
+}

@@ -1,0 +1,168 @@
+//! What is reported of every file and shape. The field names are the JSON's.
+
+use pathwarp::fold::Orientation;
+use pathwarp::kurbo::Point;
+use pathwarp::refit::Assurance;
+use pathwarp_svg::ShapeReport;
+use serde::ser::SerializeMap as _;
+use serde::{Serialize, Serializer};
+
+/// One input file.
+#[derive(Debug, Clone, Serialize)]
+pub struct FileReport {
+    /// Its name.
+    pub file: String,
+    /// `None`: standard output, or none because of an error.
+    pub output: Option<String>,
+    /// Why the input could not be warped; omitted if it was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// User units; `None` after an error.
+    pub(crate) tolerance: Option<f64>,
+    /// The frame that percentages refer to: x, y, width and height in user units; `None` after an error.
+    pub frame: Option<[f64; 4]>,
+    /// What every step holds for; omitted if all hold for the same.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) selections: Vec<StepSelection>,
+    /// The height of the lettering's baseline, if the frame has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub baseline: Option<f64>,
+    /// The visible part of the plane, x, y, width and height in user units, if `--fit` has changed it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) page: Option<[f64; 4]>,
+    /// The shapes that were warped.
+    pub shapes: Vec<ReportedShape>,
+    /// The shapes that were left out.
+    pub skipped: Vec<SkippedShape>,
+    /// Warnings about all of it.
+    pub warnings: Vec<String>,
+}
+
+impl FileReport {
+    /// An input that could not be warped.
+    pub fn failed(file: String, error: String) -> Self {
+        Self {
+            file,
+            output: None,
+            error: Some(error),
+            tolerance: None,
+            frame: None,
+            selections: Vec::new(),
+            baseline: None,
+            page: None,
+            shapes: Vec::new(),
+            skipped: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Returns `true` if a shape was skipped or missed the tolerance.
+    pub(crate) fn is_partial(&self) -> bool {
+        !self.skipped.is_empty() || self.shapes.iter().any(|s| !s.shape.path.over_budget.is_empty())
+    }
+}
+
+/// A step with a part of the artwork.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct StepSelection {
+    pub(crate) deformation: String,
+    /// Selectors; none for all artwork.
+    pub(crate) select: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) exclude: Vec<String>,
+    /// The frame that its percentages refer to, as in a report.
+    pub(crate) frame: [f64; 4],
+}
+
+/// One shape: what became of its curves and paint, and what the run knows of it.
+#[derive(Debug, Clone)]
+pub struct ReportedShape {
+    /// What became of its curves and its paint.
+    pub shape: ShapeReport,
+    /// The steps that hold for the shape, counted from 1, unless all do.
+    pub(crate) steps: Option<Vec<usize>>,
+    /// Where the map turned it over.
+    pub fold: Fold,
+}
+
+/// A fold of one shape.
+#[derive(Debug, Clone)]
+pub struct Fold {
+    /// Number of orientation changes along the shape, at least 1; 0 if it does not fold.
+    pub count: usize,
+    /// The first place where it folds.
+    pub at: Option<Point>,
+}
+
+impl Fold {
+    /// Compares the orientation of one shape with that of all artwork.
+    pub(crate) fn of(shape: &Orientation, all: &Orientation) -> Self {
+        let at = shape.folded_against(all);
+        Self { count: if at.is_some() { shape.changes.max(1) } else { 0 }, at }
+    }
+}
+
+/// Numbers that are usual, and texts that have nothing to say, are omitted. Unknown numbers are infinite here and null in JSON.
+impl Serialize for ReportedShape {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let ShapeReport { id, copies, path, paint_residual, pictures, stroke_error, outlined_strokes, .. } =
+            &self.shape;
+        let place = |p: &Point| [p.x, p.y];
+        let mut map = to.serialize_map(None)?;
+        map.serialize_entry("id", id)?;
+        if let Some(steps) = &self.steps {
+            map.serialize_entry("steps", steps)?;
+        }
+        if *copies != 1 {
+            map.serialize_entry("copies", copies)?;
+        }
+        map.serialize_entry("segments_in", &path.segments_in)?;
+        map.serialize_entry("segments_out", &path.segments_out)?;
+        map.serialize_entry("max_error", &path.max_error)?;
+        map.serialize_entry("share", &path.share)?;
+        // Proven, by interval arithmetic or because the map is exact on the curve.
+        map.serialize_entry("certified", &(path.assurance != Assurance::Checked))?;
+        map.serialize_entry("assurance", assurance_word(path.assurance))?;
+        map.serialize_entry("folds", &self.fold.count)?;
+        if let Some(at) = &self.fold.at {
+            map.serialize_entry("folded_at", &place(at))?;
+        }
+        if !path.over_budget.is_empty() {
+            map.serialize_entry("over_budget", &path.over_budget.iter().map(place).collect::<Vec<_>>())?;
+        }
+        if let Some(resolution) = path.unresolved {
+            map.serialize_entry("unresolved", &resolution)?;
+        }
+        if let Some(distance) = paint_residual {
+            map.serialize_entry("paint_residual", distance)?;
+        }
+        if *pictures > 0 {
+            map.serialize_entry("pictures", pictures)?;
+        }
+        if let Some(distance) = stroke_error {
+            map.serialize_entry("stroke_error", distance)?;
+        }
+        if *outlined_strokes > 0 {
+            map.serialize_entry("outlined_strokes", outlined_strokes)?;
+        }
+        map.end()
+    }
+}
+
+/// A shape that was left unchanged.
+#[derive(Debug, Clone, Serialize)]
+pub struct SkippedShape {
+    /// Its id, or its place.
+    pub id: String,
+    /// The reason.
+    pub why: String,
+}
+
+/// The report's word for an assurance.
+fn assurance_word(a: Assurance) -> &'static str {
+    match a {
+        Assurance::Exact => "exact",
+        Assurance::Certified => "certified",
+        Assurance::Checked => "checked",
+    }
+}

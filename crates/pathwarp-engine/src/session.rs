@@ -1,0 +1,477 @@
+//! The one road: artwork and steps in, result and report out. References are looked up, frames chosen, steps built, artwork warped. The
+//! command line, the editor, Inkscape and other languages all take it.
+
+use crate::advice::{self, Flags};
+use crate::edits::SIMPLIFY;
+use crate::failure::Failure;
+use crate::input::{Artwork, Baseline, FileArtwork, Input, WarpRequest, WarpedResult, Which, display};
+use crate::options::{CommonOptions, FrameChoice, Given};
+use crate::output::PendingFile;
+use crate::page::PageNews;
+use crate::readable::listed;
+use crate::report::{FileReport, ReportedShape, StepSelection};
+use crate::units::MM_PER_PX;
+use crate::{recipe_file, references};
+use pathwarp::deform::{Explanation, Registry, SavedFile};
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::map::Map;
+use pathwarp::param::Frame;
+use pathwarp::recipe::{BuiltParts, BuiltRecipe, Portion, Recipe, Step};
+use pathwarp_raster::Picture;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Steps and options, to be applied to artwork.
+pub struct Session<'a> {
+    /// The deformations that there are.
+    pub registry: &'a Registry,
+    /// The steps, with the contents of files.
+    pub recipe: &'a Recipe,
+    /// The options as read.
+    pub options: &'a CommonOptions,
+    /// The options as given, for a recipe that is written.
+    pub given: &'a Given,
+}
+
+/// Steps that are built for some artwork.
+pub struct Ready {
+    /// The steps, with all references looked up.
+    pub recipe: Recipe,
+    /// The maps of all parts of the artwork.
+    pub built: BuiltParts,
+    /// The frame of the first step.
+    pub frame: Frame,
+    /// The frames of the steps whose artwork no other step has moved before.
+    starts: Vec<Option<Frame>>,
+}
+
+/// The frame of all artwork without these guides, for a step with this baseline.
+pub struct Framed {
+    guides: Vec<String>,
+    baseline: Baseline,
+    /// The box that percentages refer to.
+    pub frame: Frame,
+}
+
+/// Artwork that was warped. Nothing is written yet, not even to temporary files, except for `files`.
+pub struct Warped {
+    /// The file.
+    pub result: WarpedResult,
+    /// Names no output.
+    pub report: FileReport,
+    /// What became of the page; the last warnings say so.
+    pub page: PageNews,
+    /// The lines of `--explain`.
+    pub notes: Vec<String>,
+    /// Something was left out or missed the tolerance.
+    pub partial: bool,
+    /// Files that deformations save.
+    pub saves: Vec<SavedFile>,
+    /// Files besides the result.
+    pub files: Vec<PendingFile>,
+    /// The picture of `--preview`.
+    pub preview: Option<Vec<u8>>,
+}
+
+/// Warps the content of a file called `name` by a recipe whose file references have been looked up. Linked pictures are looked up
+/// beside `name`, which is empty if there is no such place. The switch `stop` ends the work.
+pub fn warp_bytes(
+    registry: &Registry,
+    recipe: &Recipe,
+    given: &Given,
+    stop: Option<&'static AtomicBool>,
+    name: &Path,
+    bytes: &[u8],
+) -> Result<(Vec<u8>, Warped), Failure> {
+    // The page of a drawing stays in the program that calls; a picture has none.
+    let mut options = if Picture::sniff(bytes) { given.read()? } else { given.keeping_pages().read()? };
+    options.reading.stop(stop);
+    let (session, flags) = (Session { registry, recipe, options: &options, given }, Flags::of(registry));
+    let warped =
+        Input::of_bytes(bytes, name, &options, None).and_then(|mut input| session.warp(input.artwork(), &flags));
+    let mut warped = warped.map_err(|f| f.about(&display(name)))?;
+    match &mut warped.result {
+        WarpedResult::Bytes(bytes) => Ok((std::mem::take(bytes), warped)),
+        // Only an XCF is written to a file, and it is not read from memory.
+        WarpedResult::File(_) => Err(Failure::usage("the result is a file")),
+    }
+}
+
+impl Session<'_> {
+    /// Looks up references in the artwork, chooses the frames and builds the steps. An editor, which bends artwork again and again, keeps
+    /// its frame in `framed`.
+    pub fn ready(&self, artwork: &mut dyn Artwork, framed: Option<&mut Option<Framed>>) -> Result<Ready, Failure> {
+        let mut recipe = self.recipe.clone();
+        let guides = references::resolve_names(self.registry, &mut recipe, |name| artwork.path_named(name))?;
+        artwork.remove_guides(guides.clone());
+        artwork.edit_first(self.options, &recipe.steps)?;
+        let known = framed.map(|cache| self.framed(artwork, guides, cache)).transpose()?;
+        let is_selective = recipe.steps.iter().any(Step::is_selective);
+        let parts = if is_selective { artwork.divide(&recipe.steps)? } else { vec![(0..recipe.steps.len()).collect()] };
+        let portion = |(k, steps): (usize, Vec<usize>)| Portion { steps, outlines: artwork.outlines(Which::Part(k)) };
+        let portions: Vec<Portion<'_>> = parts.into_iter().enumerate().map(portion).collect();
+        let start = |i: usize| match &known {
+            _ if !recipe.starts(i, &portions) => Ok(None),
+            Some(frame) if !is_selective => Ok(Some(frame.clone())),
+            _ => self.frame(artwork, Which::Step(i), baseline(self.registry, &recipe.steps[i])).map(Some),
+        };
+        let starts: Vec<Option<Frame>> = (0..recipe.steps.len()).map(start).collect::<Result<_, Failure>>()?;
+        let built = recipe.build_parts(self.registry, &starts, &portions, artwork.budget());
+        let built = built.map_err(Failure::of_recipe)?;
+        sound(&built)?;
+        let first = known.or_else(|| starts.iter().flatten().next().cloned());
+        Ok(Ready { recipe, built, frame: first.unwrap_or_else(|| Frame::new(Rect::ZERO)), starts })
+    }
+
+    /// The frame of some of the artwork.
+    fn frame(&self, artwork: &dyn Artwork, which: Which, baseline: Baseline) -> Result<Frame, Failure> {
+        let frame = artwork.frame(which, self.options.frame, artwork.bounding_box(which), baseline)?;
+        let frame = frame.with_units_per_px(artwork.units_per_px());
+        Ok(match artwork.page() {
+            Some(page) => frame.with_page(page),
+            None => frame,
+        })
+    }
+
+    /// The frame of all artwork, as the last time if guides and baseline are the same.
+    fn framed(&self, artwork: &dyn Artwork, guides: Vec<String>, cache: &mut Option<Framed>) -> Result<Frame, Failure> {
+        let baseline = self.recipe.steps.first().map_or(Baseline::None, |s| baseline(self.registry, s));
+        if let Some(framed) = cache.as_ref().filter(|f| f.guides == guides && f.baseline == baseline) {
+            return Ok(framed.frame.clone());
+        }
+        let frame = self.frame(artwork, Which::All, baseline)?;
+        *cache = Some(Framed { guides, baseline, frame: frame.clone() });
+        Ok(frame)
+    }
+
+    /// The tolerance for artwork of this frame, in user units.
+    pub fn tolerance(&self, artwork: &dyn Artwork, frame: &Frame) -> Result<f64, Failure> {
+        self.options.tolerance_for(artwork.painted_box(), frame)
+    }
+
+    /// Warps artwork, and writes nothing. Messages of the steps get parameters as flags.
+    pub fn warp(&self, artwork: &mut dyn FileArtwork, flags: &Flags) -> Result<Warped, Failure> {
+        let options = self.options;
+        let ready = self.ready(artwork, None)?;
+        let Ready { built, frame: first, starts, .. } = &ready;
+        let whole = &built.whole;
+        let seen = artwork.bounding_box(Which::All).is_some();
+        let tolerance = self.tolerance(artwork, first)?;
+        let stretched = stretched(artwork, built);
+        let embed = || recipe_file::write(self.registry, &ready.recipe, self.given, Path::new(""));
+        let request = WarpRequest {
+            recipe: self.recipe,
+            built,
+            options,
+            tolerance,
+            suited: options.tolerance.is_none(),
+            edit: options.edit.as_ref().map(|e| e.read(first)).transpose()?,
+            embedded_recipe: options.embed_recipe.then(embed).transpose()?,
+            same_view: false,
+        };
+        let warped = ready.checked(artwork.warp(&request))?;
+
+        let mut warnings: Vec<String> = in_flags(flags, whole, |e| &e.warnings).chain(warped.warnings).collect();
+        warnings.extend(stretched);
+        warnings.extend(warped.page.warnings());
+        warnings.extend(self.vanished(&warped.shapes));
+        let coarse = too_coarse(options.precision, &warped.shapes);
+        let is_coarse = coarse.is_some();
+        warnings.extend(coarse);
+        let report = FileReport {
+            file: artwork.file_name(),
+            output: None,
+            error: None,
+            tolerance: Some(warped.tolerance.unwrap_or(tolerance)),
+            frame: Some(shown(first.rect)),
+            selections: selections(&ready.recipe, whole),
+            baseline: first.baseline,
+            page: warped.page.change.map(|[_, after]| shown(after)),
+            shapes: warped.shapes,
+            skipped: warped.skipped,
+            warnings,
+        };
+        let partial = warped.partial || is_coarse || report.is_partial();
+        let mut notes = self.notes(flags, whole, &frames(options.frame, &ready.recipe, starts, seen), &report.shapes);
+        notes.extend(filters(&warped.filters).filter(|_| self.options.explain));
+        Ok(Warped {
+            result: warped.result,
+            page: warped.page,
+            saves: ready.built.whole.steps.into_iter().flat_map(|s| s.saves).collect(),
+            files: warped.files,
+            preview: warped.preview,
+            report,
+            notes,
+            partial,
+        })
+    }
+
+    /// The decisions made on the user's behalf.
+    fn notes(&self, flags: &Flags, built: &BuiltRecipe, framed: &[String], shapes: &[ReportedShape]) -> Vec<String> {
+        let mut notes: Vec<String> = self.simplified(shapes).into_iter().collect();
+        if !self.options.explain {
+            return notes;
+        }
+        notes.extend_from_slice(framed);
+        notes.extend(in_flags(flags, built, |e| &e.notes));
+        notes.extend(strokes(shapes));
+        notes.extend(pictures(shapes));
+        notes
+    }
+
+    /// The numbers of nodes before and after, and the largest error, if that is what the run is for.
+    fn simplified(&self, shapes: &[ReportedShape]) -> Option<String> {
+        let asked = self.options.edit.as_ref().is_some_and(|e| e.info == &SIMPLIFY) && !self.options.quiet;
+        let sum = |of: fn(&ReportedShape) -> usize| shapes.iter().map(of).sum::<usize>();
+        let (before, after) = (sum(|s| s.shape.path.segments_in), sum(|s| s.shape.path.segments_out));
+        let error = shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max);
+        let error =
+            if (1e-3..1e4).contains(&error) || error == 0.0 { format!("{error:.3}") } else { format!("{error:.2e}") };
+        asked.then(|| format!("{before} nodes became {after}, within {error} units of the original"))
+    }
+
+    /// The warning about shapes of which nothing is left.
+    fn vanished(&self, shapes: &[ReportedShape]) -> Option<String> {
+        const NAMED: usize = 5;
+        self.options.edit.as_ref()?;
+        let gone: Vec<&str> = shapes
+            .iter()
+            .filter(|s| s.shape.path.segments_in > 0 && s.shape.path.segments_out == 0)
+            .map(|s| s.shape.id.as_str())
+            .collect();
+        (!gone.is_empty()).then(|| format!("nothing is left of {}: narrower than the distance", listed(&gone, NAMED)))
+    }
+}
+
+/// Messages of all steps, with parameters as flags.
+fn in_flags(
+    flags: &Flags,
+    built: &BuiltRecipe,
+    messages: impl Fn(&Explanation) -> &Vec<String>,
+) -> impl Iterator<Item = String> {
+    built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| flags.in_text(m))
+}
+
+/// What the steps hold for, for the report.
+fn selections(recipe: &Recipe, built: &BuiltRecipe) -> Vec<StepSelection> {
+    if !recipe.steps.iter().any(Step::is_selective) {
+        return Vec::new();
+    }
+    let of_step = |(step, frame): (&Step, &Frame)| StepSelection {
+        deformation: step.deformation.clone(),
+        select: step.select.clone(),
+        exclude: step.exclude.clone(),
+        frame: shown(frame.rect),
+    };
+    recipe.steps.iter().zip(&built.frames).map(of_step).collect()
+}
+
+/// The notes about the frames of the steps that start.
+fn frames(choice: FrameChoice, recipe: &Recipe, starts: &[Option<Frame>], seen: bool) -> Vec<String> {
+    let several = recipe.steps.iter().any(Step::is_selective);
+    let note = |(i, (step, frame)): (usize, (&Step, &Option<Frame>))| {
+        let note = frame_note(choice, frame.as_ref()?, seen);
+        let of = if step.select.is_empty() { String::new() } else { format!(" for {}", step.select.join(", ")) };
+        Some(if several { format!("step {}, {}{of}: {note}", i + 1, step.deformation) } else { note })
+    };
+    recipe.steps.iter().zip(starts).enumerate().filter_map(note).collect()
+}
+
+/// The frame: the box, and the reason for it. `seen` is `true` if any artwork is visible.
+fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
+    let [x, y] = frame.units_per_px;
+    let Rect { x0, y0, .. } = frame.rect;
+    let (width, height) = (frame.rect.width(), frame.rect.height());
+    let why = match (choice, frame.baseline) {
+        (FrameChoice::Default, Some(_)) => {
+            "the artwork is lettering (--frame baseline-ascent), whose baseline lies on the curve".to_owned()
+        }
+        (FrameChoice::Default | FrameChoice::Artwork, _) if seen => "the visible artwork".to_owned(),
+        (FrameChoice::Default | FrameChoice::Artwork, _) => "the page, as no artwork is visible".to_owned(),
+        (FrameChoice::ViewBox, _) => "the page (--frame viewbox)".to_owned(),
+        (FrameChoice::Rect(_), _) => "given by --frame".to_owned(),
+        (FrameChoice::Lettering(_), _) => "the lettering (--frame)".to_owned(),
+    };
+    let baseline = frame.baseline.map(|y| format!(", baseline at {y:.4}")).unwrap_or_default();
+    format!(
+        "frame: {width:.4} × {height:.4} user units at {x0:.4},{y0:.4} ({:.2} × {:.2} mm){baseline}: {why}",
+        width / x * MM_PER_PX,
+        height / y * MM_PER_PX,
+    )
+}
+
+/// Counts the strokes that stayed strokes, with their error, and those that became outlines.
+fn strokes(shapes: &[ReportedShape]) -> Option<String> {
+    let outlined: usize = shapes.iter().map(|s| s.shape.outlined_strokes).sum();
+    let scaled = || shapes.iter().filter_map(|s| Some((s.shape.stroke_error?, &s.shape.id)));
+    let worst = scaled().reduce(|a, b| if b.0 > a.0 { b } else { a });
+    let outlined = (outlined > 0).then(|| format!("{outlined} became outlines (--strokes scale|keep prevents that)"));
+    let scaled = worst.map(|(error, id)| {
+        format!("{} stayed strokes, within {error:.3} units of the exact ones (the farthest: {id})", scaled().count())
+    });
+    let parts: Vec<String> = [scaled, outlined].into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("strokes: {}", parts.join("; ")))
+}
+
+impl Ready {
+    /// The outcome of a warp. The map of a plug-in may fail at any time; nothing that was computed with it is used then, not even another
+    /// error. To an error where the map is undefined it adds which operation is, if a step can say so.
+    pub fn checked<T>(&self, outcome: Result<T, Failure>) -> Result<T, Failure> {
+        sound(&self.built)?;
+        outcome.map_err(|failure| self.explained(failure))
+    }
+
+    fn explained(&self, failure: Failure) -> Failure {
+        let Some((shape, at)) = failure.infinity() else { return failure };
+        let reason = |part: &BuiltRecipe| {
+            let mut p = at;
+            part.steps.iter().find_map(|step| {
+                let why = step.undefined.as_ref().and_then(|why| why(p));
+                p = step.map.point(p);
+                why
+            })
+        };
+        match self.built.parts.iter().find_map(reason) {
+            Some(why) => {
+                let place = format!("{shape} cannot be warped: at {:.4},{:.4} {why}", at.x, at.y);
+                Failure::Geometry(format!("{place}; change the formula, or leave this shape out (--on-error skip)"))
+            }
+            None => failure,
+        }
+    }
+}
+
+fn sound(built: &BuiltParts) -> Result<(), Failure> {
+    built.whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
+}
+
+/// A box as reports have it: x, y, width and height.
+fn shown(r: Rect) -> [f64; 4] {
+    [r.x0, r.y0, r.width(), r.height()]
+}
+
+/// Warns of artwork that the page cuts off and the map stretches.
+fn stretched(artwork: &dyn Artwork, built: &BuiltParts) -> Vec<String> {
+    let of_part = |(k, part): (usize, &BuiltRecipe)| {
+        let (which, frame) = (Which::Part(k), part.frames.first()?.rect);
+        let uncut = artwork.bounding_box(which).filter(|b| *b == frame).and_then(|b| artwork.uncut_box(which, b))?;
+        Some(advice::stretched(uncut, stretch_beyond(&part.map, frame, uncut)?))
+    };
+    built.parts.iter().enumerate().filter_map(of_part).collect()
+}
+
+/// The baseline of a step.
+fn baseline(registry: &Registry, step: &Step) -> Baseline {
+    let Some(info) = registry.get(&step.deformation).map(|e| e.info()) else { return Baseline::None };
+    match info.baseline {
+        None if info.letters => Baseline::Given,
+        None => Baseline::None,
+        Some(param) if step.args.get(param).is_empty() => Baseline::Open,
+        Some(_) => Baseline::Given,
+    }
+}
+
+/// Warns of decimals that are too few for the tolerance.
+fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape]) -> Option<String> {
+    let worst = shapes.iter().map(|s| &s.shape.path).max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let (n, off, tolerance) = (precision?, worst.max_error, worst.max_error / worst.share);
+    (worst.share > 1.001).then(|| {
+        format!(
+            "--precision {n} is too coarse for the tolerance of {tolerance:.3e}: with the rounding, shapes are off by up to {off:.3e}; \
+             give more decimals, or a larger --tolerance"
+        )
+    })
+}
+
+/// Samples of a side of a box.
+const SAMPLES: u32 = 16;
+/// Shortest length beyond the frame that counts, relative to the frame's diagonal.
+const FAR: f64 = 0.02;
+/// Smallest ratio that is worth a warning.
+const STRETCHED: f64 = 3.0;
+
+/// Compares how much the map stretches the artwork between the frame and the edge of `uncut` with how much it stretches the frame. Returns
+/// the ratio if it is large. Does not ask maps that are other programs: they may fail at points that no shape has.
+pub(super) fn stretch_beyond(map: &dyn Map, frame: Rect, uncut: Rect) -> Option<f64> {
+    if map.prefers_batches() {
+        return None;
+    }
+    let size = frame.size().to_vec2().hypot();
+    let of_frame = image_size(map, frame)? / size;
+    let stretch = edge(uncut).filter_map(|p| {
+        let inside = Point::new(p.x.clamp(frame.x0, frame.x1), p.y.clamp(frame.y0, frame.y1));
+        let length = p.distance(inside);
+        (length > FAR * size).then(|| map.point(p).distance(map.point(inside)) / length / of_frame)
+    });
+    let most = stretch.filter(|s| s.is_finite()).fold(0.0, f64::max);
+    (most > STRETCHED).then_some(most)
+}
+
+/// The diagonal of the image of a box.
+fn image_size(map: &dyn Map, rect: Rect) -> Option<f64> {
+    let image = edge(rect).map(|p| map.point(p)).filter(|p| p.is_finite());
+    let bounds = image.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))?;
+    Some(bounds.size().to_vec2().hypot()).filter(|d| *d > 0.0)
+}
+
+/// Points around a box.
+fn edge(r: Rect) -> impl Iterator<Item = Point> {
+    (0..SAMPLES).flat_map(move |i| {
+        let t = f64::from(i) / f64::from(SAMPLES);
+        let (x, y) = (r.x0 + t * r.width(), r.y0 + t * r.height());
+        [
+            Point::new(x, r.y0),
+            Point::new(r.x1, y),
+            Point::new(r.x1 - t * r.width(), r.y1),
+            Point::new(r.x0, r.y1 - t * r.height()),
+        ]
+    })
+}
+
+/// Names the shapes whose gradients became pictures.
+fn pictures(shapes: &[ReportedShape]) -> Option<String> {
+    const NAMED: usize = 5;
+    let pictured: Vec<&str> = shapes.iter().filter(|s| s.shape.pictures > 0).map(|s| s.shape.id.as_str()).collect();
+    let named = listed(&pictured, NAMED);
+    (!pictured.is_empty()).then(|| format!("gradients: pictures on {named} (--gradients fit prevents that)"))
+}
+
+/// Names the elements whose filters became pictures, and those whose filters did not have to.
+fn filters([pictured, kept]: &[Vec<String>; 2]) -> Option<String> {
+    const NAMED: usize = 5;
+    let said = |of: &Vec<String>, before: &str, after: &str| {
+        (!of.is_empty()).then(|| format!("{before} {}{after}", listed(of, NAMED)))
+    };
+    let pictures = said(pictured, "pictures on", " (--filters affine prevents that)");
+    let all: Vec<String> = pictures.into_iter().chain(said(kept, "affine fits on", "")).collect();
+    (!all.is_empty()).then(|| format!("filters: {}", all.join("; ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::kurbo::Vec2;
+    use pathwarp::map::Jet;
+
+    /// (x, y) ↦ (x, y + x³/100²).
+    struct Cubic;
+
+    impl Map for Cubic {
+        fn jet(&self, p: Point) -> Jet {
+            let steep = 3.0 * p.x * p.x / 1e4;
+            Jet { p: Point::new(p.x, p.y + p.x.powi(3) / 1e4), dx: Vec2::new(1.0, steep), dy: Vec2::new(0.0, 1.0) }
+        }
+    }
+
+    #[test]
+    fn only_growth_far_outside_counts() {
+        let frame = Rect::new(0.0, 0.0, 100.0, 100.0);
+        let beyond = |x1| stretch_beyond(&Cubic, frame, Rect { x1, ..frame });
+        assert_eq!([beyond(100.0), beyond(102.0)], [None, None]);
+        // From 100 to 300 the cubic rises by 2,600; the frame's diagonal grows from 141 to 224.
+        let wanted = 200f64.hypot(2600.0) / 200.0 / (100f64.hypot(200.0) / 100f64.hypot(100.0));
+        assert!((beyond(300.0).unwrap() - wanted).abs() < 0.1);
+        let larger = pathwarp::map::AffineMap(pathwarp::kurbo::Affine::scale(7.0));
+        assert_eq!(stretch_beyond(&larger, frame, Rect::new(-900.0, -900.0, 900.0, 900.0)), None);
+    }
+}

@@ -1,0 +1,35 @@
+//! Steps of a recipe as a line of words has them: options of one step, and values in any case of letters.
+
+use crate::options::Given;
+use pathwarp::param::{Kind, Param};
+use pathwarp::recipe::Step;
+
+/// The switch that every deformation has.
+pub const INVERSE: &str = "inverse";
+
+/// Where a step keeps the values of an option.
+pub(crate) type OfStep = fn(&mut Step) -> &mut Vec<String>;
+
+/// Options that apply to the whole chain if one part gives them, and else to the step of each part that does.
+pub const OF_STEPS: [(&str, OfStep); 2] = [("select", |s| &mut s.select), ("exclude", |s| &mut s.exclude)];
+
+/// Gives the steps of parts what is theirs alone: the selection, if several parts have one.
+pub fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mut Given)>) {
+    let mut parts: Vec<_> = parts.into_iter().collect();
+    for (name, of) in OF_STEPS {
+        if parts.iter().filter(|(_, options)| options.gives(name)).count() < 2 {
+            continue;
+        }
+        for (steps, options) in &mut parts {
+            let values = options.take(name);
+            steps.iter_mut().for_each(|step| of(step).extend(values.iter().cloned()));
+        }
+    }
+}
+
+/// A name that differs from a known one only in case, as that one.
+pub fn in_lower_case(p: &Param, value: &str) -> String {
+    let (Kind::NameOrFile(names) | Kind::Choice(names)) = p.kind else { return value.to_owned() };
+    let same = names.iter().find(|n| n.eq_ignore_ascii_case(value));
+    same.map_or_else(|| value.to_owned(), |n| (*n).to_owned())
+}

@@ -1,0 +1,177 @@
+//! Temporary files: removed when they are dropped, and by [`remove_all_and`] before the program ends early.
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
+use tempfile::{Builder, TempPath};
+
+/// Every temporary file there is.
+static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+/// Held for reading while files are created or put in place, and for writing, to the end, by who ends the program.
+static GATE: RwLock<()> = RwLock::new(());
+
+/// A temporary file.
+#[derive(Debug)]
+pub struct Temporary(Option<TempPath>);
+
+impl Temporary {
+    /// Creates an empty file in `folder`.
+    pub fn create_in(folder: &Path) -> io::Result<(Self, File)> {
+        remove_from(folder);
+        let mut builder = builder();
+        #[cfg(unix)]
+        {
+            // The permissions of any newly created file; the umask applies.
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let _gate = hold();
+        let (file, path) = builder.tempfile_in(folder)?.into_parts();
+        Ok((Self::registered(path), file))
+    }
+
+    /// A second name for `file`, or a copy of it where there are no hard links.
+    pub(crate) fn backup(file: &Path, folder: &Path) -> io::Result<Self> {
+        let linked = builder().make_in(folder, |path| std::fs::hard_link(file, path));
+        let made = linked.or_else(|_| builder().make_in(folder, |path| std::fs::copy(file, path).map(drop)))?;
+        Ok(Self::registered(made.into_temp_path()))
+    }
+
+    fn registered(path: TempPath) -> Self {
+        live().insert(path.to_path_buf());
+        Self(Some(path))
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        self.0.as_deref().unwrap_or(Path::new(""))
+    }
+
+    /// Renames the file, over an existing one.
+    pub(crate) fn rename(mut self, to: &Path) -> io::Result<()> {
+        let Some(path) = self.0.take() else { return Ok(()) };
+        live().remove(&*path);
+        path.persist(to).map_err(|e| e.error)
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if let Some(path) = &self.0 {
+            live().remove(&**path);
+        }
+    }
+}
+
+/// Keeps the handler waiting until the guard is dropped.
+pub(crate) fn hold() -> RwLockReadGuard<'static, ()> {
+    GATE.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn builder() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(OWN_PREFIX.as_str());
+    builder
+}
+
+fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Waits for commits under way, so that files that belong together appear together; calls `begin`, removes all temporary files, and calls
+/// `end`, which ends this program.
+pub fn remove_all_and(begin: impl FnOnce(), end: impl FnOnce()) {
+    let _gate = GATE.write().unwrap_or_else(PoisonError::into_inner);
+    begin();
+    for path in live().iter() {
+        let _ = std::fs::remove_file(path);
+    }
+    end();
+}
+
+const PREFIX: &str = ".pathwarp-";
+
+/// The start of the names of this run's temporary files.
+pub(crate) static OWN_PREFIX: LazyLock<String> =
+    LazyLock::new(|| format!("{PREFIX}{}-{}-", machine(), std::process::id()));
+
+/// Folders that need no further look.
+static CLEAN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// Removes what killed runs left in `folder`, at the first call for it.
+pub(crate) fn remove_from(folder: &Path) {
+    let mut clean = CLEAN.lock().unwrap_or_else(PoisonError::into_inner);
+    if clean.contains(folder) {
+        return;
+    }
+    let Ok(entries) = folder.read_dir() else { return };
+    clean.insert(folder.to_owned());
+    drop(clean);
+    for entry in entries.flatten() {
+        // A file that cannot be removed does no harm.
+        if is_leftover(&entry.file_name()) && entry.file_type().is_ok_and(|t| t.is_file()) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+fn is_leftover(name: &OsStr) -> bool {
+    let process = || {
+        let own = name.to_str()?.strip_prefix(PREFIX)?;
+        let (process, _) = own.strip_prefix(&machine())?.strip_prefix('-')?.split_once('-')?;
+        process.parse().ok()
+    };
+    process().is_some_and(|p: i32| !is_running(p))
+}
+
+/// This machine's name, of letters and digits alone.
+#[cfg(unix)]
+fn machine() -> String {
+    let name = rustix::system::uname();
+    name.nodename().to_string_lossy().chars().filter(char::is_ascii_alphanumeric).collect()
+}
+
+#[cfg(not(unix))]
+fn machine() -> String {
+    std::env::var("COMPUTERNAME").unwrap_or_default().chars().filter(char::is_ascii_alphanumeric).collect()
+}
+
+#[cfg(unix)]
+fn is_running(process: i32) -> bool {
+    use rustix::process::{Pid, test_kill_process};
+    // A process of another user may not be signalled, but it exists.
+    Pid::from_raw(process).is_none_or(|p| test_kill_process(p) != Err(rustix::io::Errno::SRCH))
+}
+
+/// There is no way to ask without unsafe code, so nothing is removed.
+#[cfg(not(unix))]
+fn is_running(_: i32) -> bool {
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_files_of_ended_processes_are_removed() -> io::Result<()> {
+        let mut child = std::process::Command::new("true").spawn()?;
+        let ended = child.id();
+        child.wait()?;
+        let folder = tempfile::tempdir()?;
+        let name = |process: u32| format!("{PREFIX}{}-{process}-aB3xY9", machine());
+        let kept =
+            [name(std::process::id()), name(1), format!("{PREFIX}elsewhere-{ended}-aB3xY9"), ".pathwarp-notes".into()];
+        for file in kept.iter().cloned().chain([name(ended)]) {
+            std::fs::write(folder.path().join(file), "x")?;
+        }
+        remove_from(folder.path());
+        let left: BTreeSet<_> =
+            folder.path().read_dir()?.map(|e| e.map(|e| e.file_name())).collect::<Result<_, _>>()?;
+        assert_eq!(left, kept.iter().map(Into::into).collect());
+        Ok(())
+    }
+}
