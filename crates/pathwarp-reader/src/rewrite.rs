@@ -10,6 +10,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use memchr::memmem;
 use pathwarp::budget::{Budget, Exceeded, cost};
+use pathwarp::decimal::matrix;
 use pathwarp::kurbo::Affine;
 use roxmltree::{Document, NS_XML_URI, Node};
 use std::borrow::Cow;
@@ -352,10 +353,9 @@ fn with_declaration(style: &str, name: &str, value: &str) -> String {
 
 /// Declares a transform that depends on no box. usvg needs only the first two declarations.
 fn frozen(m: Affine) -> [(&'static str, String); 6] {
-    let list = m.as_coeffs().map(|c| c.to_string()).join(",");
     let none = || "none".to_owned();
     [
-        ("transform", format!("matrix({list})")),
+        ("transform", matrix(m).replace(' ', ",")),
         ("transform-origin", "0 0".to_owned()),
         ("transform-box", "view-box".to_owned()),
         ("rotate", none()),

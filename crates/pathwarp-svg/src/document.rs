@@ -13,7 +13,7 @@ use crate::scene::plot::{self, Plot};
 use crate::scene::selected_lettering::{Lettering, lettering};
 use crate::source::edit::Edits;
 use crate::source::elements::{ElementId, is_shape};
-use crate::source::number::{short, single};
+use crate::source::number::{rectangle, single};
 use crate::source::read::ReadOptions;
 use crate::source::select::{self, Division, Selection, candidates, is_named, matches_any};
 use crate::source::tree::undrawn;
@@ -122,8 +122,7 @@ impl Document {
         let (page, view) = (self.size_px(), self.view_box());
         let mut edits = Edits::new(source);
         if source.attr(0, "viewBox").is_none() {
-            let view = [view.x0, view.y0, view.width(), view.height()].map(short).join(" ");
-            edits.set_attr(0, "viewBox", view);
+            edits.set_attr(0, "viewBox", rectangle(view).map(|side| side.1).join(" "));
         }
         for (name, side) in [("width", page.width), ("height", page.height)] {
             edits.set_page_side(name, format!("{}{unit}", single(side * scale / px)));

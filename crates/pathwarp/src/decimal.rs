@@ -1,5 +1,6 @@
 //! Numbers as text with a fixed number of decimals and no trailing zeros.
 
+use kurbo::Affine;
 use std::fmt::Write;
 
 /// Formats `v` rounded to `decimals` decimals, without trailing zeros and without the sign of -0.
@@ -16,6 +17,50 @@ pub fn trimmed(v: f64, decimals: usize) -> String {
     let mut out = String::new();
     push_trimmed(&mut out, v, decimals);
     out
+}
+
+/// Formats numbers that belong together, such as those of a point or a box: each with `digits` significant digits of its own, but no
+/// decimals beyond three more digits of the largest. So what is nothing beside it becomes 0.
+///
+/// ```
+/// use pathwarp::decimal::together;
+///
+/// assert_eq!(together([0.1 + 0.2, -7.7e-16, 40.0], 9), ["0.3", "0", "40"]);
+/// ```
+#[must_use]
+pub fn together<const N: usize>(values: [f64; N], digits: i32) -> [String; N] {
+    const MORE: i32 = 3;
+    let most = decimals(values, digits + MORE);
+    values.map(|v| trimmed(v, decimals([v], digits).min(most)))
+}
+
+/// The number of decimals that the largest of these numbers needs for `digits` significant digits.
+#[must_use]
+pub fn decimals(values: impl IntoIterator<Item = f64>, digits: i32) -> usize {
+    /// More resolve nothing that can occur in a drawing.
+    const MOST: i32 = 30;
+    let largest = values.into_iter().map(f64::abs).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let before = if largest > 0.0 { largest.log10().floor() as i32 + 1 } else { 0 };
+    usize::try_from((digits - before).clamp(0, MOST)).unwrap_or(0)
+}
+
+/// Formats an affine map as `matrix(…)`: the images of both unit vectors with twelve significant digits each, the shift with twelve of
+/// the largest number of all.
+///
+/// ```
+/// use kurbo::Affine;
+/// use pathwarp::decimal::matrix;
+///
+/// assert_eq!(matrix(Affine::rotate(std::f64::consts::FRAC_PI_2)), "matrix(0 1 -1 0 0 0)");
+/// ```
+#[must_use]
+pub fn matrix(m: Affine) -> String {
+    const DIGITS: i32 = 12;
+    let [a, b, c, d, e, f] = m.as_coeffs();
+    let fine =
+        |pair: [f64; 2], among: &[f64]| pair.map(|v| trimmed(v, decimals(among.iter().copied(), DIGITS))).join(" ");
+    let [x, y] = [[a, b], [c, d]].map(|unit| fine(unit, &unit));
+    format!("matrix({x} {y} {})", fine([e, f], &[a, b, c, d, e, f]))
 }
 
 /// Appends [`trimmed`] text to `out`.

@@ -8,6 +8,7 @@ mod filters;
 mod keeping;
 mod lettering;
 mod live;
+mod numbers;
 mod open_fills;
 mod page;
 mod patterns;

@@ -1,7 +1,7 @@
 //! Writes numbers and path data, rounded once and in the shortest form.
 
-use pathwarp::decimal::push_trimmed;
-use pathwarp::kurbo::{Affine, BezPath, CubicBez, PathEl, Point, Vec2};
+use pathwarp::decimal::{decimals, push_trimmed, together, trimmed};
+use pathwarp::kurbo::{BezPath, CubicBez, PathEl, Point, Rect, Vec2};
 use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
@@ -128,14 +128,18 @@ const UNITS: [u64; MAX_DECIMALS as usize + 1] = {
 const POWERS: [f64; MAX_DECIMALS as usize + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
 
-/// Formats `v` with nine significant digits, for lengths, offsets and matrices.
+/// Significant digits of lengths and offsets, and those that single precision has.
+pub(crate) const SHORT: i32 = 9;
+const SINGLE: i32 = 7;
+
+/// Formats `v` with nine significant digits, for lengths and offsets.
 pub(crate) fn short(v: f64) -> String {
-    significant(v, 9)
+    significant(v, SHORT)
 }
 
 /// Formats `v` with as many significant digits as single precision has.
 pub(crate) fn single(v: f64) -> String {
-    significant(v, 7)
+    significant(v, SINGLE)
 }
 
 /// Formats `v` with `digits` significant digits.
@@ -161,17 +165,18 @@ fn push_significant(out: &mut String, v: f64, digits: i32) {
     }
 }
 
-/// Formats a transform as `matrix(…)`, with fifteen significant digits to suit f64 readers.
-pub(crate) fn matrix(m: Affine) -> String {
-    let mut out = String::from("matrix(");
-    for (i, v) in m.as_coeffs().into_iter().enumerate() {
-        if i > 0 {
-            out.push(' ');
-        }
-        push_significant(&mut out, v, 15);
-    }
-    out.push(')');
-    out
+/// Formats numbers of single precision that belong together.
+pub(crate) fn singles(values: &[f32]) -> Vec<String> {
+    let all = || values.iter().map(|v| f64::from(*v));
+    // The last digit of the largest is rounded already.
+    let most = decimals(all(), SINGLE + 1);
+    all().map(|v| trimmed(v, decimals([v], SINGLE).min(most))).collect()
+}
+
+/// The attributes of a rectangle.
+pub(crate) fn rectangle(r: Rect) -> [(&'static str, String); 4] {
+    let [x, y, width, height] = together([r.x0, r.y0, r.width(), r.height()], SHORT);
+    [("x", x), ("y", y), ("width", width), ("height", height)]
 }
 
 /// Formats a path as a `d` attribute with absolute commands.

@@ -7,7 +7,7 @@ use crate::bend::outcome::{StrokeOutcome, WarpedPart};
 use crate::scene::areas::{is_seen, overlap, stroke_outline};
 use crate::scene::geometry::rect;
 use crate::scene::model::{Group, Part, PartRole};
-use crate::source::number::{path_data, short};
+use crate::source::number::{path_data, rectangle};
 use pathwarp::kurbo::{Affine, BezPath, Insets, Point, Rect, Shape as _};
 use pathwarp::{Outline, Seg, refit};
 use std::borrow::Cow;
@@ -168,13 +168,7 @@ pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, Str
         let margin = 0.01 * area.width().max(area.height());
         area = area.inflate(margin, margin);
     }
-    vec![
-        ("maskUnits", "userSpaceOnUse".into()),
-        ("x", short(area.x0)),
-        ("y", short(area.y0)),
-        ("width", short(area.width())),
-        ("height", short(area.height())),
-    ]
+    [("maskUnits", "userSpaceOnUse".into())].into_iter().chain(rectangle(area)).collect()
 }
 
 /// Path data for the warped border of a mask's region, if the border clips the content.

@@ -4,7 +4,7 @@ use super::layers::{Layer, Need};
 use super::markup::{self, Markup};
 use crate::scene::areas;
 use crate::source::markup::Tag;
-use crate::source::number::short;
+use crate::source::number::{rectangle, singles};
 use pathwarp::kurbo::Rect;
 use usvg::filter::{
     ColorChannel, ColorInterpolation, ColorMatrixKind, Composite, CompositeOperator, ConvolveMatrix, EdgeMode, Filter,
@@ -28,7 +28,7 @@ pub(super) fn element(
             ColorInterpolation::LinearRGB => "linearRGB",
         };
         let begin = |tag: &str| {
-            let tag = markup.element(tag).with_all(region(areas::part(f, p, all)));
+            let tag = markup.element(tag).with_all(rectangle(areas::part(f, p, all)));
             tag.with("color-interpolation-filters", space)
         };
         let (tag, content) = primitive(markup, &begin, p.kind(), &mut pictures);
@@ -46,12 +46,7 @@ pub(super) fn element(
     });
     let primitives: String = primitives.collect();
     let filter = markup.element("filter").with("id", id).with("filterUnits", "userSpaceOnUse");
-    filter.with_all(region(all)).around(&(primitives + layer.map_or("", |l| &l.more)))
-}
-
-/// The attributes of a region in user space.
-pub(super) fn region(r: Rect) -> [(&'static str, String); 4] {
-    [("x", short(r.x0)), ("y", short(r.y0)), ("width", short(r.width())), ("height", short(r.height()))]
+    filter.with_all(rectangle(all)).around(&(primitives + layer.map_or("", |l| &l.more)))
 }
 
 /// A primitive with its content; `begin` begins its element. A picture is the next of `pictures`.
@@ -140,8 +135,7 @@ impl Tag {
     }
 
     pub(super) fn numbers(self, name: &str, values: &[f32]) -> Self {
-        let all: Vec<String> = values.iter().map(|v| short((*v).into())).collect();
-        self.with(name, &all.join(" "))
+        self.with(name, &singles(values).join(" "))
     }
 }
 

@@ -16,12 +16,13 @@ use crate::bend::gradients::NewGradient;
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::bend::pictures::BentImage;
 use crate::bend::shading::{Shading, Stop};
-use crate::scene::geometry::affine;
+use crate::scene::geometry::{affine, rect};
 use crate::scene::model::Tiles;
 use crate::scene::model::{Group, Node, Part};
 use crate::source::markup::Tag;
 use crate::source::mesh::MeshGradient;
-use crate::source::number::{MAX_DECIMALS, matrix, outline_data, short};
+use crate::source::number::{MAX_DECIMALS, SHORT, outline_data, rectangle, short, single, singles};
+use pathwarp::decimal::{decimals, matrix, trimmed};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::PaintProperty::{self, Fill, FillOpacity, Stroke, StrokeOpacity};
 use pathwarp_reader::xml::escape;
@@ -135,7 +136,7 @@ impl<'a> Writer<'a> {
     fn head(&mut self, g: &Group, extra: &str) -> String {
         let mut properties = Properties::new();
         if g.opacity < 1.0 {
-            properties.push(("opacity", short(f64::from(g.opacity))));
+            properties.push(("opacity", single(f64::from(g.opacity))));
         }
         if let Some(i) = g.clip {
             let id = self.clip_id(i);
@@ -285,7 +286,7 @@ impl<'a> Writer<'a> {
         self.defs.push(&self.markup.element("clipPath").with("id", &id).around(&path));
         let mut outer = vec![("clip-path", format!("url(#{id})"))];
         if inner.opacity < 1.0 {
-            outer.push(("opacity", short(f64::from(inner.opacity))));
+            outer.push(("opacity", single(f64::from(inner.opacity))));
         }
         self.markup.element("g").raw(&self.markup.attributes(&outer)).around(&inner.content)
     }
@@ -336,7 +337,7 @@ impl<'a> Writer<'a> {
             }
         }
         let paint = self.paint(paint, p, self.input.warped(i));
-        CssPaint { paint: Some(paint), opacity: Some(short(f64::from(opacity.get()))) }
+        CssPaint { paint: Some(paint), opacity: Some(single(f64::from(opacity.get()))) }
     }
 
     /// A paint as a CSS value.
@@ -378,7 +379,8 @@ impl<'a> Writer<'a> {
         }
         let id = self.defs.new_id(g.id());
         let mut tag = self.markup.element(tag).with("id", &id).with("gradientUnits", "userSpaceOnUse");
-        tag = geometry.iter().fold(tag, |tag, (name, v)| tag.with(name, &short((*v).into())));
+        let numbers = singles(&geometry.iter().map(|g| g.1).collect::<Vec<_>>());
+        tag = geometry.iter().zip(numbers).fold(tag, |tag, ((name, _), v)| tag.with(name, &v));
         let t = fit * affine(g.transform());
         if t != Affine::IDENTITY {
             tag = tag.with("gradientTransform", &matrix(t));
@@ -415,10 +417,15 @@ impl<'a> Writer<'a> {
 
     /// Writes a gradient with stops of its own in the place of another.
     fn bent_gradient(&mut self, paint: &Paint, bent: &Shading) -> String {
+        /// Digits of the largest number beside which the others are nothing.
+        const FINE: i32 = SHORT + 3;
         let id = self.defs.new_id(server_id(paint));
         let (tag, geometry) = bent.geometry();
         let mut tag = self.markup.element(tag).with("id", &id).with("gradientUnits", "userSpaceOnUse");
-        tag = geometry.into_iter().fold(tag, |tag, (name, v)| tag.with(name, &short(v)));
+        let most = decimals(geometry.iter().map(|g| g.1), FINE);
+        tag = geometry
+            .into_iter()
+            .fold(tag, |tag, (name, v)| tag.with(name, &trimmed(v, decimals([v], SHORT).min(most))));
         if bent.inside != Affine::IDENTITY {
             tag = tag.with("gradientTransform", &matrix(bent.inside.inverse()));
         }
@@ -460,9 +467,7 @@ impl<'a> Writer<'a> {
         self.defs.servers.insert(key, id.clone());
         let r = pattern.rect();
         let mut head = self.markup.element("pattern").with("id", &id).with("patternUnits", "userSpaceOnUse");
-        for (name, v) in [("x", r.x()), ("y", r.y()), ("width", r.width()), ("height", r.height())] {
-            head = head.with(name, &short(v.into()));
-        }
+        head = head.with_all(rectangle(rect(r.to_rect())));
         let t = fit * affine(pattern.transform());
         if t != Affine::IDENTITY {
             head = head.with("patternTransform", &matrix(t));
@@ -650,8 +655,9 @@ impl<'a> Writer<'a> {
         let urls = g.filters.iter().map(|f| format!("url(#{})", self.new_filter(f, boxes::grown(f, growth), layer)));
         let urls: Vec<String> = urls.collect();
         let content = Tag::new("g").with("filter", &urls.join(" ")).around(&inner);
-        let size = [("width", view.width()), ("height", view.height())].map(|(name, v)| (name, short(v)));
-        let place = [view.x0, view.y0, view.width(), view.height()].map(short).join(" ");
+        let [x, y, width, height] = rectangle(view);
+        let place = [&x, &y, &width, &height].map(|side| side.1.as_str()).join(" ");
+        let size = [width, height];
         let svg = Tag::new("svg").with("xmlns", "http://www.w3.org/2000/svg");
         let svg = svg.with("xmlns:xlink", "http://www.w3.org/1999/xlink").with_all(size).with("viewBox", &place);
         svg.around(&format!("<defs>{}</defs>{content}", self.defs.text))
@@ -710,8 +716,8 @@ pub(super) fn image(input: &WriteInput<'_>, markup: &Markup<'_>, skipped: &mut V
         ImageRendering::CrispEdges => Some("crisp-edges"),
         ImageRendering::Pixelated => Some("pixelated"),
     };
-    let tag = markup.element("image").with("width", &short(image.size().width().into()));
-    let tag = tag.with("height", &short(image.size().height().into()));
+    let tag = markup.element("image").with("width", &single(image.size().width().into()));
+    let tag = tag.with("height", &single(image.size().height().into()));
     let style = rendering.map(|how| ("style", format!("image-rendering:{how}")));
     tag.with_all(style).raw(&format!(" {}=\"{url}\"", markup.link())).empty()
 }

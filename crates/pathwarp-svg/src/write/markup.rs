@@ -4,7 +4,7 @@ use crate::bend::outcome::WarpedPart;
 use crate::bend::pictures::BentImage;
 use crate::scene::model::Part;
 use crate::source::markup::Tag;
-use crate::source::number::{outline_data, short};
+use crate::source::number::{outline_data, rectangle, single};
 use crate::source::text::SourceText;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -191,7 +191,7 @@ pub(super) fn part_style(markup: &Markup<'_>, p: &Part, paints: CssPaints, scale
 fn push_stroke(s: &usvg::Stroke, css: CssPaint, scale: f64, all: &mut Properties) {
     all.extend(css.paint.map(|v| ("stroke", v)));
     all.extend(css.opacity.map(|v| ("stroke-opacity", v)));
-    all.push(("stroke-width", short(f64::from(s.width().get()) * scale)));
+    all.push(("stroke-width", single(f64::from(s.width().get()) * scale)));
     let cap = match s.linecap() {
         LineCap::Butt => "butt",
         LineCap::Round => "round",
@@ -205,9 +205,9 @@ fn push_stroke(s: &usvg::Stroke, css: CssPaint, scale: f64, all: &mut Properties
         LineJoin::Bevel => "bevel",
     };
     all.push(("stroke-linejoin", join.into()));
-    all.push(("stroke-miterlimit", short(f64::from(s.miterlimit().get()))));
+    all.push(("stroke-miterlimit", single(f64::from(s.miterlimit().get()))));
     all.push(("stroke-dasharray", dashes(s, scale)));
-    all.push(("stroke-dashoffset", short(f64::from(s.dashoffset()) * scale)));
+    all.push(("stroke-dashoffset", single(f64::from(s.dashoffset()) * scale)));
 }
 
 /// Returns `true` if a value is the property's initial value.
@@ -228,14 +228,8 @@ fn is_default(name: &str, value: &str) -> bool {
 
 /// Position of a bent bitmap as attributes of its element.
 pub(super) fn bent_attributes(bent: &BentImage, to: Affine) -> [(&'static str, String); 5] {
-    let r = to.transform_rect_bbox(bent.area);
-    [
-        ("x", short(r.x0)),
-        ("y", short(r.y0)),
-        ("width", short(r.width())),
-        ("height", short(r.height())),
-        ("preserveAspectRatio", "none".into()),
-    ]
+    let [x, y, width, height] = rectangle(to.transform_rect_bbox(bent.area));
+    [x, y, width, height, ("preserveAspectRatio", "none".into())]
 }
 
 /// A file as a `data:` URL.
@@ -274,7 +268,7 @@ pub(super) fn stroke_scale(warped: Option<&WarpedPart>) -> f64 {
 /// Value of `stroke-dasharray`.
 pub(super) fn dashes(s: &usvg::Stroke, scale: f64) -> String {
     s.dasharray()
-        .map_or("none".into(), |list| list.iter().map(|d| short(f64::from(*d) * scale)).collect::<Vec<_>>().join(","))
+        .map_or("none".into(), |list| list.iter().map(|d| single(f64::from(*d) * scale)).collect::<Vec<_>>().join(","))
 }
 
 /// A colour as `#rrggbb`.

@@ -10,7 +10,7 @@ use crate::scene::areas::{self, clip_box, is_seen, overlap};
 use crate::scene::drawing::page_length;
 use crate::scene::model::{Group, Node, PartRole};
 use crate::source::elements::ElementId;
-use crate::source::number::short;
+use crate::source::number::{rectangle, short};
 use crate::source::select::Selection;
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Affine, Point, Rect};
@@ -125,7 +125,7 @@ fn moved(input: &WriteInput<'_>) -> bool {
 
 /// Returns new attributes of the root for a [`change`] of the page.
 pub(super) fn attributes(source: &SourceText, (page, shown): (Rect, Rect)) -> Vec<(&'static str, String)> {
-    let view = [shown.x0, shown.y0, shown.width(), shown.height()].map(short).join(" ");
+    let view = rectangle(shown).map(|side| side.1).join(" ");
     let mut out = vec![("viewBox", view)];
     let sides = [("width", shown.width(), page.width()), ("height", shown.height(), page.height())];
     for (name, after, before) in sides {

@@ -8,7 +8,7 @@ use crate::bend::outcome::{Skipped, WarpedPart};
 use crate::scene::geometry::stretch;
 use crate::scene::model::{Clip, Group, Mask, Node, Part, Referrer};
 use crate::source::elements::{ElementId, Namespace, Unpatchable, is_live, is_shape};
-use crate::source::number::short;
+use crate::source::number::single;
 use crate::write::boxes;
 use crate::write::fragment::bent;
 use crate::write::input::WriteInput;
@@ -172,12 +172,12 @@ fn patch_paint(k: &mut Keeper<'_, '_>, e: ElementId, i: usize, p: &Part, warped:
 fn patch_stroke(k: &mut Keeper<'_, '_>, e: ElementId, p: &Part, warped: &WarpedPart) {
     let scale = warped.stroke.scale();
     let Some(s) = p.stroke.as_ref().filter(|_| (scale - 1.0).abs() > 1e-9) else { return };
-    k.edits.set_property(e, "stroke-width", short(f64::from(s.width().get()) * scale));
+    k.edits.set_property(e, "stroke-width", single(f64::from(s.width().get()) * scale));
     // In units of `pathLength`, dashes are the same on the new path.
     if s.dasharray().is_some() && k.source.attr(e, "pathLength").is_none() {
         k.edits.set_property(e, "stroke-dasharray", dashes(s, scale));
         if s.dashoffset() != 0.0 {
-            k.edits.set_property(e, "stroke-dashoffset", short(f64::from(s.dashoffset()) * scale));
+            k.edits.set_property(e, "stroke-dashoffset", single(f64::from(s.dashoffset()) * scale));
         }
     }
 }

@@ -8,12 +8,13 @@ mod text;
 use super::fragment::Writer;
 use super::input::WriteInput;
 use super::keep::keeper::{Keeper, Warped};
-use super::{filter, page};
+use super::page;
 use crate::bend::outcome::{Notes, Skipped};
 use crate::source::edit::Edits;
 use crate::source::elements::{ElementId, Unpatchable, is_live};
-use crate::source::number::matrix;
+use crate::source::number::rectangle;
 use crate::source::text::SourceText;
+use pathwarp::decimal::matrix;
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::guarded;
 
@@ -82,7 +83,7 @@ fn regions(k: &mut Keeper<'_, '_>) {
     for (id, region) in std::mem::take(&mut k.writer.defs.regions) {
         if let Some(e) = k.definition(&id, "filter").filter(|&e| k.source.in_user_space(e, "filterUnits") == Some(true))
         {
-            for (name, value) in filter::region(region) {
+            for (name, value) in rectangle(region) {
                 k.edits.set_attr(e, name, value);
             }
         }

@@ -4,7 +4,7 @@ use super::keeper::Keeper;
 use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
 use crate::source::elements::ElementId;
 use crate::source::elements::declared;
-use crate::source::number::short;
+use crate::source::number::{rectangle, short};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Rect, Size, Vec2};
 
@@ -191,8 +191,8 @@ fn one_page(k: &mut Keeper<'_, '_>, e: ElementId, before: Rect, after: Rect) {
     } else {
         old + Vec2::new(before.x0 - after.x0, before.y0 - after.y0)
     };
-    for (name, value) in [("x", new.x0), ("y", new.y0), ("width", new.width()), ("height", new.height())] {
-        k.edits.set_attr(e, name, short(value));
+    for (name, value) in rectangle(new) {
+        k.edits.set_attr(e, name, value);
     }
 }
 
