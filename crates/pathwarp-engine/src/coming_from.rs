@@ -109,12 +109,23 @@ pub fn meant(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     }
 }
 
-/// A name in small letters, without signs and without words that say only what it is.
-fn plain(name: &str) -> String {
+/// A name in small letters without accents, without signs and without words that say only what it is.
+pub fn plain(name: &str) -> String {
     const KINDS: [&str; 5] = ["tool", "effect", "filter", "panel", "lpe"];
-    let name = name.to_lowercase();
+    let name: String = name.to_lowercase().chars().filter_map(without_accent).collect();
     let words = name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty() && !KINDS.contains(w));
     words.collect::<Vec<_>>().join(" ")
+}
+
+/// The letter that a small Latin letter with an accent has below it; `None` for an accent alone.
+fn without_accent(c: char) -> Option<char> {
+    #[rustfmt::skip]
+    const ACCENTED: [&str; 17] = [
+        "aàáâãäåāăą", "cçćĉċč", "dďđ", "eèéêëēĕėęě", "gĝğġģ", "hĥħ", "iìíîïĩīĭįı", "jĵ", "kķ", "lĺļľŀł", "nñńņňŉ", "oòóôõöøōŏő", "rŕŗř",
+        "sśŝşš", "tţťŧ", "uùúûüũūŭůűų", "zźżž",
+    ];
+    let plain = ACCENTED.iter().find(|all| all.contains(c)).and_then(|all| all.chars().next());
+    (!matches!(c, '\u{300}'..='\u{36f}')).then(|| plain.unwrap_or(c))
 }
 
 /// What `pathwarp help WORD` says; `title` returns what a subcommand does. `None` if the word is unknown.
@@ -149,6 +160,8 @@ mod tests {
         assert_eq!(commands("Pattern along Path LPE"), [Some("bend")]);
         assert!(commands("LIQUIFY").len() > 4 && commands("liquify").contains(&Some("swirl")));
         assert_eq!(commands("zipper"), [None]);
+        assert_eq!(commands("PÚPPET wärp"), commands("puppet warp"));
+        assert_eq!(commands("pu\u{301}ppet warp"), commands("puppet warp"));
         assert!(commands("lattice deformation inkscape").contains(&Some("ffd")));
         assert!(commands("").is_empty() && commands("›").is_empty() && commands("unheard-of").is_empty());
     }

@@ -75,6 +75,12 @@ fn every_command_for_a_word_of_another_program_runs() {
     assert!(said.contains("Not there yet"), "{said}");
     assert!(expect_code(2, &["help", "pupet warp"]).1.contains("did you mean `puppet warp`?"));
     assert!(expect_code(0, &["help", "mesh"]).0.contains("Usage: pathwarp mesh"));
+    for (word, name) in
+        [("FFD", "ffd"), ("Ffd", "ffd"), ("PROJ\u{e9}CTIVE", "projective"), ("me\u{301}sh", "mesh"), ("Text", "text")]
+    {
+        let (said, _) = expect_code(0, &["help", word]);
+        assert!(said.contains(&format!("Usage: pathwarp {name}")), "{word}: {said}");
+    }
 }
 
 /// A front page is short.

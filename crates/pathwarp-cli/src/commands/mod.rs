@@ -24,6 +24,7 @@ use crate::{mistakes, watch};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command};
 use pathwarp::deform::Registry;
+use pathwarp_engine::catalogue::Catalogue as _;
 use pathwarp_engine::edits::{OFFSET, OUTLINE, SIMPLIFY};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::{advice, coming_from, output};
@@ -170,7 +171,19 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     result
 }
 
+/// The command that `help WORD…` asks about, if it is one in other letters: capitals, accents, spaces or underscores for hyphens.
+fn respelled(registry: &Registry, args: &[OsString]) -> Option<Vec<OsString>> {
+    let [program, help, words @ ..] = args else { return None };
+    let wanted = coming_from::plain(&joined(words));
+    let is_wanted = |name: &&str| !wanted.is_empty() && coming_from::plain(name) == wanted;
+    let mut names = OTHERS.iter().map(|o| o.name).chain(registry.infos().into_iter().map(|i| i.name));
+    let name = names.find(is_wanted).filter(|_| help == "help" && words.iter().all(|w| w != "+"))?;
+    Some(vec![program.clone(), help.clone(), name.into()])
+}
+
 fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Result<Status, Ending> {
+    let respelled = respelled(registry, args);
+    let args = respelled.as_deref().unwrap_or(args);
     // Each part after a lone `+` is a command line of its own.
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
