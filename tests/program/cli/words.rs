@@ -51,6 +51,21 @@ fn a_fold_of_lettering_names_the_letter() {
     assert!(said.contains("“Q”") && said.contains("folds over"), "{said}");
 }
 
+/// A map that turns most of a word over, and not its corners.
+#[test]
+fn all_letters_that_fold_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let word = pathwarp_in(dir.path(), &["text", "STAR", "--no-system-fonts"], b"").stdout;
+    let out = pathwarp_in(dir.path(), &["warp", "-", "--style", "bulge", "--bend", "-80%"], &word);
+    let said = text(&out.stderr);
+    for letter in ["S", "T", "A", "R"] {
+        assert!(said.contains(&format!("“{letter}”")) || said.contains(&format!("{letter} folds")), "{letter}: {said}");
+    }
+    // The whole word upside down does not fold.
+    let out = pathwarp_in(dir.path(), &["affine", "-", "--scale-y", "-1"], &word);
+    assert!(out.stderr.is_empty(), "{}", text(&out.stderr));
+}
+
 #[test]
 fn a_page_fitted_to_the_artwork_keeps_its_margin() {
     let dir = tempfile::tempdir().unwrap();

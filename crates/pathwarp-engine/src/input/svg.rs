@@ -319,6 +319,7 @@ impl SvgArtwork {
         }
         let pictures = self.picture_orientations(k, built, options)?;
         all = pictures.iter().fold(all, |all, (_, o)| all.and(o));
+        all = self.bounding_box(Which::Part(k)).map_or(all, |bounds| all.usual(&built.map, bounds));
         let (mut out, mut warnings) = (HashMap::new(), Vec::new());
         let places = &built.placement;
         let survey = LazyCell::new(|| Survey::new(&built.map, None, 1));

@@ -234,6 +234,18 @@ impl Orientation {
         }
     }
 
+    /// The orientation to compare the shapes of the artwork with, whose samples these are: that of most of them, unless the map turns most
+    /// of the artwork over and leaves a corner of the artwork's box, `bounds`, as it was.
+    #[must_use]
+    pub fn usual(&self, map: &dyn Map, bounds: Rect) -> Self {
+        let corners = [(bounds.x0, bounds.y0), (bounds.x1, bounds.y0), (bounds.x1, bounds.y1), (bounds.x0, bounds.y1)];
+        let turned = self.positive > 0 && self.negative > self.positive;
+        if turned && corners.into_iter().any(|c| map.jet(c.into()).det() > 0.0) {
+            return Self { positive: self.negative, ..*self };
+        }
+        *self
+    }
+
     /// A point of this shape that is turned over relative to the majority of the artwork's samples, `all`.
     #[must_use]
     pub fn folded_against(&self, all: &Self) -> Option<Point> {
@@ -382,6 +394,17 @@ mod tests {
         let proven = Survey::new(&known, all, 8).orientation_of_copies(&shape, &places, false);
         assert_eq!(proven, Survey::new(&hidden, all, 8).orientation_of_copies(&shape, &places, false));
         assert_eq!(proven.positive, 2 * 4 * (PER_SEGMENT + 1));
+    }
+
+    /// Most of the artwork is turned over, and all of it overlaps.
+    #[test]
+    fn what_is_turned_over_folds_though_it_is_the_larger_part() {
+        let shapes =
+            ["M-6,0 H1 V1 H-6 Z", "M-5,0 H-4 V1 H-5 Z", "M2,0 H3 V1 H2 Z"].map(|d| Outline::from_svg(d).unwrap());
+        let all = shapes.iter().map(|s| orientation(s, true, &Fold)).fold(Orientation::default(), |all, o| all.and(&o));
+        let usual = all.usual(&Fold, Rect::new(-6.0, 0.0, 3.0, 1.0));
+        let folds = shapes.map(|s| orientation(&s, true, &Fold).folded_against(&usual).is_some());
+        assert_eq!((all.negative > all.positive, folds), (true, [true, true, false]));
     }
 
     #[test]
