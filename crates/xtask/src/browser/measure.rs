@@ -99,6 +99,16 @@ impl Picture {
         Self { width: pixmap.width() as usize, height: pixmap.height() as usize, data: pixmap.data().to_vec() }
     }
 
+    /// The picture cut to this size, or with transparent pixels to the right and below.
+    pub(super) fn on_page(&self, [width, height]: [usize; 2]) -> Self {
+        let mut data = vec![0; 4 * width * height];
+        let across = 4 * width.min(self.width);
+        for (to, from) in data.chunks_exact_mut(4 * width).zip(self.data.chunks_exact(4 * self.width)) {
+            to[..across].copy_from_slice(&from[..across]);
+        }
+        Self { width, height, data }
+    }
+
     /// Replaces each pixel by the mean of 3 × 3, so that a line one pixel wide looks the same wherever it falls between pixels.
     fn softened(&self) -> Self {
         let (w, h) = (self.width, self.height);

@@ -3,7 +3,8 @@
 //! Every drawing is warped by each [`Bend`]: a shift that the program does not recognise as one, so that no element takes a shortcut, with
 //! strokes kept where possible and then with outlined strokes; and a curved map. Both have exact inverses, so the picture of a result can be
 //! computed from the picture of the original. Comparing the two reveals anything that pathwarp reads differently from browsers, and anything
-//! left unbent. A drawing that Chromium cannot parse does not count.
+//! left unbent. With `--as`, Chromium's rendering is compared with what `render` draws, or with the PDF of `convert` as poppler draws it. A
+//! drawing that Chromium cannot parse does not count.
 //!
 //! Not compared: the frame, the sharpness of bitmaps, and anything off the page.
 
@@ -41,10 +42,15 @@ const MAX_SCALE: f64 = 64.0;
 const MAX_PAGE: f64 = 8000.0;
 /// How far the shift goes, as a fraction of the page's width.
 const SHIFT: f64 = 0.04;
-/// The ways in which a drawing is tried: a name, and the value of `--strokes`.
-const WAYS: [(&str, &str); 3] = [("shift", "auto"), ("outline", "outline"), ("curve", "auto")];
+
+/// A way in which a drawing is tried: a name, and the value of `--strokes` if it is bent. Otherwise the name is that of a format.
+type Way = (&'static str, Option<&'static str>);
+
+const WAYS: [Way; 5] =
+    [("shift", Some("auto")), ("outline", Some("outline")), ("curve", Some("auto")), ("png", None), ("pdf", None)];
 
 fn command() -> Command {
+    let names = |bends: bool| WAYS.into_iter().filter(move |w| w.1.is_some() == bends).map(|w| w.0).collect::<Vec<_>>();
     Command::new("browser")
         .about("Compare drawings with their results as Chromium shows both")
         .arg(Arg::new("inputs").required(true).num_args(1..).value_name("FOLDER").value_parser(value_parser!(PathBuf)))
@@ -55,17 +61,27 @@ fn command() -> Command {
             Arg::new("only")
                 .long("only")
                 .action(ArgAction::Append)
-                .value_parser(WAYS.map(|(name, _)| name))
+                .value_parser(names(true))
                 .help("Try this way only [default: all]"),
         )
-        .after_help("Needs node, and `npm ci` in crates/pathwarp-editor/web.")
+        .arg(
+            Arg::new("as")
+                .long("as")
+                .action(ArgAction::Append)
+                .value_parser(names(false))
+                .conflicts_with("only")
+                .help("Compare the drawings as they are, as pictures of `render` or as PDF"),
+        )
+        .after_help("Needs node, and `npm ci` in crates/pathwarp-editor/web; for PDF, poppler's pdftocairo.")
 }
 
 fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let program = shell::program(&workspace(), arguments)?;
     let inputs: Vec<PathBuf> = crate::chore::paths(arguments, "inputs");
-    let only: Vec<&String> = arguments.get_many("only").unwrap_or_default().collect();
-    let ways: Vec<_> = WAYS.into_iter().filter(|(name, _)| only.is_empty() || only.iter().any(|o| o == name)).collect();
+    let asked = ["only", "as"].into_iter().flat_map(|name| arguments.get_many::<String>(name).unwrap_or_default());
+    let asked: Vec<&String> = asked.collect();
+    let wanted = |w: &Way| if asked.is_empty() { w.1.is_some() } else { asked.iter().any(|a| *a == w.0) };
+    let ways: Vec<Way> = WAYS.into_iter().filter(wanted).collect();
     let sheet: Option<&PathBuf> = arguments.get_one("sheet");
     let judge = Judge::new(program, ways, sheet.cloned())?;
     let found = judge.all(&inputs)?;
@@ -83,7 +99,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
 /// The outcome of trying a drawing in one way.
 struct Finding {
     file: PathBuf,
-    way: &'static str,
+    way: Way,
     /// The exit code of the program; `None` if it was killed.
     code: Option<i32>,
     /// The program's first message.
@@ -106,13 +122,13 @@ impl Finding {
             None => "not XML".into(),
         };
         let code = self.code.map_or_else(|| "killed".to_owned(), |c| format!("exit {c}"));
-        format!("{share}\t{}\t{}\t{code}\t{}", self.way, self.file.display(), self.said)
+        format!("{share}\t{}\t{}\t{code}\t{}", self.way.0, self.file.display(), self.said)
     }
 
     fn json(&self) -> serde_json::Value {
         let gap = self.gap.as_ref().and_then(|g| g.as_ref().ok());
         serde_json::json!({
-            "file": self.file.display().to_string(), "way": self.way, "exit": self.code, "said": self.said,
+            "file": self.file.display().to_string(), "way": self.way.0, "exit": self.code, "said": self.said,
             "counts": self.gap.is_some(), "differs": self.differs(), "share": gap.map(|g| g.of_page), "ofInk": gap.map(|g| g.of_ink),
             "problem": self.gap.as_ref().and_then(|g| g.as_ref().err()), "picture": self.picture,
         })
@@ -124,10 +140,10 @@ fn report(found: &[Finding]) -> String {
     for finding in found.iter().filter(|f| f.differs()) {
         let _ = writeln!(out, "{}", finding.line());
     }
-    for (way, _) in WAYS {
+    for way in WAYS {
         let all: Vec<&Finding> = found.iter().filter(|f| f.way == way && f.gap.is_some()).collect();
         if !all.is_empty() {
-            let _ = writeln!(out, "{way}: {} of {} differ", all.iter().filter(|f| f.differs()).count(), all.len());
+            let _ = writeln!(out, "{}: {} of {} differ", way.0, all.iter().filter(|f| f.differs()).count(), all.len());
         }
     }
     out.trim_end().to_owned()
@@ -136,7 +152,7 @@ fn report(found: &[Finding]) -> String {
 /// Tries drawings.
 struct Judge {
     program: PathBuf,
-    ways: Vec<(&'static str, &'static str)>,
+    ways: Vec<Way>,
     /// The folder for pictures of differences.
     sheet: Option<PathBuf>,
     browsers: Browsers,
@@ -147,11 +163,7 @@ struct Judge {
 }
 
 impl Judge {
-    fn new(
-        program: PathBuf,
-        ways: Vec<(&'static str, &'static str)>,
-        sheet: Option<PathBuf>,
-    ) -> Result<Self, ChoreError> {
+    fn new(program: PathBuf, ways: Vec<Way>, sheet: Option<PathBuf>) -> Result<Self, ChoreError> {
         if let Some(folder) = &sheet {
             fs::create_dir_all(folder).map_err(at(folder))?;
         }
@@ -210,25 +222,29 @@ impl Judge {
         });
         let (broken, size, scale, before) = match shown {
             Ok(shown) => shown,
-            Err(why) => return Ok(self.ways.iter().map(|(way, _)| finding(*way, Some(Err(why.clone())))).collect()),
+            Err(why) => return Ok(self.ways.iter().map(|way| finding(*way, Some(Err(why.clone())))).collect()),
         };
         if broken {
-            return Ok(self.ways.iter().map(|(way, _)| finding(*way, None)).collect());
+            return Ok(self.ways.iter().map(|way| finding(*way, None)).collect());
         }
         let mut found = Vec::new();
-        for (way, strokes) in &self.ways {
+        for way in &self.ways {
             let mut finding = finding(*way, None);
-            finding.gap = Some(self.tried(&file, strokes, (size, scale), &before, &mut finding));
+            let gap = if way.1.is_some() {
+                self.bent(&file, (size, scale), &before, &mut finding)
+            } else {
+                self.drawn(&file, scale, &mut finding)
+            };
+            finding.gap = Some(gap);
             found.push(finding);
         }
         Ok(found)
     }
 
     /// Warps a drawing and compares the pictures.
-    fn tried(
+    fn bent(
         &self,
         file: &Path,
-        strokes: &str,
         (size, scale): ([f64; 2], f64),
         before: &Shown,
         finding: &mut Finding,
@@ -240,25 +256,13 @@ impl Judge {
         let to_pixels = ToPixels { scale: [a * scale, d * scale], offset: [e * scale, f * scale] };
         let by = if upright.is_some() { (SHIFT * size[0] * scale).round() as usize } else { 0 };
         let bend = match finding.way {
-            "curve" if upright.is_some() => Bend::curve(original.width, original.height),
+            ("curve", _) if upright.is_some() => Bend::curve(original.width, original.height),
             _ => Bend::Shift(by),
         };
-        let number = self.count.fetch_add(1, Ordering::Relaxed);
-        let result = file.with_file_name(format!(".bent-{number}.svg"));
+        let result = self.beside(file, "svg");
         let [x, y] = bend.formulas(to_pixels);
-        let mut command = process::Command::new(&self.program);
-        command
-            .arg("expr")
-            .arg(file)
-            .args(["--x", &x, "--y", &y, "--strokes", strokes, "--fit", "none", "-o"])
-            .arg(&result);
-        let out = command.output().map_err(at(&self.program))?;
-        finding.code = out.status.code();
-        let said = String::from_utf8_lossy(&out.stderr).replace(&file.display().to_string(), "");
-        finding.said = said.lines().find(|l| !l.is_empty()).unwrap_or_default().chars().take(150).collect();
-        if !result.exists() {
-            return Err("no result".into());
-        }
+        let strokes = finding.way.1.unwrap_or("auto");
+        self.result(&["expr", "--x", &x, "--y", &y, "--strokes", strokes, "--fit", "none"], file, &result, finding)?;
         let after = self.browsers.show(&result, Some((size, scale)));
         let _ = fs::remove_file(&result);
         let after = after?;
@@ -270,12 +274,65 @@ impl Judge {
             return Err("its page has another size".into());
         }
         let page = [before.right, before.bottom].map(|c| if c > 0.0 { (c * scale) as usize } else { usize::MAX });
-        let (gap, marks) = compare(original, &picture, bend, page);
+        self.compared([original, &picture], bend, page, finding)
+    }
+
+    /// Draws a drawing as it is, at this many pixels per px, and compares the picture with that of Chromium in a window of its size.
+    fn drawn(&self, file: &Path, scale: f64, finding: &mut Finding) -> Result<Gap, String> {
+        let png = self.beside(file, "png");
+        if finding.way.0 == "png" {
+            self.result(&["render", "--scale", &scale.to_string()], file, &png, finding)?;
+        } else {
+            let pdf = self.beside(file, "pdf");
+            self.result(&["convert"], file, &pdf, finding)?;
+            let dpi = (96.0 * scale).to_string();
+            let mut poppler = process::Command::new("pdftocairo");
+            poppler.args(["-png", "-transp", "-singlefile", "-r", &dpi]).arg(&pdf).arg(png.with_extension(""));
+            let drawn = poppler.output().map_err(|e| format!("pdftocairo does not start: {e}"));
+            let _ = fs::remove_file(&pdf);
+            drawn?;
+        }
+        let read = fs::read(&png).map_err(|e| format!("there is no picture: {e}"));
+        let _ = fs::remove_file(&png);
+        let picture = Picture::new(&decode_png(&read?).map_err(|e| e.to_string())?);
+        let window = [picture.width, picture.height].map(|side| (side as f64 / scale).round().max(1.0));
+        let original = self.browsers.show(file, Some((window, scale)))?.picture.ok_or("there is no picture")?;
+        let page = [picture.width.min(original.width), picture.height.min(original.height)];
+        let picture = picture.on_page([original.width, original.height]);
+        self.compared([&original, &picture], Bend::Shift(0), page, finding)
+    }
+
+    /// A new file beside the drawing.
+    fn beside(&self, file: &Path, extension: &str) -> PathBuf {
+        file.with_file_name(format!(".result-{}.{extension}", self.count.fetch_add(1, Ordering::Relaxed)))
+    }
+
+    /// Runs the program: a command with arguments that makes a result of a drawing.
+    fn result(&self, words: &[&str], file: &Path, result: &Path, finding: &mut Finding) -> Result<(), String> {
+        let mut command = process::Command::new(&self.program);
+        command.arg(words[0]).arg(file).args(&words[1..]).arg("-o").arg(result);
+        let out = command.output().map_err(at(&self.program))?;
+        finding.code = out.status.code();
+        let said = String::from_utf8_lossy(&out.stderr).replace(&file.display().to_string(), "");
+        finding.said = said.lines().find(|l| !l.is_empty()).unwrap_or_default().chars().take(150).collect();
+        if result.exists() { Ok(()) } else { Err("no result".into()) }
+    }
+
+    /// Compares the picture of a result with that of the original, and pictures the difference.
+    fn compared(
+        &self,
+        [original, found]: [&Picture; 2],
+        bend: Bend,
+        page: [usize; 2],
+        finding: &mut Finding,
+    ) -> Result<Gap, String> {
+        let (gap, marks) = compare(original, found, bend, page);
         if let Some(folder) = self.sheet.as_ref().filter(|_| gap.differs(MAX_OF_PAGE)) {
             let stem = finding.file.file_stem().unwrap_or_default().to_string_lossy();
-            let name = format!("{stem}-{}-{number}.png", finding.way);
+            let number = self.count.fetch_add(1, Ordering::Relaxed);
+            let name = format!("{stem}-{}-{number}.png", finding.way.0);
             let to = folder.join(&name);
-            fs::write(&to, side_by_side(original, &picture, &marks)?).map_err(at(&to))?;
+            fs::write(&to, side_by_side(original, found, &marks)?).map_err(at(&to))?;
             finding.picture = Some(name);
         }
         Ok(gap)
