@@ -1,7 +1,9 @@
-//! Colours that usvg does not read (CSS Color 4), as the nearest in sRGB.
+//! Colours that usvg does not read (CSS Color 4 and 5), as the nearest in sRGB.
 
-use crate::value::{reference, safe_id};
+use crate::value::{arguments, reference, safe_id};
+use csscolorparser::Color;
 use std::borrow::Cow;
+use std::f32::consts::TAU;
 use std::str::FromStr as _;
 
 /// Display P3 in linear light to XYZ (CSS Color 4, section 10.3).
@@ -11,15 +13,16 @@ const P3_TO_XYZ: [[f64; 3]; 3] = [
     [0.0, 32_229.0 / 714_400.0, 5_220_557.0 / 5_000_800.0],
 ];
 
-/// Rewrites a paint for usvg. Returns `None` if it is invalid or of an unsupported kind.
-pub(super) fn paint(value: &str) -> Option<Cow<'_, str>> {
+/// Rewrites a paint for usvg. `current` is the colour that `currentColor` stands for. Returns `None` if it is invalid or of an
+/// unsupported kind.
+pub(super) fn paint<'v>(value: &'v str, current: &Color) -> Option<Cow<'v, str>> {
     if is_hex(value) || value == "none" {
         return Some(Cow::Borrowed(value));
     }
     if let Some(link) = reference(value) {
         let fallback = link.rest.trim();
-        let new =
-            if fallback.is_empty() { "".into() } else { paint(fallback).filter(|_| reference(fallback).is_none())? };
+        let own = || paint(fallback, current).filter(|_| reference(fallback).is_none());
+        let new = if fallback.is_empty() { "".into() } else { own()? };
         let old = &value[..value.len() - link.rest.len()];
         let id = link.id.as_deref().map_or(Cow::Borrowed(old), |id| format!("url(#{})", safe_id(id)).into());
         let text = format!("{} {new}", id.trim());
@@ -30,7 +33,7 @@ pub(super) fn paint(value: &str) -> Option<Cow<'_, str>> {
             return Some(Cow::Borrowed(keyword));
         }
     }
-    color(value)
+    color(value, current)
 }
 
 fn is_hex(value: &str) -> bool {
@@ -38,8 +41,9 @@ fn is_hex(value: &str) -> bool {
     matches!(digits.len(), 3 | 4 | 6 | 8) && digits.bytes().all(|b| b.is_ascii_hexdigit())
 }
 
-/// Rewrites a colour for usvg. Returns `None` if it is invalid or of an unsupported kind.
-pub(super) fn color(value: &str) -> Option<Cow<'_, str>> {
+/// Rewrites a colour for usvg. `current` is the colour that `currentColor` stands for. Returns `None` if it is invalid or of an
+/// unsupported kind.
+pub(super) fn color<'v>(value: &'v str, current: &Color) -> Option<Cow<'v, str>> {
     if is_hex(value) {
         return Some(Cow::Borrowed(value));
     }
@@ -49,41 +53,226 @@ pub(super) fn color(value: &str) -> Option<Cow<'_, str>> {
     if !value.starts_with('#') && svgtypes::Color::from_str(value).is_ok() {
         return Some(Cow::Borrowed(value));
     }
-    if value.starts_with('#') || !value.contains('(') {
-        return None;
+    Some(text(&resolved(value, current, MAX_LEVELS)?).into())
+}
+
+/// The colour that a value stands for.
+pub(super) fn computed(value: &str, current: &Color) -> Option<Color> {
+    if let Some(c) = svgtypes::Color::from_str(value).ok().filter(|_| !value.contains('(')) {
+        return Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha));
     }
-    let lower = value.to_ascii_lowercase();
-    let [r, g, b, a] = csscolorparser::parse(&in_xyz(&lower).unwrap_or(lower)).ok()?.to_rgba8();
-    Some(format!("rgba({r},{g},{b},{})", f64::from(a) / 255.0).into())
+    resolved(value, current, MAX_LEVELS)
+}
+
+/// Whether a value that is not understood may be a colour all the same: a function that later standards may define.
+pub(super) fn may_be_color(value: &str) -> bool {
+    let name = value.split('(').next().unwrap_or_default();
+    value.ends_with(')') && !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphabetic() || b == b'-')
+}
+
+fn text(color: &Color) -> String {
+    let [r, g, b, a] = color.to_rgba8();
+    format!("rgba({r},{g},{b},{})", f64::from(a) / 255.0)
+}
+
+/// Depth to which colours may refer to others.
+const MAX_LEVELS: usize = 8;
+
+/// Colours of the user interface (CSS Color 4, section 6.2 and appendix A) with their values in Chromium on a light background, and names
+/// that usvg does not know.
+#[rustfmt::skip]
+const NAMES: [(&str, &[&str]); 13] = [
+    ("#000", &["canvastext", "buttonborder", "buttontext", "fieldtext", "marktext", "activeborder", "captiontext", "inactiveborder",
+        "infotext", "menutext", "threeddarkshadow", "threedhighlight", "threedlightshadow", "threedshadow", "windowframe", "windowtext"]),
+    ("#fff", &["canvas", "field", "highlighttext", "selecteditemtext", "accentcolortext", "activecaption", "appworkspace", "background",
+        "inactivecaption", "infobackground", "menu", "scrollbar", "window"]),
+    ("#efefef", &["buttonface", "buttonhighlight", "buttonshadow", "threedface"]),
+    ("#808080", &["graytext", "inactivecaptiontext"]),
+    ("#0075ff", &["accentcolor"]),
+    ("#f00", &["activetext"]),
+    ("#0041c6cc", &["highlight"]),
+    ("#00e", &["linktext", "-webkit-link"]),
+    ("#ff0", &["mark"]),
+    ("#1967d2", &["selecteditem"]),
+    ("#551a8b", &["visitedtext"]),
+    ("#639", &["rebeccapurple"]),
+    ("#0000", &["transparent"]),
+];
+
+/// Resolves a colour by name or function.
+fn resolved(value: &str, current: &Color, levels: usize) -> Option<Color> {
+    let lower = value.trim().to_ascii_lowercase();
+    if lower == "currentcolor" {
+        return Some(current.clone());
+    }
+    let Some((name, rest)) = lower.split_once('(') else {
+        let known = NAMES.iter().find(|(_, names)| names.contains(&lower.as_str())).map(|n| n.0);
+        let known = known.or_else(|| svgtypes::Color::from_str(&lower).is_ok().then_some(&lower));
+        return csscolorparser::parse(known?).ok();
+    };
+    let inside = rest.strip_suffix(')')?;
+    let levels = levels.checked_sub(1)?;
+    match name {
+        "color-mix" => mixed(inside, |c| resolved(c, current, levels)),
+        "light-dark" => resolved(arguments(inside).next()?, current, levels),
+        _ => {
+            // The parser knows neither `currentColor` nor mixtures in relative colours.
+            let words = inside.strip_prefix("from ").map(|_| words(inside));
+            let base = words.as_ref().and_then(|w| Some((*w.get(1)?, resolved(w.get(1)?, current, levels)?)));
+            let plain = base.map(|(word, c)| lower.replacen(word, &c.to_css_hex().to_string(), 1));
+            let plain = plain.unwrap_or(lower);
+            csscolorparser::parse(&in_xyz(&plain).unwrap_or(plain)).ok()
+        }
+    }
+}
+
+/// Splits at white space outside parentheses.
+fn words(text: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    let words = text.split(move |c: char| {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth == 0 && c.is_ascii_whitespace()
+    });
+    words.filter(|w| !w.is_empty()).collect()
+}
+
+/// Mixes two colours (CSS Color 5, section 3): "in oklch longer hue, red 30%, blue".
+fn mixed(list: &str, resolved: impl Fn(&str) -> Option<Color>) -> Option<Color> {
+    let mut parts: Vec<&str> = arguments(list).collect();
+    let method = parts.first()?.strip_prefix("in ").map(words);
+    if method.is_some() {
+        parts.remove(0);
+    }
+    let method = method.unwrap_or_else(|| vec!["oklab"]);
+    let [first, second] = parts[..] else { return None };
+    let part = |text: &str| {
+        let (shares, color): (Vec<&str>, Vec<&str>) = words(text).into_iter().partition(|w| w.ends_with('%'));
+        let share: Option<f32> = shares.first().map(|s| s.trim_end_matches('%').parse()).transpose().ok()?;
+        let is_valid = shares.len() < 2 && share.is_none_or(|s| (0.0..=100.0).contains(&s));
+        Some((resolved(&color.join(" ")).filter(|_| is_valid)?, share.map(|s| s / 100.0)))
+    };
+    let ((a, p), (b, q)) = (part(first)?, part(second)?);
+    let (p, q) = match (p, q) {
+        (None, None) => (0.5, 0.5),
+        (Some(p), None) => (p, 1.0 - p),
+        (None, Some(q)) => (1.0 - q, q),
+        (Some(p), Some(q)) => (p, q),
+    };
+    let whole = p + q;
+    let alpha_at = 3;
+    let mut out = between(method.first()?, method.get(1).copied(), [&a, &b], [p / whole, q / whole])?;
+    out[alpha_at] *= whole.min(1.0);
+    let [x, y, z, alpha] = out;
+    let color = match *method.first()? {
+        "srgb-linear" => Color::from_linear_rgba(x, y, z, alpha),
+        "oklab" => Color::from_oklaba(x, y, z, alpha),
+        "oklch" => Color::from_oklcha(x, y, z, alpha),
+        "lab" => Color::from_laba(x, y, z, alpha),
+        "lch" => Color::from_lcha(x, y, z, alpha),
+        "xyz-d50" => Color::from_xyz_d50(x, y, z, alpha),
+        "xyz" | "xyz-d65" => Color::from_xyz_d65(x, y, z, alpha),
+        "hsl" => Color::from_hsla(x, y, z, alpha),
+        "hwb" => Color::from_hwba(x, y, z, alpha),
+        _ => Color::new(x, y, z, alpha),
+    };
+    (whole > 0.0).then_some(color)
+}
+
+/// Interpolates coordinates in a colour space with premultiplied alpha, and hues along an arc (CSS Color 4, section 12). Returns `None` for
+/// an unsupported space.
+fn between(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f32; 2]) -> Option<[f32; 4]> {
+    let of = |c: &Color| match space {
+        "srgb" => Some((c.to_array(), None)),
+        "srgb-linear" => Some((c.to_linear_rgba(), None)),
+        "oklab" => Some((c.to_oklaba(), None)),
+        "lab" => Some((c.to_laba(), None)),
+        "xyz-d50" => Some((c.to_xyz_d50(), None)),
+        "xyz" | "xyz-d65" => Some((c.to_xyz_d65(), None)),
+        "oklch" => Some((c.to_oklcha(), Some((2, TAU)))),
+        "lch" => Some((c.to_lcha(), Some((2, TAU)))),
+        "hsl" => Some((c.to_hsla(), Some((0, 360.0)))),
+        "hwb" => Some((c.to_hwba(), Some((0, 360.0)))),
+        _ => None,
+    };
+    let ((mut a, hue), (mut b, _)) = (of(colors[0])?, of(colors[1])?);
+    let alpha = p * a[3] + q * b[3];
+    let mut out = [0, 1, 2].map(|i| if alpha > 0.0 { (p * a[i] * a[3] + q * b[i] * b[3]) / alpha } else { 0.0 });
+    if let Some((at, turn)) = hue {
+        // Greys have no hue of their own.
+        let is_grey = |c: &Color| {
+            let [r, g, b, _] = c.to_array();
+            r.max(g).max(b) - r.min(g).min(b) < 1e-4
+        };
+        match colors.map(is_grey) {
+            [true, false] => a[at] = b[at],
+            [false, true] => b[at] = a[at],
+            _ => {}
+        }
+        let step = (b[at] - a[at]).rem_euclid(turn);
+        let step = match arc {
+            Some("increasing") => step,
+            Some("decreasing") => step - turn,
+            Some("longer") if step > 0.5 * turn => step,
+            Some("longer") => step - turn,
+            _ if step > 0.5 * turn => step - turn,
+            _ => step,
+        };
+        out[at] = a[at] + q * step;
+    }
+    Some([out[0], out[1], out[2], alpha])
 }
 
 /// Rewrites the colours and lengths in a list of functions for usvg, whose style sheets know no functions in functions.
-pub(super) fn in_functions<'v>(list: &'v str, length: impl Fn(&'v str) -> Option<Cow<'v, str>>) -> Cow<'v, str> {
-    let rewritten = |word: &'v str| {
-        if word.contains('(') {
-            let c = svgtypes::Color::from_str(&color(word)?).ok()?;
-            return Some(format!("#{:02x}{:02x}{:02x}{:02x}", c.red, c.green, c.blue, c.alpha).into());
+pub(super) fn in_functions<'v>(
+    list: &'v str,
+    current: &Color,
+    length: impl Fn(&'v str) -> Option<Cow<'v, str>>,
+) -> Cow<'v, str> {
+    let has_unit = |w: &str| !w.starts_with('#') && w.ends_with(|c: char| c.is_ascii_alphabetic());
+    let measured = |w: &'v str| length(w).filter(|_| has_unit(w)).unwrap_or(Cow::Borrowed(w));
+    let (mut out, mut left) = (String::new(), list);
+    while let Some((name, inside, after)) = function(left) {
+        let is = |word: &str| name.trim().eq_ignore_ascii_case(word);
+        let mut inner: Vec<Cow<'_, str>> = words(inside).into_iter().map(measured).collect();
+        if is("drop-shadow") {
+            let given = inner.iter().enumerate().find_map(|(i, w)| Some((i, computed(w, current)?)));
+            if let Some((i, _)) = given {
+                inner.remove(i);
+            }
+            let color = given.map_or_else(|| current.clone(), |g| g.1);
+            inner.push(shadow(&color).into());
         }
-        let has_unit = !word.starts_with('#') && word.ends_with(|c: char| c.is_ascii_alphabetic());
-        length(word).filter(|_| has_unit)
-    };
-    let (mut out, mut depth, mut start) = (String::new(), 0, 0);
-    for (at, c) in list.char_indices() {
-        let ends = depth == 0 || depth == 1 && (c == ')' || c.is_ascii_whitespace());
-        match c {
-            '(' => depth += 1,
-            ')' => depth -= 1,
-            _ => {}
-        }
-        if ends {
-            let word = &list[start..at];
-            out.push_str(&rewritten(word).unwrap_or(word.into()));
-            out.push(c);
-            start = at + c.len_utf8();
-        }
+        let inner = if is("url") { inside.to_owned() } else { inner.join(" ") };
+        out.extend([name, "(", &inner, ")"]);
+        left = after;
     }
-    out.push_str(&list[start..]);
+    out.push_str(left);
     if out == list { list.into() } else { out.into() }
+}
+
+/// Splits a list at its first function: the text before the parenthesis, inside, and after it.
+fn function(list: &str) -> Option<(&str, &str, &str)> {
+    let (name, rest) = list.split_once('(')?;
+    let mut depth = 0_usize;
+    let end = rest.find(|c| {
+        depth = match c {
+            '(' => depth + 1,
+            ')' if depth > 0 => depth - 1,
+            _ => return c == ')',
+        };
+        false
+    })?;
+    Some((name, &rest[..end], &rest[end + 1..]))
+}
+
+/// The colour to ask for so that a drop shadow in sRGB gets the given one: resvg 0.49 takes it as one in linear light, and converts it.
+pub(super) fn shadow(color: &Color) -> String {
+    let [r, g, b, a] = color.to_linear_rgba().map(|v| (255.0 * v).round() as u8);
+    format!("#{r:02x}{g:02x}{b:02x}{a:02x}")
 }
 
 /// Converts a colour of Display P3 to XYZ.
@@ -106,12 +295,14 @@ fn in_xyz(color: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{in_functions, paint};
+    use super::{Color, in_functions, paint};
+
+    const CURRENT: Color = Color::new(170.0 / 255.0, 187.0 / 255.0, 204.0 / 255.0, 1.0);
 
     #[test]
     fn what_usvg_reads_stays() {
         for css in ["#123", "url(#a) red", "context-fill", "currentColor", "hsl(120 50% 40% / 60%)"] {
-            assert_eq!(paint(css).as_deref(), Some(css));
+            assert_eq!(paint(css, &CURRENT).as_deref(), Some(css));
         }
     }
 
@@ -119,16 +310,19 @@ mod tests {
     fn functions_in_functions() {
         for (css, plain) in [
             ("drop-shadow(8px 1rem 6px rgba(0, 0, 0, .6))", "drop-shadow(8px 16px 6px #00000099)"),
-            ("blur(2px) drop-shadow(rgb(255 0 0 / 50%) 1px 2px)", "blur(2px) drop-shadow(#ff000080 1px 2px)"),
+            ("blur(2px) drop-shadow(rgb(255 0 0 / 50%) 1px 2px)", "blur(2px) drop-shadow(1px 2px #ff000080)"),
+            // In linear light, by the formula of CSS Color 4, section 10.2: 170, 187 and 204 of 255.
+            ("drop-shadow(1px 2px)", "drop-shadow(1px 2px #677d99ff)"),
             ("url(#rem) hue-rotate(90deg) grayscale(50%)", "url(#rem) hue-rotate(90deg) grayscale(50%)"),
             ("drop-shadow(1px 2px", "drop-shadow(1px 2px"),
-            ("drop-shadow((()))) é", "drop-shadow((()))) é"),
+            ("blur((()))) é", "blur((()))) é"),
         ] {
-            assert_eq!(in_functions(css, |v| Some(if v == "1rem" { "16px" } else { v }.into())), plain);
+            let length = |v| Some(if v == "1rem" { "16px" } else { v }.into());
+            assert_eq!(in_functions(css, &CURRENT, length), plain);
         }
     }
 
-    /// As Chromium 156 paints them, within a level.
+    /// As Chromium 156 paints or computes them, within a level. `currentColor` is #abc.
     #[test]
     fn other_spaces() {
         for (css, wanted) in [
@@ -137,14 +331,39 @@ mod tests {
             ("color(srgb 1 .5 0)", [255, 128, 0]),
             ("color(display-p3 0.5 0.5 0.5)", [127, 128, 128]),
             ("color(display-p3 0.4 60% 0.4 / 1)", [85, 155, 97]),
+            ("RebeccaPurple", [102, 51, 153]),
+            ("ButtonFace", [239, 239, 239]),
+            ("color-mix(in srgb, red, blue)", [128, 0, 128]),
+            ("color-mix(in srgb, red 20%, blue 30%)", [102, 0, 153]),
+            ("color-mix(in srgb,currentColor 30%,blue)", [51, 56, 240]),
+            ("color-mix(in hsl, white, blue)", [159, 159, 223]),
+            ("color-mix(in hsl, red, blue)", [255, 0, 255]),
+            ("color-mix(in hsl longer hue, red, blue 25%)", [255, 255, 0]),
+            ("color-mix(in hwb, red, #0f08)", [255, 255, 0]),
+            ("color-mix(in oklab, light-dark(red, lime), color-mix(in srgb, blue, blue))", [140, 83, 162]),
+            ("rgb(from currentColor r g b)", [170, 187, 204]),
+            ("hsl(from #369 h s calc(l + 20))", [102, 153, 204]),
         ] {
-            let found = paint(css).unwrap();
+            let found = paint(css, &CURRENT).unwrap();
             let channels = found.strip_prefix("rgba(").unwrap().split(',').take(3);
             let channels: Vec<i32> = channels.map(|c| c.parse().unwrap()).collect();
             assert!(channels.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= 1), "{css}: {found}");
         }
-        for none in ["color(display-p3 1 0)", "color-mix(in srgb, red, blue)", "oklch(x)", ""] {
-            assert_eq!(paint(none), None, "{none}");
+        let alpha = |css| paint(css, &CURRENT).unwrap().trim_end_matches(')').rsplit(',').next().unwrap().to_owned();
+        for (css, wanted) in
+            [("color-mix(in srgb, red 20%, blue 30%)", 0.5), ("rgb(from currentColor r g b / .5)", 0.5)]
+        {
+            assert!((alpha(css).parse::<f64>().unwrap() - wanted).abs() < 0.01, "{css}");
+        }
+        let none = [
+            "color(display-p3 1 0)",
+            "color-mix(in srgb, red, blue, lime)",
+            "color-mix(in srgb, red 150%, blue)",
+            "oklch(x)",
+            "",
+        ];
+        for none in none {
+            assert_eq!(paint(none, &CURRENT), None, "{none}");
         }
     }
 }

@@ -1,13 +1,14 @@
 //! Computes the style of one element: declarations that usvg reads, attributes, and the declarations of the transform.
 
-use crate::geometry::shape_length;
+use crate::geometry::{shape_box, shape_length};
 use crate::ids::{Ids, attribute};
 use crate::sheet::{Declaration, simple};
 use crate::table::{Kind, Property, Sign, length_attribute, of_attribute, property};
 use crate::text::{self, Letters, TextStyle};
-use crate::value::{self, Custom, Units, reference};
+use crate::value::{self, Custom, Reference, Units, reference};
 use crate::words::Words;
 use crate::{color, range};
+use csscolorparser::Color;
 use pathwarp::kurbo::Affine;
 use roxmltree::Node;
 use std::borrow::Cow;
@@ -21,6 +22,13 @@ const SHARES: &str = "spacing in per cent is a share of the font's size, which C
 
 const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
 
+/// Inherited properties whose values other rules need.
+const TRACKED: [&str; 6] =
+    [DASHES[0], DASHES[1], "fill", "stroke", "color-interpolation", "color-interpolation-filters"];
+
+/// Values of [`TRACKED`].
+pub(super) type Tracked = [Option<Rc<str>>; TRACKED.len()];
+
 /// State passed from an element to its children.
 #[derive(Debug, Clone)]
 pub(super) struct Inherited {
@@ -30,8 +38,8 @@ pub(super) struct Inherited {
     pub(super) marked: bool,
     pub(super) custom: Rc<Custom>,
     pub(super) units: Units,
-    /// Values of [`DASHES`].
-    pub(super) dashes: [Option<Rc<str>>; 2],
+    pub(super) color: Color,
+    pub(super) tracked: Tracked,
     pub(super) text: TextStyle,
     pub(super) words: Arc<Words>,
 }
@@ -46,6 +54,12 @@ impl Inherited {
             Arc::make_mut(&mut self.words).say(&name, value.as_deref());
         }
         Arc::clone(&self.words)
+    }
+
+    /// The value of a property of [`TRACKED`].
+    fn tracked(&self, name: &str) -> Option<&str> {
+        let at = TRACKED.iter().position(|t| *t == name)?;
+        self.tracked[at].as_deref()
     }
 }
 
@@ -66,6 +80,10 @@ pub(super) struct Computed<'a> {
     /// The first number out of range.
     pub(super) far: Option<String>,
     pub(super) words: Arc<Words>,
+    /// Whether it is a gradient whose colours are interpolated in linear light.
+    pub(super) is_linear: bool,
+    /// The colour of a stop in such a gradient.
+    pub(super) stop: Option<Color>,
 }
 
 /// The geometry properties that Chromium takes from style sheets. Nested viewports take none, and a `use` takes no size.
@@ -113,6 +131,7 @@ pub(super) fn computed<'a>(
         custom: Rc::clone(&inherited.custom),
         units: inherited.units,
         font: inherited.units.font,
+        color: inherited.color.clone(),
         absolute: inherited.in_symbol && !is_server && !tag.starts_with("fe"),
         ids,
     };
@@ -124,12 +143,17 @@ pub(super) fn computed<'a>(
         inherited.units.root_font = inherited.units.font;
     }
     values.units = inherited.units;
+    if let Some(color) = own_color(node, declarations, &values) {
+        values.color = color.clone();
+        inherited.color = color;
+    }
     let mut all = Declared { geometry: geometry(tag, is_root), ..Declared::new(tag, &values) };
     for d in declarations.iter().rev().filter(|d| !d.name.starts_with("--")) {
         all.declare(d);
     }
     all.style.reverse();
     all.take_attributes(node);
+    all.replace_unknown(node);
     all.finish(node, inherited)
 }
 
@@ -147,6 +171,19 @@ fn font_size(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Val
         _ => None,
     });
     declared.or_else(|| px(node.attribute("font-size")?, false))
+}
+
+/// The colour that an element declares as its `color`.
+fn own_color(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Values<'_, '_, '_>) -> Option<Color> {
+    let of = |text: &str| match wide(text.trim()) {
+        Some(Wide::Initial) => color::computed("black", &values.color),
+        Some(_) => Some(values.color.clone()),
+        None => {
+            color::computed(value::computed(&values.substituted(text)?, &values.units, None)?.trim(), &values.color)
+        }
+    };
+    let mut declared = declarations.iter().rev().filter(|d| d.name == "color").map(|d| d.value.as_ref());
+    declared.find_map(of).or_else(|| of(node.attribute("color")?))
 }
 
 /// A CSS-wide keyword.
@@ -196,6 +233,8 @@ struct Values<'d, 'a, 'i> {
     units: Units,
     /// Font size of the parent.
     font: f64,
+    /// What `currentColor` stands for.
+    color: Color,
     /// Whether percentages are converted to px.
     absolute: bool,
     ids: &'d Ids<'a, 'i>,
@@ -241,8 +280,8 @@ impl Values<'_, '_, '_> {
     fn plain<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
         match p.kind {
             Kind::Word(words) => word(words, raw),
-            Kind::Paint => color::paint(self.seen_paint(raw)),
-            Kind::Color => color::color(raw),
+            Kind::Paint => color::paint(self.seen_paint(raw), &self.color),
+            Kind::Color => color::color(raw, &self.color),
             Kind::Share => share(raw),
             Kind::Number => raw.parse::<f64>().ok().filter(|n| *n >= 0.0).map(|_| Cow::Borrowed(raw)),
             Kind::Length(sign) | Kind::Geometry(sign) if raw != "auto" => self.length(p, raw, sign, false),
@@ -269,19 +308,60 @@ impl Values<'_, '_, '_> {
         value::known_length(raw, &self.units_for(p), relative.then(|| self.full(p)), sign == Sign::Positive, strict)
     }
 
+    /// An attribute of a gradient or pattern, or of one that it refers to. Gradients and patterns have names of their own for it.
+    fn of_server(&self, id: Option<&str>, names: [&str; 2]) -> Option<&str> {
+        const MAX_LINKS: usize = 16;
+        let mut chain = std::iter::successors(self.ids.get(id?), |n| self.ids.target(*n)).take(MAX_LINKS);
+        chain.find_map(|n| names.into_iter().find_map(|name| n.attribute(name)))
+    }
+
     /// Replaces a gradient or pattern with a singular transform by its fallback colour, or by `none`.
     fn seen_paint<'v>(&self, raw: &'v str) -> &'v str {
-        const MAX_LINKS: usize = 16;
         let Some(link) = reference(raw) else { return raw };
-        let first = link.id.as_deref().and_then(|id| self.ids.get(id));
-        let mut chain = std::iter::successors(first, |n| self.ids.target(*n)).take(MAX_LINKS);
-        let given = chain.find_map(|n| n.attribute("gradientTransform").or_else(|| n.attribute("patternTransform")));
+        let given = self.of_server(link.id.as_deref(), ["gradientTransform", "patternTransform"]);
         let t = given.and_then(|t| t.parse::<svgtypes::Transform>().ok());
-        match t.filter(|t| t.a * t.d == t.b * t.c) {
-            Some(_) if link.rest.trim().is_empty() => "none",
-            Some(_) => link.rest.trim(),
-            None => raw,
+        if t.is_some_and(|t| t.a * t.d == t.b * t.c) { fallback(&link) } else { raw }
+    }
+
+    /// What stands for a gradient or pattern in box units on a shape whose box has no width or no height.
+    fn flat_paint<'v>(&self, raw: &'v str) -> Option<&'v str> {
+        let link = reference(raw)?;
+        let units = self.of_server(link.id.as_deref(), ["gradientUnits", "patternUnits"]);
+        (units != Some("userSpaceOnUse")).then(|| fallback(&link))
+    }
+
+    /// Further declarations: the paint in place of a gradient or pattern that cannot apply to a flat shape, and the colour of a drop shadow
+    /// in sRGB. `of` looks up what the element has.
+    fn paints<'s, 'n>(
+        &self,
+        node: Node<'n, '_>,
+        inherited: &Inherited,
+        own: &Computed<'n>,
+        of: &dyn Fn(&str) -> Option<String>,
+    ) -> Vec<(Cow<'s, str>, Cow<'s, str>)> {
+        let tag = node.tag_name().name();
+        let mut out = Vec::new();
+        let is_flat = || {
+            let area = shape_box(tag, |name| own.value(node, name), &self.units);
+            area.is_some_and(|b| b.width() == 0.0 || b.height() == 0.0)
+        };
+        for name in ["fill", "stroke"] {
+            let paint = inherited.tracked(name).and_then(|v| self.flat_paint(v));
+            out.extend(paint.filter(|_| is_flat()).map(|p| (name.into(), p.to_owned().into())));
         }
+        if tag == "feDropShadow" && inherited.tracked("color-interpolation-filters") == Some("sRGB") {
+            let flood = of("flood-color").and_then(|c| color::computed(&c, &self.color));
+            out.extend(flood.map(|c| ("flood-color".into(), color::shadow(&c).into())));
+        }
+        out
+    }
+
+    /// The colour of a stop.
+    fn stop(&self, of: &dyn Fn(&str) -> Option<String>) -> Color {
+        let color = of("stop-color").and_then(|c| color::computed(&c, &self.color));
+        let opacity = of("stop-opacity").and_then(|o| value::length(&o, &self.units, 1.0));
+        let [r, g, b, a] = color.map_or([0.0, 0.0, 0.0, 1.0], |c| c.to_array());
+        Color::new(r, g, b, a * opacity.unwrap_or(1.0) as f32)
     }
 
     /// Rewrites a list of filters. If one of them does not exist, browsers apply none.
@@ -295,7 +375,7 @@ impl Values<'_, '_, '_> {
         // Links in lists stay as they are.
         match reference(raw).filter(|l| l.rest.trim().is_empty()) {
             Some(only) => only.text(raw),
-            None => color::in_functions(raw, |v| self.length(p, v, Sign::Any, false)),
+            None => color::in_functions(raw, &self.color, |v| self.length(p, v, Sign::Any, false)),
         }
     }
 
@@ -305,6 +385,11 @@ impl Values<'_, '_, '_> {
         }
         list(raw, |v| self.length(p, v, Sign::Positive, false))
     }
+}
+
+/// The paint in place of one that cannot apply.
+fn fallback<'v>(link: &Reference<'v>) -> &'v str {
+    if link.rest.trim().is_empty() { "none" } else { link.rest.trim() }
 }
 
 /// Rewrites a list separated by spaces, commas, or both. Returns `None` if any item is invalid.
@@ -356,6 +441,8 @@ struct Declared<'v, 'a, 'i> {
     /// Properties that inherit, but for which usvg doesn't know the keyword `inherit`. They are left out.
     dropped: HashSet<&'static str>,
     said: Said<'a>,
+    /// Colours that are not understood, by property.
+    unknown: Vec<(&'static str, String)>,
     /// Strongest first, until all declarations have been added.
     style: Vec<(Cow<'a, str>, Cow<'a, str>)>,
     out: Computed<'a>,
@@ -364,8 +451,8 @@ struct Declared<'v, 'a, 'i> {
 impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     fn new(tag: &'v str, values: &'v Values<'v, 'a, 'i>) -> Self {
         let (seen, dropped) = (HashSet::new(), HashSet::new());
-        let (said, style) = (Vec::new(), Vec::new());
-        Self { tag, geometry: &[], values, seen, dropped, said, style, out: Computed::default() }
+        let (said, unknown, style) = (Vec::new(), Vec::new(), Vec::new());
+        Self { tag, geometry: &[], values, seen, dropped, said, unknown, style, out: Computed::default() }
     }
 
     /// Adds a declaration weaker than all before it. The strongest valid declaration of a property wins.
@@ -414,7 +501,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             None => match self.values.of(p, &d.value, d.strict) {
                 Some(v) if v == d.value => d.value.clone(),
                 Some(v) => v.into_owned().into(),
-                None => return,
+                None => return self.note_color(p, &d.value),
             },
         };
         self.seen.insert(p.name.into());
@@ -456,6 +543,29 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     /// Notes percentages that Chromium resolves against the font's size on the screen.
     fn note_share(&mut self, p: &Property, value: &str) {
         self.out.notes.extend((matches!(p.kind, Kind::Spacing) && value.trim_end().ends_with('%')).then_some(SHARES));
+    }
+
+    /// Remembers a value that may be a colour, and is not understood.
+    fn note_color(&mut self, p: &'static Property, value: &str) {
+        if matches!(p.kind, Kind::Paint | Kind::Color) && self.unknown.iter().all(|u| u.0 != p.name) {
+            let value = self.values.substituted(value).filter(|v| color::may_be_color(v));
+            self.unknown.extend(value.map(|v| (p.name, v)));
+        }
+    }
+
+    /// Names the colours that are not understood, with black in place of those that have no other value.
+    fn replace_unknown(&mut self, node: Node<'a, '_>) {
+        for (name, value) in std::mem::take(&mut self.unknown) {
+            let set = self.seen.contains(name) || self.out.value(node, name).is_some();
+            if !set {
+                self.style.push((name.into(), "black".into()));
+            }
+            let other = if set { "another declaration" } else { "black" };
+            let value = text::start(&value);
+            self.out
+                .unsupported
+                .push(format!("only with {other} in place of “{name}: {value}”, a colour that is not understood"));
+        }
     }
 
     /// Brings the numbers of a value into range, and remembers the first that was not.
@@ -518,6 +628,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 Some(v) if v == "auto" && matches!(p.name, "rx" | "ry") => Some("0".into()),
                 // usvg handles invalid geometry as browsers do.
                 None if is_geometry => return,
+                None => {
+                    self.note_color(p, raw);
+                    None
+                }
                 new => new,
             },
         };
@@ -578,12 +692,17 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             let found = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.to_string());
             found.or_else(|| out.value(node, name).map(ToOwned::to_owned))
         };
-        for (name, dashes) in DASHES.iter().zip(&mut inherited.dashes) {
+        for (name, value) in TRACKED.iter().zip(&mut inherited.tracked) {
             let own = self.seen.contains(*name) || node.attributes().any(|a| a.name() == *name);
             if let Some(v) = own.then(|| styled(name)).flatten().filter(|v| v.trim() != "inherit") {
-                *dashes = Some(v.into());
+                *value = Some(v.into());
             }
         }
+        let linear = inherited.tracked("color-interpolation") == Some("linearRGB");
+        let stop = (linear && tag == "stop").then(|| self.values.stop(&styled));
+        let more = self.values.paints(node, inherited, &out, &styled);
+        style.extend(more);
+        (out.is_linear, out.stop) = (linear && matches!(tag, "linearGradient" | "radialGradient"), stop);
         if inherited.text.concerns(tag)
             || style.iter().any(|s| text::concerns(&s.0))
             || node.attributes().any(|a| text::concerns(a.name()))
@@ -684,13 +803,13 @@ fn knows_inherit(p: &Property) -> bool {
 /// Converts dashes from the unit that `pathLength` sets to user units.
 fn scaled_dashes(node: Node<'_, '_>, style: &Computed<'_>, inherited: &Inherited) -> Option<[String; 2]> {
     let whole: f64 = node.attribute("pathLength")?.trim().parse().ok().filter(|l| *l > 0.0)?;
-    let [Some(array), offset] = &inherited.dashes else { return None };
+    let [array, offset] = DASHES.map(|name| inherited.tracked(name));
     let units = &inherited.units;
     let unit = shape_length(node.tag_name().name(), |name| style.value(node, name), units)? / whole;
     let diagonal = units.viewport.0.hypot(units.viewport.1) / std::f64::consts::SQRT_2;
     let scaled = |v: &str| Some((value::length(v, units, diagonal)? * unit).to_string());
-    let array = array.split([',', ' ']).filter(|v| !v.is_empty()).map(scaled).collect::<Option<Vec<_>>>()?;
-    let offset = offset.as_deref().map_or_else(|| Some("0".to_owned()), scaled)?;
+    let array = array?.split([',', ' ']).filter(|v| !v.is_empty()).map(scaled).collect::<Option<Vec<_>>>()?;
+    let offset = offset.map_or_else(|| Some("0".to_owned()), scaled)?;
     (!array.is_empty()).then(|| [array.join(","), offset])
 }
 

@@ -1,20 +1,23 @@
 //! Writes the computed style into the text of a drawing.
 
 use crate::sheet::declarations;
-use crate::text::{Letters, Rewritten, joined, rewritten};
+use crate::text::{Letters, Rewritten, joined, rewritten, start};
 use crate::tree::{Styled, Tree, styled};
-use crate::value::{percent_decoded, safe_id};
+use crate::value::{length, percent_decoded, safe_id};
 use crate::words::Words;
 use crate::xml::{self, escape, name_end};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use csscolorparser::Color;
 use memchr::memmem;
 use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::decimal::matrix;
 use pathwarp::kurbo::Affine;
 use roxmltree::{Document, NS_XML_URI, Node};
 use std::borrow::Cow;
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
+use std::fmt::Write as _;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -172,15 +175,24 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     let Tree { styles, sheets, unsupported, declared, mut notes } = styled(doc, &nodes, budget)?;
     let unsupported = unsupported.into_iter().map(|why| (None, why)).collect();
     notes.extend(hints(text).map(|hint| (hint, String::new())));
-    let said = styles.iter().map(|s| Arc::clone(&s.computed.words)).collect();
-    let mut out = Plain { unsupported, declared, words: said, notes, ..Plain::default() };
+    let mut out = Plain { unsupported, declared, notes, ..Plain::default() };
     let mut all: Vec<(Change, String)> = Vec::new();
-    let mut paths = String::new();
+    let mut defs = String::new();
     // If any id is renamed, edited drawings keep all references as they are written here.
-    let renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| is_renamed(id, text));
-    for (e, (node, style)) in nodes.iter().zip(&styles).enumerate() {
-        all.extend(edits(*node, style, renamed).into_iter().map(|edit| edit.of(text, e, *node)));
-        if sheets.contains(&e) {
+    let references = References::new(text);
+    let renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| references.break_at(id));
+    // The end of content that is replaced by other.
+    let mut replaced = 0;
+    for (i, (node, style)) in nodes.iter().zip(&styles).enumerate() {
+        if node.range().start < replaced {
+            continue;
+        }
+        let e = out.words.len();
+        out.words.push(Arc::clone(&style.computed.words));
+        all.extend(
+            edits(*node, style, Some(&references).filter(|_| renamed)).into_iter().map(|edit| edit.of(text, e, *node)),
+        );
+        if sheets.contains(&i) {
             // usvg ignores sheets of other types.
             all.push(Edit { name: "type", value: Some("text/plain".to_owned()), kept: None }.of(text, e, *node));
         }
@@ -199,16 +211,22 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
         if style.matrix.is_none() {
             out.unsupported.push((Some(e), "its transform is not supported".to_owned()));
         }
+        if style.computed.is_linear
+            && let Some((edit, gradient)) = linear_gradient(i, *node, (&nodes, &styles))
+        {
+            all.push(edit.of(text, e, *node));
+            defs.push_str(&gradient);
+        }
         if let Some((edit, path)) = path_of_text(e, *node, doc) {
             all.push(edit.of(text, e, *node));
-            paths.push_str(&path);
+            defs.push_str(&path);
         }
         out.far.extend(style.computed.far.iter().map(|far| (e, far.clone())));
     }
-    if let Some(end) = text[..doc.root_element().range().end].rfind('<').filter(|_| !paths.is_empty()) {
-        let new = format!("<defs xmlns=\"http://www.w3.org/2000/svg\">{paths}</defs>");
+    if let Some(end) = text[..doc.root_element().range().end].rfind('<').filter(|_| !defs.is_empty()) {
+        let new = format!("<defs xmlns=\"http://www.w3.org/2000/svg\">{defs}</defs>");
         let empty = Change {
-            element: nodes.len() - 1,
+            element: out.words.len() - 1,
             name: "",
             range: end..end,
             text: "".into(),
@@ -220,13 +238,58 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     Ok((all, out))
 }
 
+/// An id that the drawing does not hold.
+fn new_id(name: &str, e: usize, text: &str) -> String {
+    let mut id = format!("{name}-{e}");
+    while text.contains(&id) {
+        id.push('x');
+    }
+    id
+}
+
+/// Makes a gradient in sRGB of one whose colours are interpolated in linear light, which usvg does not know. Returns the new id of the
+/// old one, from which the new one takes the geometry, and the new one.
+fn linear_gradient(
+    e: usize,
+    node: Node<'_, '_>,
+    (nodes, styles): (&[Node<'_, '_>], &[Styled<'_>]),
+) -> Option<(Edit, String)> {
+    /// Stops for each interval. Colours between them are off by less than a level.
+    const STEPS: usize = 32;
+    let text = node.document().input_text();
+    let id = node.attribute("id")?;
+    let inside = nodes.iter().zip(styles).skip(e + 1).take_while(|(n, _)| n.range().start < node.range().end);
+    let mut last = 0.0_f32;
+    let stops = inside.filter_map(|(n, s)| {
+        let given = n.attribute("offset").unwrap_or("0").trim();
+        let share = given.strip_suffix('%').map(|p| p.parse().map(|v: f32| v / 100.0));
+        // Offsets do not decrease.
+        last = share.unwrap_or_else(|| given.parse()).unwrap_or(0.0).clamp(last, 1.0);
+        Some((last, s.computed.stop.clone()?))
+    });
+    let stops: Vec<(f32, Color)> = stops.collect();
+    let old = new_id("gradient", e, text);
+    let mut out = String::new();
+    for (i, (offset, color)) in stops.iter().enumerate() {
+        let next = stops.get(i + 1).filter(|n| n.0 > *offset);
+        for k in 0..if next.is_some() { STEPS } else { 1 } {
+            let t = k as f32 / STEPS as f32;
+            let mixed = next.map_or_else(|| color.clone(), |n| color.interpolate_linear_rgb(&n.1, t));
+            let at = next.map_or(*offset, |n| offset + t * (n.0 - offset));
+            let [r, g, b, a] = mixed.to_array();
+            let [r, g, b] = [r, g, b].map(|v| (255.0 * v).round());
+            let _ = write!(out, "<stop offset=\"{at}\" stop-color=\"rgb({r},{g},{b})\" stop-opacity=\"{a}\"/>");
+        }
+    }
+    let tag = node.tag_name().name();
+    let new = format!("<{tag} id=\"{}\" href=\"#{old}\">{out}</{tag}>", escape(&safe_id(id)));
+    (stops.len() > 1).then(|| (Edit { name: "id", value: Some(old), kept: Some(id.to_owned()) }, new))
+}
+
 /// Makes a path from the path data of a `textPath`. Returns the link to the new path, and the path.
 fn path_of_text(e: usize, node: Node<'_, '_>, doc: &Document<'_>) -> Option<(Edit, String)> {
     let data = node.attribute("path").filter(|_| node.tag_name().name() == "textPath")?;
-    let mut id = format!("text-path-{e}");
-    while doc.input_text().contains(&id) {
-        id.push('x');
-    }
+    let id = new_id("text-path", e, doc.input_text());
     let path = format!("<path id=\"{id}\" d=\"{}\"/>", escape(data));
     Some((Edit { name: "href", value: Some(format!("#{id}")), kept: None }, path))
 }
@@ -272,14 +335,15 @@ fn words(
 }
 
 /// Lists the attributes of an element to change.
-fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
+fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>>) -> Vec<Edit> {
     let computed = &style.computed;
-    let refers = |v: &&String| renamed && v.contains("url(#");
+    let refers = |v: &&String| renamed.is_some() && v.contains("url(#");
     let attributes = computed.attributes.iter();
     let mut out: Vec<Edit> =
         attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
     out.extend(names(node, renamed));
-    out.extend(structural(node).map(|(name, value)| Edit { name, value, kept: None }));
+    let changed = structural(node).chain(picture(node, style).into_iter().flatten());
+    out.extend(changed.map(|(name, value)| Edit { name, value, kept: None }));
     // Without a transform, the origin may serve an animation: it stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
     let frozen =
@@ -318,10 +382,10 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
 }
 
 /// Renames ids that would cut off the references to them, and corrects links. Results keep both, since they belong together.
-fn names(node: Node<'_, '_>, renamed: bool) -> impl Iterator<Item = Edit> {
+fn names(node: Node<'_, '_>, renamed: Option<&References<'_>>) -> impl Iterator<Item = Edit> {
     node.attributes().filter_map(move |a| {
         let (name, new) = match a.name() {
-            "id" if a.namespace().is_none() && renamed && is_renamed(a.value(), node.document().input_text()) => {
+            "id" if a.namespace().is_none() && renamed.is_some_and(|r| r.break_at(a.value())) => {
                 ("id", safe_id(a.value()))
             }
             "href" => {
@@ -338,9 +402,44 @@ fn names(node: Node<'_, '_>, renamed: bool) -> impl Iterator<Item = Edit> {
     })
 }
 
-/// Whether an id contains characters that end references, and something may refer to it.
-fn is_renamed(id: &str, text: &str) -> bool {
-    safe_id(id) != id && (text.contains(&format!("#{id}")) || text.contains('%') && text.contains("href"))
+/// What a drawing may refer to.
+struct References<'t> {
+    text: &'t str,
+    /// What follows each number sign, without escapes, sorted. Computed on first use.
+    targets: OnceCell<Vec<Cow<'t, str>>>,
+    /// Whether there may be links with escapes.
+    has_escapes: bool,
+}
+
+impl<'t> References<'t> {
+    fn new(text: &'t str) -> Self {
+        Self { text, targets: OnceCell::new(), has_escapes: text.contains('%') && text.contains("href") }
+    }
+
+    /// Whether an id contains characters that end references, and something may refer to it.
+    fn break_at(&self, id: &str) -> bool {
+        if safe_id(id) == id {
+            return false;
+        }
+        let targets = self.targets.get_or_init(|| {
+            let mut all: Vec<_> = self.text.split('#').skip(1).map(unescaped).collect();
+            all.sort_unstable();
+            all
+        });
+        let next = targets.get(targets.partition_point(|t| t.as_ref() < id));
+        self.has_escapes || next.is_some_and(|t| t.starts_with(id))
+    }
+}
+
+/// The beginning of a text without the escapes of XML and CSS for quotes and other signs.
+fn unescaped(text: &str) -> Cow<'_, str> {
+    const SIGNS: [(&str, &str); 6] =
+        [("&quot;", "\""), ("&#34;", "\""), ("&apos;", "'"), ("&#39;", "'"), ("&amp;", "&"), ("\\", "")];
+    let head = start(text);
+    if !head.contains(['&', '\\']) {
+        return text.into();
+    }
+    SIGNS.iter().fold(head.to_owned(), |out, (from, to)| out.replace(from, to)).into()
 }
 
 /// Sets a property in a style attribute.
@@ -391,24 +490,25 @@ pub(super) fn structural(node: Node<'_, '_>) -> impl Iterator<Item = (&'static s
     });
     // No browser knows `tref`.
     let tref = (node.tag_name().name() == "tref" && link(node).is_some()).then_some("href");
-    let aspect = (node.tag_name().name() == "image").then(|| picture_aspect(node)).flatten();
-    let aspect = aspect.map(|value| ("preserveAspectRatio", Some(value)));
     // Any other character makes the list invalid, and nothing is drawn.
     let is_list =
         |b: u8| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b',' | b'e' | b'E') || b.is_ascii_whitespace();
     let damaged = node.attribute("points").is_some_and(|list| !list.bytes().all(is_list));
-    let gone: Vec<_> = root.chain(tref).chain(damaged.then_some("points")).map(|name| (name, None)).collect();
-    gone.into_iter().chain(aspect)
+    // Always fulfilled in browsers.
+    let features = node.has_attribute("requiredFeatures").then_some("requiredFeatures");
+    let gone = root.chain(tref).chain(damaged.then_some("points")).chain(features);
+    let gone: Vec<_> = gone.map(|name| (name, None)).collect();
+    gone.into_iter()
 }
 
 fn link<'a>(node: Node<'a, '_>) -> Option<&'a str> {
     node.attributes().find(|a| a.name() == "href").map(|a| a.value())
 }
 
-/// The `preserveAspectRatio` of an embedded drawing without a size, which decides how it fits into its image (CSS Images 3,
-/// section 4.2).
-fn picture_aspect(image: Node<'_, '_>) -> Option<String> {
-    let data = link(image)?.trim().strip_prefix("data:")?;
+/// New attributes of an image that shows an embedded drawing with a viewBox and without a size, which fills the image's box by its own
+/// `preserveAspectRatio`, and is cut there (CSS Images 3, section 4.2). If the image says `none`, the viewBox is stretched to the box.
+fn picture(image: Node<'_, '_>, style: &Styled<'_>) -> Option<[(&'static str, Option<String>); 2]> {
+    let data = link(image).filter(|_| image.tag_name().name() == "image")?.trim().strip_prefix("data:")?;
     let (kind, data) = data.split_once(',').filter(|(kind, _)| kind.starts_with("image/svg+xml"))?;
     let text = if kind.ends_with("base64") {
         let data: String = data.split_ascii_whitespace().collect();
@@ -419,6 +519,27 @@ fn picture_aspect(image: Node<'_, '_>) -> Option<String> {
     let drawing = xml::document(&text).ok()?;
     let root = drawing.root_element();
     let sized = ["width", "height"].iter().any(|name| root.attribute(*name).is_some_and(|v| !v.contains('%')));
-    (root.has_attribute("viewBox") && !sized)
-        .then(|| root.attribute("preserveAspectRatio").unwrap_or("xMidYMid").to_owned())
+    if sized || !root.has_attribute("viewBox") {
+        return None;
+    }
+    let side = |name: &str, full: f64| length(style.computed.value(image, name)?, &style.units, full);
+    let (width, height) = (side("width", style.units.viewport.0)?, side("height", style.units.viewport.1)?);
+    let stretched = image.attribute("preserveAspectRatio").is_some_and(|a| a.trim_start().starts_with("none"));
+    let gone = |name: &str| matches!(name, "width" | "height") || stretched && name == "preserveAspectRatio";
+    let (range, name) = (root.range(), name_end(&text, root));
+    let mut new = format!(
+        "{}<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\">",
+        &text[..range.start]
+    );
+    let aspect = if stretched { " preserveAspectRatio=\"none\"" } else { "" };
+    let _ = write!(new, "{} width=\"{width}\" height=\"{height}\"{aspect}", &text[range.start..name]);
+    let mut done = name;
+    for a in root.attributes().filter(|a| a.namespace().is_none() && gone(a.name())) {
+        new.push_str(text.get(done..a.range().start)?);
+        done = a.range().end;
+    }
+    new.push_str(&text[done..range.end]);
+    new.push_str("</svg>");
+    let link = format!("data:image/svg+xml;base64,{}", STANDARD.encode(new));
+    Some([("href", Some(link)), ("preserveAspectRatio", Some("none".to_owned()))])
 }

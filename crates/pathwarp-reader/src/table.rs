@@ -88,12 +88,13 @@ const fn own(name: &'static str, initial: &'static str, kind: Kind) -> Property 
 }
 
 /// The properties, sorted by name.
-static PROPERTIES: [Property; 84] = [
+static PROPERTIES: [Property; 85] = [
     own("alignment-baseline", "baseline", Word(BASELINES)),
     own("baseline-shift", "baseline", BaselineShift),
     own("clip-path", "none", Link),
     up("clip-rule", "nonzero", Word(&["nonzero", "evenodd"])),
     up("color", "black", Color),
+    up("color-interpolation", "sRGB", Word(&["auto", "sRGB", "linearRGB"])),
     up("color-interpolation-filters", "linearRGB", Word(&["auto", "sRGB", "linearRGB"])),
     own("cx", "0", Geometry(Sign::Any)),
     own("cy", "0", Geometry(Sign::Any)),

@@ -1,7 +1,7 @@
 //! Computes the style of every element from the root down, and transforms from the leaves up, since the box of a group depends on
 //! its children.
 
-use crate::computed::{Computed, Inherited, computed};
+use crate::computed::{Computed, Inherited, Tracked, computed};
 use crate::element::{Looks, applying, work};
 use crate::geometry::{self, shape_box};
 use crate::ids::Ids;
@@ -31,6 +31,7 @@ const VARIABLE: usize = 64;
 #[derive(Debug)]
 pub(super) struct Styled<'a> {
     pub(super) computed: Computed<'a>,
+    pub(super) units: Units,
     /// `None` if the transform cannot be computed.
     pub(super) matrix: Option<Affine>,
 }
@@ -104,7 +105,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     }
     looks.spend(budget)?;
     let matrices = matrices(nodes, &out);
-    let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
+    let all = out.into_iter().zip(matrices).map(|((computed, units), matrix)| Styled { computed, units, matrix });
     let declared = rules.blocks.iter().flat_map(|b| &b.declarations).map(|d| d.name.to_string()).collect();
     let notes = rules.moving.into_iter().map(|name| (MOVING, name)).collect();
     Ok(Tree { styles: all.collect(), sheets, unsupported, declared, notes })
@@ -113,8 +114,17 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
 /// The state that the root element inherits.
 fn at_root(doc: &Document<'_>) -> Inherited {
     let (custom, text) = (Rc::new(Custom::new()), TextStyle::default());
-    let (dashes, words) = ([None, None], Arc::default());
-    Inherited { in_symbol: false, marked: false, custom, units: root_units(doc), dashes, text, words }
+    let color = csscolorparser::Color::new(0.0, 0.0, 0.0, 1.0);
+    Inherited {
+        in_symbol: false,
+        marked: false,
+        custom,
+        units: root_units(doc),
+        color,
+        tracked: Tracked::default(),
+        text,
+        words: Arc::default(),
+    }
 }
 
 /// The rules of a drawing, the indices of the elements that are sheets, and their unsupported features.

@@ -184,7 +184,7 @@ pub(super) fn computed(value: &str, units: &Units, percent: Option<f64>) -> Opti
             }
             Token::Function(name) if name.eq_ignore_ascii_case("light-dark") => {
                 let inside = nested(&mut input);
-                out.push_str(&computed(first_argument(inside), units, percent)?);
+                out.push_str(&computed(arguments(inside).next()?, units, percent)?);
             }
             Token::Dimension { unit, .. } if is_relative(unit) => {
                 out.push_str(&math.dimension(input.slice_from(start), unit)?.text());
@@ -208,10 +208,10 @@ pub(super) fn nested<'i>(input: &mut Parser<'i>) -> &'i str {
     inside.unwrap_or_default()
 }
 
-/// The text before the first comma outside parentheses.
-fn first_argument(text: &str) -> &str {
+/// Splits at the commas outside parentheses.
+pub(super) fn arguments(text: &str) -> impl Iterator<Item = &str> {
     let mut depth = 0_usize;
-    let end = text.find(|c| {
+    let parts = text.split(move |c| {
         match c {
             '(' => depth += 1,
             ')' => depth = depth.saturating_sub(1),
@@ -219,7 +219,7 @@ fn first_argument(text: &str) -> &str {
         }
         c == ',' && depth == 0
     });
-    text[..end.unwrap_or(text.len())].trim()
+    parts.map(str::trim)
 }
 
 /// Reads a single length or percentage, in user units.

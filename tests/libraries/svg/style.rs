@@ -4,7 +4,8 @@
 use pathwarp::budget::Limit;
 use pathwarp::kurbo::Affine;
 use pathwarp::map::AffineMap;
-use pathwarp_oracle::drawings::{Bend, Hidden, drawing, oblique, options, read, warp_options};
+use pathwarp_oracle::drawings::{Bend, Hidden, drawing, oblique, options, read, rendered, warp_options};
+use pathwarp_svg::usvg_tree::tree;
 use pathwarp_svg::{Document, Selection, Structure, TextMode, WarpedDocument};
 
 fn bent(body: &str) -> WarpedDocument {
@@ -105,6 +106,39 @@ fn what_is_not_supported_is_reported() {
     // Nor are ordinary drawings.
     let w = bent("<style>.a{fill:red}</style><rect class='a' style='clip-path:none' width='9' height='9'/>");
     assert!(w.warnings.is_empty() && w.skipped.is_empty(), "{:?}", w.warnings);
+}
+
+/// They are named, and drawn in black all the same.
+#[test]
+fn colours_that_are_not_understood_are_black() {
+    for (content, said) in [
+        (
+            "<path id='s' d='M10 50h50' fill='none' stroke='future(1 2 3)' stroke-width='9'/>",
+            "black in place of “stroke: future(1 2 3)”",
+        ),
+        (
+            "<path id='s' d='M10 40h50v20h-50z' style='fill:color-mix(in nowhere, red, blue)'/>",
+            "black in place of “fill: color-mix(",
+        ),
+        (
+            "<style>#s{stroke:future(1);stroke-width:9px}</style><path id='s' d='M10 50h50'/>",
+            "black in place of “stroke: future(1)”",
+        ),
+        (
+            "<path id='s' d='M10 40h50v20h-50z' fill='#000001' style='fill:future(1)'/>",
+            "another declaration in place of “fill: future(1)”",
+        ),
+    ] {
+        let w = bent(content);
+        let [s] = w.skipped.as_slice() else { panic!("{content}: {:?}", w.skipped) };
+        assert!(s.id == "s" && s.why.contains(said), "{s:?}");
+        let seen = rendered(tree(&read(&drawing(content))), 100, Affine::IDENTITY).pixel(30, 50).unwrap();
+        let blue = u8::from(said.starts_with("another"));
+        assert_eq!([seen.red(), seen.green(), seen.blue(), seen.alpha()], [0, 0, blue, 255], "{content}");
+    }
+    // What is no colour at all counts for nothing, as in browsers.
+    let w = bent("<path id='s' d='M10 50h50v9z' stroke='nothing' fill='12px'/>");
+    assert!(w.skipped.is_empty(), "{:?}", w.skipped);
 }
 
 #[test]

@@ -40,11 +40,16 @@ pub(super) fn edit_command() -> Command {
 }
 
 pub(super) fn edit(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
+    /// Size in bytes of files that open at once.
+    const SMALL: u64 = 2 << 20;
     let file = given_file(m, "FILE")?;
     if output::is_stdout(file) {
         return Err(Failure::usage("edit needs a file: its results are saved beside it"));
     }
-    file.metadata().map_err(|e| Failure::file(file, input::unreadable(file, &e)))?;
+    let size = file.metadata().map_err(|e| Failure::file(file, input::unreadable(file, &e)))?.len();
+    if size > SMALL {
+        terminal::note(&format!("opening {}, {} MB; its page comes up in some seconds", file.display(), size >> 20));
+    }
     let options = Options {
         file: file.to_owned(),
         purpose: Purpose::Files { out: target(m, [file])?.map(ToOwned::to_owned) },

@@ -8,7 +8,7 @@ use crate::source::number::{rectangle, singles};
 use pathwarp::kurbo::Rect;
 use usvg::filter::{
     ColorChannel, ColorInterpolation, ColorMatrixKind, Composite, CompositeOperator, ConvolveMatrix, EdgeMode, Filter,
-    Input, Kind, LightSource, MorphologyOperator, TransferFunction, Turbulence, TurbulenceKind,
+    Input, Kind, LightSource, MorphologyOperator, Primitive, TransferFunction, Turbulence, TurbulenceKind,
 };
 
 /// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order. A `layer`
@@ -31,7 +31,7 @@ pub(super) fn element(
             let tag = markup.element(tag).with_all(rectangle(areas::part(f, p, all)));
             tag.with("color-interpolation-filters", space)
         };
-        let (tag, content) = primitive(markup, &begin, p.kind(), &mut pictures);
+        let (tag, content) = primitive(markup, &begin, p, &mut pictures);
         let smooth = |m| layer.and_then(|l| l.smooth(m));
         let (tag, content) = match (layer.map(|l| l.need(at)), p.kind()) {
             (Some(Need::Nothing), _) => return String::new(),
@@ -53,16 +53,16 @@ pub(super) fn element(
 fn primitive(
     markup: &Markup<'_>,
     begin: &dyn Fn(&str) -> Tag,
-    kind: &Kind,
+    primitive: &Primitive,
     pictures: &mut dyn Iterator<Item = String>,
 ) -> (Tag, String) {
-    let tag = match kind {
+    let tag = match primitive.kind() {
         Kind::DropShadow(s) => begin("feDropShadow")
             .input("in", s.input())
             .numbers("stdDeviation", &[s.std_dev_x().get(), s.std_dev_y().get()])
             .numbers("dx", &[s.dx()])
             .numbers("dy", &[s.dy()])
-            .with("flood-color", &markup::color(s.color()))
+            .with("flood-color", &markup::shadow_color(s, primitive.color_interpolation()))
             .numbers("flood-opacity", &[s.opacity().get()]),
         Kind::GaussianBlur(b) => begin("feGaussianBlur")
             .input("in", b.input())

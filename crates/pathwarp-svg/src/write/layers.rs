@@ -1,6 +1,6 @@
 //! What a filter draws beneath and above its graphic, as filters of their own.
 
-use super::markup::color;
+use super::markup::shadow_color;
 use crate::scene::areas::overlap;
 use crate::scene::geometry::rect;
 use crate::source::markup::Tag;
@@ -50,7 +50,7 @@ enum Stacked<'a> {
     Nothing,
     Source,
     Result(usize),
-    Shadow(&'a DropShadow, &'a Input),
+    Shadow(&'a DropShadow, ColorInterpolation),
 }
 
 /// The layers that a filter draws beneath and above its graphic, if there are any. `None` if it changes the graphic itself, or cuts it.
@@ -99,7 +99,7 @@ fn push<'a>(f: &'a Filter, at: usize, out: &mut Vec<Stacked<'a>>) -> Option<()> 
             inputs(p.kind()).into_iter().rev().try_for_each(layer)?;
         }
         Kind::DropShadow(s) if *s.input() == Input::SourceGraphic && p.rect() == f.rect() => {
-            out.extend([Stacked::Shadow(s, s.input()), Stacked::Source]);
+            out.extend([Stacked::Shadow(s, p.color_interpolation()), Stacked::Source]);
         }
         // An empty background.
         Kind::Flood(flood) if flood.opacity().get() == 0.0 => {}
@@ -155,13 +155,13 @@ fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool, opaque: bool) -> Optio
                 needs[*at] = if hidden { Need::Visible } else { Need::Result };
                 f.primitives()[*at].result().to_owned()
             }
-            Stacked::Shadow(s, graphic) => {
+            Stacked::Shadow(s, space) => {
                 let [offset, flood, result] = ["o", "f", "s"].map(|part| format!("pathwarp-{k}{part}"));
-                let blur = begin("feGaussianBlur").input("in", graphic);
+                let blur = begin("feGaussianBlur").input("in", s.input());
                 more += &blur.numbers("stdDeviation", &[s.std_dev_x().get(), s.std_dev_y().get()]).empty();
                 let by = begin("feOffset").numbers("dx", &[s.dx()]).numbers("dy", &[s.dy()]);
                 more += &by.with("result", &offset).empty();
-                let color = begin("feFlood").with("flood-color", &color(s.color()));
+                let color = begin("feFlood").with("flood-color", &shadow_color(s, *space));
                 more += &color.numbers("flood-opacity", &[s.opacity().get()]).with("result", &flood).empty();
                 let cut = begin("feComposite").with("in", &flood).with("in2", &offset).with("operator", "in");
                 more += &cut.with("result", &result).empty();

@@ -13,6 +13,7 @@ use pathwarp_reader::xml::escape;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt::Write as _;
+use usvg::filter::{ColorInterpolation, DropShadow};
 use usvg::{FillRule, LineCap, LineJoin, PaintOrder, ShapeRendering};
 
 /// Presentation properties in order.
@@ -274,4 +275,18 @@ pub(super) fn dashes(s: &usvg::Stroke, scale: f64) -> String {
 /// A colour as `#rrggbb`.
 pub(super) fn color(c: usvg::Color) -> String {
     format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue)
+}
+
+/// The colour of a drop shadow as browsers paint it. For resvg, the reader gives those in sRGB as if in linear light.
+pub(super) fn shadow_color(s: &DropShadow, space: ColorInterpolation) -> String {
+    // The transfer function of sRGB (CSS Color 4, section 10.2).
+    let encoded = |c: u8| {
+        let v = f64::from(c) / 255.0;
+        (255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }).round() as u8
+    };
+    let c = s.color();
+    match space {
+        ColorInterpolation::SRGB => color(usvg::Color::new_rgb(encoded(c.red), encoded(c.green), encoded(c.blue))),
+        ColorInterpolation::LinearRGB => color(c),
+    }
 }
