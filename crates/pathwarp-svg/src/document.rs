@@ -8,6 +8,7 @@ use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::task::placed_outlines;
 use crate::scene::areas::{self, stroked};
 use crate::scene::drawing::{Drawing, NamedPath, Shape, UnreadImages, named_path};
+use crate::scene::geometry::stretch;
 use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::scene::plot::{self, Plot};
 use crate::scene::selected_lettering::{Lettering, lettering};
@@ -112,6 +113,23 @@ impl Document {
             WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
         let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
         Ok(Some(self.warp(&map, &options)?.svg))
+    }
+
+    /// The text of the drawing with plain shapes for the markers and strokes that usvg draws otherwise than browsers; `None` if there are
+    /// none.
+    ///
+    /// # Errors
+    /// As [`Document::warp`].
+    pub fn resolved(&self) -> Result<Option<String>, Error> {
+        /// The tolerance of an outlined stroke, in px.
+        const FINE: f64 = 0.01;
+        if self.drawing.scene().parts.iter().all(|p| !p.is_own) {
+            return Ok(None);
+        }
+        let tolerance = FINE / stretch(self.user_to_px());
+        let refit = refit::Options::new(tolerance).with_budget(self.budget().clone());
+        let options = WarpOptions::new(refit).with_on_error(OnError::Skip).with_page(PageFit::None);
+        Ok(Some(self.warp(&AffineMap(Affine::IDENTITY), &options.editing(Edit::Resolve))?.svg))
     }
 
     /// The drawing with its page `scale` times as large, and all that is on it; nothing else changes. The size is written in a unit of

@@ -45,7 +45,10 @@ pub struct ReadTree {
 /// # Errors
 /// As for [`parse_tree`].
 pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadTree, Error> {
-    let (tree, missed) = tree::parse(data, name, options)?;
+    let (mut tree, missed) = tree::parse(data, name, options)?;
+    if missed.may_differ {
+        tree = shown(&Document::read(data, name, options)?, options)?;
+    }
     let unread = UnreadImages::of(&missed);
     Ok(ReadTree {
         tree,
@@ -53,6 +56,18 @@ pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadT
         missing_fonts: missed.fonts,
         undrawn: missed.undrawn,
         notes: Notes::in_words(&missed.notes),
+    })
+}
+
+/// Returns the tree of a document with plain shapes for what usvg draws otherwise than browsers: markers, and strokes whose width does not
+/// scale. `options` are those that the document was read with.
+///
+/// # Errors
+/// As for [`Document::resolved`].
+pub fn shown(document: &Document, options: &ReadOptions) -> Result<Arc<usvg::Tree>, Error> {
+    Ok(match document.resolved()? {
+        Some(plain) => tree::parse(plain.as_bytes(), document.name(), options)?.0,
+        None => Arc::clone(tree(document)),
     })
 }
 

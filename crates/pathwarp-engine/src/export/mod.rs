@@ -59,5 +59,8 @@ pub fn drawing(
     let Some(write) = write else { return Ok(svg.into_bytes().into()) };
     // PDF and its reader know single precision only.
     let there = parsed(&svg)?;
-    write(&there.moved_to_origin()?.map_or(Ok(there), |near| parsed(&near))?, options, tolerance)
+    let there = there.moved_to_origin()?.map_or(Ok(there), |near| parsed(&near))?;
+    // A DXF is made from the outlines of the document, a PDF from usvg's tree.
+    let resolved = if format == Format::Dxf { None } else { there.resolved()? };
+    write(&resolved.map_or(Ok(there), |plain| parsed(&plain))?, options, tolerance)
 }

@@ -28,8 +28,9 @@ pub(super) fn preview(
 ) -> Result<Vec<u8>, Failure> {
     let format = PREVIEW.format(Some(file), None)?;
     let after = Document::read(warped.as_bytes(), "the result", read)?;
-    let mut left = Panel::new(usvg_tree::tree(doc), doc.user_to_px(), doc.view_box());
-    let mut right = Panel::new(usvg_tree::tree(&after), after.user_to_px(), after.view_box());
+    let trees = [usvg_tree::shown(doc, read)?, usvg_tree::shown(&after, read)?];
+    let mut left = Panel::new(&trees[0], doc.user_to_px(), doc.view_box());
+    let mut right = Panel::new(&trees[1], after.user_to_px(), after.view_box());
     let everything = Selection::default();
     // All artwork is shown, including what the warp moved off the page.
     for (panel, doc) in [(&mut left, doc), (&mut right, &after)] {

@@ -251,6 +251,7 @@ impl WarpOptions {
             }
             Edit::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
             Edit::Offset(_) => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit).with_overhang(true),
+            Edit::Resolve => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit),
         }
     }
 
@@ -313,6 +314,8 @@ pub enum Edit {
     Outline,
     /// Grows or shrinks areas, by the rule of their fill, and moves open paths sideways.
     Offset(Offset),
+    /// Writes markers and strokes that usvg draws otherwise than browsers as plain shapes.
+    Resolve,
 }
 
 impl Edit {
@@ -337,7 +340,7 @@ impl Edit {
         match self {
             Self::Simplify { polylines: true, .. } => through_vertices(outline, options, contours),
             Self::Offset(offset) => moved(outline, &offset, options, contours).map(Some),
-            Self::Simplify { .. } | Self::Outline => Ok(None),
+            Self::Simplify { .. } | Self::Outline | Self::Resolve => Ok(None),
         }
     }
 
@@ -351,6 +354,7 @@ impl Edit {
             }
             Self::Outline => part.stroke.is_some() || tag(part.owner) == "text",
             Self::Offset(_) => part.role == PartRole::Paint && part.painted(),
+            Self::Resolve => part.is_own,
         }
     }
 }

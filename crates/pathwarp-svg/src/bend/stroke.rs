@@ -1,6 +1,6 @@
 //! Bends strokes: scales their width, or expands them to outlines.
 
-use super::options::Strokes;
+use super::options::{Edit, Strokes};
 use super::outcome::StrokeOutcome;
 use super::task::PartTask;
 use super::width::StrokeWidth;
@@ -82,10 +82,16 @@ pub(super) fn stroke(
     if p.in_tile && p.stroke.is_some() {
         return Ok(BentStroke::outlined(path.clone(), None));
     }
-    let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(BentStroke::scaled(1.0, None)) };
+    let resolves = t.options().edit == Some(Edit::Resolve);
+    let bends = |_: &&Stroke| !p.fixed_width || resolves;
+    let Some(s) = p.stroke.as_ref().filter(bends) else { return Ok(BentStroke::scaled(1.0, None)) };
     // Even a stroke that remains one is expanded with its dashes, to measure its box.
     spend_dashes(&p.local, s, &t.options().refit.budget).map_err(GeometryError::Limit)?;
     let mode = t.options().strokes;
+    if p.fixed_width {
+        let (path, report) = outlined(t, s, stretch(t.part.frame))?;
+        return Ok(BentStroke::outlined(path, Some(report)));
+    }
     if mode == Strokes::Keep {
         return Ok(BentStroke::scaled(1.0, None));
     }
@@ -124,18 +130,22 @@ fn stretched(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
 /// the part's user space to root user space.
 fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathReport), GeometryError> {
     let (p, options) = (t.part, t.options());
+    // A stroke of fixed width is one on the page.
+    let to_px = t.context.to_px;
+    let on_page = || (Outline::clone(&t.outline).transformed(to_px), to_px.inverse());
+    let (own, frame) = if p.fixed_width { on_page() } else { (Outline::clone(&p.local), p.frame) };
     spend_stroke(&p.local, s, &options.refit.budget).map_err(GeometryError::Limit)?;
     // The outline of every contour, with the contour's index in the part.
     let expanded = |fine: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
         let one = |local: &Outline, places: &[Affine], first: usize| {
             let each = stroke_outlines(local, s, |i| [SIDES, GAPS].map(|share| share / EXPANSION * fine(first + i)));
-            let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(p.frame).repeated(places));
+            let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(frame).repeated(places));
             each.into_iter().map(placed).collect::<Vec<_>>()
         };
         if t.pieces.is_empty() {
-            one(&p.local, &options.copies, 0)
+            one(&own, &options.copies, 0)
         } else {
-            t.pieces.iter().flat_map(|piece| one(&piece.of(&p.local), &piece.places, piece.first())).collect()
+            t.pieces.iter().flat_map(|piece| one(&piece.of(&own), &piece.places, piece.first())).collect()
         }
     };
     let fine = |i: usize, stretch: f64| (t.allowed_of(i) * EXPANSION / stretch).max(FINEST);

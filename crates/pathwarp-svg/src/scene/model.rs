@@ -42,6 +42,8 @@ pub(crate) struct Part {
     pub(crate) visible: bool,
     /// Whether the stroke width is in px regardless of the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
+    /// Whether usvg draws it otherwise than browsers, and the scene as they do.
+    pub(crate) is_own: bool,
     pub(crate) slot: Option<usize>,
     /// Address of usvg's path, which the document keeps alive; 0 if there is none.
     #[cfg_attr(not(feature = "usvg"), expect(dead_code, reason = "for the module of that feature"))]
@@ -69,6 +71,7 @@ impl Part {
             rendering: ShapeRendering::GeometricPrecision,
             visible: true,
             fixed_width: false,
+            is_own: false,
             slot: None,
             path: 0,
             in_tile: false,

@@ -28,6 +28,8 @@ pub(crate) struct Missed {
     pub(crate) undrawn: Vec<String>,
     /// Small differences from what browsers show, as the reader notes them. Only [`parse`] fills this in.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
+    /// Whether there may be markers, or strokes of fixed width, which usvg draws otherwise than browsers. Only [`parse`] fills this in.
+    pub(crate) may_differ: bool,
 }
 
 /// The initial font size, in px, as in browsers.
@@ -103,6 +105,7 @@ pub(crate) fn parse_counted(
     let (tree, mut missed) = with_stack(name, || tree(&xml, name, options))?;
     drop(xml);
     missed.notes = notes;
+    missed.may_differ = ["marker", "non-scaling-stroke"].iter().any(|word| text.contains(word));
     let mut source = SourceText::parse(text, name)?;
     source.unsupported_style = unsupported;
     missed.undrawn = undrawn(&source);

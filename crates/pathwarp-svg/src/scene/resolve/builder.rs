@@ -43,6 +43,8 @@ pub(super) struct SceneBuilder<'a> {
     pub(super) foreign_depth: usize,
     /// Transforms of markers by the addresses of their groups; `None` for those that are not shown.
     pub(super) markers: HashMap<usize, Option<Affine>>,
+    /// Shapes whose markers have other places than in usvg's tree.
+    pub(super) marked: HashSet<ElementId>,
     /// Elements with `vector-effect: non-scaling-stroke`.
     pub(super) fixed_widths: HashSet<ElementId>,
 }
@@ -93,6 +95,7 @@ impl<'a> SceneBuilder<'a> {
             top: None,
             foreign_depth: 0,
             markers: HashMap::new(),
+            marked: HashSet::new(),
             fixed_widths: fixed_widths(source),
         }
     }

@@ -1,7 +1,7 @@
 //! Finds shapes with markers in usvg's tree, and places the markers as browsers do.
 
 use super::builder::SceneBuilder;
-use crate::scene::geometry::affine;
+use crate::scene::geometry::{affine, is_near};
 use crate::source::elements::{ElementId, is_shape};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::{Outline, Seg};
@@ -49,6 +49,11 @@ pub(super) fn place_markers(b: &mut SceneBuilder<'_>, g: &usvg::Group, marked: &
         });
         let instances: Vec<&usvg::Group> = instances.children().iter().filter_map(group_of).collect();
         if let Some(places) = shape.and_then(|p| places(b, e, p.data(), &instances)) {
+            let same =
+                |(m, at): (&&usvg::Group, &Option<Affine>)| at.is_some_and(|at| is_near(at, affine(m.transform())));
+            if !instances.iter().zip(&places).all(same) {
+                b.marked.insert(e);
+            }
             b.markers.extend(instances.iter().map(|m| std::ptr::from_ref(*m) as usize).zip(places));
         }
     }

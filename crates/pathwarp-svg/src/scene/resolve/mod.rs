@@ -221,6 +221,7 @@ fn part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Contex
         rendering: p.rendering_mode(),
         visible: p.is_visible(),
         fixed_width,
+        is_own: fixed_width && p.stroke().is_some() || context.owner.is_some_and(|e| b.marked.contains(&e)),
         slot: context.slot,
         path: std::ptr::from_ref(p) as usize,
         fill_tiles,
