@@ -15,7 +15,7 @@ use std::collections::{BTreeSet, HashMap};
 
 /// Adds declarations to an edited drawing so that its style sheets give no element a value that it did not have before.
 ///
-/// `kept` pairs each element of the original, by its number in document order, with the place in the edited text where it begins.
+/// `kept` pairs the places where an element begins in the original and in the edited text.
 /// All other elements are new, and their attributes alone decide their style. Returns `None` if there is nothing to add.
 ///
 /// # Errors
@@ -41,11 +41,12 @@ pub fn guarded(
     let (units, ids) = (root_units(&was), Ids::new(&was));
     let valid = |d: &Declaration<'_>| is_valid(d, units, &ids);
     let (mut was_caches, mut is_caches) = (SelectorCaches::default(), SelectorCaches::default());
-    let origins: HashMap<usize, usize> = kept.iter().map(|(element, at)| (*at, *element)).collect();
+    let starts: HashMap<usize, Node<'_, '_>> = was_nodes.iter().map(|n| (n.range().start, *n)).collect();
+    let origins: HashMap<usize, usize> = kept.iter().map(|(from, to)| (*to, *from)).collect();
     let mut out = String::new();
     let mut done = 0;
     for node in is_nodes {
-        let origin = origins.get(&node.range().start).and_then(|e| was_nodes.get(*e)).copied();
+        let origin = origins.get(&node.range().start).and_then(|at| starts.get(at)).copied();
         let style = |n: Node<'_, '_>| n.attribute("style").map(str::to_owned).unwrap_or_default();
         let (old, new) = (origin.map(style).unwrap_or_default(), style(node));
         let (old, new) = (declarations(&old), declarations(&new));
@@ -145,10 +146,11 @@ fn from_attribute(node: Node<'_, '_>, name: &str) -> Option<String> {
 mod tests {
     use super::*;
 
-    fn mended(css: &str, before: &str, after: &str, kept: &[(usize, &str)]) -> String {
+    fn mended(css: &str, before: &str, after: &str, kept: &[(&str, &str)]) -> String {
         let drawing = |body: &str| format!("<svg xmlns='http://www.w3.org/2000/svg'><style>{css}</style>{body}</svg>");
         let (before, after) = (drawing(before), drawing(after));
-        let places: Vec<_> = kept.iter().map(|(e, tag)| (*e, after.find(tag).unwrap())).collect();
+        let places: Vec<_> =
+            kept.iter().map(|(was, is)| (before.find(was).unwrap(), after.find(is).unwrap())).collect();
         let out = guarded(&before, &after, &places, &Budget::default()).unwrap().unwrap_or_else(|| after.clone());
         out.split_once("</style>").unwrap().1.strip_suffix("</svg>").unwrap().to_owned()
     }
@@ -169,17 +171,17 @@ mod tests {
     fn renamed_elements_look_as_before() {
         let css = "circle{fill:teal;marker:none}path{fill:red;stroke:blue}";
         assert_eq!(
-            mended(css, "<circle/>", "<path/>", &[(2, "<path")]),
+            mended(css, "<circle/>", "<path/>", &[("<circle", "<path")]),
             "<path style=\"fill:teal;marker-end:none;marker-mid:none;marker-start:none;stroke:unset\"/>"
         );
         // What the edit declares counts; what it leaves alone stays.
         assert_eq!(
-            mended(css, "<circle style='fill:red'/>", "<path style='fill:gold'/>", &[(2, "<path")])
+            mended(css, "<circle style='fill:red'/>", "<path style='fill:gold'/>", &[("<circle", "<path")])
                 .matches("fill:gold")
                 .count(),
             1
         );
-        assert_eq!(mended("g{fill:red}", "<g/>", "<g/>", &[(2, "<g/>")]), "<g/>");
+        assert_eq!(mended("g{fill:red}", "<g/>", "<g/>", &[("<g/>", "<g/>")]), "<g/>");
     }
 
     /// Browsers take the last valid declaration.
@@ -197,7 +199,7 @@ mod tests {
     fn places_among_siblings() {
         let css = ".a:nth-child(3){fill:red}";
         let (before, after) = ("<g/><path class='a'/>", "<title/><g/><path class='a'/>");
-        let kept = [(2, "<g/>"), (3, "<path")];
+        let kept = [("<g/>", "<g/>"), ("<path", "<path")];
         assert_eq!(mended(css, before, after, &kept), after.replace("<path", "<path style=\"fill:red\""));
     }
 }

@@ -20,6 +20,7 @@
 mod color;
 mod computed;
 mod element;
+mod foreign;
 mod geometry;
 mod guard;
 mod ids;

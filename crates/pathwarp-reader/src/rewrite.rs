@@ -1,5 +1,6 @@
 //! Writes the computed style into the text of a drawing.
 
+use crate::foreign::{self, Foreign};
 use crate::sheet::declarations;
 use crate::text::{Letters, Rewritten, joined, rewritten, start};
 use crate::tree::{Styled, Tree, styled};
@@ -70,6 +71,8 @@ pub struct Plain {
     pub words: Vec<Arc<Words>>,
     /// Small differences from what browsers show: a sentence, and the element or name it is about.
     pub notes: BTreeSet<(&'static str, String)>,
+    /// Texts that stand for HTML in the same `switch`: the `foreignObject`, and the `text`.
+    pub foreign: Vec<(usize, usize)>,
     /// Whether elements were written out in place of the entities that hold them. `changes` does not list these.
     pub expanded: bool,
 }
@@ -200,9 +203,20 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
             if joined(*node) {
                 out.notes.insert((KERNED, node.attribute("id").unwrap_or_default().to_owned()));
             }
-            match words(text, e, *node, &styles[e..]) {
-                Some(new) => all.extend(new),
-                None => out.unsupported.push((Some(e), SINGLE_LETTERS.to_owned())),
+            if let Some((html, foreign)) = in_place_of(i, &nodes, &styles)
+                && let Some(change) = content(text, e, *node, foreign.content)
+            {
+                all.push(change);
+                replaced = node.range().end;
+                out.foreign.push((e - (i - html), e));
+                out.words.extend(foreign.fills.iter().map(|fill| style.computed.words.with_fill(fill.as_deref())));
+                let beyond = foreign.beyond.iter().map(|what| format!("only without {what}, which text does not have"));
+                out.unsupported.extend(beyond.map(|why| (Some(e), why)));
+            } else {
+                match words(text, e, *node, &styles[i..]) {
+                    Some(new) => all.extend(new),
+                    None => out.unsupported.push((Some(e), SINGLE_LETTERS.to_owned())),
+                }
             }
         }
         let id = node.attribute("id").unwrap_or_default();
@@ -312,6 +326,28 @@ impl Edit {
         };
         (Change { element, name, range, text: old, value, kept }, new)
     }
+}
+
+/// The HTML that a text stands for: the `foreignObject` before it in a `switch`, with its words.
+fn in_place_of(i: usize, nodes: &[Node<'_, '_>], styles: &[Styled<'_>]) -> Option<(usize, Foreign)> {
+    nodes[i].parent_element().filter(|p| p.tag_name().name() == "switch")?;
+    // Only the first text counts.
+    let before = nodes[i].prev_siblings().skip(1).filter(Node::is_element);
+    let found = before.take_while(|n| n.tag_name().name() != "text").find(|n| n.tag_name().name() == "foreignObject");
+    let found = found.filter(|n| !n.has_attribute("requiredExtensions"))?;
+    let html = nodes.binary_search_by_key(&found.range().start, |n| n.range().start).ok()?;
+    let end = html + nodes[html..i].partition_point(|n| n.range().start < found.range().end);
+    Some((html, foreign::text_of(&nodes[html..end], &styles[html..end], &styles[html].units)?))
+}
+
+/// The change that gives an element other content.
+fn content(text: &str, element: usize, node: Node<'_, '_>, mut new: String) -> Option<(Change, String)> {
+    let (first, last) = (node.first_child()?, node.last_child()?);
+    let range = first.range().start..last.range().end;
+    let old = text.get(range.clone())?.to_owned();
+    // Keep the line numbers of everything that follows.
+    new.push_str(&"\n".repeat(old.matches('\n').count()));
+    Some((Change { element, name: "", range, text: old.clone(), value: None, kept: old }, new))
 }
 
 /// Lists the changes to the content of a text. Returns `None` if they cannot be made.

@@ -59,6 +59,15 @@ impl Words {
         self.said[k] = text.map(|t| Arc::new(Word { text: t.to_owned(), scope: self.scope }));
     }
 
+    /// These words, for an element inside with a fill of its own.
+    pub(super) fn with_fill(self: &Arc<Self>, fill: Option<&str>) -> Arc<Self> {
+        let mut out = Arc::clone(self);
+        if fill.is_some() {
+            Arc::make_mut(&mut out).say(NAMES[0], fill);
+        }
+        out
+    }
+
     fn word(&self, p: PaintProperty) -> Option<&Arc<Word>> {
         self.said[p as usize].as_ref()
     }

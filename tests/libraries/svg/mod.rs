@@ -5,6 +5,7 @@ mod covers;
 mod degenerate_strokes;
 mod features;
 mod filters;
+mod html;
 mod keeping;
 mod lettering;
 mod live;

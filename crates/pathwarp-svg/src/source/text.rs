@@ -44,6 +44,8 @@ pub(crate) struct SourceText {
     pub(crate) words: Vec<Arc<Words>>,
     /// Small differences from what browsers show: a sentence, and the element or name it is about.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
+    /// Texts that stand for HTML in the same `switch`: the `foreignObject`, and the `text`.
+    pub(crate) foreign: Vec<(ElementId, ElementId)>,
     /// Mesh gradients by id.
     pub(crate) meshes: HashMap<String, MeshGradient>,
     marks: Marks,
@@ -78,6 +80,7 @@ impl SourceText {
             declared: plain.declared,
             words: plain.words,
             notes: plain.notes,
+            foreign: plain.foreign,
             unpatchable: parsed.unpatchable.or(plain.expanded.then_some(Unpatchable::Entities)),
             ..parsed
         };
@@ -150,6 +153,19 @@ impl SourceText {
     /// The text as it is in the file.
     pub(crate) fn as_in_file(&self) -> Cow<'_, str> {
         self.part_in_file(0..self.text.len())
+    }
+
+    /// Places in the file of places in the text, which are in order.
+    pub(crate) fn places_in_file(&self, places: impl Iterator<Item = usize>) -> Vec<usize> {
+        let mut originals = self.originals.iter().peekable();
+        let (mut gone, mut added) = (0, 0);
+        let place = |at: usize| {
+            while let Some(o) = originals.next_if(|o| o.range.end <= at) {
+                (gone, added) = (gone + o.text.len(), added + o.range.len());
+            }
+            at + gone - added
+        };
+        places.map(place).collect()
     }
 
     /// A part of the text as it is in the file.

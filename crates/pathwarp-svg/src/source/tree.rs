@@ -100,14 +100,14 @@ pub(crate) fn parse_counted(
 ) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let text = read::text(data, name, &options.budget)?;
     xml::check(&text, name, &options.budget)?;
-    let Plain { text, unsupported, notes, .. } = plain(text, name, &options.budget, None)?;
+    let Plain { text, unsupported, notes, foreign, .. } = plain(text, name, &options.budget, None)?;
     let xml = xml::parse_checked(&text, name)?;
     let (tree, mut missed) = with_stack(name, || tree(&xml, name, options))?;
     drop(xml);
     missed.notes = notes;
     missed.may_differ = ["marker", "non-scaling-stroke"].iter().any(|word| text.contains(word));
     let mut source = SourceText::parse(text, name)?;
-    source.unsupported_style = unsupported;
+    (source.unsupported_style, source.foreign) = (unsupported, foreign);
     missed.undrawn = undrawn(&source);
     missed.undrawn.extend(meshes(&source));
     Ok((Arc::new(tree), missed))
@@ -129,7 +129,9 @@ pub(crate) fn unknown(source: &SourceText, e: ElementId) -> Option<Unknown> {
     match source.elements[e].tag.as_ref() {
         "flowRoot" => Some(Unknown::FlowedText),
         // Browsers don't show the private data of editors.
-        "foreignObject" if source.attr(e, "requiredExtensions").is_none() => Some(Unknown::Foreign),
+        "foreignObject" if source.attr(e, "requiredExtensions").is_none() => {
+            source.foreign.binary_search_by_key(&e, |f| f.0).is_err().then_some(Unknown::Foreign)
+        }
         "use" | "textPath" | "tref" if source.link(e).is_some_and(|link| is_elsewhere(&link)) => {
             Some(Unknown::Elsewhere)
         }

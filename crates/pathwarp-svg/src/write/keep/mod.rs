@@ -57,6 +57,8 @@ pub(super) fn write(
     if !input.source.has_css() {
         return Ok(text);
     }
+    let starts = input.source.places_in_file(places.iter().map(|(e, _)| input.source.elements[*e].range.start));
+    let places: Vec<_> = starts.into_iter().zip(places.iter().map(|p| p.1)).collect();
     let guarded = guarded(&input.source.as_in_file(), &text, &places, &input.drawing.budget);
     let Ok(guarded) = guarded else {
         notes.add("the style sheets are too long to see whether their rules now apply to other elements (--limit comparisons=…)", "");

@@ -1,10 +1,13 @@
 //! Texts: they become groups of outlines, with a group inside for every named element.
 
 use super::keeper::{self, Keeper};
+use crate::scene::geometry::is_invertible;
 use crate::scene::lettering::{inside, is_named, is_naming};
 use crate::scene::model::Group;
 use crate::source::elements::{ElementId, Namespace, is_live};
 use crate::source::text::SourceText;
+use pathwarp::decimal::matrix;
+use pathwarp::map::Class;
 use std::ops::Range;
 
 /// A named element of a text, with its content in painting order.
@@ -83,6 +86,23 @@ pub(super) fn text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners
     k.fragments.insert(e);
     let animations = keeper::kept(source, e);
     k.edits.set_content(e, format!("{title}{inner}{animations}"));
+    foreign(k, e);
+}
+
+/// Moves the HTML that a text stands for. Only affine maps can: under others, the text takes its place.
+fn foreign(k: &mut Keeper<'_, '_>, text: ElementId) {
+    let Ok(found) = k.source.foreign.binary_search_by_key(&text, |f| f.1) else { return };
+    let html = k.source.foreign[found].0;
+    let reader = k.input.drawing.reader();
+    let frame = k.source.elements[html].parent.and_then(|p| reader.transform_to_root(p)).filter(|f| is_invertible(*f));
+    let map = k.input.bends.of(Some(text)).map(|i| k.input.bends.each[i].map.class());
+    match (frame, map) {
+        (Some(frame), Some(Class::Affine(map))) => {
+            let moved = frame.inverse() * map * frame * k.input.drawing.own_transform(html);
+            k.edits.set_attr(html, "transform", matrix(moved));
+        }
+        _ => k.edits.replace(html, String::new()),
+    }
 }
 
 /// Sorts the outlines of a text into spans.
