@@ -7,15 +7,15 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What the judge found for every drawing of a folder with this program, and its report. `None` where it cannot judge.
-fn judged(by: &Path, folder: &Path) -> Option<(Vec<Value>, String)> {
+/// What the judge found for every drawing of a folder with this program, tried in some ways, and its report. `None` where it cannot judge.
+fn judged(by: &Path, folder: &Path, ways: &[&str]) -> Option<(Vec<Value>, String)> {
     if let Some(what) = browser::missing() {
         skipped(format_args!("drawings are not compared in Chromium without {what}"));
         return None;
     }
     let json = tempfile::NamedTempFile::new().unwrap();
     let mut judge = Command::new(program("xtask"));
-    judge.arg("browser").arg(folder).arg("--program").arg(by).arg("--json").arg(json.path());
+    judge.arg("browser").arg(folder).arg("--program").arg(by).arg("--json").arg(json.path()).args(ways);
     let said = String::from_utf8_lossy(&judge.output().unwrap().stderr).into_owned();
     let found = serde_json::from_slice(&fs::read(json.path()).unwrap()).unwrap_or_else(|e| panic!("{e}: {said}"));
     Some((found, said))
@@ -47,7 +47,7 @@ fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
         let program = dir.path().join(name);
         fs::write(&program, format!("#!/bin/sh\n{loop_}{body}\n")).unwrap();
         fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-        let Some((all, _)) = judged(&program, &art) else { return };
+        let Some((all, _)) = judged(&program, &art, &[]) else { return };
         assert!(all.len() > 40, "{} findings", all.len());
         for finding in all {
             let counts = !finding["file"].as_str().unwrap().ends_with("broken.svg");
@@ -60,7 +60,25 @@ fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
 /// tried, whatever fonts a machine has. To add a drawing, put it there.
 #[test]
 fn own_drawings_are_what_chromium_shows() {
-    let Some((found, said)) = judged(pathwarp_program(), &root().join("tests/browser")) else { return };
+    none_differs(&[]);
+}
+
+#[test]
+fn pictures_of_own_drawings_are_what_chromium_shows() {
+    none_differs(&["--as", "png"]);
+}
+
+#[test]
+fn own_drawings_in_pdf_are_what_chromium_shows() {
+    if Command::new("pdftocairo").arg("-v").output().is_err() {
+        skipped("PDFs of drawings are not compared with Chromium without pdftocairo");
+        return;
+    }
+    none_differs(&["--as", "pdf"]);
+}
+
+fn none_differs(ways: &[&str]) {
+    let Some((found, said)) = judged(pathwarp_program(), &root().join("tests/browser"), ways) else { return };
     assert!(found.len() > 30 && found.iter().all(|f| f["counts"] == true), "{said}");
     assert!(found.iter().all(|f| f["differs"] == false), "{said}");
 }
