@@ -56,6 +56,15 @@ impl Inherited {
         Arc::clone(&self.words)
     }
 
+    /// Takes the values of [`TRACKED`] that an element has of its own.
+    fn track(&mut self, own: impl Fn(&str) -> Option<String>) {
+        for (name, value) in TRACKED.iter().zip(&mut self.tracked) {
+            if let Some(v) = own(name).filter(|v| v.trim() != "inherit") {
+                *value = Some(v.into());
+            }
+        }
+    }
+
     /// The value of a property of [`TRACKED`].
     fn tracked(&self, name: &str) -> Option<&str> {
         let at = TRACKED.iter().position(|t| *t == name)?;
@@ -223,7 +232,8 @@ pub(super) fn is_valid(d: &Declaration<'_>, units: Units, ids: &Ids<'_, '_>) -> 
     let Some(p) = property(&d.name).filter(|_| wide(&d.value).is_none() && !value::has_functions(&d.value)) else {
         return true;
     };
-    let values = Values { custom: Rc::default(), units, font: units.font, absolute: false, ids };
+    let color = Color::new(0.0, 0.0, 0.0, 1.0);
+    let values = Values { custom: Rc::default(), units, font: units.font, color, absolute: false, ids };
     values.of(p, &d.value, d.strict).is_some()
 }
 
@@ -692,12 +702,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             let found = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.to_string());
             found.or_else(|| out.value(node, name).map(ToOwned::to_owned))
         };
-        for (name, value) in TRACKED.iter().zip(&mut inherited.tracked) {
-            let own = self.seen.contains(*name) || node.attributes().any(|a| a.name() == *name);
-            if let Some(v) = own.then(|| styled(name)).flatten().filter(|v| v.trim() != "inherit") {
-                *value = Some(v.into());
-            }
-        }
+        inherited.track(|name| {
+            let own = self.seen.contains(name) || node.attributes().any(|a| a.name() == name);
+            own.then(|| styled(name))?
+        });
         let linear = inherited.tracked("color-interpolation") == Some("linearRGB");
         let stop = (linear && tag == "stop").then(|| self.values.stop(&styled));
         let more = self.values.paints(node, inherited, &out, &styled);
@@ -725,12 +733,15 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             style.extend(DASHES.iter().zip(dashes).map(|(name, value)| (Cow::Borrowed(*name), value.into())));
         }
         out.unsupported.extend(node.attribute("clip-path").and_then(|clip| unsupported("clip-path", clip)));
-        let before = node.attribute("style").map_or_else(|| Some(Vec::new()), simple);
-        let same = before
-            .is_some_and(|b| b.len() == style.len() && b.iter().zip(&style).all(|(b, s)| b.0 == s.0 && b.1 == s.1));
-        out.style = (!same).then_some(style);
+        out.style = (!is_written(node, &style)).then_some(style);
         out
     }
+}
+
+/// Whether the style attribute holds exactly these declarations.
+fn is_written(node: Node<'_, '_>, style: &[(Cow<'_, str>, Cow<'_, str>)]) -> bool {
+    let before = node.attribute("style").map_or_else(|| Some(Vec::new()), simple);
+    before.is_some_and(|b| b.len() == style.len() && b.iter().zip(style).all(|(b, s)| b.0 == s.0 && b.1 == s.1))
 }
 
 /// Converts the size of a `use` to px; usvg would apply percentages twice when it shows a symbol.

@@ -24,8 +24,8 @@ pub(super) struct Foreign {
 #[derive(Clone, PartialEq)]
 struct Look {
     size: f64,
-    /// Height of a line as a multiple of the size.
-    line: f64,
+    /// Height of a line as a multiple of the size; `None` for that of the font.
+    line: Option<f64>,
     /// The share of the room beside the words that is on their left.
     align: f64,
     wraps: bool,
@@ -51,8 +51,18 @@ enum Piece {
     Break,
 }
 
-/// The height of a line by default, as a multiple of the font's size: that of Arial and its twins.
-const LINE: f64 = 1.149;
+/// Ascent, descent and gap between lines as multiples of the font's size, of Arial and its twins.
+const METRICS: [f64; 3] = [0.905, 0.212, 0.033];
+
+impl Look {
+    /// The height of a line, and the distance from its middle down to that of its letters. Chromium rounds what is above and below them.
+    fn line(&self) -> (f64, f64) {
+        let [ascent, descent, gap] = METRICS.map(|share| share * self.size);
+        let height = self.line.map_or(ascent.round() + descent.round() + gap.round(), |line| line * self.size);
+        let above = ((height - ascent.round() - descent.round()) / 2.0).floor() + ascent.round();
+        (height, above - 0.5 * (height + ascent - descent))
+    }
+}
 
 /// Properties of fonts and text that mean the same in SVG, by their names there.
 const SAME: [(&str, &str); 5] = [
@@ -103,7 +113,7 @@ pub(super) fn text_of(nodes: &[Node<'_, '_>], styles: &[Styled<'_>], units: &Uni
     let [x, y, width, height] = [("x", 0), ("y", 1), ("width", 0), ("height", 1)]
         .map(|(name, axis)| side(name, if axis == 0 { units.viewport.0 } else { units.viewport.1 }));
     let same = INITIAL.map(|v| v.map(Rc::from));
-    let look = Rc::new(Look { size: units.font, line: LINE, align: 0.0, wraps: true, same });
+    let look = Rc::new(Look { size: units.font, line: None, align: 0.0, wraps: true, same });
     let mut html = Html { nodes, styles, units, pieces: Vec::new(), beyond: Vec::new() };
     let look = html.look(foreign, &look);
     let (room, content, look) = html.innermost(foreign, Room { x, y, width, height, across: None, down: 0.0 }, look);
@@ -156,7 +166,7 @@ impl<'a, 'i> Html<'_, 'a, 'i> {
         }
         if let Some(line) = self.of(node, "line-height").filter(|_| look.size > 0.0) {
             let px = self.px(node, look.size, "line-height", look.size).map(|px| px / look.size);
-            look.line = line.parse().ok().or(px).filter(|l| *l > 0.0).unwrap_or(LINE);
+            look.line = line.parse().ok().or(px).filter(|l| *l > 0.0);
         }
         let align = self.of(node, "text-align").or_else(|| (tag == "center").then(|| "center".to_owned()));
         look.align = align.map_or(look.align, |a| place(&a));
@@ -284,9 +294,10 @@ fn lines(pieces: Vec<Piece>, room: f64) -> Vec<Vec<Run>> {
 
 /// Writes lines as text.
 fn written(lines: &[Vec<Run>], room: Room, align: f64, beyond: Vec<String>) -> Foreign {
-    let usual = lines.iter().flatten().next().map_or(0.0, |r| r.1.size * r.1.line);
-    let heights = lines.iter().map(|l| l.iter().map(|r| r.1.size * r.1.line).reduce(f64::max).unwrap_or(usual));
-    let heights: Vec<f64> = heights.collect();
+    let usual = lines.iter().flatten().next().map_or((0.0, 0.0), |r| r.1.line());
+    let tallest = |a: (f64, f64), b: (f64, f64)| if b.0 > a.0 { b } else { a };
+    let heights = lines.iter().map(|l| l.iter().map(|r| r.1.line()).reduce(tallest).unwrap_or(usual));
+    let heights: Vec<(f64, f64)> = heights.collect();
     let widest = lines.iter().map(|l| l.iter().map(|r| width(&r.0, &r.1)).sum::<f64>()).fold(0.0, f64::max);
     // Lines are placed in what they fill together, and that in its room. A room of hardly any width is none.
     let block = if room.width < 2.0 { widest } else { widest.min(room.width) };
@@ -295,11 +306,11 @@ fn written(lines: &[Vec<Run>], room: Room, align: f64, beyond: Vec<String>) -> F
         Some(across) => room.x + across * (room.width - block) + align * block,
         None => room.x + align * room.width,
     };
-    let mut y = room.y + room.down * (room.height - heights.iter().sum::<f64>());
+    let mut y = room.y + room.down * (room.height - heights.iter().map(|h| h.0).sum::<f64>());
     let anchor = ["start", "middle", "end"][(2.0 * align) as usize];
     let mut out = Foreign { content: String::new(), fills: Vec::new(), beyond };
-    for (line, height) in lines.iter().zip(heights) {
-        let middle = y + 0.5 * height;
+    for (line, (height, lower)) in lines.iter().zip(heights) {
+        let middle = y + 0.5 * height + lower;
         y += height;
         if line.is_empty() {
             continue;

@@ -188,9 +188,11 @@ mod tests {
     #[test]
     fn invalid_declarations_do_not_count() {
         let css = "circle{fill:teal;fill:nonsense;stroke:rgb(1,2)}";
-        assert_eq!(mended(css, "<circle/>", "<g/>", &[(2, "<g")]), "<g style=\"fill:teal\"/>");
+        assert_eq!(mended(css, "<circle/>", "<g/>", &[("<circle", "<g")]), "<g style=\"fill:teal\"/>");
         assert_eq!(
-            mended(css, "<circle style='fill:5'/>", "<g style='fill:5'/>", &[(2, "<g")]).matches("fill:teal").count(),
+            mended(css, "<circle style='fill:5'/>", "<g style='fill:5'/>", &[("<circle", "<g")])
+                .matches("fill:teal")
+                .count(),
             1
         );
     }

@@ -541,8 +541,9 @@ fn link<'a>(node: Node<'a, '_>) -> Option<&'a str> {
     node.attributes().find(|a| a.name() == "href").map(|a| a.value())
 }
 
-/// New attributes of an image that shows an embedded drawing with a viewBox and without a size, which fills the image's box by its own
-/// `preserveAspectRatio`, and is cut there (CSS Images 3, section 4.2). If the image says `none`, the viewBox is stretched to the box.
+/// New attributes of an image that shows an embedded drawing. One with a viewBox fills the image's box by its own `preserveAspectRatio`, and
+/// is cut there (CSS Images 3, section 4.2). It is stretched to the box as a whole if the image says `none`, or if it has a size and no
+/// viewBox, as in Chromium.
 fn picture(image: Node<'_, '_>, style: &Styled<'_>) -> Option<[(&'static str, Option<String>); 2]> {
     let data = link(image).filter(|_| image.tag_name().name() == "image")?.trim().strip_prefix("data:")?;
     let (kind, data) = data.split_once(',').filter(|(kind, _)| kind.starts_with("image/svg+xml"))?;
@@ -554,27 +555,33 @@ fn picture(image: Node<'_, '_>, style: &Styled<'_>) -> Option<[(&'static str, Op
     };
     let drawing = xml::document(&text).ok()?;
     let root = drawing.root_element();
-    let sized = ["width", "height"].iter().any(|name| root.attribute(*name).is_some_and(|v| !v.contains('%')));
-    if sized || !root.has_attribute("viewBox") {
-        return None;
-    }
     let side = |name: &str, full: f64| length(style.computed.value(image, name)?, &style.units, full);
     let (width, height) = (side("width", style.units.viewport.0)?, side("height", style.units.viewport.1)?);
+    let own = |name: &str| length(root.attribute(name).filter(|v| !v.contains('%'))?, &style.units, 0.0);
+    let has_view = root.has_attribute("viewBox");
     let stretched = image.attribute("preserveAspectRatio").is_some_and(|a| a.trim_start().starts_with("none"));
-    let gone = |name: &str| matches!(name, "width" | "height") || stretched && name == "preserveAspectRatio";
     let (range, name) = (root.range(), name_end(&text, root));
     let mut new = format!(
-        "{}<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\">",
+        "{}<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\"",
         &text[..range.start]
     );
-    let aspect = if stretched { " preserveAspectRatio=\"none\"" } else { "" };
-    let _ = write!(new, "{} width=\"{width}\" height=\"{height}\"{aspect}", &text[range.start..name]);
-    let mut done = name;
-    for a in root.attributes().filter(|a| a.namespace().is_none() && gone(a.name())) {
-        new.push_str(text.get(done..a.range().start)?);
-        done = a.range().end;
+    match (own("width"), own("height")) {
+        (Some(w), Some(h)) if stretched || !has_view => {
+            let _ = write!(new, " viewBox=\"0 0 {w} {h}\" preserveAspectRatio=\"none\">{}", &text[range]);
+        }
+        _ if !has_view => return None,
+        _ => {
+            let aspect = if stretched { " preserveAspectRatio=\"none\"" } else { "" };
+            let _ = write!(new, ">{} width=\"{width}\" height=\"{height}\"{aspect}", &text[range.start..name]);
+            let gone = |name: &str| matches!(name, "width" | "height") || stretched && name == "preserveAspectRatio";
+            let mut done = name;
+            for a in root.attributes().filter(|a| a.namespace().is_none() && gone(a.name())) {
+                new.push_str(text.get(done..a.range().start)?);
+                done = a.range().end;
+            }
+            new.push_str(&text[done..range.end]);
+        }
     }
-    new.push_str(&text[done..range.end]);
     new.push_str("</svg>");
     let link = format!("data:image/svg+xml;base64,{}", STANDARD.encode(new));
     Some([("href", Some(link)), ("preserveAspectRatio", Some("none".to_owned()))])

@@ -127,9 +127,9 @@ fn what_is_no_plain_file_is_not_read() {
 fn they_are_cut_at_their_edge() {
     let body = "<circle cx='15' cy='15' r='19' fill='teal'/>";
     let image = inner("width='30' height='30'", body);
-    let image = format!("<g transform='rotate(10)'><image x='20' y='5' width='60' height='75' href=\"{image}\"/></g>");
+    let image = format!("<g transform='rotate(10)'><image x='20' y='5' width='60' height='60' href=\"{image}\"/></g>");
     let group = format!(
-        "<clipPath id='c'><rect width='30' height='30'/></clipPath><g transform='rotate(10) translate(20 12.5) scale(2)'><g \
+        "<clipPath id='c'><rect width='30' height='30'/></clipPath><g transform='rotate(10) translate(20 5) scale(2)'><g \
          clip-path='url(#c)'>{body}</g></g>"
     );
     let [image, group] = [image, group].map(|b| warp(&drawing(&b), oblique()).svg);

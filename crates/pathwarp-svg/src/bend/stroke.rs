@@ -132,8 +132,8 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
     let (p, options) = (t.part, t.options());
     // A stroke of fixed width is one on the page.
     let to_px = t.context.to_px;
-    let on_page = || (Outline::clone(&t.outline).transformed(to_px), to_px.inverse());
-    let (own, frame) = if p.fixed_width { on_page() } else { (Outline::clone(&p.local), p.frame) };
+    let on_page = p.fixed_width.then(|| Outline::clone(&t.outline).transformed(to_px));
+    let (own, frame) = on_page.as_ref().map_or((&*p.local, p.frame), |o| (o, to_px.inverse()));
     spend_stroke(&p.local, s, &options.refit.budget).map_err(GeometryError::Limit)?;
     // The outline of every contour, with the contour's index in the part.
     let expanded = |fine: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
@@ -143,9 +143,9 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
             each.into_iter().map(placed).collect::<Vec<_>>()
         };
         if t.pieces.is_empty() {
-            one(&own, &options.copies, 0)
+            one(own, &options.copies, 0)
         } else {
-            t.pieces.iter().flat_map(|piece| one(&piece.of(&own), &piece.places, piece.first())).collect()
+            t.pieces.iter().flat_map(|piece| one(&piece.of(own), &piece.places, piece.first())).collect()
         }
     };
     let fine = |i: usize, stretch: f64| (t.allowed_of(i) * EXPANSION / stretch).max(FINEST);

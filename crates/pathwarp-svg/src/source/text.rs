@@ -150,6 +150,12 @@ impl SourceText {
         value.unwrap_or_default()
     }
 
+    /// Whether the file holds an element, which may be one that the reader added.
+    pub(crate) fn is_in_file(&self, e: &Element) -> bool {
+        let next = self.originals.partition_point(|o| o.range.end <= e.range.start);
+        self.originals.get(next).is_none_or(|o| e.range.start < o.range.start)
+    }
+
     /// The text as it is in the file.
     pub(crate) fn as_in_file(&self) -> Cow<'_, str> {
         self.part_in_file(0..self.text.len())

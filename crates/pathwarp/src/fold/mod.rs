@@ -235,12 +235,12 @@ impl Orientation {
     }
 
     /// The orientation to compare the shapes of the artwork with, whose samples these are: that of most of them, unless the map turns most
-    /// of the artwork over and leaves a corner of the artwork's box, `bounds`, as it was.
+    /// of the artwork over and leaves the corners of the artwork's box, `bounds`, as they were.
     #[must_use]
     pub fn usual(&self, map: &dyn Map, bounds: Rect) -> Self {
         let corners = [(bounds.x0, bounds.y0), (bounds.x1, bounds.y0), (bounds.x1, bounds.y1), (bounds.x0, bounds.y1)];
         let turned = self.positive > 0 && self.negative > self.positive;
-        if turned && corners.into_iter().any(|c| map.jet(c.into()).det() > 0.0) {
+        if turned && corners.into_iter().all(|c| map.jet(c.into()).det() > 0.0) {
             return Self { positive: self.negative, ..*self };
         }
         *self
@@ -396,15 +396,26 @@ mod tests {
         assert_eq!(proven.positive, 2 * 4 * (PER_SEGMENT + 1));
     }
 
-    /// Most of the artwork is turned over, and all of it overlaps.
+    /// The middle is turned over, which is the larger part.
     #[test]
     fn what_is_turned_over_folds_though_it_is_the_larger_part() {
-        let shapes =
-            ["M-6,0 H1 V1 H-6 Z", "M-5,0 H-4 V1 H-5 Z", "M2,0 H3 V1 H2 Z"].map(|d| Outline::from_svg(d).unwrap());
-        let all = shapes.iter().map(|s| orientation(s, true, &Fold)).fold(Orientation::default(), |all, o| all.and(&o));
-        let usual = all.usual(&Fold, Rect::new(-6.0, 0.0, 3.0, 1.0));
-        let folds = shapes.map(|s| orientation(&s, true, &Fold).folded_against(&usual).is_some());
-        assert_eq!((all.negative > all.positive, folds), (true, [true, true, false]));
+        struct Middle;
+        impl Formula for Middle {
+            fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+                (x * x * x - x * S::from(48.0), y)
+            }
+        }
+        let shapes = ["M-5,0 H-2 V1 H-5 Z", "M-1,0 H3 V1 H-1 Z", "M4.5,0 H5 V1 H4.5 Z"];
+        let shapes = shapes.map(|d| Outline::from_svg(d).unwrap());
+        let folds = |shapes: &[Outline], bounds: Rect| {
+            let each: Vec<_> = shapes.iter().map(|s| orientation(s, true, &Middle)).collect();
+            let all = each.iter().fold(Orientation::default(), |all, o| all.and(o));
+            let usual = all.usual(&Middle, bounds);
+            (all.negative > all.positive, each.iter().map(|o| o.folded_against(&usual).is_some()).collect::<Vec<_>>())
+        };
+        assert_eq!(folds(&shapes, Rect::new(-5.0, 0.0, 5.0, 1.0)), (true, vec![true, true, false]));
+        // The artwork ends where the map turns it over: most of it is as it should be.
+        assert_eq!(folds(&shapes[..2], Rect::new(-5.0, 0.0, 3.0, 1.0)), (true, vec![true, false]));
     }
 
     #[test]

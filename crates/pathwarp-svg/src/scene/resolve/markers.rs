@@ -9,11 +9,18 @@ use std::f64::consts::PI;
 use usvg::tiny_skia_path::{Path, PathSegment};
 
 /// Finds the children of a group that belong to shapes with markers: the shape and the group of marker instances next to it.
-/// Returns their indices with the shape's element.
-pub(super) fn marked_children(b: &SceneBuilder<'_>, g: &usvg::Group) -> Vec<(usize, ElementId)> {
+/// Returns their indices with the shape's element. `user` is the `use` element that the group belongs to.
+pub(super) fn marked_children(
+    b: &SceneBuilder<'_>,
+    g: &usvg::Group,
+    user: Option<ElementId>,
+) -> Vec<(usize, ElementId)> {
     let mut out = Vec::new();
+    let used = user.and_then(|e| b.element(b.reader.source.link(e)?.strip_prefix('#')?));
     let shape = |i: usize| match g.children().get(i) {
-        Some(usvg::Node::Path(p)) => b.element(p.id()).filter(|&e| is_shape(b.tag(e))),
+        Some(usvg::Node::Path(p)) => {
+            if user.is_some() { used } else { b.element(p.id()) }.filter(|&e| is_shape(b.tag(e)))
+        }
         _ => None,
     };
     for (i, c) in g.children().iter().enumerate() {
@@ -39,8 +46,13 @@ pub(super) fn marked_children(b: &SceneBuilder<'_>, g: &usvg::Group) -> Vec<(usi
 }
 
 /// Places the markers of shapes as browsers do. usvg orients those where a closed subpath starts and ends as if it were open, and
-/// adds markers within arcs.
-pub(super) fn place_markers(b: &mut SceneBuilder<'_>, g: &usvg::Group, marked: &[(usize, ElementId)]) {
+/// adds markers within arcs. `user` is as for [`marked_children`].
+pub(super) fn place_markers(
+    b: &mut SceneBuilder<'_>,
+    g: &usvg::Group,
+    user: Option<ElementId>,
+    marked: &[(usize, ElementId)],
+) {
     for &(i, e) in marked {
         let Some(usvg::Node::Group(instances)) = g.children().get(i) else { continue };
         let shape = [i.wrapping_sub(1), i + 1].into_iter().find_map(|j| match g.children().get(j) {
@@ -52,7 +64,7 @@ pub(super) fn place_markers(b: &mut SceneBuilder<'_>, g: &usvg::Group, marked: &
             let same =
                 |(m, at): (&&usvg::Group, &Option<Affine>)| at.is_some_and(|at| is_near(at, affine(m.transform())));
             if !instances.iter().zip(&places).all(same) {
-                b.marked.insert(e);
+                b.marked.insert(user.unwrap_or(e));
             }
             b.markers.extend(instances.iter().map(|m| std::ptr::from_ref(*m) as usize).zip(places));
         }
@@ -202,10 +214,10 @@ fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
             continue;
         };
         let closed = subpath.last().is_some_and(|s| s.0 == Element::Close);
-        let at_start = if closed { between(last[1], first[0]) } else { angle(first[0]) };
-        out.push(at_start);
         // A closing line without length has the direction in which the subpath begins.
         let out_of = |v: Vec2| if v == Vec2::ZERO { first[0] } else { v };
+        let at_start = if closed { between(out_of(last[1]), first[0]) } else { angle(first[0]) };
+        out.push(at_start);
         out.extend(ends.windows(2).map(|w| between(w[0][1], out_of(w[1][0]))));
         out.push(if closed { at_start } else { angle(last[1]) });
     }

@@ -107,8 +107,9 @@ fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context:
             picture(b, image.root());
         }
     }
-    let marked = if context.owner.is_none() { marked_children(b, g) } else { Vec::new() };
-    place_markers(b, g, &marked);
+    let user = context.owner.filter(|&e| b.tag(e) == "use");
+    let marked = if user == context.owner { marked_children(b, g, user) } else { Vec::new() };
+    place_markers(b, g, user, &marked);
     let mut children = Vec::with_capacity(g.children().len());
     for (i, c) in g.children().iter().enumerate() {
         if matches!(c, usvg::Node::Group(m) if matches!(b.markers.get(&address(m)), Some(None))) {

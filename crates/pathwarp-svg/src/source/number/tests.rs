@@ -1,4 +1,5 @@
 use super::*;
+use pathwarp::kurbo::Affine;
 
 #[test]
 fn shortest_form_without_minus_zero() {

@@ -11,7 +11,7 @@ use super::keep::keeper::{Keeper, Warped};
 use super::page;
 use crate::bend::outcome::{Notes, Skipped};
 use crate::source::edit::Edits;
-use crate::source::elements::{ElementId, Unpatchable, is_live};
+use crate::source::elements::{Element, ElementId, Unpatchable, is_live};
 use crate::source::number::rectangle;
 use crate::source::text::SourceText;
 use pathwarp::decimal::matrix;
@@ -102,7 +102,9 @@ fn finish(
     if defs.is_empty() {
         return Ok(edits.apply());
     }
-    let home = source.elements.iter().position(|e| e.tag == "defs" && e.parent == Some(0) && e.close.is_some());
+    // Only the file's own elements stay.
+    let is_home = |e: &Element| e.tag == "defs" && e.parent == Some(0) && e.close.is_some() && source.is_in_file(e);
+    let home = source.elements.iter().position(is_home);
     match home {
         Some(home) => edits.wrap_content(home, String::new(), defs.to_owned()),
         None if source.elements[0].close.is_some() => {
