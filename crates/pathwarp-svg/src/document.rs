@@ -70,6 +70,12 @@ impl Document {
         &self.drawing.source.text
     }
 
+    /// The text of the file, decoded, with the style that only browsers read as the file has it: what to read again.
+    #[must_use]
+    pub fn decoded(&self) -> Cow<'_, str> {
+        self.drawing.source.as_in_file()
+    }
+
     /// Content of the file.
     #[must_use]
     pub fn source(&self) -> &[u8] {

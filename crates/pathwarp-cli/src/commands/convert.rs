@@ -81,8 +81,8 @@ pub(crate) fn convert_file(
 /// Writes the drawing in an SVG as a PDF or DXF.
 fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOptions) -> Result<Status, Failure> {
     let doc = input::document(file, &options.reading)?;
-    let Exported { bytes, warnings } =
-        export::drawing(doc.text().to_owned(), format, &input::read_options(file, &options.reading), options, None)?;
+    let read = input::read_options(file, &options.reading);
+    let Exported { bytes, warnings } = export::drawing(doc.decoded().into_owned(), format, &read, options, None)?;
     let (unread, undrawn) = (doc.unread_images(), doc.undrawn());
     let is_partial = !unread.is_empty() || !undrawn.is_empty();
     let lacking = advice::lacking(doc.missing_fonts(), &unread, &undrawn, &doc.notes()).into_iter();

@@ -205,7 +205,7 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
     let skipped = reasons(skipped.iter().flatten());
     // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
     if sets.iter().any(|(_, g)| g.bend.is_some()) {
-        let svg = doc.text().to_owned();
+        let svg = doc.decoded().into_owned();
         cells.insert(0, Cell { svg, label: "as it is".into() });
     }
     let layout = SheetOptions {
