@@ -100,7 +100,7 @@ const NAMES: [(&str, &[&str]); 13] = [
 fn resolved(value: &str, current: &Color, levels: usize) -> Option<Color> {
     let lower = value.trim().to_ascii_lowercase();
     if lower == "currentcolor" {
-        return Some(current.clone());
+        return Some(*current);
     }
     let Some((name, rest)) = lower.split_once('(') else {
         let known = NAMES.iter().find(|(_, names)| names.contains(&lower.as_str())).map(|n| n.0);
@@ -117,10 +117,18 @@ fn resolved(value: &str, current: &Color, levels: usize) -> Option<Color> {
             let words = inside.strip_prefix("from ").map(|_| words(inside));
             let base = words.as_ref().and_then(|w| Some((*w.get(1)?, resolved(w.get(1)?, current, levels)?)));
             let plain = base.map(|(word, c)| lower.replacen(word, &c.to_css_hex().to_string(), 1));
+            // Of these, a percentage is the same number, which alone the parser takes in relative colours.
+            let plain = plain.map(|p| if matches!(name, "hsl" | "hsla" | "hwb") { without_percent(&p) } else { p });
             let plain = plain.unwrap_or(lower);
             csscolorparser::parse(&in_xyz(&plain).unwrap_or(plain)).ok()
         }
     }
+}
+
+/// The channels of a colour, without those behind a slash, as numbers.
+fn without_percent(color: &str) -> String {
+    let (channels, alpha) = color.split_at(color.find('/').unwrap_or(color.len()));
+    channels.replace('%', "") + alpha
 }
 
 /// Splits at white space outside parentheses.
@@ -212,9 +220,8 @@ fn between(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f32; 2]
         let step = (b[at] - a[at]).rem_euclid(turn);
         let step = match arc {
             Some("increasing") => step,
-            Some("decreasing") => step - turn,
             Some("longer") if step > 0.5 * turn => step,
-            Some("longer") => step - turn,
+            Some("decreasing" | "longer") => step - turn,
             _ if step > 0.5 * turn => step - turn,
             _ => step,
         };
@@ -240,7 +247,7 @@ pub(super) fn in_functions<'v>(
             if let Some((i, _)) = given {
                 inner.remove(i);
             }
-            let color = given.map_or_else(|| current.clone(), |g| g.1);
+            let color = given.map_or_else(|| *current, |g| g.1);
             inner.push(shadow(&color).into());
         }
         let inner = if is("url") { inside.to_owned() } else { inner.join(" ") };
@@ -340,6 +347,7 @@ mod tests {
             ("color-mix(in oklab, light-dark(red, lime), color-mix(in srgb, blue, blue))", [140, 83, 162]),
             ("rgb(from currentColor r g b)", [170, 187, 204]),
             ("hsl(from #369 h s calc(l + 20))", [102, 153, 204]),
+            ("hsl(from red h s 30%)", [153, 0, 0]),
         ] {
             let found = paint(css, &CURRENT).unwrap();
             let channels = found.strip_prefix("rgba(").unwrap().split(',').take(3);

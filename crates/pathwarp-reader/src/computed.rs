@@ -140,7 +140,7 @@ pub(super) fn computed<'a>(
         custom: Rc::clone(&inherited.custom),
         units: inherited.units,
         font: inherited.units.font,
-        color: inherited.color.clone(),
+        color: inherited.color,
         absolute: inherited.in_symbol && !is_server && !tag.starts_with("fe"),
         ids,
     };
@@ -153,7 +153,7 @@ pub(super) fn computed<'a>(
     }
     values.units = inherited.units;
     if let Some(color) = own_color(node, declarations, &values) {
-        values.color = color.clone();
+        values.color = color;
         inherited.color = color;
     }
     let mut all = Declared { geometry: geometry(tag, is_root), ..Declared::new(tag, &values) };
@@ -186,7 +186,7 @@ fn font_size(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Val
 fn own_color(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Values<'_, '_, '_>) -> Option<Color> {
     let of = |text: &str| match wide(text.trim()) {
         Some(Wide::Initial) => color::computed("black", &values.color),
-        Some(_) => Some(values.color.clone()),
+        Some(_) => Some(values.color),
         None => {
             color::computed(value::computed(&values.substituted(text)?, &values.units, None)?.trim(), &values.color)
         }

@@ -279,7 +279,7 @@ fn linear_gradient(
         let share = given.strip_suffix('%').map(|p| p.parse().map(|v: f32| v / 100.0));
         // Offsets do not decrease.
         last = share.unwrap_or_else(|| given.parse()).unwrap_or(0.0).clamp(last, 1.0);
-        Some((last, s.computed.stop.clone()?))
+        Some((last, s.computed.stop?))
     });
     let stops: Vec<(f32, Color)> = stops.collect();
     let old = new_id("gradient", e, text);
@@ -288,7 +288,7 @@ fn linear_gradient(
         let next = stops.get(i + 1).filter(|n| n.0 > *offset);
         for k in 0..if next.is_some() { STEPS } else { 1 } {
             let t = k as f32 / STEPS as f32;
-            let mixed = next.map_or_else(|| color.clone(), |n| color.interpolate_linear_rgb(&n.1, t));
+            let mixed = next.map_or_else(|| *color, |n| color.interpolate_linear_rgb(&n.1, t));
             let at = next.map_or(*offset, |n| offset + t * (n.0 - offset));
             let [r, g, b, a] = mixed.to_array();
             let [r, g, b] = [r, g, b].map(|v| (255.0 * v).round());

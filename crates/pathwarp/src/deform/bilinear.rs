@@ -219,6 +219,7 @@ impl Formula for BilinearInverse {
 mod tests {
     use super::*;
     use crate::check;
+    use crate::deform::Deformation as _;
     use crate::outline::Seg;
     use crate::param::Args;
 

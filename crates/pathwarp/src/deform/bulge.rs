@@ -245,6 +245,7 @@ impl Map for SoftInverse {
 mod tests {
     use super::*;
     use crate::check;
+    use crate::deform::Deformation as _;
     use crate::param::Args;
 
     #[test]

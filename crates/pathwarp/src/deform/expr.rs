@@ -305,6 +305,7 @@ impl Map for ExprMap {
 mod tests {
     use super::*;
     use crate::check;
+    use crate::deform::Deformation as _;
     use crate::param::Args;
 
     #[test]

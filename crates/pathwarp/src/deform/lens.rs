@@ -287,6 +287,7 @@ impl Formula for LensMap {
 mod tests {
     use super::*;
     use crate::check;
+    use crate::deform::Deformation as _;
     use crate::param::Args;
 
     #[test]

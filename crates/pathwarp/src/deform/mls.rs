@@ -376,6 +376,7 @@ impl Formula for MlsMap {
 mod tests {
     use super::*;
     use crate::check;
+    use crate::deform::Deformation as _;
     use crate::map::Map;
     use crate::param::Args;
 

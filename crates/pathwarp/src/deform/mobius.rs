@@ -289,6 +289,7 @@ impl Formula for MobiusMap {
 mod tests {
     use super::*;
     use crate::check;
+    use crate::deform::Deformation as _;
     use crate::outline::{EllipticArc, Seg};
     use crate::param::Args;
 

@@ -364,6 +364,7 @@ impl Formula for PolarInverse {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::deform::Deformation as _;
     use crate::deform::Registry;
     use crate::param::{Args, Frame};
     use crate::recipe::{Recipe, Step};

@@ -206,6 +206,7 @@ impl Formula for SwirlMap {
 mod tests {
     use super::*;
     use crate::check;
+    use crate::deform::Deformation as _;
     use crate::param::Args;
 
     #[test]

@@ -203,6 +203,7 @@ impl Formula for WaveMap {
 mod tests {
     use super::*;
     use crate::check;
+    use crate::deform::Deformation as _;
     use crate::param::Args;
     use kurbo::Point;
 

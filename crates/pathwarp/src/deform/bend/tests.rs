@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::check;
+use crate::deform::Deformation as _;
 use crate::map::{Creases, Level, Map as _, RationalBezier};
 use crate::outline::Seg;
 use crate::param::Args;

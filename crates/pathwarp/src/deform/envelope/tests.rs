@@ -2,6 +2,7 @@
 
 use super::fit::paced;
 use super::*;
+use crate::deform::Deformation as _;
 use crate::deform::Registry;
 use crate::map::{AffineMap, Class, Creases};
 use crate::param::{Args, Frame};

@@ -1,6 +1,7 @@
 //! The shaper against the paper, its rules and its faults.
 
 use super::*;
+use crate::deform::Deformation as _;
 use crate::param::Args;
 use kurbo::ParamCurve;
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::check;
+use crate::deform::Deformation as _;
 use crate::map::RationalBezier;
 use crate::outline::Seg;
 use crate::param::Args;

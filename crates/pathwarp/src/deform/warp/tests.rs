@@ -1,6 +1,7 @@
 //! The nets against the measured table, written out here once more with plain numbers and circles.
 
 use super::*;
+use crate::deform::Deformation as _;
 use crate::outline::Outline;
 use crate::param::{Args, Frame};
 use crate::{check, refit};

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::check;
+use crate::deform::Deformation as _;
 use crate::map::Map;
 use crate::param::{Args, Frame};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveArclen, PathSeg, Point, QuadBez};
