@@ -121,16 +121,20 @@ pub(super) fn server_key(address: usize, fit: Affine) -> ServerKey {
     (address, fit.as_coeffs().map(f64::to_bits))
 }
 
-/// Returns `true` if another gradient can take its stops from the source's gradient `id`: the id is unique, and the chain of
-/// links ends.
-pub(super) fn has_usable_stops(source: &SourceText, id: &str) -> bool {
+/// Returns `true` if another gradient can take its `stops` from the source's gradient `id`: the id is unique, the chain of links ends, and
+/// there are as many. One in linear light is drawn by more than the source has.
+pub(super) fn has_usable_stops(source: &SourceText, id: &str, stops: usize) -> bool {
     /// Longest chain of links followed.
     const LONGEST: usize = 16;
-    let mut next = Some(id.to_owned());
+    let own = |e| source.descendants(e).filter(|s| *source.elements[*s].tag == *"stop").count();
+    let (mut next, mut given) = (Some(id.to_owned()), 0);
     for _ in 0..LONGEST {
-        let Some(id) = next else { return true };
+        let Some(id) = next else { return given >= stops };
         match source.by_id().get(&id).map(Vec::as_slice) {
-            Some(&[e]) if source.elements[e].tag.ends_with("Gradient") => next = source.href(e),
+            Some(&[e]) if source.elements[e].tag.ends_with("Gradient") => {
+                given = if given == 0 { own(e) } else { given };
+                next = source.href(e);
+            }
             _ => return false,
         }
     }

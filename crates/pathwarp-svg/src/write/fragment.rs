@@ -391,7 +391,8 @@ impl<'a> Writer<'a> {
             SpreadMethod::Repeat => tag.with("spreadMethod", "repeat"),
         };
         let foreign = self.input.scene.foreign.contains(&at);
-        let text = if self.markup.in_source && has_usable_stops(self.input.source, g.id()) && !foreign {
+        let shares = || has_usable_stops(self.input.source, g.id(), g.stops().len());
+        let text = if self.markup.in_source && !foreign && shares() {
             // Share the stops of the original.
             tag.with(self.markup.link(), &format!("#{}", g.id())).empty()
         } else {
