@@ -32,6 +32,8 @@ impl Bender {
         /// Pixels per px of a picture that shows little, and where the fit is compared.
         const COARSEST: f64 = 0.25;
         const COMPARED: f64 = 2.0;
+        /// Share of the page on which a difference is not seen.
+        const UNSEEN: f64 = 0.002;
         /// The density of a picture beside a shape whose edges are sharp, of that of pictures that stand alone.
         const FINEST: f64 = 0.75;
         let reason = |e: Error| PictureError::from(e.to_string());
@@ -47,7 +49,7 @@ impl Bender {
         let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
         if let Some([drawing, fitted]) = r.compared {
             let [drawing, fitted] = [tree(&drawing(r.area), budget)?, tree(&fitted(warp.bounds()), budget)?];
-            if warp.resembles(&drawing.tree, &fitted.tree, COMPARED * unit).map_err(reason)? {
+            if warp.resembles(&drawing.tree, &fitted.tree, COMPARED * unit, UNSEEN * r.page).map_err(reason)? {
                 return Ok(None);
             }
         }

@@ -111,11 +111,11 @@ impl<'a> DrawingWarp<'a> {
     }
 
     /// Returns `true` if a warped drawing looks like `other`, whose page is the bounding box of the image, with at most `finest` pixels
-    /// per unit.
+    /// per unit: if they differ on little of what is painted, or on no more than the area `unseen`, in square units.
     ///
     /// # Errors
     /// The work exceeds the limits, or the renderer fails.
-    pub fn resembles(&self, tree: &usvg::Tree, other: &usvg::Tree, finest: f64) -> Result<bool, Error> {
+    pub fn resembles(&self, tree: &usvg::Tree, other: &usvg::Tree, finest: f64, unseen: f64) -> Result<bool, Error> {
         /// Pixels of the drawing for one of the result.
         const SHARE: f64 = 0.8;
         let bounds = self.bounds;
@@ -126,7 +126,7 @@ impl<'a> DrawingWarp<'a> {
             let density = whole_offsets(other, density);
             let target = grid(bounds, density);
             let picture = self.warped(tree, (target, density), before(density))?;
-            Ok(alike(&picture, &self.drawn(other, (bounds, target), density)?, share))
+            Ok(alike(&picture, &self.drawn(other, (bounds, target), density)?, share, unseen * density * density))
         };
         Ok(first.map_or(Ok(true), resembles)? && resembles((along(COMPARED).min(finest), NOTICED_SHARE))?)
     }
@@ -262,7 +262,7 @@ fn painted(picture: &Pixmap) -> Option<IntRect> {
 
 /// Returns `true` if two pictures of the same size look alike but for a share of what is painted. Edges may lie a pixel apart, so each pixel
 /// may have any colour between those of the pixels around it in the other.
-fn alike(a: &Pixmap, b: &Pixmap, share: f64) -> bool {
+fn alike(a: &Pixmap, b: &Pixmap, share: f64, unseen: f64) -> bool {
     let (width, height) = (a.width() as usize, a.height() as usize);
     let read = |of: &Pixmap, at: usize| <[u8; 4]>::try_from(&of.data()[4 * at..4 * at + 4]).unwrap_or_default();
     let between = |own: [u8; 4], around: &Pixmap, at: usize| {
@@ -285,7 +285,7 @@ fn alike(a: &Pixmap, b: &Pixmap, share: f64) -> bool {
         let is_near = (0..4).all(|k| c[k].abs_diff(d[k]) <= NOTICED);
         off += u32::from(!(is_near || between(c, b, at) && between(d, a, at)));
     }
-    f64::from(off) <= share * f64::from(painted)
+    f64::from(off) <= (share * f64::from(painted)).max(unseen)
 }
 
 /// Returns `true` if half as many pixels along each side, interpolated, show nearly the same, or a picture of twice the size would differ

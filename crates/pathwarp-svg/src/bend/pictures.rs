@@ -180,6 +180,8 @@ pub struct FilterRequest<'a> {
     pub after: Affine,
     /// Root user space to px, to choose a resolution.
     pub to_px: Affine,
+    /// The area of the page, in square units of the result.
+    pub page: f64,
     /// Upper bound on the number of filters in the drawing, which share a budget of pixels.
     pub among: usize,
 }

@@ -98,6 +98,7 @@ fn outcome(
         map: bend.map,
         after: write.inverse(),
         to_px: input.scene.to_px,
+        page: input.drawing.view_box().area() / write.determinant().abs(),
         among,
     };
     let Some(mut pictures) = painter.filter(&request).ok()?.map(Vec::into_iter) else {
