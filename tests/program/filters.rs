@@ -139,3 +139,23 @@ fn no_picture_takes_a_shape_from_a_cutter() {
         assert!(run.status.success() && !told.contains("PDF has no filters"), "{name}: {told}");
     }
 }
+
+/// A difference on less than .2 % of the page is not seen; the same bar on a small page is seen to differ.
+#[test]
+fn the_choice_is_by_what_is_seen_of_the_page() {
+    let pictures = |page: [u32; 2]| {
+        let bar = "<rect x='15' y='10' width='6' height='60' filter='url(#b)'/>";
+        let filter = "<filter id='b'><feGaussianBlur stdDeviation='2'/></filter>";
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {} {}'>{filter}{bar}</svg>",
+            page[0], page[1]
+        );
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("a.svg"), svg).unwrap();
+        let line = ["warp", "a.svg", "--style", "flag", "--bend", "5%", "--fit", "none", "-o", "o.svg"];
+        assert!(pathwarp_in(dir.path(), &line, b"").status.success());
+        fs::read_to_string(dir.path().join("o.svg")).unwrap().matches("<image").count()
+    };
+    assert_eq!(pictures([400, 300]), 0);
+    assert_eq!(pictures([40, 80]), 1);
+}

@@ -32,7 +32,7 @@ impl Bender {
         /// Pixels per px of a picture that shows little, and where the fit is compared.
         const COARSEST: f64 = 0.25;
         const COMPARED: f64 = 2.0;
-        /// Share of the page on which a difference is not seen.
+        /// Share of the page on which differences of all filters together are not seen.
         const UNSEEN: f64 = 0.002;
         /// The density of a picture beside a shape whose edges are sharp, of that of pictures that stand alone.
         const FINEST: f64 = 0.75;
@@ -49,7 +49,10 @@ impl Bender {
         let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
         if let Some([drawing, fitted]) = r.compared {
             let [drawing, fitted] = [tree(&drawing(r.area), budget)?, tree(&fitted(warp.bounds()), budget)?];
-            if warp.resembles(&drawing.tree, &fitted.tree, COMPARED * unit, UNSEEN * r.page).map_err(reason)? {
+            if warp
+                .resembles(&drawing.tree, &fitted.tree, COMPARED * unit, UNSEEN * r.page / r.among.max(1) as f64)
+                .map_err(reason)?
+            {
                 return Ok(None);
             }
         }
