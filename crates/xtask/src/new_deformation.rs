@@ -116,7 +116,6 @@ impl TYPE {
     }
 }
 
-/// The derivatives follow from the formula.
 impl Formula for TYPE {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         (x, y + (x / self.length * TAU).sin() * self.height)
@@ -130,9 +129,10 @@ static INFO: Info = Info::new("NAME", "one line for the menu")
         Param::length("height", Axis::Y, "Height of the wave.").default("10%").slider(0.0, 100.0),
         Param::length("length", Axis::X, "Length of the wave.").default("50%").within(1e-3, 1e9).slider(1.0, 1000.0),
     ])
-    .examples(&[Example { what: "As it comes", command: "NAME samples/logo.svg -o out.svg" }])
+    .source("paper and equation")
+    .examples(&[Example { what: "As it comes", command: "NAME samples/logo.svg -o out.svg" },
+        Example { what: "One long wave", command: "NAME samples/lettering.svg --length 100% -o out.svg" }])
     .laws(&[Law::Identity(&[("height", "0")]), Law::Area(&[], 1.0)])
-    // Known values in the frame 0,0,100,100: the crest, a quarter of the wave along.
     .cases(&[Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 8.0), tolerance: 1e-12 }]);
 
 /// Reads the deformation from text.

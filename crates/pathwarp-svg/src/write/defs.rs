@@ -122,7 +122,7 @@ pub(super) fn server_key(address: usize, fit: Affine) -> ServerKey {
 }
 
 /// Returns `true` if another gradient can take its `stops` from the source's gradient `id`: the id is unique, the chain of links ends, and
-/// there are as many. One in linear light is drawn by more than the source has.
+/// the last of them has as many. One in linear light is drawn by more than the source has, which the reader puts before it.
 pub(super) fn has_usable_stops(source: &SourceText, id: &str, stops: usize) -> bool {
     /// Longest chain of links followed.
     const LONGEST: usize = 16;
@@ -132,7 +132,7 @@ pub(super) fn has_usable_stops(source: &SourceText, id: &str, stops: usize) -> b
         let Some(id) = next else { return given >= stops };
         match source.by_id().get(&id).map(Vec::as_slice) {
             Some(&[e]) if source.elements[e].tag.ends_with("Gradient") => {
-                given = if given == 0 { own(e) } else { given };
+                given = Some(own(e)).filter(|n| *n > 0).unwrap_or(given);
                 next = source.href(e);
             }
             _ => return false,
