@@ -21,6 +21,7 @@ pub(crate) fn count_finished() {
 /// Interruptions end the program without a message from now on.
 pub(crate) fn end_quietly() {
     IS_QUIET.store(true, Ordering::Relaxed);
+    handle();
 }
 
 /// Installs the handler, once.

@@ -31,6 +31,7 @@ use ending::{Ending, Status};
 use pathwarp::deform::Registry;
 use pathwarp_engine::advice::Flags;
 use pathwarp_engine::failure::Failure;
+use pathwarp_engine::temporaries;
 use std::ffi::OsString;
 use std::panic::{self, AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -41,7 +42,6 @@ use std::process::ExitCode;
 pub fn main_with(registry: Registry) -> ExitCode {
     keep_sweeps_quiet();
     watch::allow();
-    interruption::handle();
     run(&registry, std::env::args_os())
 }
 
@@ -65,6 +65,7 @@ fn keep_sweeps_quiet() {
 /// Runs the program on `args`, the first of which is the program's name.
 #[must_use]
 pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    temporaries::protect_by(interruption::handle);
     let args: Vec<OsString> = args.into_iter().collect();
     let dispatch = || {
         if inkscape::is_call(&args) {

@@ -5,13 +5,15 @@ use std::ffi::OsStr;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
+use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock, PoisonError, RwLock, RwLockReadGuard};
 use tempfile::{Builder, TempPath};
 
 /// Every temporary file there is.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 /// Held for reading while files are created or put in place, and for writing, to the end, by who ends the program.
 static GATE: RwLock<()> = RwLock::new(());
+/// Called whenever a temporary file is made.
+static PROTECT: OnceLock<fn()> = OnceLock::new();
 
 /// A temporary file.
 #[derive(Debug)]
@@ -41,6 +43,9 @@ impl Temporary {
     }
 
     fn registered(path: TempPath) -> Self {
+        if let Some(protect) = PROTECT.get() {
+            protect();
+        }
         live().insert(path.to_path_buf());
         Self(Some(path))
     }
@@ -64,6 +69,11 @@ impl Drop for Temporary {
             live().remove(&**path);
         }
     }
+}
+
+/// Lets a program prepare for interruptions once there are temporary files, and not before: `protect` is called for each of them.
+pub fn protect_by(protect: fn()) {
+    let _ = PROTECT.set(protect);
 }
 
 /// Keeps the handler waiting until the guard is dropped.
