@@ -20,18 +20,16 @@ pub fn trimmed(v: f64, decimals: usize) -> String {
 }
 
 /// Formats numbers that belong together, such as those of a point or a box: each with `digits` significant digits of its own, but no
-/// decimals beyond three more digits of the largest. So what is nothing beside it becomes 0.
+/// decimals beyond `more` digits more of the largest. So what is nothing beside it becomes 0.
 ///
 /// ```
 /// use pathwarp::decimal::together;
 ///
-/// assert_eq!(together([0.1 + 0.2, -7.7e-16, 40.0], 9), ["0.3", "0", "40"]);
+/// assert!(together(&[0.1 + 0.2, -7.7e-16, 40.0], 9, 3).eq(["0.3", "0", "40"]));
 /// ```
-#[must_use]
-pub fn together<const N: usize>(values: [f64; N], digits: i32) -> [String; N] {
-    const MORE: i32 = 3;
-    let most = decimals(values, digits + MORE);
-    values.map(|v| trimmed(v, decimals([v], digits).min(most)))
+pub fn together(values: &[f64], digits: i32, more: i32) -> impl Iterator<Item = String> {
+    let most = decimals(values.iter().copied(), digits + more);
+    values.iter().map(move |v| trimmed(*v, decimals([*v], digits).min(most)))
 }
 
 /// The number of decimals that the largest of these numbers needs for `digits` significant digits.

@@ -1,6 +1,6 @@
 //! Writes numbers and path data, rounded once and in the shortest form.
 
-use pathwarp::decimal::{decimals, push_trimmed, together, trimmed};
+use pathwarp::decimal::{push_trimmed, together};
 use pathwarp::kurbo::{BezPath, CubicBez, PathEl, Point, Rect, Vec2};
 use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::{Outline, Seg};
@@ -129,7 +129,7 @@ const POWERS: [f64; MAX_DECIMALS as usize + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
 
 /// Significant digits of lengths and offsets, and those that single precision has.
-pub(crate) const SHORT: i32 = 9;
+const SHORT: i32 = 9;
 const SINGLE: i32 = 7;
 
 /// Formats `v` with nine significant digits, for lengths and offsets.
@@ -165,18 +165,23 @@ fn push_significant(out: &mut String, v: f64, digits: i32) {
     }
 }
 
+/// Formats numbers that belong together, with nine significant digits.
+pub(crate) fn shorts(values: &[f64]) -> impl Iterator<Item = String> {
+    together(values, SHORT, 3)
+}
+
 /// Formats numbers of single precision that belong together.
 pub(crate) fn singles(values: &[f32]) -> Vec<String> {
-    let all = || values.iter().map(|v| f64::from(*v));
+    let values: Vec<f64> = values.iter().map(|v| f64::from(*v)).collect();
     // The last digit of the largest is rounded already.
-    let most = decimals(all(), SINGLE + 1);
-    all().map(|v| trimmed(v, decimals([v], SINGLE).min(most))).collect()
+    together(&values, SINGLE, 1).collect()
 }
 
 /// The attributes of a rectangle.
 pub(crate) fn rectangle(r: Rect) -> [(&'static str, String); 4] {
-    let [x, y, width, height] = together([r.x0, r.y0, r.width(), r.height()], SHORT);
-    [("x", x), ("y", y), ("width", width), ("height", height)]
+    let values = [r.x0, r.y0, r.width(), r.height()];
+    let mut sides = shorts(&values);
+    ["x", "y", "width", "height"].map(|name| (name, sides.next().unwrap_or_default()))
 }
 
 /// Formats a path as a `d` attribute with absolute commands.

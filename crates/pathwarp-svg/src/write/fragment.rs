@@ -21,8 +21,8 @@ use crate::scene::model::Tiles;
 use crate::scene::model::{Group, Node, Part};
 use crate::source::markup::Tag;
 use crate::source::mesh::MeshGradient;
-use crate::source::number::{MAX_DECIMALS, SHORT, outline_data, rectangle, short, single, singles};
-use pathwarp::decimal::{decimals, matrix, trimmed};
+use crate::source::number::{MAX_DECIMALS, outline_data, rectangle, short, shorts, single, singles};
+use pathwarp::decimal::matrix;
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::PaintProperty::{self, Fill, FillOpacity, Stroke, StrokeOpacity};
 use pathwarp_reader::xml::escape;
@@ -418,15 +418,11 @@ impl<'a> Writer<'a> {
 
     /// Writes a gradient with stops of its own in the place of another.
     fn bent_gradient(&mut self, paint: &Paint, bent: &Shading) -> String {
-        /// Digits of the largest number beside which the others are nothing.
-        const FINE: i32 = SHORT + 3;
         let id = self.defs.new_id(server_id(paint));
         let (tag, geometry) = bent.geometry();
         let mut tag = self.markup.element(tag).with("id", &id).with("gradientUnits", "userSpaceOnUse");
-        let most = decimals(geometry.iter().map(|g| g.1), FINE);
-        tag = geometry
-            .into_iter()
-            .fold(tag, |tag, (name, v)| tag.with(name, &trimmed(v, decimals([v], SHORT).min(most))));
+        let values: Vec<f64> = geometry.iter().map(|g| g.1).collect();
+        tag = geometry.iter().zip(shorts(&values)).fold(tag, |tag, ((name, _), v)| tag.with(name, &v));
         if bent.inside != Affine::IDENTITY {
             tag = tag.with("gradientTransform", &matrix(bent.inside.inverse()));
         }
