@@ -4,7 +4,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::{CommonOption, Given, LeadingMinus, OPTIONS, OptionValue, Reading};
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 /// The inputs and options of a parsed command line. The command may have only some of them.
@@ -25,7 +25,7 @@ pub(crate) fn reading(m: &ArgMatches) -> Result<Reading, Failure> {
 fn values(
     options: impl Iterator<Item = &'static CommonOption>,
     m: &ArgMatches,
-) -> Vec<(&'static CommonOption, Vec<std::ffi::OsString>)> {
+) -> Vec<(&'static CommonOption, Vec<OsString>)> {
     let mut values = Vec::new();
     for option in options {
         let is_declared = m.try_contains_id(option.name).is_ok();
@@ -70,7 +70,7 @@ pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
     })
 }
 
-/// Those of the common options that a command shares, with these names.
+/// The common options of these names, for a command that has only some of them.
 pub(crate) fn some_options(names: &[&str]) -> impl Iterator<Item = Arg> {
     OPTIONS.iter().filter(|o| names.contains(&o.name)).map(arg)
 }

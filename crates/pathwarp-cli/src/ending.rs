@@ -36,7 +36,7 @@ impl Ending {
         }
     }
 
-    /// The same without the colours and the streams of a terminal.
+    /// The reason as a failure, whose message has no colours and is printed nowhere yet.
     pub(crate) fn into_failure(self) -> Failure {
         match self {
             Self::Clap(e) => Failure::Usage(e.to_string()),

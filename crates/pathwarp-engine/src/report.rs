@@ -1,4 +1,4 @@
-//! What is reported of every file and shape. The field names are the JSON's.
+//! The report of a file and of its shapes. The field names are the JSON's.
 
 use pathwarp::fold::Orientation;
 use pathwarp::kurbo::Point;
@@ -77,7 +77,7 @@ pub(crate) struct StepSelection {
 /// One shape: what became of its curves and paint, and what the run knows of it.
 #[derive(Debug, Clone)]
 pub struct ReportedShape {
-    /// What became of its curves and its paint.
+    /// Its curves and its paint, before and after.
     pub shape: ShapeReport,
     /// The steps that hold for the shape, counted from 1, unless all do.
     pub(crate) steps: Option<Vec<usize>>,

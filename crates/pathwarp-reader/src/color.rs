@@ -61,7 +61,7 @@ pub(super) fn computed(value: &str, current: &Color) -> Option<Color> {
     resolved(value, current, MAX_LEVELS)
 }
 
-/// Whether a value that is not understood may be a colour all the same: a function that later standards may define.
+/// Returns `true` if a value that is not understood may be a colour all the same: a function that later standards may define.
 pub(super) fn may_be_color(value: &str) -> bool {
     let name = value.split('(').next().unwrap_or_default();
     value.ends_with(')') && !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphabetic() || b == b'-')

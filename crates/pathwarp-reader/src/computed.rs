@@ -89,7 +89,7 @@ pub(super) struct Computed<'a> {
     /// The first number out of range.
     pub(super) far: Option<String>,
     pub(super) words: Arc<Words>,
-    /// Whether it is a gradient whose colours are interpolated in linear light.
+    /// The element is a gradient whose colours are interpolated in linear light.
     pub(super) is_linear: bool,
     /// The colour of a stop in such a gradient.
     pub(super) stop: Option<Color>,
@@ -243,7 +243,7 @@ struct Values<'d, 'a, 'i> {
     units: Units,
     /// Font size of the parent.
     font: f64,
-    /// What `currentColor` stands for.
+    /// The colour that `currentColor` stands for.
     color: Color,
     /// Whether percentages are converted to px.
     absolute: bool,
@@ -333,7 +333,7 @@ impl Values<'_, '_, '_> {
         if t.is_some_and(|t| t.a * t.d == t.b * t.c) { fallback(&link) } else { raw }
     }
 
-    /// What stands for a gradient or pattern in box units on a shape whose box has no width or no height.
+    /// The paint in place of a gradient or pattern in box units on a shape whose box has no width or no height.
     fn flat_paint<'v>(&self, raw: &'v str) -> Option<&'v str> {
         let link = reference(raw)?;
         let units = self.of_server(link.id.as_deref(), ["gradientUnits", "patternUnits"]);
@@ -738,7 +738,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     }
 }
 
-/// Whether the style attribute holds exactly these declarations.
+/// Returns `true` if the style attribute holds exactly these declarations.
 fn is_written(node: Node<'_, '_>, style: &[(Cow<'_, str>, Cow<'_, str>)]) -> bool {
     let before = node.attribute("style").map_or_else(|| Some(Vec::new()), simple);
     before.is_some_and(|b| b.len() == style.len() && b.iter().zip(style).all(|(b, s)| b.0 == s.0 && b.1 == s.1))

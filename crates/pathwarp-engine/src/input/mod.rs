@@ -59,7 +59,7 @@ impl Input {
         Ok(Self(Box::new(SvgArtwork::read(bytes, input, options, target)?)))
     }
 
-    /// What it holds, to be warped.
+    /// The artwork in the file, to be warped.
     pub fn artwork(&mut self) -> &mut dyn FileArtwork {
         &mut *self.0
     }

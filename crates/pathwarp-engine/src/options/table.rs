@@ -548,7 +548,7 @@ pub struct CommonOption {
     pub short: Option<char>,
     /// Another long name, on the command line only.
     pub alias: Option<&'static str>,
-    /// What it takes.
+    /// The kind of its value, with the way to set it.
     pub value: OptionValue,
     /// Default, in words for help. The default of a [`Choice`](OptionValue::Choice) is one of its words.
     pub default: Option<&'static str>,
@@ -558,7 +558,7 @@ pub struct CommonOption {
     pub reading: bool,
     /// Options that cannot be given together with this one.
     pub conflicts: &'static [&'static str],
-    /// What it does, in a sentence.
+    /// Its effect, in a sentence.
     pub help: &'static str,
 }
 
