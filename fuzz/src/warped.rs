@@ -91,7 +91,7 @@ fn measure(path: &Outline, map: &dyn Map, warped: &RefittedPath, tolerance: f64)
             if !image.is_finite() || !size.is_finite() {
                 continue;
             }
-            let estimated = if warped.report.assurance == Assurance::Checked { ESTIMATED } else { 1.0 };
+            let estimated = if warped.report.assurance <= Assurance::Checked { ESTIMATED } else { 1.0 };
             let (found, _) = far(&[image], &result);
             assert!(
                 found <= tolerance * (estimated + ACCURACY) + ROUNDING * size,

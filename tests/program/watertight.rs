@@ -72,3 +72,65 @@ fn a_shared_edge_is_not_merged_with_what_follows_it() {
     assert!(common > 0, "the edge is the same on both sides");
     assert!(warp(WITH_REST)[0].len() < both[0].len(), "alone, it is merged with what follows");
 }
+
+/// Nearly a quadratic shear: a vertical line becomes x + a·y² + b·y³.
+struct Nearly(f64);
+impl pathwarp::map::Formula for Nearly {
+    fn f<S: pathwarp::map::Real>(&self, x: S, y: S) -> (S, S) {
+        (x + y * y * 4e-3 + y * y * y * self.0, y + x * 0.1)
+    }
+}
+
+/// Every second column is drawn half as large, under `scale(2)`. An edge is written with the same kinds of curves on both sides, however
+/// near it is to the limit at which a quadratic is as good as a cubic.
+#[test]
+fn neighbours_under_different_transforms_write_their_edge_alike() {
+    let mut kinds = HashMap::new();
+    for scale in [2.0, 3.0, 0.3] {
+        let cell = |i: u32| {
+            let k = if i % 2 == 1 { 1.0 / scale } else { 1.0 };
+            let [x0, x1, y1] = [f64::from(i) * 12.0, f64::from(i + 1) * 12.0, 60.0].map(|v| v * k);
+            let d = format!("<path d='M{x0},0 V{y1} H{x1} V0 Z'/>");
+            if i % 2 == 1 { format!("<g transform='scale({scale})'>{d}</g>") } else { d }
+        };
+        let cells: String = (0..5).map(cell).collect();
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 60 60'>{cells}</svg>");
+        let doc = Document::read(svg.as_bytes(), "t", &ReadOptions::default()).unwrap();
+        for step in 0..36 {
+            let map: Arc<dyn Map> = Arc::new(Nearly(1e-13 * 1.6f64.powi(step)));
+            let options = refit::Options::new(0.02).with_merge(true);
+            let out = doc.warp(&map, &WarpOptions::new(options)).unwrap().svg;
+            let after = Document::read(out.as_bytes(), "out", &ReadOptions::default()).unwrap();
+            let outlines: Vec<&Outline> = after.shapes().iter().map(|s| &*s.outline).collect();
+            for pair in outlines.windows(2) {
+                // The right side of the one, and the left side of the other.
+                let top = |o: &Outline, x: f64| -> Vec<char> {
+                    // The cubic term is less than 3.
+                    let on = |p: Point| {
+                        let y = p.y - 0.1 * x;
+                        (p.x - x - y * y * 4e-3).abs() < 3.0 && y > -1.0
+                    };
+                    let kind = |s: &Seg| match s {
+                        Seg::Line(_) => 'L',
+                        Seg::Quad(_) => 'Q',
+                        _ => 'C',
+                    };
+                    let mut own: Vec<(f64, char)> = o
+                        .segs()
+                        .filter(|s| on(s.start()) && on(s.end()) && (s.start().y - s.end().y).abs() > 4.0)
+                        .map(|s| (s.start().y.min(s.end().y), kind(s)))
+                        .collect();
+                    own.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    own.into_iter().map(|k| k.1).collect()
+                };
+                let i = outlines.iter().position(|o| std::ptr::eq(*o, pair[0])).unwrap();
+                let x = (i + 1) as f64 * 12.0;
+                let [left, right] = [top(pair[0], x), top(pair[1], x)];
+                assert!(!left.is_empty() && left == right, "scale {scale}, step {step}, edge {x}: {left:?} {right:?}");
+                left.into_iter().for_each(|k| *kinds.entry(k).or_insert(0) += 1);
+            }
+        }
+    }
+    let count = |k| kinds.get(&k).copied().unwrap_or(0);
+    assert!(count('Q') > 20 && count('C') > 20, "the sweep crosses the limit: {kinds:?}");
+}

@@ -9,11 +9,15 @@
 //! has a much smaller error. So fewer pieces than the difficulty predicts are tried first, and near the limit single break
 //! points are moved by bisection.
 
+use crate::fit::{Candidate, ChordFrame};
+use crate::judge::thorough;
 use crate::limits::{BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE};
+use crate::path::Segment;
 use crate::report::{Assurance, Piece, REPORT_MARGIN, Report};
-use crate::sample::{CHECKED, FITTED, larger, spaced};
+use crate::sample::{CHECKED, FITTED, UNEVEN, larger, spaced};
 use crate::source::{BreakPoint, NotFinite, Source};
 use crate::stretch::{FitOutcome, StretchFitter};
+use kurbo::Line;
 
 /// Stretches still to be covered, the first one on top, with the outcome of a single piece if it is known.
 type Stack = Vec<(BreakPoint, BreakPoint, Option<FitOutcome>)>;
@@ -61,13 +65,19 @@ impl<S: Source> StretchFitter<'_, S> {
             };
             if outcome.fits(self.tolerance) {
                 self.accept(&outcome, out, report);
+                self.joints.push(to);
                 continue;
             }
             let h = to.t - from.t;
             if self.is_spent() || h < MIN_STRETCH {
                 report.unresolved.push(self.source.place(0.5 * (from.t + to.t)));
-                report.add_error(outcome.error, Assurance::Checked);
-                out.push(outcome.piece);
+                // Where the curve swings too fast for its derivatives to mean anything, a line is nearer.
+                let line = Piece::Line(Line::new(from.p, to.p));
+                let [own, straight] = [outcome.piece, line].map(|piece| self.measured(&from, &to, piece));
+                let (own, straight) = (larger(outcome.error, own?), straight?);
+                let (piece, error) = if straight < own { (line, straight) } else { (outcome.piece, own) };
+                report.add_error(error * REPORT_MARGIN, Assurance::Checked);
+                out.push(piece);
                 continue;
             }
             if let Some(t) = self.slow.inside(from.t, to.t).or(outcome.cusp) {
@@ -81,6 +91,17 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(())
     }
 
+    /// The distance between a stretch and a piece that misses it, both ways.
+    #[cold]
+    fn measured(&self, from: &BreakPoint, to: &BreakPoint, piece: Piece) -> Result<f64, NotFinite> {
+        let c = Segment::from(piece).segment().to_cubic();
+        let [t0, t1, q] = [c.p1 - c.p0, c.p3 - c.p2, c.p3 - c.p0];
+        // With handles of length one, the tangents need no direction where a handle has none.
+        let frame = ChordFrame { q, t0, t1, floor: [0.0; 2], size: q.hypot(), home: [1.0; 2], pull: 0.0 };
+        let candidate = Candidate { t0: from.t, t1: to.t, p0: c.p0, frame, a: 1.0, b: 1.0 };
+        thorough(self.source, &candidate, self.slow, self.tolerance)
+    }
+
     #[inline(always)]
     fn accept(&self, outcome: &FitOutcome, out: &mut Vec<Piece>, report: &mut Report) {
         let error = outcome.error;
@@ -89,7 +110,7 @@ impl<S: Source> StretchFitter<'_, S> {
         } else {
             let bound = error * REPORT_MARGIN;
             let bound = larger(error, if bound < self.tolerance { bound } else { self.tolerance });
-            report.add_error(bound, Assurance::Checked);
+            report.add_error(bound, if self.sampled { Assurance::Sampled } else { Assurance::Checked });
         }
         out.push(outcome.piece);
     }
@@ -183,11 +204,11 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(())
     }
 
-    /// Announces the break points `places` of the stretch from `first` to `last`, and sixteen samples of each part.
+    /// Announces the break points `places` of the stretch from `first` to `last`, and the samples of each part.
     fn announce(&self, first: f64, places: &(impl Iterator<Item = f64> + Clone), last: f64) {
         let starts = std::iter::once(first).chain(places.clone());
         let parts = starts.zip(places.clone().chain([last]));
-        let lanes = parts.flat_map(|(a, b)| [&FITTED, &CHECKED].map(|set| spaced(a, b - a, set)));
+        let lanes = parts.flat_map(|(a, b)| [&FITTED, &CHECKED, &UNEVEN].map(|set| spaced(a, b - a, set)));
         S::announce(&mut lanes.map(|t| (self.source, t)), &mut places.clone().map(|t| (self.source, t)));
     }
 

@@ -6,8 +6,8 @@
 
 use crate::fit::{Candidate, FOOT_ROUNDING, Fit, FitRequest, FitState, Measured, settled};
 use crate::limits::{
-    ACCEPTED, DENSE_BATCHES, FOOT_LEAD, FOOT_STEP, MAX_HALFWAY, PACE_EIGHT, PACE_SIXTEEN, PEAK_FACTOR, PEAK_NEAR,
-    SMALL_ERROR, THOROUGH_SAMPLES, ZOOM_RISE,
+    ACCEPTED, DENSE_BATCHES, FOOT_LEAD, FOOT_LEAP, FOOT_STEP, MAX_HALFWAY, PACE_EIGHT, PACE_SIXTEEN, PEAK_FACTOR,
+    PEAK_NEAR, SMALL_ERROR, THOROUGH_SAMPLES, ZOOM_RISE,
 };
 use crate::sample::{
     ALL, CHECKED, Evenly, FITTED, Lane, Lanes, MIDDLE, SIDE, UNIT, between, highest_peak, interleaved, larger, largest,
@@ -509,8 +509,8 @@ struct Walk<'a, S> {
 }
 
 impl<S: Source> Walk<'_, S> {
-    /// Measures the next eight samples and returns their squared distances; `None` if the foot points do not advance or the cubic
-    /// turns by 60° between two of them.
+    /// Measures the next eight samples and returns their squared distances; `None` if the foot points do not advance, leave out a long part
+    /// of the cubic, or if that turns by 60° between two of them.
     fn advance(&mut self, tau: &Lane) -> Result<Option<Lane>, NotFinite> {
         let c = self.c;
         // Newton steps left out would only make distances larger.
@@ -556,7 +556,8 @@ impl<S: Source> Walk<'_, S> {
     }
 }
 
-/// One test for all eight: foot points `s` in order after `last`, and no turn of 60° between two of them. Nearly always true.
+/// One test for all eight: foot points `s` in order after `last`, none of them far from the one before, and no turn of 60° between two.
+/// Nearly always true.
 #[inline(always)]
 fn advances_smoothly(last: FootPoint, s: &Lane, dx: &Lane, dy: &Lane) -> bool {
     let mut before = [(last.s, last.slope.x, last.slope.y); 8];
@@ -570,7 +571,9 @@ fn advances_smoothly(last: FootPoint, s: &Lane, dx: &Lane, dy: &Lane) -> bool {
         let little = 4.0 * dot * dot - (x0 * x0 + y0 * y0) * (dx[i] * dx[i] + dy[i] * dy[i]);
         let m = if dot < little { dot } else { little };
         let order = s[i] - s0 + FOOT_ROUNDING;
-        margin[i] = -(if m < order { m } else { order });
+        let m = if m < order { m } else { order };
+        let near = FOOT_LEAP - order;
+        margin[i] = -(if m < near { m } else { near });
     }
     largest(&margin) < 0.0
 }

@@ -13,7 +13,8 @@
 //!    bounds (`proof`, `sampled`).
 //! 5. **Break points** (`breaks`). The sixth root of error ÷ tolerance measures difficulty. Break points go to its quantiles,
 //!    with fewer pieces tried first and single break points bisected, until every piece fits.
-//! 6. **Merging** (`run`, `distances`, `merge`), if asked for: the fewest cubics across smooth joints of several curves.
+//! 6. **Merging** (`run`, `distances`, `merge`, `joined`), if asked for: the fewest cubics across smooth joints of several curves, and
+//!    across the pieces of a long one.
 //! 7. **Quadratics** (`spline`) instead of cubics, and a given number of pieces (`path`), which is a search for the tolerance.
 //!
 //! `limits` holds every threshold of these stages, with the reason for its value.
@@ -27,11 +28,13 @@
 mod breaks;
 mod distances;
 mod fit;
+mod joined;
 mod judge;
 mod limits;
 mod merge;
 mod offset;
 mod options;
+mod part;
 mod path;
 mod points;
 mod proof;
@@ -47,8 +50,8 @@ mod stretch;
 mod stroke;
 
 pub use offset::Offset;
-pub use options::{Degree, Error, Options, Pieces};
-pub use path::{MAX_EVALUATIONS, PathSource, Segment, fit, simplify};
+pub use options::{Degree, Error, MAX_EVALUATIONS, Options, Pieces};
+pub use path::{PathSource, Segment, fit, simplify};
 pub use points::fit_points;
 #[cfg(feature = "area")]
 pub use region::{offset, union, union_even_odd};
@@ -62,11 +65,12 @@ pub use stroke::stroke;
 pub mod parts {
     pub use crate::distances::{MarkBatch, MarkedCubic};
     pub use crate::fit::{ChordFrame, FOOT_ROUNDING};
+    pub use crate::joined::cover_far;
     pub use crate::limits::{ACCEPTED, MERGE_GRID, SMOOTH_JOINT, STRAIGHT};
     pub use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, refined};
     pub use crate::path::append;
     pub use crate::run::{RunSegment, SegmentRun, per_segment, sample_lanes};
-    pub use crate::sample::{CHECKED, FITTED, fma, spaced};
+    pub use crate::sample::{CHECKED, FITTED, UNEVEN, fma, spaced};
     pub use crate::source::{VANISHING_DERIVATIVE, tangent_beside};
     pub use crate::stretch::STRAIGHT_TURN;
     pub use crate::stretch::StretchFitter;

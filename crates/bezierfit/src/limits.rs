@@ -127,6 +127,10 @@ pub(crate) const FOOT_STEP: f64 = 1.6;
 
 // Dense checks
 
+/// Longest step between foot points, as a share of the cubic: eight times the usual one. A longer one may cross a gap of the image, and
+/// is measured both ways.
+pub(crate) const FOOT_LEAP: f64 = 0.125;
+
 /// Batches of eight samples in a dense check. 4: −5 % work; 16: +10 % work. Zooming in finds the maxima even from a single batch; the
 /// others are a margin.
 pub(crate) const DENSE_BATCHES: usize = 8;
@@ -143,8 +147,11 @@ pub(crate) const THOROUGH_SAMPLES: usize = 160;
 
 // Break points
 
-/// Attempts on one smooth part of a segment. Higher: more time at a jump that no map declares. 1000 and 4000: unchanged.
-pub(crate) const MAX_ATTEMPTS: usize = 2000;
+/// Evaluations of a smooth part that may find no pieces: more would be spent on noise, and at jumps that no source declares …
+pub(crate) const FUTILE_EVALUATIONS: usize = 2_000_000;
+
+/// … and for each piece found. Usual ones take some hundreds.
+pub(crate) const EVALUATIONS_PER_PIECE: usize = 10_000;
 
 /// Shorter stretches of the parameter are not split. Bounds the attempts at a jump: 27 halvings.
 pub(crate) const MIN_STRETCH: f64 = 1e-8;
@@ -175,6 +182,21 @@ pub(crate) const BISECTIONS: usize = 5;
 pub(crate) const BISECTION_MARGIN: f64 = 0.1;
 
 // Merging: figures are those of merged pieces
+
+/// Pieces of one stretch from which on fewer are looked for.
+pub(crate) const LONG: usize = 3;
+
+/// The same for segments of paths. 3: +40 % time for rectangles under waves, which take four pieces a side, and no fewer.
+pub(crate) const LONG_SEGMENT: usize = 6;
+
+/// Places per piece at which those may end, with a sample at each and between them.
+pub(crate) const LONG_GRID: usize = 32;
+
+/// Stretches that are searched together, for the memory of their samples: hundreds of numbers each. Of so many, one piece is hardly one.
+pub(crate) const LONGEST_RUN: usize = 4096;
+
+/// Work of the search for each piece, with its checks, in evaluations of the source.
+pub(crate) const LONG_WORK: usize = 400;
 
 /// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree). 0: +19 % pieces.
 pub const SMOOTH_JOINT: f64 = 0.0087;

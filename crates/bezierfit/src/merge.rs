@@ -148,7 +148,9 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             }
             tried.passed = passed;
         }
-        Ok(self.memory.tried[i].passed.as_ref().map(|p| (p.piece, p.error)))
+        // Samples tell an error but for what the tolerance of checks leaves; a proof tells all of it.
+        let margin = if self.settings.proof { 1.0 } else { ACCEPTED };
+        Ok(self.memory.tried[i].passed.as_ref().map(|p| (p.piece, p.error / margin)))
     }
 
     /// A leg's piece as other sites need it, if it has passed its check.

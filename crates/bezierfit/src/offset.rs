@@ -178,6 +178,11 @@ impl Source for Offset {
         out
     }
 
+    /// Between its cusps, an offset has no features of its own.
+    fn resolved(&self, _: [f64; 2], _: usize, _: f64) -> Option<bool> {
+        Some(true)
+    }
+
     fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
         let (p, d) = self.eval(t);
         if !(p.is_finite() && d.is_finite()) {

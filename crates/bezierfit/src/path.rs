@@ -1,20 +1,18 @@
 //! Fits of whole curves and paths, to a tolerance or with a given number of pieces, for which the tolerance is searched for.
 
-use crate::limits::{CUBICS_FIRST, JUMP};
-use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
+use crate::joined::{Covered, JoinSettings, fewest, joined};
+use crate::limits::CUBICS_FIRST;
+use crate::merge::{OwnPieces, ReachMemory};
 use crate::options::{Degree, Error, Options, Pieces};
+use crate::part::{Part, parts};
 use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::sample::{Lane, Lanes, fma};
-use crate::source::{BreakPoint, NotFinite, ONE_SIDED_STEP, Quotient, SlowSpots, Source};
+use crate::source::{NotFinite, Quotient, SlowSpots, Source};
 use crate::spline::Run;
 use crate::stretch::StretchFitter;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
-
-/// Evaluations of a source by [`fit`], at most, for each smooth part between its [breaks](Source::breaks). Usual curves need some
-/// hundreds for each piece. Where it is reached, the rest of the part is listed as unresolved. Only quadratics, and a given number of
-/// pieces, which takes several fits, may need a multiple.
-pub const MAX_EVALUATIONS: usize = 2_000_000;
+use std::cell::Cell;
 
 /// Evaluations between two looks at their number, at most: of a plan of eight pieces and its repair.
 const ONE_ROUND: usize = 200_000;
@@ -22,10 +20,9 @@ const ONE_ROUND: usize = 200_000;
 /// Covers a curve with few pieces, within `options.tolerance`. The curve may have corners, cusps and jumps where it
 /// [says](Source::breaks) so.
 ///
-/// Places at which the tolerance could not be met are listed in the report.
-///
 /// # Errors
-/// The curve is not finite somewhere, or the options make no sense.
+/// The curve is not finite somewhere, the tolerance could not be met ([`Options::best`] returns what was found), or the options make no
+/// sense.
 ///
 /// ```
 /// use bezierfit::{Options, fit};
@@ -47,16 +44,17 @@ pub fn fit<S: Source>(source: &S, options: &Options) -> Result<Fitted, Error> {
 fn fitted<S: Source>(source: &S, options: &Options) -> Result<Fitted, NotFinite> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
-    let parts = parts(source, options.tolerance)?;
+    let calls = Cell::new(0);
+    let parts = parts(source, options.tolerance, &calls)?;
     let mut rest = &parts[..];
     while let Some(first) = rest.first() {
         let count = 1 + rest[1..].iter().take_while(|p| !p.jumps).count();
         let start = first.ends[0].p;
         if options.degree == Degree::Quadratic {
             out.path.move_to(start);
-            splines(&rest[..count], options, &mut out)?;
+            splines(&rest[..count], (options, &calls), &mut out)?;
         } else {
-            let pieces = merged_parts(&rest[..count], options, &mut memory, &mut out.report)?;
+            let pieces = merged_parts(&rest[..count], (options, &calls), &mut memory, &mut out.report)?;
             append(&mut out.path, start, &pieces, false);
         }
         rest = &rest[count..];
@@ -64,179 +62,45 @@ fn fitted<S: Source>(source: &S, options: &Options) -> Result<Fitted, NotFinite>
     Ok(out)
 }
 
-/// A smooth part of a curve, with its own parameter from 0 to 1.
-struct Part<'a, S> {
-    source: &'a S,
-    t0: f64,
-    t1: f64,
-    ends: [BreakPoint; 2],
-    /// It begins elsewhere than the part before ends.
-    jumps: bool,
-}
-
-impl<S> Clone for Part<'_, S> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<S> Copy for Part<'_, S> {}
-
-impl<S> Part<'_, S> {
-    fn at(&self, t: f64) -> f64 {
-        if t == 1.0 { self.t1 } else { self.t0 + (self.t1 - self.t0) * t }
-    }
-
-    fn is_whole(&self) -> bool {
-        (self.t0, self.t1) == (0.0, 1.0)
-    }
-}
-
-impl<S: Source> Source for Part<'_, S> {
-    fn eval(&self, t: f64) -> (Point, Vec2) {
-        let (p, d) = self.source.eval(self.at(t));
-        (p, d * (self.t1 - self.t0))
-    }
-
-    fn points(&self, t: &Lane, out: &mut Lanes) {
-        self.source.points(&t.map(|t| self.at(t)), out);
-    }
-
-    fn is_simple(&self) -> bool {
-        self.source.is_simple()
-    }
-
-    fn quotient(&self) -> Option<Quotient> {
-        // The denominator of a part would be another one.
-        self.source.quotient().filter(|q| q.below == 0 || self.is_whole())
-    }
-
-    fn denominators(&self, t: &Lane) -> Lane {
-        self.source.denominators(t)
-    }
-
-    fn place(&self, t: f64) -> Point {
-        self.source.place(self.at(t))
-    }
-
-    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
-        if t == 0.0 || t == 1.0 {
-            return Ok(self.ends[usize::from(t == 1.0)]);
-        }
-        let end = self.source.end(self.at(t))?;
-        Ok(BreakPoint { t, speed: end.speed * (self.t1 - self.t0), ..end })
-    }
-}
-
-/// The parts between the breaks of a source.
-fn parts<S: Source>(source: &S, tolerance: f64) -> Result<Vec<Part<'_, S>>, NotFinite> {
-    let mut places = source.breaks();
-    places.retain(|t| *t > 0.0 && *t < 1.0);
-    places.push(1.0);
-    places.sort_by(f64::total_cmp);
-    places.dedup();
-    let inner = places.len() > 1;
-    let mut out: Vec<Part<'_, S>> = Vec::with_capacity(places.len());
-    let mut t0 = 0.0;
-    for t1 in places {
-        let [mut from, mut to] = if inner {
-            [beside(source, t0, 1.0)?, beside(source, t1, -1.0)?]
-        } else {
-            [source.end(t0)?, source.end(t1)?]
-        };
-        let mut jumps = false;
-        if let Some(last) = out.last() {
-            jumps = last.ends[1].p.distance(from.p) > JUMP * tolerance;
-            if !jumps {
-                from.p = last.ends[1].p;
-            }
-        }
-        for (t, end) in [(0.0, &mut from), (1.0, &mut to)] {
-            (end.t, end.speed) = (t, end.speed * (t1 - t0));
-        }
-        out.push(Part { source, t0, t1, ends: [from, to], jumps });
-        t0 = t1;
-    }
-    Ok(out)
-}
-
-/// The end of a smooth part at `t`, with the tangent and the speed a little further inside.
-fn beside<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint, NotFinite> {
-    // The limit from the left, where the curve jumps.
-    let (p, _) = source.eval(if side < 0.0 && t < 1.0 { t.next_down() } else { t });
-    let near = source.end(t + side * ONE_SIDED_STEP)?;
-    let along = if side > 0.0 { near.away } else { near.into };
-    if !p.is_finite() {
-        return Err(NotFinite { t, at: source.place(t) });
-    }
-    Ok(BreakPoint { t, p, speed: near.speed, into: along, away: along })
-}
-
-/// The pieces of parts that follow each other. They run on across smooth joints of parts that need no more than two.
+/// The pieces of parts that follow each other, fewer where they join smoothly. Stops early where `options` allow no more evaluations.
 fn merged_parts<S: Source>(
     parts: &[Part<'_, S>],
-    options: &Options,
+    (options, calls): (&Options, &Cell<usize>),
     memory: &mut ReachMemory,
     report: &mut Report,
 ) -> Result<Vec<Piece>, NotFinite> {
     let slow = SlowSpots::default();
     let mut covered = Vec::with_capacity(parts.len());
+    let mut out = Vec::new();
     for part in parts {
+        calls.set(0);
         let (mut pieces, mut report) = (Vec::new(), Report::default());
         let mut fitter = StretchFitter::new(part, &slow, options.tolerance, (options.prove, 0.0), f64::INFINITY);
-        fitter.most_evaluations = MAX_EVALUATIONS - ONE_ROUND;
+        fitter.counted = Some((calls, options.evaluations.saturating_sub(ONE_ROUND)));
         fitter.cover(&part.ends[0], &part.ends[1], &mut pieces, &mut report)?;
-        covered.push((part, pieces, report));
+        let own = Covered { part: *part, pieces, report };
+        own.add(if options.merge { &fitter.joints } else { &[] }, &mut covered);
     }
-    let mut out = Vec::new();
-    let mut i = 0;
-    while i < covered.len() {
-        let mut run = SegmentRun::new(parts[0].is_simple(), 8);
-        let joined = if options.merge && covered.len() > 1 {
-            run.extend(&covered[i..], options.corner, |(part, pieces, _)| {
-                let form = if options.prove { part.quotient().and_then(Quotient::provable) } else { None };
-                let is_line = matches!(pieces[..], [Piece::Line(_)]);
-                Ok((pieces.len() <= 2).then(|| RunSegment::new(**part, form, part.ends, is_line)))
-            })?
-        } else {
-            0
-        };
-        let known = |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-            pieces.extend(&covered[i + k].1);
-            report.add(&covered[i + k].2);
-            Ok(())
-        };
-        if joined < 2 {
-            known(0, &mut out, report)?;
-            i += 1;
-        } else {
-            fewest(&run, OwnPieces::new(joined, known), options, memory, &mut out, report)?;
-            i += joined;
+    if options.merge {
+        let Options { tolerance, corner, prove, .. } = *options;
+        let settings = JoinSettings { tolerance, corner, prove, finely: covered.len() > parts.len() };
+        joined(&covered, settings, memory, &mut out, report)?;
+    } else {
+        for own in covered {
+            out.extend(own.pieces);
+            report.add(&own.report);
         }
     }
     Ok(out)
 }
 
-/// Appends the fewest pieces of a run.
-pub(crate) fn fewest<S: Source + Clone>(
-    run: &SegmentRun<S>,
-    own: OwnPieces<impl FitOwn>,
-    options: &Options,
-    memory: &mut ReachMemory,
-    pieces: &mut Vec<Piece>,
-    report: &mut Report,
-) -> Result<(), NotFinite> {
-    let proof = run.segments.first().is_some_and(RunSegment::is_provable);
-    let settings = MergeSettings { tolerance: options.tolerance, proof, marks: false, again: false };
-    let mut reaches = Reaches::new(run, own, settings, memory);
-    let legs = reaches.fewest()?;
-    let (mut own, legs) = refined(run, reaches.own, legs, settings, memory)?;
-    let assurance = if proof { Assurance::Certified } else { Assurance::Checked };
-    own.append(legs, assurance, pieces, report)
-}
-
 /// Appends quadratics for parts that follow each other.
-fn splines<S: Source>(parts: &[Part<'_, S>], options: &Options, out: &mut Fitted) -> Result<(), NotFinite> {
+fn splines<S: Source>(
+    parts: &[Part<'_, S>],
+    (options, calls): (&Options, &Cell<usize>),
+    out: &mut Fitted,
+) -> Result<(), NotFinite> {
+    let spent = || calls.get() >= options.evaluations;
     let mut rest = parts;
     while let Some(first) = rest.first() {
         let smooth = |w: &[Part<'_, S>]| {
@@ -245,7 +109,8 @@ fn splines<S: Source>(parts: &[Part<'_, S>], options: &Options, out: &mut Fitted
         };
         let count = 1 + rest.windows(2).take_while(|w| smooth(w)).count();
         let ends = [first.ends[0], rest[count - 1].ends[1]];
-        let run = Run { curves: &rest[..count], tolerance: options.tolerance };
+        calls.set(0);
+        let run = Run { curves: &rest[..count], tolerance: options.tolerance, is_spent: &spent };
         run.cover(ends, &mut out.path, &mut out.report)?;
         rest = &rest[count..];
     }
@@ -308,7 +173,7 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
 }
 
 /// The first segments as a run, as far as they join smoothly, and their number.
-fn joined(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
+fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
     let mut run = SegmentRun::new(true, segments.len().min(64));
     let most = if options.merge { segments.len() } else { 1 };
     let count = run.extend(&segments[..most], options.corner, |segment| {
@@ -337,19 +202,19 @@ fn smooth_run(
     pieces: &mut Vec<Piece>,
     report: &mut Report,
 ) -> Result<usize, NotFinite> {
-    let (run, count) = joined(segments, options)?;
+    let (run, count) = smooth_start(segments, options)?;
     let mut itself = unchanged(segments);
     if count < 2 {
         itself(0, pieces, report)?;
         return Ok(1);
     }
-    fewest(&run, OwnPieces::new(count, itself), options, memory, pieces, report)?;
+    fewest(&run, OwnPieces::new(count, itself), options.tolerance, memory, pieces, report)?;
     Ok(count)
 }
 
 /// Appends quadratics for the first segments, as far as they join smoothly, and returns their number.
 fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Result<usize, NotFinite> {
-    let (run, count) = joined(segments, options)?;
+    let (run, count) = smooth_start(segments, options)?;
     let one = &segments[0];
     match one.seg {
         PathSeg::Line(l) if count < 2 => out.path.line_to(l.p1),
@@ -359,7 +224,8 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
             let slow = |t: f64| one.eval(t);
             let breaks = Broken { curve: slow, at: one.slow_spots() };
             if one.c[1..].iter().any(|c| c.hypot2() > 0.0) {
-                splines(&parts(&breaks, options.tolerance)?, options, out)?;
+                let calls = Cell::new(0);
+                splines(&parts(&breaks, options.tolerance, &calls)?, (options, &calls), out)?;
             }
             return Ok(1);
         }
@@ -368,20 +234,13 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
             let (mut curves, mut off) = (segments[..count].to_vec(), 0.0);
             if count > 16 {
                 // Long runs become few cubics first, so that circles of 100,000 cubics take linear time.
-                let close = Options { tolerance: CUBICS_FIRST * options.tolerance, ..*options };
+                let close = CUBICS_FIRST * options.tolerance;
                 let (mut pieces, mut report, mut memory) = (Vec::new(), Report::default(), ReachMemory::default());
-                fewest(
-                    &run,
-                    OwnPieces::new(count, unchanged(segments)),
-                    &close,
-                    &mut memory,
-                    &mut pieces,
-                    &mut report,
-                )?;
+                fewest(&run, OwnPieces::new(count, unchanged(segments)), close, &mut memory, &mut pieces, &mut report)?;
                 (curves, off) = (pieces.into_iter().map(Segment::from).collect(), report.max_error);
             }
             let first = out.report.pieces.len();
-            let run = Run { curves: &curves, tolerance: options.tolerance - off };
+            let run = Run { curves: &curves, tolerance: options.tolerance - off, is_spent: &|| false };
             run.cover(ends, &mut out.path, &mut out.report)?;
             out.report.widen(first, off);
             return Ok(count);
@@ -562,11 +421,11 @@ impl Source for Segment {
 const TRIALS: usize = 40;
 /// Ratio of tolerances between which the search ends.
 const CLOSE: f64 = 1.01;
-/// Further fits, each with this share of the error of the one before.
-const POLISHED: usize = 20;
-const CLOSER: f64 = 0.96;
-/// Of these in a row, so many may need more pieces.
-const MISSES: i32 = 4;
+/// Further fits, at most so many. Each has this share of the tolerance of the one before, until so many in a row found nothing closer: down
+/// to a seventieth, as where break points happen to suit the symmetry of a curve.
+const POLISHED: usize = 100;
+const CLOSER: f64 = 0.9;
+const MISSES: i32 = 40;
 
 /// Fits with the tolerance of the options, or with the one that leads to the wanted number of pieces.
 pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted, Error>) -> Result<Fitted, Error> {
@@ -574,19 +433,36 @@ pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted
     let with = |tolerance: f64| fit(&Options { tolerance, pieces: Pieces::Fewest, ..*options });
     let first = with(options.tolerance)?;
     let (allowed, exactly) = match options.pieces {
-        Pieces::Fewest => return Ok(first),
+        Pieces::Fewest => match first.report.unresolved.first().filter(|_| !options.best) {
+            Some(at) => return Err(Error::NotMet { at: *at, error: first.report.max_error }),
+            None => return Ok(first),
+        },
         Pieces::AtMost(n) => (n, false),
         Pieces::Exactly(n) => (n, true),
     };
-    let mut least = count(&first);
-    if least <= allowed && !exactly {
+    if count(&first) <= allowed && !exactly {
         return Ok(first);
     }
-    let mut best = None;
+    let (best, least) = closest(allowed, (options.tolerance, first), &with)?;
+    let Some(mut best) = best else { return Err(Error::TooFewPieces { allowed, least }) };
+    if exactly {
+        divide(&mut best, allowed);
+    } else if best.report.max_error > options.tolerance {
+        let worst = best.report.pieces.iter().enumerate().max_by(|a, b| a.1.error.total_cmp(&b.1.error));
+        best.report.unresolved.extend(worst.and_then(|(i, _)| Some(best.path.segments().nth(i)?.eval(0.5))));
+    }
+    Ok(best)
+}
+
+/// The closest fit that was found with so many pieces at most, and the fewest pieces found. The search begins with a tolerance and its fit.
+fn closest(
+    allowed: usize,
+    (mut tolerance, mut fitted): (f64, Fitted),
+    with: &dyn Fn(f64) -> Result<Fitted, Error>,
+) -> Result<(Option<Fitted>, usize), Error> {
+    let (mut best, mut least) = (None::<Fitted>, count(&fitted));
     // Tolerances that need too many pieces, and that need few enough.
     let (mut low, mut high) = (0.0, f64::INFINITY);
-    let mut tolerance = options.tolerance;
-    let mut fitted = first;
     for _ in 0..TRIALS {
         let found = count(&fitted);
         least = least.min(found);
@@ -596,8 +472,7 @@ pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted
             low = tolerance;
         } else {
             high = tolerance;
-            let error = |f: &Fitted| f.report.max_error;
-            if best.as_ref().is_none_or(|b| error(&fitted) < error(b)) {
+            if best.as_ref().is_none_or(|b| fitted.report.max_error < b.report.max_error) {
                 best = Some(fitted);
             }
         }
@@ -628,20 +503,7 @@ pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted
             (best, misses) = (Some(fitted), 0);
         }
     }
-    let Some(mut best) = best else { return Err(Error::TooFewPieces { allowed, least }) };
-    // A search for the fewer pieces found takes other tolerances, and may come closer.
-    if !exactly && count(&best) < allowed {
-        let pieces = Pieces::AtMost(count(&best));
-        let fewer = limited(&Options { pieces, ..*options }, fit).ok();
-        best = fewer.filter(|f| f.report.max_error < best.report.max_error).unwrap_or(best);
-    }
-    if exactly {
-        divide(&mut best, allowed);
-    } else if best.report.max_error > options.tolerance {
-        let worst = best.report.pieces.iter().enumerate().max_by(|a, b| a.1.error.total_cmp(&b.1.error));
-        best.report.unresolved.extend(worst.and_then(|(i, _)| Some(best.path.segments().nth(i)?.eval(0.5))));
-    }
-    Ok(best)
+    Ok((best, least))
 }
 
 fn count(fitted: &Fitted) -> usize {

@@ -78,7 +78,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
     }
     let style = Stroke::new(2.0 * distance.abs()).with_join(join).with_caps(Cap::Round).with_miter_limit(MITER_LIMIT);
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
-    let rest = Options { tolerance: SIMPLIFIED * options.tolerance, ..*options };
+    let rest = Options { tolerance: SIMPLIFIED * options.tolerance, best: true, ..*options };
     let mut area = BezPath::new();
     for subpath in subpaths(path) {
         if matches!(subpath.elements().last(), Some(PathEl::ClosePath)) {

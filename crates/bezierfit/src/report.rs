@@ -1,6 +1,6 @@
 //! Pieces, and what is known of their error.
 
-use kurbo::{BezPath, CubicBez, Line, Point};
+use kurbo::{BezPath, CubicBez, Line, ParamCurveNearest, Point};
 
 /// One segment of the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +12,15 @@ pub enum Piece {
 }
 
 impl Piece {
+    /// The distance of a point.
+    pub(crate) fn distance(&self, p: Point) -> f64 {
+        let nearest = match self {
+            Self::Line(l) => l.nearest(p, 0.0),
+            Self::Cubic(c) => c.nearest(p, 1e-9 * (c.p3 - c.p0).hypot()),
+        };
+        nearest.distance_sq.sqrt()
+    }
+
     /// The same piece in the other direction.
     #[must_use]
     pub fn reversed(self) -> Self {
@@ -25,7 +34,9 @@ impl Piece {
 /// Basis of the reported error, from the weakest to the strongest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Assurance {
-    /// Measured by dense sampling; the error between samples is estimated.
+    /// Measured by sampling a curve of which nothing else is known: something may hide between the samples.
+    Sampled,
+    /// Measured by sampling as densely as the curve needs; the error between samples is estimated.
     Checked,
     /// A proven bound.
     Certified,
@@ -75,6 +86,16 @@ impl Report {
     fn add_bound(&mut self, error: f64, assurance: Assurance) {
         self.max_error = self.max_error.max(error);
         self.assurance = self.assurance.min(assurance);
+    }
+
+    /// Takes off the entries of the pieces from number `first` on.
+    pub(crate) fn split_off(&mut self, first: usize) -> Self {
+        let [before, mut after] = [std::mem::take(self), Self::default()];
+        for (i, p) in before.pieces.iter().enumerate() {
+            if i < first { &mut *self } else { &mut after }.add_error(p.error, p.assurance);
+        }
+        self.unresolved = before.unresolved;
+        after
     }
 
     /// Adds an error to the pieces from number `first` on.

@@ -3,7 +3,7 @@
 
 use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, fit, improved, settled};
 use crate::limits::{COARSE, EVEN_CURVATURE, LONG_EDGE, MERGE_GRID, OPAQUE_SAMPLES, PEAK_NEAR, RATIONAL_SAMPLES};
-use crate::report::Piece;
+use crate::report::{Assurance, Piece};
 use crate::sample::{ALL, Evenly, Lane, Lanes, UNIT, extreme, interleaved, larger, largest};
 use crate::source::{BreakPoint, NotFinite, Quotient, Source, images};
 use crate::stretch::{STRAIGHT_TURN, straight};
@@ -166,6 +166,16 @@ impl<S: Source> SegmentRun<S> {
             }
         }
         Ok(items.len())
+    }
+
+    /// What a checked error of a piece is worth, if those of the segments are not proven.
+    pub fn assurance(&self, tolerance: f64) -> Assurance {
+        let unknown = |s: &RunSegment<S>| s.source.resolved([0.0, 1.0], self.per_segment, tolerance).is_none();
+        match self.segments.first() {
+            Some(s) if s.is_provable() => Assurance::Certified,
+            Some(s) if unknown(s) => Assurance::Sampled,
+            _ => Assurance::Checked,
+        }
     }
 
     /// Number of the last grid place.

@@ -82,6 +82,8 @@ pub(crate) const UNIT: f64 = 1.0 / 17.0;
 pub const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
 /// Samples that check the fit, in seventeenths.
 pub const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
+/// Places that no pattern meets, in seventeenths: the fractions of the multiples of the golden ratio.
+pub const UNEVEN: Lane = [10.5066, 4.0132, 14.5197, 8.0263, 1.5329, 12.0395, 5.5460, 16.0526];
 /// 1 if the checked sample of the same index follows the fitted one, −1 if it precedes it.
 pub(crate) const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
 

@@ -49,6 +49,16 @@ pub trait Source {
         [1.0; 8]
     }
 
+    /// Returns `true` if samples at `intervals` equal steps between two parameters tell the curve: if nothing between them can be further
+    /// than a share of `tolerance` from what they predict. `None` if that is not known. Then the curve is looked at in more, uneven
+    /// places, and the report says [`Sampled`](crate::Assurance::Sampled).
+    ///
+    /// A curve with features of a known size, such as a quarter of the length of its shortest wave, answers if the samples are at most
+    /// half of that apart.
+    fn resolved(&self, _between: [f64; 2], _intervals: usize, _tolerance: f64) -> Option<bool> {
+        self.is_simple().then_some(true)
+    }
+
     /// The place that reports name for `t`: by default the curve's own point.
     fn place(&self, t: f64) -> Point {
         self.eval(t).0

@@ -14,9 +14,9 @@ use kurbo::{BezPath, Point, Vec2};
 const ROUNDS: usize = 30;
 /// Control points of a spline, at most: a longer run is divided.
 const MOST: usize = 48;
-/// Stretches shorter than this share of a curve are not divided, nor are any after so many.
+/// Stretches shorter than this share of a curve are not divided, nor are any after so many for which nothing was found.
 const SHORTEST: f64 = 1e-6;
-const MOST_STRETCHES: usize = 100;
+const MOST_FUTILE: usize = 100;
 /// Samples to a piece, at least, that measure an error: it has corners where the curvature of the curve or of the spline jumps.
 const CLOSELY: f64 = 64.0;
 /// By how much samples are refined for that, at most.
@@ -43,6 +43,8 @@ struct Span {
 pub(crate) struct Run<'a, S> {
     pub(crate) curves: &'a [S],
     pub(crate) tolerance: f64,
+    /// Tells when no more evaluations are allowed.
+    pub(crate) is_spent: &'a dyn Fn() -> bool,
 }
 
 /// Samples of a stretch: points, the length up to each, and its share of the pieces by what the curves need alone.
@@ -83,6 +85,8 @@ impl<S: Source> Run<'_, S> {
             let to = if curve + 1 == self.curves.len() { ends[1] } else { source.end(1.0)? };
             self.alone(Span { curve, t: [0.0, 1.0], pieces: 1 }, [from, to], &mut alone)?;
         }
+        let unknown = |s: &S| s.resolved([0.0, 1.0], SPLINE_SAMPLES, self.tolerance).is_none();
+        let assurance = if self.curves.iter().any(unknown) { Assurance::Sampled } else { Assurance::Checked };
         let mut i = 0;
         while i < alone.len() {
             let mut group: Option<Covered> = None;
@@ -105,7 +109,7 @@ impl<S: Source> Run<'_, S> {
                     None => break,
                 }
             }
-            group.as_ref().unwrap_or(&alone[i]).append(self.tolerance, path, report);
+            group.as_ref().unwrap_or(&alone[i]).append((self.tolerance, assurance), path, report);
             i = end;
         }
         Ok(())
@@ -114,9 +118,8 @@ impl<S: Source> Run<'_, S> {
     /// Appends what covers a curve by itself, divided if it needs too many pieces.
     fn alone(&self, span: Span, ends: [BreakPoint; 2], out: &mut Vec<Covered>) -> Result<(), NotFinite> {
         let mut stack = vec![(span, ends)];
-        let mut stretches = 0;
+        let mut futile = 0;
         while let Some((span, ends)) = stack.pop() {
-            stretches += 1;
             let [t0, t1] = span.t;
             let mut samples = self.samples(&[span], 2 * SPLINE_SAMPLES, &ends)?;
             if let Some(error) = samples.straight(STRAIGHT * self.tolerance) {
@@ -143,10 +146,11 @@ impl<S: Source> Run<'_, S> {
             if let Some((spline, error)) = found {
                 let span = Span { pieces: spline.c.len(), ..span };
                 out.push(Covered { spans: vec![span], ends, spline: Some(spline), error, resolved: true });
-            } else if t1 - t0 < SHORTEST || stretches > MOST_STRETCHES {
+            } else if t1 - t0 < SHORTEST || futile > MOST_FUTILE + out.len() || (self.is_spent)() {
                 let error = samples.straight(f64::INFINITY).unwrap_or(self.tolerance);
                 out.push(Covered { spans: vec![span], ends, spline: None, error, resolved: error <= self.tolerance });
             } else {
+                futile += 1;
                 let t = 0.5 * (t0 + t1);
                 let mid = self.curves[span.curve].end(t)?;
                 stack.push((Span { t: [t, t1], ..span }, [mid, ends[1]]));
@@ -227,13 +231,13 @@ impl<S: Source> Run<'_, S> {
 
 impl Covered {
     /// Appends its line or its quadratics.
-    fn append(&self, tolerance: f64, path: &mut BezPath, report: &mut Report) {
+    fn append(&self, (tolerance, assurance): (f64, Assurance), path: &mut BezPath, report: &mut Report) {
         let error = if self.resolved { (self.error * REPORT_MARGIN).min(tolerance) } else { self.error };
         match &self.spline {
             None => path.line_to(self.ends[1].p),
             Some(s) => (0..s.c.len()).for_each(|k| path.quad_to(s.c[k], s.joint(k + 1))),
         }
-        (0..self.pieces()).for_each(|_| report.add_error(error, Assurance::Checked));
+        (0..self.pieces()).for_each(|_| report.add_error(error, assurance));
         if !self.resolved {
             report.unresolved.push(self.ends[0].p);
         }

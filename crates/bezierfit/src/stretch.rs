@@ -2,16 +2,17 @@
 
 use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, improved};
 use crate::limits::{
-    CUSP_SPEED, MAX_ATTEMPTS, MAX_PLANNED, PACE_EIGHT, PACE_SIXTEEN, SLOW_SPEED, SMALL_ERROR, STRAIGHT,
+    CUSP_SPEED, EVALUATIONS_PER_PIECE, FUTILE_EVALUATIONS, MAX_PLANNED, PACE_EIGHT, PACE_SIXTEEN, SLOW_SPEED,
+    SMALL_ERROR, STRAIGHT,
 };
 use crate::proof;
 use crate::report::Piece;
 use crate::sample::{
-    CHECKED, FITTED, Lane, Lanes, SIDE, UNIT, between, clamp_unit, fma, larger, largest, neighbours, norm_squared,
-    residual_at, spaced,
+    ALL, CHECKED, FITTED, Lane, Lanes, SIDE, UNEVEN, UNIT, between, clamp_unit, fma, larger, largest, neighbours,
+    norm_squared, residual_at, spaced,
 };
-use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images_into};
-use kurbo::{Line, Vec2};
+use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images, images_into};
+use kurbo::{Line, Point, Vec2};
 use std::cell::Cell;
 
 /// Evaluations of the source for a thorough check: its own, and its search.
@@ -22,6 +23,17 @@ pub(crate) const EIGHT_GROWTH: f64 = 1.1;
 
 /// Evaluations of the source for an attempt at a piece with its usual checks.
 const EVALUATIONS: usize = 32;
+
+/// Intervals between the samples of a line, and between eight more of a stretch.
+const LINE_INTERVALS: usize = 5;
+const NINTHS: usize = 9;
+
+/// A part of a piece as short as this is not searched further: the curve has no derivative there.
+const SHORTEST: f64 = 1e-6;
+
+/// Parts of a piece that are searched, and the evaluations for which each counts.
+const MAX_LOOKS: usize = 2_000;
+const LOOK_WORK: usize = 8;
 
 /// A part with more attempts may be one where the curve oscillates faster than samples can tell, so that most need the thorough check:
 /// fewer are allowed from there on.
@@ -39,10 +51,14 @@ pub struct StretchFitter<'a, S> {
     pub(crate) attempts: usize,
     /// Evaluations besides those of attempts with their usual checks, so far.
     pub(crate) extra: Cell<usize>,
-    /// The number of attempts at which the work ends, …
+    /// The curve does not tell if samples resolve it.
+    pub(crate) sampled: bool,
+    /// The number of attempts at which the work ends.
     most_attempts: usize,
-    /// … and that of evaluations.
-    pub(crate) most_evaluations: usize,
+    /// Where evaluations are counted one by one, and the number at which the work ends.
+    pub(crate) counted: Option<(&'a Cell<usize>, usize)>,
+    /// The last ends of the pieces found so far, where one was not enough.
+    pub(crate) joints: Vec<BreakPoint>,
 }
 
 impl<'a, S: Source> StretchFitter<'a, S> {
@@ -52,7 +68,7 @@ impl<'a, S: Source> StretchFitter<'a, S> {
     pub fn new(source: &'a S, slow: &'a SlowSpots, tolerance: f64, (prove, blur): (bool, f64), left: f64) -> Self {
         let (usual, hard) = (left / EVALUATIONS as f64, left / THOROUGH_WORK as f64);
         let most = if usual < HARD as f64 { usual } else { hard.max(HARD as f64) };
-        let most_attempts = MAX_ATTEMPTS.min((most as usize).saturating_add(1));
+        let most_attempts = (most as usize).saturating_add(1);
         let form = if prove { source.quotient().and_then(Quotient::provable) } else { None };
         let form = form.map(|f| Quotient { blur, ..f });
         let simple = blur == 0.0 && source.is_simple();
@@ -64,14 +80,18 @@ impl<'a, S: Source> StretchFitter<'a, S> {
             simple,
             attempts: 0,
             extra: Cell::new(0),
+            sampled: false,
             most_attempts,
-            most_evaluations: usize::MAX,
+            counted: None,
+            joints: Vec::new(),
         }
     }
 
     /// Returns `true` if the work ends here.
     pub(crate) fn is_spent(&self) -> bool {
-        self.attempts >= self.most_attempts || self.evaluations() >= self.most_evaluations
+        let (spent, most) = self.counted.map_or((self.evaluations(), usize::MAX), |(calls, most)| (calls.get(), most));
+        let earned = FUTILE_EVALUATIONS + EVALUATIONS_PER_PIECE * self.joints.len();
+        self.attempts >= self.most_attempts || spent >= most.min(earned)
     }
 
     /// Evaluations so far, at most.
@@ -212,9 +232,63 @@ impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
 }
 
 impl<S: Source> StretchFitter<'_, S> {
-    /// Fits one piece to a stretch: a line, the Hermite cubic, or the best cubic found from that on.
-    #[inline(never)]
+    /// Fits one piece to a stretch, and makes sure that nothing hides between the samples of one that fits.
+    #[inline]
     pub(crate) fn attempt(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome, NotFinite> {
+        let outcome = self.fitted(from, to)?;
+        if self.form.is_some() || !outcome.fits(self.tolerance) {
+            return Ok(outcome);
+        }
+        let samples = if matches!(outcome.piece, Piece::Line(_)) { LINE_INTERVALS } else { ALL - 1 };
+        match self.source.resolved([from.t, to.t], samples, self.tolerance) {
+            Some(true) => Ok(outcome),
+            known => {
+                self.sampled |= known.is_none();
+                self.searched(outcome, [from.t, to.t], known.is_some())
+            }
+        }
+    }
+
+    /// The outcome if closer samples confirm it: so many that nothing hides, or, if the curve does not tell how many that are, some at
+    /// uneven places.
+    #[cold]
+    fn searched(&self, outcome: FitOutcome, [from, to]: [f64; 2], known: bool) -> Result<FitOutcome, NotFinite> {
+        let off = |t: &Lane| -> Result<f64, NotFinite> {
+            self.extra.set(self.extra.get() + 8);
+            let g = images(self.source, t)?;
+            let far = |i: usize| outcome.piece.distance(Point::new(g.x[i], g.y[i]));
+            Ok((0..8).map(far).fold(0.0, larger))
+        };
+        let missed = |error: f64| FitOutcome { error, reach: error, cusp: None, ..outcome };
+        if !known {
+            let error = off(&spaced(from, to - from, &UNEVEN))?;
+            return Ok(if error > self.tolerance { missed(error) } else { outcome });
+        }
+        let (mut worst, mut looked) = (outcome.error, 0);
+        let mut stretches = vec![[from, to]];
+        while let Some([t0, t1]) = stretches.pop() {
+            looked += 1;
+            self.extra.set(self.extra.get() + LOOK_WORK);
+            let resolved = self.source.resolved([t0, t1], NINTHS, self.tolerance) == Some(true);
+            if !resolved && t1 - t0 > SHORTEST * (to - from) && looked < MAX_LOOKS {
+                let mid = 0.5 * (t0 + t1);
+                stretches.extend([[mid, t1], [t0, mid]]);
+                continue;
+            }
+            worst = larger(worst, off(&std::array::from_fn(|i| t0 + (t1 - t0) * (i + 1) as f64 / NINTHS as f64))?);
+            if worst > self.tolerance {
+                return Ok(missed(worst));
+            }
+            if looked >= MAX_LOOKS {
+                return Ok(missed(worst.max(self.tolerance * 2.0)));
+            }
+        }
+        Ok(FitOutcome { error: worst, ..outcome })
+    }
+
+    /// A line, the Hermite cubic, or the best cubic found from that on.
+    #[inline(never)]
+    fn fitted(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome, NotFinite> {
         let mut g = Lanes::default();
         let mut request = self.start(from, to, &mut g)?;
         if let Some(line) = self.line(&request)? {

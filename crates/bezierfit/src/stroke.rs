@@ -4,11 +4,12 @@
 //! they cross; where they are too short for that, they are linked by way of the corner. All parts of the outline then turn around what
 //! they cover in one direction, so that nothing inside is bare under the nonzero rule.
 
+use crate::joined::fewest;
 use crate::limits::{GAPS, POINTS, STROKED};
 use crate::merge::{OwnPieces, ReachMemory};
 use crate::offset::Offset;
 use crate::options::{Error, Options};
-use crate::path::{append, fewest, subpaths};
+use crate::path::{append, subpaths};
 use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::source::{BreakPoint, NotFinite, SlowSpots, Source};
@@ -205,6 +206,10 @@ impl Source for Edge {
             },
             d,
         )
+    }
+
+    fn resolved(&self, _: [f64; 2], _: usize, _: f64) -> Option<bool> {
+        Some(true)
     }
 
     fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
@@ -729,7 +734,7 @@ fn fitted(
         let own = OwnPieces::new(joined, |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
             contour[i + k].fit(options.tolerance, pieces, report)
         });
-        fewest(&run, own, options, memory, &mut pieces, report)?;
+        fewest(&run, own, options.tolerance, memory, &mut pieces, report)?;
         i += joined;
     }
     Ok(pieces)

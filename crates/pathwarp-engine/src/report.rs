@@ -121,7 +121,7 @@ impl Serialize for ReportedShape {
         map.serialize_entry("max_error", &path.max_error)?;
         map.serialize_entry("share", &path.share)?;
         // Proven, by interval arithmetic or because the map is exact on the curve.
-        map.serialize_entry("certified", &(path.assurance != Assurance::Checked))?;
+        map.serialize_entry("certified", &(path.assurance >= Assurance::Certified))?;
         map.serialize_entry("assurance", assurance_word(path.assurance))?;
         map.serialize_entry("folds", &self.fold.count)?;
         if let Some(at) = &self.fold.at {
@@ -164,5 +164,6 @@ fn assurance_word(a: Assurance) -> &'static str {
         Assurance::Exact => "exact",
         Assurance::Certified => "certified",
         Assurance::Checked => "checked",
+        Assurance::Sampled => "sampled",
     }
 }

@@ -3,7 +3,6 @@
 use crate::fault::Fault;
 use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp::map::{Crease, CreaseKind, Creases, Jet, Level};
-use std::sync::Arc;
 
 /// The kind of a batch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +47,8 @@ pub(crate) struct BuildAnswer {
     pub(crate) notes: Vec<String>,
     pub(crate) warnings: Vec<String>,
     pub(crate) creases: Vec<CreaseAnswer>,
+    /// The size of the map's smallest feature; see [`Map::detail`](pathwarp::map::Map::detail).
+    pub(crate) detail: Option<f64>,
 }
 
 /// A crease, or an edge of the domain. The domain is where the level is positive.
@@ -57,7 +58,7 @@ pub(crate) struct CreaseAnswer {
     pub(crate) line: Option<[f64; 3]>,
     /// x0, y0, x1, y1: only the part of the line within this box.
     pub(crate) within: Option<[f64; 4]>,
-    /// cx, cy, r: the distance from the center less r.
+    /// cx, cy, r: the distance from the center less r; if r is negative, |r| less the distance.
     pub(crate) circle: Option<[f64; 3]>,
     pub(crate) edge: bool,
 }
@@ -69,10 +70,7 @@ impl CreaseAnswer {
             (Some([a, b, c]), None, Some([x0, y0, x1, y1])) if a.hypot(b) > 0.0 && !self.edge => {
                 Level::Stretch { a, b, c, within: Rect::new(x0, y0, x1, y1) }
             }
-            (None, Some([x, y, r]), None) if r != 0.0 => {
-                // The level is positive inside a circle with a negative radius.
-                Level::Field(Arc::new(move |p: Point| r.signum() * (p.distance(Point::new(x, y)) - r.abs())))
-            }
+            (None, Some([x, y, r]), None) if r != 0.0 => Level::Circle { center: Point::new(x, y), radius: r },
             _ => return None,
         };
         Some(Crease { level, kind: if self.edge { CreaseKind::Edge } else { CreaseKind::Kink } })

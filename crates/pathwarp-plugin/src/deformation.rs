@@ -105,7 +105,8 @@ impl Deformation for Plugin {
         let (program, abilities) = (Arc::clone(&self.program), self.abilities);
         let failed = Arc::new(OnceLock::new());
         let size = frame.extent(Axis::Diagonal).max(f64::MIN_POSITIVE);
-        let map = ProgramMap { program, instance, abilities, creases, size, failed: Arc::clone(&failed) };
+        let (detail, failed_here) = (answer.detail, Arc::clone(&failed));
+        let map = ProgramMap { program, instance, abilities, creases, detail, size, failed: failed_here };
         let mut built = Built::new(Arc::new(map.clone()));
         if abilities.partial {
             let unknown = move |p| (!map.point(p).is_finite()).then(|| "the plug-in gives no numbers there".to_owned());

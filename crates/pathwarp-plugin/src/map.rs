@@ -3,7 +3,7 @@
 use crate::answer::{Ask, jet, point};
 use crate::fault::Fault;
 use crate::session::{Instance, Program};
-use pathwarp::kurbo::{Point, Vec2};
+use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp::map::{Batches, Cost, Creases, Images, Jet, Map};
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
@@ -24,6 +24,7 @@ pub(crate) struct ProgramMap {
     pub(crate) instance: Arc<Instance>,
     pub(crate) abilities: Abilities,
     pub(crate) creases: Creases,
+    pub(crate) detail: Option<f64>,
     /// The frame's diagonal.
     pub(crate) size: f64,
     pub(crate) failed: Arc<OnceLock<Fault>>,
@@ -124,6 +125,10 @@ impl Map for ProgramMap {
         (!self.creases.items().is_empty()).then(|| Arc::new(self.beside(inside)) as Arc<dyn Map>)
     }
 
+    fn detail(&self, _area: Rect) -> Option<f64> {
+        self.detail
+    }
+
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         self.abilities.inverse.then(|| Arc::new(Inverse(self.clone())) as Arc<dyn Map>)
     }
@@ -193,6 +198,10 @@ impl Map for Beside {
 
     fn cost(&self) -> Cost<'_> {
         self.map.cost().batched(self)
+    }
+
+    fn detail(&self, area: Rect) -> Option<f64> {
+        self.map.detail(area)
     }
 }
 

@@ -43,6 +43,7 @@ pub(crate) fn read_build(bytes: &[u8]) -> Result<BuildAnswer, Fault> {
             "error" => return Err(Fault::Refused(rest.to_owned())),
             "note" => out.notes.push(rest.to_owned()),
             "warning" => out.warnings.push(rest.to_owned()),
+            "detail" => out.detail = Some(size(rest).ok_or_else(|| garbage(line))?),
             "crease" | "edge" => out.creases.push(crease(rest, word == "edge").ok_or_else(|| garbage(line))?),
             _ => return Err(garbage(line)),
         }
@@ -51,7 +52,15 @@ pub(crate) fn read_build(bytes: &[u8]) -> Result<BuildAnswer, Fault> {
 }
 
 fn garbage(line: &str) -> Fault {
-    Fault::Garbage { expected: "ok, error, note, warning, crease or edge".into(), found: beginning(line.as_bytes()) }
+    Fault::Garbage {
+        expected: "ok, error, note, warning, detail, crease or edge".into(),
+        found: beginning(line.as_bytes()),
+    }
+}
+
+/// Reads a number above zero.
+fn size(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite())
 }
 
 /// Reads `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`.

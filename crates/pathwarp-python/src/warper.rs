@@ -248,6 +248,7 @@ fn report<'py>(py: Python<'py>, warped: &pathwarp_engine::Path) -> PyResult<Boun
         Assurance::Exact => "exact",
         Assurance::Certified => "certified",
         Assurance::Checked => "checked",
+        Assurance::Sampled => "sampled",
     };
     out.set_item("assurance", assurance)?;
     out.set_item("over_budget", r.over_budget.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>())?;

@@ -3,6 +3,8 @@
 use crate::decimal::trimmed;
 use crate::map::{Dual, Real};
 use std::array::from_fn;
+use std::borrow::Cow;
+use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
 // Text to a program: a Pratt parser (V. Pratt, *Top down operator precedence*, POPL 1973) that emits as it reads.
@@ -43,12 +45,16 @@ pub(crate) fn is_function(name: &str) -> bool {
 enum Function {
     One(Unary),
     Two(Binary),
+    /// A formula for arguments called a, b, c, of which there are so many.
+    Formula(usize, Cow<'static, str>),
 }
 
-const FUNCTIONS: &str = "sin cos tan asin acos atan atan2 sqrt exp ln abs min max pow hypot";
+const FUNCTIONS: &str = "sin cos tan asin acos atan atan2 sinh cosh tanh asinh sqrt exp ln abs sign floor ceil round mod min max pow \
+hypot smoothstep noise";
 
 fn function(name: &str) -> Option<Function> {
     use Function::{One, Two};
+    let formula = |count: usize, text: &'static str| Function::Formula(count, Cow::Borrowed(text));
     Some(match name {
         "sin" => One(Unary::Sin),
         "cos" => One(Unary::Cos),
@@ -60,6 +66,17 @@ fn function(name: &str) -> Option<Function> {
         "exp" => One(Unary::Exp),
         "ln" => One(Unary::Ln),
         "abs" => One(Unary::Abs),
+        "sinh" => formula(1, "(exp(a) - exp(-a))/2"),
+        "cosh" => formula(1, "(exp(a) + exp(-a))/2"),
+        "tanh" => One(Unary::Tanh),
+        "asinh" => One(Unary::Asinh),
+        "sign" => One(Unary::Sign),
+        "floor" => One(Unary::Floor),
+        "ceil" => formula(1, "-floor(-a)"),
+        "round" => formula(1, "floor(a + 0.5)"),
+        "mod" => formula(2, "a - b*floor(a/b)"),
+        "smoothstep" => formula(3, "max(0, min(1, (c - a)/(b - a)))^2 * (3 - 2*max(0, min(1, (c - a)/(b - a))))"),
+        "noise" => Function::Formula(2, Cow::Owned(noise())),
         "atan2" => Two(Binary::Atan2),
         "min" => Two(Binary::Min),
         "max" => Two(Binary::Max),
@@ -84,6 +101,20 @@ pub(crate) fn parse(text: &str, names: &Names<'_>, program: &mut Program) -> Res
         }
         Some(c) => Err(SyntaxError::new(p.at, Problem::Meaningless(c))),
     }
+}
+
+/// A sum of plane waves with lengths from 1 to 2 in all directions, whose directions, lengths and phases are evenly spread without a
+/// pattern: the spectral representation of a random field (M. Shinozuka, G. Deodatis, *Simulation of stochastic processes by spectral
+/// representation*, Applied Mechanics Reviews 44, 1991).
+fn noise() -> String {
+    // Powers of 1/g, with g the golden ratio or, for two numbers at once, the root of g³ = g + 1.
+    const STEPS: [f64; 3] = [0.618_033_988_749_895, 0.754_877_666_246_693, 0.569_840_290_998_053];
+    let wave = |i: u32| {
+        let [direction, length, phase] = STEPS.map(|s| (f64::from(i) * s).fract());
+        let ((sin, cos), k) = ((PI * direction).sin_cos(), PI * (1.0 + length));
+        format!("+ sin({} * a + {} * b + {})", k * cos, k * sin, TAU * phase)
+    };
+    format!("({})/8", (1..=16).map(wave).collect::<String>())
 }
 
 struct Parser<'a> {
@@ -231,21 +262,28 @@ impl Parser<'_> {
         if !self.eat("(") {
             return Err(SyntaxError::new(self.at, Problem::NoArguments(word)));
         }
-        let first = self.expression(0)?;
-        match f {
-            Function::One(op) => {
-                self.close(opened)?;
-                self.emit(at, |p| p.unary(op, first))
+        let count = match f {
+            Function::One(_) => 1,
+            Function::Two(_) => 2,
+            Function::Formula(count, _) => count,
+        };
+        let mut arguments = vec![self.expression(0)?];
+        while arguments.len() < count {
+            if !self.eat(",") {
+                let count = if count == 2 { "two" } else { "three" };
+                return Err(SyntaxError::new(self.at, Problem::MoreArguments { word, count }));
             }
-            Function::Two(op) => {
-                if !self.eat(",") {
-                    return Err(SyntaxError::new(self.at, Problem::OneArgument(word)));
-                }
-                let second = self.expression(0)?;
-                self.close(opened)?;
-                self.emit(at, |p| p.binary(op, first, second))
-            }
+            arguments.push(self.expression(0)?);
         }
+        self.close(opened)?;
+        self.emit(at, |p| match f {
+            Function::One(op) => p.unary(op, arguments[0]),
+            Function::Two(op) => p.binary(op, arguments[0], arguments[1]),
+            Function::Formula(_, text) => {
+                let names = Names(["a", "b", "c"].into_iter().zip(arguments).collect());
+                parse(&text, &names, p).ok()
+            }
+        })
     }
 
     fn emit(&mut self, at: usize, f: impl FnOnce(&mut Program) -> Option<u32>) -> Result<u32, SyntaxError> {
@@ -274,6 +312,10 @@ pub(crate) enum Unary {
     Exp,
     Ln,
     Abs,
+    Tanh,
+    Asinh,
+    Sign,
+    Floor,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -410,8 +452,9 @@ impl Program {
         let needed = self.needed(of);
         let ops = self.ops.iter().enumerate().filter(|(i, _)| needed[*i]);
         ops.filter_map(|(_, op)| match *op {
-            Op::One(Unary::Abs, a) => Some(Kink(a, None)),
-            Op::Two(Binary::Min | Binary::Max, a, b) => Some(Kink(a, Some(b))),
+            Op::One(Unary::Abs | Unary::Sign, a) => Some(Kink::Zero(a)),
+            Op::One(Unary::Floor, a) => Some(Kink::Integer(a)),
+            Op::Two(Binary::Min | Binary::Max, a, b) => Some(Kink::Equal(a, b)),
             _ => None,
         })
         .collect()
@@ -437,12 +480,13 @@ impl Program {
         needed
     }
 
-    /// Replaces every |a|, min and max by the side it takes at (x, y).
+    /// Replaces every |a|, min and max by the side it takes at (x, y), and every sign and floor by the value there.
     pub(crate) fn branch(&self, x: f64, y: f64) -> Self {
         let v: Vec<f64> = self.run([x], [y]).into_iter().map(|[v]| v).collect();
         let ops = self.ops.iter().map(|op| match *op {
             Op::One(Unary::Abs, a) if v[a as usize] < 0.0 => Op::One(Unary::Neg, a),
             Op::One(Unary::Abs, a) => Op::Same(a),
+            Op::One(f @ (Unary::Sign | Unary::Floor), a) => Op::Const(one(f, v[a as usize])),
             Op::Two(f @ (Binary::Min | Binary::Max), a, b) => {
                 let first = (v[a as usize] <= v[b as usize]) == (f == Binary::Min);
                 Op::Same(if first { a } else { b })
@@ -480,19 +524,33 @@ impl Program {
     }
 }
 
-/// The set where two values are equal, or one is zero.
+/// A set on which an operation has a kink, or jumps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Kink(u32, Option<u32>);
+pub(crate) enum Kink {
+    /// Where a value is zero.
+    Zero(u32),
+    /// Where a value is an integer.
+    Integer(u32),
+    /// Where two values are equal.
+    Equal(u32, u32),
+}
 
 impl Kink {
     /// Evaluates a function that is zero at the kink.
-    pub(crate) fn level(self, values: &[[f64; 1]]) -> f64 {
-        values[self.0 as usize][0] - self.1.map_or(0.0, |b| values[b as usize][0])
+    pub(crate) fn level<S: Real>(self, values: &[[S; 1]]) -> S {
+        let at = |i: u32| values[i as usize][0];
+        match self {
+            Self::Zero(a) => at(a),
+            Self::Integer(a) => (at(a) * PI).sin(),
+            Self::Equal(a, b) => at(a) - at(b),
+        }
     }
 }
 
 fn one<S: Real>(op: Unary, a: S) -> S {
     let rest = |a: S| (-(a * a) + 1.0).sqrt();
+    // Expressions that hold on both sides, of which one does not overflow or cancel.
+    let side = if a.value() < 0.0 { -1.0 } else { 1.0 };
     match op {
         Unary::Neg => -a,
         Unary::Sin => a.sin(),
@@ -505,6 +563,13 @@ fn one<S: Real>(op: Unary, a: S) -> S {
         Unary::Exp => a.exp(),
         Unary::Ln => a.ln(),
         Unary::Abs => a.abs(),
+        Unary::Tanh => {
+            let e = (a * (-2.0 * side)).exp();
+            (S::from(2.0) / (e + 1.0) - 1.0) * side
+        }
+        Unary::Asinh => (a * side + (a.powi(2) + 1.0).sqrt()).ln() * side,
+        Unary::Sign => a.sign(),
+        Unary::Floor => a.floor(),
     }
 }
 
@@ -517,20 +582,8 @@ fn two<S: Real>(op: Binary, a: S, b: S) -> S {
         Binary::Pow => (a.ln() * b).exp(),
         Binary::Atan2 => a.atan2(b),
         Binary::Hypot => a.hypot(b),
-        Binary::Min => {
-            if a.value() <= b.value() {
-                a
-            } else {
-                b
-            }
-        }
-        Binary::Max => {
-            if a.value() <= b.value() {
-                b
-            } else {
-                a
-            }
-        }
+        Binary::Min => a.smaller(b),
+        Binary::Max => -(-b).smaller(-a),
     }
 }
 
@@ -577,7 +630,7 @@ impl Calculator {
     pub(crate) fn value(&self, formula: &str) -> Result<f64, FormulaError> {
         let mut program = Program::default();
         let mut names = Names::new();
-        for (name, v) in self.values.iter().map(|(n, v)| (n.as_str(), *v)).chain([("pi", std::f64::consts::PI)]) {
+        for (name, v) in self.values.iter().map(|(n, v)| (n.as_str(), *v)).chain([("pi", PI)]) {
             names.set(name, program.constant(v).ok_or(FormulaError::TooLong)?);
         }
         let at = parse(formula, &names, &mut program).map_err(|e| FormulaError::Syntax(formula.to_owned(), e))?;
@@ -658,8 +711,8 @@ pub(crate) enum Problem {
     Unknown { word: String, names: String, functions: &'static str },
     #[error("`{0}` is a function: put its argument in brackets")]
     NoArguments(String),
-    #[error("`{0}` takes two arguments, separated by a comma")]
-    OneArgument(String),
+    #[error("`{word}` takes {count} arguments, separated by commas")]
+    MoreArguments { word: String, count: &'static str },
 }
 
 #[cfg(test)]

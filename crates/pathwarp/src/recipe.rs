@@ -307,7 +307,7 @@ impl Recipe {
                 let image = images.reduce(|a, b| a.union(b));
                 frame = image.map_or(frame, |b| Frame::new(b).with_units_per_px(units_per_px));
             }
-            if entry.info().letters {
+            if entry.info().letters || entry.info().baseline.is_some() {
                 let dots = all().flat_map(|(part, portion)| ink(portion.outlines.iter().copied(), &part.map));
                 frame.ink = dots.collect();
             }

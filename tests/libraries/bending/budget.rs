@@ -48,7 +48,7 @@ fn a_map_of_many_parts_counts_as_many() {
 
 #[test]
 fn the_limit_holds_within_a_single_segment() {
-    let oscillating = map(&recipe(&[("expr", &[("x", "x+20*sin(x*2000)")])]));
+    let oscillating = map(&recipe(&[("expr", &[("x", "x+20*sin(x*60)")])]));
     let line = Outline::from_svg("M0 50C30 40 60 60 100 50").unwrap();
     let budget = Arc::new(Budget::new(Limits::default().with(Limit::Work, 5000.0)));
     let e = warp_path(&line, &*oscillating, &Options::new(1e-3).with_budget(Arc::clone(&budget))).unwrap_err();

@@ -2,9 +2,9 @@
 
 use pathwarp::check::frame;
 use pathwarp::deform::{Registry, Swirl};
-use pathwarp::kurbo::{CubicBez, Point, Vec2};
+use pathwarp::kurbo::{CubicBez, Point, Rect, Vec2};
 use pathwarp::map::{Class, Map};
-use pathwarp::param::Args;
+use pathwarp::param::{Args, Frame};
 use pathwarp::refit::{Options, PathReport, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use std::f64::consts::TAU;
@@ -80,6 +80,87 @@ fn a_hundred_thousand_nodes_are_few_pieces() {
     let two = warped(&arcs(), &swirl, 0.014).unwrap().segments_out;
     let many = warped(&circle(100_000), &swirl, 0.014).unwrap().segments_out;
     assert!(many <= two + 1, "{many} pieces, {two} of two arcs");
+}
+
+/// The part of a segment between two parameters.
+fn part(seg: &Seg, from: f64, to: f64) -> Seg {
+    match seg {
+        Seg::Arc(a) => Seg::Arc(a.subsegment(from, to)),
+        other => other.part(from, to).unwrap(),
+    }
+}
+
+/// A segment in equal parts of its parameter.
+fn divided(seg: &Seg, n: usize) -> Outline {
+    let at = |i: usize| i as f64 / n as f64;
+    let segs = (0..n).map(|i| part(seg, at(i), at(i + 1))).collect();
+    Outline { subpaths: vec![Subpath { start: seg.start(), segs, closed: false }] }
+}
+
+/// The number of pieces if each reaches as far as a single one can.
+fn greedy(seg: &Seg, map: &dyn Map, tolerance: f64) -> usize {
+    let fits = |from: f64, to: f64| {
+        let alone = divided(&part(seg, from, to), 1);
+        warp_path(&alone, map, &Options::new(tolerance)).is_ok_and(|w| w.report.segments_out == 1)
+    };
+    let (mut from, mut pieces, mut step) = (0.0, 0, 0.1);
+    while from < 1.0 {
+        // Gallop until a piece misses, and bisect: closely, since at a crease a remainder would be a piece of its own.
+        let (mut low, mut high) = (from, f64::INFINITY);
+        while low < 1.0 && high - low > 1e-9 {
+            let to = if high.is_finite() { 0.5 * (low + high) } else { f64::min(low + step, 1.0) };
+            *if fits(from, to) { &mut low } else { &mut high } = to;
+        }
+        step = 0.4 * (low - from).max(1e-3);
+        from = f64::max(low, from + 1e-8);
+        pieces += 1;
+    }
+    pieces
+}
+
+/// One long segment takes hardly more than a greedy search. The same curve in parts is counted, too. A part of all cases; `EVERY=1` is all
+/// of them.
+#[test]
+fn one_long_segment_has_as_many_pieces_as_a_greedy_search_finds() {
+    let every: usize = std::env::var("EVERY").map_or(16, |n| n.parse().unwrap());
+    let curves =
+        ["M5 30L95 60", "M5 80C30 -40 60 150 95 20", "M10 50A40 30 20 0 1 90 55", "M20 50A30 30 0 1 1 20 50.001"];
+    const PARTS: [usize; 5] = [1, 2, 3, 7, 40];
+    let (mut least, mut all, mut worst, mut wrong) = (0, [0; 5], [0.0f64; 5], Vec::new());
+    let cases = maps().into_iter().flat_map(|m| curves.map(|d| (m.clone(), d)));
+    let tolerances = [0.5, 0.2, 0.05, 0.02, 0.005, 0.002, 0.0005, 0.0002];
+    let cases = cases.flat_map(|c| tolerances.map(|t| (c.clone(), t)));
+    for (((name, map), d), tolerance) in cases.enumerate().filter(|(i, _)| i * 7 % every == 0).map(|c| c.1) {
+        let long = Outline::from_svg(d).unwrap().subpaths[0].segs[0];
+        if warped(&divided(&long, 1), &map, tolerance).is_none() {
+            continue;
+        }
+        let fewest = greedy(&long, &map, tolerance);
+        least += fewest;
+        for (k, n) in PARTS.into_iter().enumerate() {
+            let found = warped(&divided(&long, n), &map, tolerance).unwrap().segments_out;
+            let ratio = found as f64 / fewest as f64;
+            if n == 1 && found > fewest + 1 && ratio > 1.25 {
+                wrong.push(format!("{name}, {d} in {n} within {tolerance}: {found}, greedy {fewest}"));
+            }
+            (all[k], worst[k]) = (all[k] + found, worst[k].max(ratio));
+        }
+    }
+    println!(
+        "greedy {least}; {PARTS:?}: {all:?}, {:?}, worst {worst:?}",
+        all.map(|n| f64::from(n as u32) / f64::from(least as u32))
+    );
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(1000 * all[0] <= 1050 * least, "{all:?}, greedy {least}");
+}
+
+#[test]
+fn a_line_under_nine_waves_takes_nine_pieces() {
+    let entry = Registry::builtin().get("wave").unwrap().clone();
+    let frame = Frame::new(Rect::new(0.0, 0.0, 400.0, 300.0));
+    let map = entry.build_from(&Args::from_pairs(&[("length", "100"), ("height", "20")]), &frame).unwrap().map;
+    let pieces = warped(&Outline::from_svg("M0 150H400").unwrap(), &map, 0.05).unwrap().segments_out;
+    assert!(pieces <= 9, "{pieces}");
 }
 
 /// A polygon of places at angles from `from` on, closed.

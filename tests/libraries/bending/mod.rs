@@ -2,8 +2,11 @@
 
 mod budget;
 mod exact;
+mod far;
 mod few_nodes;
 mod figures;
+mod folds;
+mod hidden;
 mod lattice;
 mod limits;
 mod merge_random;

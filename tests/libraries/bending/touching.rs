@@ -92,7 +92,9 @@ fn results_are_judged_against_the_map() {
 fn a_level_is_crossed_where_sides_change_and_not_where_it_is_touched() {
     let count = |d: &str, level: &Level| {
         let mut ts = Vec::new();
-        Outline::from_svg(d).unwrap().segs().for_each(|s| level.crossings(s, &mut ts));
+        for s in Outline::from_svg(d).unwrap().segs() {
+            level.crossings(s, &mut ts);
+        }
         ts.len()
     };
     let line = |x: f64| Level::Line { a: 1.0, b: 0.0, c: -x };

@@ -257,3 +257,40 @@ fn what_does_not_go_on_a_path_says_so() {
     let long = ["text", "A long line above", "--below", "and a long one below", "--on", "circle:r=60"];
     assert!(expect_code(0, &long).1.contains("run into each other"));
 }
+
+/// The map depends on the frame and the options alone: a point has the same image whatever is asked for beside it.
+#[test]
+fn a_point_has_the_same_image_whatever_is_asked_for_beside_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let heart = "M50,90C0,50 0,10 25,10C40,10 50,25 50,30C50,25 60,10 75,10C100,10 100,50 50,90Z";
+    let round = "M50,0C80,0 100,20 100,50C100,80 80,100 50,100C20,100 0,80 0,50C0,20 20,0 50,0Z";
+    for shape in [heart, round] {
+        let image = |points: &str| {
+            let args = ["map", "envelope", "--envelope", shape, "--frame", "0,0,100,50"];
+            let out = pathwarp_in(dir.path(), &args, points.as_bytes());
+            assert!(out.status.success(), "{}", text(&out.stderr));
+            text(&out.stdout).lines().next().unwrap().to_owned()
+        };
+        let alone = image("30 20");
+        for beside in ["31 20", "0 0\n100 50", "99 49\n98 1", "5 45"] {
+            assert_eq!(image(&format!("30 20\n{beside}")), alone, "{beside}");
+        }
+    }
+}
+
+/// A bend folds below its sharp middle, where there is no artwork.
+#[test]
+fn folds_count_only_where_there_is_artwork() {
+    let dir = tempfile::tempdir().unwrap();
+    let warned = |shapes: &str| {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 130'>{shapes}</svg>");
+        let args =
+            ["bend", "-", "--along", "M0,200 Q100,0 200,200", "--stretch", "fit", "--baseline", "100%", "-o", "-"];
+        let out = pathwarp_in(dir.path(), &args, svg.as_bytes());
+        (text(&out.stderr).contains("folds over itself"), text(&out.stderr))
+    };
+    const ENDS: &str = "<path d='M0,0H20V130H0Z'/><path d='M180,0H200V130H180Z'/>";
+    let (folds, messages) = warned(ENDS);
+    assert!(!folds, "{messages}");
+    assert!(warned(&format!("{ENDS}<path d='M90,0H110V130H90Z'/>")).0);
+}

@@ -15,6 +15,8 @@
 mod areas;
 mod common;
 mod hard_cases;
+mod hidden;
+mod long;
 mod options;
 mod random;
 #[cfg(feature = "area")]

@@ -103,15 +103,15 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     references::resolve_files(registry, &mut recipe, &reading)?;
     let (points, bytes) = read_points(m, "two numbers x y")?;
     let points: Vec<Point> = points.into_iter().map(|[x, y]| Point::new(x, y)).collect();
-    let cloud = Outline::from_points(&points, false);
     let frame = match m.get_one::<String>("frame") {
         Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?.rect([1.0; 2]),
-        None => cloud.bounding_box().unwrap_or(Rect::ZERO),
+        None => Outline::from_points(&points, false).bounding_box().unwrap_or(Rect::ZERO),
     };
+    let hatching = hatching(frame);
     let budget = Arc::new(Budget::new(reading.limits.for_input(bytes)));
     let options = CommonOptions { reading, ..CommonOptions::default() };
     let session = Session { registry, recipe: &recipe, options: &options, given: &Given::default() };
-    let (outlines, frame) = (vec![&cloud], Frame::new(frame));
+    let (outlines, frame) = (vec![&hatching], Frame::new(frame));
     let artwork = &mut PlainArtwork { outlines, frame, budget: Arc::clone(&budget) };
     let built = session.ready(artwork, None)?.built.whole;
     let map = &built.map;
@@ -129,6 +129,16 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
         (defined.then_some([j.p.x, j.p.y]), [j.dx.x, j.dx.y, j.dy.x, j.dy.y])
     };
     Ok(print_images(m, points.iter().zip(&jets).map(image))?)
+}
+
+/// Lines all over a box: artwork for deformations that look at it, so that the map depends on the frame alone, and no point on another.
+fn hatching(frame: Rect) -> Outline {
+    const LINES: u32 = 24;
+    let line = |i: u32| {
+        let y = frame.y0 + frame.height() * f64::from(i) / f64::from(LINES - 1);
+        Outline::from_points(&[Point::new(frame.x0, y), Point::new(frame.x1, y)], false).subpaths
+    };
+    Outline { subpaths: (0..LINES).flat_map(line).collect() }
 }
 
 /// Characters of a wrong line that a message shows.

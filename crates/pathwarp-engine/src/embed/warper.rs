@@ -261,7 +261,7 @@ impl Warper {
             let report = &mut bent.path.report;
             report.max_error += fitted.report.max_error;
             report.segments_out = bent.path.path.segments().count();
-            report.assurance = Assurance::Checked;
+            report.assurance = report.assurance.min(Assurance::Checked);
         }
         Ok(bent)
     }

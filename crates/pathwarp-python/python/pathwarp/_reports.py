@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import List, Literal, Optional, Tuple, TypedDict
 
-Assurance = Literal["exact", "certified", "checked"]
+Assurance = Literal["exact", "certified", "checked", "sampled"]
 
 
 class PathReport(TypedDict):

@@ -169,8 +169,8 @@ pub(crate) struct WarpedPart {
     /// too. Empty if there is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
-    /// Whether short handles may have more decimals.
-    pub(crate) smooth: bool,
+    /// The largest unit of the last decimal that any transform leads to; `None` for a requested number of decimals.
+    pub(crate) coarsest: Option<f64>,
     /// The text of `path`, if already written: either it has arcs, which `path` approximates, or a large drawing was bent on several
     /// threads, which also write the text.
     pub(crate) data: Option<String>,
@@ -216,7 +216,7 @@ impl WarpedPart {
 
     /// Writes a path of the part as text.
     pub(crate) fn text(&self, path: &BezPath) -> String {
-        path_data_by(path, self.smooth, |_| [self.decimals; 2])
+        path_data_by(path, |_| self.coarsest, |_| [self.decimals; 2])
     }
 
     /// Writes `data`, if it is missing.

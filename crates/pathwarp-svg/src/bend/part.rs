@@ -45,7 +45,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         path,
         fill,
         decimals: t.decimals,
-        smooth: t.options().precision.is_none(),
+        coarsest: t.coarsest(),
         data,
         stroke: bent.outcome,
         stroke_error: bent.error.map(|e| e + bent.leverage * (error + t.rounding)),

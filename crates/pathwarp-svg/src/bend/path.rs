@@ -81,7 +81,7 @@ pub fn warp_path(
     let mut outline = outline.clone();
     outline.subpaths.iter_mut().for_each(|s| drop_closing_stub(s, digits.rounding(finest)));
     let spans = SharedEdges::held([(&outline, &contours[..])]).spans(&outline, &contours);
-    let tolerance = allowed(options.tolerance, digits.rounding(options.tolerance));
+    let tolerance = digits.remaining(options.tolerance);
     let options = options.clone().with_tolerance(tolerance).with_spans(digits.allowed(&spans));
     if let Some((image, report)) = with_arcs(map, &outline, &options)? {
         let data = arcs_data(&image, digits.more(), |i| digits.decimals(contours[i]));
@@ -89,7 +89,8 @@ pub fn warp_path(
     }
     let warped = refit::warp_path(&outline, map, &options)?;
     let mut report = warped.report;
-    report.share = digits.errors(&spans, &warped.spans)[1];
+    let [error, share] = digits.errors(&spans, &warped.spans);
+    (report.max_error, report.share) = (report.max_error.max(error), share.max(report.max_error / options.tolerance));
     let data = digits.path_data(&warped.path, &outline, &spans, &warped.spans);
     Ok(WarpedPath { data, path: warped.path, report })
 }
@@ -263,16 +264,21 @@ pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
     })
 }
 
-/// Largest error from rounding to `decimals`, in root user units: half the diagonal of a unit of the last decimal, and a third of that
-/// unit for cubics written as quadratics.
+/// Largest error from rounding, in units of the last decimal: half the diagonal of one, and a third for cubics written as quadratics.
+const OF_UNIT: f64 = std::f64::consts::FRAC_1_SQRT_2 + 0.3;
+
+/// Largest error from rounding to `decimals`, in root user units.
 pub(super) fn rounding(size: f64, decimals: u8) -> f64 {
-    size * (std::f64::consts::FRAC_1_SQRT_2 + 0.3) * 0.1_f64.powi(i32::from(decimals))
+    size * OF_UNIT * 0.1_f64.powi(i32::from(decimals))
 }
 
 /// The tolerance that remains after rounding.
 pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
     (tolerance - rounding).max(0.5 * tolerance)
 }
+
+/// Turns [`ROUNDING`] into a tenth.
+const COARSE: f64 = 10.0;
 
 /// Determines the decimals of written coordinates.
 #[derive(Debug, Clone, Copy)]
@@ -288,8 +294,6 @@ pub(super) struct Digits {
 impl Digits {
     /// The decimals for a contour: those of the whole drawing, unless their rounding exceeds a tenth of the contour's tolerance.
     pub(super) fn decimals(self, tolerance: f64) -> u8 {
-        /// Turns [`ROUNDING`] into a tenth.
-        const COARSE: f64 = 10.0;
         decimals(self.size, self.whole.min(COARSE * tolerance), self.given)
     }
 
@@ -302,10 +306,21 @@ impl Digits {
         rounding(self.size, self.decimals(tolerance))
     }
 
+    /// The largest unit of the last decimal that any transform leads to, as written here; `None` for a requested number of decimals.
+    pub(super) fn coarsest(self, tolerance: f64) -> Option<f64> {
+        let unit = || ROUNDING * self.whole.min(COARSE * tolerance) * std::f64::consts::SQRT_2 / self.size;
+        self.given.is_none().then(unit)
+    }
+
+    /// The tolerance that remains after rounding. It is the same for neighbours under different transforms, so that they share edges.
+    pub(super) fn remaining(self, tolerance: f64) -> f64 {
+        let rounding = self.coarsest(tolerance).map_or_else(|| self.rounding(tolerance), |u| u * self.size * OF_UNIT);
+        allowed(tolerance, rounding)
+    }
+
     /// The spans with the tolerances that remain after rounding.
     pub(super) fn allowed(self, spans: &[Span]) -> Vec<Span> {
-        let less = |s: &Span| Span { tolerance: allowed(s.tolerance, self.rounding(s.tolerance)), ..*s };
-        spans.iter().map(less).collect()
+        spans.iter().map(|s| Span { tolerance: self.remaining(s.tolerance), ..*s }).collect()
     }
 
     /// The largest error of the spans, including rounding, and the largest as a fraction of the span's tolerance.
@@ -317,10 +332,12 @@ impl Digits {
     /// Writes `path`, the image of `outline`, with decimals for each span.
     pub(super) fn path_data(self, path: &BezPath, outline: &Outline, spans: &[Span], reports: &[SpanReport]) -> String {
         let mut each: Vec<[u8; 2]> = Vec::with_capacity(path.elements().len());
+        let mut units = Vec::with_capacity(path.elements().len());
         let mut spans = spans.iter().zip(reports).map(|(s, r)| (s, r.pieces)).peekable();
         let mut subpaths = outline.subpaths.iter();
         let mut left = 0;
         for el in path.elements() {
+            units.push(spans.peek().and_then(|(s, _)| self.coarsest(s.tolerance)));
             each.push(match el {
                 PathEl::MoveTo(_) => {
                     // Skip the closing lines of the previous subpath, which are not written.
@@ -348,7 +365,7 @@ impl Digits {
                 },
             });
         }
-        path_data_by(path, self.given.is_none(), |i| each[i])
+        path_data_by(path, |i| units[i], |i| each[i])
     }
 }
 

@@ -140,7 +140,9 @@ impl<'a> PartTask<'a> {
             return Ok(BentPath { path, data: None, report });
         }
         let [error, share] = self.digits.errors(&spans, &warped.spans);
-        (report.max_error, report.share) = (error - self.rounding, share);
+        report.max_error = report.max_error.max(error - self.rounding);
+        let missed = if report.unresolved.is_some() { report.max_error / self.finest } else { 0.0 };
+        report.share = share.max(missed);
         let data = self.digits.path_data(&path, outline, &spans, &warped.spans);
         Ok(BentPath { path, data: Some(data), report })
     }
@@ -160,7 +162,12 @@ impl<'a> PartTask<'a> {
     /// The tolerance that remains after rounding, for a contour of `whole`, or for the drawing if there is no such contour.
     pub(super) fn allowed_of(&self, contour: usize) -> f64 {
         let tolerance = self.own.get(contour).copied().unwrap_or(self.options().refit.tolerance);
-        allowed(tolerance, self.digits.rounding(tolerance))
+        self.digits.remaining(tolerance)
+    }
+
+    /// See [`Digits::coarsest`].
+    pub(super) fn coarsest(&self) -> Option<f64> {
+        self.digits.coarsest(self.finest)
     }
 
     fn allowed(&self) -> f64 {

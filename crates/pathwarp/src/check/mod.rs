@@ -18,11 +18,11 @@ pub use counted::{Counted, operations};
 
 use crate::deform::{Built, Deformation, Info, Law, Pairs};
 use crate::error::Error;
-use crate::map::{CreaseKind, Creases, Jet, Map, RationalBezier};
+use crate::map::{CreaseKind, Creases, Jet, Map, RationalBezier, detail_in};
 use crate::outline::{EllipticArc, Outline, Seg};
 use crate::param::{Args, Frame, Kind, Settings};
 use crate::refit;
-use kurbo::{CubicBez, Line, ParamCurveNearest, Point, Rect, Shape, Vec2};
+use kurbo::{CubicBez, Line, ParamCurveNearest, PathSeg, Point, Rect, Shape, Vec2};
 use std::cell::Cell;
 
 /// Returns a message for every fault of `entry`; none if it is sound.
@@ -328,43 +328,64 @@ fn inverse(map: &dyn Map, domain: &Domain<'_>) -> Check {
     check
 }
 
-/// Compares a refitted circle and line with dense samples of the true image.
+/// Compares what a circle and lines become with dense samples of the true image. The lines are from 1 to 400 of the map's details long, of
+/// which none counts as larger than a hundredth of the frame, or as smaller than a hundredth of that.
 fn refitting(map: &dyn Map, domain: &Domain<'_>) -> Check {
-    let mut check = Check::new("refitting");
     const TOLERANCE: f64 = 0.01;
-    let mut art = Outline::from_svg("M20,50 A30,30 0 1 1 80,50 A30,30 0 1 1 20,50 Z M10,10 L90,85").unwrap_or_default();
-    let all = art.subpaths.len();
-    art.subpaths.retain(|s| s.segs.iter().all(|g| (0..=100).all(|i| domain.contains(g.eval(f64::from(i) / 100.0)))));
-    if art.subpaths.is_empty() {
-        check.detail = "a circle and a line leave the domain and are skipped".into();
-        return check;
-    }
-    let outside = if art.subpaths.len() < all { "; what leaves the domain is skipped" } else { "" };
-    match refit::warp_path(&art, map, &refit::Options::new(TOLERANCE)) {
-        Ok(w) => {
-            let segs: Vec<_> = w.path.segments().collect();
-            check.detail = format!("a circle and a line become {} curves within {TOLERANCE}{outside}", segs.len());
-            for seg in art.segs() {
-                for i in 0..=100 {
-                    let p = map.point(seg.eval(f64::from(i) / 100.0));
-                    let off = segs
-                        .iter()
-                        .map(|s| s.nearest(p, TOLERANCE * 1e-4).distance_sq)
-                        .fold(f64::INFINITY, f64::min)
-                        .sqrt();
-                    if off.is_nan() || off > TOLERANCE * (1.0 + 1e-6) {
-                        check.fault(format!("refitted within {TOLERANCE}, a sample at {p:?} is {off} away"));
-                        return check;
-                    }
-                }
+    const DETAILS: [u32; 12] = [1, 3, 8, 17, 34, 51, 68, 85, 102, 144, 233, 400];
+    /// Samples of a detail, to which a prime number is added for each line.
+    const SAMPLES: u32 = 12;
+    let mut check = Check::new("refitting");
+    let frame = frame().rect;
+    let (size, hundredth) = (detail_in(map, frame).unwrap_or(f64::INFINITY), 0.01 * frame.size().to_vec2().hypot());
+    let size = size.clamp(0.01 * hundredth, hundredth);
+    let mut art = vec![(Outline::from_svg("M20,50 A30,30 0 1 1 80,50 A30,30 0 1 1 20,50 Z").unwrap_or_default(), 101)];
+    art.extend(DETAILS.iter().enumerate().map(|(i, n)| {
+        let half = Vec2::from_angle(0.618 * i as f64) * (0.5 * size * f64::from(*n));
+        (Outline::from_points(&[frame.center() - half, frame.center() + half], false), SAMPLES * n + 97)
+    }));
+    let all = art.len();
+    art.retain(|(art, _)| art.segs().all(|g| (0..=100).all(|i| domain.contains(g.eval(f64::from(i) / 100.0)))));
+    let mut pieces = 0;
+    for (art, samples) in &art {
+        let w = match refit::warp_path(art, map, &refit::Options::new(TOLERANCE)) {
+            Ok(w) => w,
+            Err(e) => {
+                check.fault(format!("refitting its demo fails: {e}"));
+                return check;
             }
-            if !w.path.bounding_box().is_finite() {
-                check.fault("refitting gives numbers that are not finite");
-            }
+        };
+        pieces += w.report.segments_out;
+        let segs: Vec<_> = w.path.segments().collect();
+        let off = art.segs().find_map(|seg| away(map, seg, &segs, *samples, TOLERANCE));
+        if let (Some((p, off)), true) = (off, w.report.over_budget.is_empty()) {
+            check.fault(format!("refitted within {TOLERANCE}, a sample at {p:?} is {off} away"));
         }
-        Err(e) => check.fault(format!("refitting its demo fails: {e}")),
+        if !w.path.bounding_box().is_finite() {
+            check.fault("refitting gives numbers that are not finite");
+        }
+    }
+    let (fitted, lines) = (art.len(), all - 1);
+    check.detail = format!("{fitted} of a circle and {lines} lines become {pieces} curves within {TOLERANCE}");
+    if fitted < all {
+        check.detail += "; the others leave the domain and are skipped";
     }
     check
+}
+
+/// The first of evenly spaced samples of the true image that is further than `tolerance` from a path, and its distance.
+fn away(map: &dyn Map, seg: &Seg, path: &[PathSeg], samples: u32, tolerance: f64) -> Option<(Point, f64)> {
+    let mut at = 0;
+    (0..=samples).find_map(|i| {
+        let p = map.point(seg.eval(f64::from(i) / f64::from(samples)));
+        let off = |k: &usize| path[*k].nearest(p, tolerance * 1e-4).distance_sq.sqrt();
+        // Samples follow each other, so the nearest piece is that of the one before, or comes soon after it.
+        match (at..path.len()).chain(0..at).find(|k| off(k) <= tolerance * (1.0 + 1e-6)) {
+            Some(k) => at = k,
+            None => return Some((p, (0..path.len()).map(|k| off(&k)).fold(f64::INFINITY, f64::min))),
+        }
+        None
+    })
 }
 
 // The laws that a deformation states about itself, and values known from elsewhere.

@@ -203,7 +203,7 @@ impl Formula for BilinearInverse {
     /// Beyond the fold's image there is no source.
     fn creases(&self, out: &mut Creases) {
         let own = *self;
-        out.push(Crease::edge(Level::Field(Arc::new(move |at| {
+        out.push(Crease::edge(Level::Field(Arc::new(move |at: Point| {
             let q = at - own.of.p;
             let [k2, k1, k0] = own.quadratic(q.x, q.y);
             k1 * k1 - 4.0 * k2 * k0

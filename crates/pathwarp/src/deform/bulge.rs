@@ -15,7 +15,7 @@ use crate::map::{
     AffineMap, Class, Cost, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real, increasing_root,
 };
 use crate::param::{Axis, Kind, Param};
-use kurbo::{Affine, Point, Vec2};
+use kurbo::{Affine, Point, Rect, Vec2};
 use std::f64::consts::LN_2;
 use std::sync::Arc;
 
@@ -138,7 +138,7 @@ impl Inner {
 
     fn crease(&self, out: &mut Creases) {
         let Self { center, radius, .. } = *self;
-        out.push(Crease::kink(Level::Field(Arc::new(move |p| (p - center).hypot() - radius))));
+        out.push(Crease::kink(Level::Circle { center, radius }));
     }
 
     fn class(&self) -> Class {
@@ -221,6 +221,11 @@ impl Map for SoftInverse {
 
     fn point(&self, p: Point) -> Point {
         self.source(p)
+    }
+
+    /// A share of the radius that the scale at the centre leaves of it.
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(0.25 * self.0.radius * self.0.ln_m.exp().min(1.0))
     }
 
     /// A few Newton steps with a logarithm each.

@@ -1,21 +1,26 @@
 //! Any formula for x' and y'.
 //!
 //! The text becomes a list of operations ([`formula`](crate::formula)), which runs on plain and on dual numbers: the derivatives are
-//! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each. A branch is the list with
-//! every side resolved.
+//! exact, as for every formula in this crate. Kinks of abs, min and max, and jumps of sign and floor, are creases: a level set each. A
+//! branch is the list with every side resolved.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law};
 use crate::error::Error;
-use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
-use crate::map::{Class, Cost, Crease, Creases, Dual, Jet, Level, Map};
+use crate::formula::{Binary, Kink, Names, Program, SyntaxError, is_function, is_name, parse};
+use crate::map::{Class, Cost, Crease, Creases, Dual, Enclosure, Field, Jet, Level, Map};
 use crate::param::{Kind, Param};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
 /// Any formula for x' and y', with exact derivatives.
 ///
-/// Formulas use numbers, `+ - * / ^`, brackets, the functions sin cos tan asin acos atan atan2 sqrt exp ln abs min max pow
-/// hypot, and the names x, y (the point), u, v (the same within the box, 0 to 1), w, h, cx, cy (the box), pi, tau, e.
+/// Formulas use numbers, `+ - * / ^`, brackets, the functions sin cos tan asin acos atan atan2 sinh cosh tanh asinh sqrt exp ln abs sign
+/// floor ceil round mod min max pow hypot smoothstep noise, and the names x, y (the point), u, v (the same within the box, 0 to 1), w, h,
+/// cx, cy (the box), pi, tau, e.
+///
+/// `mod(a, b)` = a − b·⌊a/b⌋, `smoothstep(a, b, c)` = t²(3 − 2t) with t = (c − a)/(b − a) cut off at 0 and 1. `noise(a, b)` is smooth, with
+/// hills one unit wide: 2/16 of the sum of the sines of π(1 + {ip})(a·cos π{ig} + b·sin π{ig}) + 2π{iq}, i from 1 to 16, with {} the
+/// fractional part, g = 0.618033988749895, p = 0.754877666246693, q = 0.569840290998053. It is usually within ±1, and always within ±2.
 ///
 /// ```
 /// use pathwarp::{deform::Expr, kurbo::{Point, Rect}, map::Map};
@@ -121,8 +126,12 @@ u v      the same within the artwork's box, from 0 to 1, from the left and the t
 w h      the box's width and height\n  \
 cx cy    its middle\n  \
 pi tau e the numbers; angles are in radians\n  \
-sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b) hypot(a,b)\n\n\
---let names a value for the formulas after it. Curves are split at the kinks of abs, min and max.")
+sin cos tan asin acos atan atan2(y,x) sinh cosh tanh asinh\n  \
+sqrt exp ln abs sign floor ceil round mod(a,b) min(a,b) max(a,b)\n  \
+pow(a,b) hypot(a,b)\n  \
+smoothstep(a,b,c)  0 for c below a, 1 above b, a smooth step between\n  \
+noise(a,b)  hills and dales one unit wide, from -1 to 1 or a little more; always the same\n\n\
+--let names a value for the formulas after it. Curves are split at the kinks of abs, min and max, and where sign, floor and the like jump.")
     .source("forward-mode differentiation of the formula itself; parsing after V. Pratt, Top down operator precedence, POPL 1973")
     .params(&[
         Param::new("x", Kind::Text("FORMULA"), "The new x.").default("x"),
@@ -286,9 +295,8 @@ impl Map for ExprMap {
     }
 
     fn creases(&self, out: &mut Creases) {
-        for k in self.program.kinks([self.x, self.y]) {
-            let program = self.program.clone();
-            out.push(Crease::kink(Level::Field(Arc::new(move |p| k.level(&program.run([p.x], [p.y]))))));
+        for kink in self.program.kinks([self.x, self.y]) {
+            out.push(Crease::kink(Level::Field(Arc::new((kink, self.program.clone())))));
         }
     }
 
@@ -298,6 +306,22 @@ impl Map for ExprMap {
         }
         let program = Arc::new(self.program.branch(inside.x, inside.y));
         Some(Arc::new(Self { program, ..*self }))
+    }
+
+    fn enclose(&self, [x, y]: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+        let values = self.program.run([x], [y]);
+        Some([values[self.x as usize][0], values[self.y as usize][0]])
+    }
+}
+
+/// The function that is zero at a kink of a program.
+impl Field for (Kink, Arc<Program>) {
+    fn at(&self, p: Point) -> f64 {
+        self.0.level(&self.1.run([p.x], [p.y]))
+    }
+
+    fn enclose(&self, [x, y]: [Enclosure; 2]) -> Option<Enclosure> {
+        Some(self.0.level(&self.1.run([x], [y])))
     }
 }
 
@@ -338,10 +362,52 @@ mod tests {
             ("abs(y-x)", x - y, 1.0, -1.0),
             ("ln(x)+exp(y)-sqrt(x)", x.ln() + y.exp() - x.sqrt(), 1.0 / x - 0.5 / x.sqrt(), y.exp()),
             ("hypot(x,y)", x.hypot(y), x / x.hypot(y), y / x.hypot(y)),
+            ("tanh(x-y)", (x - y).tanh(), 1.0 / (x - y).cosh().powi(2), -1.0 / (x - y).cosh().powi(2)),
+            ("tanh(-400*x)", -1.0, 0.0, 0.0),
+            ("sinh(-x)", -x.sinh(), -x.cosh(), 0.0),
+            ("cosh(y)", y.cosh(), 0.0, y.sinh()),
+            ("asinh(-7*x)", -(7.0 * x).asinh(), -7.0 / (1.0 + 49.0 * x * x).sqrt(), 0.0),
+            ("asinh(y)", y.asinh(), 0.0, 1.0 / (1.0 + y * y).sqrt()),
+            ("floor(-3*x)+ceil(5*y)+x", -2.0 + 2.0 + x, 1.0, 0.0),
+            ("round(x)*y+sign(x)-sign(-y)+sign(0)", y + 2.0, 0.0, 1.0),
+            ("mod(7*x,1)-mod(-y,2)", 0.2 - 1.7, 7.0, 1.0),
+            ("smoothstep(0,2,x)", 0.3 * 0.3 * (3.0 - 2.0 * 0.3), 3.0 * 0.3 * 0.7, 0.0),
+            ("smoothstep(1,0,y-2)+smoothstep(0,1,x+1)", 2.0, 0.0, 0.0),
         ] {
             let j = build(&[("x", text)]).unwrap().jet(p);
             let off = (j.p.x - value).abs() + (j.dx.x - dx).abs() + (j.dy.x - dy).abs();
             assert!(off < 1e-13, "{text}: {j:?}, wanted {value} {dx} {dy}");
+        }
+    }
+
+    /// The sum that the documentation gives, and that it is as large as it says.
+    #[test]
+    fn noise_is_the_documented_sum() {
+        let noise = build(&[("x", "noise(x, y)")]).unwrap();
+        let mut largest = 0.0f64;
+        for i in 0..2000 {
+            let p = Point::new(f64::from(i) * 0.37 - 300.0, f64::from(i * i % 977) * 0.11);
+            let wave = |i: f64| {
+                let [g, q, r] = [0.618033988749895, 0.754877666246693, 0.569840290998053].map(|s: f64| (i * s).fract());
+                let pi = std::f64::consts::PI;
+                (pi * (1.0 + q) * (p.x * (pi * g).cos() + p.y * (pi * g).sin()) + 2.0 * pi * r).sin()
+            };
+            let sum: f64 = (1..=16).map(|i| wave(f64::from(i))).sum();
+            assert!((noise.point(p).x - sum / 8.0).abs() < 1e-11, "{p:?}");
+            largest = largest.max((sum / 8.0).abs());
+        }
+        assert!((0.8..1.3).contains(&largest), "{largest}");
+    }
+
+    /// Every jump becomes a vertical line, and nothing else does; that of sign, which is 0 in the middle, two.
+    #[test]
+    fn jumps_are_creases() {
+        let line = crate::Outline::from_svg("M0.25,0 H9.75").unwrap();
+        for (text, pieces) in [("floor(x)", 19), ("y+3*sign(x-4)", 4), ("y+mod(x,2.5)", 7), ("y+smoothstep(3,5,x)", 3)]
+        {
+            let map = build(&[("y", text)]).unwrap();
+            let w = crate::refit::warp_path(&line, &*map, &crate::refit::Options::new(1e-2)).unwrap();
+            assert_eq!(w.report.segments_out, pieces, "{text}: {:?}", w.path);
         }
     }
 
@@ -358,6 +424,7 @@ mod tests {
             ("sin x", 4, "in brackets"),
             ("hypot(x)", 7, "two arguments"),
             ("sin(x, y)", 5, "comma"),
+            ("smoothstep(0, 1)", 15, "three arguments"),
             ("ä + 1", 0, "expected a value"),
             ("x + ü", 4, "expected a value"),
             ("x ; y", 2, "no meaning"),

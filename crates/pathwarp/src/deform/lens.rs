@@ -274,8 +274,15 @@ impl Formula for LensMap {
     fn creases(&self, out: &mut Creases) {
         let (reach, center) = (self.reach(), self.center);
         if reach.is_finite() && self.from != self.to {
-            out.push(Crease::edge(Level::Field(Arc::new(move |p| reach - p.distance(center)))));
+            out.push(Crease::edge(Level::Circle { center, radius: -reach }));
         }
+    }
+
+    /// A quarter of the focal length, or of what is left to the rim: angles are analytic functions of the distance within those.
+    fn detail(&self, area: Rect) -> Option<f64> {
+        let corners = [(area.x0, area.y0), (area.x1, area.y0), (area.x0, area.y1), (area.x1, area.y1)];
+        let far = corners.into_iter().map(|p| self.center.distance(p.into())).fold(0.0, f64::max);
+        Some(0.25 * self.f.min(self.reach() - far).max(0.0))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -346,6 +346,13 @@ impl Formula for MlsMap {
         Cost::new(1.0 + self.handles.len() as f64 / HANDLES)
     }
 
+    /// The weights change over the distance to the next handle, or, further away, over that from the handles.
+    fn detail(&self, area: Rect) -> Option<f64> {
+        let from = |p: Point| Point::new(p.x.clamp(area.x0, area.x1), p.y.clamp(area.y0, area.y1)).distance(p);
+        let sizes = self.handles.iter().zip(&self.apart).map(|((p, _), apart)| apart.sqrt().max(from(*p)));
+        Some(0.5 * sizes.fold(f64::INFINITY, f64::min))
+    }
+
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         /// Squared distance below which a point counts as on the handle, relative to that of the next handle.
         const ON: f64 = 1e-28;

@@ -256,7 +256,7 @@ impl Formula for MobiusMap {
 
     fn creases(&self, out: &mut Creases) {
         let (pole, clear) = (self.from + div(-self.m[3], self.m[2]), self.clear);
-        out.push(Crease::edge(Level::Field(Arc::new(move |p| p.distance(pole) - clear))));
+        out.push(Crease::edge(Level::Circle { center: pole, radius: clear }));
     }
 
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {

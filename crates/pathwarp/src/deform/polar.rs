@@ -348,7 +348,7 @@ impl Formula for PolarInverse {
             return;
         }
         let limit = 0.5 * (0.5 * own.ring.sweep + PI) * (1.0 - 1e-9);
-        out.push(Crease::edge(Level::Field(Arc::new(move |p| limit - own.polar(p.x, p.y).1.abs()))));
+        out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| limit - own.polar(p.x, p.y).1.abs()))));
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {

@@ -190,7 +190,7 @@ impl Formula for SwirlMap {
 
     fn creases(&self, out: &mut Creases) {
         let Inner { center, radius, .. } = self.0;
-        out.push(Crease::kink(Level::Field(Arc::new(move |p| (p - center).hypot() - radius))));
+        out.push(Crease::kink(Level::Circle { center, radius }));
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {

@@ -68,7 +68,7 @@ fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<(Rect, Piece<'_
                 (true, false) => ys.push(-c / b),
                 _ => return None,
             },
-            Level::Field(_) => return None,
+            Level::Circle { .. } | Level::Field(_) => return None,
         }
     }
     let cut = |mut at: Vec<f64>, from: f64, to: f64| {

@@ -1,7 +1,7 @@
 //! Maps whose calls are expensive, such as those of another program: a cache in front of them, and ways to invert them in few calls.
 
-use super::{Batches, Class, Cost, Creases, Jet, Map, RationalBezier};
-use kurbo::{Point, Vec2};
+use super::{Batches, Class, Cost, Creases, Enclosure, Jet, Map, RationalBezier};
+use kurbo::{Point, Rect, Vec2};
 use std::collections::HashMap;
 use std::fmt;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -156,6 +156,14 @@ impl Map for Gathered<'_> {
 
     fn cost(&self) -> Cost<'_> {
         Cost { searches: None, ..self.map.cost() }.batched(self)
+    }
+
+    fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+        self.map.enclose(along)
+    }
+
+    fn detail(&self, area: Rect) -> Option<f64> {
+        self.map.detail(area)
     }
 }
 

@@ -165,6 +165,10 @@ impl Map for BicubicNet {
         }
         Some(RationalBezier::from_coordinates([&x, &y, &w[total]], curve.is_polynomial()))
     }
+
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
 }
 
 #[cfg(test)]

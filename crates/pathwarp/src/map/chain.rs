@@ -1,8 +1,8 @@
 //! Composition of maps.
 
 use super::{
-    AffineMap, Batches, Class, Cost, Crease, Creases, Images, Jet, Level, Map, RationalBezier, RationalDegree,
-    Searches, inverse_over,
+    AffineMap, Batches, Class, Cost, Crease, Creases, Enclosure, Field, Images, Jet, Level, Map, RationalBezier,
+    RationalDegree, Searches, inverse_over,
 };
 use crate::budget::Budget;
 use kurbo::{Affine, Point, Rect, Vec2};
@@ -132,10 +132,23 @@ fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
             let [ma, mb, mc, md, me, mf] = m.as_coeffs();
             Level::Line { a: a * ma + b * mb, b: a * mc + b * md, c: a * me + b * mf + c }
         }
-        _ => {
-            let (level, before) = (level.clone(), before.to_vec());
-            Level::Field(Arc::new(move |p| level.at(before.iter().fold(p, |q, m| m.point(q)))))
-        }
+        _ => Level::Field(Arc::new((level.clone(), Chain { steps: before.to_vec() }))),
+    }
+}
+
+/// A level of the image under some steps.
+impl Field for (Level, Chain) {
+    fn at(&self, p: Point) -> f64 {
+        self.0.at(self.1.point(p))
+    }
+
+    /// `None` behind steps that only estimate: a crossing must not be missed.
+    fn enclose(&self, along: [Enclosure; 2]) -> Option<Enclosure> {
+        let step = |at: [Enclosure; 2], m: &Arc<dyn Map>| match m.detail(Enclosure::area(&at)) {
+            Some(_) => None,
+            None => m.enclose(at),
+        };
+        self.0.enclose(self.1.steps.iter().try_fold(along, step)?)
     }
 }
 
@@ -251,6 +264,15 @@ impl Map for Chain {
 
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         self.steps.iter().try_fold(curve.clone(), |c, m| m.image(&c))
+    }
+
+    fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+        self.steps.iter().try_fold(along, |along, m| m.enclose(along))
+    }
+
+    /// Of several steps, each has its own.
+    fn detail(&self, area: Rect) -> Option<f64> {
+        if let [only] = self.steps.as_slice() { only.detail(area) } else { None }
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -12,7 +12,7 @@
 
 use super::curves::{Pace, Side};
 use super::{AffineMap, BicubicNet, Class, Crease, Creases, Jet, Level, Map};
-use kurbo::{Affine, Point, Vec2};
+use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
 /// The map of a box onto the region between four sides, a Coons patch:
@@ -237,6 +237,10 @@ impl Map for Coons {
         })
     }
 
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let upright = self.kept_lines()?;
         Some(Arc::new(AxisInverse { whole: self.clone(), upright, cell: None }))
@@ -305,6 +309,10 @@ impl Map for AxisInverse {
         Some(Arc::new(Self { whole: self.whole.clone(), upright: self.upright, cell }))
     }
 
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(self.whole.clone()))
     }
@@ -323,5 +331,9 @@ impl Map for OnCell {
 
     fn point(&self, p: Point) -> Point {
         self.whole.point_on(self.cell, p)
+    }
+
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(f64::INFINITY)
     }
 }

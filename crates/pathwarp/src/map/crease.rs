@@ -3,6 +3,8 @@
 //! Both are level sets φ(x, y) = 0 in the source plane, so that a chain can pull the crease of a later map back through the
 //! earlier maps, as φ ∘ F. The refitter splits paths at their crossings with creases.
 
+use super::enclosure::along;
+use super::{Enclosure, Real};
 use crate::outline::Seg;
 use kurbo::{
     Point, Rect, Vec2,
@@ -35,8 +37,33 @@ pub enum Level {
         /// The box.
         within: Rect,
     },
+    /// A circle: the distance from its centre less the radius, or, for a negative radius, −radius less the distance.
+    Circle {
+        /// The centre.
+        center: Point,
+        /// The radius; negative if the inside is positive.
+        radius: f64,
+    },
     /// Any continuous function.
-    Field(Arc<dyn Fn(Point) -> f64 + Send + Sync>),
+    Field(Arc<dyn Field>),
+}
+
+/// A continuous function on the plane. A closure from a point to a number is one.
+pub trait Field: Send + Sync {
+    /// The value at a point.
+    fn at(&self, p: Point) -> f64;
+
+    /// What the function does along a curve, given what its coordinates do. `None` if it cannot tell: crossings are then looked for
+    /// between samples alone.
+    fn enclose(&self, _along: [Enclosure; 2]) -> Option<Enclosure> {
+        None
+    }
+}
+
+impl<F: Fn(Point) -> f64 + Send + Sync> Field for F {
+    fn at(&self, p: Point) -> f64 {
+        self(p)
+    }
 }
 
 impl fmt::Debug for Level {
@@ -44,6 +71,7 @@ impl fmt::Debug for Level {
         match self {
             Self::Line { a, b, c } => write!(f, "{a}·x + {b}·y + {c}"),
             Self::Stretch { a, b, c, within } => write!(f, "{a}·x + {b}·y + {c} within {within:?}"),
+            Self::Circle { center, radius } => write!(f, "{radius} around {center:?}"),
             Self::Field(_) => f.write_str("field"),
         }
     }
@@ -52,19 +80,34 @@ impl fmt::Debug for Level {
 /// Samples per segment when crossings of a field are bracketed.
 const SAMPLES: u32 = 64;
 
+/// Work of an enclosure, in evaluations.
+const ENCLOSURE_WORK: usize = 8;
+
 impl Level {
+    /// What the function does along a curve; see [`Field::enclose`].
+    #[must_use]
+    pub fn enclose(&self, [x, y]: [Enclosure; 2]) -> Option<Enclosure> {
+        match self {
+            Self::Line { a, b, c } | Self::Stretch { a, b, c, .. } => Some(x * *a + y * *b + *c),
+            Self::Circle { center, radius } => Some(circle([x, y], *center, *radius)),
+            Self::Field(f) => f.enclose([x, y]),
+        }
+    }
+
     /// The value of the function; for a [`Level::Stretch`], that of the whole line.
     #[must_use]
     pub fn at(&self, p: Point) -> f64 {
         match self {
             Self::Line { a, b, c } | Self::Stretch { a, b, c, .. } => a * p.x + b * p.y + c,
-            Self::Field(f) => f(p),
+            Self::Circle { center, radius } => circle([p.x, p.y], *center, *radius),
+            Self::Field(f) => f.at(p),
         }
     }
 
     /// Adds the parameters in (0, 1) where `seg` goes from one side of the zero set to the other. A segment that touches it, up to
-    /// rounding, stays on its side. Straight levels are solved exactly; others are bracketed between samples.
-    pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) {
+    /// rounding, stays on its side. Straight levels are solved exactly; others are bracketed. Returns the evaluations that this took beyond the
+    /// usual ones.
+    pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) -> usize {
         let within = if let Self::Stretch { within, .. } = self {
             // Wider by the rounding error of a crossing.
             let room = 1e-9 * (within.width() + within.height());
@@ -72,7 +115,7 @@ impl Level {
         } else {
             None
         };
-        let (knots, noise) = self.knots(seg);
+        let (knots, noise, more) = self.knots(seg);
         let mut last: Option<(f64, f64)> = None;
         for here in knots.into_iter().filter(|k| k.1.abs() > noise) {
             if let Some(before) = last.replace(here)
@@ -87,21 +130,74 @@ impl Level {
                 }
             }
         }
+        more
     }
 
-    /// Parameters from 0 to 1 with the function's values, at most one zero between neighbours; and the size of its rounding errors. Empty
-    /// if it has no zero on the segment.
-    fn knots(&self, seg: &Seg) -> (Vec<(f64, f64)>, f64) {
+    /// Parameters from 0 to 1 with the function's values, at most one zero between neighbours; the size of its rounding errors; and the
+    /// evaluations beyond the usual ones. Empty if it has no zero on the segment.
+    fn knots(&self, seg: &Seg) -> (Vec<(f64, f64)>, f64, usize) {
         let f = |t: f64| (t, self.at(seg.eval(t)));
         match self {
             Self::Line { a, b, c } | Self::Stretch { a, b, c, .. } => {
                 let extremes = straight_extremes(|p| self.at(p), (*a, *b), seg);
                 let noise = 4.0 * f64::EPSILON * ((a.abs() + b.abs()) * seg.extent() + c.abs());
-                (extremes.into_iter().map(f).collect(), noise)
+                (extremes.into_iter().map(f).collect(), noise, 0)
             }
-            Self::Field(_) => sampled(seg, f),
+            Self::Circle { .. } | Self::Field(_) => {
+                let enclosed = self.enclosed(seg, &f);
+                let places = enclosed.as_ref().map_or(0, Vec::len);
+                let knots = enclosed.unwrap_or_else(|| sampled(f));
+                let one_side = knots.iter().all(|k| k.1 > 0.0) || knots.iter().all(|k| k.1 < 0.0);
+                let noise = if one_side { 0.0 } else { noise(seg, &knots) };
+                (knots, noise, (ENCLOSURE_WORK * places).saturating_sub(SAMPLES as usize))
+            }
         }
     }
+
+    /// The ends of parts of a segment on which the function has at most one zero, as its enclosures tell; `None` if they do not.
+    fn enclosed(&self, seg: &Seg, f: &impl Fn(f64) -> (f64, f64)) -> Option<Vec<(f64, f64)>> {
+        /// Parts at most, and the length of the shortest: where the function touches zero, there is no end to halving.
+        const MAX_PARTS: usize = 20_000;
+        const SHORTEST: f64 = 1e-7;
+        let (mut knots, mut ends) = (vec![f(0.0)], vec![f(1.0)]);
+        let mut looked = 0;
+        while let (Some(from), Some(to)) = (knots.last().copied(), ends.last().copied()) {
+            looked += 1;
+            let along = along(seg, [from.0, to.0]);
+            let stays = |slope: f64| from.1 * to.1 > 0.0 && from.1.abs() + to.1.abs() > slope;
+            if matches!(self, Self::Circle { .. }) && stays(along[0].d[0].hypot(along[1].d[0])) {
+                knots.push(to);
+                ends.pop();
+                continue;
+            }
+            let e = self.enclose(along)?;
+            let stays = e.lo > 0.0 || e.hi < 0.0 || stays(e.d[0]);
+            // The slope differs from the mean slope by less than that.
+            let goes_one_way = (to.1 - from.1).abs() > 2.0 * e.d[1];
+            let undefined = from.1.is_nan() || to.1.is_nan();
+            if stays || goes_one_way || undefined || to.0 - from.0 < SHORTEST {
+                knots.push(to);
+                ends.pop();
+            } else if looked > MAX_PARTS {
+                return None;
+            } else {
+                ends.push(f(0.5 * (from.0 + to.0)));
+            }
+        }
+        Some(knots)
+    }
+}
+
+fn circle<S: Real>([x, y]: [S; 2], center: Point, radius: f64) -> S {
+    ((x - center.x).hypot(y - center.y) - radius.abs()) * radius.signum()
+}
+
+/// The size of the rounding errors of a function with these values on a segment.
+fn noise(seg: &Seg, knots: &[(f64, f64)]) -> f64 {
+    let largest = knots.iter().map(|k| k.1.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let size = seg.bounding_box().size();
+    let ulps = seg.extent() / size.width.max(size.height).max(f64::MIN_POSITIVE);
+    largest * (1e-14 + 4.0 * f64::EPSILON * ulps).min(1e-3)
 }
 
 /// The parameters between which an affine function with gradient `(a, b)` is monotonic on a segment, its ends included. Empty if it has
@@ -135,8 +231,8 @@ fn straight_extremes(level: impl Fn(Point) -> f64, (a, b): (f64, f64), seg: &Seg
     ts
 }
 
-/// Samples of a function on a segment, with its extremes near zero between them; and the size of its rounding errors.
-fn sampled(seg: &Seg, f: impl Fn(f64) -> (f64, f64)) -> (Vec<(f64, f64)>, f64) {
+/// Samples of a function on a segment, with its extremes near zero between them.
+fn sampled(f: impl Fn(f64) -> (f64, f64)) -> Vec<(f64, f64)> {
     let h = 1.0 / f64::from(SAMPLES);
     let mut knots: Vec<(f64, f64)> = (0..=SAMPLES).map(|i| f64::from(i) * h).map(&f).collect();
     let last = SAMPLES as usize;
@@ -148,10 +244,7 @@ fn sampled(seg: &Seg, f: impl Fn(f64) -> (f64, f64)) -> (Vec<(f64, f64)>, f64) {
         }
     }
     knots.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let largest = knots.iter().map(|k| k.1.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
-    let size = seg.bounding_box().size();
-    let ulps = seg.extent() / size.width.max(size.height).max(f64::MIN_POSITIVE);
-    (knots, largest * (1e-14 + 4.0 * f64::EPSILON * ulps).min(1e-3))
+    knots
 }
 
 /// The place between `from` and `to` where a function that is smallest at the sample `least` comes nearest to zero, or crosses it. `None`
@@ -233,7 +326,7 @@ impl Creases {
     pub(crate) fn splits_work(&self, seg: &Seg, work: f64) -> f64 {
         let of = |c: &Crease| match (&c.level, seg) {
             (Level::Line { .. } | Level::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => STRAIGHT_WORK,
-            (Level::Field(_), _) => f64::from(SAMPLES) * work,
+            (Level::Circle { .. } | Level::Field(_), _) => f64::from(SAMPLES) * work,
             _ => f64::from(SAMPLES) * 0.1,
         };
         self.items.iter().map(of).sum()
@@ -260,18 +353,20 @@ impl Creases {
     /// than 1e-9 to each other or to the ends are merged.
     #[must_use]
     pub fn splits(&self, seg: &Seg) -> Vec<f64> {
+        self.splits_and_work(seg).0
+    }
+
+    /// As [`splits`](Self::splits), with the evaluations that took beyond [`splits_work`](Self::splits_work).
+    pub(crate) fn splits_and_work(&self, seg: &Seg) -> (Vec<f64>, usize) {
         /// A shorter part would be lost in rounding.
         const APART: f64 = 1e-9;
         let mut ts = Vec::new();
-        for c in &self.items {
-            if c.kind == CreaseKind::Kink {
-                c.level.crossings(seg, &mut ts);
-            }
-        }
+        let kinks = self.items.iter().filter(|c| c.kind == CreaseKind::Kink);
+        let more = kinks.map(|c| c.level.crossings(seg, &mut ts)).sum();
         ts.sort_by(f64::total_cmp);
         ts.retain(|t| *t > APART && *t < 1.0 - APART);
         ts.dedup_by(|b, a| *b - *a < APART);
-        ts
+        (ts, more)
     }
 
     /// The first point of `seg` at which the map is not defined.
@@ -284,7 +379,7 @@ impl Creases {
                     return Some(seg.start());
                 }
                 c.level.crossings(seg, &mut ts);
-                let (knots, noise) = c.level.knots(seg);
+                let (knots, noise, _) = c.level.knots(seg);
                 ts.extend(knots.iter().filter(|k| k.1 <= noise).map(|k| k.0));
             }
         }

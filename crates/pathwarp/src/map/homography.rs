@@ -22,6 +22,12 @@ impl Homography {
         Self { m, from: Point::ORIGIN, to: Point::ORIGIN }
     }
 
+    /// The map (x, y) ↦ to + (X/W, Y/W) with (X, Y, W) = M·(x − from, 1).
+    #[must_use]
+    pub(crate) const fn about(m: [[f64; 3]; 3], from: Point, to: Point) -> Self {
+        Self { m, from, to }
+    }
+
     /// The projective map that takes four points to four points, in order. `None` if three points of either quadrilateral lie
     /// on a line, or if one is convex and the other is not: the horizon would run between the points.
     #[must_use]

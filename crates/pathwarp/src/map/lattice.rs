@@ -362,7 +362,7 @@ impl Map for LatticeMap {
         }
         if self.patches.iter().any(|p| p.has_edge()) {
             let own = self.clone();
-            out.push(Crease::edge(Level::Field(Arc::new(move |p| {
+            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| {
                 own.cell(p).map_or(1.0, |c| own.patches[c].denominator(p))
             }))));
         }
@@ -390,6 +390,10 @@ impl Map for LatticeMap {
         }
         let cell = self.cell(h.origin())?;
         (self.cell(Point::new(h.x1, h.y1)) == Some(cell)).then(|| self.patches[cell].image(curve))?
+    }
+
+    fn detail(&self, area: Rect) -> Option<f64> {
+        self.patches[0].detail(area)
     }
 
     /// By Newton's method over the region, or up to half its size outside if the map is extended; see [`NewtonInverse`].
@@ -460,6 +464,10 @@ impl Map for LatticeInverse {
         // A margin for parts that end on the border of the cell.
         let (domain, reach) = (patch.rect(), 1e-3 * (patch.rect().width() + patch.rect().height()));
         Some(Arc::new(NewtonInverse::new(patch, domain, reach, [1, 1])))
+    }
+
+    fn detail(&self, area: Rect) -> Option<f64> {
+        self.inner.detail(area)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

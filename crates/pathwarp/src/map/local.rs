@@ -78,7 +78,7 @@ impl Map for Local {
         self.inside.creases(&mut own);
         for c in own.items() {
             let (level, local) = (c.level.clone(), self.clone());
-            let level = Level::Field(Arc::new(move |p| if local.contains(p) { level.at(p) } else { 1.0 }));
+            let level = Level::Field(Arc::new(move |p: Point| if local.contains(p) { level.at(p) } else { 1.0 }));
             out.push(Crease { level, kind: c.kind });
         }
     }
@@ -168,7 +168,7 @@ impl Map for LocalInverse {
 
     fn creases(&self, out: &mut Creases) {
         let own = self.clone();
-        out.push(Crease::kink(Level::Field(Arc::new(move |q| {
+        out.push(Crease::kink(Level::Field(Arc::new(move |q: Point| {
             let margin = own.of.margin();
             own.preimage(q, margin).map_or(-margin, |found| own.of.depth(found.p))
         }))));
@@ -205,6 +205,10 @@ impl Map for InsideInverse {
 
     fn jet(&self, q: Point) -> Jet {
         self.0.preimage(q, self.0.of.margin()).unwrap_or(Jet::UNDEFINED)
+    }
+
+    fn detail(&self, area: Rect) -> Option<f64> {
+        if let InnerInverse::Newton(m) = &self.0.back { m.detail(area) } else { None }
     }
 }
 

@@ -42,6 +42,7 @@ mod chain;
 mod coons;
 mod crease;
 pub(crate) mod curves;
+mod enclosure;
 mod formula;
 mod homography;
 mod lattice;
@@ -51,10 +52,11 @@ pub(crate) mod patch;
 mod projective;
 pub(crate) mod quotient;
 pub(crate) mod rational_bezier;
+mod real;
 pub(crate) mod tiled;
 
 use crate::budget::Budget;
-use kurbo::{Affine, Point, Vec2};
+use kurbo::{Affine, Point, Rect, Vec2};
 use std::fmt;
 use std::sync::Arc;
 
@@ -64,14 +66,17 @@ pub use bicubic::{BicubicNet, Net};
 pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
 pub use coons::{Coons, Sides};
-pub use crease::{Crease, CreaseKind, Creases, Level};
+pub use crease::{Crease, CreaseKind, Creases, Field, Level};
 pub use curves::{Pace, Side};
-pub use formula::{Dual, Formula, FromFn, FromFnWith, Real, from_fn, from_fn_with};
+pub use enclosure::Enclosure;
+pub(crate) use enclosure::along;
+pub use formula::{Formula, FromFn, FromFnWith, from_fn, from_fn_with};
 pub use homography::Homography;
 pub use lattice::{Lattice, LatticeMap};
 pub use newton::{NewtonInverse, inverse_over};
 pub use projective::{AffineMap, Undeclared};
 pub use rational_bezier::RationalBezier;
+pub use real::{Dual, Real};
 
 pub(crate) use curves::{Along, Guide, increasing_root};
 pub(crate) use local::Local;
@@ -142,6 +147,45 @@ pub trait Map: Send + Sync {
     fn cost(&self) -> Cost<'_> {
         Cost::NET
     }
+
+    /// What the map does along a curve, given what its coordinates do: the refitter accepts a piece only if nothing can hide between its
+    /// samples. By default estimated from the [`detail`](Self::detail). `None` if the map cannot tell; reports then say
+    /// [sampled](bezierfit::Assurance::Sampled).
+    fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+        let area = Enclosure::area(&along);
+        self.detail(area).map(|detail| estimated(self, along, area, detail))
+    }
+
+    /// The size of the smallest feature of the map in a box, for a map that does not [`enclose`](Self::enclose) curves by itself: a quarter
+    /// of the length of its shortest wave, the radius of its narrowest bump. Infinite if every piece between its creases is one simple
+    /// curve.
+    fn detail(&self, _area: Rect) -> Option<f64> {
+        None
+    }
+}
+
+/// What a map of a known [detail](Map::detail) does along a curve in a box.
+fn estimated(map: &(impl Map + ?Sized), along: [Enclosure; 2], area: Rect, detail: f64) -> [Enclosure; 2] {
+    let mut jets = [Jet::default(); 3];
+    map.jets(&[area.center(), area.origin(), Point::new(area.x1, area.y1)], &mut jets);
+    // With a margin for what three places do not show.
+    let stretch = 2.0 * jets.iter().map(|j| (j.dx.hypot2() + j.dy.hypot2()).sqrt()).fold(0.0, f64::max);
+    Enclosure::estimated(along, jets[0].p, stretch, detail)
+}
+
+/// The size of the smallest feature of a map in a box: what it states, or what its enclosures tell of the lines through the middle. With
+/// no feature smaller than r, coefficient k is at most the first one times r¹⁻ᵏ.
+pub(crate) fn detail_in(map: &dyn Map, area: Rect) -> Option<f64> {
+    let told = || {
+        let middle = area.center();
+        let lines = [
+            ([Enclosure::between(area.x0, area.x1), middle.y.into()], area.width()),
+            ([middle.x.into(), Enclosure::between(area.y0, area.y1)], area.height()),
+        ];
+        let of = |(line, length): ([Enclosure; 2], f64)| Some(length * Enclosure::finest(&map.enclose(line)?));
+        Some(of(lines[0])?.min(of(lines[1])?))
+    };
+    map.detail(area).or_else(told)
 }
 
 /// The cost of evaluating a map.
@@ -283,6 +327,12 @@ macro_rules! forward {
         }
         fn cost(&self) -> Cost<'_> {
             (**self).cost()
+        }
+        fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+            (**self).enclose(along)
+        }
+        fn detail(&self, area: Rect) -> Option<f64> {
+            (**self).detail(area)
         }
     };
 }

@@ -15,7 +15,7 @@
 //! core's center count, and of those the preimage nearest to the core is chosen.
 
 use super::batches::{Target, broyden, by_rounds};
-use super::{Batches, Cost, Crease, CreaseKind, Creases, Jet, Level, Map, Searches};
+use super::{Batches, Cost, Crease, CreaseKind, Creases, Jet, Level, Map, Searches, detail_in};
 use crate::budget::{Budget, Search, is_over};
 use kurbo::{Point, Rect, Vec2};
 use std::fmt;
@@ -402,6 +402,15 @@ impl Map for NewtonInverse {
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(self.map.clone())
     }
+
+    /// That of the map, as far as the inverse shrinks it: by its least stretch, and once more by the ratio of the stretches.
+    fn detail(&self, area: Rect) -> Option<f64> {
+        let jet = self.solve(area.center())?;
+        let square = jet.dx.hypot2() + jet.dy.hypot2();
+        let side = 2.0 * square.sqrt() * area.size().to_vec2().hypot();
+        let there = Rect::from_center_size(jet.p, (side, side));
+        Some(detail_in(&*self.map, there)? * jet.det().abs() / (square * square.sqrt()))
+    }
 }
 
 impl Batches for NewtonInverse {}
@@ -429,7 +438,7 @@ pub(super) fn kinks_through<M: Map + Clone + 'static>(inverse: &M, map: &dyn Map
     map.creases(&mut own);
     for c in own.items().iter().filter(|c| c.kind == CreaseKind::Kink) {
         let (level, back) = (c.level.clone(), inverse.clone());
-        out.push(Crease::kink(Level::Field(Arc::new(move |q| level.at(back.point(q))))));
+        out.push(Crease::kink(Level::Field(Arc::new(move |q: Point| level.at(back.point(q))))));
     }
 }
 
@@ -469,7 +478,7 @@ impl Map for CreasedInverse {
     fn creases(&self, out: &mut Creases) {
         for level in &self.kinks {
             let (whole, level) = (Arc::clone(&self.whole), level.clone());
-            out.push(Crease::kink(Level::Field(Arc::new(move |q| level.at(whole.point(q))))));
+            out.push(Crease::kink(Level::Field(Arc::new(move |q: Point| level.at(whole.point(q))))));
         }
     }
 
@@ -482,6 +491,10 @@ impl Map for CreasedInverse {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::clone(&self.map))
+    }
+
+    fn detail(&self, area: Rect) -> Option<f64> {
+        self.whole.detail(area)
     }
 }
 
@@ -526,6 +539,10 @@ impl Map for OnBranch {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::clone(&self.map))
+    }
+
+    fn detail(&self, area: Rect) -> Option<f64> {
+        self.whole.detail(area)
     }
 }
 

@@ -352,7 +352,7 @@ impl Map for Patch {
     fn creases(&self, out: &mut Creases) {
         if self.has_edge() {
             let own = Arc::new(self.clone());
-            out.push(Crease::edge(Level::Field(Arc::new(move |p| own.denominator(p)))));
+            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| own.denominator(p)))));
         }
     }
 
@@ -374,6 +374,10 @@ impl Map for Patch {
         }
         let polynomial = self.is_polynomial() && curve.is_polynomial();
         Some(RationalBezier::from_coordinates(sums.each_ref(), polynomial))
+    }
+
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some((self.rect.width() / self.width as f64).min(self.rect.height() / self.height as f64))
     }
 }
 

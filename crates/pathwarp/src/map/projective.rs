@@ -1,6 +1,6 @@
 //! Affine and projective maps as [`Map`]s: the two classes that keep straight lines.
 
-use super::{Class, Crease, Creases, Formula, Homography, Jet, Level, Map, RationalBezier, Real};
+use super::{Class, Crease, Creases, Enclosure, Formula, Homography, Jet, Level, Map, RationalBezier, Real};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -53,6 +53,11 @@ impl Map for AffineMap {
         let det = self.0.determinant();
         (det != 0.0 && det.is_finite()).then(|| Arc::new(Self(self.0.inverse())) as Arc<dyn Map>)
     }
+
+    fn enclose(&self, [x, y]: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+        let [a, b, c, d, e, f] = self.0.as_coeffs();
+        Some([x * a + y * c + e, x * b + y * d + f])
+    }
 }
 
 impl Map for Homography {
@@ -89,6 +94,12 @@ impl Map for Homography {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         self.inverted().map(|h| Arc::new(h) as Arc<dyn Map>)
+    }
+
+    fn enclose(&self, [x, y]: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+        let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| self.times(v));
+        let [u, v, w] = [0, 1, 2].map(|k| x * columns[0][k] + y * columns[1][k] + columns[2][k]);
+        Some([u / w, v / w])
     }
 }
 

@@ -78,24 +78,24 @@ impl Quotient {
         self.w.is_zero()
     }
 
-    /// The matrix of a map of degree one on (x, y, 1).
+    /// A map of degree one as a matrix, about the source point at which a = b = 0, so that no digits are lost far from the origin.
     fn matrix(&self) -> Option<Homography> {
         if self.degree > 1 {
             return None;
         }
-        let [a, b, c, d, e, f] = self.pre.as_coeffs();
+        let [a, b, c, d, ..] = self.pre.as_coeffs();
+        let from = self.pre.inverse() * Point::ORIGIN;
         let row = |p: &Plane| {
             let (c0, ca, cb) = (p.coefficient(0, 0), p.coefficient(1, 0), p.coefficient(0, 1));
-            [ca * a + cb * b, ca * c + cb * d, ca * e + cb * f + c0]
+            [ca * a + cb * b, ca * c + cb * d, c0]
         };
-        let (x, y) = (row(&self.x), row(&self.y));
+        let ([mut x, mut y], w) = ([&self.x, &self.y].map(row), row(&self.w));
         if self.is_polynomial() {
-            let plus = |r: [f64; 3], k: usize| std::array::from_fn(|i| r[i] + if i == k { 1.0 } else { 0.0 });
-            return Some(Homography::new([plus(x, 0), plus(y, 1), [0.0, 0.0, 1.0]]));
+            x[0] += 1.0;
+            y[1] += 1.0;
+            return Some(Homography::about([x, y, [0.0, 0.0, 1.0]], from, from));
         }
-        let w = row(&self.w);
-        let from = |r: [f64; 3], o: f64| std::array::from_fn(|i| r[i] + o * w[i]);
-        Some(Homography::new([from(x, self.origin.x), from(y, self.origin.y), w]))
+        Some(Homography::about([x, y, w], from, self.origin))
     }
 
     /// The same map in its simplest form.
@@ -147,10 +147,10 @@ impl Formula for Quotient {
         let own = Arc::new(self.clone());
         if !self.without_poles {
             let own = Arc::clone(&own);
-            out.push(Crease::edge(Level::Field(Arc::new(move |p| Formula::denominator(&*own, p)))));
+            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| Formula::denominator(&*own, p)))));
         }
         if self.guard.is_some() {
-            out.push(Crease::edge(Level::Field(Arc::new(move |p| {
+            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| {
                 let q = own.pre * p;
                 own.guard.as_ref().map_or(1.0, |g| g.at(q.x, q.y))
             }))));

@@ -137,7 +137,8 @@ impl Map for Tiled {
             self.rows[j].maps[i].creases(&mut own);
             for c in own.items() {
                 let (level, tiled) = (c.level.clone(), self.clone());
-                let level = Level::Field(Arc::new(move |p| if tiled.index(p) == (j, i) { level.at(p) } else { 1.0 }));
+                let level =
+                    Level::Field(Arc::new(move |p: Point| if tiled.index(p) == (j, i) { level.at(p) } else { 1.0 }));
                 out.push(Crease { level, kind: c.kind });
             }
         }
@@ -312,6 +313,10 @@ impl Map for Strip {
     fn point(&self, p: Point) -> Point {
         let Point { x: u, y: v } = self.pre * p;
         self.top.point(u).lerp(self.bottom.point(u), v)
+    }
+
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(f64::INFINITY)
     }
 }
 

@@ -70,3 +70,6 @@ pub(super) const CARRIED_TURN: f64 = 0.2;
 /// Factor from the largest difference at the samples of a carried cubic to that between them, a smooth function. 1: 5 % fewer runs are
 /// fitted anew.
 pub(super) const CARRY_MARGIN: f64 = 2.0;
+
+/// Share of the tolerance by which an image may be off what its samples predict between them, as its enclosure tells.
+pub(super) const HIDDEN: f64 = 0.25;

@@ -205,6 +205,15 @@ impl<'a> Merger<'a> {
         if source.size() == 0.0 || !source::slow_spots(&part.seg).all().is_empty() {
             return None;
         }
+        let samples = per_segment(self.fitter.degree.is_some());
+        let hides = |between: [f64; 2], samples: usize| {
+            form.is_none() && source.resolved(between, samples, options.tolerance) == Some(false)
+        };
+        // Enclosures of shorter parts are tighter.
+        let quarter = |i: u8| [0.25 * f64::from(i), 0.25 * f64::from(i + 1)];
+        if hides([0.0, 1.0], samples) && (0..4).any(|i| hides(quarter(i), samples / 4)) {
+            return None;
+        }
         let [first, last] = &part.jets;
         let ends = [source.end_with(0.0, first.p, first), source.end_with(1.0, last.p, last)];
         let is_straight = || {
@@ -230,7 +239,6 @@ impl<'a> Merger<'a> {
         let segments = run.segments.len();
         let (site, options) = (self.site(start, start + segments), self.fitter.options);
         let proof = run.segments.first().is_some_and(RunSegment::is_provable);
-        let assurance = if proof { Assurance::Certified } else { Assurance::Checked };
         let own = OwnPieces::new(segments, site.own());
         let MergeMemory { repeats, reach } = &mut *self.memory;
         let marks = site.carries() && shape.is_some();
@@ -260,7 +268,7 @@ impl<'a> Merger<'a> {
         self.fitter.spend(TRIAL_WORK * reaches.tried() as f64);
         let Reaches { own, .. } = reaches;
         let (mut own, legs) = refined(run, own, legs, settings, reach)?;
-        own.append(legs, assurance, &mut self.pieces, &mut self.report)
+        own.append(legs, run.assurance(options.tolerance), &mut self.pieces, &mut self.report)
     }
 }
 

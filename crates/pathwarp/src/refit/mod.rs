@@ -10,6 +10,7 @@
 mod limits;
 mod merge;
 mod options;
+mod overview;
 mod path;
 mod repeats;
 mod report;
@@ -23,8 +24,9 @@ pub use report::{PathReport, RESOLUTION, RefittedPath, SpanReport};
 pub use shared::{SharedEdges, Span};
 
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Gathered, Map};
-use crate::outline::Outline;
+use crate::map::{Class, Creases, Gathered, Jet, Map};
+use crate::outline::{Outline, Seg};
+use kurbo::Point;
 use merge::MergeMemory;
 use repeats::Shapes;
 use std::sync::Arc;
@@ -157,6 +159,21 @@ fn refit(
         }
     }
     out.report.segments_in = outline.segs().count();
-    out.report.account_for_rounding(outline, report::extent(&out.path), options.tolerance);
+    let image = report::extent(&out.path);
+    let size = if image > FAR_AWAY * outline.extent() { image.max(amplified(outline, map)) } else { image };
+    out.report.account_for_rounding(outline, size, options.tolerance);
     Ok(out)
+}
+
+/// An image that is so many times as far away as the outline is near a pole.
+const FAR_AWAY: f64 = 1e4;
+
+/// The size of coordinates whose rounding is that of the outline, amplified by the map.
+fn amplified(outline: &Outline, map: &dyn Map) -> f64 {
+    let places = |s: &Seg| (0..=64).map(|i| s.eval(f64::from(i) / 64.0)).collect::<Vec<Point>>();
+    let points: Vec<Point> = outline.segs().flat_map(places).collect();
+    let mut jets = vec![Jet::default(); points.len()];
+    map.jets(&points, &mut jets);
+    let size = |(p, j): (&Point, &Jet)| j.dx.hypot().max(j.dy.hypot()) * p.to_vec2().hypot();
+    points.iter().zip(&jets).map(size).filter(|v| v.is_finite()).fold(0.0, f64::max)
 }

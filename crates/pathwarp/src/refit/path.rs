@@ -11,6 +11,7 @@ use super::limits::WORTH_THREADS;
 use super::limits::{CHUNK, CHUNK_CORNER, MANY_NODES};
 use super::merge::{self, MergeMemory, Merger};
 use super::options::Options;
+use super::overview::Overview;
 use super::report::{PathReport, RefittedPath, SUMMED, SpanReport, reverse};
 use super::segment::{Part, SegmentFitter};
 use super::shared::Span;
@@ -19,7 +20,7 @@ use super::source::SourceCurve;
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
-use bezierfit::parts::{CHECKED, FITTED, spaced};
+use bezierfit::parts::{CHECKED, FITTED, UNEVEN, spaced};
 use bezierfit::{Assurance, NotFinite, Piece, Report};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
@@ -145,7 +146,10 @@ pub(super) fn subpath(
                 own = options.clone().with_tolerance(tolerance);
                 &own
             };
-            let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
+            let degree = map.rational_degree();
+            let overview = if degree.is_none() { Overview::new(map, segs) } else { None };
+            let overview = overview.as_ref();
+            let fitter = SegmentFitter { map, projective, degree, creases, work, options, overview };
             let first = from == 0 && all.is_empty();
             let nodes = if first { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
             let refit =
@@ -321,7 +325,7 @@ fn infinity(at: Point) -> GeometryError {
     GeometryError::Infinity { shape: PATH.into(), at }
 }
 
-/// Announces the nodes and the sixteen samples of every segment.
+/// Announces the nodes and the samples of every segment.
 pub(super) fn announce_segments<'a>(segs: impl Iterator<Item = &'a Seg>, map: &dyn Map, options: &Options) {
     let degree = map.rational_degree();
     let (mut points, mut jets) = (Vec::new(), Vec::new());
@@ -329,7 +333,7 @@ pub(super) fn announce_segments<'a>(segs: impl Iterator<Item = &'a Seg>, map: &d
         jets.extend([seg.start(), seg.end()]);
         let (canonical, _) = source::canonical(seg);
         let source = SourceCurve::for_proof(&canonical, map, degree, options.certify);
-        points.extend([&FITTED, &CHECKED].iter().flat_map(|set| source.sampled(&spaced(0.0, 1.0, set))));
+        points.extend([&FITTED, &CHECKED, &UNEVEN].iter().flat_map(|set| source.sampled(&spaced(0.0, 1.0, set))));
     }
     // Each segment begins where the one before ends.
     jets.dedup();

@@ -52,12 +52,12 @@ impl PathReport {
     pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
         let resolution = RESOLUTION * outline.extent().max(image);
         let mut missed = self.max_error > tolerance * (1.0 + SUMMED);
-        self.share = self.share.max(self.max_error / tolerance);
         if resolution > tolerance {
             self.unresolved = Some(resolution);
             self.add_error(resolution, Assurance::Checked);
             missed = true;
         }
+        self.share = self.share.max(self.max_error / tolerance);
         if missed && self.over_budget.is_empty() {
             self.over_budget.extend(outline.subpaths.first().map(|s| s.start));
         }

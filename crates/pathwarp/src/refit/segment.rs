@@ -2,12 +2,13 @@
 
 use super::limits::{MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
 use super::options::Options;
+use super::overview::Overview;
 use super::report::reverse;
 use super::source;
 use super::source::SourceCurve;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
-use bezierfit::parts::StretchFitter;
+use bezierfit::parts::{StretchFitter, cover_far};
 use bezierfit::{NotFinite, Piece, Report};
 use kurbo::{CubicBez, Line, Point};
 use std::sync::Arc;
@@ -26,6 +27,7 @@ pub(super) struct SegmentFitter<'a> {
     /// The map's work per evaluation.
     pub(super) work: f64,
     pub(super) options: &'a Options,
+    pub(super) overview: Option<&'a Overview>,
 }
 
 impl SegmentFitter<'_> {
@@ -53,6 +55,7 @@ impl SegmentFitter<'_> {
         let start = pieces.len();
         if self.creases.items().is_empty() && !self.is_long_arc(seg) {
             let source = SourceCurve::for_proof(canonical, self.map, self.degree, self.options.certify);
+            let source = source.known_by(self.overview);
             self.fit_smooth(&source, [first, last], 0.0, pieces, report)?;
         } else {
             for part in self.cut(canonical, [first, last])? {
@@ -98,7 +101,11 @@ impl SegmentFitter<'_> {
         let left = self.options.budget.left() / self.work;
         let (tolerance, prove) = (self.options.tolerance, (self.options.certify, blur));
         let mut fitter = StretchFitter::new(source, &slow, tolerance, prove, left);
-        let covered = fitter.cover(&from, &to, pieces, report);
+        let covered = if self.options.merge {
+            cover_far(&mut fitter, [&from, &to], self.options.corner, pieces, report)
+        } else {
+            fitter.cover(&from, &to, pieces, report)
+        };
         self.spend(fitter.evaluations() as f64 * self.work);
         covered
     }
@@ -124,6 +131,9 @@ impl SegmentFitter<'_> {
         report: &mut Report,
     ) -> Result<(), NotFinite> {
         let Some(cut) = &part.cut else { return self.fit(&part.seg, part.jets.each_ref(), pieces, report) };
+        if !cut.sure {
+            report.unresolved.push(part.seg.eval(0.5));
+        }
         let [first, last] = part.jets.each_ref();
         let affine = cut.branch.as_ref().map(Map::class);
         if let (Some(Class::Affine(m)), false) = (affine, matches!(part.seg, Seg::Arc(_))) {
@@ -166,7 +176,8 @@ impl SegmentFitter<'_> {
     #[inline(never)]
     fn cut(&self, seg: &Seg, [first, last]: [&Jet; 2]) -> Result<Vec<Part>, NotFinite> {
         self.spend(self.creases.splits_work(seg, self.work));
-        let mut ends = self.creases.splits(seg);
+        let (mut ends, more) = self.creases.splits_and_work(seg);
+        self.spend(more as f64 * self.work);
         if let (true, Seg::Arc(a)) = (self.is_long_arc(seg), seg) {
             let n = (a.sweep.abs() / MAX_RATIONAL_SWEEP).ceil();
             ends.extend((1..n as usize).map(|i| i as f64 / n));
@@ -177,6 +188,7 @@ impl SegmentFitter<'_> {
         let mut out = Vec::with_capacity(ends.len());
         let (mut found, mut from, mut p0) = (0, 0.0, first.p);
         while let Some(&t) = ends.last() {
+            let mut sure = true;
             let branch = match self.branch_between(seg, from, t) {
                 Ok(b) => b,
                 // A crease that the map does not tell, or that was missed.
@@ -185,7 +197,10 @@ impl SegmentFitter<'_> {
                     ends.push(from + (t - from) * at);
                     continue;
                 }
-                Err(_) => self.map.branch(seg.eval(0.5 * (from + t))),
+                Err(_) => {
+                    sure = false;
+                    self.map.branch(seg.eval(0.5 * (from + t)))
+                }
             };
             ends.pop();
             let part = match seg {
@@ -212,7 +227,7 @@ impl SegmentFitter<'_> {
                     (blur, jets[k].p) = (blur.max(off), p);
                 }
             }
-            out.push(Part { seg: part, jets, cut: Some(Cut { branch, blur, torn }) });
+            out.push(Part { seg: part, jets, cut: Some(Cut { branch, blur, torn, sure }) });
             (from, p0) = (t, p3);
         }
         Ok(out)
@@ -270,6 +285,8 @@ struct Cut {
     blur: f64,
     /// The neighbour's points at ends where the map tears.
     torn: [Option<Point>; 2],
+    /// The branch was found to be the map.
+    sure: bool,
 }
 
 impl Part {
@@ -290,7 +307,7 @@ impl Part {
     pub(super) fn source<'a>(&'a self, fitter: &SegmentFitter<'a>, seg: &'a Seg) -> SourceCurve<'a> {
         let certify = fitter.options.certify;
         match self.cut.as_ref().and_then(|c| c.branch.as_ref()) {
-            None => SourceCurve::for_proof(seg, fitter.map, fitter.degree, certify),
+            None => SourceCurve::for_proof(seg, fitter.map, fitter.degree, certify).known_by(fitter.overview),
             Some(b) => SourceCurve::for_proof(seg, b, b.class().degree(), certify),
         }
     }

@@ -1,12 +1,17 @@
 //! The image of one segment under a map that is smooth on it, sampled eight parameters at a time; the direction in which a segment is
 //! fitted, and the places where its image may be sharp.
 
-use crate::map::{Jet, Map, RationalBezier, RationalDegree};
+use super::limits::HIDDEN;
+use super::overview::Overview;
+use crate::map::{Enclosure, Jet, Map, RationalBezier, RationalDegree, along};
 use crate::outline::Seg;
 use bezierfit::parts::{VANISHING_DERIVATIVE, fma, tangent_beside};
 use bezierfit::{BreakPoint, Lane, Lanes, NotFinite, Quotient, SlowSpots, Source};
 use kurbo::{Point, Vec2};
 use std::cmp::Ordering;
+
+/// The image of a segment under a map of at most this degree, that of a bicubic net, is told by a few samples.
+const LOW_DEGREE: usize = 6;
 
 /// A source segment in its canonical direction, with the smooth map that holds on it.
 #[derive(Clone, Copy)]
@@ -23,6 +28,8 @@ pub(super) struct SourceCurve<'a> {
     size: f64,
     /// Denominator of an arc in rational form, power basis. If set, `c` holds the numerators relative to the centre.
     w: Option<[f64; 3]>,
+    /// What is known of the map around the segment.
+    overview: Option<&'a Overview>,
 }
 
 // Loops over eight lanes run by index through several arrays at once, the form that LLVM vectorises.
@@ -47,7 +54,12 @@ impl<'a> SourceCurve<'a> {
             }
             Seg::Arc(s) => ([zero; 4], s.deriv(1.0), s.a.hypot().max(s.b.hypot()) * s.sweep.abs()),
         };
-        Self { seg, map, degree, c, last, size, w: None }
+        Self { seg, map, degree, c, last, size, w: None, overview: None }
+    }
+
+    /// The same curve, with what is known of its map.
+    pub(super) fn known_by(self, overview: Option<&'a Overview>) -> Self {
+        Self { overview, ..self }
     }
 
     /// As [`SourceCurve::new`]. If a proof is wanted, turns an arc of less than half a turn into a rational quadratic: the
@@ -77,6 +89,17 @@ impl<'a> SourceCurve<'a> {
         self.c = [u * c - v * s, u * (2.0 * (1.0 - c)) + v * (2.0 * s), u * (2.0 * (c - 1.0)), Vec2::ZERO];
         self.w = Some([1.0, 2.0 * (c - 1.0), 2.0 * (1.0 - c)]);
         self.last = self.deriv_rational(1.0);
+    }
+
+    /// Converts a parameter of this curve to one of the segment; the reverse of [`param`](Self::param).
+    fn segment_param(&self, t: f64) -> f64 {
+        match (self.seg, self.w) {
+            (Seg::Arc(a), Some(_)) => {
+                let h = 0.25 * a.sweep;
+                0.5 + 0.5 * ((2.0 * t - 1.0) * h.tan()).atan() / h
+            }
+            _ => t,
+        }
     }
 
     /// Returns `true` if the source has a denominator.
@@ -275,6 +298,24 @@ impl Source for SourceCurve<'_> {
             }
         }
         out
+    }
+
+    fn resolved(&self, between: [f64; 2], intervals: usize, tolerance: f64) -> Option<bool> {
+        if self.degree.is_some_and(|d| d.degree <= LOW_DEGREE) {
+            return Some(true);
+        }
+        if let (Some(overview), Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) = (self.overview, self.seg) {
+            let ([_, c1, c2, c3], [t, h]) = (self.c, [between[0], between[1] - between[0]]);
+            let way = [(c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t) * h, (c2 + c3 * (3.0 * t)) * (h * h), c3 * (h * h * h)];
+            if overview.resolves(self.at(t), way, intervals, HIDDEN * tolerance) {
+                return Some(true);
+            }
+        }
+        let along = along(self.seg, between.map(|t| self.segment_param(t)));
+        if let Some(detail) = self.map.detail(Enclosure::area(&along)) {
+            return Some(along[0].d[0].hypot(along[1].d[0]) <= 0.5 * intervals as f64 * detail);
+        }
+        Some(Enclosure::resolved(&self.map.enclose(along)?, intervals, HIDDEN * tolerance))
     }
 
     fn place(&self, t: f64) -> Point {

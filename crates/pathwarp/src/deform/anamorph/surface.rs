@@ -565,8 +565,9 @@ impl Anamorphosis {
         // n·(q − from)·δ = n·(O − from)·δ + n·d.
         let along = |n: Space| {
             let d = Plane::linear(std::array::from_fn(|i| {
-                let foot = if i == 0 { n[0] * self.foot.x + n[1] * self.foot.y - n[2] * self.distance } else { 0.0 };
-                n[0] * x[i] + n[1] * y[i] - foot
+                let [x, y, z] =
+                    if i == 0 { [x[0] - self.foot.x, y[0] - self.foot.y, self.distance] } else { [x[i], y[i], 0.0] };
+                n[0] * x + n[1] * y + n[2] * z
             }));
             d.plus(dot(n, minus(self.eye(), from)), &delta)
         };
@@ -601,7 +602,7 @@ impl Anamorphosis {
 
     fn edge(&self) -> Crease {
         let own = self.clone();
-        Crease::edge(Level::Field(Arc::new(move |p| own.defined(p))))
+        Crease::edge(Level::Field(Arc::new(move |p: Point| own.defined(p))))
     }
 
     /// Returns the point of the drawing at which the eye sees a point in space.
@@ -648,7 +649,7 @@ impl Formula for CameraView {
     fn creases(&self, out: &mut Creases) {
         out.push(self.of.edge());
         let (of, camera) = (self.of.clone(), self.camera);
-        out.push(Crease::edge(Level::Field(Arc::new(move |p| {
+        out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| {
             if of.defined(p) > 0.0 { camera.depth(of.point(p)) } else { 1.0 }
         }))));
     }

@@ -109,7 +109,7 @@ impl LetterSetting {
 }
 
 /// The copies, or the identity for artwork without copies.
-fn or_identity(copies: &[Affine]) -> &[Affine] {
+pub(super) fn or_identity(copies: &[Affine]) -> &[Affine] {
     if copies.is_empty() { &[Affine::IDENTITY] } else { copies }
 }
 

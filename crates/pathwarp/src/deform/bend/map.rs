@@ -171,6 +171,10 @@ impl Map for BendMap {
         let (piece, begin) = self.piece(self.to_strip.s(inside.x));
         Some(Arc::new(OnPiece::new(piece, begin, self.to_strip)))
     }
+
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
 }
 
 /// The smooth map on one piece.
@@ -208,6 +212,10 @@ impl Map for OnPiece {
 
     fn class(&self) -> Class {
         self.affine().map_or(Class::Smooth, Class::Affine)
+    }
+
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(f64::INFINITY)
     }
 
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {

@@ -26,7 +26,7 @@ use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
 use crate::error::{Error, show, within};
 use crate::outline::Outline;
 use crate::param::{Axis, Kind, Letter, NamedPath, NamedText, Param, Settings, is_spiral};
-use kurbo::{Affine, Rect, Vec2};
+use kurbo::{Affine, Point, Rect, Vec2};
 use map::{BendMap, ToStrip};
 use skeleton::{Corner, Joined, Skeleton};
 use std::sync::Arc;
@@ -69,6 +69,8 @@ pub struct Bend {
     letters: Arc<[Letter]>,
     /// The frame was laid around the letters, and says nothing about their own heights.
     around_letters: bool,
+    /// Points of the artwork; empty if they are not known.
+    ink: Arc<[Point]>,
 }
 
 /// The lengths of artwork on a skeleton.
@@ -120,6 +122,7 @@ impl Bend {
             setting: None,
             letters: Arc::new([]),
             around_letters: false,
+            ink: Arc::new([]),
         }
     }
 
@@ -291,7 +294,14 @@ where a letter begins; `glyphs bend` bends them";
             None if self.around_letters && !letters.is_empty() => {
                 map.fold(letters::points(letters, copies)).into_iter().collect()
             }
-            None => map.fold(map::edges(rect).map(|p| (p, None))).into_iter().collect(),
+            None if self.ink.is_empty() => map.fold(map::edges(rect).map(|p| (p, None))).into_iter().collect(),
+            None => {
+                let copies = letters::or_identity(copies);
+                // Many copies share the places between them.
+                let points = self.ink.iter().step_by(1 + copies.len() / 64);
+                let all = points.flat_map(|p| copies.iter().map(move |c| (*c * *p, None)));
+                map.fold(all).into_iter().collect()
+            }
         };
         built.explanation.warnings.extend(warnings);
     }
@@ -498,6 +508,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
         setting: setting(s)?,
         letters: Arc::clone(&frame.letters),
         around_letters: frame.baseline.is_some(),
+        ink: Arc::clone(&frame.ink),
     };
     bend.build()
 });

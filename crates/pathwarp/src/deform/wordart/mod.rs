@@ -149,11 +149,17 @@ impl WordArt {
                 Ok(Rect::from_center_size(rect.center(), Size::new(side, side)))
             }
             Guides::Between(_) if !self.shape.round => Ok(rect),
-            Guides::Between(_) => shape::least_distorting(rect, |b| {
-                let rows =
-                    self.rows(guides(b.width(), b.height())?, cuts, b, &mut Built::new(Arc::new(AffineMap::IDENTITY)))?;
-                Ok::<_, Error>(rows.and_then(|rows| Tiled::over(rect, cuts.to_vec(), rows)))
-            }),
+            Guides::Between(_) => {
+                // At the origin, where rounding does not hide the least of a flat function.
+                let near = Self { frame: rect - rect.origin().to_vec2(), ..self.clone() };
+                let cuts: Vec<f64> = cuts.iter().map(|y| y - rect.y0).collect();
+                let found = shape::least_distorting(near.frame, |b| {
+                    let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
+                    let rows = near.rows(guides(b.width(), b.height())?, &cuts, b, &mut built)?;
+                    Ok::<_, Error>(rows.and_then(|rows| Tiled::over(near.frame, cuts.clone(), rows)))
+                })?;
+                Ok(found + rect.origin().to_vec2())
+            }
         }
     }
 

@@ -207,12 +207,16 @@ impl Map for Birational {
         }
         if self.pieces.iter().any(|p| p.patch.has_edge()) {
             let own = self.clone();
-            out.push(Crease::edge(Level::Field(Arc::new(move |p| own.patch(p).denominator(p)))));
+            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| own.patch(p).denominator(p)))));
         }
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
         (self.pieces.len() > 1).then(|| Arc::clone(self.patch(inside)) as Arc<dyn Map>)
+    }
+
+    fn detail(&self, _: Rect) -> Option<f64> {
+        Some(f64::INFINITY)
     }
 
     /// A curve of degree d gives one of degree d·(1+n).

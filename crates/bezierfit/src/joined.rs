@@ -1,0 +1,136 @@
+//! Fewer pieces for stretches that follow each other: of one long curve, each with the piece that it has, and across smooth joints.
+
+use crate::limits::{LONG, LONG_GRID, LONG_SEGMENT, LONG_WORK, LONGEST_RUN};
+use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
+use crate::part::Part;
+use crate::report::{Piece, Report};
+use crate::run::{RunSegment, SegmentRun, sample_lanes};
+use crate::source::{BreakPoint, NotFinite, Quotient, Source};
+use crate::stretch::StretchFitter;
+
+/// What is wanted of joined pieces.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct JoinSettings {
+    pub(crate) tolerance: f64,
+    /// Joints that turn by less, in radians, are smooth.
+    pub(crate) corner: f64,
+    /// Errors are to be proven where they can be.
+    pub(crate) prove: bool,
+    /// The stretches are those of pieces, so that new ones are hardly longer and must end at closer places.
+    pub(crate) finely: bool,
+}
+
+/// A stretch with the pieces that cover it, and what is known of them.
+pub(crate) struct Covered<'a, S> {
+    pub(crate) part: Part<'a, S>,
+    pub(crate) pieces: Vec<Piece>,
+    pub(crate) report: Report,
+}
+
+impl<'a, S: Source> Covered<'a, S> {
+    /// Appends a part with its pieces: each with its own stretch, if they are several and `joints` are their ends but the first.
+    pub(crate) fn add(self, joints: &[BreakPoint], out: &mut Vec<Self>) {
+        let Self { part, pieces, report } = self;
+        if pieces.len() < LONG || pieces.len() != joints.len() || !report.unresolved.is_empty() {
+            out.push(Self { part, pieces, report });
+            return;
+        }
+        let mut from = part.ends[0];
+        for ((piece, own), to) in pieces.into_iter().zip(&report.pieces).zip(joints) {
+            let mut report = Report::default();
+            report.add_error(own.error, own.assurance);
+            out.push(Self { part: part.within([from, *to]), pieces: vec![piece], report });
+            from = *to;
+        }
+    }
+}
+
+/// Appends the pieces of stretches that follow each other, or fewer that run on across the smooth joints of those that have no more than
+/// two.
+pub(crate) fn joined<S: Source>(
+    covered: &[Covered<'_, S>],
+    settings: JoinSettings,
+    memory: &mut ReachMemory,
+    out: &mut Vec<Piece>,
+    report: &mut Report,
+) -> Result<(), NotFinite> {
+    let mut i = 0;
+    while let Some(first) = covered.get(i) {
+        let mut run = SegmentRun::new(first.part.is_simple(), 8);
+        if settings.finely {
+            (run.grid, run.per_segment) = (LONG_GRID, 2 * LONG_GRID);
+        }
+        let (end, samples) = (covered.len().min(i + LONGEST_RUN), run.per_segment);
+        let count = run.extend(&covered[i..end], settings.corner, |Covered { part, pieces, report }| {
+            let form = if settings.prove { part.quotient().and_then(Quotient::provable) } else { None };
+            let is_line = matches!(pieces[..], [Piece::Line(_)]);
+            let joins = pieces.len() <= 2 && report.unresolved.is_empty();
+            let joins =
+                joins && (form.is_some() || part.resolved([0.0, 1.0], samples, settings.tolerance) != Some(false));
+            Ok(joins.then(|| RunSegment::new(*part, form, part.ends, is_line)))
+        })?;
+        let known = |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+            pieces.extend(&covered[i + k].pieces);
+            report.add(&covered[i + k].report);
+            Ok(())
+        };
+        if count < 2 {
+            known(0, out, report)?;
+            i += 1;
+        } else {
+            fewest(&run, OwnPieces::new(count, known), settings.tolerance, memory, out, report)?;
+            i += count;
+        }
+    }
+    Ok(())
+}
+
+/// Covers a stretch as [`StretchFitter::cover`] does, and then with fewer pieces if it takes several and has no slow spots.
+///
+/// # Errors
+/// The curve is not finite somewhere.
+pub fn cover_far<S: Source>(
+    fitter: &mut StretchFitter<'_, S>,
+    [from, to]: [&BreakPoint; 2],
+    corner: f64,
+    pieces: &mut Vec<Piece>,
+    report: &mut Report,
+) -> Result<(), NotFinite> {
+    let (start, first) = (pieces.len(), report.pieces.len());
+    fitter.cover(from, to, pieces, report)?;
+    // Near slow spots, even samples say too little; and no proof of several pieces knows of ends beside the curve.
+    let count = fitter.joints.len();
+    let differs = !fitter.slow.all().is_empty() || fitter.form.as_ref().is_some_and(|f| f.blur > 0.0);
+    if count < LONG_SEGMENT || pieces.len() - start != count || differs {
+        return Ok(());
+    }
+    let own = Covered {
+        part: Part::between(fitter.source, [*from, *to]),
+        pieces: pieces.split_off(start),
+        report: report.split_off(first),
+    };
+    let mut covered = Vec::with_capacity(count);
+    own.add(&fitter.joints, &mut covered);
+    let settings = JoinSettings { tolerance: fitter.tolerance, corner, prove: fitter.form.is_some(), finely: true };
+    fitter.extra.set(fitter.extra.get() + (2 * LONG_GRID + LONG_WORK) * covered.len());
+    let lanes = covered.iter().flat_map(|c| sample_lanes(2 * LONG_GRID).map(move |t| (&c.part, t)));
+    Source::announce(&mut { lanes }, &mut std::iter::empty());
+    joined(&covered, settings, &mut ReachMemory::default(), pieces, report)
+}
+
+/// Appends the fewest pieces of a run.
+pub(crate) fn fewest<S: Source + Clone>(
+    run: &SegmentRun<S>,
+    own: OwnPieces<impl FitOwn>,
+    tolerance: f64,
+    memory: &mut ReachMemory,
+    pieces: &mut Vec<Piece>,
+    report: &mut Report,
+) -> Result<(), NotFinite> {
+    let proof = run.segments.first().is_some_and(RunSegment::is_provable);
+    let settings = MergeSettings { tolerance, proof, marks: false, again: false };
+    let mut reaches = Reaches::new(run, own, settings, memory);
+    let legs = reaches.fewest()?;
+    let (mut own, legs) = refined(run, reaches.own, legs, settings, memory)?;
+    own.append(legs, run.assurance(tolerance), pieces, report)
+}

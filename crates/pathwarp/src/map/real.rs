@@ -1,0 +1,199 @@
+//! The number types that a formula runs on: `f64`, dual numbers that carry both partial derivatives, and
+//! [enclosures](super::Enclosure).
+//!
+//! A dual number is v + x·ε₁ + y·ε₂ with εᵢεⱼ = 0. Arithmetic on dual numbers computes values and applies the chain rule at
+//! the same time (forward-mode automatic differentiation), exact to rounding.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number, or a type that computes like one.
+pub trait Real:
+    Copy
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+    + From<f64>
+{
+    /// The value without derivatives, to branch on between expressions that agree where they meet. Of an
+    /// [`Enclosure`](super::Enclosure), a value in the middle.
+    fn value(self) -> f64;
+    /// √x.
+    fn sqrt(self) -> Self;
+    /// sin x, radians.
+    fn sin(self) -> Self;
+    /// cos x, radians.
+    fn cos(self) -> Self;
+    /// eˣ.
+    fn exp(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// The angle of the vector (x, self) in radians, in (−π, π].
+    fn atan2(self, x: Self) -> Self;
+    /// An integer power.
+    fn powi(self, n: i32) -> Self;
+    /// A real power of a positive number.
+    fn powf(self, n: f64) -> Self;
+    /// √(x² + y²).
+    fn hypot(self, y: Self) -> Self;
+    /// |x|; at 0 the derivative of +x.
+    fn abs(self) -> Self {
+        if self.value() < 0.0 { -self } else { self }
+    }
+    /// The smaller of two.
+    fn smaller(self, other: Self) -> Self {
+        if self.value() <= other.value() { self } else { other }
+    }
+    /// 1 for positive numbers, −1 for negative ones, 0 for 0; without derivatives.
+    fn sign(self) -> Self {
+        let v = self.value();
+        Self::from(if v == 0.0 { 0.0 } else { v.signum() })
+    }
+    /// The largest integer that is not larger; without derivatives.
+    fn floor(self) -> Self {
+        Self::from(self.value().floor())
+    }
+}
+
+/// Implements operators of a type, one a line.
+macro_rules! operators {
+    (#[$inline:meta] $type:ty: $($operator:ident $method:ident $other:ty: |$a:ident, $b:ident| $result:expr;)*) => {$(
+        impl $operator<$other> for $type {
+            type Output = Self;
+            #[$inline]
+            fn $method(self, $b: $other) -> Self {
+                let $a = self;
+                $result
+            }
+        }
+    )*};
+}
+pub(super) use operators;
+
+macro_rules! own_functions {
+    ($($name:ident($($argument:ident: $type:ty)?);)*) => {
+        impl Real for f64 {
+            #[inline]
+            fn value(self) -> f64 {
+                self
+            }
+            $(#[inline]
+            fn $name(self $(, $argument: $type)?) -> Self {
+                self.$name($($argument)?)
+            })*
+        }
+    };
+}
+own_functions! { sqrt(); sin(); cos(); exp(); ln(); atan2(x: f64); powi(n: i32); powf(n: f64); hypot(y: f64); }
+
+/// A number with its derivatives with respect to x and y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dual {
+    /// The value.
+    pub v: f64,
+    /// ∂/∂x.
+    pub x: f64,
+    /// ∂/∂y.
+    pub y: f64,
+}
+
+impl Dual {
+    /// f(self), given the value and slope of f there.
+    #[inline]
+    fn chain(self, value: f64, slope: f64) -> Self {
+        if slope.is_infinite() {
+            // At the tip of √(x² + y²), as in `hypot`.
+            let by = |d: f64| if d == 0.0 { 0.0 } else { d * slope };
+            return Self { v: value, x: by(self.x), y: by(self.y) };
+        }
+        Self { v: value, x: self.x * slope, y: self.y * slope }
+    }
+}
+
+impl From<f64> for Dual {
+    #[inline]
+    fn from(v: f64) -> Self {
+        Self { v, x: 0.0, y: 0.0 }
+    }
+}
+
+operators! { #[inline] Dual:
+    Add add Self: |a, b| Self { v: a.v + b.v, x: a.x + b.x, y: a.y + b.y };
+    Sub sub Self: |a, b| Self { v: a.v - b.v, x: a.x - b.x, y: a.y - b.y };
+    Mul mul Self: |a, b| Self { v: a.v * b.v, x: a.x * b.v + a.v * b.x, y: a.y * b.v + a.v * b.y };
+    Div div Self: |a, b| {
+        let v = a.v / b.v;
+        Self { v, x: (a.x - v * b.x) / b.v, y: (a.y - v * b.y) / b.v }
+    };
+    Add add f64: |a, b| Self { v: a.v + b, ..a };
+    Sub sub f64: |a, b| Self { v: a.v - b, ..a };
+    Mul mul f64: |a, b| Self { v: a.v * b, x: a.x * b, y: a.y * b };
+    Div div f64: |a, b| Self { v: a.v / b, x: a.x / b, y: a.y / b };
+}
+
+impl Neg for Dual {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self { v: -self.v, x: -self.x, y: -self.y }
+    }
+}
+
+impl Real for Dual {
+    #[inline]
+    fn value(self) -> f64 {
+        self.v
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        let r = self.v.sqrt();
+        self.chain(r, 0.5 / r)
+    }
+    #[inline]
+    fn sin(self) -> Self {
+        let (s, c) = self.v.sin_cos();
+        self.chain(s, c)
+    }
+    #[inline]
+    fn cos(self) -> Self {
+        let (s, c) = self.v.sin_cos();
+        self.chain(c, -s)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        let e = self.v.exp();
+        self.chain(e, e)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.v.ln(), 1.0 / self.v)
+    }
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let r2 = self.v * self.v + x.v * x.v;
+        let (a, b) = (x.v / r2, -self.v / r2);
+        Self { v: self.v.atan2(x.v), x: a * self.x + b * x.x, y: a * self.y + b * x.y }
+    }
+    #[inline]
+    fn powi(self, n: i32) -> Self {
+        self.chain(self.v.powi(n), if n == 0 { 0.0 } else { f64::from(n) * self.v.powi(n - 1) })
+    }
+    #[inline]
+    fn powf(self, n: f64) -> Self {
+        self.chain(self.v.powf(n), if n == 0.0 { 0.0 } else { n * self.v.powf(n - 1.0) })
+    }
+    #[inline]
+    fn hypot(self, o: Self) -> Self {
+        let r = self.v.hypot(o.v);
+        // The tip of the cone has no derivative. 0 is the mean over all directions and keeps the result finite.
+        let (a, b) = if r > 0.0 { (self.v / r, o.v / r) } else { (0.0, 0.0) };
+        Self { v: r, x: a * self.x + b * o.x, y: a * self.y + b * o.y }
+    }
+}
