@@ -186,12 +186,18 @@ pub(crate) fn rectangle(r: Rect) -> [(&'static str, String); 4] {
 
 /// Formats a path as a `d` attribute with absolute commands.
 pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
-    path_data_by(path, false, |_| [decimals; 2])
+    path_data_by(path, |_| None, |_| [decimals; 2])
 }
 
-/// As [`path_data`], with the numbers of decimals for the handles and the end of each element, given by its index. If `smooth`, handles
-/// so short that rounding would turn them get more decimals, so that smooth joints stay smooth.
-pub(crate) fn path_data_by(path: &BezPath, smooth: bool, decimals: impl Fn(usize) -> [u8; 2]) -> String {
+/// As [`path_data`], with the numbers of decimals for the handles and the end of each element, given by its index. If `coarsest` gives the
+/// largest unit of the last decimal that paths of this tolerance are written with, whatever their transforms, then handles so short that
+/// rounding would turn them get more decimals, so that smooth joints stay smooth, and what is written as a quadratic depends on that unit,
+/// so that neighbours under different transforms write a shared edge alike.
+pub(crate) fn path_data_by(
+    path: &BezPath,
+    coarsest: impl Fn(usize) -> Option<f64>,
+    decimals: impl Fn(usize) -> [u8; 2],
+) -> String {
     let mut out: Vec<u8> = Vec::with_capacity(path.elements().len() * 48);
     let point = |out: &mut Vec<u8>, p: Point, decimals: u8| {
         push_bytes(out, p.x, decimals);
@@ -222,15 +228,25 @@ pub(crate) fn path_data_by(path: &BezPath, smooth: bool, decimals: impl Fn(usize
             }
             PathEl::CurveTo(a, b, p) => {
                 // Write a quadratic if it differs by less than the rounding and has the same directions.
-                let near = NEAR * POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
-                let quad = quadratic(at, a, b, p).filter(|(_, off)| *off < near).map(|(q, _)| q).filter(|q| {
-                    let q = rounded(*q, handle);
-                    is_kept(a - at, q - from) && is_kept(b - p, q - to)
+                let coarsest = coarsest(i);
+                let own = POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
+                let quad = quadratic(at, a, b, p).filter(|(q, off)| match coarsest {
+                    // Units are usually between a tenth of the coarsest and that.
+                    Some(unit) => {
+                        let long = LASTING * unit.max(own);
+                        let lasts = |exact, v: Vec2| exact == Vec2::ZERO || is_kept(exact, v) && v.hypot() >= long;
+                        *off < NEAR * own.min(0.1 * unit) && lasts(a - at, *q - at) && lasts(b - p, *q - p)
+                    }
+                    None => {
+                        let q = rounded(*q, handle);
+                        *off < NEAR * own && is_kept(a - at, q - from) && is_kept(b - p, q - to)
+                    }
                 });
+                let quad = quad.map(|(q, _)| q);
                 out.push(if quad.is_some() { b'Q' } else { b'C' });
                 let handles = match quad {
                     Some(q) => [Some((q, handle)), None],
-                    None if !smooth => [Some((a, handle)), Some((b, handle))],
+                    None if coarsest.is_none() => [Some((a, handle)), Some((b, handle))],
                     None => [Some(kept(a, (at, from), handle)), Some(kept(b, (p, to), handle))],
                 };
                 for (q, decimals) in handles.into_iter().flatten() {
@@ -250,6 +266,9 @@ pub(crate) fn path_data_by(path: &BezPath, smooth: bool, decimals: impl Fn(usize
 /// Distance allowed between a quadratic's handles seen from its two ends, in units of the last decimal. The curves differ by a tenth
 /// of it.
 const NEAR: f64 = 3.0;
+
+/// Length of a handle, in units of the last decimal, from which on rounding both its ends turns it by less than [`is_kept`] allows.
+const LASTING: f64 = 600.0;
 
 /// The point that will be read from a point's text.
 fn rounded(p: Point, decimals: u8) -> Point {

@@ -2,7 +2,7 @@
 
 use super::{
     AffineMap, Batches, Class, Cost, Crease, Creases, Enclosure, Field, Images, Jet, Level, Map, RationalBezier,
-    RationalDegree, Searches, inverse_over,
+    RationalDegree, Searches, detail_in, inverse_over,
 };
 use crate::budget::Budget;
 use kurbo::{Affine, Point, Rect, Vec2};
@@ -270,9 +270,27 @@ impl Map for Chain {
         self.steps.iter().try_fold(along, |along, m| m.enclose(along))
     }
 
-    /// Of several steps, each has its own.
+    /// Where one of several steps states its detail, the least of all of them, each as far as the steps before it stretch: enclosures
+    /// through several estimates would tell of features that no step has.
     fn detail(&self, area: Rect) -> Option<f64> {
-        if let [only] = self.steps.as_slice() { only.detail(area) } else { None }
+        if let [only] = self.steps.as_slice() {
+            return only.detail(area);
+        }
+        let mut at = [area.center(), area.origin(), Point::new(area.x1, area.y1)].map(|p| AffineMap::IDENTITY.jet(p));
+        let across = area.size().to_vec2().hypot();
+        let (mut least, mut is_stated) = (f64::INFINITY, false);
+        for (i, step) in self.steps.iter().enumerate() {
+            let stretch = at.iter().map(|j| (j.dx.hypot2() + j.dy.hypot2()).sqrt()).fold(0.0, f64::max);
+            let area = Rect::from_center_size(at[0].p, (stretch * across, stretch * across));
+            is_stated |= step.detail(area).is_some();
+            least = least.min(detail_in(&**step, area)? / stretch);
+            if i + 1 < self.steps.len() {
+                let mut jets = [Jet::default(); 3];
+                step.jets(&at.map(|j| j.p), &mut jets);
+                at = std::array::from_fn(|k| at[k].then(&jets[k]));
+            }
+        }
+        is_stated.then_some(least)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
