@@ -1,6 +1,7 @@
 //! Builds content streams, with the resources that they use.
 
 use kurbo::{Affine, BezPath, PathEl, Point, Rect, Shape as _, Vec2};
+use pathwarp::decimal::single;
 use pdf_writer::types::ColorSpaceOperand;
 use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Finish as _, Name, Ref};
@@ -212,7 +213,7 @@ pub(crate) fn affine(t: usvg::Transform) -> Affine {
 
 /// Converts a transform for PDF.
 pub(crate) fn matrix(m: Affine) -> [f32; 6] {
-    m.as_coeffs().map(|v| v as f32)
+    single(m).as_coeffs().map(|v| v as f32)
 }
 
 /// Converts a rectangle to f64.

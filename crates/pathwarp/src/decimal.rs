@@ -61,6 +61,22 @@ pub fn matrix(m: Affine) -> String {
     format!("matrix({x} {y} {})", fine([e, f], &[a, b, c, d, e, f]))
 }
 
+/// Returns an affine map known in single precision with 0 for what is nothing in it: of the image of a unit vector and of the shift, a
+/// coordinate that single precision cannot tell from 0 beside the other.
+///
+/// ```
+/// use kurbo::Affine;
+/// use pathwarp::decimal::single;
+///
+/// assert_eq!(single(Affine::new([-4.4e-8, 1.0, -1.0, -4.4e-8, 300.0, -8.7e-8])), Affine::new([0.0, 1.0, -1.0, 0.0, 300.0, 0.0]));
+/// ```
+#[must_use]
+pub fn single(m: Affine) -> Affine {
+    let [a, b, c, d, e, f] = m.as_coeffs();
+    let beside = |v: f64, other: f64| if v.abs() < f64::from(f32::EPSILON) * other.abs() { 0.0 } else { v };
+    Affine::new([beside(a, b), beside(b, a), beside(c, d), beside(d, c), beside(e, f), beside(f, e)])
+}
+
 /// Appends [`trimmed`] text to `out`.
 pub fn push_trimmed(out: &mut String, v: f64, decimals: usize) {
     let start = out.len();

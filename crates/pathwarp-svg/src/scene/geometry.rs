@@ -6,6 +6,7 @@
 use crate::source::elements::ElementId;
 use crate::source::text::SourceText;
 use pathwarp::Outline;
+use pathwarp::decimal::single;
 use pathwarp::kurbo::{Affine, Point, Rect, Size, Vec2};
 use pathwarp::outline::{Builder, EllipticArc, Seg, Subpath};
 use std::collections::VecDeque;
@@ -278,7 +279,7 @@ fn rounded_rect(b: &mut Builder, r: Rect, radii: Vec2) {
 
 /// Converts usvg's transform to f64.
 pub(crate) fn affine(t: usvg::Transform) -> Affine {
-    Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
+    single(Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from)))
 }
 
 /// Whether `m` is finite and can be inverted.
