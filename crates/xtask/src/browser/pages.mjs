@@ -28,12 +28,18 @@ const asked = () => {
 const launch = () => chromium.launch({ executablePath, headless: true, args });
 let browser = await launch();
 
-async function show({ file, size, scale }) {
+async function show({ file, size, scale, zoom }) {
   const [width, height] = size ?? [600, 600];
   const page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: scale ?? 1, locale: "en-US" });
   await page.goto(pathToFileURL(file).href, { waitUntil: "load", timeout: TIMEOUT });
   const answer = await page.evaluate(asked);
+  // Chromium stretches a page with a fraction of a px to whole ones; magnified by its style, it keeps its proportions.
+  if (size && !zoom && scale !== 1 && (answer.right % 1 || answer.bottom % 1)) {
+    await page.close();
+    return show({ file, size: size.map((side) => Math.round(side * scale)), scale: 1, zoom: scale });
+  }
   if (size) {
+    await page.evaluate((zoom) => { if (zoom) document.documentElement.style.zoom = zoom; }, zoom);
     // What moves is shown as it begins.
     await page.evaluate(() => { document.documentElement.pauseAnimations?.(); document.documentElement.setCurrentTime?.(0); });
     const png = await page.screenshot({ animations: "disabled", omitBackground: true, timeout: TIMEOUT });
