@@ -233,7 +233,7 @@ fn bent(
     let own = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
     let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
     warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
-    warnings.extend(warped.skipped.iter().map(|s| format!("{} is not bent: {}", s.id, s.why)));
+    warnings.extend(warped.skipped.iter().map(ToString::to_string));
     let page = warped.page.change.map(|[_, after]| after);
     Ok(Bent { svg, page, resolved, built: built.whole, summary: Some(summary), warnings })
 }

@@ -3,9 +3,10 @@
 use pathwarp::fold::Orientation;
 use pathwarp::kurbo::Point;
 use pathwarp::refit::Assurance;
-use pathwarp_svg::ShapeReport;
+use pathwarp_svg::{ShapeReport, Skipped};
 use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
+use std::fmt;
 
 /// One input file.
 #[derive(Debug, Clone, Serialize)]
@@ -149,13 +150,27 @@ impl Serialize for ReportedShape {
     }
 }
 
-/// A shape that was left unchanged.
-#[derive(Debug, Clone, Serialize)]
+/// A shape that was left unchanged, or warped only in part.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct SkippedShape {
     /// Its id, or its place.
     pub id: String,
-    /// The reason.
+    /// The reason. It begins with `only` if the shape is warped in part.
     pub why: String,
+}
+
+impl From<Skipped> for SkippedShape {
+    fn from(Skipped { id, why }: Skipped) -> Self {
+        Self { id, why }
+    }
+}
+
+impl fmt::Display for SkippedShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { id, why } = self;
+        let joined = if why.starts_with("only ") { "is warped" } else { "is not warped:" };
+        write!(f, "{id} {joined} {why}")
+    }
 }
 
 /// The report's word for an assurance.

@@ -572,9 +572,9 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             }
             let other = if set { "another declaration" } else { "black" };
             let value = text::start(&value);
-            self.out
-                .unsupported
-                .push(format!("only with {other} in place of “{name}: {value}”, a colour that is not understood"));
+            self.out.unsupported.push(format!(
+                "only with {other} in place of “{name}: {value}”, a colour that is not understood; write it as #rrggbb"
+            ));
         }
     }
 

@@ -9,7 +9,7 @@
 //! use pathwarp::budget::Budget;
 //!
 //! let svg = "<svg xmlns='http://www.w3.org/2000/svg'><style>.\\31 a{FILL:currentcolor}</style><path class='1a'/></svg>";
-//! let plain = pathwarp_reader::resolve(svg, &Budget::default()).unwrap();
+//! let plain = pathwarp_reader::resolve(svg, &Budget::default(), &|_| None).unwrap();
 //! assert!(plain.text.contains("<path style=\"fill:currentColor\" class='1a'/>"));
 //! assert_eq!(plain.restored(), svg);
 //! ```
@@ -37,5 +37,5 @@ pub mod xml;
 
 pub use guard::guarded;
 pub use range::LARGEST;
-pub use rewrite::{Change, Plain, ReadError, resolve};
+pub use rewrite::{Change, Linked, Plain, ReadError, resolve};
 pub use words::{PaintProperty, Words};

@@ -78,7 +78,7 @@ pub struct Plain {
 }
 
 /// An attribute or a run of characters that differs from the original. Elements are numbered in document order, from 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Change {
     /// The last element that begins before the change.
     pub element: usize,
@@ -134,12 +134,15 @@ struct Edit {
     kept: Option<String>,
 }
 
+/// Gives the text of the drawing that an image links to, if it does.
+pub type Linked<'a> = &'a dyn Fn(&str) -> Option<String>;
+
 /// Resolves a drawing whose markup is known to be within the budget (see [`xml::check`]). Entities that hold elements are expanded
 /// first, so that each element has its own place in the text.
 ///
 /// # Errors
 /// It is not XML, or its style takes more work than the budget allows.
-pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
+pub fn resolve(text: &str, budget: &Budget, linked: Linked<'_>) -> Result<Plain, ReadError> {
     let mut text = Cow::Borrowed(text);
     if text.contains("<!ENTITY")
         && let Some(expanded) = xml::with_elements_of_entities(&text)
@@ -148,7 +151,7 @@ pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
     }
     let expanded = matches!(text, Cow::Owned(_));
     let doc = xml::document(&text).map_err(ReadError::Xml)?;
-    let (mut all, mut out) = changes(&doc, budget)?;
+    let (mut all, mut out) = changes(&doc, budget, linked)?;
     out.expanded = expanded;
     all.sort_by_key(|(o, _)| (o.range.start, o.range.end));
     if all.is_empty() {
@@ -172,7 +175,11 @@ pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
 }
 
 /// Lists all changes, each with its new text.
-fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>, Plain), Exceeded> {
+fn changes(
+    doc: &Document<'_>,
+    budget: &Budget,
+    linked: Linked<'_>,
+) -> Result<(Vec<(Change, String)>, Plain), Exceeded> {
     let text = doc.input_text();
     let nodes: Vec<Node<'_, '_>> = doc.descendants().filter(Node::is_element).collect();
     let Tree { styles, sheets, unsupported, declared, mut notes } = styled(doc, &nodes, budget)?;
@@ -192,9 +199,8 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
         }
         let e = out.words.len();
         out.words.push(Arc::clone(&style.computed.words));
-        all.extend(
-            edits(*node, style, Some(&references).filter(|_| renamed)).into_iter().map(|edit| edit.of(text, e, *node)),
-        );
+        let changed = edits(*node, style, Some(&references).filter(|_| renamed), linked);
+        all.extend(changed.into_iter().map(|edit| edit.of(text, e, *node)));
         if sheets.contains(&i) {
             // usvg ignores sheets of other types.
             all.push(Edit { name: "type", value: Some("text/plain".to_owned()), kept: None }.of(text, e, *node));
@@ -239,14 +245,7 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     }
     if let Some(end) = text[..doc.root_element().range().end].rfind('<').filter(|_| !defs.is_empty()) {
         let new = format!("<defs xmlns=\"http://www.w3.org/2000/svg\">{defs}</defs>");
-        let empty = Change {
-            element: out.words.len() - 1,
-            name: "",
-            range: end..end,
-            text: "".into(),
-            value: None,
-            kept: "".into(),
-        };
+        let empty = Change { element: out.words.len() - 1, range: end..end, ..Change::default() };
         all.push((empty, new));
     }
     Ok((all, out))
@@ -371,14 +370,14 @@ fn words(
 }
 
 /// Lists the attributes of an element to change.
-fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>>) -> Vec<Edit> {
+fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>>, linked: Linked<'_>) -> Vec<Edit> {
     let computed = &style.computed;
     let refers = |v: &&String| renamed.is_some() && v.contains("url(#");
     let attributes = computed.attributes.iter();
     let mut out: Vec<Edit> =
         attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
     out.extend(names(node, renamed));
-    let changed = structural(node).chain(picture(node, style).into_iter().flatten());
+    let changed = structural(node).chain(picture(node, style, linked).into_iter().flatten());
     out.extend(changed.map(|(name, value)| Edit { name, value, kept: None }));
     // Without a transform, the origin may serve an animation: it stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
@@ -389,14 +388,10 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>
     };
     let known = computed.style.as_ref().map(|s| written(&mut s.iter().map(|(n, v)| (n.as_ref(), v.as_ref()))));
     if let Some([(_, list), ..]) = frozen.as_ref().filter(|_| node.parent_element().is_none()) {
-        // usvg reads the root's transform from its attribute only.
+        // usvg reads the root's transform from its attribute only, and turns it about the centre unless another origin is given.
         out.retain(|edit| edit.name != "transform");
         out.push(Edit { name: "transform", value: Some(list.clone()), kept: None });
-        out.extend(node.attribute("transform-origin").map(|_| Edit {
-            name: "transform-origin",
-            value: None,
-            kept: None,
-        }));
+        out.push(Edit { name: "transform-origin", value: Some("0 0".to_owned()), kept: None });
         out.extend(known.map(|v| Edit { name: "style", value: Some(v).filter(|v| !v.is_empty()), kept: None }));
     } else if let Some(all) = frozen {
         let was = node.attribute("style").unwrap_or_default().to_owned();
@@ -541,48 +536,47 @@ fn link<'a>(node: Node<'a, '_>) -> Option<&'a str> {
     node.attributes().find(|a| a.name() == "href").map(|a| a.value())
 }
 
-/// New attributes of an image that shows an embedded drawing. One with a viewBox fills the image's box by its own `preserveAspectRatio`, and
-/// is cut there (CSS Images 3, section 4.2). It is stretched to the box as a whole if the image says `none`, or if it has a size and no
-/// viewBox, as in Chromium.
-fn picture(image: Node<'_, '_>, style: &Styled<'_>) -> Option<[(&'static str, Option<String>); 2]> {
-    let data = link(image).filter(|_| image.tag_name().name() == "image")?.trim().strip_prefix("data:")?;
-    let (kind, data) = data.split_once(',').filter(|(kind, _)| kind.starts_with("image/svg+xml"))?;
-    let text = if kind.ends_with("base64") {
-        let data: String = data.split_ascii_whitespace().collect();
-        String::from_utf8(STANDARD.decode(data).ok()?).ok()?
-    } else {
-        percent_decoded(data).into_owned()
-    };
+/// New attributes of an image that shows a drawing, which is then embedded. One with a viewBox fills the image's box by its own
+/// `preserveAspectRatio`, and is cut there (CSS Images 3, section 4.2). As in Chromium, one without a viewBox is stretched to the box from its
+/// own size, where sides in percent, or not given, refer to the box; so is any with a fixed size if the image says `none`, and without one its
+/// viewBox is stretched.
+fn picture(image: Node<'_, '_>, style: &Styled<'_>, linked: Linked<'_>) -> Option<[(&'static str, Option<String>); 2]> {
+    let link = link(image).filter(|_| image.tag_name().name() == "image")?.trim();
+    let text = link.strip_prefix("data:").map_or_else(|| linked(link), embedded)?;
     let drawing = xml::document(&text).ok()?;
     let root = drawing.root_element();
     let side = |name: &str, full: f64| length(style.computed.value(image, name)?, &style.units, full);
     let (width, height) = (side("width", style.units.viewport.0)?, side("height", style.units.viewport.1)?);
-    let own = |name: &str| length(root.attribute(name).filter(|v| !v.contains('%'))?, &style.units, 0.0);
-    let has_view = root.has_attribute("viewBox");
+    let own = |name: &str, full: f64| root.attribute(name).map_or(Some(full), |v| length(v, &style.units, full));
+    let is_fixed = |name: &str| root.attribute(name).is_some_and(|v| !v.contains('%'));
     let stretched = image.attribute("preserveAspectRatio").is_some_and(|a| a.trim_start().starts_with("none"));
-    let (range, name) = (root.range(), name_end(&text, root));
+    let fills = root.has_attribute("viewBox") && !(stretched && is_fixed("width") && is_fixed("height"));
+    let (w, h) = if fills { (width, height) } else { (own("width", width)?, own("height", height)?) };
+    let aspect = if fills && stretched { " preserveAspectRatio=\"none\"" } else { "" };
+    let (range, mut done) = (root.range(), name_end(&text, root));
     let mut new = format!(
-        "{}<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\"",
-        &text[..range.start]
+        "{}<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {w} {h}\" \
+         preserveAspectRatio=\"none\">{} width=\"{w}\" height=\"{h}\"{aspect}",
+        &text[..range.start],
+        &text[range.start..done]
     );
-    match (own("width"), own("height")) {
-        (Some(w), Some(h)) if stretched || !has_view => {
-            let _ = write!(new, " viewBox=\"0 0 {w} {h}\" preserveAspectRatio=\"none\">{}", &text[range]);
-        }
-        _ if !has_view => return None,
-        _ => {
-            let aspect = if stretched { " preserveAspectRatio=\"none\"" } else { "" };
-            let _ = write!(new, ">{} width=\"{width}\" height=\"{height}\"{aspect}", &text[range.start..name]);
-            let gone = |name: &str| matches!(name, "width" | "height") || stretched && name == "preserveAspectRatio";
-            let mut done = name;
-            for a in root.attributes().filter(|a| a.namespace().is_none() && gone(a.name())) {
-                new.push_str(text.get(done..a.range().start)?);
-                done = a.range().end;
-            }
-            new.push_str(&text[done..range.end]);
-        }
+    let gone = |name: &str| matches!(name, "width" | "height") || !aspect.is_empty() && name == "preserveAspectRatio";
+    for a in root.attributes().filter(|a| a.namespace().is_none() && gone(a.name())) {
+        new.push_str(text.get(done..a.range().start)?);
+        done = a.range().end;
     }
+    new.push_str(&text[done..range.end]);
     new.push_str("</svg>");
     let link = format!("data:image/svg+xml;base64,{}", STANDARD.encode(new));
     Some([("href", Some(link)), ("preserveAspectRatio", Some("none".to_owned()))])
+}
+
+/// The drawing in a `data:` URL after its scheme.
+fn embedded(data: &str) -> Option<String> {
+    let (kind, data) = data.split_once(',').filter(|(kind, _)| kind.starts_with("image/svg+xml"))?;
+    if !kind.ends_with("base64") {
+        return Some(percent_decoded(data).into_owned());
+    }
+    let data: String = data.split_ascii_whitespace().collect();
+    String::from_utf8(STANDARD.decode(data).ok()?).ok()
 }

@@ -6,7 +6,7 @@
 use crate::bend::outcome::Notes;
 use crate::document::Document;
 use crate::scene::drawing::UnreadImages;
-use crate::source::read::ReadOptions;
+use crate::source::read::{self, ReadOptions};
 use crate::source::tree;
 use pathwarp::kurbo::{BezPath, Rect};
 use pathwarp::{Error, Seg};
@@ -40,15 +40,22 @@ pub struct ReadTree {
     pub notes: Vec<String>,
 }
 
+/// Words without which a drawing has neither markers nor strokes of fixed width, which usvg draws otherwise than browsers.
+const MAY_DIFFER: [&str; 2] = ["marker", "non-scaling-stroke"];
+
 /// Reads SVG or svgz data like [`parse_tree`], and lists what the tree lacks of the drawing.
 ///
 /// # Errors
 /// As for [`parse_tree`].
 pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadTree, Error> {
-    let (mut tree, missed) = tree::parse(data, name, options)?;
-    if missed.may_differ {
-        tree = shown(&Document::read(data, name, options)?, options)?;
-    }
+    let text = read::text(data, name, &options.begin(data.len()).budget)?;
+    let (tree, missed) = if MAY_DIFFER.iter().any(|word| text.contains(word)) {
+        let document = Document::read(data, name, options)?;
+        let drawing = document.drawing();
+        (shown(&document, options)?, drawing.missed.clone().lacking(&drawing.source))
+    } else {
+        tree::parse(data, name, options)?
+    };
     let unread = UnreadImages::of(&missed);
     Ok(ReadTree {
         tree,

@@ -95,6 +95,8 @@ fn linked_drawings_are_geometry_too() {
     let shapes = Document::read(&logo, "logo.svg", &options()).unwrap().shapes().len();
     assert!(shapes > 2 && read(&w.svg).shapes().len() >= shapes, "{}", w.svg);
     assert!(!w.svg.contains("<image") && w.svg.contains("<g id='i'"), "{}", w.svg);
+    let embedded = svg.replace("'logo.svg'", &format!("\"{}\"", link(std::str::from_utf8(&logo).unwrap())));
+    pathwarp_oracle::drawings::same("linked", &w.svg, &read(&embedded).warp(&Bend, &warp_options()).unwrap().svg);
 }
 
 /// A link may name anything in the file system. Without a base folder, it is not followed.

@@ -33,6 +33,32 @@ fn compare_measures_the_distance_and_can_fail() {
     assert!((c["pixels"]["visible_share"].as_f64().unwrap() - 0.1).abs() < 0.005, "{c}");
 }
 
+/// A stroke of fixed width is as wide under a scale as one without.
+#[test]
+fn compare_sees_what_browsers_show() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, path: &str| {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{path}</svg>");
+        fs::write(dir.path().join(name), svg).unwrap();
+    };
+    let style = "stroke='black' stroke-width='4' vector-effect='non-scaling-stroke'";
+    write("a.svg", &format!("<path id='p' transform='scale(10 1)' d='M5 10v80' {style}/>"));
+    write("b.svg", "<path id='p' d='M50 10v80' stroke='black' stroke-width='4'/>");
+    let out = pathwarp_in(dir.path(), &["compare", "a.svg", "b.svg", "--max-pixels", "0"], b"");
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stdout));
+}
+
+#[test]
+fn what_is_warped_in_part_is_said_in_a_sentence() {
+    let svg = SQUARE.replace("<path", "<path fill='future(1)'");
+    let dir = tempfile::tempdir().unwrap();
+    let out = pathwarp_in(dir.path(), &["warp", "-", "--style", "arc"], svg.as_bytes());
+    let said = text(&out.stderr);
+    let wanted =
+        "is warped only with black in place of “fill: future(1)”, a colour that is not understood; write it as #rrggbb";
+    assert!(out.status.code() == Some(1) && said.contains(wanted), "{said}");
+}
+
 #[test]
 fn compare_matches_what_is_renamed_by_place_and_fails_where_a_shape_is_missing() {
     let dir = tempfile::tempdir().unwrap();

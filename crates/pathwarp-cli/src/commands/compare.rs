@@ -11,7 +11,7 @@ use pathwarp::distance;
 use pathwarp::kurbo::Rect;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::{input, output, readable};
-use pathwarp_raster::{Color, RenderOptions, Size};
+use pathwarp_raster::{Color, Pixmap, RenderOptions, Size};
 use pathwarp_svg::{Document, NamedPath, usvg_tree};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -80,10 +80,16 @@ struct Pixels {
 
 pub(super) fn compare_files(m: &ArgMatches) -> Result<Status, Failure> {
     let reading = arguments::reading(m)?;
-    let document = |name: &str| input::document(given_file(m, name)?, &reading);
-    let (a, b) = (document("A")?, document("B")?);
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
-    let result = compare(&a, &b, size)?;
+    let options = RenderOptions { size, background: Some(Color::WHITE) };
+    let read = |name: &str| -> Result<(Document, Pixmap), Failure> {
+        let file = given_file(m, name)?;
+        let document = input::document(file, &reading)?;
+        let shown = usvg_tree::shown(&document, &input::read_options(file, &reading))?;
+        let picture = options.render_counted(&shown, document.budget())?;
+        Ok((document, picture))
+    };
+    let result = compare(&read("A")?, &read("B")?)?;
     let text = if m.get_flag("json") {
         readable::json(&result).map_err(|e| Failure::usage(e.to_string()))? + "\n"
     } else {
@@ -98,7 +104,7 @@ pub(super) fn compare_files(m: &ArgMatches) -> Result<Status, Failure> {
     Ok(Status::partial_if(apart || unmatched))
 }
 
-fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure> {
+fn compare((a, shown_a): &(Document, Pixmap), (b, shown_b): &(Document, Pixmap)) -> Result<Comparison, Failure> {
     let (paths_a, paths_b) = (a.paths(), b.paths());
     let mut counterparts = counterparts(&paths_a, &paths_b);
     match_by_place(&paths_a, &paths_b, &mut counterparts);
@@ -119,9 +125,7 @@ fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure
     let unpaired = paths_a.iter().zip(&counterparts).filter(|(_, i)| i.is_none());
     let only_in_a = unpaired.map(|(p, _)| p.id.clone()).collect();
     let only_in_b = unpaired_in(&paths_b, &counterparts).map(|i| paths_b[i].id.clone()).collect();
-    let options = RenderOptions { size, background: Some(Color::WHITE) };
-    let render = |d: &Document| options.render_counted(usvg_tree::tree(d), a.budget());
-    let pixels = match pathwarp_raster::compare(&render(a)?, &render(b)?) {
+    let pixels = match pathwarp_raster::compare(shown_a, shown_b) {
         Ok(difference) => Some(Pixels {
             width: difference.width,
             height: difference.height,

@@ -12,6 +12,7 @@ use pathwarp::refit;
 use pathwarp_engine::bitmap::{Background, background, encode};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, Format, PICTURES};
+use pathwarp_engine::report::SkippedShape;
 use pathwarp_engine::{advice, export, input, output};
 use pathwarp_raster::{Picture, RenderOptions, Size};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
@@ -233,7 +234,7 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
 /// Lists what is not warped, or is left out, in some cell: the first ones, and how many more there are.
 fn reasons<'a>(skipped: impl Iterator<Item = &'a Skipped>) -> Vec<String> {
     const NAMED: usize = 10;
-    let all: BTreeSet<String> = skipped.map(|s| format!("{} is not warped: {}", s.id, s.why)).collect();
+    let all: BTreeSet<String> = skipped.map(|s| SkippedShape::from(s.clone()).to_string()).collect();
     let more = all.len().saturating_sub(NAMED);
     let mut out: Vec<String> = all.into_iter().take(NAMED).collect();
     out.extend((more > 0).then(|| format!("and {more} more")));

@@ -99,7 +99,7 @@ impl Stage<'_> {
         let (bytes, warped) =
             pathwarp_engine::session::warp_bytes(self.registry, &recipe, &given, None, name, svg.as_bytes())?;
         let FileReport { frame, baseline, warnings, skipped, .. } = warped.report;
-        let skipped = skipped.into_iter().map(|s| format!("{} is not warped: {}", s.id, s.why));
+        let skipped = skipped.iter().map(ToString::to_string);
         Ok(Outcome {
             svg: String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?,
             frame,

@@ -301,7 +301,7 @@ fn warn(r: &FileReport, count: usize) {
         terminal::warning(&of_file(w));
     }
     for s in r.skipped.iter().take(SHOWN) {
-        terminal::warning(&of_file(&format!("{} is not warped: {}", s.id, s.why)));
+        terminal::warning(&of_file(&s.to_string()));
     }
     for s in r.shapes.iter().map(|s| &s.shape).filter(|s| !s.path.over_budget.is_empty()).take(SHOWN) {
         let Point { x, y } = s.path.over_budget[0];

@@ -10,7 +10,7 @@ use crate::format::{Choice, DRAWINGS, Format};
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::page::{self, PageNews};
-use crate::report::{Fold, ReportedShape, SkippedShape};
+use crate::report::{Fold, ReportedShape};
 use crate::units::units_per_px;
 use crate::{advice, export, meter};
 use pathwarp::budget::{Budget, Limit};
@@ -541,7 +541,7 @@ impl FileArtwork for SvgArtwork {
         Ok(WarpedArtwork {
             result: WarpedResult::Bytes(result.bytes),
             shapes,
-            skipped: warped.skipped.into_iter().map(|s| SkippedShape { id: s.id, why: s.why }).collect(),
+            skipped: warped.skipped.into_iter().map(Into::into).collect(),
             warnings,
             files,
             preview: preview.transpose()?,

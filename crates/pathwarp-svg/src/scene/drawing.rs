@@ -5,7 +5,7 @@ use super::lettering::{self, TextLine};
 use super::model::{Group, Node, Part, PartRole, Scene};
 use super::resolve::{self, Tiling};
 use crate::source::elements::ElementId;
-use crate::source::images::shown;
+use crate::source::images::{linked_drawing, shown};
 use crate::source::mesh::MeshGradient;
 use crate::source::read::{self, ReadOptions};
 use crate::source::select::Selection;
@@ -50,7 +50,8 @@ impl Drawing {
         let options = &options.begin(data.len());
         let text = read::text(data, name, &options.budget)?;
         let dpi = f64::from(options.dpi);
-        let (source, read) = SourceText::read(text, name, &options.budget, |source, xml| {
+        let linked = |link: &str| linked_drawing(link, options);
+        let (source, read) = SourceText::read(text, name, &options.budget, &linked, |source, xml| {
             let shallow = source.is_shallow();
             let resolve = || {
                 let (tree, missed) = tree::tree(xml, name, options)?;

@@ -275,7 +275,9 @@ mod tests {
 
     fn edited(shape: &str, edit: impl FnOnce(&mut Edits<'_>)) -> String {
         let head = "<svg xmlns='http://www.w3.org/2000/svg'>";
-        let s = SourceText::read(format!("{head}{shape}</svg>"), "t", &Budget::default(), |_, _| Ok(())).unwrap().0;
+        let s = SourceText::read(format!("{head}{shape}</svg>"), "t", &Budget::default(), &|_| None, |_, _| Ok(()))
+            .unwrap()
+            .0;
         let mut e = Edits::new(&s);
         edit(&mut e);
         e.apply().0.strip_prefix(head).unwrap().strip_suffix("</svg>").unwrap().to_owned()

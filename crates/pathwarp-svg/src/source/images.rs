@@ -154,7 +154,7 @@ pub(super) fn checked(
         Err(_) => return Ok(None),
     };
     xml::check(&text, place, budget)?;
-    match plain(text, place, budget, None) {
+    match plain(text, place, budget, None, &|_| None) {
         Ok(Plain { text, .. }) => {
             check::drawing(&xml::parse_checked(&text, place)?, place, budget)?;
             Ok(Some(Arc::new(text.into_bytes())))
@@ -177,6 +177,13 @@ fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
     let mut data = Vec::new();
     File::open(file).ok()?.take(size).read_to_end(&mut data).ok()?;
     Some(data)
+}
+
+/// Reads the drawing that an image links to. As a file it has no type, so its name decides. None of its own links are followed.
+pub(crate) fn linked_drawing(link: &str, options: &ReadOptions) -> Option<String> {
+    let Place::Inside(file) = allowed(Path::new(link), options) else { return None };
+    file.extension().filter(|extension| extension.eq_ignore_ascii_case("svg"))?;
+    read::decoded(linked(&file, options)?.into()).ok()
 }
 
 /// Target of a link.

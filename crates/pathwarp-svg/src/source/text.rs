@@ -8,7 +8,7 @@ use super::threads::{both, map_parallel};
 use pathwarp::budget::Budget;
 use pathwarp::{Error, Outline};
 use pathwarp_reader::xml::{self, escape};
-use pathwarp_reader::{Change, Plain, ReadError, Words, resolve};
+use pathwarp_reader::{Change, Linked, Plain, ReadError, Words, resolve};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
@@ -66,11 +66,12 @@ impl SourceText {
         text: String,
         name: &str,
         budget: &Budget,
+        linked: Linked<'_>,
         then: impl FnOnce(&Self, &roxmltree::Document<'_>) -> Result<T, Error>,
     ) -> Result<(Self, T), Error> {
         xml::check(&text, name, budget)?;
         let mut undeclared = Vec::new();
-        let plain = plain(text, name, budget, Some(&mut undeclared))?;
+        let plain = plain(text, name, budget, Some(&mut undeclared), linked)?;
         let parsed = Self::parse(plain.text, name)?;
         let mut source = Self {
             undeclared,
@@ -431,9 +432,10 @@ pub(super) fn plain(
     name: &str,
     budget: &Budget,
     mut undeclared: Option<&mut Vec<String>>,
+    linked: Linked<'_>,
 ) -> Result<Plain, Error> {
     loop {
-        let why = match resolve(&text, budget) {
+        let why = match resolve(&text, budget, linked) {
             Ok(plain) => return Ok(plain),
             Err(ReadError::Limit(e)) => return Err(Error::limit(name, "its style takes", e)),
             Err(ReadError::Xml(why)) => why,
@@ -576,7 +578,8 @@ mod tests {
             let direct = SourceText::parse(d.to_owned(), "t").unwrap();
             let wanted = direct.instrumented(std::iter::empty()).0;
             let (source, n) =
-                SourceText::read(d.to_owned(), "t", &Budget::default(), |_, doc| Ok(doc.input_text().len())).unwrap();
+                SourceText::read(d.to_owned(), "t", &Budget::default(), &|_| None, |_, doc| Ok(doc.input_text().len()))
+                    .unwrap();
             assert_eq!((n, &source.text), (wanted.len(), &direct.text));
             assert_eq!(format!("{:?}", source.elements), format!("{:?}", direct.elements));
             for e in &source.elements {
@@ -586,7 +589,7 @@ mod tests {
             }
         }
         let (text, ids) = {
-            let (s, text) = SourceText::read(drawings[0].to_owned(), "t", &Budget::default(), |_, doc| {
+            let (s, text) = SourceText::read(drawings[0].to_owned(), "t", &Budget::default(), &|_| None, |_, doc| {
                 Ok(doc.input_text().to_owned())
             })
             .unwrap();

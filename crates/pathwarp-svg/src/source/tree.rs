@@ -24,12 +24,18 @@ pub(crate) struct Missed {
     pub(crate) images: Vec<String>,
     /// The links among `images` that lead out of the folder of the drawing.
     pub(crate) outside: Vec<String>,
-    /// Content and style that are not drawn, worded for people. Only [`parse`] fills this in.
+    /// Content and style that are not drawn, worded for people. Only [`lacking`](Self::lacking) fills this in.
     pub(crate) undrawn: Vec<String>,
-    /// Small differences from what browsers show, as the reader notes them. Only [`parse`] fills this in.
+    /// Small differences from what browsers show, as the reader notes them. Only [`lacking`](Self::lacking) fills this in.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
-    /// Whether there may be markers, or strokes of fixed width, which usvg draws otherwise than browsers. Only [`parse`] fills this in.
-    pub(crate) may_differ: bool,
+}
+
+impl Missed {
+    /// Adds what else a picture of the drawing lacks.
+    pub(crate) fn lacking(self, source: &SourceText) -> Self {
+        let undrawn = undrawn(source).into_iter().chain(meshes(source)).collect();
+        Self { undrawn, notes: source.notes.clone(), ..self }
+    }
 }
 
 /// The initial font size, in px, as in browsers.
@@ -87,7 +93,7 @@ pub(crate) fn tree(
     Ok((tree, Missed { fonts, images, outside, ..Missed::default() }))
 }
 
-/// Reads SVG or svgz data into usvg's tree.
+/// Reads SVG or svgz data into usvg's tree. The list of what is missed is complete.
 pub(crate) fn parse(data: &[u8], name: &str, options: &ReadOptions) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     parse_counted(data, name, &options.begin(data.len()))
 }
@@ -100,17 +106,14 @@ pub(crate) fn parse_counted(
 ) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let text = read::text(data, name, &options.budget)?;
     xml::check(&text, name, &options.budget)?;
-    let Plain { text, unsupported, notes, foreign, .. } = plain(text, name, &options.budget, None)?;
+    let linked = |link: &str| images::linked_drawing(link, options);
+    let Plain { text, unsupported, notes, foreign, .. } = plain(text, name, &options.budget, None, &linked)?;
     let xml = xml::parse_checked(&text, name)?;
-    let (tree, mut missed) = with_stack(name, || tree(&xml, name, options))?;
+    let (tree, missed) = with_stack(name, || tree(&xml, name, options))?;
     drop(xml);
-    missed.notes = notes;
-    missed.may_differ = ["marker", "non-scaling-stroke"].iter().any(|word| text.contains(word));
     let mut source = SourceText::parse(text, name)?;
-    (source.unsupported_style, source.foreign) = (unsupported, foreign);
-    missed.undrawn = undrawn(&source);
-    missed.undrawn.extend(meshes(&source));
-    Ok((Arc::new(tree), missed))
+    (source.unsupported_style, source.notes, source.foreign) = (unsupported, notes, foreign);
+    Ok((Arc::new(tree), missed.lacking(&source)))
 }
 
 /// Content that usvg does not support.
@@ -175,7 +178,10 @@ pub(crate) fn undrawn(source: &SourceText) -> Vec<String> {
         Some(format!("{} is not drawn: {what}", source.display_name(e)))
     });
     let style = source.unsupported_style.iter().filter(|(e, _)| e.as_ref().is_none_or(shown)).map(|(e, why)| match e {
-        Some(e) => format!("{}: {why}", source.display_name(*e)),
+        Some(e) => {
+            let joined = if why.starts_with("only ") { " is drawn" } else { ":" };
+            format!("{}{joined} {why}", source.display_name(*e))
+        }
         None => format!("the style sheets ask for more than is supported: {why}"),
     });
     content.chain(style).collect()

@@ -215,7 +215,7 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
         let painted = ["fill", "stroke"].into_iter().filter(|_| is_shape(tag) || tag == "text");
         let (name, kind) = { painted }.find_map(|name| Some((name, unknown(e, name)?)))?;
         Some(if warped.contains(&e) {
-            format!("only its outline is; its {name}, {kind}, is unchanged")
+            format!("only in its outline; its {name}, {kind}, is unchanged")
         } else {
             format!("its {name} is {kind}; such shapes cannot be warped")
         })
