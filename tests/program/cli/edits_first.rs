@@ -87,8 +87,10 @@ fn what_cannot_be_edited_is_said() {
     assert!(said(&["--simplify", "wide"], &logo).contains("--simplify: `wide` is not a length"));
     assert!(said(&["--simplify=-1"], &logo).contains("below zero"));
     assert!(said(&["--simplify", "1e-30"], &logo).contains("--simplify: 1e-30 is finer than"));
-    let xcf = root().join("samples/paper.xcf");
-    assert!(said(&["--outset", "1", xcf.to_str().unwrap()], b"").contains("for SVG drawings"));
+    let dir = tempfile::tempdir().unwrap();
+    let picture = dir.path().join("logo.png").display().to_string();
+    assert!(pathwarp_in(dir.path(), &["render", "-", "-o", &picture], &logo).status.success());
+    assert!(said(&["--outset", "1", &picture], b"").contains("for drawings and GIMP's paths"));
 }
 
 /// Small contours keep their shape beside large ones, in one path or in several.

@@ -125,6 +125,22 @@ fn paths_go_back_into_a_copy() {
     assert_eq!(fs::read(&file).unwrap(), bytes);
 }
 
+/// Paths are edited before they are bent, as drawings are: one command gives what two do.
+#[test]
+fn paths_are_edited_before_bending() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name).display().to_string();
+    fs::write(at("in.xcf"), new_xcf([640, 400], &paths())).unwrap();
+    let file = format!("{}#leaf & <hill>", at("in.xcf"));
+    let bend = ["wave", "--tolerance", "0.01", "--frame", "0,0,640,400", "-q"];
+    expect_code(0, &[&bend[..], &[&file, "--outset", "3", "-o", &at("one.json")]].concat());
+    expect_code(0, &["offset", &file, "--by", "3", "--tolerance", "0.01", "-o", &at("grown.json")]);
+    expect_code(0, &[&bend[..], &[&at("grown.json"), "-o", &at("two.json")]].concat());
+    let outline = |name: &str| read(&fs::read(at(name)).unwrap()).unwrap()[0].outline();
+    let distance = |a: &str, b: &str| pathwarp::distance::symmetric(&outline(a), &outline(b)).unwrap();
+    assert!(distance("one.json", "two.json") < 0.02 && distance("one.json", "grown.json") > 1.0);
+}
+
 #[test]
 fn damaged_files_say_where_and_can_be_salvaged() {
     let dir = tempfile::tempdir().unwrap();

@@ -7,11 +7,11 @@ use pathwarp::kurbo::Affine;
 use pathwarp_engine::export;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::Format;
-use pathwarp_engine::input::{self, GimpFile, resized};
+use pathwarp_engine::input::{self, GimpFile};
 use pathwarp_engine::options::{CommonOptions, Reading};
 use pathwarp_engine::output::{self, PendingFile};
-use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
-use pathwarp_svg::{NamedPath, ReadOptions};
+use pathwarp_gimp::{GimpPath, Stroke};
+use pathwarp_svg::NamedPath;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -37,19 +37,18 @@ pub(super) fn copy(
     if let Some(d) = damage.as_ref().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {d}", input::display(file)));
     }
+    let bytes = |paths: &[GimpPath]| export::paths(size, paths, format, options, None).map(|exported| exported.bytes);
     match target {
         Some(out) if split => {
             let names = names(out, format, &paths);
             let mut files = Files::default();
             files.read(file);
             names.iter().try_for_each(|to| files.write(to, ""))?;
-            let single = |(to, p): (&PathBuf, &GimpPath)| {
-                PendingFile::new(to, &bytes(format, size, std::slice::from_ref(p), options)?)
-            };
+            let single = |(to, p): (&PathBuf, &GimpPath)| PendingFile::new(to, &bytes(std::slice::from_ref(p))?);
             let files: Result<Vec<PendingFile>, Failure> = names.iter().zip(&paths).map(single).collect();
             PendingFile::commit_all(files?)?;
         }
-        _ => output::write(target, &bytes(format, size, &paths, options)?)?,
+        _ => output::write(target, &bytes(&paths)?)?,
     }
     Ok(Some(Status::partial_if(damage.is_some())))
 }
@@ -64,24 +63,6 @@ fn drawing(file: &Path, reading: &Reading) -> Result<([f64; 2], Vec<GimpPath>), 
         GimpPath { name: p.label.or(p.title).unwrap_or(p.id), visible: true, strokes }
     };
     Ok(([page.width(), page.height()], doc.paths().into_iter().map(path).collect()))
-}
-
-/// The bytes of a file with these paths.
-fn bytes(format: Format, size: [f64; 2], paths: &[GimpPath], options: &CommonOptions) -> Result<Vec<u8>, Failure> {
-    match format {
-        Format::PointList => {
-            let (size, paths) = resized(size, paths, options);
-            Ok(to_json(Some(size), &paths).into_bytes())
-        }
-        Format::Xcf => {
-            let (size, paths) = resized(size, paths, options);
-            Ok(new_xcf(size.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), &paths))
-        }
-        drawing => {
-            let svg = to_svg(size, paths, None);
-            Ok(export::drawing(svg, drawing, &ReadOptions::default(), options, None)?.bytes)
-        }
-    }
 }
 
 /// A file name for every path, distinct even on file systems that ignore case.

@@ -1,4 +1,4 @@
-//! Drawings in the formats besides SVG.
+//! Drawings in the formats besides SVG, and GIMP's paths in every format.
 
 mod dxf;
 mod exported;
@@ -10,7 +10,9 @@ pub use exported::Exported;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::CommonOptions;
+use pathwarp::kurbo::Size;
 use pathwarp::param::LengthUnit;
+use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
 use pathwarp_svg::{Document, ReadOptions, compressed};
 use std::path::Path;
 
@@ -63,4 +65,27 @@ pub fn drawing(
     // A DXF is made from the outlines of the document, a PDF from usvg's tree.
     let resolved = if format == Format::Dxf { None } else { there.resolved()? };
     write(&resolved.map_or(Ok(there), |plain| parsed(&plain))?, options, tolerance)
+}
+
+/// GIMP's paths in a format. Sizes are in px. `tolerance` as for [`drawing`].
+pub fn paths(
+    canvas: [f64; 2],
+    paths: &[GimpPath],
+    format: Format,
+    options: &CommonOptions,
+    tolerance: Option<f64>,
+) -> Result<Exported, Failure> {
+    if !matches!(format, Format::PointList | Format::Xcf) {
+        return drawing(to_svg(canvas, paths, None), format, &ReadOptions::default(), options, tolerance);
+    }
+    let scale = options.page_scale(Size::new(canvas[0], canvas[1])).map_or(1.0, |scale| scale.by);
+    let larger = |p: &[f64; 2]| p.map(|v| v * scale);
+    let stroke = |s: &Stroke| Stroke { closed: s.closed, points: s.points.iter().map(larger).collect() };
+    let path = |p: &GimpPath| GimpPath { strokes: p.strokes.iter().map(stroke).collect(), ..p.clone() };
+    let (canvas, paths) = (larger(&canvas), paths.iter().map(path).collect::<Vec<_>>());
+    let bytes = match format {
+        Format::Xcf => new_xcf(canvas.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), &paths),
+        _ => to_json(Some(canvas), &paths).into_bytes(),
+    };
+    Ok(bytes.into())
 }

@@ -10,10 +10,9 @@ use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::budget::Budget;
 use pathwarp::fold::Orientation;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::outline::Subpath;
 use pathwarp::param::{Frame, Letter};
 use pathwarp::recipe::{BuiltParts, Recipe, Step};
-use pathwarp::{Error, Outline, refit};
+use pathwarp::{Error, Outline};
 use pathwarp_svg::Edit;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -43,7 +42,7 @@ pub trait Artwork {
     /// The artwork cannot be edited.
     fn edit_first(&mut self, options: &CommonOptions, _steps: &[Step]) -> Result<(), Failure> {
         if options.edits_first() {
-            return Err(Failure::usage("--simplify and --outset are for SVG drawings"));
+            return Err(Failure::usage("--simplify and --outset are for drawings and GIMP's paths"));
         }
         Ok(())
     }
@@ -166,7 +165,7 @@ pub struct WarpRequest<'a> {
     pub options: &'a CommonOptions,
     /// User units.
     pub tolerance: f64,
-    /// Small contours are held to less; see [`refit::suited`].
+    /// Small contours are held to less; see [`suited`](pathwarp::refit::suited).
     pub suited: bool,
     /// What is done to the artwork instead of bending it.
     pub edit: Option<Edit>,
@@ -174,14 +173,6 @@ pub struct WarpRequest<'a> {
     pub embedded_recipe: Option<String>,
     /// Show the result on the page of the source.
     pub same_view: bool,
-}
-
-impl WarpRequest<'_> {
-    /// The tolerances of an outline's contours.
-    pub(crate) fn contours(&self, o: &Outline) -> Vec<f64> {
-        let own = |s: &Subpath| if self.suited { refit::suited(self.tolerance, s.diagonal()) } else { self.tolerance };
-        o.subpaths.iter().map(own).collect()
-    }
 }
 
 /// The outcome of a warp. Nothing is written yet.

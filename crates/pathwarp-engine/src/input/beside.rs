@@ -73,11 +73,6 @@ pub(super) fn check_surface(built: &BuiltParts) -> Result<(), Failure> {
     }
 }
 
-/// The first parameter that asks for such a file.
-pub(super) fn surface_requested(built: &BuiltRecipe) -> Option<&'static str> {
-    built.steps.iter().filter_map(|s| s.space.as_ref()).find_map(|s| s.files.first()).map(|f| f.param)
-}
-
 /// The files that the recipe's steps ask for, with their text.
 pub(super) fn surface_files(
     doc: &Document,

@@ -1,33 +1,22 @@
-//! GIMP paths as artwork: warped, and written in a format that GIMP reads.
+//! GIMP's paths: read into a drawing, bent like every other, and written from one in a format that GIMP reads.
 
-use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
-use super::beside;
+use super::artwork::WarpedResult;
 use super::files::{display, split_reference};
-use super::gimp_file::{GimpFile, resized};
+use super::gimp_file::GimpFile;
+use super::svg::SvgArtwork;
+use crate::edits::OUTLINE;
 use crate::export::{self, Exported};
 use crate::failure::Failure;
 use crate::format::{Choice, Format};
-use crate::options::{CommonOptions, FrameChoice};
+use crate::options::CommonOptions;
 use crate::output::PendingFile;
-use crate::page::PageNews;
-use crate::report::{Fold, ReportedShape, SkippedShape};
-use pathwarp::budget::{Budget, Limits};
-use pathwarp::edit::{self, Offset};
-use pathwarp::fold::{Orientation, Survey};
-use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::map::{Class, Map, Undeclared};
-use pathwarp::param::Frame;
-use pathwarp::recipe::{BuiltParts, BuiltRecipe, Step};
-use pathwarp::refit::{self, PathReport, SharedEdges};
-use pathwarp::{Error, GeometryError, Outline};
-use pathwarp_gimp::{FileKind, GimpPath, Stroke, to_json, to_svg};
-use pathwarp_svg::{Document, Edit, OnError, ReadOptions, ShapeReport};
-use rayon::prelude::*;
-use std::collections::BTreeSet;
+use crate::report::ReportedShape;
+use pathwarp::budget::Limits;
+use pathwarp::{Error, Outline};
+use pathwarp_gimp::{FileKind, GimpPath, Stroke, rewrite, to_svg};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::sync::Arc;
 
 pub(super) use pathwarp_gimp::{HEAD, may_begin};
 
@@ -36,9 +25,10 @@ pub(super) fn open(
     input: &Path,
     options: &CommonOptions,
     target: Option<&Path>,
-) -> Result<Option<Box<dyn FileArtwork>>, Failure> {
+) -> Result<Option<SvgArtwork>, Failure> {
     let Some(file) = GimpFile::open(input, options.salvage, &options.reading.limits)? else { return Ok(None) };
-    Ok(Some(Box::new(GimpArtwork::new(file, options, target)?)))
+    let format = format(options, &file, target)?;
+    Ok(Some(SvgArtwork::of_paths(GimpPaths::new(file, options)?, format, options)?))
 }
 
 /// The path called `name`, or the only one, of a file; `None` if it is no GIMP file.
@@ -47,334 +37,83 @@ pub fn outline(file: &Path, name: Option<&str>, limits: &Limits) -> Result<Optio
     Ok(Some(name.map_or_else(|| file.only_path(), |name| file.path_named(name))?.outline()))
 }
 
-/// The paths of a GIMP file. Their plane is the canvas, in pixels.
-struct GimpArtwork {
-    file: GimpFile,
-    format: GimpFormat,
-    select: Vec<String>,
-    exclude: Vec<String>,
-    /// The indices of the paths to warp.
-    selected: Vec<usize>,
-    /// The outlines of those paths.
-    outlines: Vec<Outline>,
-    /// For each of those paths, the steps that hold for it; empty if all do.
-    steps: Vec<Vec<usize>>,
-    /// The steps of every part, if the steps divide the paths.
-    parts: Vec<Vec<usize>>,
-    budget: Arc<Budget>,
+/// The paths of a GIMP file that a drawing is made of.
+pub(super) struct GimpPaths {
+    pub(super) file: GimpFile,
+    /// The indices of the paths in the drawing, in its order.
+    chosen: Vec<usize>,
 }
 
-impl GimpArtwork {
-    /// The paths of `file` that the options select.
-    fn new(file: GimpFile, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
-        let format = format(options, &file, target)?;
-        let (select, exclude) = (options.select.clone(), options.exclude.clone());
-        check_names(&file, select.iter().chain(&exclude))?;
-        let size = std::fs::metadata(&file.path).map_or(0, |m| m.len());
-        let limits = options.reading.limits.for_input(usize::try_from(size).unwrap_or(usize::MAX));
-        let budget = Arc::new(Budget::new(limits));
-        Ok(Self {
-            file,
-            format,
-            select,
-            exclude,
-            selected: Vec::new(),
-            outlines: Vec::new(),
-            steps: Vec::new(),
-            parts: Vec::new(),
-            budget,
-        })
-    }
-
-    fn path(&self, i: usize) -> &GimpPath {
-        &self.file.file.paths[i]
-    }
-
-    /// Returns `true` if a path is to be warped: selected, not a guide, and not empty.
-    fn is_selected(&self, p: &GimpPath, guides: &[String]) -> bool {
-        !p.strokes.is_empty()
-            && self.file.only.as_ref().is_none_or(|o| *o == p.name)
-            && holds_for(&self.select, &self.exclude, &p.name)
-            && !guides.contains(&p.name)
-    }
-
-    /// The places among the selected paths of what is meant.
-    fn places(&self, which: Which) -> impl Iterator<Item = usize> {
-        (0..self.selected.len()).filter(move |&i| match (which, self.steps.get(i)) {
-            (Which::All, _) | (_, None) => true,
-            (Which::Step(s), Some(steps)) => steps.contains(&s),
-            (Which::Part(k), Some(steps)) => self.parts[k] == *steps,
-        })
-    }
-
-    /// The index of the part that a selected path is in.
-    fn part(&self, place: usize) -> usize {
-        self.steps.get(place).and_then(|own| self.parts.iter().position(|p| p == own)).unwrap_or(0)
-    }
-
-    /// Writes the warped paths in the format chosen. Returns the result and what the format could not take.
-    fn write(&self, warped: &WarpedPaths, request: &WarpRequest<'_>) -> Result<(WarpedResult, Vec<String>), Failure> {
-        let canvas = self.file.canvas();
-        // Coordinates that have not moved are not rounded.
-        let stays = |b: &BuiltRecipe| {
-            request.edit.is_none() && b.map.class() == Class::Affine(Affine::IDENTITY) && b.placement.copies.is_empty()
+impl GimpPaths {
+    /// The paths that the options select.
+    fn new(file: GimpFile, options: &CommonOptions) -> Result<Self, Failure> {
+        let (select, exclude) = (&options.select, &options.exclude);
+        let name = |selector: &String| selector.strip_prefix('#').unwrap_or(selector).to_owned();
+        select.iter().chain(exclude).try_for_each(|s| file.path_named(&name(s)).map(|_| ()))?;
+        let named = |list: &[String], p: &GimpPath| list.iter().any(|s| name(s) == p.name);
+        let is_chosen = |p: &GimpPath| {
+            !p.strokes.is_empty()
+                && file.only.as_ref().is_none_or(|only| *only == p.name)
+                && (select.is_empty() || named(select, p))
+                && !named(exclude, p)
         };
-        let unmoved = request.built.parts.iter().all(stays);
-        let precision = request.options.precision.or((!unmoved).then(|| {
-            let contours = self.outlines.iter().flat_map(|o| request.contours(o));
-            decimals_for(contours.fold(request.tolerance, f64::min))
-        }));
-        let format = match (self.format, &request.options.into) {
-            (GimpFormat::IntoXcf, Some(copy)) => {
-                let file = copy_with_paths(&self.file.path, copy, &warped.strokes)?;
-                return Ok((WarpedResult::File(file), Vec::new()));
-            }
-            (GimpFormat::Paths(format), _) => format,
-            (GimpFormat::IntoXcf, None) => Format::Svg,
-        };
-        let paths = warped.paths(self);
-        let Exported { bytes, warnings } = match format {
-            Format::PointList => {
-                let (canvas, paths) = resized(canvas, &paths, request.options);
-                to_json(Some(canvas), &paths).into_bytes().into()
-            }
-            drawing => {
-                let svg = to_svg(canvas, &paths, precision);
-                export::drawing(svg, drawing, &ReadOptions::default(), request.options, Some(request.tolerance))?
-            }
-        };
-        Ok((WarpedResult::Bytes(bytes), warnings))
+        let all = file.file.paths.iter().enumerate();
+        let chosen = all.filter(|(_, p)| is_chosen(p)).map(|(i, _)| i).collect();
+        Ok(Self { file, chosen })
     }
 
-    fn preview(&self, warped: &WarpedPaths, built: &BuiltParts, file: (&Path, Option<u8>)) -> Result<Vec<u8>, Failure> {
-        let canvas = self.file.canvas();
-        let before: Vec<GimpPath> = self.selected.iter().map(|&i| self.path(i).clone()).collect();
-        let (before, after) = (to_svg(canvas, &before, None), to_svg(canvas, &warped.paths(self), None));
-        let doc = Document::read(before.as_bytes(), &self.file_name(), &ReadOptions::default())?;
-        beside::preview(&doc, (&after, Affine::IDENTITY), built, &ReadOptions::default(), file)
-    }
-}
-
-impl Artwork for GimpArtwork {
-    fn path_named(&self, name: &str) -> Result<Outline, Error> {
-        Ok(self.file.path_named(name)?.outline())
-    }
-
-    fn remove_guides(&mut self, guides: Vec<String>) {
-        let paths = self.file.file.paths.iter().enumerate();
-        self.selected = paths.filter(|(_, p)| self.is_selected(p, &guides)).map(|(i, _)| i).collect();
-        self.outlines = self.selected.iter().map(|&i| self.path(i).outline()).collect();
-    }
-
-    fn divide(&mut self, steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure> {
-        check_names(&self.file, steps.iter().flat_map(|s| s.select.iter().chain(&s.exclude)))?;
-        let of = |&i: &usize| -> Vec<usize> {
-            let holds = |s: &Step| holds_for(&s.select, &s.exclude, &self.path(i).name);
-            steps.iter().enumerate().filter(|(_, s)| holds(s)).map(|(i, _)| i).collect()
-        };
-        let of_paths: Vec<(usize, Vec<usize>)> = self.selected.iter().map(|i| (*i, of(i))).collect();
-        let held: Vec<_> = of_paths.into_iter().filter(|(_, steps)| !steps.is_empty()).collect();
-        self.outlines = held.iter().map(|(i, _)| self.path(*i).outline()).collect();
-        (self.selected, self.steps) = held.into_iter().unzip();
-        self.parts = self.steps.iter().cloned().collect::<BTreeSet<_>>().into_iter().collect();
-        Ok(self.parts.clone())
-    }
-
-    fn bounding_box(&self, which: Which) -> Option<Rect> {
-        self.places(which).filter_map(|i| self.outlines[i].bounding_box()).reduce(|a, b| a.union(b))
-    }
-
-    fn frame(&self, _: Which, choice: FrameChoice, bounds: Option<Rect>, _: Baseline) -> Result<Frame, Failure> {
-        let [width, height] = self.file.canvas();
-        let canvas = Rect::new(0.0, 0.0, width, height);
-        match choice {
-            FrameChoice::Default | FrameChoice::Artwork => Ok(Frame::new(bounds.unwrap_or(canvas))),
-            FrameChoice::ViewBox => Ok(Frame::new(canvas)),
-            FrameChoice::Rect(r) => Ok(Frame::new(r.rect(self.units_per_px()))),
-            FrameChoice::Lettering(_) => {
-                Err(Failure::usage("--frame: GIMP paths do not store their baseline; give X,Y,W,H"))
-            }
-        }
-    }
-
-    fn budget(&self) -> &Arc<Budget> {
-        &self.budget
-    }
-
-    fn outlines(&self, which: Which) -> Vec<&Outline> {
-        self.places(which).map(|i| &self.outlines[i]).collect()
-    }
-}
-
-impl FileArtwork for GimpArtwork {
-    fn file_name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         display(&self.file.path)
     }
 
-    fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
-        let WarpRequest { built, options, .. } = request;
-        if let Some(param) = beside::surface_requested(&built.whole) {
-            return Err(Failure::usage(format!(
-                "--{param} is for SVG files; convert the paths to SVG first (`pathwarp convert`)"
-            )));
-        }
-        if request.edit == Some(Edit::Outline) {
-            return Err(Failure::usage("GIMP's paths have no strokes that could become outlines"));
-        }
-        let mut warped = self.warp_paths(request)?;
-        let empty = self.selected.is_empty();
-        if empty {
-            warped.warnings.push("there is nothing to warp: no paths with strokes".into());
-        }
-        let (result, lost) = self.write(&warped, request)?;
-        warped.warnings.extend(lost);
-        let preview = options.preview.as_deref().map(|file| self.preview(&warped, built, (file, options.quality)));
-        Ok(WarpedArtwork {
-            filters: Default::default(),
-            result,
-            page: PageNews::default(),
-            tolerance: None,
-            files: Vec::new(),
-            preview: preview.transpose()?,
-            shapes: warped.shapes,
-            skipped: warped.skipped,
-            warnings: warped.warnings,
-            partial: empty || self.file.damage.is_some(),
-        })
-    }
-}
-
-/// The selected paths under the map.
-struct WarpedPaths {
-    /// The new strokes of every selected path, by its index in the file.
-    strokes: Vec<(usize, Vec<Stroke>)>,
-    shapes: Vec<ReportedShape>,
-    skipped: Vec<SkippedShape>,
-    warnings: Vec<String>,
-}
-
-impl WarpedPaths {
-    fn paths(&self, artwork: &GimpArtwork) -> Vec<GimpPath> {
-        let path =
-            |(i, strokes): &(usize, Vec<Stroke>)| GimpPath { strokes: strokes.clone(), ..artwork.path(*i).clone() };
-        self.strokes.iter().map(path).collect()
-    }
-}
-
-/// With fewer segments, starting threads takes longer than the work.
-const WORTH_THREADS: usize = 1000;
-
-/// What bends a part of the paths.
-struct PartBend<'a> {
-    map: &'a dyn Map,
-    places: Vec<Affine>,
-    refit: refit::Options,
-    survey: Survey<'a>,
-    segments: usize,
-}
-
-impl GimpArtwork {
-    fn part_bend<'a>(&self, k: usize, built: &'a BuiltRecipe, request: &WarpRequest<'_>) -> PartBend<'a> {
-        let outlines = || self.places(Which::Part(k)).map(|i| &self.outlines[i]);
-        let contours: Vec<Vec<f64>> = outlines().map(|o| request.contours(o)).collect();
-        let refit = refit::Options::new(request.tolerance)
-            .with_certify(request.options.certify)
-            .with_merge(request.options.merge)
-            .with_budget(Arc::clone(&self.budget))
-            .with_suited(request.suited)
-            .with_shared(Arc::new(SharedEdges::held(outlines().zip(contours.iter().map(Vec::as_slice)))));
-        let copies = &built.placement.copies;
-        let places = if copies.is_empty() { vec![Affine::IDENTITY] } else { copies.clone() };
-        let segments: usize = outlines().map(|o| o.segs().count()).sum();
-        let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), segments);
-        let Some(Edit::Simplify { corner, .. }) = request.edit else {
-            return PartBend { map: &built.map, places, refit, survey, segments };
-        };
-        PartBend { map: &Undeclared, places, refit: refit.with_merge(true).with_corner(corner), survey, segments }
+    /// The drawing, whose user space is the canvas.
+    pub(super) fn drawing(&self) -> String {
+        /// Decimals that tell all numbers from each other.
+        const ALL: u8 = 17;
+        let paths: Vec<GimpPath> = self.chosen.iter().map(|&i| self.file.file.paths[i].clone()).collect();
+        to_svg(self.file.canvas(), &paths, Some(ALL))
     }
 
-    fn warp_paths(&self, request: &WarpRequest<'_>) -> Result<WarpedPaths, Failure> {
-        let WarpRequest { built, options, .. } = request;
-        let bends: Vec<PartBend<'_>> =
-            built.parts.iter().enumerate().map(|(k, b)| self.part_bend(k, b, request)).collect();
-        let segments: usize = bends.iter().map(|b| b.segments).sum();
-        let spent = bends.iter().try_for_each(|b| b.survey.spend(0, b.segments, b.places.len(), &self.budget));
-        spent.map_err(Error::from)?;
-        let warp = |place: usize| {
-            let b = &bends[self.part(place)];
-            let path = self.path(self.selected[place]);
-            let strokes = match request.edit {
-                Some(Edit::Offset(offset)) => moved_strokes(&self.outlines[place], &offset, &b.refit),
-                _ => warp_strokes(path, &b.places, b.map, &b.refit),
-            };
-            let strokes = if matches!(request.edit, Some(Edit::Simplify { .. })) {
-                strokes.map(|w| w.or_fewer(path))
-            } else {
-                strokes
-            };
-            (strokes, b.survey.orientation(&self.outlines[place], false))
-        };
-        let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> = if segments < WORTH_THREADS {
-            (0..self.selected.len()).map(warp).collect()
-        } else {
-            (0..self.selected.len()).into_par_iter().map(warp).collect()
-        };
-
-        // A part that is mirrored does not fold over the others.
-        let mut all = vec![Orientation::default(); bends.len()];
-        for (place, (_, o)) in results.iter().enumerate() {
-            let sum = &mut all[self.part(place)];
-            *sum = sum.and(o);
+    /// The paths of a result. Those that have not changed keep what a drawing has no place for.
+    fn warped(&self, svg: &str) -> Result<Vec<GimpPath>, Failure> {
+        if self.chosen.is_empty() {
+            return Ok(Vec::new());
         }
-        let mut out = WarpedPaths {
-            strokes: Vec::with_capacity(results.len()),
-            shapes: Vec::with_capacity(results.len()),
-            skipped: Vec::new(),
-            warnings: self.file.damage.iter().cloned().collect(),
+        let read = |text: &str| {
+            pathwarp_gimp::read(text.as_bytes()).map_err(|e| Failure::Input(format!("{}: {e}", self.name())))
         };
-        for (place, (&i, (result, orientation))) in self.selected.iter().zip(results).enumerate() {
-            let (path, part) = (self.path(i), self.part(place));
-            match result {
-                Ok(mut warped) => {
-                    let fold = Fold::of(&orientation, &all[part]);
-                    out.warnings.extend(fold.at.map(|at| artwork::fold_warning(&path.name, &[], at)));
-                    if self.format == GimpFormat::IntoXcf {
-                        warped.report.max_error +=
-                            warped.strokes.iter().map(single_precision_error).fold(0.0, f64::max);
-                    }
-                    let steps = self.steps.get(place).map(|all| all.iter().map(|i| i + 1).collect());
-                    let shape = ShapeReport::new(&path.name, bends[part].places.len(), warped.report);
-                    out.shapes.push(ReportedShape { shape, steps, fold });
-                    out.strokes.push((i, warped.strokes));
-                }
-                Err(e) => {
-                    let e = e.on_shape(&path.name);
-                    if options.on_failure.of_shapes() == OnError::Stop {
-                        return Err(Error::Geometry(e).into());
-                    }
-                    out.skipped.push(SkippedShape { id: path.name.clone(), why: e.to_string() });
-                    out.strokes.push((i, path.strokes.clone()));
-                }
-            }
-        }
-        Ok(out)
+        let all = self.chosen.iter().zip(read(&self.drawing())?).zip(read(svg)?);
+        let path = |((i, before), after): ((&usize, GimpPath), GimpPath)| {
+            let source = &self.file.file.paths[*i];
+            let strokes = if before == after { source.strokes.clone() } else { after.strokes };
+            GimpPath { strokes, ..source.clone() }
+        };
+        Ok(all.map(path).collect())
     }
-}
 
-/// Returns `true` if names that are selected and excluded hold for a path.
-fn holds_for(select: &[String], exclude: &[String], path: &str) -> bool {
-    let names = |list: &[String]| list.iter().any(|s| s.strip_prefix('#').unwrap_or(s) == path);
-    (select.is_empty() || names(select)) && !names(exclude)
-}
-
-fn check_names<'a>(file: &GimpFile, mut names: impl Iterator<Item = &'a String>) -> Result<(), Error> {
-    names.try_for_each(|name| file.path_named(name.strip_prefix('#').unwrap_or(name)).map(|_| ()))
-}
-
-/// Number of decimals that keeps rounding below a hundredth of the tolerance.
-fn decimals_for(tolerance: f64) -> u8 {
-    const MOST: f64 = 12.0;
-    (2.0 - tolerance.log10()).ceil().clamp(0.0, MOST) as u8
+    /// Writes the paths of a result, without `guides`: in a format, or into a copy of the XCF. Returns what the format could not take, too.
+    pub(super) fn written(
+        &self,
+        svg: &str,
+        guides: &[String],
+        (format, options, tolerance): (Format, &CommonOptions, f64),
+        shapes: &mut [ReportedShape],
+    ) -> Result<(WarpedResult, Vec<String>), Failure> {
+        let mut paths = self.warped(svg)?;
+        let Some(copy) = &options.into else {
+            paths.retain(|p| !guides.contains(&p.name));
+            let Exported { bytes, warnings } =
+                export::paths(self.file.canvas(), &paths, format, options, Some(tolerance))?;
+            return Ok((WarpedResult::Bytes(bytes), warnings));
+        };
+        for s in shapes {
+            let strokes = paths.iter().filter(|p| p.name == s.shape.id).flat_map(|p| &p.strokes);
+            s.shape.path.max_error += strokes.map(single_precision_error).fold(0.0, f64::max);
+        }
+        let all: Vec<(usize, Vec<Stroke>)> =
+            self.chosen.iter().copied().zip(paths.into_iter().map(|p| p.strokes)).collect();
+        Ok((WarpedResult::File(copy_with_paths(&self.file.path, copy, &all)?), Vec::new()))
+    }
 }
 
 /// Copies the XCF `from` to `copy` with new strokes for some paths.
@@ -382,108 +121,15 @@ fn copy_with_paths(from: &Path, copy: &Path, strokes: &[(usize, Vec<Stroke>)]) -
     let source = File::open(from).map_err(|e| Failure::file(from, format!("cannot be read: {e}")))?;
     PendingFile::with_writer(copy, |file| {
         let mut to = BufWriter::new(file);
-        pathwarp_gimp::rewrite(source, &mut to, strokes).map_err(|e| e.to_string())?;
+        rewrite(source, &mut to, strokes).map_err(|e| e.to_string())?;
         to.flush().map_err(|e| format!("cannot be written: {e}"))
     })
 }
 
-/// A path's strokes under a map.
-pub(super) struct WarpedStrokes {
-    pub(super) strokes: Vec<Stroke>,
-    pub(super) report: PathReport,
-}
-
-impl WarpedStrokes {
-    /// The strokes of `path`, unless these have fewer segments.
-    pub(super) fn or_fewer(self, path: &GimpPath) -> Self {
-        let segments = self.report.segments_in;
-        if self.report.segments_out < segments {
-            return self;
-        }
-        let mut report = PathReport::default();
-        (report.segments_in, report.segments_out) = (segments, segments);
-        Self { strokes: path.strokes.clone(), report }
-    }
-}
-
-/// Warps the strokes of `path`, one copy for each of `places`.
-pub(super) fn warp_strokes(
-    path: &GimpPath,
-    places: &[Affine],
-    map: &dyn Map,
-    options: &refit::Options,
-) -> Result<WarpedStrokes, GeometryError> {
-    let mut out = WarpedStrokes { strokes: Vec::new(), report: PathReport::default() };
-    let segments = |s: &Stroke| if s.closed { s.anchors() } else { s.anchors().saturating_sub(1) };
-    for (place, stroke) in places.iter().flat_map(|p| path.strokes.iter().map(move |s| (*p, s))) {
-        if let Class::Affine(m) = map.class() {
-            // Every control point is kept, including handles that belong to no segment.
-            let m = m * place;
-            out.strokes.push(if m == Affine::IDENTITY { stroke.clone() } else { transformed(stroke, m) });
-            out.report.segments_in += segments(stroke);
-            out.report.segments_out += segments(stroke);
-            continue;
-        }
-        let placed = transformed(stroke, place);
-        let Some(subpath) = placed.subpath() else { continue };
-        if subpath.segs.is_empty() {
-            out.strokes.push(warp_single_anchors(&placed, map)?);
-            continue;
-        }
-        let result = refit::warp_path(&Outline { subpaths: vec![subpath] }, map, options)?;
-        let outline = Outline::from(&result.path);
-        out.strokes.extend(outline.subpaths.iter().map(Stroke::from_subpath));
-        let r = result.report;
-        out.report.segments_in += r.segments_in;
-        out.report.segments_out += r.segments_out;
-        out.report.add(r);
-    }
-    Ok(out)
-}
-
-/// The strokes at a distance from an outline.
-pub(super) fn moved_strokes(
-    outline: &Outline,
-    offset: &Offset,
-    options: &refit::Options,
-) -> Result<WarpedStrokes, GeometryError> {
-    let moved = edit::moved(outline, offset, options, &[])?;
-    let strokes = Outline::from(&moved.path).subpaths.iter().map(Stroke::from_subpath).collect();
-    Ok(WarpedStrokes { strokes, report: moved.report })
-}
-
-fn transformed(stroke: &Stroke, m: Affine) -> Stroke {
-    let points = stroke.points.iter().map(|&[x, y]| m * Point::new(x, y));
-    Stroke { closed: stroke.closed, points: points.map(|p| [p.x, p.y]).collect() }
-}
-
-/// Maps anchors that have no segment, and their handles by the map's derivative.
-fn warp_single_anchors(stroke: &Stroke, map: &dyn Map) -> Result<Stroke, GeometryError> {
-    let mut points = Vec::with_capacity(stroke.points.len());
-    for [incoming, anchor, outgoing] in stroke.triples() {
-        let j = map.jet(anchor);
-        let along = |v: Vec2| j.p + j.dx * v.x + j.dy * v.y;
-        let image = [along(incoming - anchor), j.p, along(outgoing - anchor)];
-        if image.iter().any(|p| !p.is_finite()) {
-            return Err(GeometryError::Infinity { shape: "path".to_owned(), at: anchor });
-        }
-        points.extend(image.map(|p| [p.x, p.y]));
-    }
-    Ok(Stroke { closed: stroke.closed, points })
-}
-
 /// Largest distance by which single precision, in which an XCF stores coordinates, moves a point of the stroke.
-pub(super) fn single_precision_error(s: &Stroke) -> f64 {
+fn single_precision_error(s: &Stroke) -> f64 {
     let off = |v: f64| f64::from(v as f32) - v;
     s.points.iter().map(|&[x, y]| off(x).hypot(off(y))).fold(0.0, f64::max)
-}
-
-/// The form in which warped GIMP paths are written.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum GimpFormat {
-    Paths(Format),
-    /// A copy of the input XCF.
-    IntoXcf,
 }
 
 /// The formats of GIMP paths.
@@ -493,15 +139,18 @@ pub(crate) const PATHS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Fo
 ///
 /// # Errors
 /// The options ask for something that this file cannot be written as.
-pub(super) fn format(options: &CommonOptions, input: &GimpFile, target: Option<&Path>) -> Result<GimpFormat, Failure> {
+fn format(options: &CommonOptions, input: &GimpFile, target: Option<&Path>) -> Result<Format, Failure> {
     if options.embed_recipe {
         return Err(Failure::usage(
             "--embed-recipe is for SVG files; --write-recipe saves the recipe beside the result",
         ));
     }
+    if options.edit.as_ref().is_some_and(|e| e.info == &OUTLINE) {
+        return Err(Failure::usage("GIMP's paths have no strokes that could become outlines"));
+    }
     if let Some(copy) = &options.into {
         check_into(input, copy)?;
-        return Ok(GimpFormat::IntoXcf);
+        return Ok(Format::Svg);
     }
     if target.is_some_and(|t| Format::of(t) == Some(Format::Xcf)) {
         return Err(Failure::usage(
@@ -509,9 +158,8 @@ pub(super) fn format(options: &CommonOptions, input: &GimpFile, target: Option<&
              INPUT.xcf --in-place overwrites the input)",
         ));
     }
-    Ok(GimpFormat::Paths(Choice { what: "GIMP paths are", among: PATHS }.format(target, options.format)?))
+    Choice { what: "GIMP paths are", among: PATHS }.format(target, options.format)
 }
-
 /// Checks that the paths of `input` can be written into its copy.
 fn check_into(input: &GimpFile, copy: &Path) -> Result<(), Failure> {
     let problem = match input.file.kind {

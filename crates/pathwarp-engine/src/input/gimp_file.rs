@@ -2,12 +2,9 @@
 
 use super::files::{is_named_xcf, split_reference};
 use crate::failure::Failure;
-use crate::options::CommonOptions;
 use pathwarp::Error;
 use pathwarp::budget::Limits;
-use pathwarp::kurbo::Size;
-use pathwarp_gimp::{GimpPath, Stroke, sniff};
-use std::borrow::Cow;
+use pathwarp_gimp::{GimpPath, sniff};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -114,13 +111,4 @@ impl GimpFile {
             boxes.fold([1.0, 1.0], |[w, h], b| [w.max(b[2].ceil()), h.max(b[3].ceil())])
         })
     }
-}
-
-/// A canvas of the size that the options ask for, in px, with its paths.
-pub fn resized<'a>(size: [f64; 2], paths: &'a [GimpPath], options: &CommonOptions) -> ([f64; 2], Cow<'a, [GimpPath]>) {
-    let Some(scale) = options.page_scale(Size::new(size[0], size[1])) else { return (size, paths.into()) };
-    let larger = |p: &[f64; 2]| p.map(|v| v * scale.by);
-    let stroke = |s: &Stroke| Stroke { closed: s.closed, points: s.points.iter().map(larger).collect() };
-    let path = |p: &GimpPath| GimpPath { strokes: p.strokes.iter().map(stroke).collect(), ..p.clone() };
-    (larger(&size), paths.iter().map(path).collect())
 }

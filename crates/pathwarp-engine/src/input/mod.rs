@@ -18,7 +18,7 @@ pub use files::{
 };
 pub use gimp::file_name;
 pub use gimp::{outline, svg_name};
-pub use gimp_file::{GimpFile, resized};
+pub use gimp_file::GimpFile;
 pub use svg::SvgArtwork;
 
 use crate::failure::Failure;
@@ -37,7 +37,7 @@ impl Input {
             return Self::of_bytes(&bytes, input, options, target);
         }
         if let Some(paths) = gimp::open(input, options, target)? {
-            return Ok(Self(paths));
+            return Ok(Self(Box::new(paths)));
         }
         if options.into.is_some() {
             let file = display(input);

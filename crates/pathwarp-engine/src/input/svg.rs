@@ -4,6 +4,7 @@ use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedAr
 use super::before::{Edited, Original, Wanted};
 use super::beside;
 use super::files::{display, not_a_drawing, read_options};
+use super::gimp::GimpPaths;
 use crate::bitmap::Bender;
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
@@ -22,7 +23,7 @@ use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
     Document, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
-    Selection, ShapeReport, Strokes, WarpOptions, WarpedDocument,
+    Selection, ShapeReport, Strokes, Structure, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -52,6 +53,8 @@ pub struct SvgArtwork {
     format: Format,
     /// The drawing as it was read, if `doc` is an edited one.
     original: Option<Original>,
+    /// GIMP's paths that the drawing was made of. It has no page and no strokes of its own.
+    paths: Option<GimpPaths>,
 }
 
 impl SvgArtwork {
@@ -70,7 +73,25 @@ impl SvgArtwork {
         meter::count_pixels(doc.budget().taken(Limit::Pixels));
         let selection = selection(options);
         doc.check_selection(&selection)?;
-        Ok(Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format, original: None })
+        Ok(Self::of(doc, name, read, selection, format, None))
+    }
+
+    /// The drawing of GIMP's paths.
+    pub(super) fn of_paths(paths: GimpPaths, format: Format, options: &CommonOptions) -> Result<Self, Failure> {
+        let (name, read) = (paths.name(), options.reading.read_options());
+        let doc = Document::read(paths.drawing().as_bytes(), &name, &read)?;
+        Ok(Self::of(doc, name, read, Selection::default(), format, Some(paths)))
+    }
+
+    fn of(
+        doc: Document,
+        name: String,
+        read: ReadOptions,
+        selection: Selection,
+        format: Format,
+        paths: Option<GimpPaths>,
+    ) -> Self {
+        Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format, original: None, paths }
     }
 
     /// Counts the work from here on anew, for a drawing that is bent again and again.
@@ -224,7 +245,13 @@ impl SvgArtwork {
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
-        request.edit.map_or(warp.clone(), |e| warp.editing(e))
+        let warp = request.edit.map_or(warp.clone(), |e| warp.editing(e));
+        if self.paths.is_none() {
+            return warp;
+        }
+        // Only what the paths are may change.
+        let warp = warp.with_strokes(Strokes::Keep).with_structure(Structure::Auto);
+        warp.with_page(PageFit::None).with_overhang(false)
     }
 
     /// What each step selects.
@@ -390,7 +417,10 @@ fn format(options: &CommonOptions, input: &Path, target: Option<&Path>) -> Resul
 
 impl Artwork for SvgArtwork {
     fn path_named(&self, name: &str) -> Result<Outline, Error> {
-        Ok(self.document().path(name)?.outline)
+        match &self.paths {
+            Some(paths) => Ok(paths.file.path_named(name)?.outline()),
+            None => Ok(self.document().path(name)?.outline),
+        }
     }
 
     fn remove_guides(&mut self, guides: Vec<String>) {
@@ -435,15 +465,16 @@ impl Artwork for SvgArtwork {
     }
 
     fn bounding_box(&self, which: Which) -> Option<Rect> {
-        self.doc.seen_box(self.selection(which))
+        let selection = self.selection(which);
+        if self.paths.is_some() { self.doc.artwork_box(selection) } else { self.doc.seen_box(selection) }
     }
 
     fn painted_box(&self) -> Option<Rect> {
-        self.doc.painted_box(&self.selection)
+        if self.paths.is_some() { self.bounding_box(Which::All) } else { self.doc.painted_box(&self.selection) }
     }
 
     fn uncut_box(&self, which: Which, bounds: Rect) -> Option<Rect> {
-        self.doc.uncut_box(self.selection(which), bounds)
+        if self.paths.is_some() { None } else { self.doc.uncut_box(self.selection(which), bounds) }
     }
 
     fn frame(
@@ -512,9 +543,12 @@ impl FileArtwork for SvgArtwork {
         let WarpRequest { built, options: common, .. } = request;
         let (options, mut warped, tolerance) = self.warped(request)?;
         let page = PageNews::of(&mut warped, common.page, self.stays(request));
-        let (shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;
+        let (mut shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;
         let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
         warnings.extend(self.original.iter().flat_map(|o| &o.warnings).cloned());
+        let damage = self.paths.as_ref().and_then(|p| p.file.damage.clone());
+        let is_damaged = damage.is_some();
+        warnings.extend(damage);
         let empty = !self.doc.has_artwork(&self.selection);
         if empty {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
@@ -536,16 +570,25 @@ impl FileArtwork for SvgArtwork {
         let preview = common.preview.as_deref();
         let shown = (warped.svg.as_str(), warped.back.unwrap_or_default());
         let preview = preview.map(|file| beside::preview(&self.doc, shown, built, &self.read, (file, common.quality)));
-        let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
-        warnings.extend(result.warnings);
+        let (result, lost) = match &self.paths {
+            Some(paths) => {
+                let guides = &self.selection.guides;
+                paths.written(&warped.svg, guides, (self.format, common, tolerance), &mut shapes)?
+            }
+            None => {
+                let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
+                (WarpedResult::Bytes(result.bytes), result.warnings)
+            }
+        };
+        warnings.extend(lost);
         Ok(WarpedArtwork {
-            result: WarpedResult::Bytes(result.bytes),
+            result,
             shapes,
             skipped: warped.skipped.into_iter().map(Into::into).collect(),
             warnings,
             files,
             preview: preview.transpose()?,
-            partial: empty,
+            partial: empty || is_damaged,
             page,
             filters: warped.filters,
             tolerance: Some(tolerance),
