@@ -2,7 +2,6 @@
 
 use pathwarp::recipe::Recipe;
 use pathwarp_engine::failure::Failure;
-use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::output::{Draft, PendingFile};
 use pathwarp_engine::readable;
 use pathwarp_engine::report::FileReport;
@@ -49,14 +48,8 @@ pub(crate) struct ReportFile {
 
 impl ReportFile {
     /// Starts the report of a run of `recipe`.
-    pub(crate) fn new(
-        mut draft: Draft,
-        recipe: &Recipe,
-        options: &CommonOptions,
-        started: Instant,
-    ) -> Result<Self, Failure> {
-        let deformations = || recipe.steps.iter().map(|s| s.deformation.as_str()).collect();
-        let steps: Vec<&str> = options.edit.as_ref().map_or_else(deformations, |e| vec![e.info.name]);
+    pub(crate) fn new(mut draft: Draft, recipe: &Recipe, started: Instant) -> Result<Self, Failure> {
+        let steps: Vec<&str> = recipe.steps.iter().map(|s| s.deformation.as_str()).collect();
         let head = [
             ("tool", json(&"pathwarp")?),
             ("version", json(&env!("CARGO_PKG_VERSION"))?),

@@ -7,6 +7,7 @@ use pathwarp::deform::Info;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 use pathwarp_engine::catalogue::Catalogue;
+use pathwarp_engine::edits::{self, EDITS};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::Given;
 use pathwarp_engine::steps::{INVERSE, assign, in_lower_case};
@@ -49,7 +50,8 @@ fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Resul
         .disable_help_flag(true)
         .disable_help_subcommand(true)
         .subcommand_required(true);
-    for info in catalogue.infos() {
+    let edits = EDITS.iter().filter(|_| !catalogue.is_solid());
+    for info in catalogue.infos().into_iter().chain(edits) {
         c = c.subcommand(
             Command::new(info.name).aliases(aliases(info.name)).about(info.title).args(args(info)).args(options),
         );
@@ -63,12 +65,14 @@ const HEADING: &str = "Options";
 
 /// The parameters of a deformation as clap arguments, without the common options.
 pub(crate) fn args(info: &Info) -> impl Iterator<Item = Arg> {
-    let inverse = Arg::new(INVERSE)
-        .long(INVERSE)
-        .action(ArgAction::SetTrue)
-        .help_heading(HEADING)
-        .help("Apply the inverse map, if there is one (give --frame: percentages refer to the source's box)");
-    info.params.iter().map(param_arg).chain([inverse])
+    let inverse = edits::info(info.name).is_none().then(|| {
+        Arg::new(INVERSE)
+            .long(INVERSE)
+            .action(ArgAction::SetTrue)
+            .help_heading(HEADING)
+            .help("Apply the inverse map, if there is one (give --frame: percentages refer to the source's box)")
+    });
+    info.params.iter().map(param_arg).chain(inverse)
 }
 
 pub(crate) fn param_arg(p: &Param) -> Arg {
@@ -94,7 +98,8 @@ pub(crate) fn param_arg(p: &Param) -> Arg {
 /// The step that the parsed subcommand of the deformation `name` asks for.
 pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Step {
     let args = param_values(catalogue.info(name).map_or(&[][..], |i| i.params), m);
-    Step { inverse: m.get_flag(INVERSE), ..Step::new(name, args) }
+    let inverse = m.try_get_one(INVERSE).is_ok_and(|given| given == Some(&true));
+    Step { inverse, ..Step::new(name, args) }
 }
 
 /// The values that a parsed command line gives for parameters.

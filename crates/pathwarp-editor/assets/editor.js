@@ -1544,7 +1544,7 @@
     bend: "text on path words on a line badge seal",
     arc: "text on a circle badge",
     simplify: "smooth clean up fewer nodes traced",
-    outset: "offset outline grow bolder thicker inset shrink thinner"
+    offset: "outset outline grow bolder thicker inset shrink thinner"
   };
   var Gallery = class {
     constructor(app2) {

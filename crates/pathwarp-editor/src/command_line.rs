@@ -2,6 +2,7 @@
 
 use pathwarp::deform::Registry;
 use pathwarp::recipe::{Recipe, Step};
+use pathwarp_engine::catalogue::Catalogue as _;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -21,7 +22,7 @@ pub(crate) fn command_line(
         if first {
             let _ = write!(line, " {}", quoted(&source.display().to_string()));
         }
-        let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+        let params = registry.info(&step.deformation).map_or(&[][..], |info| info.params);
         for (name, value) in step.options(params) {
             let _ = write!(line, " --{name}");
             if let Some(value) = value {

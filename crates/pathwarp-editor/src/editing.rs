@@ -5,22 +5,24 @@ use crate::words::Words;
 use pathwarp::Outline;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::Rect;
-use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp::param::Args;
+use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp_engine::advice::Flags;
 use pathwarp_engine::bitmap::{background, encode};
+use pathwarp_engine::edits::EDITS;
 use pathwarp_engine::export::Exported;
 use pathwarp_engine::failure::Failure;
-use pathwarp_engine::first_steps::First;
 use pathwarp_engine::format::{Choice, DRAWINGS, Format, PICTURES};
 use pathwarp_engine::framed::framed;
 use pathwarp_engine::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which};
 use pathwarp_engine::lettering::set_plainly;
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::output::PendingFile;
+use pathwarp_engine::recipe_file::SavedRecipe;
 use pathwarp_engine::report::ReportedShape;
 use pathwarp_engine::session::{Framed, Ready, Session};
 use pathwarp_engine::steps::OF_STEPS;
-use pathwarp_engine::{coming_from, first_steps, recipe_file, references};
+use pathwarp_engine::{coming_from, recipe_file, references};
 use pathwarp_raster::{Picture, RenderOptions, Size};
 use pathwarp_svg::{Document, Origin, ReadOptions, Turned, families, usvg_tree};
 use pathwarp_text::TextStyle;
@@ -41,9 +43,8 @@ struct EditedArtwork {
     plugins: Vec<(String, String)>,
     /// The folder of the drawing, where its results go.
     folder: PathBuf,
-    /// The frame for the guides and the baseline of the last picture, and what was done before bending.
+    /// The frame of the last picture.
     framed: Option<Framed>,
-    first: First,
 }
 
 impl EditedArtwork {
@@ -65,7 +66,6 @@ impl EditedArtwork {
             plugins: Vec::new(),
             folder: PathBuf::new(),
             framed: None,
-            first: Vec::new(),
         }
     }
 
@@ -84,14 +84,9 @@ impl EditedArtwork {
         is_file: bool,
         work: impl FnOnce(&Session<'_>, &mut SvgArtwork, Ready) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
-        let (mut resolved, given, first) = self.told(recipe)?;
+        let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        if self.first != first {
-            (self.framed, self.first) = (None, first);
-            self.options = given.read()?;
-        }
-        let given = &given;
-        let Self { svg, shown, registry, options, framed, .. } = self;
+        let Self { svg, shown, registry, given, options, framed, .. } = self;
         let svg = shown.as_mut().filter(|_| !is_file).unwrap_or(svg);
         svg.renew_budget();
         svg.restore(options);
@@ -100,40 +95,21 @@ impl EditedArtwork {
         work(&session, svg, ready)
     }
 
-    /// The steps and options as the command line has them.
-    fn told(&self, recipe: &Recipe) -> Result<(Recipe, Given, First), Failure> {
-        let (recipe, first) = first_steps::taken(recipe);
-        let mut given = self.given.clone();
-        for (name, value) in &first {
-            given.set(name, value).map_err(Failure::Usage)?;
-        }
-        Ok((recipe, given, first))
-    }
-
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
-        let told = first_steps::taken(recipe).0;
-        self.with_steps(recipe, false, |session, svg, ready| bent(session, svg, ready, &told, fineness))
+        self.with_steps(recipe, false, |session, svg, ready| bent(session, svg, ready, recipe, fineness))
     }
 
     /// The result as a file of this format; for a picture, as the SVG that it is drawn from.
     fn finished(&mut self, recipe: &Recipe, format: Format) -> Result<Exported, Failure> {
-        let (told, folder) = (first_steps::taken(recipe).0, self.folder.clone());
+        let folder = self.folder.clone();
         self.with_steps(recipe, true, |session, svg, ready| {
             let embeds = matches!(format, Format::Svg | Format::Svgz);
             let text = || {
-                let (line, given) = on_a_line(&told, session.given)?;
+                let (line, given) = on_a_line(recipe, session.given)?;
                 recipe_file::write(session.registry, &line, &given, &folder)
             };
-            let request = WarpRequest {
-                recipe: &told,
-                built: &ready.built,
-                options: session.options,
-                tolerance: session.tolerance(svg, &ready.frame)?,
-                suited: session.options.tolerance.is_none(),
-                embedded_recipe: embeds.then(text).transpose()?,
-                same_view: false,
-                edit: None,
-            };
+            let embedded_recipe = embeds.then(text).transpose()?;
+            let request = WarpRequest { recipe, embedded_recipe, ..session.request(svg, &ready)? };
             svg.set_format(if format.of_picture(None).is_none() { format } else { Format::Svg });
             let written = svg.written(&request);
             svg.set_format(Format::Svg);
@@ -169,6 +145,19 @@ impl EditedArtwork {
     }
 }
 
+/// Turns the options that stand for edits into steps, where the page has them.
+fn put_edits(saved: &mut SavedRecipe) -> Result<(), Failure> {
+    let mut edits = saved.options.read()?.edits;
+    ["simplify", "outset"].iter().for_each(|name| drop(saved.options.take(name)));
+    let exclude = saved.recipe.steps.first().map(|s| s.exclude.clone()).unwrap_or_default();
+    edits.iter_mut().for_each(|s| s.exclude.clone_from(&exclude));
+    // Once, edits alone stood beside a step that moves nothing.
+    let is_still = |s: &Step| *s == Step { exclude: exclude.clone(), ..Step::new("affine", Args::new()) };
+    let is_alone = !edits.is_empty() && matches!(&*saved.recipe.steps, [only] if is_still(only));
+    saved.recipe.steps.splice(0..usize::from(is_alone), edits);
+    Ok(())
+}
+
 /// What selects the whole drawing.
 const WHOLE: &str = "svg";
 
@@ -194,19 +183,9 @@ fn bent(
     given: &Recipe,
     fineness: Fineness,
 ) -> Result<Bent, Failure> {
-    let exact = session.tolerance(svg, &ready.frame)?;
-    let is_draft = matches!(fineness, Fineness::Draft(_));
-    let request = WarpRequest {
-        recipe: given,
-        built: &ready.built,
-        options: session.options,
-        tolerance: if let Fineness::Draft(draft) = fineness { draft.max(exact) } else { exact },
-        suited: session.options.tolerance.is_none() && !is_draft,
-        embedded_recipe: None,
-        same_view: true,
-        edit: None,
-    };
-    if is_draft {
+    let mut request = WarpRequest { recipe: given, same_view: true, ..session.request(svg, &ready)? };
+    if let Fineness::Draft(draft) = fineness {
+        (request.tolerance, request.suited) = (draft.max(request.tolerance), false);
         let (svg, page) = ready.checked(svg.draft(&request))?;
         let Ready { recipe: resolved, built, .. } = ready;
         return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
@@ -272,15 +251,14 @@ impl Artwork for EditedArtwork {
         self.said(settled)
     }
 
-    fn as_told(&self, recipe: &Recipe) -> Result<(Recipe, Vec<(String, String)>), String> {
-        let (recipe, given, _) = self.said(self.told(recipe))?;
-        let stored = given.stored().flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v)));
-        let options = stored.chain(self.plugins.iter().cloned()).collect();
-        Ok((recipe, options))
+    fn options(&self) -> Vec<(String, String)> {
+        let stored = self.given.stored();
+        let stored = stored.flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v)));
+        stored.chain(self.plugins.iter().cloned()).collect()
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
-        let told = self.told(recipe).and_then(|(recipe, given, _)| on_a_line(&recipe, &given));
+        let told = on_a_line(recipe, &self.given);
         self.said(told.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, &self.folder)))
     }
 }
@@ -339,7 +317,7 @@ impl EngineHost {
                     OF_STEPS.iter().for_each(|(option, of)| of(step).extend(saved.options.take(option)));
                 }
                 saved.recipe.steps.iter_mut().filter(|s| s.select == [WHOLE]).for_each(|s| s.select.clear());
-                first_steps::put(&mut saved.recipe, |name| saved.options.take(name).pop());
+                put_edits(&mut saved)?;
                 (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given))
             }
             None => (Recipe::default(), self.usual.overridden_by(&self.given)),
@@ -368,7 +346,7 @@ impl Host for EngineHost {
     }
 
     fn first(&self) -> &[Info] {
-        &first_steps::FIRST
+        &EDITS[..2]
     }
 
     fn foreign_words(&self) -> Vec<(&str, &str)> {
@@ -397,5 +375,30 @@ impl Host for EngineHost {
 
     fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String> {
         self.said(PendingFile::new(to, bytes).and_then(|file| PendingFile::commit_all(vec![file])))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Files of earlier programs have options for edits, and a step that moves nothing beside edits alone.
+    #[test]
+    fn edits_saved_as_options_become_steps() {
+        let opened = |step: &str| {
+            let text = format!(
+                "pathwarp = 1\n[options]\noutset = \"-1%\"\nsimplify = \"0.2mm\"\n[[step]]\n{step}\nexclude = [\"#a\"]"
+            );
+            let mut saved = recipe_file::from_text(&Registry::builtin(), &text, Path::new(""), false).unwrap();
+            put_edits(&mut saved).unwrap();
+            assert!(saved.options.read().unwrap().edits.is_empty());
+            assert!(saved.recipe.steps.iter().all(|s| s.exclude == ["#a"]));
+            let all = saved.recipe.steps.into_iter().map(|s| (s.deformation, s.args));
+            all.map(|(name, args)| format!("{name} {:?}", args.iter().collect::<Vec<_>>())).collect::<Vec<_>>()
+        };
+        let edits = [r#"simplify [("within", ["0.2mm"])]"#, r#"offset [("by", ["1%"]), ("side", ["inside"])]"#];
+        assert_eq!(opened("deformation = \"affine\""), edits);
+        let bent = opened("deformation = \"affine\"\nrotate = 9");
+        assert!(bent.len() == 3 && bent[..2] == edits && bent[2].starts_with("affine"));
     }
 }

@@ -139,11 +139,8 @@ pub trait Artwork: Send {
     /// A step cannot be built.
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String>;
 
-    /// The steps that the command line would need for the same result, and the options by name, without those of the steps.
-    ///
-    /// # Errors
-    /// A value is wrong.
-    fn as_told(&self, recipe: &Recipe) -> Result<(Recipe, Vec<(String, String)>), String>;
+    /// The options that the command line would need for the same result beside those of the steps, by name.
+    fn options(&self) -> Vec<(String, String)>;
 
     /// The text of a recipe file with these steps.
     ///

@@ -615,7 +615,7 @@ impl Session {
     /// for that.
     pub(crate) fn command_line(&self, target: &Target) -> Result<Value, String> {
         let to = self.place(target)?;
-        let (given, mut options) = self.opened.artwork.as_told(&recipe(&self.kept.now.steps))?;
+        let (given, mut options) = (recipe(&self.kept.now.steps), self.opened.artwork.options());
         let (source, before, written) = self.source()?;
         let name = to.display().to_string();
         let line = |options: &[(String, String)], out: &Path| {

@@ -1,13 +1,25 @@
 //! Advice in flags, added to the errors and warnings of the libraries, which know no command line.
 
 use crate::catalogue::Catalogue;
-use crate::readable::three_figures;
+use crate::readable::{listed, three_figures};
 use pathwarp::budget::Exceeded;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Kind;
 use pathwarp::{Error, GeometryError};
-use pathwarp_svg::{LetteringFrameError, UnreadImages, Warning};
+use pathwarp_svg::{LetteringFrameError, ShapeReport, UnreadImages, Warning};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// The error of edits of a picture.
+pub(crate) const NO_PATHS_TO_EDIT: &str =
+    "edits (simplify, offset, outline, --simplify, --outset) work on paths; a picture has none";
+
+/// The warning about shapes of which an edit leaves nothing.
+pub(crate) fn vanished<'a>(shapes: impl Iterator<Item = &'a ShapeReport>) -> Option<String> {
+    const NAMED: usize = 5;
+    let gone = shapes.filter(|s| s.path.segments_in > 0 && s.path.segments_out == 0);
+    let gone: Vec<&str> = gone.map(|s| s.id.as_str()).collect();
+    (!gone.is_empty()).then(|| format!("nothing is left of {}: narrower than the distance", listed(&gone, NAMED)))
+}
 
 /// The message of an error of the libraries: parameters as flags, with the options that help.
 pub(crate) fn error(e: &Error, flags: &Flags) -> String {

@@ -1,5 +1,6 @@
 //! Descriptions of deformations, of the plane or of space: all that reading a command line or a recipe needs of a registry.
 
+use crate::edits;
 use pathwarp::deform::{Info, Registry};
 use pathwarp_solid::deform::Registry3;
 
@@ -8,7 +9,7 @@ pub trait Catalogue {
     /// The descriptions, in the order of help.
     fn infos(&self) -> Vec<&Info>;
 
-    /// The description of the deformation called `name`.
+    /// The description of the deformation called `name`; of the plane, also of an edit.
     fn info(&self, name: &str) -> Option<&Info>;
 
     /// Returns `true` if the deformations are those of space.
@@ -21,7 +22,7 @@ impl Catalogue for Registry {
     }
 
     fn info(&self, name: &str) -> Option<&Info> {
-        self.get(name).map(|e| e.info())
+        self.get(name).map(|e| e.info()).or_else(|| edits::info(name))
     }
 
     fn is_solid(&self) -> bool {

@@ -29,7 +29,6 @@ mod embed;
 pub mod export;
 pub mod failure;
 mod filters;
-pub mod first_steps;
 pub mod format;
 pub mod framed;
 pub mod input;

@@ -2,9 +2,11 @@
 //! command line, the editor, Inkscape and other languages all take it.
 
 use crate::advice::{self, Flags};
-use crate::edits::SIMPLIFY;
+use crate::edits;
 use crate::failure::Failure;
-use crate::input::{Artwork, Baseline, FileArtwork, Input, WarpRequest, WarpedResult, Which, display};
+use crate::input::{
+    Artwork, Baseline, FileArtwork, Input, Planned, WarpRequest, WarpedResult, Which, display, planned,
+};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
 use crate::page::PageNews;
@@ -35,20 +37,21 @@ pub struct Session<'a> {
 
 /// Steps that are built for some artwork.
 pub struct Ready {
-    /// The steps, with all references looked up.
+    /// The steps that bend, with all references looked up.
     pub recipe: Recipe,
+    /// The edit that is done if there are none.
+    edit: Option<Step>,
     /// The maps of all parts of the artwork.
     pub built: BuiltParts,
     /// The frame of the first step.
     pub frame: Frame,
-    /// The frames of the steps whose artwork no other step has moved before.
+    /// The frames of the steps, or of the edit, whose artwork no other step has moved before.
     starts: Vec<Option<Frame>>,
 }
 
-/// The frame of all artwork without these guides, for a step with this baseline.
+/// The frame of all artwork, and what it depends on: the guides, the edits that are done first, and the baseline of the next step.
 pub struct Framed {
-    guides: Vec<String>,
-    baseline: Baseline,
+    of: (Vec<String>, Vec<Step>, Baseline),
     /// The box that percentages refer to.
     pub frame: Frame,
 }
@@ -104,23 +107,36 @@ impl Session<'_> {
         let mut recipe = self.recipe.clone();
         let guides = references::resolve_names(self.registry, &mut recipe, |name| artwork.path_named(name))?;
         artwork.remove_guides(guides.clone());
-        artwork.edit_first(self.options, &recipe.steps)?;
-        let known = framed.map(|cache| self.framed(artwork, guides, cache)).transpose()?;
-        let is_selective = recipe.steps.iter().any(Step::is_selective);
-        let parts = if is_selective { artwork.divide(&recipe.steps)? } else { vec![(0..recipe.steps.len()).collect()] };
+        let (own, recipe) = edits::divided(&recipe)?;
+        let mut first = [&self.options.edits[..], &own].concat();
+        let edit = first.pop_if(|_| recipe.steps.is_empty());
+        let steps = edit.as_ref().map_or(&recipe.steps[..], std::slice::from_ref);
+        artwork.edit_first(&first, steps, self.options)?;
+        let baseline_of = |s: &Step| baseline(self.registry, s);
+        let baseline = steps.first().map_or(Baseline::None, baseline_of);
+        let known = framed.map(|cache| self.framed(artwork, (guides, first, baseline), cache)).transpose()?;
+        let is_selective = steps.iter().any(Step::is_selective);
+        let mut parts = if is_selective { artwork.divide(steps)? } else { vec![(0..steps.len()).collect()] };
+        if edit.is_some() {
+            parts.iter_mut().for_each(Vec::clear);
+        }
         let portion = |(k, steps): (usize, Vec<usize>)| Portion { steps, outlines: artwork.outlines(Which::Part(k)) };
         let portions: Vec<Portion<'_>> = parts.into_iter().enumerate().map(portion).collect();
         let start = |i: usize| match &known {
             _ if !recipe.starts(i, &portions) => Ok(None),
             Some(frame) if !is_selective => Ok(Some(frame.clone())),
-            _ => self.frame(artwork, Which::Step(i), baseline(self.registry, &recipe.steps[i])).map(Some),
+            _ => self.frame(artwork, Which::Step(i), baseline_of(&recipe.steps[i])).map(Some),
         };
         let starts: Vec<Option<Frame>> = (0..recipe.steps.len()).map(start).collect::<Result<_, Failure>>()?;
         let built = recipe.build_parts(self.registry, &starts, &portions, artwork.budget());
         let built = built.map_err(Failure::of_recipe)?;
         sound(&built)?;
-        let first = known.or_else(|| starts.iter().flatten().next().cloned());
-        Ok(Ready { recipe, built, frame: first.unwrap_or_else(|| Frame::new(Rect::ZERO)), starts })
+        let frame = match known.or_else(|| starts.iter().flatten().next().cloned()) {
+            Some(frame) => frame,
+            None => self.frame(artwork, Which::All, Baseline::None)?,
+        };
+        let starts = if edit.is_some() { vec![Some(frame.clone())] } else { starts };
+        Ok(Ready { recipe, edit, built, frame, starts })
     }
 
     /// The frame of some of the artwork.
@@ -133,20 +149,31 @@ impl Session<'_> {
         })
     }
 
-    /// The frame of all artwork, as the last time if guides and baseline are the same.
-    fn framed(&self, artwork: &dyn Artwork, guides: Vec<String>, cache: &mut Option<Framed>) -> Result<Frame, Failure> {
-        let baseline = self.recipe.steps.first().map_or(Baseline::None, |s| baseline(self.registry, s));
-        if let Some(framed) = cache.as_ref().filter(|f| f.guides == guides && f.baseline == baseline) {
+    /// The frame of all artwork, as the last time if what it depends on is the same.
+    fn framed(
+        &self,
+        artwork: &dyn Artwork,
+        of: (Vec<String>, Vec<Step>, Baseline),
+        cache: &mut Option<Framed>,
+    ) -> Result<Frame, Failure> {
+        if let Some(framed) = cache.as_ref().filter(|f| f.of == of) {
             return Ok(framed.frame.clone());
         }
-        let frame = self.frame(artwork, Which::All, baseline)?;
-        *cache = Some(Framed { guides, baseline, frame: frame.clone() });
+        let frame = self.frame(artwork, Which::All, of.2)?;
+        *cache = Some(Framed { of, frame: frame.clone() });
         Ok(frame)
     }
 
-    /// The tolerance for artwork of this frame, in user units.
-    pub fn tolerance(&self, artwork: &dyn Artwork, frame: &Frame) -> Result<f64, Failure> {
-        self.options.tolerance_for(artwork.painted_box(), frame)
+    /// The warp of artwork by steps that are built for it, with the tolerance for its frame.
+    pub fn request<'r>(&'r self, artwork: &dyn Artwork, ready: &'r Ready) -> Result<WarpRequest<'r>, Failure> {
+        let (options, painted) = (self.options, artwork.painted_box());
+        let edit = ready.edit.as_ref().map(|step| planned(step, options, (painted, &ready.frame), true));
+        let (edit, tolerance, suited) = match edit.transpose()? {
+            Some(Planned { edit, tolerance, suited }) => (Some(edit), tolerance, suited),
+            None => (None, options.tolerance_for(painted, &ready.frame)?, options.tolerance.is_none()),
+        };
+        let (recipe, built) = (self.recipe, &ready.built);
+        Ok(WarpRequest { recipe, built, options, tolerance, suited, edit, embedded_recipe: None, same_view: false })
     }
 
     /// Warps artwork, and writes nothing. Messages of the steps get parameters as flags.
@@ -156,25 +183,17 @@ impl Session<'_> {
         let Ready { built, frame: first, starts, .. } = &ready;
         let whole = &built.whole;
         let seen = artwork.bounding_box(Which::All).is_some();
-        let tolerance = self.tolerance(artwork, first)?;
         let stretched = stretched(artwork, built);
-        let embed = || recipe_file::write(self.registry, &ready.recipe, self.given, Path::new(""));
-        let request = WarpRequest {
-            recipe: self.recipe,
-            built,
-            options,
-            tolerance,
-            suited: options.tolerance.is_none(),
-            edit: options.edit.as_ref().map(|e| e.read(first)).transpose()?,
-            embedded_recipe: options.embed_recipe.then(embed).transpose()?,
-            same_view: false,
-        };
+        let embed = || recipe_file::write(self.registry, self.recipe, self.given, Path::new(""));
+        let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
+        let request = WarpRequest { embedded_recipe, ..self.request(artwork, &ready)? };
+        let tolerance = request.tolerance;
         let warped = ready.checked(artwork.warp(&request))?;
 
         let mut warnings: Vec<String> = in_flags(flags, whole, |e| &e.warnings).chain(warped.warnings).collect();
         warnings.extend(stretched);
         warnings.extend(warped.page.warnings());
-        warnings.extend(self.vanished(&warped.shapes));
+        warnings.extend(ready.edit.as_ref().and_then(|_| vanished(&warped.shapes)));
         let coarse = too_coarse(options.precision, &warped.shapes);
         let is_coarse = coarse.is_some();
         warnings.extend(coarse);
@@ -192,7 +211,9 @@ impl Session<'_> {
             warnings,
         };
         let partial = warped.partial || is_coarse || report.is_partial();
-        let mut notes = self.notes(flags, whole, &frames(options.frame, &ready.recipe, starts, seen), &report.shapes);
+        let is_simplified = ready.edit.as_ref().is_some_and(|e| e.deformation == "simplify") && !options.quiet;
+        let mut notes: Vec<String> = is_simplified.then(|| simplified(&report.shapes)).into_iter().collect();
+        notes.extend(self.notes(flags, whole, &frames(options.frame, ready.steps(), starts, seen), &report.shapes));
         notes.extend(filters(&warped.filters).filter(|_| self.options.explain));
         Ok(Warped {
             result: warped.result,
@@ -208,39 +229,30 @@ impl Session<'_> {
 
     /// The decisions made on the user's behalf.
     fn notes(&self, flags: &Flags, built: &BuiltRecipe, framed: &[String], shapes: &[ReportedShape]) -> Vec<String> {
-        let mut notes: Vec<String> = self.simplified(shapes).into_iter().collect();
         if !self.options.explain {
-            return notes;
+            return Vec::new();
         }
-        notes.extend_from_slice(framed);
+        let mut notes = framed.to_vec();
         notes.extend(in_flags(flags, built, |e| &e.notes));
         notes.extend(strokes(shapes));
         notes.extend(pictures(shapes));
         notes
     }
+}
 
-    /// The numbers of nodes before and after, and the largest error, if that is what the run is for.
-    fn simplified(&self, shapes: &[ReportedShape]) -> Option<String> {
-        let asked = self.options.edit.as_ref().is_some_and(|e| e.info == &SIMPLIFY) && !self.options.quiet;
-        let sum = |of: fn(&ReportedShape) -> usize| shapes.iter().map(of).sum::<usize>();
-        let (before, after) = (sum(|s| s.shape.path.segments_in), sum(|s| s.shape.path.segments_out));
-        let error = shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max);
-        let error =
-            if (1e-3..1e4).contains(&error) || error == 0.0 { format!("{error:.3}") } else { format!("{error:.2e}") };
-        asked.then(|| format!("{before} nodes became {after}, within {error} units of the original"))
-    }
+/// The numbers of nodes before and after, and the largest error.
+fn simplified(shapes: &[ReportedShape]) -> String {
+    let sum = |of: fn(&ReportedShape) -> usize| shapes.iter().map(of).sum::<usize>();
+    let (before, after) = (sum(|s| s.shape.path.segments_in), sum(|s| s.shape.path.segments_out));
+    let error = shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max);
+    let error =
+        if (1e-3..1e4).contains(&error) || error == 0.0 { format!("{error:.3}") } else { format!("{error:.2e}") };
+    format!("{before} nodes became {after}, within {error} units of the original")
+}
 
-    /// The warning about shapes of which nothing is left.
-    fn vanished(&self, shapes: &[ReportedShape]) -> Option<String> {
-        const NAMED: usize = 5;
-        self.options.edit.as_ref()?;
-        let gone: Vec<&str> = shapes
-            .iter()
-            .filter(|s| s.shape.path.segments_in > 0 && s.shape.path.segments_out == 0)
-            .map(|s| s.shape.id.as_str())
-            .collect();
-        (!gone.is_empty()).then(|| format!("nothing is left of {}: narrower than the distance", listed(&gone, NAMED)))
-    }
+/// The warning about shapes of which nothing is left.
+fn vanished(shapes: &[ReportedShape]) -> Option<String> {
+    advice::vanished(shapes.iter().map(|s| &s.shape))
 }
 
 /// Messages of all steps, with parameters as flags.
@@ -267,14 +279,14 @@ fn selections(recipe: &Recipe, built: &BuiltRecipe) -> Vec<StepSelection> {
 }
 
 /// The notes about the frames of the steps that start.
-fn frames(choice: FrameChoice, recipe: &Recipe, starts: &[Option<Frame>], seen: bool) -> Vec<String> {
-    let several = recipe.steps.iter().any(Step::is_selective);
+fn frames(choice: FrameChoice, steps: &[Step], starts: &[Option<Frame>], seen: bool) -> Vec<String> {
+    let several = steps.iter().any(Step::is_selective);
     let note = |(i, (step, frame)): (usize, (&Step, &Option<Frame>))| {
         let note = frame_note(choice, frame.as_ref()?, seen);
         let of = if step.select.is_empty() { String::new() } else { format!(" for {}", step.select.join(", ")) };
         Some(if several { format!("step {}, {}{of}: {note}", i + 1, step.deformation) } else { note })
     };
-    recipe.steps.iter().zip(starts).enumerate().filter_map(note).collect()
+    steps.iter().zip(starts).enumerate().filter_map(note).collect()
 }
 
 /// The frame: the box, and the reason for it. `seen` is `true` if any artwork is visible.
@@ -314,6 +326,11 @@ fn strokes(shapes: &[ReportedShape]) -> Option<String> {
 }
 
 impl Ready {
+    /// The steps that bend, or else the last edit.
+    fn steps(&self) -> &[Step] {
+        self.edit.as_ref().map_or(&self.recipe.steps[..], std::slice::from_ref)
+    }
+
     /// The outcome of a warp. The map of a plug-in may fail at any time; nothing that was computed with it is used then, not even another
     /// error. To an error where the map is undefined it adds which operation is, if a step can say so.
     pub fn checked<T>(&self, outcome: Result<T, Failure>) -> Result<T, Failure> {

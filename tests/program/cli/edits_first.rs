@@ -48,6 +48,44 @@ fn the_page_grows_with_the_artwork() {
     assert!(simple.contains("viewBox='0 0 300 100'"), "{simple}");
 }
 
+/// A chain and a recipe say the same as the options and as one command after the other.
+#[test]
+fn edits_are_steps() {
+    let source = sample("traced/word.svg");
+    let dir = tempfile::tempdir().unwrap();
+    let recipe = dir.path().join("r.toml").display().to_string();
+    let chain = |more: &[&str]| {
+        let first = ["offset", "-", "--by", "0.5", "--side", "inside", "--join", "miter"];
+        run(&[&first[..], more, &["+"], &FLAG].concat(), &source)
+    };
+    let moved = ["offset", "-", "--by", "0.5", "--side", "inside", "--join", "miter"];
+    let expected = run(&FLAG, run(&moved, &source).as_bytes());
+    assert_eq!(chain(&["--write-recipe", &recipe]), expected);
+    let text = std::fs::read_to_string(&recipe).unwrap();
+    assert!(text.contains("deformation = \"offset\"") && text.contains("join = \"miter\""), "{text}");
+    assert_eq!(run(&["run", &recipe, "-"], &source), expected);
+    // An edit that selects leaves the rest alone, and so it does before others.
+    let two = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 90 90'><path id='a' d='M9,9H30V30H9Z'/><path id='b' d='M50,50H80V80H50Z'/></svg>";
+    let grown = run(&["offset", "-", "--by", "2", "--select", "#a"], two.as_bytes());
+    assert!(grown.contains("d='M50,50H80V80H50Z'") && !grown.contains("M9,9"), "{grown}");
+    let both = ["offset", "-", "--by", "2", "--select", "#a", "+", "offset", "--by", "3", "--select", "#b"];
+    let then = run(&["offset", "-", "--by", "3", "--select", "#b"], grown.as_bytes());
+    assert_eq!(run(&both, two.as_bytes()), then);
+    for (wrong, part) in [
+        (&["warp", "-", "--style", "flag", "+", "simplify"][..], "simplify comes before all steps that bend"),
+        (&["run", &recipe, "-", "--inverse", "--frame", "0,0,9,9"], "has no inverse"),
+        (&["offset", "-", "--by", "1", "--strokes", "keep"], "--strokes is for steps that bend"),
+        (&["offset", "-", "+", "warp", "--style", "flag"], "by"),
+    ] {
+        let out = pathwarp_in(Path::new("."), wrong, &source);
+        assert!(out.status.code() == Some(2) && text_of(&out).contains(part), "{wrong:?}: {}", text_of(&out));
+    }
+}
+
+fn text_of(out: &std::process::Output) -> String {
+    text(&out.stderr)
+}
+
 /// What no step bends stays; places of elements without ids are those of the source, and no ids appear.
 #[test]
 fn edits_concern_what_is_bent() {
@@ -90,7 +128,7 @@ fn what_cannot_be_edited_is_said() {
     let dir = tempfile::tempdir().unwrap();
     let picture = dir.path().join("logo.png").display().to_string();
     assert!(pathwarp_in(dir.path(), &["render", "-", "-o", &picture], &logo).status.success());
-    assert!(said(&["--outset", "1", &picture], b"").contains("for drawings and GIMP's paths"));
+    assert!(said(&["--outset", "1", &picture], b"").contains("a picture has none"));
 }
 
 /// Small contours keep their shape beside large ones, in one path or in several.

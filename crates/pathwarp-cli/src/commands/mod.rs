@@ -25,7 +25,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command};
 use pathwarp::deform::Registry;
 use pathwarp_engine::catalogue::Catalogue as _;
-use pathwarp_engine::edits::{OFFSET, OUTLINE, SIMPLIFY};
+use pathwarp_engine::edits;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::{advice, coming_from, output};
 use std::ffi::OsString;
@@ -103,6 +103,13 @@ struct Call<'a> {
     later: &'a [&'a [OsString]],
 }
 
+impl Call<'_> {
+    /// Runs the deformation or edit `name`.
+    fn deform(&self, name: &str) -> Result<Status, Ending> {
+        warp::deform(self.registry, name, self.matches, self.words, self.later)
+    }
+}
+
 const fn subcommand(
     name: &'static str,
     declare: fn(&Registry) -> Command,
@@ -122,21 +129,9 @@ static OTHERS: &[Subcommand] = &[
     subcommand("schema", |_| about::schema_command(), |c| Ok(about::print_schema(c.registry)?)),
     subcommand("text", text::text_command, |c| Ok(text::text(c.registry, c.matches, c.words)?)),
     subcommand("paths", |_| convert::paths_command(), |c| Ok(convert::list_paths(c.matches)?)),
-    subcommand(
-        SIMPLIFY.name,
-        |_| warp::simplify_command(),
-        |c| Ok(warp::edit_shapes(c.registry, &SIMPLIFY, c.matches, c.words)?),
-    ),
-    subcommand(
-        OFFSET.name,
-        |_| warp::offset_command(),
-        |c| Ok(warp::edit_shapes(c.registry, &OFFSET, c.matches, c.words)?),
-    ),
-    subcommand(
-        OUTLINE.name,
-        |_| warp::outline_command(),
-        |c| Ok(warp::edit_shapes(c.registry, &OUTLINE, c.matches, c.words)?),
-    ),
+    subcommand("simplify", |_| warp::simplify_command(), |c| c.deform("simplify")),
+    subcommand("offset", |_| warp::offset_command(), |c| c.deform("offset")),
+    subcommand("outline", |_| warp::outline_command(), |c| c.deform("outline")),
     subcommand("convert", |_| convert::convert_command(), |c| Ok(convert::convert(c.matches)?)),
     subcommand("render", |_| render::render_command(), |c| Ok(render::render(c.matches)?)),
     subcommand("gallery", render::gallery_command, |c| Ok(render::gallery(c.registry, c.matches)?)),
@@ -220,7 +215,8 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     if name != "run" {
         reading.check()?;
     }
-    if !["run", "map", "solid"].contains(&name) && !later.is_empty() {
+    let chains = ["run", "map", "solid"].contains(&name) || edits::info(name).is_some();
+    if !chains && !later.is_empty() {
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")).into());
     }
     let missing = || Failure::usage(format!("there is no command {name}"));

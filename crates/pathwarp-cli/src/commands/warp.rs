@@ -2,7 +2,7 @@
 //! `offset` and `outline`.
 
 use crate::arguments;
-use crate::arguments::{inputs_arg, reading_args, some_options};
+use crate::arguments::inputs_arg;
 use crate::commands::args::{file_arg, given_file, switch};
 use crate::ending::{Ending, Status};
 use crate::steps::{self, ChainPart};
@@ -12,7 +12,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::Kind;
 use pathwarp::recipe::{Recipe, Step};
-use pathwarp_engine::edits::{EditChoice, EditInfo, OFFSET, OUTLINE, SIMPLIFY, still};
+use pathwarp_engine::edits;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::{Given, OPTIONS};
 use pathwarp_engine::recipe_file;
@@ -53,6 +53,11 @@ pub(super) fn deform(
     parts.extend(steps::parts(registry, later, &arguments::options_without_inputs().collect::<Vec<_>>())?);
     let (recipe, given) = steps::chained(parts)?;
     mistaken(words, &given)?;
+    let bends = recipe.steps.iter().any(|s| edits::info(&s.deformation).is_none());
+    let of_edits = |name: &&str| OF_EDITS.iter().chain(&SHARED).any(|known| known == name);
+    if let Some(other) = given.names().find(|name| !bends && !of_edits(name)) {
+        return Err(Failure::usage(format!("--{other} is for steps that bend; {name} does not")).into());
+    }
     Ok(pipeline::run(registry, &recipe, &given, None)?)
 }
 
@@ -133,8 +138,8 @@ pub(super) fn run_recipe(registry: &Registry, m: &ArgMatches, words: &[OsString]
     pipeline::run(registry, &recipe, &given, Some(file))
 }
 
-/// The common options that say what is read and where the result goes.
-const SHARED: [&str; 23] = [
+/// The common options of which the help of edits tells: what is read and where the result goes.
+const SHARED: [&str; 27] = [
     "out",
     "format",
     "out-dir",
@@ -152,17 +157,24 @@ const SHARED: [&str; 23] = [
     "kerf",
     "page-width",
     "page-height",
+    "frame",
+    "fit",
     "on-error",
     "report",
     "preview",
+    "write-recipe",
+    "embed-recipe",
     "jobs",
     "explain",
     "quiet",
 ];
 
+/// Those that single edits have beside their parameters.
+const OF_EDITS: [&str; 2] = ["text", "union"];
+
 pub(super) fn simplify_command() -> Command {
     let about = "Give paths the fewest nodes within a distance";
-    declared(&SIMPLIFY, about)
+    declared("simplify", about, &[])
         .long_about(format!(
             "{about}.\n\nTraced drawings and those of many small steps get smooth curves with few nodes, each point of which is within \
              --tolerance of the original, and the original of them. Ids, classes, groups and everything else stay as they are; so do \
@@ -177,8 +189,7 @@ pub(super) fn simplify_command() -> Command {
 
 pub(super) fn offset_command() -> Command {
     let about = "Let areas grow or shrink, and lines run beside themselves";
-    declared(&OFFSET, about)
-        .args(some_options(&["text"]).map(|a| a.help_heading("Options")))
+    declared("offset", about, &["text"])
         .long_about(format!(
             "{about}.\n\nEach point of the result has its distance from the source, within --tolerance. Loops and slivers are removed; what is \
              narrower than the distance vanishes, and a note says so. A path is one area: its outlines unite, those of different paths do \
@@ -193,8 +204,7 @@ pub(super) fn offset_command() -> Command {
 
 pub(super) fn outline_command() -> Command {
     let about = "Turn strokes and text into filled outlines";
-    declared(&OUTLINE, about)
-        .args(some_options(&["text", "union"]).map(|a| a.help_heading("Options")))
+    declared("outline", about, &["text", "union"])
         .long_about(format!(
             "{about}.\n\nThe outline of a stroke, with its joins, caps and dashes, is within --tolerance of what the stroke covers. Shapes \
              without a stroke stay as they are.",
@@ -205,28 +215,26 @@ pub(super) fn outline_command() -> Command {
         )
 }
 
-fn declared(info: &'static EditInfo, about: &'static str) -> Command {
-    let own = info.params.iter().map(steps::param_arg);
-    let shared = some_options(&SHARED).map(|a| a.help_heading("Common options"));
-    let command = Command::new(info.name).about(about).args([inputs_arg()]).args(own).args(shared).args(reading_args());
-    let Some(share) = info.tolerance else { return command };
-    let help = format!(
-        "Largest distance between the drawing and the result: user units, or a length such as 0.05mm. If it is given, it holds for all \
-         contours alike [default: {share:e} of the artwork's diagonal, and for small contours 2e-3 of their own]",
-    );
-    command.mut_arg("tolerance", |a| a.help(help))
-}
-
-/// Runs an edit.
-pub(super) fn edit_shapes(
-    registry: &Registry,
-    info: &'static EditInfo,
-    m: &ArgMatches,
-    words: &[OsString],
-) -> Result<Status, Failure> {
-    let mut given = arguments::given(m);
-    given.check_conflicts().map_err(Failure::Usage)?;
-    mistaken(words, &given)?;
-    given.edit = Some(EditChoice { info, args: steps::param_values(info.params, m) });
-    pipeline::run(registry, &still(), &given, None)
+/// The command of an edit. Of the common options, `own` stand beside its parameters.
+fn declared(name: &'static str, about: &'static str, own: &[&str]) -> Command {
+    let option = |arg: Arg| match OPTIONS.iter().find(|o| arg.get_id() == o.name) {
+        Some(o) if own.contains(&o.name) => arg.help_heading("Options"),
+        Some(o) if o.reading => arg.help_heading("Reading"),
+        Some(o) => arg.hide(!SHARED.contains(&o.name)),
+        None => arg,
+    };
+    let params = edits::info(name).into_iter().flat_map(steps::args);
+    // The tolerance says it in a command of its own.
+    let params = params.map(|arg| if arg.get_id() == "within" { arg.hide(true) } else { arg });
+    let options = arguments::options_without_inputs().map(option);
+    let command = Command::new(name).about(about).arg(inputs_arg()).args(params).args(options);
+    if name != "simplify" {
+        return command;
+    }
+    command.mut_arg("tolerance", |a| {
+        a.help(
+            "Largest distance between the drawing and the result: user units, or a length such as 0.05mm. If it is given, it holds for all \
+             contours alike [default: 5e-4 of the artwork's diagonal, and for small contours 2e-3 of their own]",
+        )
+    })
 }

@@ -67,7 +67,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
 
     let _empty_ones_removed_at_the_end = Folders::create(&options, &jobs)?;
     let draft = options.report.as_deref().map(Draft::new).transpose()?;
-    let report = draft.map(|d| ReportFile::new(d, recipe, &options, started)).transpose()?;
+    let report = draft.map(|d| ReportFile::new(d, recipe, started)).transpose()?;
     let mut collected = Collected::new(&options, &flags, report, jobs.len());
     run_jobs(&session, &jobs, &mut collected)?;
     if let Some(file) = &options.write_recipe {

@@ -2,9 +2,9 @@
 
 use super::error::{Error, guarded};
 use super::{PointMap, check_option, meaning, option_names};
-use crate::edits::{EDITS, EditChoice, still};
+use crate::edits::{self, EDITS};
 use crate::failure::Failure;
-use crate::input::PlainArtwork;
+use crate::input::{PlainArtwork, planned};
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
 use crate::report::Fold;
 use crate::session::{Session, warp_bytes};
@@ -104,12 +104,10 @@ impl Warper {
     /// There is no such edit or parameter.
     pub fn edit(registry: &Registry, name: &str, values: &[(impl AsRef<str>, impl AsRef<str>)]) -> Result<Self, Error> {
         let missing = || Error::usage(advice::unknown("edit", name, EDITS.iter().map(|e| e.name)));
-        let info = *EDITS.iter().find(|e| e.name == name).ok_or_else(missing)?;
+        let info = edits::info(name).ok_or_else(missing)?;
         let mut args = Args::new();
         typed(name, info.params, values, &mut args)?;
-        let mut given = Given::default();
-        given.edit = Some(EditChoice { info, args });
-        Self::of(registry, still(), given)
+        Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
     }
 
     /// The recipe in the text of a recipe file. Paths in it refer to `folder`; absolute ones are allowed only if `external`.
@@ -278,13 +276,19 @@ impl Warper {
             let frame = plain_frame(&options, || bounds)?;
             let tolerance = share * options.tolerance_for(bounds, &frame)?;
             let budget = Arc::new(Budget::new(options.reading.limits));
+            let (edits, steps) = edits::divided(&self.resolved)?;
+            if edits.len() + usize::from(!steps.steps.is_empty()) > 1 {
+                return Err(Failure::usage("a path is edited or bent; do one after the other"));
+            }
+            let edit = edits.first().map(|e| planned(e, &options, (bounds, &frame), true)).transpose()?;
+            let tolerance = edit.map_or(tolerance, |planned| share * planned.tolerance);
             let built = self.build(&options, &frame, outline, &budget)?;
             let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
-            let refit = refit.with_suited(options.tolerance.is_none());
+            let refit = refit.with_suited(edit.map_or(options.tolerance.is_none(), |planned| planned.suited));
             let copies = &built.placement.copies;
             let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };
             let (refit, digits) = (refit.with_budget(budget), options.precision);
-            let path = match options.edit.as_ref().map(|e| e.read(&frame)).transpose()? {
+            let path = match edit.map(|planned| planned.edit) {
                 None => pathwarp_svg::warp_path(&repeated, &built.map, &refit, digits),
                 Some(Edit::Outline) => return Err(Failure::usage("a path has no stroke that could become an outline")),
                 Some(edit) => pathwarp_svg::edit_path(outline, edit, &refit, digits),

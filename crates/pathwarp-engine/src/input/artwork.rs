@@ -1,6 +1,7 @@
 //! [`Artwork`]: what the pipeline asks of every kind of input.
 
 use super::files::no_document;
+use crate::advice;
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
@@ -36,15 +37,12 @@ pub trait Artwork {
     /// Removes the paths that serve as guides from the artwork. Called once, before anything below.
     fn remove_guides(&mut self, guides: Vec<String>);
 
-    /// Edits the artwork as the options ask for before bending. Called once the guides are removed.
+    /// Edits what these steps hold for before they do anything. Called once the guides are removed.
     ///
     /// # Errors
     /// The artwork cannot be edited.
-    fn edit_first(&mut self, options: &CommonOptions, _steps: &[Step]) -> Result<(), Failure> {
-        if options.edits_first() {
-            return Err(Failure::usage("--simplify and --outset are for drawings and GIMP's paths"));
-        }
-        Ok(())
+    fn edit_first(&mut self, edits: &[Step], _steps: &[Step], _options: &CommonOptions) -> Result<(), Failure> {
+        if edits.is_empty() { Ok(()) } else { Err(Failure::usage(advice::NO_PATHS_TO_EDIT)) }
     }
 
     /// Divides the artwork by what the steps hold for; returns the indices of each part's steps. Called once, after the guides are

@@ -1,21 +1,85 @@
-//! Edits of a drawing before it is bent: `--simplify` and `--outset`.
+//! Edits of a drawing before it is bent.
 
+use crate::advice;
 use crate::edits;
 use crate::failure::Failure;
-use crate::options::{CommonOptions, measurable};
-use crate::readable::listed;
+use crate::options::{CommonOptions, TOLERANCE_OF_DIAGONAL, distance, measurable};
 use crate::units::units_per_px;
-use pathwarp::kurbo::{Affine, Rect};
+use pathwarp::edit::{Offset, Side};
+use pathwarp::kurbo::{Affine, Join, Rect};
 use pathwarp::map::AffineMap;
-use pathwarp::param::{Axis, Frame, Length};
+use pathwarp::param::{Frame, Length, Settings};
+use pathwarp::recipe::Step;
 use pathwarp::refit;
-use pathwarp_svg::{Document, PageFit, ReadOptions, Selection, WarpOptions};
+use pathwarp_svg::{Document, Edit, PageFit, ReadOptions, Selection, WarpOptions};
 use std::collections::HashSet;
+
+/// Distance of `simplify` as a fraction of the artwork's diagonal, if none is given: half a pixel of a thousand.
+const SIMPLIFY_DISTANCE: f64 = 5e-4;
+
+/// Joints that turn by more than these degrees are corners: of paths, and of polylines.
+const CORNERS: f64 = 15.0;
+const POLYLINE_CORNERS: f64 = 30.0;
+
+/// An edit of some artwork.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Planned {
+    pub(crate) edit: Edit,
+    /// User units.
+    pub(crate) tolerance: f64,
+    /// Small contours are held to less.
+    pub(crate) suited: bool,
+}
+
+/// What an edit does to artwork in this frame. Only in the last one of a recipe without further steps does the option `tolerance` say how
+/// closely paths are simplified.
+pub(crate) fn planned(
+    step: &Step,
+    options: &CommonOptions,
+    (painted, frame): (Option<Rect>, &Frame),
+    is_last: bool,
+) -> Result<Planned, Failure> {
+    let known = edits::info(&step.deformation).map_or(&[][..], |info| info.params);
+    let s = Settings::new(known, &step.args, frame)?;
+    let held =
+        |given: Option<Length>, share| Ok::<_, Failure>((distance(given, share, painted, frame)?, given.is_none()));
+    let (edit, (tolerance, suited)) = match &*step.deformation {
+        "simplify" => {
+            let polylines = s.flag("polylines")?;
+            let corner = s.number_if("corners")?.unwrap_or(if polylines { POLYLINE_CORNERS } else { CORNERS });
+            let held = match s.number_if("within")? {
+                Some(within) => {
+                    measurable("simplify", within, painted)?;
+                    (within, false)
+                }
+                None => held(options.tolerance.filter(|_| is_last), SIMPLIFY_DISTANCE)?,
+            };
+            (Edit::Simplify { corner: corner.to_radians(), polylines }, held)
+        }
+        "offset" => {
+            let join = match s.choice("join")? {
+                "miter" => Join::Miter,
+                "bevel" => Join::Bevel,
+                _ => Join::Round,
+            };
+            let side = match s.choice("side")? {
+                "inside" => Side::Inside,
+                "both" => Side::Both,
+                _ => Side::Outside,
+            };
+            let by = s.number("by")?;
+            measurable(if is_last { "by" } else { "outset" }, by, painted)?;
+            (Edit::Offset(Offset { by, join, side, even_odd: false }), held(options.tolerance, TOLERANCE_OF_DIAGONAL)?)
+        }
+        _ => (Edit::Outline, held(options.tolerance, TOLERANCE_OF_DIAGONAL)?),
+    };
+    Ok(Planned { edit, tolerance, suited })
+}
 
 /// What is done to a drawing, and to what of it.
 #[derive(Debug, PartialEq)]
 pub(super) struct Wanted {
-    lengths: [Option<Length>; 2],
+    edits: Vec<Step>,
     /// What is bent at all.
     whole: Selection,
     /// What each step bends; empty if all bend everything.
@@ -42,12 +106,12 @@ pub(super) struct Edited {
 impl Wanted {
     pub(super) fn new(
         document: &Document,
-        options: &CommonOptions,
+        edits: &[Step],
         whole: Selection,
         steps: Vec<Selection>,
     ) -> Result<Self, Failure> {
         steps.iter().try_for_each(|s| document.check_selection(s))?;
-        Ok(Self { lengths: [options.simplify, options.outset], whole, steps })
+        Ok(Self { edits: edits.to_vec(), whole, steps })
     }
 
     /// What is bent at all.
@@ -55,13 +119,17 @@ impl Wanted {
         &self.whole
     }
 
-    /// What any step bends.
-    fn concerned(&self, document: &Document) -> Selection {
-        let whole = self.steps.len();
+    /// What an edit concerns: what it selects, or what any step bends.
+    fn concerned(&self, document: &Document, edit: &Step) -> Selection {
+        let exclude = [&self.whole.exclude[..], &edit.exclude].concat();
+        let all = Selection { exclude, ..self.whole.clone() };
+        let own = [Selection { select: edit.select.clone(), guides: all.guides.clone(), ..Selection::default() }];
+        let steps = if edit.select.is_empty() { &self.steps[..] } else { &own };
+        let whole = steps.len();
         if whole == 0 {
-            return self.whole.clone();
+            return all;
         }
-        let all: Vec<Selection> = self.steps.iter().chain([&self.whole]).cloned().collect();
+        let all: Vec<Selection> = steps.iter().chain([&all]).cloned().collect();
         let mut parts = document.divide(&all);
         parts.retain(|p| p.among.len() > 1 && p.among.last() == Some(&whole));
         document.united(parts.iter().map(|p| &p.selection))
@@ -70,7 +138,8 @@ impl Wanted {
     /// A selector names an element without an id by its place.
     fn names_places(&self) -> bool {
         let selectors = |s: &Selection| s.select.iter().chain(&s.exclude).any(|name| is_place(name));
-        self.steps.iter().chain([&self.whole]).any(selectors)
+        let of_edits = self.edits.iter().flat_map(|s| s.select.iter().chain(&s.exclude)).any(|name| is_place(name));
+        of_edits || self.steps.iter().chain([&self.whole]).any(selectors)
     }
 
     /// The drawing with its edits, in which all selectors find the same as in the source.
@@ -81,24 +150,16 @@ impl Wanted {
         read: &ReadOptions,
         options: &CommonOptions,
     ) -> Result<Edited, Failure> {
-        const NAMED: usize = 5;
         let (mut warnings, mut grown) = (Vec::new(), None);
         // Places shift.
         let text = if self.names_places() { source.with_ids().into() } else { source.source().to_vec() };
         let mut document = Document::read(&text, name, read)?;
-        for (option, length) in ["simplify", "outset"].into_iter().zip(self.lengths) {
-            let Some(length) = length else { continue };
-            let selection = self.concerned(&document);
+        for step in &self.edits {
+            let selection = self.concerned(&document, step);
             let bounds = document.seen_box(&selection).unwrap_or_else(|| document.view_box());
             let frame = Frame::new(bounds).with_units_per_px(units_per_px(&document));
-            let distance = length.in_units(Axis::Diagonal, &frame);
             let painted = document.painted_box(&selection);
-            measurable(option, distance.abs(), painted)?;
-            let usual = options.tolerance_for(painted, &frame)?;
-            let (edit, tolerance, suited) = match option {
-                "simplify" => (edits::simplifying(), distance, false),
-                _ => (edits::growing(distance), usual, options.tolerance.is_none()),
-            };
+            let Planned { edit, tolerance, suited } = planned(step, options, (painted, &frame), false)?;
             let refit = refit::Options::new(tolerance).with_suited(suited).with_budget(document.budget().clone());
             let warp = WarpOptions::new(refit)
                 .with_selection(selection)
@@ -112,11 +173,7 @@ impl Wanted {
             let warped = document.warp(&AffineMap(Affine::IDENTITY), &warp)?;
             grown = warped.page.map(|[_, after]| after);
             warnings.extend(warped.warnings.iter().map(ToString::to_string));
-            let gone = warped.shapes.iter().filter(|s| s.path.segments_in > 0 && s.path.segments_out == 0);
-            let gone: Vec<&str> = gone.map(|s| s.id.as_str()).collect();
-            if !gone.is_empty() {
-                warnings.push(format!("nothing is left of {}: narrower than the distance", listed(&gone, NAMED)));
-            }
+            warnings.extend(advice::vanished(warped.shapes.iter()));
             document = Document::read(warped.svg.as_bytes(), name, read)?;
         }
         Ok(Edited { document, grown, warnings })

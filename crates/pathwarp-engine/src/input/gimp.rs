@@ -4,7 +4,6 @@ use super::artwork::WarpedResult;
 use super::files::{display, split_reference};
 use super::gimp_file::GimpFile;
 use super::svg::SvgArtwork;
-use crate::edits::OUTLINE;
 use crate::export::{self, Exported};
 use crate::failure::Failure;
 use crate::format::{Choice, Format};
@@ -144,9 +143,6 @@ fn format(options: &CommonOptions, input: &GimpFile, target: Option<&Path>) -> R
         return Err(Failure::usage(
             "--embed-recipe is for SVG files; --write-recipe saves the recipe beside the result",
         ));
-    }
-    if options.edit.as_ref().is_some_and(|e| e.info == &OUTLINE) {
-        return Err(Failure::usage("GIMP's paths have no strokes that could become outlines"));
     }
     if let Some(copy) = &options.into {
         check_into(input, copy)?;

@@ -11,6 +11,7 @@ mod picture;
 mod svg;
 
 pub use artwork::{Artwork, Baseline, FileArtwork, PlainArtwork, WarpRequest, WarpedResult, Which};
+pub(crate) use before::{Planned, planned};
 pub use beside::PREVIEW;
 pub use files::{
     bytes, described, display, document, document_of, no_document, not_a_drawing, read_data_file, read_options,

@@ -134,11 +134,8 @@ impl FileArtwork for PictureArtwork {
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built: BuiltParts { whole: built, .. }, options, .. } = request;
-        if let Some(edit) = &options.edit {
-            return Err(Failure::usage(format!(
-                "{} works on the paths of drawings; a picture has none",
-                edit.info.name
-            )));
+        if request.edit.is_some() {
+            return Err(Failure::usage(advice::NO_PATHS_TO_EDIT));
         }
         if !built.placement.copies.is_empty() {
             return Err(Failure::usage(

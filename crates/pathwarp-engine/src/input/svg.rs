@@ -22,7 +22,7 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
-    Document, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
+    Document, Edit, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
     Selection, ShapeReport, Strokes, Structure, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
@@ -126,7 +126,7 @@ impl SvgArtwork {
         let draft = |k: usize, built: &BuiltRecipe| {
             let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
             options.filters = Filters::Affine;
-            options.refit = options.refit.with_merge(false);
+            options.refit = options.refit.with_merge(request.edit.is_some());
             if let Images::Warp(_) = options.images {
                 let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
                 options.images = Images::Warp(Arc::new(bender.with_budget(self.doc.budget().clone())));
@@ -427,15 +427,15 @@ impl Artwork for SvgArtwork {
         self.selection.guides = guides;
     }
 
-    fn edit_first(&mut self, options: &CommonOptions, steps: &[Step]) -> Result<(), Failure> {
-        if !options.edits_first() {
+    fn edit_first(&mut self, edits: &[Step], steps: &[Step], options: &CommonOptions) -> Result<(), Failure> {
+        if edits.is_empty() {
             if let Some(original) = self.original.take() {
                 self.doc = original.document;
             }
             return Ok(());
         }
         let steps = if steps.iter().any(Step::is_selective) { self.selections(steps) } else { Vec::new() };
-        let wanted = Wanted::new(self.document(), options, self.selection.clone(), steps)?;
+        let wanted = Wanted::new(self.document(), edits, self.selection.clone(), steps)?;
         if self.original.as_ref().is_some_and(|o| o.wanted == wanted) {
             return Ok(());
         }
@@ -541,6 +541,9 @@ impl FileArtwork for SvgArtwork {
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options: common, .. } = request;
+        if self.paths.is_some() && request.edit == Some(Edit::Outline) {
+            return Err(Failure::usage("GIMP's paths have no strokes that could become outlines"));
+        }
         let (options, mut warped, tolerance) = self.warped(request)?;
         let page = PageNews::of(&mut warped, common.page, self.stays(request));
         let (mut shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;

@@ -1,11 +1,11 @@
 //! The common options as typed values.
 
-use crate::edits::EditChoice;
 use crate::failure::Failure;
 use crate::format::Format;
 use pathwarp::budget::{Limit, Limits};
 use pathwarp::kurbo::{Point, Rect, Size};
-use pathwarp::param::{Axis, Frame, Length, LengthUnit};
+use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit};
+use pathwarp::recipe::Step;
 use pathwarp::refit::RESOLUTION;
 use pathwarp_raster::Picture;
 use pathwarp_svg::{
@@ -17,7 +17,7 @@ use std::sync::atomic::AtomicBool;
 
 /// Default tolerance as a fraction of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
 /// plotter draws.
-const TOLERANCE_OF_DIAGONAL: f64 = 1e-4;
+pub(crate) const TOLERANCE_OF_DIAGONAL: f64 = 1e-4;
 
 /// The box that percentages refer to.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -57,8 +57,8 @@ impl OnFailure {
 #[expect(missing_docs, reason = "the table of options has the help of each")]
 pub struct CommonOptions {
     pub inputs: Vec<PathBuf>,
-    /// What is done to the artwork instead of bending it.
-    pub edit: Option<EditChoice>,
+    /// Edits before all steps, in the order in which they are done.
+    pub edits: Vec<Step>,
     /// `None`: standard output.
     pub out: Option<PathBuf>,
     pub out_dir: Option<PathBuf>,
@@ -74,10 +74,6 @@ pub struct CommonOptions {
     pub into: Option<PathBuf>,
     /// Read the paths before the damage in a damaged GIMP file.
     pub salvage: bool,
-    /// The distance within which paths get few nodes before they are bent.
-    pub simplify: Option<Length>,
-    /// The distance by which areas grow before they are bent.
-    pub outset: Option<Length>,
     pub tolerance: Option<Length>,
     pub certify: bool,
     pub merge: bool,
@@ -126,22 +122,26 @@ pub struct CommonOptions {
 }
 
 impl CommonOptions {
-    /// Returns `true` if the artwork is edited before it is bent.
-    pub(crate) fn edits_first(&self) -> bool {
-        self.simplify.is_some() || self.outset.is_some()
-    }
-
     /// Returns the tolerance given, or the default for artwork with this bounding box, in user units.
     ///
     /// # Errors
     /// The tolerance given is finer than numbers of the artwork's size can be.
     pub fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> Result<f64, Failure> {
-        let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
-        let given = self.tolerance.map(|d| d.in_units(Axis::Diagonal, frame)).filter(|d| *d > 0.0);
-        given.map_or(Ok(()), |d| measurable("tolerance", d, artwork))?;
-        let share = self.edit.as_ref().and_then(|e| e.info.tolerance).unwrap_or(TOLERANCE_OF_DIAGONAL);
-        Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * share } else { share }))
+        distance(self.tolerance, TOLERANCE_OF_DIAGONAL, artwork, frame)
     }
+}
+
+/// A tolerance in user units; if none is given, a share of the diagonal of the artwork with this bounding box.
+pub(crate) fn distance(
+    given: Option<Length>,
+    share: f64,
+    artwork: Option<Rect>,
+    frame: &Frame,
+) -> Result<f64, Failure> {
+    let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
+    let given = given.map(|d| d.in_units(Axis::Diagonal, frame)).filter(|d| *d > 0.0);
+    given.map_or(Ok(()), |d| measurable("tolerance", d, artwork))?;
+    Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * share } else { share }))
 }
 
 /// Refuses a distance that is finer than numbers of the artwork's size can be.
@@ -274,9 +274,27 @@ pub(super) fn positive_length(text: &str) -> Result<Length, String> {
 }
 
 /// Parses a length that is no zero; `None` for zero.
-pub(super) fn some_length(text: &str) -> Result<Option<Length>, String> {
+fn some_length(text: &str) -> Result<Option<Length>, String> {
     let length: Length = text.parse().map_err(|e| format!("`{text}` {e}"))?;
     Ok(Some(length).filter(|l| l.value != 0.0))
+}
+
+/// Parses a distance within which paths get few nodes.
+pub(super) fn simplifying(text: &str) -> Result<Option<Step>, String> {
+    let length = some_length(text)?;
+    if length.is_some_and(|l| l.value < 0.0) {
+        return Err(format!("`{text}` is below zero"));
+    }
+    Ok(length.map(|_| Step::new("simplify", Args::from_pairs(&[("within", text)]))))
+}
+
+/// Parses a distance by which areas grow, or shrink below zero.
+pub(super) fn growing(text: &str) -> Result<Option<Step>, String> {
+    let args = match text.trim().strip_prefix('-') {
+        Some(by) => Args::from_pairs(&[("by", by), ("side", "inside")]),
+        None => Args::from_pairs(&[("by", text)]),
+    };
+    Ok(some_length(text)?.map(|_| Step::new("offset", args)))
 }
 
 /// Parses a side of a page.

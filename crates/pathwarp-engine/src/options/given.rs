@@ -2,7 +2,6 @@
 
 use super::common::CommonOptions;
 use super::table::{CommonOption, OPTIONS, OptionValue};
-use crate::edits::EditChoice;
 use crate::failure::Failure;
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
@@ -13,14 +12,12 @@ pub struct Given {
     inputs: Vec<PathBuf>,
     /// In the order of the table. A switch has the value `true`.
     values: Vec<(&'static CommonOption, Vec<OsString>)>,
-    /// What is done to the artwork instead of bending it.
-    pub edit: Option<EditChoice>,
 }
 
 impl Given {
     /// Options with their values, in the order of the table, for these inputs.
     pub fn new(inputs: Vec<PathBuf>, values: Vec<(&'static CommonOption, Vec<OsString>)>) -> Self {
-        Self { inputs, values, edit: None }
+        Self { inputs, values }
     }
 
     /// Adds the value of an option named in a recipe. Of several values for an option that does not repeat, the last wins.
@@ -75,7 +72,7 @@ impl Given {
     }
 
     /// The names of the options given.
-    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
         self.values.iter().map(|(o, _)| o.name)
     }
 
@@ -114,7 +111,7 @@ impl Given {
         };
         let values = OPTIONS.iter().map(merge).filter(|(_, v)| !v.is_empty()).collect();
         let inputs = self.inputs.iter().chain(&other.inputs).cloned().collect();
-        Self { inputs, values, edit: other.edit.clone().or_else(|| self.edit.clone()) }
+        Self { inputs, values }
     }
 
     /// Checks that no two options conflict.
@@ -140,7 +137,6 @@ impl Given {
     pub fn read(&self) -> Result<CommonOptions, Failure> {
         let mut options = defaults();
         options.inputs.clone_from(&self.inputs);
-        options.edit.clone_from(&self.edit);
         for (option, values) in &self.values {
             for value in values {
                 apply(option, value, &mut options)

@@ -8,5 +8,6 @@ mod given;
 mod table;
 
 pub use common::{CommonOptions, FrameChoice, OnFailure, Reading, measurable, rect};
+pub(crate) use common::{TOLERANCE_OF_DIAGONAL, distance};
 pub use given::Given;
 pub use table::{CommonOption, LeadingMinus, OPTIONS, OptionValue};

@@ -1,8 +1,8 @@
 //! The table of common options: each is declared here, and nowhere else.
 
 use super::common::{
-    CommonOptions, OnFailure, family_name, frame, image_size, limit, positive, positive_length, side_of_page,
-    some_length,
+    CommonOptions, OnFailure, family_name, frame, growing, image_size, limit, positive, positive_length, side_of_page,
+    simplifying,
 };
 use crate::format::Format;
 use pathwarp_svg::{Clones, Filters, Gradients, PageFit, Patterns, Strokes, Structure, TextMode};
@@ -131,10 +131,7 @@ pub static OPTIONS: &[CommonOption] = &[
         OptionValue::Text {
             name: "D",
             minus: LeadingMinus::Any,
-            set: |o, text| {
-                o.simplify = some_length(text)?;
-                if o.simplify.is_some_and(|l| l.value < 0.0) { Err(format!("`{text}` is below zero")) } else { Ok(()) }
-            },
+            set: |o, text| simplifying(text).map(|step| drop(o.edits.splice(0..0, step))),
         },
         "Before bending, give paths the fewest nodes within this distance, such as 0.2mm or 0.1% (of the artwork's diagonal), as \
          `pathwarp simplify` does",
@@ -144,7 +141,7 @@ pub static OPTIONS: &[CommonOption] = &[
         OptionValue::Text {
             name: "D",
             minus: LeadingMinus::Any,
-            set: |o, text| some_length(text).map(|d| o.outset = d),
+            set: |o, text| growing(text).map(|step| o.edits.extend(step)),
         },
         "Before bending, let areas grow by this distance, as `pathwarp offset` does; below zero, they shrink",
     ),
