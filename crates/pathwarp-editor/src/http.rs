@@ -82,7 +82,7 @@ fn read(stream: &mut TcpStream) -> io::Result<Option<Request<()>>> {
         let rest = PATIENCE.checked_sub(begun.elapsed()).filter(|d| !d.is_zero()).ok_or(io::ErrorKind::TimedOut)?;
         stream.set_read_timeout(Some(rest))?;
         let n = stream.read(&mut piece)?;
-        head.extend_from_slice(piece.get(..n).unwrap_or_default());
+        head.extend_from_slice(&piece[..n]);
         if let Some(parsed) = parse(&head) {
             return Ok(parsed);
         }
@@ -102,10 +102,8 @@ fn parse(head: &[u8]) -> Option<Option<Request<()>>> {
         Err(_) => return Some(None),
     }
     let version = if parsed.version == Some(1) { Version::HTTP_11 } else { Version::HTTP_10 };
-    let mut request = Request::builder()
-        .method(parsed.method.unwrap_or_default())
-        .uri(parsed.path.unwrap_or_default())
-        .version(version);
+    let (Some(method), Some(path)) = (parsed.method, parsed.path) else { return Some(None) };
+    let mut request = Request::builder().method(method).uri(path).version(version);
     for h in parsed.headers.iter() {
         request = request.header(h.name, h.value);
     }

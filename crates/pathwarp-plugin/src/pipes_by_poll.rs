@@ -1,5 +1,5 @@
 //! Handles the three pipes of a program on Unix. One loop writes, reads, and checks the clock, so that neither side can block the
-//! other.
+//! other. With a thread for each pipe, as elsewhere, a short answer takes three times as long.
 
 use crate::child::Running;
 use crate::fault::{Fault, MAX_ERROR_BYTES, readable, time};
@@ -105,7 +105,7 @@ impl Pipes {
     fn write<'a>(&mut self, mut rest: &'a [u8]) -> Result<&'a [u8], ()> {
         while !rest.is_empty() {
             match self.input.write(rest) {
-                Ok(n) => rest = rest.get(n..).unwrap_or_default(),
+                Ok(n) => rest = &rest[n..],
                 Err(e) if e.kind() == ErrorKind::WouldBlock => break,
                 Err(e) if e.kind() == ErrorKind::Interrupted => {}
                 Err(_) => return Err(()),
@@ -141,7 +141,7 @@ impl Pipes {
         match self.output.read(&mut self.chunk) {
             Ok(0) => false,
             Ok(n) => {
-                self.incoming.extend_from_slice(self.chunk.get(..n).unwrap_or_default());
+                self.incoming.extend_from_slice(&self.chunk[..n]);
                 true
             }
             Err(e) => matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted),
@@ -155,7 +155,7 @@ impl Pipes {
             Ok(0) => self.errors = None,
             Ok(n) => {
                 self.said_in_all += n;
-                self.said.extend_from_slice(self.chunk.get(..n).unwrap_or_default());
+                self.said.extend_from_slice(&self.chunk[..n]);
                 let surplus = self.said.len().saturating_sub(KEPT);
                 self.said.drain(..surplus);
             }

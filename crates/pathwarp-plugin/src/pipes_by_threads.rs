@@ -154,7 +154,7 @@ fn reading(
     Builder::new().spawn(move || {
         let mut chunk = vec![0; 1 << 16];
         while let Ok(n) = pipe.read(&mut chunk) {
-            if n == 0 || happened.send(event(chunk.get(..n).unwrap_or_default().to_owned())).is_err() {
+            if n == 0 || happened.send(event(chunk[..n].to_owned())).is_err() {
                 break;
             }
         }

@@ -17,9 +17,9 @@ fn command() -> Command {
 }
 
 fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
-    let folder = arguments.get_one::<PathBuf>("FOLDER").cloned().unwrap_or_default();
-    let count = arguments.get_one::<usize>("count").copied().unwrap_or_default();
-    fs::create_dir_all(&folder).map_err(at(&folder))?;
+    let folder: &PathBuf = arguments.get_one("FOLDER").ok_or("name a folder")?;
+    let count: usize = arguments.get_one("count").copied().ok_or("say how many")?;
+    fs::create_dir_all(folder).map_err(at(folder))?;
     for k in 0..count {
         let file = folder.join(format!("{k:03}.svg"));
         fs::write(&file, drawing(k as u64)).map_err(at(&file))?;

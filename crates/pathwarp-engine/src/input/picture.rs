@@ -38,7 +38,7 @@ impl PictureArtwork {
         target: Option<&Path>,
     ) -> Result<Self, Failure> {
         let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
-        let format = format.of_picture(options.quality).unwrap_or_default();
+        let format = format.of_picture(options.quality).ok_or_else(|| Failure::usage("the format is no picture's"))?;
         let name = display(input);
         for (given, option) in [
             (!options.select.is_empty(), "select"),
