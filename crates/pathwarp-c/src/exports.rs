@@ -6,10 +6,10 @@ use crate::raw::{
     Failed, array, array_mut, drop_bytes, drop_text, hand_over, owned_bytes, owned_text, place, put, status, take_back,
     text, value, value_mut, wrong,
 };
-use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp_engine::Warper;
+use pathwarp_engine::input::hatching;
 use std::ffi::{CStr, c_char};
 use std::path::Path;
 
@@ -166,8 +166,7 @@ pub unsafe extern "C" fn pathwarp_map_points(
         let points: Vec<Point> = from.as_chunks().0.iter().map(|[x, y]| Point::new(*x, *y)).collect();
         let finite = || points.iter().filter(|p| p.is_finite());
         let bounds = || finite().map(|p| Rect::from_points(*p, *p)).reduce(|a, b| a.union(b));
-        let cloud = || Outline::from_points(&finite().copied().collect::<Vec<_>>(), false);
-        let map = warper.0.point_map(bounds, cloud)?;
+        let map = warper.0.point_map(bounds, hatching)?;
         // SAFETY: the header says that the numbers may be written to; `from`, which may be the same, is not used any more.
         let to = unsafe { array_mut(to, numbers, "to")? };
         let mut images = [Point::ORIGIN; BLOCK];

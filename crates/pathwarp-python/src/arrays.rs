@@ -1,7 +1,6 @@
 //! Arrays of points under a map: read and written in place, block by block, with any strides.
 
 use numpy::ndarray::{ArrayView2, ArrayViewMut2, ArrayViewMut3, Axis};
-use pathwarp::Outline;
 use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp_engine::PointMap;
 use rayon::prelude::*;
@@ -23,13 +22,6 @@ pub(crate) fn bounds(points: ArrayView2<'_, f64>) -> Option<Rect> {
         }
     }
     all.map(|[x0, y0, x1, y1]| Rect::new(x0, y0, x1, y1))
-}
-
-/// The finite points as one polyline, as far as it gets until `stop` is `true`.
-pub(crate) fn cloud(points: ArrayView2<'_, f64>, stop: &AtomicBool) -> Outline {
-    let rows = points.rows().into_iter().take_while(|_| !stop.load(Ordering::Relaxed));
-    let points: Vec<Point> = rows.map(|p| Point::new(p[0], p[1])).filter(|p| p.is_finite()).collect();
-    Outline::from_points(&points, false)
 }
 
 /// Maps `from` to `to`, of the same shape; without `from`, `to` in place. Points are left out once `stop` is `true`.

@@ -7,6 +7,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonl
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::refit::Assurance;
+use pathwarp_engine::input::hatching;
 use pathwarp_engine::{Error, PointMap};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyException;
@@ -214,7 +215,7 @@ impl Warper {
         points: numpy::ndarray::ArrayView2<'_, f64>,
         stop: &'static AtomicBool,
     ) -> Result<PointMap, Error> {
-        self.0.stopped_by(stop).point_map(|| arrays::bounds(points), || arrays::cloud(points, stop))
+        self.0.stopped_by(stop).point_map(|| arrays::bounds(points), hatching)
     }
 }
 

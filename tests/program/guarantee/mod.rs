@@ -113,7 +113,7 @@ fn done(warper: &Warper, svg: &str, d: &str) -> Option<Done> {
     }
     let f: Vec<f64> = report["frame"].as_array()?.iter().filter_map(Value::as_f64).collect();
     let frame = Rect::new(f[0], f[1], f[0] + f[2], f[1] + f[3]);
-    let map = warper.point_map(|| Some(frame), || Outline::from_svg(d).unwrap_or_default()).ok()?;
+    let map = warper.point_map(|| Some(frame), |_| Outline::from_svg(d).unwrap_or_default()).ok()?;
     Some(Done { svg: String::from_utf8(done.bytes).unwrap(), tolerance: report["tolerance"].as_f64()?, map })
 }
 

@@ -16,7 +16,7 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::Recipe;
 use pathwarp_engine::catalogue::Catalogue as _;
 use pathwarp_engine::failure::Failure;
-use pathwarp_engine::input::{self, PlainArtwork};
+use pathwarp_engine::input::{self, PlainArtwork, hatching};
 use pathwarp_engine::options::{CommonOptions, Given, rect};
 use pathwarp_engine::session::Session;
 use pathwarp_engine::{output, references};
@@ -129,16 +129,6 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
         (defined.then_some([j.p.x, j.p.y]), [j.dx.x, j.dx.y, j.dy.x, j.dy.y])
     };
     Ok(print_images(m, points.iter().zip(&jets).map(image))?)
-}
-
-/// Lines all over a box: artwork for deformations that look at it, so that the map depends on the frame alone, and no point on another.
-fn hatching(frame: Rect) -> Outline {
-    const LINES: u32 = 24;
-    let line = |i: u32| {
-        let y = frame.y0 + frame.height() * f64::from(i) / f64::from(LINES - 1);
-        Outline::from_points(&[Point::new(frame.x0, y), Point::new(frame.x1, y)], false).subpaths
-    };
-    Outline { subpaths: (0..LINES).flat_map(line).collect() }
 }
 
 /// Characters of a wrong line that a message shows.

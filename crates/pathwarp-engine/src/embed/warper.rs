@@ -190,14 +190,14 @@ impl Warper {
     }
 
     /// Builds the recipe for points. `bounds` returns their box, to which percentages refer unless the option `frame` is given.
-    /// Later steps of a chain, and inverses, look at the points themselves, which `cloud` returns as one polyline.
+    /// Later steps of a chain, and inverses, look at artwork in that box: [`hatching`](crate::input::hatching), unless there is a drawing.
     ///
     /// # Errors
     /// A value is wrong, or the geometry does not allow the deformation.
     pub fn point_map(
         &self,
         bounds: impl FnOnce() -> Option<Rect>,
-        cloud: impl FnOnce() -> Outline,
+        artwork: impl FnOnce(Rect) -> Outline,
     ) -> Result<PointMap, Error> {
         guarded(&self.registry, || {
             let options = self.options()?;
@@ -208,7 +208,7 @@ impl Warper {
             };
             let frame = plain_frame(&options, || Some(bounds))?;
             let alone = self.typed.steps.len() == 1 && !self.typed.steps.iter().any(|s| s.inverse);
-            let outline = if alone { Outline::default() } else { cloud() };
+            let outline = if alone { Outline::default() } else { artwork(frame.rect) };
             let built_in =
                 |frame: &Frame| self.build(&options, frame, &outline, &Arc::new(Budget::new(options.reading.limits)));
             let built = built_in(&frame).map_err(|failure| {

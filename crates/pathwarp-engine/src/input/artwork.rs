@@ -142,6 +142,16 @@ impl Artwork for PlainArtwork<'_> {
     }
 }
 
+/// Lines all over a box: artwork for deformations that look at it, so that the map depends on the frame alone, and no point on another.
+pub fn hatching(frame: Rect) -> Outline {
+    const LINES: u32 = 24;
+    let line = |i: u32| {
+        let y = frame.y0 + frame.height() * f64::from(i) / f64::from(LINES - 1);
+        Outline::from_points(&[Point::new(frame.x0, y), Point::new(frame.x1, y)], false).subpaths
+    };
+    Outline { subpaths: (0..LINES).flat_map(line).collect() }
+}
+
 /// The baseline of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Baseline {

@@ -10,7 +10,7 @@ mod gimp_file;
 mod picture;
 mod svg;
 
-pub use artwork::{Artwork, Baseline, FileArtwork, PlainArtwork, WarpRequest, WarpedResult, Which};
+pub use artwork::{Artwork, Baseline, FileArtwork, PlainArtwork, WarpRequest, WarpedResult, Which, hatching};
 pub(crate) use before::{Planned, planned};
 pub use beside::PREVIEW;
 pub use files::{
