@@ -8,7 +8,7 @@ use crate::run::{RunSegment, SegmentRun, sample_lanes};
 use crate::source::{BreakPoint, NotFinite, Quotient, Source};
 use crate::stretch::StretchFitter;
 
-/// What is wanted of joined pieces.
+/// Settings for a search for fewer pieces across smooth joints.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct JoinSettings {
     pub(crate) tolerance: f64,

@@ -186,7 +186,7 @@ pub(crate) const BISECTION_MARGIN: f64 = 0.1;
 /// Pieces of one stretch from which on fewer are looked for.
 pub(crate) const LONG: usize = 3;
 
-/// The same for segments of paths. 3: +40 % time for rectangles under waves, which take four pieces a side, and no fewer.
+/// Pieces of one segment of a path from which on fewer are looked for. 3: +40 % time for rectangles under waves, which take four pieces a side, and no fewer.
 pub(crate) const LONG_SEGMENT: usize = 6;
 
 /// Places per piece at which those may end, with a sample at each and between them.

@@ -168,7 +168,7 @@ impl<S: Source> SegmentRun<S> {
         Ok(items.len())
     }
 
-    /// What a checked error of a piece is worth, if those of the segments are not proven.
+    /// The assurance that the checked error of a piece of this run has.
     pub fn assurance(&self, tolerance: f64) -> Assurance {
         let unknown = |s: &RunSegment<S>| s.source.resolved([0.0, 1.0], self.per_segment, tolerance).is_none();
         match self.segments.first() {

@@ -16,7 +16,7 @@ pub(super) struct Foreign {
     pub(super) content: String,
     /// The colours that the elements in `content` have of their own.
     pub(super) fills: Vec<Option<Rc<str>>>,
-    /// What the HTML has beyond text, in words.
+    /// The names of all that the HTML holds beside text.
     pub(super) beyond: Vec<String>,
 }
 

@@ -433,12 +433,12 @@ fn names(node: Node<'_, '_>, renamed: Option<&References<'_>>) -> impl Iterator<
     })
 }
 
-/// What a drawing may refer to.
+/// The texts that may be references in a drawing.
 struct References<'t> {
     text: &'t str,
-    /// What follows each number sign, without escapes, sorted. Computed on first use.
+    /// The texts after the number signs of a drawing, without escapes, sorted. They are collected on first use.
     targets: OnceCell<Vec<Cow<'t, str>>>,
-    /// Whether there may be links with escapes.
+    /// Returns `true` if some links may have escapes.
     has_escapes: bool,
 }
 
@@ -447,7 +447,7 @@ impl<'t> References<'t> {
         Self { text, targets: OnceCell::new(), has_escapes: text.contains('%') && text.contains("href") }
     }
 
-    /// Whether an id contains characters that end references, and something may refer to it.
+    /// Returns `true` if an id contains characters that end references, and something may refer to it.
     fn break_at(&self, id: &str) -> bool {
         if safe_id(id) == id {
             return false;

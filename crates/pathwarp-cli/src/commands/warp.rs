@@ -169,7 +169,7 @@ const SHARED: [&str; 27] = [
     "quiet",
 ];
 
-/// Those that single edits have beside their parameters.
+/// The options that some of the three commands have beside their parameters.
 const OF_EDITS: [&str; 2] = ["text", "union"];
 
 pub(super) fn simplify_command() -> Command {

@@ -31,7 +31,7 @@ pub(crate) struct Planned {
     pub(crate) suited: bool,
 }
 
-/// What an edit does to artwork in this frame. Only in the last one of a recipe without further steps does the option `tolerance` say how
+/// Reads the parameters of an edit for artwork in this frame. Only in the last one of a recipe without further steps does the option `tolerance` say how
 /// closely paths are simplified.
 pub(crate) fn planned(
     step: &Step,
@@ -119,7 +119,7 @@ impl Wanted {
         &self.whole
     }
 
-    /// What an edit concerns: what it selects, or what any step bends.
+    /// The selection of shapes that an edit changes: its own, or else that of all steps that bend.
     fn concerned(&self, document: &Document, edit: &Step) -> Selection {
         let exclude = [&self.whole.exclude[..], &edit.exclude].concat();
         let all = Selection { exclude, ..self.whole.clone() };

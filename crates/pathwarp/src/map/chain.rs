@@ -2,7 +2,7 @@
 
 use super::{
     AffineMap, Batches, Class, Cost, Crease, Creases, Enclosure, Field, Images, Jet, Level, Map, RationalBezier,
-    RationalDegree, Searches, detail_in, inverse_over,
+    RationalDegree, Searches, detail_in, inverse_over, middle_and_corners, most_stretched,
 };
 use crate::budget::Budget;
 use kurbo::{Affine, Point, Rect, Vec2};
@@ -276,11 +276,11 @@ impl Map for Chain {
         if let [only] = self.steps.as_slice() {
             return only.detail(area);
         }
-        let mut at = [area.center(), area.origin(), Point::new(area.x1, area.y1)].map(|p| AffineMap::IDENTITY.jet(p));
+        let mut at = middle_and_corners(area).map(|p| AffineMap::IDENTITY.jet(p));
         let across = area.size().to_vec2().hypot();
         let (mut least, mut is_stated) = (f64::INFINITY, false);
         for (i, step) in self.steps.iter().enumerate() {
-            let stretch = at.iter().map(|j| (j.dx.hypot2() + j.dy.hypot2()).sqrt()).fold(0.0, f64::max);
+            let stretch = most_stretched(&at);
             let area = Rect::from_center_size(at[0].p, (stretch * across, stretch * across));
             is_stated |= step.detail(area).is_some();
             least = least.min(detail_in(&**step, area)? / stretch);

@@ -167,10 +167,19 @@ pub trait Map: Send + Sync {
 /// What a map of a known [detail](Map::detail) does along a curve in a box.
 fn estimated(map: &(impl Map + ?Sized), along: [Enclosure; 2], area: Rect, detail: f64) -> [Enclosure; 2] {
     let mut jets = [Jet::default(); 3];
-    map.jets(&[area.center(), area.origin(), Point::new(area.x1, area.y1)], &mut jets);
+    map.jets(&middle_and_corners(area), &mut jets);
     // With a margin for what three places do not show.
-    let stretch = 2.0 * jets.iter().map(|j| (j.dx.hypot2() + j.dy.hypot2()).sqrt()).fold(0.0, f64::max);
-    Enclosure::estimated(along, jets[0].p, stretch, detail)
+    Enclosure::estimated(along, jets[0].p, 2.0 * most_stretched(&jets), detail)
+}
+
+/// The places in a box that stand for all of it: its middle and two opposite corners.
+fn middle_and_corners(area: Rect) -> [Point; 3] {
+    [area.center(), area.origin(), Point::new(area.x1, area.y1)]
+}
+
+/// The largest norm of some Jacobians.
+fn most_stretched(jets: &[Jet]) -> f64 {
+    jets.iter().map(|j| (j.dx.hypot2() + j.dy.hypot2()).sqrt()).fold(0.0, f64::max)
 }
 
 /// The size of the smallest feature of a map in a box: what it states, or what its enclosures tell of the lines through the middle. With
