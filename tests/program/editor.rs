@@ -115,6 +115,51 @@ fn files(folder: &Path) -> Vec<String> {
     all
 }
 
+/// Small pictures of a large drawing are bitmaps, and look like those of the same drawing without the bulk.
+#[test]
+fn small_pictures_of_large_drawings_are_small() {
+    let body = "<path fill='#06c' d='M-30,20 H60 V50 H-30Z'/><circle cx='20' cy='35' r='9' fill='#fc0'/>";
+    let svg = |bulk: &str| {
+        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='-40 0 120 60' width='30'>{bulk}{body}</svg>")
+    };
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.svg"), svg("")).unwrap();
+    fs::write(folder.path().join("large.svg"), svg(&format!("<!--{}-->", "bulk ".repeat(60_000)))).unwrap();
+    let [a, large] = ["a.svg", "large.svg"].map(|name| Editor::open(folder.path(), name));
+    let pixels = |svg: &str| {
+        let args = ["render", "-", "--width", "64", "--background", "white"];
+        let out = crate::support::pathwarp_in(folder.path(), &args, svg.as_bytes());
+        pathwarp_raster::decode_png(&out.stdout).unwrap()
+    };
+    let of = |editor: &Editor, example: &str| {
+        let answer = asked(editor, &json!({ "do": "thumbnail", "steps": null, "example": example, "variant": null }));
+        answer["svg"].as_str().unwrap_or_else(|| panic!("{answer}")).to_owned()
+    };
+    let mut seen = Vec::new();
+    for example in ["shaper", "projective", "wave", "bend"] {
+        let (plain, small) = (of(&a, example), of(&large, example));
+        assert!(!plain.contains("<image") && small.contains("<image") && small.len() < 100_000, "{example}");
+        let [plain, small] = [plain, small].map(|svg| pixels(&svg));
+        assert!(plain.height().abs_diff(small.height()) <= 1, "{example}: {plain:?}, {small:?}");
+        // A bitmap has soft edges, which move everything by up to a pixel.
+        let unlike = |other: &pathwarp_raster::Pixmap| {
+            let (width, height) = (plain.width(), plain.height());
+            let color = |p: &pathwarp_raster::Pixmap, (x, y): (u32, u32)| p.pixel(x, y).map(|p| [p.red(), p.green()]);
+            let is_like = |&(x, y): &(u32, u32)| {
+                let near =
+                    (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| (x, y)));
+                let alike = |a: [u8; 2], b: [u8; 2]| a.iter().zip(b).all(|(a, b)| a.abs_diff(b) < 128);
+                near.filter_map(|at| color(other, at)).any(|b| color(&plain, (x, y)).is_some_and(|a| alike(a, b)))
+            };
+            let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            places.filter(|at| !is_like(at)).count()
+        };
+        assert!(unlike(&small) < 10, "{example}: {} pixels differ", unlike(&small));
+        assert!(seen.iter().all(|other| unlike(other) > 30), "{example} looks like another deformation");
+        seen.push(plain.clone());
+    }
+}
+
 #[test]
 fn a_draft_belongs_to_the_drawing_it_was_made_from() {
     let folder = logo();

@@ -70,6 +70,10 @@
       if (answer.error === void 0) waiting?.resolve(answer);
       else waiting?.reject(new Refused(answer.error));
     }
+    /** Somebody waits for an answer. */
+    get isBusy() {
+      return this.urgent.size > 0;
+    }
     /** Sends a request. */
     ask(request) {
       const { socket } = this;
@@ -1674,12 +1678,12 @@
         return this.card(d.name, args, [{ deformation: d.name, inverse: false, args }], h("span", { class: "name" }, this.isTaken(words(name)) ? `${words(name)} (${d.gallery.title})` : words(name)));
       });
     }
-    /** Draws what is in view, one after another, so that dragging does not wait. */
+    /** Draws what is in view, one after another, so that neither dragging nor the drawing itself waits. */
     async draw() {
       if (this.isDrawing) return;
       this.isDrawing = true;
       for (let card = this.queue.shift(); card; card = this.queue.shift()) {
-        while (this.app.isDragging) await new Promise((done) => setTimeout(done, 100));
+        while (this.app.isDragging || this.app.connection.isBusy) await new Promise((done) => setTimeout(done, 100));
         const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation, variant: card.variant?.label ?? null };
         try {
           const { svg } = await this.app.connection.ask(request);

@@ -1,7 +1,10 @@
 //! Drawings in the editor, on the engine.
 
 use crate::host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary};
+use crate::picture as page;
 use crate::words::Words;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use pathwarp::Outline;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::Rect;
@@ -30,11 +33,24 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// What stands for the drawing.
+#[derive(Debug, Clone, Copy)]
+enum Version {
+    /// The drawing as it is saved.
+    File,
+    /// The drawing with an id for every element.
+    Page,
+    /// The drawing, or a bitmap of a large one.
+    Small,
+}
+
 /// A drawing in the editor.
 struct EditedArtwork {
     svg: SvgArtwork,
     /// The drawing with an id for every element, so that the page can tell what is clicked; `None` where all have one.
     shown: Option<SvgArtwork>,
+    /// A bitmap of a large drawing in its place, once small pictures were asked for.
+    sketch: Option<SvgArtwork>,
     registry: Arc<Registry>,
     given: Given,
     options: CommonOptions,
@@ -59,6 +75,7 @@ impl EditedArtwork {
         Self {
             svg,
             shown,
+            sketch: None,
             registry: Arc::clone(registry),
             given,
             options,
@@ -77,17 +94,51 @@ impl EditedArtwork {
         Self { folder: folder.to_owned(), ..self }
     }
 
-    /// Looks up files, and applies `work` to the drawing, as a file or for the page, and the session with these steps.
+    /// Makes the sketch of a large drawing, unless there is one.
+    fn draw_sketch(&mut self) -> Result<(), Failure> {
+        /// Size of texts, in bytes, from which small pictures show a bitmap: bending fifty of them takes seconds.
+        const LARGE: usize = 256 << 10;
+        /// The longer side of the bitmap, in pixels: small pictures are half as large.
+        const PIXELS: f32 = 256.0;
+        let document = self.svg.document();
+        if document.text().len() < LARGE || self.sketch.is_some() {
+            return Ok(());
+        }
+        let bitmap = page::Picture::bitmap(document.text(), PIXELS, Some(Picture::turned));
+        let (png, filled) = bitmap.map_err(Failure::Input)?;
+        let place = document.user_to_px().inverse().transform_rect_bbox(filled);
+        let boxed = |r: Rect| [r.x0, r.y0, r.width(), r.height()];
+        let ([x, y, width, height], page) = (boxed(place), boxed(document.view_box()).map(|v| v.to_string()).join(" "));
+        // Drafts have few pixels for each px of the page.
+        let svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{page}\" width=\"{}\"><image preserveAspectRatio=\"none\" x=\"{x}\" \
+             y=\"{y}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{}\"/></svg>",
+            4.0 * PIXELS,
+            STANDARD.encode(png)
+        );
+        self.sketch = Some(SvgArtwork::read(svg.as_bytes(), Path::new("sketch.svg"), &self.options, None)?);
+        Ok(())
+    }
+
+    /// Looks up files, and applies `work` to a version of the drawing and the session with these steps.
     fn with_steps<T>(
         &mut self,
         recipe: &Recipe,
-        is_file: bool,
+        version: Version,
         work: impl FnOnce(&Session<'_>, &mut SvgArtwork, Ready) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let Self { svg, shown, registry, given, options, framed, .. } = self;
-        let svg = shown.as_mut().filter(|_| !is_file).unwrap_or(svg);
+        let Self { svg, shown, sketch, registry, given, options, framed, .. } = self;
+        let (svg, framed) = match version {
+            Version::File => (svg, framed),
+            Version::Page => (shown.as_mut().unwrap_or(svg), framed),
+            Version::Small => match sketch {
+                // Its frame is another.
+                Some(sketch) => (sketch, &mut None),
+                None => (svg, framed),
+            },
+        };
         svg.renew_budget();
         svg.restore(options);
         let session = Session { registry, recipe: &resolved, options, given };
@@ -96,13 +147,19 @@ impl EditedArtwork {
     }
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
-        self.with_steps(recipe, false, |session, svg, ready| bent(session, svg, ready, recipe, fineness))
+        let version = if let Fineness::Small(_) = fineness {
+            self.draw_sketch()?;
+            Version::Small
+        } else {
+            Version::Page
+        };
+        self.with_steps(recipe, version, |session, svg, ready| bent(session, svg, ready, recipe, fineness))
     }
 
     /// The result as a file of this format; for a picture, as the SVG that it is drawn from.
     fn finished(&mut self, recipe: &Recipe, format: Format) -> Result<Exported, Failure> {
         let folder = self.folder.clone();
-        self.with_steps(recipe, true, |session, svg, ready| {
+        self.with_steps(recipe, Version::File, |session, svg, ready| {
             let embeds = matches!(format, Format::Svg | Format::Svgz);
             let text = || {
                 let (line, given) = on_a_line(recipe, session.given)?;
@@ -184,7 +241,7 @@ fn bent(
     fineness: Fineness,
 ) -> Result<Bent, Failure> {
     let mut request = WarpRequest { recipe: given, same_view: true, ..session.request(svg, &ready)? };
-    if let Fineness::Draft(draft) = fineness {
+    if let Fineness::Draft(draft) | Fineness::Small(draft) = fineness {
         (request.tolerance, request.suited) = (draft.max(request.tolerance), false);
         let (svg, page) = ready.checked(svg.draft(&request))?;
         let Ready { recipe: resolved, built, .. } = ready;
@@ -247,7 +304,7 @@ impl Artwork for EditedArtwork {
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
-        let settled = self.with_steps(recipe, true, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
+        let settled = self.with_steps(recipe, Version::File, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
         self.said(settled)
     }
 

@@ -154,6 +154,8 @@ pub trait Artwork: Send {
 pub enum Fineness {
     /// While something is dragged: curves within this distance in user units, gradients by affine fits, no report.
     Draft(f64),
+    /// For a picture of some dozens of pixels: as a draft, and of a large drawing only a bitmap is bent.
+    Small(f64),
     /// As the program writes it, but on the page of the source.
     Exact,
 }

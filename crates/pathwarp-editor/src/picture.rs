@@ -3,13 +3,15 @@
 //! usvg resolves scripts, events, links, foreign objects and style sheets away; the page gets plain elements with attributes, one a
 //! line. While something is dragged, most lines stay and most of the others differ in one attribute, so only that is sent.
 
-use pathwarp::kurbo::{BezPath, Rect, Shape as _};
+use pathwarp::budget::{Budget, Limits};
+use pathwarp::kurbo::{BezPath, Point, Rect, Shape as _, Size, Vec2};
+use pathwarp_raster::{Pixmap, encode_png, render_group};
 use pathwarp_svg::usvg_tree::parse_tree;
 use pathwarp_svg::{ReadOptions, Turned};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::sync::Arc;
-use usvg::{Indent, WriteOptions};
+use usvg::{Indent, Node, Transform, WriteOptions};
 
 /// Put before every id of the drawing, so that it cannot be one of the page's.
 const ID_PREFIX: &str = "art-";
@@ -37,19 +39,26 @@ impl Picture {
     /// The text of a drawing that shows all there is, and not the page.
     pub(crate) fn small(svg: &str, turned: Option<Turned>) -> Result<String, String> {
         /// Space around the drawing, as a share of its size.
-        const MARGIN: f32 = 0.02;
+        const MARGIN: f64 = 0.02;
         let tree = resolved(svg, turned)?;
-        let seen = tree.root().abs_layer_bounding_box();
+        let seen = seen(&tree, svg.len())?;
         let margin = MARGIN * seen.width().max(seen.height());
         let options = WriteOptions { coordinates_precision: 2, indent: Indent::Spaces(0), ..WriteOptions::default() };
         let text = well_formed(&tree.to_string(&options));
         let (_, rest) = text.split_once('>').ok_or("the drawing has no root")?;
-        let (x, y) = (seen.x() - margin, seen.y() - margin);
-        let (width, height) = (seen.width() + 2.0 * margin, seen.height() + 2.0 * margin);
+        let page = seen.inflate(margin, margin);
+        let (width, height) = (page.width(), page.height());
         Ok(format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
-             height=\"{height}\" viewBox=\"{x} {y} {width} {height}\">{rest}"
+             height=\"{height}\" viewBox=\"{} {} {width} {height}\">{rest}",
+            page.x0, page.y0
         ))
+    }
+
+    /// A bitmap of all that a drawing shows, with its longer side of this many pixels: the PNG, and the box that it fills, in px.
+    pub(crate) fn bitmap(svg: &str, longest: f32, turned: Option<Turned>) -> Result<(Vec<u8>, Rect), String> {
+        let (drawn, filled) = drawn(resolved(svg, turned)?.as_ref(), longest, svg.len())?;
+        Ok((encode_png(&drawn).map_err(|e| e.to_string())?, filled))
     }
 
     /// The whole text.
@@ -105,6 +114,45 @@ impl Picture {
             }
         }
         Some(out)
+    }
+}
+
+/// A bitmap of all that a drawing shows, with its longer side of this many pixels, and the box that it fills, in px. `length` is that of
+/// the drawing's text.
+fn drawn(tree: &usvg::Tree, longest: f32, length: usize) -> Result<(Pixmap, Rect), String> {
+    let seen = tree.root().abs_layer_bounding_box();
+    let scale = longest / seen.width().max(seen.height());
+    let size = [seen.width(), seen.height()].map(|side| f64::from((side * scale).ceil().max(1.0)));
+    let budget = Budget::new(Limits::default().for_input(length));
+    let drawn = render_group(tree.root(), Transform::from_scale(scale, scale), size, &budget);
+    let drawn = drawn.map_err(|e| e.to_string())?.ok_or("the drawing shows nothing")?;
+    let corner = Point::new(seen.x().into(), seen.y().into());
+    Ok((drawn, Rect::from_origin_size(corner, Size::new(size[0], size[1]) / f64::from(scale))))
+}
+
+/// The box of all that a drawing shows, in px: without the clear pixels at the edges of bent bitmaps.
+fn seen(tree: &usvg::Tree, length: usize) -> Result<Rect, String> {
+    /// Pixels of the bitmap in which clear edges are looked for.
+    const PIXELS: f32 = 128.0;
+    let all = tree.root().abs_layer_bounding_box();
+    let all = Rect::new(all.left().into(), all.top().into(), all.right().into(), all.bottom().into());
+    if !tree.root().children().iter().any(has_image) {
+        return Ok(all);
+    }
+    let (drawn, filled) = drawn(tree, PIXELS, length)?;
+    let pixel = filled.width() / f64::from(drawn.width());
+    let opaque = (0..).zip(drawn.pixels()).filter(|(_, p)| p.alpha() > 0).map(|(i, _)| {
+        let [x, y] = [i % drawn.width(), i / drawn.width()].map(|n| pixel * f64::from(n));
+        Rect::from_origin_size(filled.origin() + Vec2::new(x, y), Size::new(pixel, pixel))
+    });
+    Ok(opaque.reduce(|a, b| a.union(b)).map_or(all, |r| r.intersect(all)))
+}
+
+fn has_image(node: &Node) -> bool {
+    match node {
+        Node::Image(_) => true,
+        Node::Group(group) => group.children().iter().any(has_image),
+        Node::Path(_) | Node::Text(_) => false,
     }
 }
 

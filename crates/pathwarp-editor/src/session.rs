@@ -479,7 +479,7 @@ impl Session {
     pub(crate) fn thumbnail(&mut self, given: &[PageStep]) -> Result<String, String> {
         let frame = self.opened.artwork.frame();
         let tolerance = THUMBNAIL_TOLERANCE * frame.width().hypot(frame.height());
-        let bent = self.opened.artwork.bend(&recipe(given), Fineness::Draft(tolerance))?;
+        let bent = self.opened.artwork.bend(&recipe(given), Fineness::Small(tolerance))?;
         Picture::small(&bent.svg, self.host.turned())
     }
 

@@ -81,6 +81,11 @@ export class Connection {
     else waiting?.reject(new Refused(answer.error));
   }
 
+  /** Somebody waits for an answer. */
+  get isBusy(): boolean {
+    return this.urgent.size > 0;
+  }
+
   /** Sends a request. */
   ask(request: Record<string, unknown> & { do: string }): Promise<Answer> {
     const { socket } = this;

@@ -167,12 +167,12 @@ export class Gallery {
     });
   }
 
-  /** Draws what is in view, one after another, so that dragging does not wait. */
+  /** Draws what is in view, one after another, so that neither dragging nor the drawing itself waits. */
   private async draw(): Promise<void> {
     if (this.isDrawing) return;
     this.isDrawing = true;
     for (let card = this.queue.shift(); card; card = this.queue.shift()) {
-      while (this.app.isDragging) await new Promise((done) => setTimeout(done, 100));
+      while (this.app.isDragging || this.app.connection.isBusy) await new Promise((done) => setTimeout(done, 100));
       const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation, variant: card.variant?.label ?? null };
       try {
         const { svg } = await this.app.connection.ask(request);
