@@ -81,37 +81,34 @@ fn type_name(name: &str) -> String {
 const TEMPLATE: &str = r#"//! One sentence that says what NAME does to artwork: x' = x, y' = y + h·sin(2π·x/l). The source: paper and equation.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
-use crate::error::{Error, within};
+use crate::error::Error;
 use crate::map::{Formula, Real};
-use crate::param::{Axis, Param};
+use crate::param::{Axis, parameters};
 use kurbo::Rect;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// One sentence that says what NAME does to artwork: x' = x, y' = y + h·sin(2π·x/l).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TYPE {
-    height: f64,
-    length: f64,
+parameters! {
+    /// One sentence that says what NAME does to artwork: x' = x, y' = y + h·sin(2π·x/l).
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct TYPE(s) {
+        /// Height h of the wave.
+        height: f64 = length("height", Axis::Y).default("10%").slider(0.0, 100.0);
+        /// Length l of the wave.
+        length: f64 = length("length", Axis::X).default("50%").within(1e-3, 1e9).slider(1.0, 1000.0);
+    }
 }
 
 impl TYPE {
-    /// Creates a wave over the artwork's box: 10 % of its height high, half its width long.
+    /// Creates a wave over the artwork's box.
     #[must_use]
     pub fn new(frame: Rect) -> Self {
-        Self { height: 0.1 * frame.height(), length: 0.5 * frame.width() }
-    }
-
-    setters! {
-        /// Sets h, user units.
-        height(height: f64);
-        /// Sets l, 1e-3 to 1e9 user units.
-        length(length: f64);
+        Self::defaults(frame)
     }
 
     /// Builds the map, or refuses a length out of range.
     pub fn build(&self) -> Result<Built, Error> {
-        within("length", self.length, 1e-3, 1e9)?;
+        self.check()?;
         Ok(Built::new(Arc::new(*self)))
     }
 }
@@ -125,10 +122,7 @@ impl Formula for TYPE {
 static INFO: Info = Info::new("NAME", "one line for the menu")
     .group("New")
     .about("Say in plain sentences what it does and when to use it.")
-    .params(&[
-        Param::length("height", Axis::Y, "Height of the wave.").default("10%").slider(0.0, 100.0),
-        Param::length("length", Axis::X, "Length of the wave.").default("50%").within(1e-3, 1e9).slider(1.0, 1000.0),
-    ])
+    .params(TYPE::PARAMS)
     .source("paper and equation")
     .examples(&[Example { what: "As it comes", command: "NAME samples/logo.svg -o out.svg" },
         Example { what: "One long wave", command: "NAME samples/lettering.svg --length 100% -o out.svg" }])
@@ -136,8 +130,7 @@ static INFO: Info = Info::new("NAME", "one line for the menu")
     .cases(&[Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 8.0), tolerance: 1e-12 }]);
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry =
-    Entry::new(&INFO, |s| TYPE { height: s.number("height")?, length: s.number("length")? }.build());
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| TYPE::read(s)?.build());
 "#;
 
 #[cfg(test)]

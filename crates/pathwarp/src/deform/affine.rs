@@ -5,27 +5,45 @@
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law};
 use crate::error::Error;
 use crate::map::AffineMap;
-use crate::param::{Axis, Kind, Param};
-use kurbo::{Affine as Matrix, Point, Vec2};
+use crate::param::{Axis, Kind, parameters};
+use kurbo::{Affine as Matrix, Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// An affine map: a matrix, or scale, skew, rotation and shift, in this order, about a fixed point.
-///
-/// ```
-/// use pathwarp::{deform::Affine, kurbo::Point, map::Map};
-///
-/// let turn = Affine::new().about((10.0, 10.0)).rotate(90.0).build()?;
-/// assert!(turn.map.point(Point::new(12.0, 10.0)).distance(Point::new(10.0, 12.0)) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Affine {
-    matrix: Option<Matrix>,
-    scale: Vec2,
-    skew: Vec2,
-    rotate: f64,
-    shift: Vec2,
-    about: Point,
+parameters! {
+    /// An affine map: a matrix, or scale, skew, rotation and shift, in this order, about a fixed point.
+    ///
+    /// ```
+    /// use pathwarp::{deform::Affine, kurbo::Point, map::Map};
+    ///
+    /// let turn = Affine::new().about((10.0, 10.0)).rotate(90.0).build()?;
+    /// assert!(turn.map.point(Point::new(12.0, 10.0)).distance(Point::new(10.0, 12.0)) < 1e-12);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Affine(s) {
+        /// The matrix a,b,c,d,e,f as in SVG's matrix(); instead of the parts.
+        param = new("matrix", Kind::Numbers(6));
+        /// Scale across.
+        param = number("scale-x").default("1").slider(-2.0, 2.0);
+        /// Scale up and down.
+        param = number("scale-y").default("1").slider(-2.0, 2.0);
+        /// Lean: verticals turn by this angle.
+        param = angle("skew-x").default("0").slider(-60.0, 60.0);
+        /// Slope: horizontals turn by this angle.
+        param = angle("skew-y").default("0").slider(-60.0, 60.0);
+        /// Turn, clockwise on the screen.
+        rotate: f64 = angle("rotate").default("0");
+        /// Shift to the right.
+        param = length("move-x", Axis::X).default("0");
+        /// Shift downwards.
+        param = length("move-y", Axis::Y).default("0");
+        /// The point that scaling, skewing and rotating leave in place.
+        about: Point = new("about", Kind::Point).default("50%,50%");
+        let matrix: Option<Matrix> = s.numbers_if("matrix")?.map(|v| Matrix::new(std::array::from_fn(|i| v[i])));
+        let scale: Vec2 = Vec2::new(s.number("scale-x")?, s.number("scale-y")?);
+        let skew: Vec2 = Vec2::new(s.number("skew-x")?, s.number("skew-y")?);
+        let shift: Vec2 = Vec2::new(s.number("move-x")?, s.number("move-y")?);
+    }
 }
 
 /// Determinants below this share of their two products count as zero.
@@ -45,17 +63,10 @@ impl From<Matrix> for Affine {
 }
 
 impl Affine {
-    /// Creates the identity.
+    /// Creates the identity. Scale, skew and rotation are about the origin.
     #[must_use]
     pub fn new() -> Self {
-        Self {
-            matrix: None,
-            scale: Vec2::new(1.0, 1.0),
-            skew: Vec2::ZERO,
-            rotate: 0.0,
-            shift: Vec2::ZERO,
-            about: Point::ORIGIN,
-        }
+        Self::defaults(Rect::ZERO)
     }
 
     setters! {
@@ -63,12 +74,8 @@ impl Affine {
         scale(x: f64, y: f64) => scale: Vec2::new(x, y);
         /// Sets the angles by which verticals and horizontals turn, degrees.
         skew(x: f64, y: f64) => skew: Vec2::new(x, y);
-        /// Sets the rotation, degrees, clockwise on the screen.
-        rotate(angle: f64) => rotate: angle;
         /// Sets the shift, user units.
         shift(by: impl Into<Vec2>) => shift: by.into();
-        /// Sets the point that scale, skew and rotation leave in place. Default: the origin.
-        about(point: impl Into<Point>) => about: point.into();
     }
 
     /// The error for a matrix that leaves no area, naming the parameter to blame.
@@ -96,6 +103,7 @@ impl Affine {
     /// # Errors
     /// [`Error::Usage`] for a singular matrix, or a skew of 90°.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         for (name, angle) in [("skew-x", self.skew.x), ("skew-y", self.skew.y)] {
             if angle.to_radians().cos().abs() < FLAT {
                 let endless = "makes the artwork endlessly long; write an angle between -90 and 90";
@@ -129,18 +137,7 @@ static INFO: Info = Info::new("affine", "scale, skew, rotate and move, or apply 
     .about("Scales, skews, rotates and moves the artwork, in this order, about a point; or applies a matrix as SVG writes it. Control \
 points are moved exactly; no node is added.")
     .source("SVG 2, section 8.5 (the transform property)")
-    .params(&[
-        Param::new("matrix", Kind::Numbers(6), "The matrix a,b,c,d,e,f as in SVG's matrix(); instead of the parts."),
-        Param::number("scale-x", "Scale across.").default("1").slider(-2.0, 2.0),
-        Param::number("scale-y", "Scale up and down.").default("1").slider(-2.0, 2.0),
-        Param::angle("skew-x", "Lean: verticals turn by this angle.").default("0").slider(-60.0, 60.0),
-        Param::angle("skew-y", "Slope: horizontals turn by this angle.").default("0").slider(-60.0, 60.0),
-        Param::angle("rotate", "Turn, clockwise on the screen.").default("0"),
-        Param::length("move-x", Axis::X, "Shift to the right.").default("0"),
-        Param::length("move-y", Axis::Y, "Shift downwards.").default("0"),
-        Param::new("about", Kind::Point, "The point that scaling, skewing and rotating leave in place.")
-            .default("50%,50%"),
-    ])
+    .params(Affine::PARAMS)
     .demo(&[("rotate", "20"), ("scale-x", "80%"), ("skew-x", "15")])
     .examples(&[
         Example {
@@ -166,25 +163,13 @@ points are moved exactly; no node is added.")
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let matrix = match s.numbers_if("matrix")? {
-        Some(v) => {
-            let parts = ["scale-x", "scale-y", "skew-x", "skew-y", "rotate", "move-x", "move-y", "about"];
-            if let Some(part) = parts.iter().find(|p| s.given(p)) {
-                return Err(Error::usage("matrix", "", format!("is the whole map; it cannot go with `{part}`")));
-            }
-            Some(Matrix::new(std::array::from_fn(|i| v[i])))
+    if s.given("matrix") {
+        let parts = ["scale-x", "scale-y", "skew-x", "skew-y", "rotate", "move-x", "move-y", "about"];
+        if let Some(part) = parts.iter().find(|p| s.given(p)) {
+            return Err(Error::usage("matrix", "", format!("is the whole map; it cannot go with `{part}`")));
         }
-        None => None,
-    };
-    let affine = Affine {
-        matrix,
-        scale: Vec2::new(s.number("scale-x")?, s.number("scale-y")?),
-        skew: Vec2::new(s.number("skew-x")?, s.number("skew-y")?),
-        rotate: s.number("rotate")?,
-        shift: Vec2::new(s.number("move-x")?, s.number("move-y")?),
-        about: s.point("about")?,
-    };
-    affine.build()
+    }
+    Affine::read(s)?.build()
 });
 
 /// Removes whole turns, so that they are the identity to the last bit.

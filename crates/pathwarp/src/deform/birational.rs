@@ -7,46 +7,57 @@
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Pairs, Role};
 use super::ffd::{MAX_CELLS, MAX_DEGREE};
-use crate::error::{Error, GeometryError, within};
+use crate::error::{Error, GeometryError};
 use crate::map::{self, AffineMap, Class, Map, Rows};
 use crate::outline::Seg;
-use crate::param::{Kind, Param, Settings};
+use crate::param::{Kind, Settings, parameters};
 use kurbo::{BezPath, Point, Rect};
 use std::sync::Arc;
 
-/// Free-form deformation of degree 1×n between two rows of points, with a closed-form inverse.
-///
-/// P(s,t) = (1−s)·P₀(t) + s·P₁(t), the weights of the rows P₀, P₁ being those that make the inverse rational. Lines across the
-/// rows stay straight.
-///
-/// ```
-/// use pathwarp::{deform::Birational, kurbo::{Point, Rect}, map::Map};
-///
-/// let (top, bottom) = ([(0.0, 0.0), (50.0, -40.0), (100.0, 0.0)], [(0.0, 100.0), (50.0, 100.0), (100.0, 100.0)]);
-/// let arch = Birational::top_bottom(Rect::new(0.0, 0.0, 100.0, 100.0), top, bottom).build()?;
-/// assert!(arch.map.point(Point::new(50.0, 0.0)).distance(Point::new(50.0, -20.0)) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Birational {
-    region: Rect,
-    rows: Rows,
-    first: Vec<Point>,
-    second: Vec<Point>,
-    spline: Option<usize>,
-    allow_poles: bool,
+parameters! {
+    /// Free-form deformation of degree 1×n between two rows of points, with a closed-form inverse.
+    ///
+    /// P(s,t) = (1−s)·P₀(t) + s·P₁(t), the weights of the rows P₀, P₁ being those that make the inverse rational. Lines across the
+    /// rows stay straight.
+    ///
+    /// ```
+    /// use pathwarp::{deform::Birational, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let (top, bottom) = ([(0.0, 0.0), (50.0, -40.0), (100.0, 0.0)], [(0.0, 100.0), (50.0, 100.0), (100.0, 100.0)]);
+    /// let arch = Birational::top_bottom(Rect::new(0.0, 0.0, 100.0, 100.0), top, bottom).build()?;
+    /// assert!(arch.map.point(Point::new(50.0, 0.0)).distance(Point::new(50.0, -20.0)) < 1e-12);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Birational(s, rows: Rows, first: Vec<Point>, second: Vec<Point>) {
+        /// The top row, left to right: points x,y x,y …, or a path (its anchors; of a single curve its control points).
+        param = path("top");
+        /// The bottom row, left to right, with as many points.
+        param = path("bottom");
+        /// Instead of top and bottom, the left row, top to bottom.
+        param = path("left");
+        /// The right row, top to bottom, with as many points.
+        param = path("right");
+        /// Take the rows for B-splines of this degree; they need at least one point more than that.
+        spline: Option<usize> = new("spline", Kind::Count).within(1.0, MAX_DEGREE as f64);
+        /// The box that is laid between the rows; the map continues outside it.
+        param = new("region", Kind::Text("artwork|X,Y,W,H")).default("artwork");
+        /// Accept points outside the lines that join the rows' ends: the map is infinite somewhere then.
+        allow_poles: bool = flag("allow-poles");
+        let region: Rect = s.rect_if("region")?.unwrap_or(s.frame().rect);
+    }
 }
 
 impl Birational {
-    /// Lays the box `region` between a top and a bottom row, both left to right, of equally many points (2 to 11). Verticals
-    /// stay straight.
+    /// Lays the box `region` between a top and a bottom row, both left to right, of equally many points (2 to 11; for splines up to
+    /// 64 more than their degree, at most 10). Verticals stay straight.
     pub fn top_bottom(
         region: Rect,
         top: impl IntoIterator<Item = impl Into<Point>>,
         bottom: impl IntoIterator<Item = impl Into<Point>>,
     ) -> Self {
         let (first, second) = (top.into_iter().map(Into::into).collect(), bottom.into_iter().map(Into::into).collect());
-        Self { region, rows: Rows::TopBottom, first, second, spline: None, allow_poles: false }
+        Self::defaults(region, Rows::TopBottom, first, second)
     }
 
     /// Lays the box `region` between a left and a right row, both top to bottom, of equally many points (2 to 11).
@@ -59,19 +70,13 @@ impl Birational {
         Self { rows: Rows::LeftRight, ..Self::top_bottom(region, left, right) }
     }
 
-    setters! {
-        /// Takes the rows for B-splines of this degree, 1 to 10, with at least one point more than that and at most 64.
-        spline(degree: usize) => spline: Some(degree);
-        /// Accepts points outside the lines that join the rows' ends: the map is infinite somewhere then.
-        allow_poles(allow_poles: bool);
-    }
-
     /// Builds the map.
     ///
     /// # Errors
     /// [`Error::Geometry`] for rows of different or illegal length, facing ends that coincide, and points on the wrong side of
     /// the lines that join the rows' ends; [`Error::Usage`] for a region without area or a degree out of range.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         let Self { region, rows, first, second, spline, allow_poles } = self;
         let names = match rows {
             Rows::TopBottom => ["top", "bottom"],
@@ -99,9 +104,6 @@ impl Birational {
     /// Refuses rows of different or illegal length; `name` is the second row's.
     fn check_counts(&self, name: &str) -> Result<(), Error> {
         let Self { first, second, spline, .. } = self;
-        if let Some(degree) = *spline {
-            within("spline", degree as f64, 1.0, MAX_DEGREE as f64)?;
-        }
         let (min, max) = spline.map_or((2, MAX_DEGREE + 1), |d| (d + 1, d + MAX_CELLS));
         let expected = if first.len() != second.len() {
             "as many as the facing row"
@@ -135,31 +137,7 @@ others, as with any Bézier curve.\n\nAs long as the rows do not cross, the resu
 Each row's inner points must lie between the lines that join the rows' ends; --allow-poles lifts that restriction, for artwork that \
 keeps clear of the points where the map is infinite. With --spline, rows of many points become B-splines and bend locally.")
     .source("T. W. Sederberg, J. Zheng, Birational 2D free-form deformation of degree 1xn, Computer Aided Geometric Design 2016")
-    .params(&[
-        Param::path(
-            "top",
-            "The top row, left to right: points x,y x,y …, or a path (its anchors; of a single curve its control points).",
-        ),
-        Param::path("bottom", "The bottom row, left to right, with as many points."),
-        Param::path("left", "Instead of top and bottom, the left row, top to bottom."),
-        Param::path("right", "The right row, top to bottom, with as many points."),
-        Param::new(
-            "spline",
-            Kind::Count,
-            "Take the rows for B-splines of this degree; they need at least one point more than that.",
-        )
-        .within(1.0, MAX_DEGREE as f64),
-        Param::new(
-            "region",
-            Kind::Text("artwork|X,Y,W,H"),
-            "The box that is laid between the rows; the map continues outside it.",
-        )
-        .default("artwork"),
-        Param::flag(
-            "allow-poles",
-            "Accept points outside the lines that join the rows' ends: the map is infinite somewhere then.",
-        ),
-    ])
+    .params(Birational::PARAMS)
     .demo(&[("top", "0,10 30,-25 70,30 100,5"), ("bottom", "5,90 35,110 60,70 95,100")])
     .examples(&[
         Example {
@@ -231,15 +209,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
             return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with `top` and `bottom`"));
         }
     };
-    let birational = Birational {
-        region: s.rect_if("region")?.unwrap_or(s.frame().rect),
-        rows,
-        first,
-        second,
-        spline: s.number_if("spline")?.map(|d| d as usize),
-        allow_poles: s.flag("allow-poles")?,
-    };
-    birational.build()
+    Birational::read(s, rows, first, second)?.build()
 });
 
 fn facing(missing: &str, given: &str) -> Error {

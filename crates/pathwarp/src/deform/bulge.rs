@@ -10,47 +10,46 @@
 //! Both are smooth at the centre, being smooth in r². Elementary.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
-use crate::error::{Error, within};
+use crate::error::Error;
 use crate::map::{
     AffineMap, Class, Cost, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real, increasing_root,
 };
-use crate::param::{Axis, Kind, Param};
+use crate::param::{Axis, Kind, parameters};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::f64::consts::LN_2;
 use std::sync::Arc;
 
-/// A bulge, or a pinch: artwork pushed out from a centre, or drawn in, within a disc.
-///
-/// Every point stays on its ray; with q = (r/R)² and m = 2^amount it moves by the factor exp(ln m·(1 − q)²), or with a sharp
-/// edge m/√(1 + (m² − 1)·q).
-///
-/// ```
-/// use pathwarp::{deform::Bulge, kurbo::Point, map::Map};
-///
-/// let bulge = Bulge::new((50.0, 50.0), 40.0).amount(1.0).build()?;
-/// let jet = bulge.map.jet(Point::new(50.0, 50.0));
-/// assert!((jet.dx.x - 2.0).abs() < 1e-12); // The centre is twice as large.
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bulge {
-    center: Point,
-    radius: f64,
-    amount: f64,
-    sharp: bool,
+parameters! {
+    /// A bulge, or a pinch: artwork pushed out from a centre, or drawn in, within a disc.
+    ///
+    /// Every point stays on its ray; with q = (r/R)² and m = 2^amount it moves by the factor exp(ln m·(1 − q)²), or with a sharp
+    /// edge m/√(1 + (m² − 1)·q). A sharp pinch is the exact inverse of the sharp bulge.
+    ///
+    /// ```
+    /// use pathwarp::{deform::Bulge, kurbo::Point, map::Map};
+    ///
+    /// let bulge = Bulge::new((50.0, 50.0), 40.0).amount(1.0).build()?;
+    /// let jet = bulge.map.jet(Point::new(50.0, 50.0));
+    /// assert!((jet.dx.x - 2.0).abs() < 1e-12); // The centre is twice as large.
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Bulge(s) {
+        /// At 1 the middle is twice as large, at -1 half as large (pinch).
+        amount: f64 = number("amount").default("0.7").within(-1.0, 1.0);
+        /// Centre of the bulge.
+        center: Point = new("center", Kind::Point).default("50%,50%");
+        /// Radius at which the bulge ends; 50% reaches the artwork's corners.
+        radius: f64 = length("radius", Axis::Diagonal).default("50%").within(1e-6, 1e9).slider(1.0, 1000.0);
+        /// Edge at the rim: without a kink, or with one.
+        sharp: bool = either("edge", &["soft", "sharp"]);
+    }
 }
 
 impl Bulge {
-    /// Creates a bulge of amount 0.7 that ends at `radius`, 1e-6 to 1e9 user units from `center`.
+    /// Creates a bulge that ends at `radius`, 1e-6 to 1e9 user units from `center`.
     pub fn new(center: impl Into<Point>, radius: f64) -> Self {
-        Self { center: center.into(), radius, amount: 0.7, sharp: false }
-    }
-
-    setters! {
-        /// Sets the amount, −1 to 1: the scale at the centre is 2^amount, so that negative amounts pinch.
-        amount(amount: f64);
-        /// Ends with a kink at the rim. A sharp pinch is the exact inverse of the sharp bulge.
-        sharp(sharp: bool);
+        Self { center: center.into(), radius, ..Self::defaults(Rect::ZERO) }
     }
 
     /// Builds the map.
@@ -58,10 +57,9 @@ impl Bulge {
     /// # Errors
     /// [`Error::Usage`] for an amount or a radius out of range.
     pub fn build(&self) -> Result<Built, Error> {
-        let Self { center, sharp, .. } = *self;
-        let ln_m = within("amount", self.amount, -1.0, 1.0)? * LN_2;
-        let radius = within("radius", self.radius, 1e-6, 1e9)?;
-        Ok(Built::new(Arc::new(BulgeMap(Inner { center, radius, ln_m, sharp }))))
+        self.check()?;
+        let Self { center, radius, amount, sharp } = *self;
+        Ok(Built::new(Arc::new(BulgeMap(Inner { center, radius, ln_m: amount * LN_2, sharp }))))
     }
 }
 
@@ -71,18 +69,7 @@ static INFO: Info = Info::new("bulge", "blow up the middle, or pinch it")
 (pinch). Outside the radius nothing moves. --edge soft ends without a kink at the rim; --edge sharp is rounder, and its pinch \
 undoes its bulge exactly.")
     .source("elementary; see the formulas at the top of deform/bulge.rs")
-    .params(&[
-        Param::number("amount", "At 1 the middle is twice as large, at -1 half as large (pinch).")
-            .default("0.7")
-            .within(-1.0, 1.0),
-        Param::new("center", Kind::Point, "Centre of the bulge.").default("50%,50%"),
-        Param::length("radius", Axis::Diagonal, "Radius at which the bulge ends; 50% reaches the artwork's corners.")
-            .default("50%")
-            .within(1e-6, 1e9)
-            .slider(1.0, 1000.0),
-        Param::new("edge", Kind::Choice(&["soft", "sharp"]), "Edge at the rim: without a kink, or with one.")
-            .default("soft"),
-    ])
+    .params(Bulge::PARAMS)
     .demo(&[("amount", "1"), ("radius", "40")])
     .examples(&[
         Example { what: "As it comes", command: "bulge samples/logo.svg -o out.svg" },
@@ -116,10 +103,7 @@ undoes its bulge exactly.")
     ]);
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let (center, radius, amount) = (s.point("center")?, s.number("radius")?, s.number("amount")?);
-    Bulge { center, radius, amount, sharp: s.choice("edge")? == "sharp" }.build()
-});
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Bulge::read(s)?.build());
 
 /// The formula inside the disc, continued outside.
 #[derive(Debug, Clone, Copy)]

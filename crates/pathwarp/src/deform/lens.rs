@@ -15,57 +15,49 @@
 //! PAMI 28 (2006), equations (1)–(5).
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
-use crate::error::{Error, within};
+use crate::error::Error;
 use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Kind, Param};
+use crate::param::{Choice as _, Kind, choice, parameters};
 use kurbo::{Affine, Point, Rect};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A change of lens: artwork drawn by one [`LensModel`], redrawn by another, as fisheye pictures are made and straightened.
-///
-/// r' = f'·ρ'(ρ⁻¹(r/f)) about the centre, ρ and ρ' being the two models. The focal lengths f and f' follow from the field of
-/// view across the diagonal of the artwork's box.
-///
-/// ```
-/// use pathwarp::{deform::{Lens, LensModel}, kurbo::{Point, Rect}, map::Map};
-///
-/// let fisheye = Lens::new(Rect::new(0.0, 0.0, 100.0, 100.0)).to(LensModel::Equidistant).field(90.0).build()?;
-/// let corner = Point::new(100.0, 0.0);
-/// assert!(fisheye.map.point(corner).distance(corner) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lens {
-    frame: Rect,
-    center: Point,
-    from: LensModel,
-    to: LensModel,
-    field: f64,
-    keep_middle: bool,
+parameters! {
+    /// A change of lens: artwork drawn by one [`LensModel`], redrawn by another, as fisheye pictures are made and straightened.
+    ///
+    /// r' = f'·ρ'(ρ⁻¹(r/f)) about the centre, ρ and ρ' being the two models. The focal lengths f and f' follow from the field of
+    /// view across the diagonal of the artwork's box.
+    ///
+    /// ```
+    /// use pathwarp::{deform::{Lens, LensModel}, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let fisheye = Lens::new(Rect::new(0.0, 0.0, 100.0, 100.0)).to(LensModel::Equidistant).field(90.0).build()?;
+    /// let corner = Point::new(100.0, 0.0);
+    /// assert!(fisheye.map.point(corner).distance(corner) < 1e-12);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Lens(s) {
+        /// The lens that the artwork is drawn with.
+        from: LensModel = new("from", Kind::Choice(LensModel::WORDS)).default("rectilinear");
+        /// The lens to draw it with.
+        to: LensModel = new("to", Kind::Choice(LensModel::WORDS)).default("equisolid");
+        /// The angle of view across the diagonal of the artwork's box.
+        field: f64 = angle("field").default("110").within(0.01, 359.0);
+        /// The point the lens looks at.
+        center: Point = new("center", Kind::Point).default("50%,50%");
+        /// Keep the corners in place (corners), or the scale in the middle (middle).
+        keep_middle: bool = either("keep", &["corners", "middle"]);
+        let frame: Rect = s.frame().rect;
+    }
 }
 
 impl Lens {
-    /// Creates the change from a rectilinear to an equisolid lens that looks at the middle of the artwork's box with a field
-    /// of view of 110° and keeps the corners in place.
+    /// Creates the change from a rectilinear to an equisolid lens that looks at the middle of the artwork's box and keeps the
+    /// corners in place. (Rectilinear and orthographic lenses see less than 180 degrees.)
     #[must_use]
     pub fn new(frame: Rect) -> Self {
-        let (from, to) = (LensModel::Rectilinear, LensModel::Equisolid);
-        Self { frame, center: frame.center(), from, to, field: 110.0, keep_middle: false }
-    }
-
-    setters! {
-        /// Sets the lens that the artwork is drawn with.
-        from(from: LensModel);
-        /// Sets the lens to redraw it with.
-        to(to: LensModel);
-        /// Sets the angle of view across the diagonal of the artwork's box, 0.01 to 359 degrees. Rectilinear and orthographic
-        /// lenses see less than 180.
-        field(field: f64);
-        /// Sets the point that the lens looks at.
-        center(center: impl Into<Point>) => center: center.into();
-        /// Keeps the scale in the middle instead of the position of the corners.
-        keep_middle(keep_middle: bool);
+        Self::defaults(frame)
     }
 
     /// Builds the map.
@@ -73,8 +65,9 @@ impl Lens {
     /// # Errors
     /// [`Error::Usage`] for a field of view that a lens cannot see, or artwork without size.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         let Self { frame, center, from, to, .. } = *self;
-        let half = within("field", self.field, 0.01, 359.0)?.to_radians() / 2.0;
+        let half = self.field.to_radians() / 2.0;
         let shown = || format!("{:.6}", 2.0 * half.to_degrees());
         for (name, lens) in [("from", from), ("to", to)] {
             if half >= lens.max_angle() {
@@ -95,23 +88,22 @@ impl Lens {
     }
 }
 
-/// The way a lens draws a ray at the angle θ from its axis: at the distance f·ρ(θ) from the middle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LensModel {
-    /// ρ = tan θ: a pinhole; straight lines stay straight.
-    Rectilinear,
-    /// ρ = 2·tan(θ/2): small shapes are kept.
-    Stereographic,
-    /// ρ = θ: angles from the axis to scale.
-    Equidistant,
-    /// ρ = 2·sin(θ/2): areas to scale.
-    Equisolid,
-    /// ρ = sin θ.
-    Orthographic,
+choice! {
+    /// The way a lens draws a ray at the angle θ from its axis: at the distance f·ρ(θ) from the middle.
+    #[non_exhaustive]
+    pub enum LensModel {
+        /// ρ = tan θ: a pinhole; straight lines stay straight.
+        Rectilinear = "rectilinear",
+        /// ρ = 2·tan(θ/2): small shapes are kept.
+        Stereographic = "stereographic",
+        /// ρ = θ: angles from the axis to scale.
+        Equidistant = "equidistant",
+        /// ρ = 2·sin(θ/2): areas to scale.
+        Equisolid = "equisolid",
+        /// ρ = sin θ.
+        Orthographic = "orthographic",
+    }
 }
-
-const LENSES: &[&str] = &["rectilinear", "stereographic", "equidistant", "equisolid", "orthographic"];
 
 static INFO: Info = Info::new("lens", "look through a fisheye, or straighten what was seen through one")
     .group("Classics")
@@ -120,20 +112,7 @@ outwards and the middle swells; the other way a fisheye picture is straightened.
 corner of the artwork's box: the wider, the stronger.")
     .source("J. Kannala and S. Brandt, A generic camera model and calibration method for conventional, wide-angle, and fish-eye \
 lenses, IEEE PAMI 28, 2006, equations (1)-(5)")
-    .params(&[
-        Param::new("from", Kind::Choice(LENSES), "The lens that the artwork is drawn with.").default("rectilinear"),
-        Param::new("to", Kind::Choice(LENSES), "The lens to draw it with.").default("equisolid"),
-        Param::angle("field", "The angle of view across the diagonal of the artwork's box.")
-            .default("110")
-            .within(0.01, 359.0),
-        Param::new("center", Kind::Point, "The point the lens looks at.").default("50%,50%"),
-        Param::new(
-            "keep",
-            Kind::Choice(&["corners", "middle"]),
-            "Keep the corners in place (corners), or the scale in the middle (middle).",
-        )
-        .default("corners"),
-    ])
+    .params(Lens::PARAMS)
     .demo(&[])
     .examples(&[
         Example { what: "As it comes: a fisheye", command: "lens samples/grid.svg -o out.svg" },
@@ -171,29 +150,9 @@ lenses, IEEE PAMI 28, 2006, equations (1)-(5)")
     ]);
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let lens = Lens {
-        frame: s.frame().rect,
-        center: s.point("center")?,
-        from: LensModel::named(s.choice("from")?),
-        to: LensModel::named(s.choice("to")?),
-        field: s.number("field")?,
-        keep_middle: s.choice("keep")? == "middle",
-    };
-    lens.build()
-});
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Lens::read(s)?.build());
 
 impl LensModel {
-    fn named(name: &str) -> Self {
-        match name {
-            "stereographic" => Self::Stereographic,
-            "equidistant" => Self::Equidistant,
-            "equisolid" => Self::Equisolid,
-            "orthographic" => Self::Orthographic,
-            _ => Self::Rectilinear,
-        }
-    }
-
     /// Returns the largest angle θ that the lens can see.
     fn max_angle(self) -> f64 {
         if matches!(self, Self::Rectilinear | Self::Orthographic) { PI / 2.0 } else { PI }
@@ -309,8 +268,8 @@ mod tests {
 
     #[test]
     fn every_pair_of_lenses_returns_and_is_smooth_in_the_middle() {
-        for from in LENSES {
-            for to in LENSES {
+        for from in LensModel::WORDS {
+            for to in LensModel::WORDS {
                 let m = build(&[("from", from), ("to", to)]).unwrap().map;
                 let back = m.inverse().unwrap();
                 for p in [(50.0, 50.0), (50.0, 50.0 + 1e-8), (52.0, 49.0), (3.0, 4.0)] {

@@ -14,28 +14,39 @@
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
 use crate::anchors;
-use crate::error::{Error, GeometryError, within};
+use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Cost, Formula, Real};
-use crate::param::{Axis, Kind, Param, Settings};
+use crate::param::{Axis, Choice as _, Kind, Settings, choice, parameters};
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// Moving least squares: points of the artwork are moved, everything else follows as stiffly as asked.
-///
-/// ```
-/// use pathwarp::{deform::Mls, kurbo::Point, map::Map};
-///
-/// let bend = Mls::new([((10.0, 20.0), (10.0, 20.0)), ((50.0, 50.0), (60.0, 45.0)), ((80.0, 10.0), (80.0, 15.0))]).build()?;
-/// assert_eq!(bend.map.point(Point::new(50.0, 50.0)), Point::new(60.0, 45.0));
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Mls {
-    handles: Vec<(Point, Point)>,
-    stiffness: Stiffness,
-    alpha: f64,
-    /// Size of the preview's crosses.
-    mark: f64,
+parameters! {
+    /// Moving least squares: points of the artwork are moved, everything else follows as stiffly as asked.
+    ///
+    /// ```
+    /// use pathwarp::{deform::Mls, kurbo::Point, map::Map};
+    ///
+    /// let bend = Mls::new([((10.0, 20.0), (10.0, 20.0)), ((50.0, 50.0), (60.0, 45.0)), ((80.0, 10.0), (80.0, 15.0))]).build()?;
+    /// assert_eq!(bend.map.point(Point::new(50.0, 50.0)), Point::new(60.0, 45.0));
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Mls(s, handles: Vec<(Point, Point)>) {
+        /// A point of the artwork and its image; may be given many times.
+        param = new("pair", Kind::Text("X,Y:X,Y")).repeated();
+        /// A point that stays; may be given many times.
+        param = new("pin", Kind::Text("X,Y")).repeated();
+        /// A path whose anchors are moved, in order, to those of --to.
+        param = path("from");
+        /// A path with as many anchors as --from.
+        param = path("to");
+        /// Stiffness of the artwork.
+        stiffness: Stiffness = new("kind", Kind::Choice(Stiffness::WORDS)).default("rigid");
+        /// Locality: the influence of a pair falls off with this power of the squared distance.
+        alpha: f64 = number("alpha").default("1").within(1.0, 4.0);
+        // Size of the preview's crosses.
+        let mark: f64 = s.frame().extent(Axis::Diagonal) / 100.0;
+    }
 }
 
 impl Mls {
@@ -45,14 +56,7 @@ impl Mls {
         let handles: Vec<(Point, Point)> = pairs.into_iter().map(|(p, q)| (p.into(), q.into())).collect();
         let points = handles.iter().flat_map(|h| [h.0, h.1]).map(|p| Rect::from_points(p, p));
         let bounds = points.reduce(|a, b| a.union(b)).unwrap_or_default();
-        Self { handles, stiffness: Stiffness::Rigid, alpha: 1.0, mark: bounds.width().hypot(bounds.height()) / 100.0 }
-    }
-
-    setters! {
-        /// Sets the kind of local map. Default: rigid.
-        stiffness(stiffness: Stiffness);
-        /// Sets α, 1 to 4: the influence of a pair falls off with this power of the squared distance. Default: 1.
-        alpha(alpha: f64);
+        Self::defaults(bounds, handles)
     }
 
     /// Builds the map.
@@ -60,8 +64,9 @@ impl Mls {
     /// # Errors
     /// No pairs or too many, first points that coincide, or all on one line for [`Stiffness::Affine`].
     pub fn build(&self) -> Result<Built, Error> {
-        let Self { handles, stiffness, .. } = self;
-        let (stiffness, alpha) = (*stiffness, within("alpha", self.alpha, 1.0, 4.0)?);
+        self.check()?;
+        let Self { handles, stiffness, alpha, .. } = self;
+        let (stiffness, alpha) = (*stiffness, *alpha);
         let from: Vec<Point> = handles.iter().map(|h| h.0).collect();
         if handles.len() > MAX_HANDLES {
             let problem = format!("pairs are too many: at most {MAX_HANDLES}");
@@ -93,16 +98,17 @@ impl Mls {
     }
 }
 
-/// The kind of map that moving least squares fits at every point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Stiffness {
-    /// Rigid motions: shapes are kept as well as possible.
-    Rigid,
-    /// Similitudes: shapes may also grow and shrink.
-    Similar,
-    /// Affine maps: shapes may also shear. Needs three pairs whose first points are not on one line.
-    Affine,
+choice! {
+    /// The kind of map that moving least squares fits at every point.
+    #[non_exhaustive]
+    pub enum Stiffness {
+        /// Rigid motions: shapes are kept as well as possible.
+        Rigid = "rigid",
+        /// Similitudes: shapes may also grow and shrink.
+        Similar = "similar",
+        /// Affine maps: shapes may also shear. Needs three pairs whose first points are not on one line.
+        Affine = "affine",
+    }
 }
 
 static INFO: Info = Info::new("mls", "move points of the artwork, and let the rest follow")
@@ -123,17 +129,7 @@ static INFO: Info = Info::new("mls", "move points of the artwork, and let the re
 point, --pin holds one where it is, --from and --to take the anchors of two paths, in order.\n\n--kind rigid keeps shapes as stiff as \
 it can, similar also lets them grow and shrink, affine lets them shear as well (it needs three pairs that are not on one line).")
     .source("S. Schaefer, T. McPhail, J. Warren, Image deformation using moving least squares, SIGGRAPH 2006")
-    .params(&[
-        Param::new("pair", Kind::Text("X,Y:X,Y"), "A point of the artwork and its image; may be given many times.")
-            .repeated(),
-        Param::new("pin", Kind::Text("X,Y"), "A point that stays; may be given many times.").repeated(),
-        Param::path("from", "A path whose anchors are moved, in order, to those of --to."),
-        Param::path("to", "A path with as many anchors as --from."),
-        Param::new("kind", Kind::Choice(&["rigid", "similar", "affine"]), "Stiffness of the artwork.").default("rigid"),
-        Param::number("alpha", "Locality: the influence of a pair falls off with this power of the squared distance.")
-            .default("1")
-            .within(1.0, 4.0),
-    ])
+    .params(Mls::PARAMS)
     .demo(&[("pin", "10,90"), ("pin", "90,90"), ("pair", "50,15:60,5"), ("pair", "52,55:45,48")])
     .examples(&[
         Example {
@@ -180,15 +176,7 @@ const THREE: Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,1
 const MAX_HANDLES: usize = 1000;
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let stiffness = match s.choice("kind")? {
-        "similar" => Stiffness::Similar,
-        "affine" => Stiffness::Affine,
-        _ => Stiffness::Rigid,
-    };
-    let mark = s.frame().extent(Axis::Diagonal) / 100.0;
-    Mls { handles: handles(s)?, stiffness, alpha: s.number("alpha")?, mark }.build()
-});
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Mls::read(s, handles(s)?)?.build());
 
 fn handles(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
     let mut out = Vec::new();

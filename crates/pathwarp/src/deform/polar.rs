@@ -13,60 +13,52 @@
 //! by a straight line, and the recipe warns of it. Elementary.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Seam};
-use crate::error::{Error, show, within};
+use crate::error::{Error, show};
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Axis, Kind, Param, word_space};
+use crate::param::{Axis, Kind, parameters, word_space};
 use kurbo::{Point, Rect, Vec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// Polar coordinates: a box bent into a sector of a ring, or into the whole ring.
-///
-/// Verticals become rays and horizontals become arcs about one centre: the angle from the vertical is φ = κ·x with κ =
-/// sweep/width, and the radius r = ρ + g·y, or ρ·exp(κ·y) if conformal, with y counted upwards from the inner edge.
-///
-/// ```
-/// use pathwarp::{deform::Polar, kurbo::{Point, Rect}, map::Map};
-///
-/// let ring = Polar::new(Rect::new(0.0, 0.0, 100.0, 100.0)).sweep(360.0).inner(10.0).outer(60.0).center((0.0, 0.0)).build()?;
-/// assert!(ring.map.point(Point::new(75.0, 0.0)).distance(Point::new(60.0, 0.0)) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Polar {
-    frame: Rect,
-    sweep: f64,
-    inner: Option<f64>,
-    outer: Option<f64>,
-    turn: f64,
-    center: Option<Point>,
-    conformal: bool,
-    gap: f64,
+parameters! {
+    /// Polar coordinates: a box bent into a sector of a ring, or into the whole ring.
+    ///
+    /// Verticals become rays and horizontals become arcs about one centre: the angle from the vertical is φ = κ·x with κ =
+    /// sweep/width, and the radius r = ρ + g·y, or ρ·exp(κ·y) if conformal, with y counted upwards from the inner edge.
+    ///
+    /// ```
+    /// use pathwarp::{deform::Polar, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let ring = Polar::new(Rect::new(0.0, 0.0, 100.0, 100.0)).sweep(360.0).inner(10.0).outer(60.0).center((0.0, 0.0)).build()?;
+    /// assert!(ring.map.point(Point::new(75.0, 0.0)).distance(Point::new(60.0, 0.0)) < 1e-12);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Polar(s) {
+        /// The angle that the artwork's width is bent into; negative bends downwards.
+        sweep: f64 = angle("sweep").default("60").within(-360.0, 360.0);
+        /// Radius of the inner edge. Default: so that it keeps its length.
+        inner: Option<f64> = length("inner", Axis::X).within(0.0, 1e9).slider(0.0, 500.0);
+        /// Radius of the outer edge. Default: so that heights are kept.
+        outer: Option<f64> = length("outer", Axis::X).within(0.0, 1e9).slider(0.0, 500.0);
+        /// Turn the result, clockwise on the screen.
+        turn: f64 = angle("turn").default("0");
+        /// Centre of the ring. Default: so that the middle of the artwork stays.
+        center: Option<Point> = new("center", Kind::Point);
+        /// Space between the ends of a whole turn, user units or % of the width. Default: a word space for lettering, none for other artwork.
+        gap: Option<f64> = length("gap", Axis::X).within(0.0, 1e9).slider(0.0, 100.0);
+        /// Spacing of the radii: even, or conformal (angles are kept).
+        conformal: bool = either("spacing", &["even", "conformal"]);
+        let frame: Rect = s.frame().rect;
+        let word_space: Option<f64> = word_space(&s.frame().letters);
+    }
 }
 
 impl Polar {
     /// Creates an arch of 60° whose inner edge keeps its length and whose middle stays in place.
     #[must_use]
     pub fn new(frame: Rect) -> Self {
-        Self { frame, sweep: 60.0, inner: None, outer: None, turn: 0.0, center: None, conformal: false, gap: 0.0 }
-    }
-
-    setters! {
-        /// Sets the angle that the artwork's width is bent into, −360 to 360 degrees; negative bends downwards.
-        sweep(sweep: f64);
-        /// Sets the radius of the inner edge, user units. Without it, the inner edge keeps its length.
-        inner(inner: f64) => inner: Some(inner);
-        /// Sets the radius of the outer edge, user units. Without it, heights are kept.
-        outer(outer: f64) => outer: Some(outer);
-        /// Sets an angle to turn the result by, degrees, clockwise on the screen.
-        turn(turn: f64);
-        /// Sets the centre of the ring. Without it, the middle of the artwork stays in place.
-        center(center: impl Into<Point>) => center: Some(center.into());
-        /// Keeps angles: heights grow with the radius.
-        conformal(conformal: bool);
-        /// Sets the space between the ends of a whole turn, user units of the source: the artwork is bent into that much less than
-        /// 360°. Smaller sweeps have no such gap.
-        gap(gap: f64);
+        Self::defaults(frame)
     }
 
     /// Builds the map.
@@ -74,15 +66,12 @@ impl Polar {
     /// # Errors
     /// [`Error::Usage`] for radii that leave no ring, values that contradict each other, or artwork without width.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         let Self { frame: rect, inner, outer, conformal, .. } = *self;
-        within("sweep", self.sweep, -360.0, 360.0)?;
         let whole = self.sweep.abs() > 360.0 * (1.0 - WHOLE);
-        let gap = within("gap", self.gap, 0.0, 1e9)?;
+        let gap = self.gap.or(self.word_space).unwrap_or(0.0);
         let left = if whole && gap > 0.0 { rect.width() / (rect.width() + gap) } else { 1.0 };
         let sweep = self.sweep.to_radians() * left;
-        for (name, radius) in [("inner", inner), ("outer", outer)] {
-            radius.map(|r| within(name, r, 0.0, 1e9)).transpose()?;
-        }
         let degrees = sweep.to_degrees().to_string();
         if sweep == 0.0 {
             if inner.or(outer).is_some() || self.center.is_some() {
@@ -157,29 +146,7 @@ static INFO: Info = Info::new("polar", "bend artwork into an arch or a whole rin
 --inner and --outer set the radii instead. A negative sweep bends downwards (a smile). The middle of the artwork stays where it is, \
 unless --center gives the centre. With --spacing conformal, squares stay squares: heights grow with the width.")
     .source("elementary (polar coordinates; the complex exponential)")
-    .params(&[
-        Param::angle("sweep", "The angle that the artwork's width is bent into; negative bends downwards.")
-            .default("60")
-            .within(-360.0, 360.0),
-        Param::length("inner", Axis::X, "Radius of the inner edge. Default: so that it keeps its length.")
-            .within(0.0, 1e9)
-            .slider(0.0, 500.0),
-        Param::length("outer", Axis::X, "Radius of the outer edge. Default: so that heights are kept.")
-            .within(0.0, 1e9)
-            .slider(0.0, 500.0),
-        Param::angle("turn", "Turn the result, clockwise on the screen.").default("0"),
-        Param::new("center", Kind::Point, "Centre of the ring. Default: so that the middle of the artwork stays."),
-        Param::length("gap", Axis::X, "Space between the ends of a whole turn, user units or % of the width. Default: a word space for \
-lettering, none for other artwork.")
-            .within(0.0, 1e9)
-            .slider(0.0, 100.0),
-        Param::new(
-            "spacing",
-            Kind::Choice(&["even", "conformal"]),
-            "Spacing of the radii: even, or conformal (angles are kept).",
-        )
-        .default("even"),
-    ])
+    .params(Polar::PARAMS)
     .demo(&[("turn", "15")])
     .examples(&[
         Example { what: "An arch", command: "polar samples/lettering.svg -o out.svg" },
@@ -219,19 +186,7 @@ const SMILE: Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("ce
 const SMILE_AT_0: Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let polar = Polar {
-        frame: s.frame().rect,
-        sweep: s.number("sweep")?,
-        inner: s.number_if("inner")?,
-        outer: s.number_if("outer")?,
-        turn: s.number("turn")?,
-        center: if s.given("center") { Some(s.point("center")?) } else { None },
-        conformal: s.choice("spacing")? == "conformal",
-        gap: s.number_if("gap")?.or_else(|| word_space(&s.frame().letters)).unwrap_or(0.0),
-    };
-    polar.build()
-});
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Polar::read(s)?.build());
 
 /// A turn is whole if it lacks less than this share.
 const WHOLE: f64 = 1e-9;

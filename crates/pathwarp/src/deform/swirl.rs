@@ -10,42 +10,41 @@
 //! twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius for the axis.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
-use crate::error::{Error, within};
+use crate::error::Error;
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Axis, Kind, Param};
-use kurbo::{Affine, Point};
+use crate::param::{Axis, Choice as _, Kind, choice, parameters};
+use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
-/// A swirl: artwork turned about a centre, by an angle that falls off with the distance.
-///
-/// In polar coordinates about the centre (r, θ) ↦ (r, θ + α·f(r/R)), f being the [`Falloff`]. Areas are kept.
-///
-/// ```
-/// use pathwarp::{deform::Swirl, kurbo::Point, map::Map};
-///
-/// let swirl = Swirl::new((50.0, 50.0), 40.0).angle(90.0).build()?;
-/// assert_eq!(swirl.map.point(Point::new(90.0, 50.0)), Point::new(90.0, 50.0)); // The rim stays.
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Swirl {
-    center: Point,
-    radius: f64,
-    angle: f64,
-    falloff: Falloff,
+parameters! {
+    /// A swirl: artwork turned about a centre, by an angle that falls off with the distance.
+    ///
+    /// In polar coordinates about the centre (r, θ) ↦ (r, θ + α·f(r/R)), α being the angle, R the radius and f the [`Falloff`]. Areas are kept.
+    ///
+    /// ```
+    /// use pathwarp::{deform::Swirl, kurbo::Point, map::Map};
+    ///
+    /// let swirl = Swirl::new((50.0, 50.0), 40.0).angle(90.0).build()?;
+    /// assert_eq!(swirl.map.point(Point::new(90.0, 50.0)), Point::new(90.0, 50.0)); // The rim stays.
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Swirl(s) {
+        /// Angle at the centre, clockwise on the screen.
+        angle: f64 = angle("angle").default("45").slider(-360.0, 360.0);
+        /// Centre of the swirl.
+        center: Point = new("center", Kind::Point).default("50%,50%");
+        /// Radius at which the swirl ends; 50% reaches the artwork's corners.
+        radius: f64 = length("radius", Axis::Diagonal).default("50%").within(1e-6, 1e9).slider(1.0, 1000.0);
+        /// Falloff of the angle: soft at centre and rim, sharp (linear, with a kink at the rim), or endless (a bell curve).
+        falloff: Falloff = new("falloff", Kind::Choice(Falloff::WORDS)).default("soft");
+    }
 }
 
 impl Swirl {
     /// Creates a swirl by 45° that ends at `radius`, 1e-6 to 1e9 user units from `center`.
     pub fn new(center: impl Into<Point>, radius: f64) -> Self {
-        Self { center: center.into(), radius, angle: 45.0, falloff: Falloff::Soft }
-    }
-
-    setters! {
-        /// Sets α, the angle at the centre, degrees, clockwise on the screen.
-        angle(angle: f64);
-        /// Sets how the angle falls off.
-        falloff(falloff: Falloff);
+        Self { center: center.into(), radius, ..Self::defaults(Rect::ZERO) }
     }
 
     /// Builds the map.
@@ -53,23 +52,24 @@ impl Swirl {
     /// # Errors
     /// [`Error::Usage`] for a radius out of range.
     pub fn build(&self) -> Result<Built, Error> {
-        let Self { center, angle, falloff, .. } = *self;
-        let radius = within("radius", self.radius, 1e-6, 1e9)?;
+        self.check()?;
+        let Self { center, radius, angle, falloff } = *self;
         let inner = Inner { center, radius, angle: angle.to_radians(), falloff };
         Ok(Built::new(if falloff == Falloff::Endless { Arc::new(inner) } else { Arc::new(SwirlMap(inner)) }))
     }
 }
 
-/// The share f(ρ) of a swirl's angle at ρ = r/R.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Falloff {
-    /// (1 − ρ²)² up to the rim, then nothing: smooth, its curvature jumps at the rim.
-    Soft,
-    /// 1 − ρ up to the rim, then nothing: a kink at the rim.
-    Sharp,
-    /// exp(−2ρ²) everywhere.
-    Endless,
+choice! {
+    /// The share f(ρ) of a swirl's angle at ρ = r/R.
+    #[non_exhaustive]
+    pub enum Falloff {
+        /// (1 − ρ²)² up to the rim, then nothing: smooth, its curvature jumps at the rim.
+        Soft = "soft",
+        /// 1 − ρ up to the rim, then nothing: a kink at the rim.
+        Sharp = "sharp",
+        /// exp(−2ρ²) everywhere.
+        Endless = "endless",
+    }
 }
 
 static INFO: Info = Info::new("swirl", "turn the middle, and keep the rim")
@@ -77,20 +77,7 @@ static INFO: Info = Info::new("swirl", "turn the middle, and keep the rim")
     .about("Turns artwork about a centre by an angle that falls off to nothing at the radius. Circles about the centre stay \
 themselves, no area changes, and outside the radius nothing moves (with --falloff endless, hardly anything).")
     .source("elementary; the twist of A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984, in the plane")
-    .params(&[
-        Param::angle("angle", "Angle at the centre, clockwise on the screen.").default("45").slider(-360.0, 360.0),
-        Param::new("center", Kind::Point, "Centre of the swirl.").default("50%,50%"),
-        Param::length("radius", Axis::Diagonal, "Radius at which the swirl ends; 50% reaches the artwork's corners.")
-            .default("50%")
-            .within(1e-6, 1e9)
-            .slider(1.0, 1000.0),
-        Param::new(
-            "falloff",
-            Kind::Choice(&["soft", "sharp", "endless"]),
-            "Falloff of the angle: soft at centre and rim, sharp (linear, with a kink at the rim), or endless (a bell curve).",
-        )
-        .default("soft"),
-    ])
+    .params(Swirl::PARAMS)
     .demo(&[("angle", "120"), ("radius", "40"), ("falloff", "sharp")])
     .examples(&[
         Example { what: "As it comes", command: "swirl samples/logo.svg -o out.svg" },
@@ -128,15 +115,7 @@ themselves, no area changes, and outside the radius nothing moves (with --fallof
     ]);
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let falloff = match s.choice("falloff")? {
-        "sharp" => Falloff::Sharp,
-        "endless" => Falloff::Endless,
-        _ => Falloff::Soft,
-    };
-    let (center, radius, angle) = (s.point("center")?, s.number("radius")?, s.number("angle")?);
-    Swirl { center, radius, angle, falloff }.build()
-});
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Swirl::read(s)?.build());
 
 /// The formula inside the disc, continued outside.
 #[derive(Debug, Clone, Copy)]

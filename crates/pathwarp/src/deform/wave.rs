@@ -10,57 +10,49 @@
 //! kind are in A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, as profiles of offsets along an axis.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
-use crate::error::{Error, within};
+use crate::error::Error;
 use crate::map::{Class, Formula, Map, Real};
-use crate::param::{Axis, Frame, Kind, Param};
+use crate::param::{Axis, Frame, parameters};
 use kurbo::{Affine, Rect, Vec2};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// A sine wave: artwork pushed to and fro across the direction of the wave, or along it.
-///
-/// F(p) = p + a(s)·sin(2π·s/λ + φ)·n with s counted along the wave from where the artwork begins, n the unit vector across
-/// it, and a(s) = h·(1 − g + g·s/S), S being the artwork's extent along the wave.
-///
-/// ```
-/// use pathwarp::{deform::Wave, kurbo::{Point, Rect}, map::Map};
-///
-/// let wave = Wave::new(Rect::new(0.0, 0.0, 100.0, 100.0)).length(40.0).height(3.0).build()?;
-/// assert!(wave.map.point(Point::new(10.0, 5.0)).distance(Point::new(10.0, 2.0)) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wave {
-    frame: Rect,
-    height: f64,
-    length: f64,
-    angle: f64,
-    phase: f64,
-    grow: f64,
-    push: bool,
+parameters! {
+    /// A sine wave: artwork pushed to and fro across the direction of the wave, or along it.
+    ///
+    /// F(p) = p + a(s)·sin(2π·s/λ + φ)·n with s counted along the wave from where the artwork begins, n the unit vector across
+    /// it, λ its length, φ its phase, and a(s) = h·(1 − g + g·s/S), h being its height, g its growth and S the artwork's extent along it.
+    ///
+    /// ```
+    /// use pathwarp::{deform::Wave, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let wave = Wave::new(Rect::new(0.0, 0.0, 100.0, 100.0)).length(40.0).height(3.0).build()?;
+    /// assert!(wave.map.point(Point::new(10.0, 5.0)).distance(Point::new(10.0, 2.0)) < 1e-12);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Wave(s) {
+        /// Distance of a crest from the middle.
+        height: f64 = length("height", Axis::Y).default("10%").slider(0.0, 100.0);
+        /// Distance from crest to crest.
+        length: f64 = length("length", Axis::X).default("60%").within(1e-3, 1e9).slider(1.0, 1000.0);
+        /// Direction of the wave: 0 to the right, 90 downwards.
+        angle: f64 = angle("angle").default("0");
+        /// Phase at which the artwork begins: 0 in the middle, 90 on a crest.
+        phase: f64 = angle("phase").default("0");
+        /// Share of the height that is missing at the start: 0 none of it, 1 all.
+        grow: f64 = number("grow").default("0").within(0.0, 1.0);
+        /// Move points across the wave (shear) or along it (push).
+        push: bool = either("kind", &["shear", "push"]);
+        let frame: Rect = s.frame().rect;
+    }
 }
 
 impl Wave {
-    /// Creates a wave over the artwork's box, running to the right, 10 % of the box high and 60 % of it long.
+    /// Creates a wave over the artwork's box.
     #[must_use]
     pub fn new(frame: Rect) -> Self {
-        let (height, length) = (0.1 * frame.height(), 0.6 * frame.width());
-        Self { frame, height, length, angle: 0.0, phase: 0.0, grow: 0.0, push: false }
-    }
-
-    setters! {
-        /// Sets h, the distance of a crest from the middle, user units.
-        height(height: f64);
-        /// Sets λ, the distance from crest to crest, 1e-3 to 1e9 user units.
-        length(length: f64);
-        /// Sets the direction of the wave, degrees: 0 to the right, 90 downwards.
-        angle(angle: f64);
-        /// Sets φ, the phase at which the artwork begins, degrees: 0 in the middle, 90 on a crest.
-        phase(phase: f64);
-        /// Sets g, the share of the height that is missing at the start, 0 to 1.
-        grow(grow: f64);
-        /// Moves points along the wave instead of across it.
-        push(push: bool);
+        Self::defaults(frame)
     }
 
     /// Builds the map.
@@ -68,9 +60,8 @@ impl Wave {
     /// # Errors
     /// [`Error::Usage`] for a length or growth out of range.
     pub fn build(&self) -> Result<Built, Error> {
-        let Self { height, push, .. } = *self;
-        let length = within("length", self.length, 1e-3, 1e9)?;
-        let grow = within("grow", self.grow, 0.0, 1.0)?;
+        self.check()?;
+        let Self { height, length, grow, push, .. } = *self;
         let d = Vec2::from_angle(self.angle.to_radians());
         let along: Vec<f64> = Frame::new(self.frame).corners().iter().map(|c| c.to_vec2().dot(d)).collect();
         let start = along.iter().copied().fold(f64::INFINITY, f64::min);
@@ -103,17 +94,7 @@ static INFO: Info = Info::new("wave", "wave artwork like water, or like a flag i
 stay straight, and no area changes. With --grow the wave starts flat and reaches its full height at the end: a flag at its pole. \
 --kind push moves points along the wave instead of across it: the artwork is squeezed and stretched in turn.")
     .source("elementary; offsets along an axis as in A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984")
-    .params(&[
-        Param::length("height", Axis::Y, "Distance of a crest from the middle.").default("10%").slider(0.0, 100.0),
-        Param::length("length", Axis::X, "Distance from crest to crest.").default("60%").within(1e-3, 1e9).slider(1.0, 1000.0),
-        Param::angle("angle", "Direction of the wave: 0 to the right, 90 downwards.").default("0"),
-        Param::angle("phase", "Phase at which the artwork begins: 0 in the middle, 90 on a crest.").default("0"),
-        Param::number("grow", "Share of the height that is missing at the start: 0 none of it, 1 all.")
-            .default("0")
-            .within(0.0, 1.0),
-        Param::new("kind", Kind::Choice(&["shear", "push"]), "Move points across the wave (shear) or along it (push).")
-            .default("shear"),
-    ])
+    .params(Wave::PARAMS)
     .demo(&[("angle", "20"), ("phase", "30"), ("grow", "0.5")])
     .examples(&[
         Example { what: "As it comes", command: "wave samples/logo.svg -o out.svg" },
@@ -149,18 +130,7 @@ stay straight, and no area changes. With --grow the wave starts flat and reaches
     ]);
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let wave = Wave {
-        frame: s.frame().rect,
-        height: s.number("height")?,
-        length: s.number("length")?,
-        angle: s.number("angle")?,
-        phase: s.number("phase")?,
-        grow: s.number("grow")?,
-        push: s.choice("kind")? == "push",
-    };
-    wave.build()
-});
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Wave::read(s)?.build());
 
 /// The map.
 #[derive(Clone)]

@@ -126,6 +126,12 @@ impl Param {
         Self { ui: (-180.0, 180.0), ..Self::new(name, Kind::Angle, help) }
     }
 
+    /// One of two words, the first of which is the default.
+    #[must_use]
+    pub(crate) const fn either(name: &'static str, words: &'static [&'static str; 2], help: &'static str) -> Self {
+        Self::new(name, Kind::Choice(words), help).default(words[0])
+    }
+
     /// Sets the default, as a user would type it.
     #[must_use]
     pub const fn default(self, text: &'static str) -> Self {

@@ -28,6 +28,7 @@ mod declaration;
 mod frame;
 mod letter;
 mod settings;
+mod typed;
 mod value;
 
 use crate::error::Error;
@@ -40,6 +41,7 @@ pub use frame::Frame;
 pub use letter::Letter;
 pub(crate) use letter::word_space;
 pub use settings::Settings;
+pub(crate) use typed::{Choice, Value, choice, parameters};
 pub use value::{Length, LengthError, LengthUnit};
 
 pub(crate) use circle::is_spiral;

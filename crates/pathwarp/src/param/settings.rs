@@ -15,6 +15,8 @@ pub struct Settings<'a> {
     params: &'a [Param],
     args: &'a Args,
     frame: &'a Frame,
+    /// Numbers may be out of range.
+    any_range: bool,
 }
 
 impl<'a> Settings<'a> {
@@ -41,7 +43,12 @@ impl<'a> Settings<'a> {
                 return Err(Error::missing(p.name, p.help));
             }
         }
-        Ok(Self { params, args, frame })
+        Ok(Self { params, args, frame, any_range: false })
+    }
+
+    /// The defaults alone, whether or not the frame makes lengths of them that are in range. `args` is empty.
+    pub(crate) fn defaults(params: &'a [Param], args: &'a Args, frame: &'a Frame) -> Self {
+        Self { params, args, frame, any_range: true }
     }
 
     /// The box to which percentages refer.
@@ -90,7 +97,7 @@ impl<'a> Settings<'a> {
         };
         let value = value.map_err(|e| usage(name, text, &e))?;
         let (min, max) = param.range;
-        if value < min || value > max {
+        if !self.any_range && (value < min || value > max) {
             let percent = param.kind == Kind::Number && !text.contains('%') && value.abs() >= LIKELY_PERCENT;
             let meant = percent && (min..=max).contains(&(value / 100.0));
             let advice = if meant { format!("; for {text} per cent write {text}%") } else { String::new() };
@@ -255,18 +262,18 @@ impl<'a> Settings<'a> {
         Ok(NamedPath { name: name.to_owned(), outline })
     }
 
-    fn param(&self, name: &str) -> Option<&'a Param> {
+    pub(super) fn param(&self, name: &str) -> Option<&'a Param> {
         self.params.iter().find(|p| p.name == name)
     }
 
     /// The last value given, or the default.
-    fn text(&self, name: &str) -> Option<(&'a str, &'a Param)> {
+    pub(super) fn text(&self, name: &str) -> Option<(&'a str, &'a Param)> {
         let param = self.param(name)?;
         let typed = self.args.get(name).last().map(String::as_str);
         typed.or(param.default).map(|t| (t, param))
     }
 
-    fn missing(&self, name: &str) -> Error {
+    pub(super) fn missing(&self, name: &str) -> Error {
         let hint = self.param(name).map_or("no such parameter", |p| p.help);
         Error::missing(name, hint)
     }

@@ -26,9 +26,9 @@ mod surface;
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pairs, Role, SpaceFile};
-use crate::error::{Error, within};
+use crate::error::Error;
 use crate::map::{AffineMap, Chain, Local, Map};
-use crate::param::{Axis, Kind, Param, Settings};
+use crate::param::{Axis, Kind, Settings, parameters};
 use kurbo::{Affine, Point, Rect, Shape, Vec2};
 use net::{Push, PushedNet};
 use scene::Scene;
@@ -37,36 +37,68 @@ use surface::{Anamorphosis, Camera, Radial, Surface};
 
 pub use surface::Onto;
 
-/// An anamorphosis: artwork drawn so that it looks right from one place only.
-///
-/// Every point moves along its ray through the eye O, p̂ = O + (p − O)/δ(p): onto a surface in space, which is unrolled or
-/// seen by another camera, or by control points that are pushed towards the eye or away from it.
-///
-/// ```
-/// use pathwarp::{deform::{Anamorph, Onto}, kurbo::{Point, Rect}, map::Map};
-///
-/// // Artwork that stands on the floor, 500 from an eye 400 above it.
-/// let frame = Rect::new(0.0, 0.0, 100.0, 100.0);
-/// let floor = Anamorph::new(frame).distance(500.0).eye_height(400.0).onto(Onto::Floor).build()?;
-/// assert!((floor.map.point(Point::new(50.0, 0.0)).y - (100.0 - 500.0 / 3.0)).abs() < 1e-9);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Anamorph {
-    frame: Rect,
-    eye: Point,
-    eye_given: bool,
-    distance: Option<f64>,
-    eye_height: Option<f64>,
-    picture_width: Option<f64>,
-    length: Option<f64>,
-    onto: Option<Onto>,
-    look: Look,
-    net: Option<PushedNet>,
-    local: bool,
-    files: Vec<SpaceFile>,
-    /// For the sizes of the note.
-    units_per_px: [f64; 2],
+parameters! {
+    /// An anamorphosis: artwork drawn so that it looks right from one place only.
+    ///
+    /// Every point moves along its ray through the eye O, p̂ = O + (p − O)/δ(p): onto a surface in space, which is unrolled or
+    /// seen by another camera, or by control points that are pushed towards the eye or away from it.
+    ///
+    /// ```
+    /// use pathwarp::{deform::{Anamorph, Onto}, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// // Artwork that stands on the floor, 500 from an eye 400 above it.
+    /// let frame = Rect::new(0.0, 0.0, 100.0, 100.0);
+    /// let floor = Anamorph::new(frame).distance(500.0).eye_height(400.0).onto(Onto::Floor).build()?;
+    /// assert!((floor.map.point(Point::new(50.0, 0.0)).y - (100.0 - 500.0 / 3.0)).abs() < 1e-9);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Anamorph(s) {
+        /// Position of the eye, in the drawing or straight in front of this point.
+        param = new("eye", Kind::Point).default("50%,50%");
+        /// Distance of the eye in front of the drawing. Without it the eye lies in the drawing.
+        distance: Option<f64> = length("distance", Axis::X).within(1e-6, 1e9).slider(10.0, 2000.0);
+        /// Height of the eye above the artwork's bottom edge (the floor).
+        eye_height: Option<f64> = length("eye-height", Axis::Y).within(0.0, 1e9).slider(0.0, 8000.0);
+        /// Apparent width of the artwork. Default: as drawn.
+        picture_width: Option<f64> = length("picture-width", Axis::X).within(1e-6, 1e9).slider(1.0, 4000.0);
+        /// Length of the result on the floor or ramp; needs --eye-height.
+        length: Option<f64> = length("length", Axis::Y).within(1e-6, 1e9).slider(10.0, 40000.0);
+        /// The surface that the artwork is projected onto: plane:…, cylinder:…, cone:… or sphere:… as above.
+        param = new("onto", Kind::Text("SURFACE"));
+        /// Give the eye's view.
+        param = flag("seen");
+        /// Give the view from here, Z in front of the drawing, looking at its middle.
+        param = new("view", Kind::Text("X,Y,Z"));
+        /// The region of the control points: three corners of a triangle, or two of a box. Default: the artwork's box.
+        param = new("reference", Kind::Text("X,Y X,Y [X,Y]"));
+        /// Degree of the net: control points along a side, less one; MxN across and down a box.
+        param = new("degree", Kind::Text("N|MxN")).default("1");
+        /// Takes a control point to this many times its distance from the eye; may be given many times.
+        param = new("push", Kind::Text("I,J[,K]:FACTOR")).repeated();
+        /// Takes a control point this much further from the eye, or nearer if negative; may be given many times.
+        param = new("away", Kind::Text("I,J[,K]:LENGTH")).repeated();
+        /// Takes a control point to the point of its ray nearest to here (eye in the drawing); may be given many times.
+        param = new("at", Kind::Text("I,J[,K]:X,Y")).repeated();
+        /// Takes this point to so many times its distance from the eye, by pushing the control point nearest to it that is not on
+        /// a fixed side: the first side of a triangle, the edge of a box if --local.
+        param = new("point", Kind::Text("X,Y:FACTOR")).repeated();
+        /// Write the filled artwork on the surface as a mesh in 3D (OBJ), for printing and CAD; needs --distance.
+        param = new("mesh", Kind::Save);
+        /// Write the artwork's outlines on the surface as polylines in 3D (OBJ); needs --distance.
+        param = new("curves", Kind::Save);
+        /// Move only artwork inside the reference.
+        local: bool = flag("local");
+        let frame: Rect = s.frame().rect;
+        let eye: Point = s.point("eye")?;
+        let eye_given: bool = s.given("eye");
+        let onto: Option<Onto> = s.texts("onto").pop().map(|text| onto(s, text)).transpose()?;
+        let look: Look = look(s)?;
+        let net: Option<PushedNet> = net(s)?;
+        let files: Vec<SpaceFile> = files(s, "mesh", true).chain(files(s, "curves", false)).collect();
+        // For the sizes of the note.
+        let units_per_px: [f64; 2] = s.frame().units_per_px;
+    }
 }
 
 /// The way a surface is shown.
@@ -84,47 +116,22 @@ impl Anamorph {
     /// Creates an anamorphosis of the box `frame` for an eye in the drawing, at the middle of the box.
     #[must_use]
     pub fn new(frame: Rect) -> Self {
-        Self {
-            frame,
-            eye: frame.center(),
-            eye_given: false,
-            distance: None,
-            eye_height: None,
-            picture_width: None,
-            length: None,
-            onto: None,
-            look: Look::Unrolled,
-            net: None,
-            local: false,
-            files: Vec::new(),
-            units_per_px: [1.0; 2],
-        }
+        Self::defaults(frame)
     }
 
     setters! {
         /// Sets the eye, or its foot in the drawing.
         eye(eye: impl Into<Point>) => eye: eye.into(), eye_given: true;
-        /// Sets the distance of the eye in front of the drawing, 1e-6 to 1e9 user units.
-        distance(distance: f64) => distance: Some(distance);
-        /// Sets the height of the eye above the artwork's bottom edge, instead of its foot.
-        eye_height(height: f64) => eye_height: Some(height);
-        /// Sets the apparent width of the artwork. Default: as drawn.
-        picture_width(width: f64) => picture_width: Some(width);
-        /// Sets the length of the result on a floor or ramp. Needs the [`eye_height`](Self::eye_height).
-        length(length: f64) => length: Some(length);
         /// Sets the surface that the artwork is projected onto. Needs the [`distance`](Self::distance).
         onto(surface: Onto) => onto: Some(surface);
+        /// Gives the view of a camera at (x, y), z in front of the drawing, that looks at its middle.
+        view(x: f64, y: f64, z: f64) => look: Look::From([x, y, z]);
     }
 
     /// Gives the eye's view of the surface, which is the artwork itself.
     #[must_use]
     pub fn seen(self) -> Self {
         Self { look: Look::Eye, ..self }
-    }
-
-    setters! {
-        /// Gives the view of a camera at (x, y), z in front of the drawing, that looks at its middle.
-        view(x: f64, y: f64, z: f64) => look: Look::From([x, y, z]);
     }
 
     fn with_net(mut self, change: impl FnOnce(&mut PushedNet)) -> Self {
@@ -172,19 +179,15 @@ impl Anamorph {
         self.with_net(|net| net.pushes.push(Push::Prescribe(point, factor)))
     }
 
-    setters! {
-        /// Moves only artwork inside the reference. The eye must lie in the drawing.
-        local(local: bool);
-    }
-
     /// Builds the map, and for an eye in front of the drawing its surface ([`Built::space`]).
     ///
     /// # Errors
     /// [`Error::Usage`] or [`Error::Missing`] for values out of range, that contradict or lack each other, and for surfaces
     /// that a ray misses or that cannot be laid flat.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         match self.distance {
-            Some(distance) => self.in_front(within("distance", distance, 1e-6, 1e9)?),
+            Some(distance) => self.in_front(distance),
             None => self.in_plane(),
         }
     }
@@ -341,58 +344,7 @@ In the plane: without --distance the eye lies in the drawing, and control points
 --away, --at, --point). They lie over a --reference triangle or box. With --distance the same pushes bend a sheet in front of the eye: \
 flat for a triangle of degree 1, otherwise shown with --view.")
     .source("J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form Deformation, CAGD 46, 2016")
-    .params(&[
-        Param::new("eye", Kind::Point, "Position of the eye, in the drawing or straight in front of this point.")
-            .default("50%,50%"),
-        Param::length("distance", Axis::X, "Distance of the eye in front of the drawing. Without it the eye lies in the drawing.")
-            .within(1e-6, 1e9)
-            .slider(10.0, 2000.0),
-        Param::length("eye-height", Axis::Y, "Height of the eye above the artwork's bottom edge (the floor).").within(0.0, 1e9)
-            .slider(0.0, 8000.0),
-        Param::length("picture-width", Axis::X, "Apparent width of the artwork. Default: as drawn.")
-            .within(1e-6, 1e9)
-            .slider(1.0, 4000.0),
-        Param::length("length", Axis::Y, "Length of the result on the floor or ramp; needs --eye-height.")
-            .within(1e-6, 1e9)
-            .slider(10.0, 40000.0),
-        Param::new("onto", Kind::Text("SURFACE"), "The surface that the artwork is projected onto: plane:…, cylinder:…, cone:… or sphere:… as above."),
-        Param::flag("seen", "Give the eye's view."),
-        Param::new("view", Kind::Text("X,Y,Z"), "Give the view from here, Z in front of the drawing, looking at its middle."),
-        Param::new(
-            "reference",
-            Kind::Text("X,Y X,Y [X,Y]"),
-            "The region of the control points: three corners of a triangle, or two of a box. Default: the artwork's box.",
-        ),
-        Param::new("degree", Kind::Text("N|MxN"), "Degree of the net: control points along a side, less one; MxN across and down a box.").default("1"),
-        Param::new(
-            "push",
-            Kind::Text("I,J[,K]:FACTOR"),
-            "Takes a control point to this many times its distance from the eye; may be given many times.",
-        )
-        .repeated(),
-        Param::new(
-            "away",
-            Kind::Text("I,J[,K]:LENGTH"),
-            "Takes a control point this much further from the eye, or nearer if negative; may be given many times.",
-        )
-        .repeated(),
-        Param::new(
-            "at",
-            Kind::Text("I,J[,K]:X,Y"),
-            "Takes a control point to the point of its ray nearest to here (eye in the drawing); may be given many times.",
-        )
-        .repeated(),
-        Param::new(
-            "point",
-            Kind::Text("X,Y:FACTOR"),
-            "Takes this point to so many times its distance from the eye, by pushing the control point nearest to it that is not on \
-a fixed side: the first side of a triangle, the edge of a box if --local.",
-        )
-        .repeated(),
-        Param::new("mesh", Kind::Save, "Write the filled artwork on the surface as a mesh in 3D (OBJ), for printing and CAD; needs --distance."),
-        Param::new("curves", Kind::Save, "Write the artwork's outlines on the surface as polylines in 3D (OBJ); needs --distance."),
-        Param::flag("local", "Move only artwork inside the reference."),
-    ])
+    .params(Anamorph::PARAMS)
     .demo(&[("distance", "300"), ("onto", "cylinder:radius=80")])
     .examples(&[
         Example {
@@ -478,30 +430,17 @@ const LOCAL: Pairs =
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let files = |param: &'static str, filled: bool| {
-        s.texts(param).into_iter().map(move |name| SpaceFile { param, name: name.to_owned(), filled })
-    };
-    let anamorph = Anamorph {
-        frame: s.frame().rect,
-        eye: s.point("eye")?,
-        eye_given: s.given("eye"),
-        distance: s.number_if("distance")?,
-        eye_height: s.number_if("eye-height")?,
-        picture_width: s.number_if("picture-width")?,
-        length: s.number_if("length")?,
-        onto: s.texts("onto").pop().map(|text| onto(s, text)).transpose()?,
-        look: look(s)?,
-        net: net(s)?,
-        local: s.flag("local")?,
-        files: files("mesh", true).chain(files("curves", false)).collect(),
-        units_per_px: s.frame().units_per_px,
-    };
     // The surface as typed, rather than in user units.
-    anamorph.build().map_err(|e| match (e, s.texts("onto").pop()) {
+    Anamorph::read(s)?.build().map_err(|e| match (e, s.texts("onto").pop()) {
         (Error::Usage { param, problem, .. }, Some(text)) if param == "onto" => Error::usage("onto", text, problem),
         (e, _) => e,
     })
 });
+
+/// The files that a parameter asks for.
+fn files(s: &Settings<'_>, param: &'static str, filled: bool) -> impl Iterator<Item = SpaceFile> {
+    s.texts(param).into_iter().map(move |name| SpaceFile { param, name: name.to_owned(), filled })
+}
 
 fn look(s: &Settings<'_>) -> Result<Look, Error> {
     let Some(text) = s.texts("view").pop() else {

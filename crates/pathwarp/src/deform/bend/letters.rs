@@ -15,44 +15,25 @@
 use super::map::{BendMap, ToStrip, listed, normal};
 use crate::error::show;
 use crate::outline::{Outline, Seg, boundary};
-use crate::param::Letter;
+use crate::param::{Letter, choice};
 use kurbo::{Affine, Line, Point, Rect, Shape as _, Vec2};
 
-/// The way a letter is set on a skeleton, instead of being bent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LetterSetting {
-    /// Turned; it keeps its shape.
-    Rotate,
-    /// Sheared: verticals stay vertical, the foot follows the path.
-    Skew,
-    /// Sheared: horizontals stay horizontal, verticals stand on the path.
-    Ribbon,
-    /// Only moved.
-    Stair,
+choice! {
+    /// The way a letter is set on a skeleton, instead of being bent.
+    #[non_exhaustive]
+    pub enum LetterSetting {
+        /// Turned; it keeps its shape.
+        Rotate = "rotate",
+        /// Sheared: verticals stay vertical, the foot follows the path.
+        Skew = "skew",
+        /// Sheared: horizontals stay horizontal, verticals stand on the path.
+        Ribbon = "ribbon",
+        /// Only moved.
+        Stair = "stair",
+    }
 }
 
 impl LetterSetting {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Rotate => "rotate",
-            Self::Skew => "skew",
-            Self::Ribbon => "ribbon",
-            Self::Stair => "stair",
-        }
-    }
-
-    /// Returns the setting of this name; `None` if letters bend.
-    pub(super) fn named(name: &str) -> Option<Self> {
-        match name {
-            "rotate" => Some(Self::Rotate),
-            "skew" => Some(Self::Skew),
-            "ribbon" => Some(Self::Ribbon),
-            "stair" => Some(Self::Stair),
-            _ => None,
-        }
-    }
-
     fn axes(self, t: Vec2) -> (Vec2, Vec2) {
         let (right, down) = (Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0));
         match self {

@@ -23,9 +23,9 @@ mod skeleton;
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
-use crate::error::{Error, show, within};
+use crate::error::{Error, show};
 use crate::outline::Outline;
-use crate::param::{Axis, Kind, Letter, NamedPath, NamedText, Param, Settings, is_spiral};
+use crate::param::{Axis, Choice as _, Kind, Letter, NamedPath, NamedText, Settings, choice, is_spiral, parameters};
 use kurbo::{Affine, Point, Rect, Vec2};
 use map::{BendMap, ToStrip};
 use skeleton::{Corner, Joined, Skeleton};
@@ -33,69 +33,96 @@ use std::sync::Arc;
 
 pub use letters::LetterSetting;
 
-/// A bend along a path, the skeleton: horizontals run along it, verticals stand on it.
-///
-/// F(x, y) = C(u) + v·S(u) with C the skeleton by arc length, u growing with x, v with the height above the baseline, and S the
-/// unit normal (blended into the mitre at corners), or the paper's handles.
-///
-/// ```
-/// use pathwarp::{Outline, deform::Bend, kurbo::{Point, Rect}, map::Map};
-///
-/// let arc = Outline::from_svg("M0,50 A50,50 0 0 1 100,50")?;
-/// let bent = Bend::new(Rect::new(0.0, 0.0, 100.0, 100.0), &arc).baseline(100.0).build()?;
-/// assert!(bent.map.point(Point::new(50.0, 100.0)).distance(Point::new(50.0, 0.0)) < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Bend {
-    frame: Rect,
-    along: NamedPath,
-    spline: Option<usize>,
-    as_drawn: bool,
-    reverse: bool,
-    stretch: Stretch,
-    align: Align,
-    offset: f64,
-    gap: f64,
-    /// The y of the line that lies on the skeleton.
-    baseline: f64,
-    width: f64,
-    by_parameter: bool,
-    handles: Option<Vec<Vec<Vec<Vec2>>>>,
-    /// The file that the handles are from, for messages.
-    handles_name: String,
-    even: bool,
-    setting: Option<LetterSetting>,
-    letters: Arc<[Letter]>,
-    /// The frame was laid around the letters, and says nothing about their own heights.
-    around_letters: bool,
-    /// Points of the artwork; empty if they are not known.
-    ink: Arc<[Point]>,
+parameters! {
+    /// A bend along a path, the skeleton: horizontals run along it, verticals stand on it.
+    ///
+    /// F(x, y) = C(u) + v·S(u) with C the skeleton by arc length, u growing with x, v with the height above the baseline, and S the
+    /// unit normal (blended into the mitre at corners), or the paper's handles.
+    ///
+    /// ```
+    /// use pathwarp::{Outline, deform::Bend, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let arc = Outline::from_svg("M0,50 A50,50 0 0 1 100,50")?;
+    /// let bent = Bend::new(Rect::new(0.0, 0.0, 100.0, 100.0), &arc).baseline(100.0).build()?;
+    /// assert!(bent.map.point(Point::new(50.0, 100.0)).distance(Point::new(50.0, 0.0)) < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Bend(s, along: NamedPath) {
+        /// The skeleton: one connected path, such as circle:r=60mm, arc:r=60mm,from=200,to=340 or
+        /// spiral:turns=3,inner=20mm,outer=80mm.
+        param = path("along").needed();
+        /// Lengths: keep them, scale the artwork evenly to the skeleton's length, fit its width only, or repeat it all along.
+        stretch: Stretch = new("stretch", Kind::Choice(Stretch::WORDS)).default("keep");
+        /// The part of the artwork that comes to the same part of the skeleton.
+        align: Align = new("align", Kind::Choice(Align::WORDS)).default("middle");
+        /// Shift along the skeleton, user units or % of the artwork's width.
+        offset: f64 = length("offset", Axis::X).default("0");
+        /// The least space between repeated artwork, user units or % of its width.
+        gap: f64 = length("gap", Axis::X).default("0");
+        /// The height of the artwork, from its bottom, that lies on the skeleton. Default for lettering: the lettering's baseline.
+        param = length("baseline", Axis::Y).default("50%");
+        /// Heights are multiplied by this.
+        width: f64 = number("width").default("100%").within(1e-6, 1e6).slider(0.1, 3.0);
+        /// Run evenly along the skeleton, or by its pieces' parameters with handles for sides.
+        by_parameter: bool = either("by", &["arclength", "parameter"]);
+        /// A JSON file of handles; the skeleton is then taken as drawn.
+        param = new("handles", Kind::File);
+        /// Take the skeleton's anchors as control points of a uniform B-spline of this degree; the curves between them are ignored.
+        spline: Option<usize> = new("spline", Kind::Count).within(1.0, 3.0);
+        /// Letters: bend them, or set them one by one: turned, sheared with vertical verticals or horizontal horizontals, or just moved.
+        param = new("glyphs", Kind::Choice(&["bend", "rotate", "skew", "ribbon", "stair"])).default("bend");
+        /// The same as --glyphs skew.
+        param = flag("skew");
+        /// The same as --glyphs ribbon.
+        param = flag("ribbon");
+        /// The line on which lengths are measured: the skeleton, or half the artwork's height, which evens out letters in a bend.
+        even: bool = either("spacing", &["baseline", "even"]);
+        /// Take the skeleton in the direction it was drawn, a closed one from its start.
+        as_drawn: bool = flag("as-drawn");
+        /// Run the skeleton the other way.
+        reverse: bool = flag("reverse");
+        let frame: Rect = s.frame().rect;
+        // The y of the line that lies on the skeleton.
+        let baseline: f64 = match s.frame().baseline {
+            Some(y) if !s.given("baseline") => y,
+            _ => s.frame().rect.y1 - s.number("baseline")?,
+        };
+        let handles: Option<Handles> = s.file_if("handles")?.map(handles).transpose()?;
+        let setting: Option<LetterSetting> = setting(s)?;
+        let letters: Arc<[Letter]> = Arc::clone(&s.frame().letters);
+        // The frame was laid around the letters, and says nothing about their own heights.
+        let around_letters: bool = s.frame().baseline.is_some();
+        // Points of the artwork; empty if they are not known.
+        let ink: Arc<[Point]> = Arc::clone(&s.frame().ink);
+    }
 }
 
-/// The lengths of artwork on a skeleton.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Stretch {
-    /// Lengths are kept.
-    Keep,
-    /// The artwork is scaled to the skeleton's length.
-    Scale,
-    /// The artwork's width is stretched to the skeleton's length.
-    Fit,
-    /// Copies of the artwork stand side by side, as many as fit, spread evenly.
-    Repeat,
+choice! {
+    /// The lengths of artwork on a skeleton.
+    #[non_exhaustive]
+    pub enum Stretch {
+        /// Lengths are kept.
+        Keep = "keep",
+        /// The artwork is scaled to the skeleton's length.
+        Scale = "scale",
+        /// The artwork's width is stretched to the skeleton's length.
+        Fit = "fit",
+        /// Copies of the artwork stand side by side, as many as fit, spread evenly.
+        Repeat = "repeat",
+    }
 }
 
-/// The part of the artwork that comes to the same part of the skeleton.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Align {
-    /// Left edge to start.
-    Start,
-    /// Middle to middle; of a closed skeleton, to its highest point, or to its lowest if it is run in reverse.
-    Middle,
-    /// Right edge to end.
-    End,
+choice! {
+    /// The part of the artwork that comes to the same part of the skeleton.
+    pub enum Align {
+        /// Left edge to start.
+        Start = "start",
+        /// Middle to middle; of a closed skeleton, to its highest point, or to its lowest if it is run in reverse.
+        Middle = "middle",
+        /// Right edge to end.
+        End = "end",
+    }
 }
 
 impl Bend {
@@ -103,55 +130,15 @@ impl Bend {
     /// the middle of the box lies on its middle, and nothing is stretched.
     #[must_use]
     pub fn new(frame: Rect, along: &Outline) -> Self {
-        Self {
-            frame,
-            along: NamedPath { name: "along".into(), outline: along.clone() },
-            spline: None,
-            as_drawn: false,
-            reverse: false,
-            stretch: Stretch::Keep,
-            align: Align::Middle,
-            offset: 0.0,
-            gap: 0.0,
-            baseline: frame.center().y,
-            width: 1.0,
-            by_parameter: false,
-            handles: None,
-            handles_name: "handles".into(),
-            even: false,
-            setting: None,
-            letters: Arc::new([]),
-            around_letters: false,
-            ink: Arc::new([]),
-        }
+        Self::defaults(frame, NamedPath { name: "along".into(), outline: along.clone() })
     }
 
     setters! {
-        /// Takes the skeleton's anchors as control points of a uniform B-spline of this degree, 1 to 3.
-        spline(degree: usize) => spline: Some(degree);
-        /// Takes the skeleton in the direction it was drawn, a closed one from its start.
-        as_drawn(as_drawn: bool);
-        /// Runs the skeleton the other way.
-        reverse(reverse: bool);
-        /// Sets the lengths of the artwork.
-        stretch(stretch: Stretch);
-        /// Sets the part of the artwork that comes to the same part of the skeleton.
-        align(align: Align);
-        /// Sets a shift along the skeleton, user units.
-        offset(offset: f64);
-        /// Sets the least space between copies, user units.
-        gap(gap: f64);
         /// Sets the y of the line that lies on the skeleton. Default: the middle of the box.
         baseline(y: f64) => baseline: y;
-        /// Sets a factor for heights, 1e-6 to 1e6.
-        width(width: f64);
-        /// Runs by the parameter of each piece, with the normals of the control polygon's legs for handles: a polynomial map.
-        by_parameter(by_parameter: bool);
         /// Sets the paper's handles: for every piece of degree n the n handles of the first level, then n−1 of the second, and so
         /// on; deeper levels may be omitted. A handle is the image of the artwork's height. The skeleton is taken as drawn.
-        handles(pieces: Vec<Vec<Vec<Vec2>>>) => handles: Some(pieces);
-        /// Measures lengths at half the artwork's height instead of on the skeleton.
-        even(even: bool);
+        handles(pieces: Vec<Vec<Vec<Vec2>>>) => handles: Some((pieces, "handles".into()));
         /// Sets letters one by one instead of bending them; their places are in
         /// [`Placement::letters`](crate::deform::Placement::letters).
         letters(letters: Arc<[Letter]>, setting: LetterSetting) => letters: letters, setting: Some(setting);
@@ -164,17 +151,15 @@ impl Bend {
     /// itself; [`Error::Usage`] for values out of range or that contradict each other, [`Error::Input`] for handles that do
     /// not fit the skeleton.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         let path = match self.spline {
-            Some(degree) => {
-                within("spline", degree as f64, 1.0, 3.0)?;
-                map::through(&self.along, degree)?
-            }
+            Some(degree) => map::through(&self.along, degree)?,
             None => self.along.clone(),
         };
         let rect = self.frame;
         let skeleton = Skeleton::new(&path, self.is_as_drawn(), self.reverse)?;
         let size = rect.width().hypot(rect.height()).max(skeleton.length);
-        self.check()?;
+        self.check_together()?;
         let skeleton = self.measured(skeleton, size)?;
         let (length, closed) = (skeleton.length, skeleton.closed);
         let middle = if closed && !self.is_as_drawn() { skeleton.extreme(self.reverse) } else { 0.5 * length };
@@ -222,9 +207,8 @@ impl Bend {
         self.as_drawn || self.handles.is_some()
     }
 
-    /// Refuses values out of range, or that contradict each other.
-    fn check(&self) -> Result<(), Error> {
-        within("width", self.width, 1e-6, 1e6)?;
+    /// Refuses values that contradict each other.
+    fn check_together(&self) -> Result<(), Error> {
         if let Some(setting) = self.setting.filter(|_| self.letters.is_empty()) {
             let problem = "needs letters on a level baseline: text, or outlines made by `pathwarp text`. Other outlines do not say \
 where a letter begins; `glyphs bend` bends them";
@@ -259,9 +243,8 @@ where a letter begins; `glyphs bend` bends them";
             skeleton
         };
         match &self.handles {
-            Some(_) if skeleton.has_arcs() => {
-                let problem = "has handles for lines and Bézier curves; the skeleton has arcs";
-                Err(Error::input(self.handles_name.clone(), problem))
+            Some((_, file)) if skeleton.has_arcs() => {
+                Err(Error::input(file.clone(), "has handles for lines and Bézier curves; the skeleton has arcs"))
             }
             Some(_) => Ok(skeleton),
             None if !self.by_parameter => Ok(skeleton),
@@ -274,7 +257,7 @@ where a letter begins; `glyphs bend` bends them";
         // The height that v = 1 means; for artwork without height any will do.
         let unit = if self.frame.height() > 0.0 { self.frame.height() } else { 1.0 };
         match &self.handles {
-            Some(given) => skeleton.with_handles(Some(given), unit, !self.by_parameter),
+            Some((given, _)) => skeleton.with_handles(Some(given), unit, !self.by_parameter),
             None if !self.by_parameter => skeleton.with_normals(),
             None => skeleton.with_handles(None, unit, false),
         }
@@ -352,56 +335,7 @@ its sides are handles on the control polygon instead of normals of the curve. FI
 …]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
 omitted). A handle is the image of the artwork's height.")
     .source("Y.-K. Chang and A. Rockwood, A generalized de Casteljau approach to 3D free-form deformation, SIGGRAPH 1994")
-    .params(&[
-        Param::path("along", "The skeleton: one connected path, such as circle:r=60mm, arc:r=60mm,from=200,to=340 or spiral:turns=3,inner=20mm,outer=80mm.").needed(),
-        Param::new(
-            "stretch",
-            Kind::Choice(&["keep", "scale", "fit", "repeat"]),
-            "Lengths: keep them, scale the artwork evenly to the skeleton's length, fit its width only, or repeat it all along.",
-        )
-        .default("keep"),
-        Param::new(
-            "align",
-            Kind::Choice(&["start", "middle", "end"]),
-            "The part of the artwork that comes to the same part of the skeleton.",
-        )
-        .default("middle"),
-        Param::length("offset", Axis::X, "Shift along the skeleton, user units or % of the artwork's width.")
-            .default("0"),
-        Param::length("gap", Axis::X, "The least space between repeated artwork, user units or % of its width.").default("0"),
-        Param::length("baseline", Axis::Y, "The height of the artwork, from its bottom, that lies on the skeleton. Default for lettering: the lettering's baseline.")
-            .default("50%"),
-        Param::number("width", "Heights are multiplied by this.").default("100%").within(1e-6, 1e6).slider(0.1, 3.0),
-        Param::new(
-            "by",
-            Kind::Choice(&["arclength", "parameter"]),
-            "Run evenly along the skeleton, or by its pieces' parameters with handles for sides.",
-        )
-        .default("arclength"),
-        Param::new("handles", Kind::File, "A JSON file of handles; the skeleton is then taken as drawn."),
-        Param::new(
-            "spline",
-            Kind::Count,
-            "Take the skeleton's anchors as control points of a uniform B-spline of this degree; the curves between them are ignored.",
-        )
-        .within(1.0, 3.0),
-        Param::new(
-            "glyphs",
-            Kind::Choice(&["bend", "rotate", "skew", "ribbon", "stair"]),
-            "Letters: bend them, or set them one by one: turned, sheared with vertical verticals or horizontal horizontals, or just moved.",
-        )
-        .default("bend"),
-        Param::flag("skew", "The same as --glyphs skew."),
-        Param::flag("ribbon", "The same as --glyphs ribbon."),
-        Param::new(
-            "spacing",
-            Kind::Choice(&["baseline", "even"]),
-            "The line on which lengths are measured: the skeleton, or half the artwork's height, which evens out letters in a bend.",
-        )
-        .default("baseline"),
-        Param::flag("as-drawn", "Take the skeleton in the direction it was drawn, a closed one from its start."),
-        Param::flag("reverse", "Run the skeleton the other way."),
-    ])
+    .params(Bend::PARAMS)
     .demo(&[("along", "M-10,60 Q25,35 50,45 T110,50")])
     .examples(&[
         Example {
@@ -475,42 +409,9 @@ const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     let missing = || Error::missing("along", "the path to bend the artwork along");
-    let frame = s.frame();
-    let (handles, handles_name) = s.file_if("handles")?.map(handles).transpose()?.unzip();
-    let bend = Bend {
-        frame: frame.rect,
-        along: s.path_if("along")?.ok_or_else(missing)?,
-        spline: s.number_if("spline")?.map(|d| d as usize),
-        as_drawn: s.flag("as-drawn")? || s.texts("along").last().is_some_and(|t| is_spiral(t)),
-        reverse: s.flag("reverse")?,
-        stretch: match s.choice("stretch")? {
-            "scale" => Stretch::Scale,
-            "fit" => Stretch::Fit,
-            "repeat" => Stretch::Repeat,
-            _ => Stretch::Keep,
-        },
-        align: match s.choice("align")? {
-            "start" => Align::Start,
-            "end" => Align::End,
-            _ => Align::Middle,
-        },
-        offset: s.number("offset")?,
-        gap: s.number("gap")?,
-        baseline: match frame.baseline {
-            Some(y) if !s.given("baseline") => y,
-            _ => frame.rect.y1 - s.number("baseline")?,
-        },
-        width: s.number("width")?,
-        by_parameter: s.choice("by")? == "parameter",
-        handles,
-        handles_name: handles_name.unwrap_or_else(|| "handles".into()),
-        even: s.choice("spacing")? == "even",
-        setting: setting(s)?,
-        letters: Arc::clone(&frame.letters),
-        around_letters: frame.baseline.is_some(),
-        ink: Arc::clone(&frame.ink),
-    };
-    bend.build()
+    let bend = Bend::read(s, s.path_if("along")?.ok_or_else(missing)?)?;
+    let drawn = s.texts("along").last().is_some_and(|t| is_spiral(t));
+    if drawn { bend.as_drawn(true).build() } else { bend.build() }
 });
 
 /// The levels of handles of every piece, and the file's name.

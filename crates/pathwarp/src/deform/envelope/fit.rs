@@ -5,7 +5,7 @@ use crate::deform::entry::{Built, Role};
 use crate::error::{Error, show};
 use crate::map::{AffineMap, Coons, Map, Pace, Side, Sides};
 use crate::outline::{Outline, Seg, Subpath};
-use crate::param::Frame;
+use crate::param::{Choice as _, Frame, choice};
 use kurbo::{Affine, BezPath, Line, Point, Rect};
 use std::sync::Arc;
 
@@ -15,65 +15,37 @@ const STRAIGHT: f64 = 1e-9;
 /// Smallest lean that is worth a warning, in degrees.
 const VISIBLE_LEAN: f64 = 0.05;
 
-/// The lines of the artwork that stay straight in an envelope.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Keep {
-    /// What suits the shape and the artwork: verticals for lettering unless the shape has four corners of its own, and else whatever
-    /// distorts the artwork less.
-    Auto,
-    /// None in particular.
-    Nothing,
-    /// Verticals, by the ruled map between bottom and top; a closed shape is filled in columns.
-    Verticals,
-    /// Horizontals, by the ruled map between left and right; a closed shape is filled in rows.
-    Horizontals,
-    /// All, by a projective map. All sides must be straight.
-    Lines,
-}
-
-impl Keep {
-    pub(in crate::deform) fn named(name: &str) -> Self {
-        match name {
-            "auto" => Self::Auto,
-            "verticals" => Self::Verticals,
-            "horizontals" => Self::Horizontals,
-            "lines" => Self::Lines,
-            _ => Self::Nothing,
-        }
-    }
-
-    pub(in crate::deform) fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Nothing => "nothing",
-            Self::Verticals => "verticals",
-            Self::Horizontals => "horizontals",
-            Self::Lines => "lines",
-        }
+choice! {
+    /// The lines of the artwork that stay straight in an envelope.
+    pub enum Keep {
+        /// What suits the shape and the artwork: verticals for lettering unless the shape has four corners of its own, and else whatever
+        /// distorts the artwork less.
+        Auto = "auto",
+        /// None in particular.
+        Nothing = "nothing",
+        /// Verticals, by the ruled map between bottom and top; a closed shape is filled in columns.
+        Verticals = "verticals",
+        /// Horizontals, by the ruled map between left and right; a closed shape is filled in rows.
+        Horizontals = "horizontals",
+        /// All, by a projective map. All sides must be straight.
+        Lines = "lines",
     }
 }
 
-/// The spacing of the artwork along a side of an envelope.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Spread {
-    /// Even by length.
-    Length,
-    /// By the curves' parameters; pieces share a side by their lengths.
-    Parameter,
-    /// By even steps across the screen: along x for bottom and top, along y for left and right.
-    Extent,
+choice! {
+    /// The spacing of the artwork along a side of an envelope.
+    #[non_exhaustive]
+    pub enum Spread {
+        /// Even by length.
+        Length = "length",
+        /// By the curves' parameters; pieces share a side by their lengths.
+        Parameter = "parameter",
+        /// By even steps across the screen: along x for bottom and top, along y for left and right.
+        Extent = "extent",
+    }
 }
 
 impl Spread {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Parameter => "parameter",
-            Self::Extent => "extent",
-        }
-    }
-
     /// Returns the pace of a lying or standing side.
     fn pace(self, lying: bool) -> Pace {
         match self {

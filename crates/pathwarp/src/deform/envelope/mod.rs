@@ -11,10 +11,10 @@ mod fit;
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Variant};
-use crate::error::{Error, show, within};
+use crate::error::{Error, show};
 use crate::map::{Coons, Jet, Map, Pace, Side, Sides};
 use crate::outline::{Outline, Seg, Subpath};
-use crate::param::{Axis, Kind, NamedPath, Param, Settings};
+use crate::param::{Axis, Choice as _, Kind, NamedPath, Settings, Value as _, parameters};
 use columns::{Columns, Room, bisected, filled, nothing};
 use distortion::{distortion, grid, stretches, turned};
 use fit::{Corners, SIDES, area, bounds, is_curved, reversed};
@@ -28,64 +28,73 @@ pub(super) use fit::{Ring, fit};
 /// The share of the greatest height at which lettering ends.
 const ENDS: f64 = 0.25;
 
-/// An envelope: the artwork's box put into a shape with four sides, each a curve of any number of pieces.
-///
-/// The map is the Coons patch of the sides, F(u, v) = (1−v)·B(u) + v·T(u) + (1−u)·L(v) + u·R(v) less the bilinear map of the
-/// corners, or a ruled or projective map if lines are [kept](Self::keep).
-///
-/// ```
-/// use pathwarp::{Outline, deform::Envelope, kurbo::{Point, Rect}, map::Map};
-///
-/// let hill = Outline::from_svg("M0,100 A50,50 0 0 1 100,100")?;
-/// let arch = Envelope::between(Rect::new(0.0, 0.0, 100.0, 100.0)).bottom(&hill).height(40.0).build()?;
-/// assert!(arch.map.point(Point::new(50.0, 0.0)).distance(Point::new(50.0, 10.0)) < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Envelope {
-    frame: Rect,
-    shape: Option<NamedPath>,
-    /// Bottom, right, top, left.
-    curves: [Option<NamedPath>; 4],
-    height: Option<f64>,
-    square: bool,
-    spread: Option<Spread>,
-    corners: Option<Corners>,
-    bottom_side: Option<usize>,
-    reverse: bool,
-    keep: Keep,
-    room: Room,
-    lettering: bool,
-    ink: Arc<[Point]>,
+parameters! {
+    /// An envelope: the artwork's box put into a shape with four sides, each a curve of any number of pieces.
+    ///
+    /// The map is the Coons patch of the sides, F(u, v) = (1−v)·B(u) + v·T(u) + (1−u)·L(v) + u·R(v) less the bilinear map of the
+    /// corners, or a ruled or projective map if lines are [kept](Self::keep).
+    ///
+    /// ```
+    /// use pathwarp::{Outline, deform::Envelope, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let hill = Outline::from_svg("M0,100 A50,50 0 0 1 100,100")?;
+    /// let arch = Envelope::between(Rect::new(0.0, 0.0, 100.0, 100.0)).bottom(&hill).height(40.0).build()?;
+    /// assert!(arch.map.point(Point::new(50.0, 0.0)).distance(Point::new(50.0, 10.0)) < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Envelope(s) {
+        /// The closed path to put the artwork into.
+        shape: Option<NamedPath> = path("envelope");
+        /// Instead of --envelope, the bottom side, an open curve.
+        param = path("bottom");
+        /// The top side.
+        param = path("top");
+        /// The left side. Default: as --sides says.
+        param = path("left");
+        /// The right side. Default: as --sides says.
+        param = path("right");
+        /// With --bottom or --top alone: distance of the facing side, which is the same curve again. Default: the artwork's height.
+        height: Option<f64> = length("height", Axis::Y).within(1e-9, 1e9).slider(1.0, 500.0);
+        /// The sides between the ends of two curves: straight lines, or curves that meet both at right angles.
+        square: bool = either("sides", &["straight", "square"]);
+        /// The spacing along a side: even by length, by the curve's parameter, or by steps across the screen.
+        param = new("by", Kind::Choice(Spread::WORDS)).default("length");
+        /// The closed path's corners: four numbers of its nodes, or four points near it. Default: found.
+        param = new("corners", Kind::Text("N,N,N,N|X,Y…"));
+        /// The closed path's side that is the bottom: 1 to 4, from its first corner on as drawn. Default: the lowest.
+        bottom_side: Option<usize> = new("bottom-side", Kind::Count).within(1.0, 4.0);
+        /// Run the bottom the other way: the result is mirrored.
+        reverse: bool = flag("reverse");
+        /// Lines that stay straight.
+        keep: Keep = new("keep", Kind::Choice(Keep::WORDS)).default("auto");
+        /// In columns or rows: the artwork ends where the shape is still this share of its greatest height (width). Default: 25% for
+        /// lettering, else 0.
+        ends: Option<f64> = number("ends").within(0.0, 0.99).slider(0.0, 0.5);
+        /// Distance that the artwork keeps from the shape's outline.
+        padding: f64 = length("padding", Axis::Y).default("0").within(0.0, 1e9).slider(0.0, 50.0);
+        let frame: Rect = s.frame().rect;
+        // Bottom, right, top, left.
+        let curves: [Option<NamedPath>; 4] = curves(s)?;
+        let spread: Option<Spread> = if s.given("by") { Some(Spread::read(s, "by")?) } else { None };
+        let corners: Option<Corners> = corners(s)?;
+        let lettering: bool = !s.frame().letters.is_empty();
+        let ink: Arc<[Point]> = Arc::clone(&s.frame().ink);
+    }
 }
 
 impl Envelope {
     /// Puts the box `frame` into a closed path. Its corners and its bottom are found, unless they are set.
     #[must_use]
     pub fn new(frame: Rect, shape: &Outline) -> Self {
-        let shape = NamedPath { name: "envelope".into(), outline: shape.clone() };
-        Self { shape: Some(shape), ..Self::between(frame) }
+        Self::between(frame).shape(shape)
     }
 
     /// Puts the box `frame` between curves: [`bottom`](Self::bottom) and [`top`](Self::top), [`left`](Self::left) and
     /// [`right`](Self::right), all four, or bottom or top alone.
     #[must_use]
     pub fn between(frame: Rect) -> Self {
-        Self {
-            frame,
-            shape: None,
-            curves: Default::default(),
-            height: None,
-            square: false,
-            spread: None,
-            corners: None,
-            bottom_side: None,
-            reverse: false,
-            keep: Keep::Auto,
-            room: Room::default(),
-            lettering: false,
-            ink: Arc::new([]),
-        }
+        Self::defaults(frame)
     }
 
     fn side(mut self, k: usize, curve: &Outline) -> Self {
@@ -118,40 +127,16 @@ impl Envelope {
     }
 
     setters! {
-        /// Sets the distance of the facing side, user units, if bottom or top is drawn alone: it is the same curve again.
-        /// Default: the height of the box.
-        height(height: f64) => height: Some(height);
-        /// Joins the ends of two curves by curves that meet both at right angles, instead of straight lines.
-        square(square: bool);
         /// Sets the spacing along the sides. Default: even by length.
         spread(spread: Spread) => spread: Some(spread);
         /// Sets the corners of a closed path: the points nearest to these.
         corners(points: [impl Into<Point>; 4]) => corners: Some(Corners::Points(points.map(Into::into)));
         /// Sets the corners of a closed path by the numbers of its nodes, from 1.
         corner_nodes(nodes: [usize; 4]) => corners: Some(Corners::Nodes(nodes));
-        /// Sets the bottom side of a closed path: 1 to 4, from its first corner on as drawn.
-        bottom_side(side: usize) => bottom_side: Some(side);
-        /// Runs the bottom the other way, so that the result is mirrored.
-        reverse(reverse: bool);
-        /// Sets the lines that stay straight. Default: [`Keep::Auto`].
-        keep(keep: Keep);
         /// Says that the artwork is lettering, which has stems to be kept upright.
         lettering(lettering: bool);
         /// Gives points of the artwork, where its distortion is visible. Default: the whole box.
         artwork(ink: impl Into<Arc<[Point]>>) => ink: ink.into();
-    }
-
-    /// In columns or rows, ends the artwork where the shape is still this share of its greatest height (width), 0 to below 1.
-    /// Default: 0.25 for lettering, else 0.
-    #[must_use]
-    pub fn ends(self, ends: f64) -> Self {
-        Self { room: Room { ends: Some(ends), ..self.room }, ..self }
-    }
-
-    /// Keeps the artwork this far off the outline, user units. Default: 0.
-    #[must_use]
-    pub fn padding(self, padding: f64) -> Self {
-        Self { room: Room { padding, ..self.room }, ..self }
     }
 
     /// Builds the map. Sides that cross, and folds, give warnings.
@@ -160,9 +145,8 @@ impl Envelope {
     /// [`Error::Geometry`] for a shape that is not closed or a flat box; [`Error::Usage`] for curves that do not meet, corners
     /// that cannot be found, sides too curved for the lines to be kept, and values that contradict each other.
     pub fn build(&self) -> Result<Built, Error> {
-        within("ends", self.room.ends.unwrap_or(0.0), 0.0, 0.99)?;
-        within("padding", self.room.padding, 0.0, 1e9)?;
         self.check()?;
+        self.check_together()?;
         let shape =
             self.shape.as_ref().map(|path| Ok::<_, Error>((&*path.name, corners::closed(path)?))).transpose()?;
         let divided = self.corners.is_some() || self.bottom_side.is_some() || self.reverse || self.spread.is_some();
@@ -178,7 +162,10 @@ impl Envelope {
             frame: self.frame,
             keep: self.keep,
             spread: self.spread,
-            room: Room { ends: Some(self.room.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })), ..self.room },
+            room: Room {
+                ends: Some(self.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })),
+                padding: self.padding,
+            },
             lettering: self.lettering,
             ink: &self.ink,
         };
@@ -203,14 +190,8 @@ impl Envelope {
     }
 
     /// Refuses values that contradict each other.
-    fn check(&self) -> Result<(), Error> {
+    fn check_together(&self) -> Result<(), Error> {
         let drawn = self.curves.iter().any(Option::is_some);
-        if let Some(height) = self.height {
-            within("height", height, 1e-9, 1e9)?;
-        }
-        if let Some(n) = self.bottom_side {
-            within("bottom-side", n as f64, 1.0, 4.0)?;
-        }
         match &self.shape {
             Some(path) if drawn => {
                 let problem = "cannot go with `bottom`, `top`, `left` and `right`: a closed path has all four";
@@ -282,30 +263,7 @@ screen.\n\n--keep verticals fills a closed path in columns, and makes verticals 
 where both span the same width; --keep horizontals does the same in rows. --keep lines keeps every line, which needs four straight sides: \
 a projective map. --keep nothing bends artwork between four sides, whatever the shape.")
     .source("S. A. Coons, Surfaces for Computer-Aided Design of Space Forms, MIT 1967; Markku Koppinen, A plane transformation from 16 control points, equation (7)")
-    .params(&[
-        Param::path("envelope", "The closed path to put the artwork into."),
-        Param::path("bottom", "Instead of --envelope, the bottom side, an open curve."),
-        Param::path("top", "The top side."),
-        Param::path("left", "The left side. Default: as --sides says."),
-        Param::path("right", "The right side. Default: as --sides says."),
-        Param::length("height", Axis::Y, "With --bottom or --top alone: distance of the facing side, which is the same curve again. Default: the artwork's height.")
-            .within(1e-9, 1e9)
-            .slider(1.0, 500.0),
-        Param::new("sides", Kind::Choice(&["straight", "square"]), "The sides between the ends of two curves: straight lines, or curves that meet both at right angles.")
-            .default("straight"),
-        Param::new("by", Kind::Choice(&["length", "parameter", "extent"]), "The spacing along a side: even by length, by the curve's parameter, or by steps across the screen.")
-            .default("length"),
-        Param::new("corners", Kind::Text("N,N,N,N|X,Y…"), "The closed path's corners: four numbers of its nodes, or four points near it. Default: found."),
-        Param::new("bottom-side", Kind::Count, "The closed path's side that is the bottom: 1 to 4, from its first corner on as drawn. Default: the lowest.")
-            .within(1.0, 4.0),
-        Param::flag("reverse", "Run the bottom the other way: the result is mirrored."),
-        Param::new("keep", Kind::Choice(&["auto", "nothing", "verticals", "horizontals", "lines"]), "Lines that stay straight.")
-            .default("auto"),
-        Param::number("ends", "In columns or rows: the artwork ends where the shape is still this share of its greatest height (width). Default: 25% for lettering, else 0.")
-            .within(0.0, 0.99)
-            .slider(0.0, 0.5),
-        Param::length("padding", Axis::Y, "Distance that the artwork keeps from the shape's outline.").default("0").within(0.0, 1e9).slider(0.0, 50.0),
-    ])
+    .params(Envelope::PARAMS)
     .demo(&[("envelope", "M8,78 Q30,96 50,84 T95,85 C85,60 105,40 90,15 L70,6 C50,-5 30,30 5,10 C15,40 0,60 8,78 Z"), ("corners", "1,3,4,6")])
     .examples(&[
         Example {
@@ -372,33 +330,16 @@ const UPRIGHT: Pairs = &[("bottom", "M0,100 Q50,20 100,100"), ("height", "50"), 
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Envelope::read(s)?.build());
+
+/// Reads the curves.
+fn curves(s: &Settings<'_>) -> Result<[Option<NamedPath>; 4], Error> {
     let mut curves: [Option<NamedPath>; 4] = Default::default();
     for (curve, name) in curves.iter_mut().zip(SIDES) {
         *curve = s.path_if(name)?;
     }
-    let spread = match s.choice("by")? {
-        "parameter" => Spread::Parameter,
-        "extent" => Spread::Extent,
-        _ => Spread::Length,
-    };
-    let envelope = Envelope {
-        frame: s.frame().rect,
-        shape: s.path_if("envelope")?,
-        curves,
-        height: s.number_if("height")?,
-        square: s.choice("sides")? == "square",
-        spread: s.given("by").then_some(spread),
-        corners: corners(s)?,
-        bottom_side: s.number_if("bottom-side")?.map(|n| n as usize),
-        reverse: s.flag("reverse")?,
-        keep: Keep::named(s.choice("keep")?),
-        room: Room { ends: s.number_if("ends")?, padding: s.number("padding")? },
-        lettering: !s.frame().letters.is_empty(),
-        ink: Arc::clone(&s.frame().ink),
-    };
-    envelope.build()
-});
+    Ok(curves)
+}
 
 /// Reads the corners: four numbers of nodes, or points.
 fn corners(s: &Settings<'_>) -> Result<Option<Corners>, Error> {

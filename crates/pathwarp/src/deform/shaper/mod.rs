@@ -13,33 +13,48 @@ use crate::anchors::{self, Anchors, Arrangement};
 use crate::error::{Error, GeometryError, show, within};
 use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net, complete_net};
 use crate::outline::{Outline, Seg};
-use crate::param::{Frame, Kind, NamedPath, Param, Settings};
+use crate::param::{Frame, Kind, NamedPath, Settings, parameters};
 use kurbo::{BezPath, CubicBez, Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// The 16-point shaper: the artwork's box, or a base, bent into a closed path of four curved sides.
-///
-/// F = h₂ ∘ F₀ ∘ h₁ with F₀ the bicubic map of a 4×4 net whose outer twelve points are the path's, h₁ the map of the base to
-/// the unit square and h₂ the map of the shaper's corners to the target: similitudes for two anchors, projective for four.
-///
-/// ```
-/// use pathwarp::{Outline, deform::Shaper, kurbo::{Point, Rect}, map::Map};
-///
-/// let cage = Outline::from_svg("M10,90 Q40,110 95,85 L90,15 5,10 Z")?;
-/// let built = Shaper::new(&cage).frame(Rect::new(0.0, 0.0, 100.0, 100.0)).build()?;
-/// assert!(built.map.point(Point::new(50.0, 50.0)).distance(Point::new(46.875, 55.625)) < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Shaper {
-    cage: Cage,
-    bottom: Bottom,
-    reverse: bool,
-    base: Option<NamedPath>,
-    base_as_drawn: bool,
-    target: Option<NamedPath>,
-    target_as_drawn: bool,
-    frame: Option<Rect>,
+parameters! {
+    /// The 16-point shaper: the artwork's box, or a base, bent into a closed path of four curved sides.
+    ///
+    /// F = h₂ ∘ F₀ ∘ h₁ with F₀ the bicubic map of a 4×4 net whose outer twelve points are the path's, h₁ the map of the base to
+    /// the unit square and h₂ the map of the shaper's corners to the target: similitudes for two anchors, projective for four.
+    ///
+    /// ```
+    /// use pathwarp::{Outline, deform::Shaper, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let cage = Outline::from_svg("M10,90 Q40,110 95,85 L90,15 5,10 Z")?;
+    /// let built = Shaper::new(&cage).frame(Rect::new(0.0, 0.0, 100.0, 100.0)).build()?;
+    /// assert!(built.map.point(Point::new(50.0, 50.0)).distance(Point::new(46.875, 55.625)) < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Shaper(s, cage: Cage) {
+        /// The closed path of four sides (lines, curves or arcs) to bend the artwork into.
+        param = path("shaper");
+        /// Instead of --shaper, all 16 control points: four paths of one cubic each, or 16 points, row by row, the bottom row
+        /// first, each left to right.
+        param = path("net").repeated();
+        /// Two or four anchors in the source that are laid onto the shaper's bottom side or its four corners. Default: the
+        /// corners of the artwork's box.
+        base: Option<NamedPath> = path("base");
+        /// Two or four anchors: the images of the shaper's bottom corners, or of all four. Default: those corners themselves.
+        target: Option<NamedPath> = path("target");
+        /// The side that is the bottom: 1 to 4, in the order they were drawn, or the lowest on the screen. Default: the one that
+        /// distorts the corners least.
+        param = new("bottom", Kind::Text("N or lowest"));
+        /// Run the bottom side the other way (right to left): the result is mirrored.
+        reverse: bool = flag("reverse-shaper");
+        /// Take the base's anchors in the order they were drawn.
+        base_as_drawn: bool = flag("base-as-drawn");
+        /// Take the target's anchors in the order they were drawn.
+        target_as_drawn: bool = flag("target-as-drawn");
+        let bottom: Bottom = bottom(s)?;
+        let frame: Option<Rect> = Some(s.frame().rect);
+    }
 }
 
 /// The source of the net.
@@ -66,21 +81,14 @@ impl Shaper {
     }
 
     fn with(cage: Cage) -> Self {
-        Self {
-            cage,
-            bottom: Bottom::LeastDistorting,
-            reverse: false,
-            base: None,
-            base_as_drawn: false,
-            target: None,
-            target_as_drawn: false,
-            frame: None,
-        }
+        Self { frame: None, ..Self::defaults(Rect::ZERO, cage) }
     }
 
     setters! {
         /// Sets the bottom side of the closed path: 1 to 4, in the order they were drawn.
         bottom(side: usize) => bottom: Bottom::Side(side);
+        /// Sets the box that is laid onto the shaper, corner on corner, if there is no [`base`](Self::base).
+        frame(frame: Rect) => frame: Some(frame);
     }
 
     /// Takes the side that lies lowest on the screen for the bottom, however much that distorts.
@@ -89,25 +97,13 @@ impl Shaper {
         Self { bottom: Bottom::Lowest, ..self }
     }
 
-    setters! {
-        /// Runs the bottom side the other way, so that the result is mirrored.
-        reverse(reverse: bool);
-        /// Sets the box that is laid onto the shaper, corner on corner, if there is no [`base`](Self::base).
-        frame(frame: Rect) => frame: Some(frame);
-        /// Sets two or four anchors in the source: they are laid onto the shaper's bottom corners, or all four.
-        base(base: &Outline) => base: Some(NamedPath { name: "base".into(), outline: base.clone() });
-        /// Sets two or four anchors that the shaper's bottom corners, or all four, are taken to. Default: they stay.
-        target(target: &Outline) => target: Some(NamedPath { name: "target".into(), outline: target.clone() });
-        /// Takes the anchors of base and target in the order they were drawn, instead of left to right, the lowest side first.
-        as_drawn(base: bool, target: bool) => base_as_drawn: base, target_as_drawn: target;
-    }
-
     /// Builds the map.
     ///
     /// # Errors
     /// [`Error::Geometry`] if the path does not close or has other than four sides, or if anchors coincide or three of them
     /// lie on a line; [`Error::Missing`] without base and frame; [`Error::Usage`] for a bottom side out of range.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         let mut explanation = Explanation::default();
         if let Bottom::Side(n) = self.bottom {
             within("bottom", n as f64, 1.0, 4.0)?;
@@ -445,28 +441,7 @@ that, and --explain says which was chosen and why. Bases and targets of two anch
 those of four start with their lowest side; --base-as-drawn and --target-as-drawn take them as they were drawn.\n\nA base of \
 two anchors fixes only the bottom side: artwork twice as tall as the base is wide reaches past the shaper's top.")
     .source("Markku Koppinen, A plane transformation from 16 control points, equations (1)-(10)")
-    .params(&[
-        Param::path("shaper", "The closed path of four sides (lines, curves or arcs) to bend the artwork into."),
-        Param::path(
-            "net",
-            "Instead of --shaper, all 16 control points: four paths of one cubic each, or 16 points, row by row, the bottom row \
-first, each left to right.",
-        )
-        .repeated(),
-        Param::path(
-            "base",
-            "Two or four anchors in the source that are laid onto the shaper's bottom side or its four corners. Default: the \
-corners of the artwork's box.",
-        ),
-        Param::path(
-            "target",
-            "Two or four anchors: the images of the shaper's bottom corners, or of all four. Default: those corners themselves.",
-        ),
-        Param::new("bottom", Kind::Text("N or lowest"), "The side that is the bottom: 1 to 4, in the order they were drawn, or the lowest on the screen. Default: the one that distorts the corners least."),
-        Param::flag("reverse-shaper", "Run the bottom side the other way (right to left): the result is mirrored."),
-        Param::flag("base-as-drawn", "Take the base's anchors in the order they were drawn."),
-        Param::flag("target-as-drawn", "Take the target's anchors in the order they were drawn."),
-    ])
+    .params(Shaper::PARAMS)
     .demo(&[("shaper", "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z")])
     .examples(&[
         Example {
@@ -531,17 +506,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
             return Err(Error::missing("shaper", hint));
         }
     };
-    let shaper = Shaper {
-        cage,
-        bottom: bottom(s)?,
-        reverse: s.flag("reverse-shaper")?,
-        base: s.path_if("base")?,
-        base_as_drawn: s.flag("base-as-drawn")?,
-        target: s.path_if("target")?,
-        target_as_drawn: s.flag("target-as-drawn")?,
-        frame: Some(s.frame().rect),
-    };
-    shaper.build()
+    Shaper::read(s, cage)?.build()
 });
 
 fn bottom(s: &Settings<'_>) -> Result<Bottom, Error> {

@@ -14,56 +14,57 @@ mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
 use super::ffd::Change;
-use crate::error::{Error, GeometryError, within};
+use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Class, Local, Map, Plane, Quotient};
-use crate::param::{Axis, Kind, Param, Settings};
+use crate::param::{Axis, Kind, Settings, parameters};
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// A Bézier triangle: the artwork in it follows a triangular net of control points.
-///
-/// F(u) = Σ wᵢⱼₖ Pᵢⱼₖ Bᵢⱼₖ(u) / Σ wᵢⱼₖ Bᵢⱼₖ(u), u being barycentric coordinates in the reference triangle. Control point
-/// (i, j, k), i + j + k = n, starts at (iA + jB + kC)/n.
-///
-/// ```
-/// use pathwarp::{deform::Triangle, kurbo::Point, map::Map};
-///
-/// let bent = Triangle::new([(0.0, 0.0), (100.0, 0.0), (0.0, 100.0)]).shift([1, 1, 0], (0.0, 30.0)).build()?;
-/// assert!(bent.map.point(Point::new(25.0, 25.0)).distance(Point::new(25.0, 32.5)) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Triangle {
-    corners: [Point; 3],
-    degree: usize,
-    changes: Vec<([usize; 3], Change)>,
-    extended: bool,
-    frame: Option<Rect>,
+parameters! {
+    /// A Bézier triangle: the artwork in it follows a triangular net of control points.
+    ///
+    /// F(u) = Σ wᵢⱼₖ Pᵢⱼₖ Bᵢⱼₖ(u) / Σ wᵢⱼₖ Bᵢⱼₖ(u), u being barycentric coordinates in the reference triangle. Control point
+    /// (i, j, k), i + j + k = n, starts at (iA + jB + kC)/n.
+    ///
+    /// ```
+    /// use pathwarp::{deform::Triangle, kurbo::Point, map::Map};
+    ///
+    /// let bent = Triangle::new([(0.0, 0.0), (100.0, 0.0), (0.0, 100.0)]).shift([1, 1, 0], (0.0, 30.0)).build()?;
+    /// assert!(bent.map.point(Point::new(25.0, 25.0)).distance(Point::new(25.0, 32.5)) < 1e-12);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Triangle(s, corners: [Point; 3]) {
+        /// The triangle's corners; outside it nothing moves. Default: a triangle about the artwork, its first corner at the top, its
+        /// second at the bottom left, and the map continues outside it.
+        param = new("reference", Kind::Text("X,Y X,Y X,Y"));
+        /// Degree of the net: control points along a side, less one.
+        degree: usize = new("degree", Kind::Count).default("2").within(1.0, 10.0);
+        /// Moves a control point by this much; may be given many times.
+        param = new("move", Kind::Text("I,J,K:DX,DY")).repeated();
+        /// Puts a control point here; may be given many times.
+        param = new("at", Kind::Text("I,J,K:X,Y")).repeated();
+        /// Strength with which a control point pulls the artwork towards itself, 1 by default; may be given many times.
+        param = new("weight", Kind::Text("I,J,K:W")).repeated();
+        /// Let the map continue outside the triangle instead of leaving everything there in place.
+        extend: bool = flag("extend");
+        let changes: Vec<([usize; 3], Change)> = changes(s)?;
+        let frame: Option<Rect> = Some(s.frame().rect);
+    }
 }
 
 impl Triangle {
     /// Creates a net of degree 2 over a reference triangle. Outside it nothing moves, unless it is
     /// [extended](Self::extend).
     pub fn new(corners: [impl Into<Point>; 3]) -> Self {
-        Self { corners: corners.map(Into::into), degree: 2, changes: Vec::new(), extended: false, frame: None }
+        Self { frame: None, ..Self::defaults(Rect::ZERO, corners.map(Into::into)) }
     }
 
     /// Creates a net over a triangle about the artwork's box: its first corner at the top, its second at the bottom left. The map
     /// continues outside it.
     #[must_use]
     pub fn around(frame: Rect) -> Self {
-        let half = frame.width() / 2.0;
-        let corners = [
-            Point::new(frame.center().x, frame.y0 - frame.height()),
-            Point::new(frame.x0 - half, frame.y1),
-            Point::new(frame.x1 + half, frame.y1),
-        ];
-        Self { frame: Some(frame), extended: true, ..Self::new(corners) }
-    }
-
-    setters! {
-        /// Sets the degree n, 1 to 10.
-        degree(degree: usize);
+        Self::defaults(frame, around(frame)).extend(true)
     }
 
     /// Puts control point (i, j, k) at a place.
@@ -87,18 +88,13 @@ impl Triangle {
         self
     }
 
-    setters! {
-        /// Lets the map continue outside the triangle.
-        extend(extended: bool) => extended: extended;
-    }
-
     /// Builds the map. A side that tears the artwork gives a warning.
     ///
     /// # Errors
     /// [`GeometryError::Collinear`] for a flat triangle, [`Error::Usage`] for a degree, control point or weight out of range.
     pub fn build(&self) -> Result<Built, Error> {
-        let Self { corners, extended, .. } = *self;
-        within("degree", self.degree as f64, 1.0, 10.0)?;
+        self.check()?;
+        let Self { corners, extend, .. } = *self;
         let mut net = TriangleNet::regular(corners, self.degree).ok_or_else(|| GeometryError::Collinear {
             path: "reference".into(),
             which: [1, 2, 3],
@@ -107,8 +103,8 @@ impl Triangle {
         for &(node, change) in &self.changes {
             self.change(&mut net, node, change)?;
         }
-        let mut built = Built::new(net.map(extended));
-        if !extended {
+        let mut built = Built::new(net.map(extend));
+        if !extend {
             let names = ["first and second", "second and third", "third and first"];
             let crosses = |k: usize| self.frame.is_none_or(|f| meets(f, corners[k], corners[(k + 1) % 3]));
             for k in (0..3).filter(|&k| !net.side_is_fixed(k) && crosses(k)) {
@@ -358,30 +354,7 @@ explicit triangle (--reference) nothing moves, unless --extend is given. Where a
 and outside join without a gap; otherwise there is a warning.")
     .source("G. Farin, Triangular Bernstein-Bézier patches, CAGD 3, 1986; J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form \
 Deformation, CAGD 46, 2016")
-    .params(&[
-        Param::new(
-            "reference",
-            Kind::Text("X,Y X,Y X,Y"),
-            "The triangle's corners; outside it nothing moves. Default: a triangle about the artwork, its first corner at the top, its \
-second at the bottom left, and the map continues outside it.",
-        ),
-        Param::new("degree", Kind::Count, "Degree of the net: control points along a side, less one.")
-            .default("2")
-            .within(1.0, 10.0),
-        Param::new("move", Kind::Text("I,J,K:DX,DY"), "Moves a control point by this much; may be given many times.")
-            .repeated(),
-        Param::new("at", Kind::Text("I,J,K:X,Y"), "Puts a control point here; may be given many times.").repeated(),
-        Param::new(
-            "weight",
-            Kind::Text("I,J,K:W"),
-            "Strength with which a control point pulls the artwork towards itself, 1 by default; may be given many times.",
-        )
-        .repeated(),
-        Param::flag(
-            "extend",
-            "Let the map continue outside the triangle instead of leaving everything there in place.",
-        ),
-    ])
+    .params(Triangle::PARAMS)
     .demo(&[("move", "0,1,1:10,15"), ("weight", "1,1,0:2")])
     .examples(&[
         Example {
@@ -433,20 +406,23 @@ const SIX: Pairs = &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30")];
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let over = over(s)?;
-    let extended = over.extended || s.flag("extend")?;
-    Triangle { degree: s.number("degree")? as usize, changes: changes(s)?, extended, ..over }.build()
-});
-
-/// Reads the reference triangle; the default lies about the artwork's box, twice as wide and twice as high.
-fn over(s: &Settings<'_>) -> Result<Triangle, Error> {
-    let frame = s.frame().rect;
-    let Some(text) = s.texts("reference").pop() else { return Ok(Triangle::around(frame)) };
-    let points = s.points_in("reference", text)?;
-    let corners: [Point; 3] = points.try_into().map_err(|p: Vec<Point>| {
+    let Some(text) = s.texts("reference").pop() else {
+        return Triangle::read(s, around(s.frame().rect))?.extend(true).build();
+    };
+    let corners = s.points_in("reference", text)?.try_into().map_err(|p: Vec<Point>| {
         Error::usage("reference", text, format!("has {} points; a triangle has three", p.len()))
     })?;
-    Ok(Triangle { frame: Some(frame), ..Triangle::new(corners) })
+    Triangle::read(s, corners)?.build()
+});
+
+/// A triangle about a box, twice as wide and twice as high.
+fn around(frame: Rect) -> [Point; 3] {
+    let half = frame.width() / 2.0;
+    [
+        Point::new(frame.center().x, frame.y0 - frame.height()),
+        Point::new(frame.x0 - half, frame.y1),
+        Point::new(frame.x1 + half, frame.y1),
+    ]
 }
 
 /// Reads `at`, `move` and `weight`, in this order.

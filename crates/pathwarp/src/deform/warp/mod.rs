@@ -12,56 +12,52 @@ use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Role
 use super::envelope::{self, Keep, Ring};
 use super::shaper::rows_path;
 use crate::anchors;
-use crate::error::{Error, with_area, within};
+use crate::error::{Error, with_area};
 use crate::formula::{Calculator, FormulaError};
 use crate::map::{BicubicNet, Net, complete_net};
 use crate::outline::Seg;
-use crate::param::{Kind, Param, Settings};
+use crate::param::{Choice as _, Kind, Settings, parameters};
 use kurbo::{CubicBez, Point, Rect, Vec2};
 use serde::Deserialize;
 use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 
-/// A warp style over the artwork's box: arc, flag, fisheye, …
-///
-/// The map is the bicubic Bézier patch of the style's net, or the envelope of its sides if lines are [kept](Self::keep).
-///
-/// ```
-/// use pathwarp::{deform::{Style, Warp}, kurbo::{Point, Rect}, map::Map};
-///
-/// let arch = Warp::new(Style::named("arch").unwrap(), Rect::new(0.0, 0.0, 100.0, 100.0)).bend(1.0).build()?;
-/// assert!(arch.map.point(Point::new(50.0, 0.0)).distance(Point::new(50.0, -50.0)) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Warp {
-    frame: Rect,
-    style: Style,
-    bend: f64,
-    horizontal: f64,
-    vertical: f64,
-    sideways: bool,
-    keep: Keep,
+parameters! {
+    /// A warp style over the artwork's box: arc, flag, fisheye, …
+    ///
+    /// The map is the bicubic Bézier patch of the style's net, or the envelope of its sides if lines are [kept](Self::keep).
+    ///
+    /// ```
+    /// use pathwarp::{deform::{Style, Warp}, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let arch = Warp::new(Style::named("arch").unwrap(), Rect::new(0.0, 0.0, 100.0, 100.0)).bend(1.0).build()?;
+    /// assert!(arch.map.point(Point::new(50.0, 0.0)).distance(Point::new(50.0, -50.0)) < 1e-12);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Warp(s, style: Style) {
+        /// The style: a name, or a file of your own.
+        param = new("style", Kind::NameOrFile(NAMES)).default("arc");
+        /// Amount and direction of the bend.
+        bend: f64 = number("bend").default("50%").within(-10.0, 10.0).slider(-1.0, 1.0);
+        /// The direction of the style.
+        sideways: bool = either("axis", &["horizontal", "vertical"]);
+        /// Distortion: the right side grows by this, the left one shrinks.
+        horizontal: f64 = number("horizontal").default("0%").within(-1.0, 1.0);
+        /// Distortion: the lower side grows by this, the upper one shrinks.
+        vertical: f64 = number("vertical").default("0%").within(-1.0, 1.0);
+        /// Lines that stay straight: the artwork is put between the style's sides by a map that keeps them, as `envelope --keep` does.
+        keep: Keep = new("keep", Kind::Choice(&["nothing", "verticals", "horizontals", "lines"])).default("nothing");
+        let frame: Rect = s.frame().rect;
+    }
 }
 
 impl Warp {
-    /// Creates a warp of the box `frame` by 50 %.
+    /// Creates a warp of the box `frame` by 50 %. Bends beyond 100 % continue by the same formula, up to the style's
+    /// [limit](Style::limit).
     #[must_use]
     pub fn new(style: Style, frame: Rect) -> Self {
-        Self { frame, style, bend: 0.5, horizontal: 0.0, vertical: 0.0, sideways: false, keep: Keep::Nothing }
-    }
-
-    setters! {
-        /// Sets the bend, 1 for 100 %; negative bends the other way. Bends beyond 1 continue by the same formula, up to the style's
-        /// [limit](Style::limit).
-        bend(bend: f64);
-        /// Sets the horizontal and the vertical distortion, −1 to 1: the right (lower) side grows by this share, the left (upper)
-        /// one shrinks.
-        distort(horizontal: f64, vertical: f64) => horizontal: horizontal, vertical: vertical;
-        /// Turns the style sideways.
-        sideways(sideways: bool);
-        /// Sets the lines that stay straight: the artwork is put between the style's sides then.
-        keep(keep: Keep);
+        Self::defaults(frame, style)
     }
 
     /// Builds the map.
@@ -70,20 +66,14 @@ impl Warp {
     /// [`Error::Geometry`] for a flat box; [`Error::Usage`] for a bend or distortion out of range, a style with a wrong
     /// formula, and lines that the style cannot keep.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         let Self { frame, style, bend, .. } = self;
         if let Some(limit) = style.limit().filter(|l| bend.abs() > *l) {
             let percent = limit * 100.0;
             let problem = format!("is out of range: {} bends from -{percent}% to {percent}%", style.name);
             return Err(Error::usage("bend", bend.to_string(), problem));
         }
-        let params = StyleParams {
-            bend: *bend,
-            distortion: [
-                within("horizontal", self.horizontal, -1.0, 1.0)?,
-                within("vertical", self.vertical, -1.0, 1.0)?,
-            ],
-            vertical: self.sideways,
-        };
+        let params = StyleParams { bend: *bend, distortion: [self.horizontal, self.vertical], vertical: self.sideways };
         let net = style.net(frame.width(), frame.height(), &params);
         let net = net.map_err(|e| Error::usage("style", style.name.clone(), e.to_string()))?;
         let mut built = if self.keep == Keep::Nothing { over(*frame, &net)? } else { self.kept(&net, &params)? };
@@ -506,28 +496,7 @@ name = \"roof\"\n  family = \"boundary\"   # or \"points\", \"frame\": the part 
 moves = [{ at = \"0,1\", y = \"-b*h/2\" }, { at = \"0,2\", y = \"-b*h/2\" }]")
     .source("Nets measured on Adobe Illustrator 2026, published with the OPuller editor, 2026; completion: K. Koppinen, A plane \
 transformation from 16 control points, equation (7)")
-    .params(&[
-        Param::new("style", Kind::NameOrFile(NAMES), "The style: a name, or a file of your own.").default("arc"),
-        Param::number("bend", "Amount and direction of the bend.").default("50%").within(-10.0, 10.0).slider(-1.0, 1.0),
-        Param::new(
-            "axis",
-            Kind::Choice(&["horizontal", "vertical"]),
-            "The direction of the style.",
-        )
-        .default("horizontal"),
-        Param::number("horizontal", "Distortion: the right side grows by this, the left one shrinks.")
-            .default("0%")
-            .within(-1.0, 1.0),
-        Param::number("vertical", "Distortion: the lower side grows by this, the upper one shrinks.")
-            .default("0%")
-            .within(-1.0, 1.0),
-        Param::new(
-            "keep",
-            Kind::Choice(&["nothing", "verticals", "horizontals", "lines"]),
-            "Lines that stay straight: the artwork is put between the style's sides by a map that keeps them, as `envelope --keep` does.",
-        )
-        .default("nothing"),
-    ])
+    .params(Warp::PARAMS)
     .demo(&[("style", "arc"), ("bend", "40%"), ("horizontal", "15%"), ("vertical", "-20%")])
     .examples(&[
         Example { what: "A word on an arc", command: "warp samples/lettering.svg --style arc --bend 50% -o out.svg" },
@@ -579,18 +548,7 @@ transformation from 16 control points, equation (7)")
     ]);
 
 /// Reads the deformation from text.
-pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let warp = Warp {
-        frame: s.frame().rect,
-        style: style(s)?,
-        bend: s.number("bend")?,
-        horizontal: s.number("horizontal")?,
-        vertical: s.number("vertical")?,
-        sideways: s.choice("axis")? == "vertical",
-        keep: Keep::named(s.choice("keep")?),
-    };
-    warp.build()
-});
+pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Warp::read(s, style(s)?)?.build());
 
 /// Reads the style, by name or from a file.
 fn style(s: &Settings<'_>) -> Result<Style, Error> {

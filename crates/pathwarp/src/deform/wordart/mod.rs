@@ -11,38 +11,54 @@ mod tests;
 use super::bend::{Align, Bend, Stretch};
 use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Role};
 use crate::anchors;
-use crate::error::{Error, with_area, within};
+use crate::error::{Error, with_area};
 use crate::map::{AffineMap, Along, Guide, TileRow, Tiled, tiled};
 use crate::outline::{Outline, Seg, Subpath};
-use crate::param::{Axis, Kind, Letter, Param, Settings, word_space};
+use crate::param::{Axis, Kind, Letter, Settings, parameters, word_space};
 use kurbo::{Affine, BezPath, Point, Rect, Size};
 use shape::{GuideError, Guides};
 use std::sync::Arc;
 
 pub use shape::{ShapeBox, TextShape};
 
-/// A text shape of office programs over the artwork's box: wave, chevron, arch, inflate, …
-///
-/// The box is spanned between the shape's guides by ruled maps, or stands on them, in one band or several.
-///
-/// ```
-/// use pathwarp::{deform::{TextShape, WordArt}, kurbo::{Point, Rect}, map::Map};
-///
-/// let roof = WordArt::new(TextShape::named("triangle").unwrap(), Rect::new(0.0, 0.0, 100.0, 100.0)).build()?;
-/// assert!(roof.map.point(Point::new(75.0, 50.0)).distance(Point::new(75.0, 62.5)) < 1e-12);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct WordArt {
-    frame: Rect,
-    shape: TextShape,
-    /// A value for each of the shape's adjust values.
-    adjusted: Vec<f64>,
-    by_parameter: bool,
-    split: Option<Vec<f64>>,
-    shape_box: ShapeBox,
-    padding: f64,
-    letters: Arc<[Letter]>,
+parameters! {
+    /// A text shape of office programs over the artwork's box: wave, chevron, arch, inflate, …
+    ///
+    /// The box is spanned between the shape's guides by ruled maps, or stands on them, in one band or several.
+    ///
+    /// ```
+    /// use pathwarp::{deform::{TextShape, WordArt}, kurbo::{Point, Rect}, map::Map};
+    ///
+    /// let roof = WordArt::new(TextShape::named("triangle").unwrap(), Rect::new(0.0, 0.0, 100.0, 100.0)).build()?;
+    /// assert!(roof.map.point(Point::new(75.0, 50.0)).distance(Point::new(75.0, 62.5)) < 1e-12);
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct WordArt(s, shape: TextShape) {
+        /// The shape: a name, or a file of your own.
+        param = new("preset", Kind::NameOrFile(NAMES)).needed();
+        /// An adjust value, such as adj1=15000: in 1/100000 of the box or %, angles in 1/60000 degree or with a unit. Without a name, in
+        /// their order.
+        param = new("adj", Kind::Text("[NAME=]VALUE")).repeated();
+        /// Spacing along the guides: even by length, or by their parameters.
+        by_parameter: bool = either("by", &["arclength", "parameter"]);
+        /// The box that the shape is drawn in: fit (for round shapes, one that suits the artwork's proportion), artwork (its own), or
+        /// X,Y,W,H (user units or %).
+        param = new("box", Kind::Text("BOX")).default("fit");
+        /// The heights at which artwork is divided between bands, user units or %.
+        param = new("split", Kind::Text("Y[,Y…]"));
+        /// Distance that the artwork keeps from the guides, along its verticals, and from their ends.
+        padding: f64 = length("padding", Axis::Y).default("0").within(0.0, 1e9).slider(0.0, 50.0);
+        let frame: Rect = s.frame().rect;
+        // A value for each of the shape's adjust values.
+        let adjusted: Vec<f64> = adjusted(s, &shape)?;
+        let split: Option<Vec<f64>> = s.texts("split").last().map(|text| split(s, text)).transpose()?;
+        let shape_box: ShapeBox = match s.texts("box").last() {
+            Some(&"fit") => ShapeBox::Fit,
+            _ => s.rect_if("box")?.map_or(ShapeBox::Artwork, ShapeBox::Given),
+        };
+        let letters: Arc<[Letter]> = Arc::clone(&s.frame().letters);
+    }
 }
 
 /// Guides are drawn within this share of the box's width and height.
@@ -52,17 +68,7 @@ impl WordArt {
     /// Creates the text shape with its default adjust values over the box `frame`.
     #[must_use]
     pub fn new(shape: TextShape, frame: Rect) -> Self {
-        let adjusted = shape.adj.iter().map(|a| a.default).collect();
-        Self {
-            frame,
-            shape,
-            adjusted,
-            by_parameter: false,
-            split: None,
-            shape_box: ShapeBox::Fit,
-            padding: 0.0,
-            letters: Arc::new([]),
-        }
+        Self::defaults(frame, shape)
     }
 
     /// Sets the first adjust values, in the shape's order: lengths in 1/100000 of the box, angles in 1/60000 degree.
@@ -74,14 +80,10 @@ impl WordArt {
     }
 
     setters! {
-        /// Runs by the guides' parameters, instead of evenly by length.
-        by_parameter(by_parameter: bool);
         /// Sets the y of the lines between bands, rising, one less than there are bands. Default: even.
         split(heights: &[f64]) => split: Some(heights.to_vec());
         /// Sets the box that the shape is drawn in.
         shape_box(shape_box: ShapeBox);
-        /// Keeps the artwork this far off the guides, along its verticals, and off their ends, user units. Default: 0.
-        padding(padding: f64);
         /// Sets the artwork's letters. By default the artwork is divided between their lines, and fewer lines than guides take the
         /// first guides only.
         letters(letters: Arc<[Letter]>);
@@ -93,6 +95,7 @@ impl WordArt {
     /// [`Error::Geometry`] for a flat box; [`Error::Usage`] for adjust values out of range, a wrong split, a wrong formula, or
     /// a guide that has no length in this box, or a padding that leaves no room.
     pub fn build(&self) -> Result<Built, Error> {
+        self.check()?;
         let Self { frame: rect, shape, adjusted, .. } = self;
         with_area(*rect)?;
         if let Some(extra) = adjusted.get(shape.adj.len()) {
@@ -167,7 +170,6 @@ impl WordArt {
     fn padded(&self, guides: Guides, cuts: &[f64], shape_box: Rect) -> Result<Self, Error> {
         /// Samples of a guide.
         const SAMPLES: usize = 128;
-        within("padding", self.padding, 0.0, 1e9)?;
         let (rect, last) = (self.frame, cuts.len());
         if self.padding == 0.0 || matches!(guides, Guides::Along(_)) {
             return Ok(self.clone());
@@ -358,34 +360,7 @@ divided; by default between as many lines, or evenly.\n\nA shape of your own is 
 box) and guides written like path data (`round = true`: the box suits the artwork's proportion):\n\n  name = \"hill\"\n  adj = [{ name = \"adj\", default = 40000, least = 0, most = 80000 }]\n  \
 let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\"]]")
     .source("ECMA-376, Office Open XML File Formats, Part 1, presetTextWarpDefinitions (DrawingML prstTxWarp, 20.1.9.19)")
-    .params(&[
-        Param::new("preset", Kind::NameOrFile(NAMES), "The shape: a name, or a file of your own.").needed(),
-        Param::new(
-            "adj",
-            Kind::Text("[NAME=]VALUE"),
-            "An adjust value, such as adj1=15000: in 1/100000 of the box or %, angles in 1/60000 degree or with a unit. Without a name, in \
-their order.",
-        )
-        .repeated(),
-        Param::new(
-            "by",
-            Kind::Choice(&["arclength", "parameter"]),
-            "Spacing along the guides: even by length, or by their parameters.",
-        )
-        .default("arclength"),
-        Param::new(
-            "box",
-            Kind::Text("BOX"),
-            "The box that the shape is drawn in: fit (for round shapes, one that suits the artwork's proportion), artwork (its own), or \
-X,Y,W,H (user units or %).",
-        )
-        .default("fit"),
-        Param::new("split", Kind::Text("Y[,Y…]"), "The heights at which artwork is divided between bands, user units or %."),
-        Param::length("padding", Axis::Y, "Distance that the artwork keeps from the guides, along its verticals, and from their ends.")
-            .default("0")
-            .within(0.0, 1e9)
-            .slider(0.0, 50.0),
-    ])
+    .params(WordArt::PARAMS)
     .demo(&[("preset", "wave1"), ("adj", "adj1=15000"), ("adj", "adj2=4000")])
     .examples(&[
         Example { what: "A word as a wave", command: "wordart samples/lettering.svg --preset wave1 -o out.svg" },
@@ -444,28 +419,11 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     let shape = match s.file_if("preset")? {
         Some(file) => TextShape::from_file(&file.name, &file.text)?,
         None => TextShape::named(name).ok_or_else(|| {
-            Error::advised(
-                "preset",
-                name,
-                "is not a text shape",
-                format!("; there are {}, and files", NAMES.join(", ")),
-            )
+            let known = format!("; there are {}, and files", NAMES.join(", "));
+            Error::advised("preset", name, "is not a text shape", known)
         })?,
     };
-    let wordart = WordArt {
-        frame: s.frame().rect,
-        adjusted: adjusted(s, &shape)?,
-        shape,
-        by_parameter: s.choice("by")? == "parameter",
-        split: if s.given("split") { Some(split(s)?) } else { None },
-        shape_box: match s.texts("box").last() {
-            Some(&"fit") => ShapeBox::Fit,
-            _ => s.rect_if("box")?.map_or(ShapeBox::Artwork, ShapeBox::Given),
-        },
-        padding: s.number("padding")?,
-        letters: Arc::clone(&s.frame().letters),
-    };
-    wordart.build()
+    WordArt::read(s, shape)?.build()
 });
 
 /// Reads the adjust values; those not given have their defaults.
@@ -494,8 +452,7 @@ fn adjusted(s: &Settings<'_>, shape: &TextShape) -> Result<Vec<f64>, Error> {
 }
 
 /// Reads the heights between bands.
-fn split(s: &Settings<'_>) -> Result<Vec<f64>, Error> {
-    let text = s.texts("split").last().copied().unwrap_or_default();
+fn split(s: &Settings<'_>, text: &str) -> Result<Vec<f64>, Error> {
     let height = |t: &str| {
         let y = s.length_in("split", t, Axis::Y)?;
         Ok(if t.ends_with('%') { s.frame().rect.y0 + y } else { y })

@@ -1,0 +1,229 @@
+//! Parameters as fields: one declaration gives a deformation's type, setters, defaults, ranges, table and reading.
+
+use super::{Kind, NamedPath, Param, Settings};
+use crate::error::{Error, within};
+use kurbo::Point;
+
+/// A value that a field of a deformation can hold.
+pub(crate) trait Value: Sized {
+    /// Reads the value of a parameter, or its default.
+    fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error>;
+
+    /// The number that the parameter's range is about, if it is one.
+    fn number(&self) -> Option<f64> {
+        None
+    }
+
+    /// Refuses a number out of the parameter's range.
+    fn check(&self, params: &[Param], name: &str) -> Result<(), Error> {
+        let range = params.iter().find(|p| p.name == name).map(|p| p.range);
+        match (self.number(), range) {
+            (Some(number), Some((min, max))) => within(name, number, min, max).map(|_| ()),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Value for f64 {
+    fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
+        s.number(name)
+    }
+
+    fn number(&self) -> Option<f64> {
+        Some(*self)
+    }
+}
+
+impl Value for usize {
+    fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
+        s.number(name).map(|n| n as Self)
+    }
+
+    fn number(&self) -> Option<f64> {
+        Some(*self as f64)
+    }
+}
+
+/// A flag, or the second of two words.
+impl Value for bool {
+    fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
+        match s.param(name).map(|p| p.kind) {
+            Some(Kind::Choice(words)) => Ok(words.get(1) == Some(&s.choice(name)?)),
+            _ => s.flag(name),
+        }
+    }
+}
+
+impl Value for Point {
+    fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
+        s.point(name)
+    }
+}
+
+impl Value for NamedPath {
+    fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
+        s.path_if(name)?.ok_or_else(|| s.missing(name))
+    }
+}
+
+/// `None` if there is neither a value nor a default.
+impl<T: Value> Value for Option<T> {
+    fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
+        s.text(name).map(|_| T::read(s, name)).transpose()
+    }
+
+    fn number(&self) -> Option<f64> {
+        self.as_ref().and_then(T::number)
+    }
+}
+
+/// Declares a deformation with its parameters, each once: the help, which is the setter's documentation as well, the field, and how
+/// [`Param`] describes it.
+///
+/// ```text
+/// parameters! {
+///     /// What the deformation does.
+///     pub struct Wave(s) {
+///         /// Distance of a crest from the middle.
+///         height: f64 = length("height", Axis::Y).default("10%");
+///         /// Move points across the wave (shear) or along it (push).
+///         push: bool = either("kind", &["shear", "push"]);
+///         /// The same as --kind push.
+///         param = flag("along");
+///         let frame: Rect = s.frame().rect;
+///     }
+/// }
+/// ```
+///
+/// `Option` is for parameters that may stay without a value; one without a type has no field of its own. A field after `let` is no
+/// parameter: it follows from the settings `s`. What has no default is an argument: `pub struct Bend(s, along: NamedPath)`.
+///
+/// The type gets `PARAMS`, the table; a setter for each parameter's field; `read(s, …)`; `defaults(frame, …)`, with no value given; and
+/// `check()`, which refuses numbers out of range.
+macro_rules! parameters {
+    (
+        $(#[$about:meta])*
+        pub struct $type:ident($s:ident $(, $given:ident: $given_type:ty)*) {
+            $(
+                $(#[doc = $help:literal])+
+                $field:ident $(: $value:ident $(<$of:ident>)?)? = $kind:ident($name:literal $(, $kind_of:expr)*)
+                    $(.$set:ident($($to:tt)*))*;
+            )*
+            $(let $own:ident: $own_type:ty = $follows:expr;)*
+        }
+    ) => {
+        $(#[$about])*
+        pub struct $type {
+            $($($field: $value $(<$of>)?,)?)*
+            $($given: $given_type,)*
+            $($own: $own_type,)*
+        }
+
+        impl $type {
+            /// The table of parameters.
+            const PARAMS: &'static [$crate::param::Param] = &[$(
+                $crate::param::Param::$kind($name, $($kind_of,)* concat!($($help),+).trim_ascii_start())
+                    $(.$set($($to)*))*
+            ),*];
+
+            $($crate::param::parameters! {
+                @setter
+                $(#[doc = $help])+
+                #[doc = ""]
+                #[doc = concat!($crate::param::parameters!(@unit $kind) $(, $crate::param::parameters!(@note $set $($to)*))*)]
+                $name, $field $(: $value $(<$of>)?)?
+            })*
+
+            /// Reads the values from settings.
+            fn read($s: &$crate::param::Settings<'_> $(, $given: $given_type)*) -> Result<Self, $crate::Error> {
+                Ok(Self {
+                    $($($field: <$value $(<$of>)? as $crate::param::Value>::read($s, $name)?,)?)*
+                    $($own: $follows,)*
+                    $($given,)*
+                })
+            }
+
+            /// The values if none are given. Reading them cannot fail: `check::entry` reads every default, and here no range is checked.
+            fn defaults(frame: kurbo::Rect $(, $given: $given_type)*) -> Self {
+                let (args, frame) = ($crate::param::Args::new(), $crate::param::Frame::new(frame));
+                let settings = $crate::param::Settings::defaults(Self::PARAMS, &args, &frame);
+                Self::read(&settings $(, $given)*).expect("defaults can be read")
+            }
+
+            /// Refuses numbers out of range.
+            fn check(&self) -> Result<(), $crate::Error> {
+                $($(<$value $(<$of>)? as $crate::param::Value>::check(&self.$field, Self::PARAMS, $name)?;)?)*
+                Ok(())
+            }
+        }
+    };
+    (@unit length) => { "User units." };
+    (@unit angle) => { "Degrees." };
+    (@unit $kind:ident) => { "" };
+    (@note default $default:literal) => { concat!(" Default: ", $default, ".") };
+    (@note within $min:literal, $max:literal) => { concat!(" From ", stringify!($min), " to ", stringify!($max), ".") };
+    (@note $set:ident $($to:tt)*) => { "" };
+    (@setter $(#[$about:meta])* $name:literal, $field:ident) => {};
+    (@setter $(#[$about:meta])* $name:literal, $field:ident: Point) => {
+        $crate::setters! { $(#[$about])* $field($field: impl Into<Point>) => $field: $field.into(); }
+    };
+    (@setter $(#[$about:meta])* $name:literal, $field:ident: Option<Point>) => {
+        $crate::setters! { $(#[$about])* $field($field: impl Into<Point>) => $field: Some($field.into()); }
+    };
+    (@setter $(#[$about:meta])* $name:literal, $field:ident: Option<NamedPath>) => {
+        $crate::setters! {
+            $(#[$about])*
+            $field($field: &$crate::Outline) => $field: Some(NamedPath { name: $name.into(), outline: $field.clone() });
+        }
+    };
+    (@setter $(#[$about:meta])* $name:literal, $field:ident: Option<$of:ident>) => {
+        $crate::setters! { $(#[$about])* $field($field: $of) => $field: Some($field); }
+    };
+    (@setter $(#[$about:meta])* $name:literal, $field:ident: $value:ident) => {
+        $crate::setters! { $(#[$about])* $field($field: $value); }
+    };
+}
+
+/// Variants with a word for each.
+pub(crate) trait Choice: Copy + PartialEq + 'static {
+    /// The words.
+    const WORDS: &'static [&'static str];
+    /// The variants, in the words' order.
+    const VARIANTS: &'static [Self];
+
+    /// The variant for a word.
+    fn named(word: &str) -> Option<Self> {
+        Self::WORDS.iter().position(|w| *w == word).map(|i| Self::VARIANTS[i])
+    }
+
+    /// The word for a variant.
+    fn name(self) -> &'static str {
+        Self::WORDS.iter().zip(Self::VARIANTS).find(|(_, v)| **v == self).map_or("", |(word, _)| word)
+    }
+}
+
+impl<T: Choice> Value for T {
+    fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
+        let word = s.choice(name)?;
+        Self::named(word).ok_or_else(|| Error::usage(name, word, "is not known"))
+    }
+}
+
+/// Declares an enum of [`Choice`]s, with a word after each variant.
+macro_rules! choice {
+    (
+        $(#[$about:meta])*
+        pub enum $type:ident { $($(#[$about_variant:meta])* $variant:ident = $word:literal,)+ }
+    ) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $type { $($(#[$about_variant])* $variant,)+ }
+
+        impl $crate::param::Choice for $type {
+            const WORDS: &'static [&'static str] = &[$($word),+];
+            const VARIANTS: &'static [Self] = &[$(Self::$variant),+];
+        }
+    };
+}
+
+pub(crate) use {choice, parameters};
