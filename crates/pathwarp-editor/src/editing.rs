@@ -411,8 +411,8 @@ impl Host for EngineHost {
         named.flat_map(|(name, words)| words.into_iter().map(move |w| (w, name))).collect()
     }
 
-    fn families(&self) -> Vec<String> {
-        self.given.read().map(|o| families(&o.reading.read_options())).unwrap_or_default()
+    fn families(&self) -> Result<Vec<String>, String> {
+        self.said(self.given.read().map(|o| families(&o.reading.read_options())))
     }
 
     fn set_words(&self, words: &Words) -> Result<(String, Vec<char>), String> {

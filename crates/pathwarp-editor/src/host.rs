@@ -61,7 +61,10 @@ pub trait Host: Send + Sync {
     }
 
     /// The families of the fonts there are.
-    fn families(&self) -> Vec<String>;
+    ///
+    /// # Errors
+    /// The options that name fonts are wrong.
+    fn families(&self) -> Result<Vec<String>, String>;
 
     /// Sets words as a drawing, and lists the characters that no font has.
     ///

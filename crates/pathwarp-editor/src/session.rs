@@ -137,7 +137,7 @@ impl Session {
     }
 
     /// The families of the fonts there are.
-    pub(crate) fn families(&self) -> Vec<String> {
+    pub(crate) fn families(&self) -> Result<Vec<String>, String> {
         self.host.families()
     }
 

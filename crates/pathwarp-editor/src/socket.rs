@@ -124,7 +124,7 @@ impl Page {
                 let steps = steps.or_else(|| example.map(|step| vec![step])).unwrap_or_default();
                 Ok(json!({ "svg": session.thumbnail(&steps)? }))
             }
-            Request::Families => Ok(json!({ "families": session.families() })),
+            Request::Families => Ok(json!({ "families": session.families()? })),
             Request::SetWords { words } => {
                 let lacking = session.set_words(&words)?;
                 self.count_change();

@@ -1,6 +1,6 @@
-// Bundles the page into ../assets, or into the folder given.
+// Bundles the page's scripts into ../assets, where its other files are, or into the folder given.
 import { build } from "esbuild";
-import { cp, mkdir } from "node:fs/promises";
+import { mkdir } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 
 const here = (path) => fileURLToPath(new URL(path, import.meta.url));
@@ -16,5 +16,3 @@ await build({
   legalComments: "none",
   logLevel: "warning",
 });
-await cp(here("src/index.html"), `${to}/index.html`);
-await cp(here("src/editor.css"), `${to}/editor.css`);

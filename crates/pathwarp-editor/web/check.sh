@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the page anew and compares it with the files in the repository. `--write` stores it there instead.
+# Bundles the scripts of the page anew and compares them with the file in the repository. `--write` stores them there instead.
 set -euo pipefail
 cd "$(dirname "$0")"
 # Fetched again whenever the list of packages is newer.
@@ -15,7 +15,7 @@ fi
 built=$(mktemp -d)
 trap 'rm -rf "$built"' EXIT
 node build.mjs "$built"
-diff -r "$built" ../assets >/dev/null || {
-    echo "crates/pathwarp-editor/assets is not what web/ builds; run crates/pathwarp-editor/web/check.sh --write" >&2
+cmp --quiet "$built/editor.js" ../assets/editor.js || {
+    echo "crates/pathwarp-editor/assets/editor.js is not what web/ builds; run crates/pathwarp-editor/web/check.sh --write" >&2
     exit 1
 }

@@ -19,36 +19,39 @@ const REFUSED: u8 = 1;
 /// Size in bytes of the length prefix and the kind.
 const HEAD: usize = 5;
 
-/// A body has at most [`MAX_POINTS`](crate::fault::MAX_POINTS) points, or the values of one step, so that its length fits.
-fn head(kind: u8, body: usize, out: &mut Vec<u8>) {
-    out.extend_from_slice(&(body as u32 + 1).to_le_bytes());
+/// Writes the length of a message and its kind. Values of a step may be paths of any length.
+fn head(kind: u8, body: usize, out: &mut Vec<u8>) -> Result<(), Fault> {
+    let length = u32::try_from(body + 1).map_err(|_| Fault::TooLong(body))?;
+    out.extend_from_slice(&length.to_le_bytes());
     out.push(kind);
+    Ok(())
 }
 
 /// Encodes the request to build a map from `lines`.
-pub(crate) fn build(lines: &[String]) -> Vec<u8> {
+pub(crate) fn build(lines: &[String]) -> Result<Vec<u8>, Fault> {
     let body = lines.concat();
     let mut out = Vec::with_capacity(body.len() + HEAD);
-    head(BUILD, body.len(), &mut out);
+    head(BUILD, body.len(), &mut out)?;
     out.extend_from_slice(body.as_bytes());
-    out
+    Ok(out)
 }
 
 /// Encodes the request for a batch.
-pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
+pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) -> Result<(), Fault> {
     let kind = match ask {
         Ask::Points => POINTS,
         Ask::Jets => JETS,
         Ask::Inverse => INVERSE,
     };
     out.reserve(HEAD + 16 * points.len());
-    head(kind, 16 * points.len(), out);
+    head(kind, 16 * points.len(), out)?;
     let start = out.len();
     out.resize(start + 16 * points.len(), 0);
     let places = out[start..].as_chunks_mut::<8>().0;
     for (place, number) in places.iter_mut().zip(points.iter().flat_map(|p| [p.x, p.y])) {
         *place = number.to_le_bytes();
     }
+    Ok(())
 }
 
 /// The length of the message at the beginning of `bytes`, once its head has arrived. `body` is the length of the body if it is known; an

@@ -89,7 +89,7 @@ impl Deformation for Plugin {
         let lines = lines(self.info.params, settings, self.version)?;
         let request = match self.program.protocol {
             Protocol::Text => text::build(&lines),
-            Protocol::Binary => binary::build(&lines),
+            Protocol::Binary => binary::build(&lines).map_err(|fault| fault.of(&self.program.path))?,
         };
         let instance = Arc::new(Instance::new(request));
         let refused = |fault: Fault| match fault {

@@ -43,6 +43,11 @@ pub enum Fault {
         /// The end of its standard error.
         said: String,
     },
+    /// A request has more bytes than its length can tell.
+    #[error(
+        "cannot be sent {0} bytes at once, only 4294967294; give it shorter paths, or let it speak the text protocol"
+    )]
+    TooLong(usize),
     /// It did not answer in time.
     #[error("did not give {expected} within {seconds} seconds (PATHWARP_PLUGIN_SECONDS allows more){}", quoted(.said))]
     Silent {

@@ -92,7 +92,7 @@ impl Session {
         for (ask, points, _) in batches.iter() {
             match protocol {
                 Protocol::Text => text::batch(*ask, points, &mut request),
-                Protocol::Binary => binary::batch(*ask, points, &mut request),
+                Protocol::Binary => binary::batch(*ask, points, &mut request)?,
             }
         }
         // While the requests are sent, all answers may already arrive.

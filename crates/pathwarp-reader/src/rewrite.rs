@@ -57,8 +57,8 @@ const SINGLE_LETTERS: &str = "only from left to right, as its letters have posit
 /// A drawing resolved into plain SVG.
 #[derive(Debug, Default)]
 pub struct Plain {
-    /// The text of the drawing.
-    pub text: String,
+    /// The new text of the drawing; `None` if it differs in nothing.
+    pub text: Option<String>,
     /// Differences from the original, in the order of the text.
     pub changes: Vec<Change>,
     /// Unsupported features: the element, or `None` for the style sheets, and a phrase about it.
@@ -73,8 +73,6 @@ pub struct Plain {
     pub notes: BTreeSet<(&'static str, String)>,
     /// Texts that stand for HTML in the same `switch`: the `foreignObject`, and the `text`.
     pub foreign: Vec<(usize, usize)>,
-    /// Whether elements were written out in place of the entities that hold them. `changes` does not list these.
-    pub expanded: bool,
 }
 
 /// An attribute or a run of characters that differs from the original. Elements are numbered in document order, from 0.
@@ -110,21 +108,6 @@ impl From<Exceeded> for ReadError {
     }
 }
 
-impl Plain {
-    /// The drawing's own text.
-    #[must_use]
-    pub fn restored(&self) -> String {
-        let mut out = String::with_capacity(self.text.len());
-        let mut done = 0;
-        for change in &self.changes {
-            out.push_str(&self.text[done..change.range.start]);
-            out.push_str(&change.text);
-            done = change.range.end;
-        }
-        out + &self.text[done..]
-    }
-}
-
 /// A new value for an attribute.
 struct Edit {
     name: &'static str,
@@ -137,40 +120,30 @@ struct Edit {
 /// Gives the text of the drawing that an image links to, if it does.
 pub type Linked<'a> = &'a dyn Fn(&str) -> Option<String>;
 
-/// Resolves a drawing whose markup is known to be within the budget (see [`xml::check`]). Entities that hold elements are expanded
-/// first, so that each element has its own place in the text.
+/// Resolves a drawing whose markup is known to be within the budget (see [`xml::check`]).
 ///
 /// # Errors
-/// It is not XML, or its style takes more work than the budget allows.
-pub fn resolve(text: &str, budget: &Budget, linked: Linked<'_>) -> Result<Plain, ReadError> {
-    let mut text = Cow::Borrowed(text);
-    if text.contains("<!ENTITY")
-        && let Some(expanded) = xml::with_elements_of_entities(&text)
-    {
-        text = Cow::Owned(expanded);
-    }
-    let expanded = matches!(text, Cow::Owned(_));
-    let doc = xml::document(&text).map_err(ReadError::Xml)?;
-    let (mut all, mut out) = changes(&doc, budget, linked)?;
-    out.expanded = expanded;
-    all.sort_by_key(|(o, _)| (o.range.start, o.range.end));
+/// Its style takes more work than the budget allows.
+pub fn resolve(doc: &Document<'_>, budget: &Budget, linked: Linked<'_>) -> Result<Plain, Exceeded> {
+    let text = doc.input_text();
+    let (mut all, mut out) = changes(doc, budget, linked)?;
     if all.is_empty() {
-        drop(doc);
-        out.text = text.into_owned();
         return Ok(out);
     }
-    out.text.reserve(text.len() * 2);
+    all.sort_by_key(|(o, _)| (o.range.start, o.range.end));
+    let mut new_text = String::with_capacity(text.len() * 2);
     let mut done = 0;
     for (change, new) in all {
         let Some(before) = text.get(done..change.range.start) else { continue };
         budget.spend(cost::COMPARISON * (new.len() / WRITTEN) as f64)?;
         done = change.range.end;
-        out.text.push_str(before);
-        let start = out.text.len();
-        out.text.push_str(&new);
-        out.changes.push(Change { range: start..out.text.len(), ..change });
+        new_text.push_str(before);
+        let start = new_text.len();
+        new_text.push_str(&new);
+        out.changes.push(Change { range: start..new_text.len(), ..change });
     }
-    out.text.push_str(&text[done..]);
+    new_text.push_str(&text[done..]);
+    out.text = Some(new_text);
     Ok(out)
 }
 

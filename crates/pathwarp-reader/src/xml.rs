@@ -43,11 +43,15 @@ pub fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Documen
     })
 }
 
-/// Expands the references to entities. Returns `None` if no entity holds elements.
-pub(super) fn with_elements_of_entities(text: &str) -> Option<String> {
+/// Expands the references to entities, so that each element has its own place in the text. Returns `None` if no entity holds elements.
+#[must_use]
+pub fn with_elements_of_entities(text: &str) -> Option<String> {
     let entities = declared(text);
+    if !entities.iter().any(|(_, value)| value.contains('<')) {
+        return None;
+    }
     // The subset of the DTD ends with a bracket.
-    let start = text.find("]").filter(|_| entities.iter().any(|(_, v)| v.contains('<')))?;
+    let start = text.find(']')?;
     let mut out = text[..start].to_owned();
     let mut left: Vec<(&str, usize)> = vec![(&text[start..], 0)];
     while let Some((part, level)) = left.pop() {

@@ -111,7 +111,7 @@ export async function open(address, options = {}) {
     if (m.type() === "error" && !/WebSocket|ERR_CONNECTION/.test(m.text())) page.problems.push(m.text());
   });
   page.on("request", (r) => page.requests.push(r.url()));
-  // ASSETS=FOLDER tries a page that is not built into the program yet.
+  // ASSETS=FOLDER, usually ../assets, tries a page that is not built into the program yet.
   for (const name of process.env.ASSETS ? ["editor.js", "editor.css"] : []) {
     await page.route(`**/${name}`, (route) => route.fulfill({ path: join(process.env.ASSETS, name) }));
   }

@@ -397,13 +397,11 @@ fn same_subpath(ours: &Subpath, theirs: &Subpath, tolerance: f64) -> bool {
 mod tests {
     use super::*;
     use pathwarp::Seg;
+    use pathwarp_reader::{Plain, xml};
 
     fn read(shape: &str) -> (SourceText, Size) {
-        let s = SourceText::parse(
-            format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 100'>{shape}</svg>"),
-            "t",
-        )
-        .unwrap();
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 100'>{shape}</svg>");
+        let s = SourceText::of(&xml::document(&svg).unwrap(), Plain::default(), "t").unwrap();
         (s, Size::new(200.0, 100.0))
     }
 

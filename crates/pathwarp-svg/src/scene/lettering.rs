@@ -403,7 +403,7 @@ pub(crate) fn owners(source: &SourceText, name: &str, options: &ReadOptions) -> 
     }
     let painted: Vec<ElementId> = named.iter().flat_map(|&t| std::iter::once(t).chain(inside(source, t))).collect();
     let styles = painted.iter().filter_map(|&e| Some((e, format!("fill:{};stroke:none", colour(e)?))));
-    let painted = source.instrumented(styles).0;
+    let Some(painted) = source.instrumented(styles).0 else { return Ok(out) };
     let (tree, _) = tree::tree(&xml::parse_checked(&painted, name)?, name, &options.begin_again())?;
     collect(tree.root(), source, &mut out);
     Ok(out)

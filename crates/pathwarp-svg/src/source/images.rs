@@ -10,7 +10,6 @@ use flate2::Crc;
 use flate2::read::ZlibDecoder;
 use pathwarp::Error;
 use pathwarp::budget::{Exceeded, Limit};
-use pathwarp_reader::{Plain, xml};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read as _};
@@ -153,12 +152,11 @@ pub(super) fn checked(
         Err(e @ Error::Input { limit: Some(_), .. }) => return Err(e),
         Err(_) => return Ok(None),
     };
-    xml::check(&text, place, budget)?;
-    match plain(text, place, budget, None, &|_| None) {
-        Ok(Plain { text, .. }) => {
-            check::drawing(&xml::parse_checked(&text, place)?, place, budget)?;
-            Ok(Some(Arc::new(text.into_bytes())))
-        }
+    let checked = plain(text, place, budget, None, &|_| None, |_, doc, _| {
+        Ok(check::drawing(doc, place, budget).map(|_| Arc::new(doc.input_text().as_bytes().to_vec())))
+    });
+    match checked {
+        Ok(checked) => checked.map(Some),
         Err(e @ Error::Input { limit: Some(_), .. }) => Err(e),
         Err(_) => Ok(None),
     }

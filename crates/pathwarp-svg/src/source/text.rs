@@ -8,7 +8,7 @@ use super::threads::{both, map_parallel};
 use pathwarp::budget::Budget;
 use pathwarp::{Error, Outline};
 use pathwarp_reader::xml::{self, escape};
-use pathwarp_reader::{Change, Linked, Plain, ReadError, Words, resolve};
+use pathwarp_reader::{Change, Linked, Plain, Words, resolve};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
@@ -60,7 +60,7 @@ pub(crate) struct SourceText {
 }
 
 impl SourceText {
-    /// Parses `text` and calls `then` with the table of its elements and the XML document for usvg, in which temporary ids
+    /// Reads `text` and calls `then` with the table of its elements and the XML document for usvg, in which temporary ids
     /// identify the elements. `name` identifies the text in errors.
     pub(crate) fn read<T>(
         text: String,
@@ -69,12 +69,42 @@ impl SourceText {
         linked: Linked<'_>,
         then: impl FnOnce(&Self, &roxmltree::Document<'_>) -> Result<T, Error>,
     ) -> Result<(Self, T), Error> {
-        xml::check(&text, name, budget)?;
         let mut undeclared = Vec::new();
-        let plain = plain(text, name, budget, Some(&mut undeclared), linked)?;
-        let parsed = Self::parse(plain.text, name)?;
-        let mut source = Self {
-            undeclared,
+        let (source, result) = plain(text, name, budget, Some(&mut undeclared), linked, |plain, doc, expanded| {
+            let mut source = Self::of(doc, plain, name)?;
+            if expanded {
+                source.unpatchable.get_or_insert(Unpatchable::Entities);
+            }
+            let (marked, marks) = source.instrumented(std::iter::empty());
+            // Without reliable positions, ids cannot be inserted.
+            let marked = marked.filter(|_| source.unpatchable.is_none());
+            source.marks = marks;
+            let result = match marked {
+                Some(marked) => then(&source, &xml::parse_checked(&marked, name)?),
+                None => then(&source, doc),
+            };
+            Ok((source, result?))
+        })?;
+        Ok((Self { undeclared, ..source }, result))
+    }
+
+    /// The elements of a drawing that was resolved into plain SVG, from its tree. `name` identifies it in errors.
+    pub(crate) fn of(doc: &roxmltree::Document<'_>, plain: Plain, name: &str) -> Result<Self, Error> {
+        let root = doc.root_element();
+        let Some(Table { elements, css, unpatchable }) = Table::of(doc) else {
+            let at = doc.text_pos_at(root.range().start);
+            return Err(Error::input(
+                format!("{name}:{}:{}", at.row, at.col),
+                format!("the root element is <{}>, not <svg>", root.tag_name().name()),
+            ));
+        };
+        Ok(Self {
+            text: doc.input_text().to_owned(),
+            animated: elements.iter().any(|e| is_animation(&e.tag)),
+            elements,
+            css,
+            unpatchable,
+            meshes: mesh::read(doc),
             originals: plain.changes,
             far: plain.far,
             unsupported_style: plain.unsupported,
@@ -82,33 +112,8 @@ impl SourceText {
             words: plain.words,
             notes: plain.notes,
             foreign: plain.foreign,
-            unpatchable: parsed.unpatchable.or(plain.expanded.then_some(Unpatchable::Entities)),
-            ..parsed
-        };
-        let (marked, marks) = source.instrumented(std::iter::empty());
-        source.marks = marks;
-        // Without reliable positions, ids cannot be inserted.
-        let marked = if source.unpatchable.is_none() { marked } else { source.text.clone() };
-        let result = then(&source, &xml::parse_checked(&marked, name)?)?;
-        Ok((source, result))
-    }
-
-    /// Parses `text`, which is known to be within the budget, without temporary ids. `name` identifies it in errors.
-    pub(crate) fn parse(text: String, name: &str) -> Result<Self, Error> {
-        let doc = xml::parse_checked(&text, name)?;
-        let root = doc.root_element();
-        let Some(table) = Table::of(&doc) else {
-            let at = doc.text_pos_at(root.range().start);
-            return Err(Error::input(
-                format!("{name}:{}:{}", at.row, at.col),
-                format!("the root element is <{}>, not <svg>", root.tag_name().name()),
-            ));
-        };
-        let meshes = mesh::read(&doc);
-        drop(doc);
-        let Table { elements, css, unpatchable } = table;
-        let animated = elements.iter().any(|e| is_animation(&e.tag));
-        Ok(Self { text, elements, css, animated, unpatchable, meshes, ..Self::default() })
+            ..Self::default()
+        })
     }
 
     /// Whether any stack is deep enough for the drawing and nothing in it could make its readers panic. References multiply the
@@ -377,7 +382,8 @@ impl SourceText {
     }
 
     /// Gives every element that usvg tracks and that has no unique id a temporary one. Also appends `styles` to style attributes.
-    pub(crate) fn instrumented(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (String, Marks) {
+    /// Returns `None` for the text if that changes nothing.
+    pub(crate) fn instrumented(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (Option<String>, Marks) {
         let mut marks = Marks { stem: stem(&self.text), elements: Vec::new() };
         let links = links(&self.text);
         let mut patches: Vec<(Range<usize>, String)> = Vec::new();
@@ -409,6 +415,9 @@ impl SourceText {
             let id = e.attr(&self.text, "id").filter(|id| self.meshes.contains_key(&**id))?;
             Some((e.range.start..e.range.start, mesh::stand_in(self.prefix(), &id)))
         }));
+        if patches.is_empty() {
+            return (None, marks);
+        }
         patches.sort_by_key(|(at, _)| at.start);
         let mut out = String::with_capacity(self.text.len() + patches.len() * 16);
         let mut done = 0;
@@ -421,24 +430,31 @@ impl SourceText {
             }
         }
         out.push_str(&self.text[done..]);
-        (out, marks)
+        (Some(out), marks)
     }
 }
 
-/// Resolves a drawing into plain SVG. Undeclared prefixes are declared and added to `undeclared`; if that is `None`, they are an
-/// error.
-pub(super) fn plain(
+/// Parses a drawing, resolves it into plain SVG, and calls `then` with that, its tree, and whether elements were written out in place of
+/// the entities that hold them. Undeclared prefixes are declared and added to `undeclared`; if that is `None`, they are an error.
+pub(super) fn plain<T>(
     mut text: String,
     name: &str,
     budget: &Budget,
     mut undeclared: Option<&mut Vec<String>>,
     linked: Linked<'_>,
-) -> Result<Plain, Error> {
+    then: impl FnOnce(Plain, &roxmltree::Document<'_>, bool) -> Result<T, Error>,
+) -> Result<T, Error> {
+    xml::check(&text, name, budget)?;
     loop {
-        let why = match resolve(&text, budget, linked) {
-            Ok(plain) => return Ok(plain),
-            Err(ReadError::Limit(e)) => return Err(Error::limit(name, "its style takes", e)),
-            Err(ReadError::Xml(why)) => why,
+        let expanded = xml::with_elements_of_entities(&text);
+        let why = match xml::document(expanded.as_deref().unwrap_or(&text)) {
+            Ok(doc) => {
+                let mut plain = resolve(&doc, budget, linked).map_err(|e| Error::limit(name, "its style takes", e))?;
+                let Some(new) = plain.text.take() else { return then(plain, &doc, expanded.is_some()) };
+                drop(doc);
+                return then(plain, &xml::parse_checked(&new, name)?, expanded.is_some());
+            }
+            Err(why) => why,
         };
         let known = undeclared.as_mut().filter(|u| u.len() < MAX_PREFIXES);
         if let (roxmltree::Error::UnknownNamespace(prefix, _), Some(known)) = (&why, known)
@@ -548,13 +564,13 @@ pub(super) fn read(text: &str, elements: &[Element]) -> HashMap<ElementId, Arc<O
 mod tests {
     use super::*;
 
+    fn parsed(text: &str) -> SourceText {
+        SourceText::of(&xml::document(text).unwrap(), Plain::default(), "t").unwrap()
+    }
+
     #[test]
     fn places_are_found() {
-        let s = SourceText::parse(
-            "<svg xmlns='http://www.w3.org/2000/svg'>\n <rect  x = '1' id='a'/><g a='>'>t</g></svg>".into(),
-            "t",
-        )
-        .unwrap();
+        let s = parsed("<svg xmlns='http://www.w3.org/2000/svg'>\n <rect  x = '1' id='a'/><g a='>'>t</g></svg>");
         let r = &s.elements[1];
         assert_eq!(&s.text[r.range.clone()], "<rect  x = '1' id='a'/>");
         assert_eq!(&s.text[r.find(&s.text, "x").unwrap().value_range.clone()], "1");
@@ -575,8 +591,8 @@ mod tests {
          id='longer than warp-5' y='2'/><use href='#a'/><text><tspan id='c'>warp-</tspan></text><svg/></svg>",
         ];
         for d in drawings {
-            let direct = SourceText::parse(d.to_owned(), "t").unwrap();
-            let wanted = direct.instrumented(std::iter::empty()).0;
+            let direct = parsed(d);
+            let wanted = direct.instrumented(std::iter::empty()).0.unwrap();
             let (source, n) =
                 SourceText::read(d.to_owned(), "t", &Budget::default(), &|_| None, |_, doc| Ok(doc.input_text().len()))
                     .unwrap();

@@ -9,7 +9,6 @@ use super::read::{self, ReadOptions};
 use super::text::{SourceText, plain};
 use super::threads::with_stack;
 use pathwarp::Error;
-use pathwarp_reader::{Plain, xml};
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -105,15 +104,11 @@ pub(crate) fn parse_counted(
     options: &ReadOptions,
 ) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let text = read::text(data, name, &options.budget)?;
-    xml::check(&text, name, &options.budget)?;
     let linked = |link: &str| images::linked_drawing(link, options);
-    let Plain { text, unsupported, notes, foreign, .. } = plain(text, name, &options.budget, None, &linked)?;
-    let xml = xml::parse_checked(&text, name)?;
-    let (tree, missed) = with_stack(name, || tree(&xml, name, options))?;
-    drop(xml);
-    let mut source = SourceText::parse(text, name)?;
-    (source.unsupported_style, source.notes, source.foreign) = (unsupported, notes, foreign);
-    Ok((Arc::new(tree), missed.lacking(&source)))
+    plain(text, name, &options.budget, None, &linked, |plain, doc, _| {
+        let (tree, missed) = with_stack(name, || tree(doc, name, options))?;
+        Ok((Arc::new(tree), missed.lacking(&SourceText::of(doc, plain, name)?)))
+    })
 }
 
 /// Content that usvg does not support.
