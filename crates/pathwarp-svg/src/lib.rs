@@ -47,17 +47,32 @@
 //! - `parallel` (default): bends shapes on all processors.
 //! - `usvg`: adds the module `usvg_tree`, which exposes types of usvg and is exempt from semantic versioning.
 
-/// Generates a setter for each option.
-macro_rules! setters {
-    ($options:ident, $($field:ident: $type:ty, $setter:ident;)*) => {
-        impl $options {
-            $(
+/// Declares options, each once: its field, its default and its setter. `new` takes what has no default.
+macro_rules! options {
+    (
+        $(#[$about:meta])*
+        pub struct $type:ident($($given:ident: $given_type:ty)?) {
+            $($(#[$doc:meta])* $seen:vis $field:ident: $value:ty = $default:expr $(, $setter:ident)?;)*
+        }
+    ) => {
+        $(#[$about])*
+        pub struct $type {
+            $($(#[$doc])* $seen $field: $value,)*
+        }
+
+        impl $type {
+            /// The defaults.
+            fn defaults($($given: $given_type)?) -> Self {
+                Self { $($field: $default,)* }
+            }
+
+            $($(
                 #[doc = concat!("Sets [`", stringify!($field), "`](Self::", stringify!($field), ").")]
                 #[must_use]
-                pub fn $setter(self, $field: $type) -> Self {
+                pub fn $setter(self, $field: $value) -> Self {
                     Self { $field, ..self }
                 }
-            )*
+            )?)*
         }
     };
 }

@@ -33,26 +33,25 @@
 #![cfg_attr(not(feature = "serde"), allow(dead_code, unused_imports))]
 
 /// Setters that take a value and return the changed deformation: `height(height: f64);` sets the field of that name,
-/// `center(c: Point) => center: Some(c);` sets fields to expressions.
+/// `center(c: Point) => center: Some(c);` sets fields to expressions. After `const:`, they also serve in constants.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! setters {
-    (@one $(#[$about:meta])* $name:ident($value:ident: $type:ty)) => {
-        $(#[$about])*
-        #[must_use]
-        pub fn $name(self, $value: $type) -> Self {
-            Self { $name: $value, ..self }
-        }
+    (@one [$($const:tt)?] $(#[$about:meta])* $name:ident($value:ident: $type:ty)) => {
+        $crate::setters! { @one [$($const)?] $(#[$about])* $name($value: $type) => $name: $value }
     };
-    (@one $(#[$about:meta])* $name:ident($($value:ident: $type:ty),+) => $($field:ident: $set:expr),+) => {
+    (@one [$($const:tt)?] $(#[$about:meta])* $name:ident($($value:ident: $type:ty),+) => $($field:ident: $set:expr),+) => {
         $(#[$about])*
         #[must_use]
-        pub fn $name(self, $($value: $type),+) -> Self {
+        pub $($const)? fn $name(self, $($value: $type),+) -> Self {
             Self { $($field: $set,)+ ..self }
         }
     };
+    (const: $($(#[$about:meta])* $name:ident $values:tt $(=> $($field:ident: $set:expr),+)?;)*) => {
+        $($crate::setters! { @one [const] $(#[$about])* $name $values $(=> $($field: $set),+)? })*
+    };
     ($($(#[$about:meta])* $name:ident $values:tt $(=> $($field:ident: $set:expr),+)?;)*) => {
-        $($crate::setters! { @one $(#[$about])* $name $values $(=> $($field: $set),+)? })*
+        $($crate::setters! { @one [] $(#[$about])* $name $values $(=> $($field: $set),+)? })*
     };
 }
 

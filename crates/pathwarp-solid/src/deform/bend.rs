@@ -9,7 +9,7 @@
 //! Barr's twist, taper and bend have the same form with other curves C, S and T (A. H. Barr, *Global and local deformations of
 //! solid primitives*, SIGGRAPH 1984), and are exact here.
 
-use super::entry::{About3, Built3, Case3, Deformation3, Law3};
+use super::entry::{About3, Built3, Case3, Entry, Law3};
 use crate::map::{Chart, Creases3, Fraction3, Jet3, Local, Map3, Poly3, Swept, Tensor, for_all};
 use crate::settings::{Box3, Settings3};
 use glam::{DMat3, DQuat, DVec3};
@@ -472,9 +472,6 @@ fn bezier(points: impl Iterator<Item = DVec3>, u: f64) -> (DVec3, DVec3) {
     (row[0], slope)
 }
 
-/// The entry of the registry, which reads a [`Bend3`] from text.
-pub(in crate::deform) struct Entry;
-
 /// The presets: Barr's deformations.
 const PRESETS: &[&str] = &["twist", "taper", "bend"];
 
@@ -574,23 +571,18 @@ and bends towards the axis after --along.")
     ],
 };
 
-impl Deformation3 for Entry {
-    fn about(&self) -> &About3 {
-        &ABOUT
+/// Reads the deformation from text.
+pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
+    let axis = ["x", "y", "z"].iter().position(|n| Some(*n) == s.flat().choice("along").ok()).unwrap_or(0);
+    let mut bend = Bend3::new(s.bounds(), spine(s)?).axis(axis);
+    if let Some(p) = s.point_if("through")? {
+        bend = bend.through(p);
     }
-
-    fn build(&self, s: &Settings3<'_>) -> Result<Built3, Error> {
-        let axis = ["x", "y", "z"].iter().position(|n| Some(*n) == s.flat().choice("along").ok()).unwrap_or(0);
-        let mut bend = Bend3::new(s.bounds(), spine(s)?).axis(axis);
-        if let Some(p) = s.point_if("through")? {
-            bend = bend.through(p);
-        }
-        for handle in handles(s)? {
-            bend = bend.handle(handle);
-        }
-        bend.build()
+    for handle in handles(s)? {
+        bend = bend.handle(handle);
     }
-}
+    bend.build()
+});
 
 fn spine(s: &Settings3<'_>) -> Result<Spine3, Error> {
     if s.flat().given("preset") {

@@ -30,6 +30,19 @@ pub trait Deformation3: Send + Sync {
     }
 }
 
+/// A deformation of this crate: its description, and the function that builds it for settings.
+pub(crate) struct Entry(pub(crate) &'static About3, pub(crate) fn(&Settings3<'_>) -> Result<Built3, Error>);
+
+impl Deformation3 for Entry {
+    fn about(&self) -> &About3 {
+        self.0
+    }
+
+    fn build(&self, settings: &Settings3<'_>) -> Result<Built3, Error> {
+        (self.1)(settings)
+    }
+}
+
 /// The description of a deformation of space.
 #[derive(Debug, Clone, Copy)]
 pub struct About3 {

@@ -3,7 +3,7 @@
 //! See [`Lattice3`] for the formula. Pins are solved as in W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of free-form
 //! deformations*, SIGGRAPH 1992.
 
-use super::entry::{About3, Built3, Case3, Deformation3, Law3};
+use super::entry::{About3, Built3, Case3, Entry, Law3};
 use crate::lattice::{Lattice3, LatticeMap3};
 use crate::settings::{Box3, Settings3, show};
 use glam::DVec3;
@@ -332,9 +332,6 @@ fn write(lattice: &Lattice3) -> String {
     )
 }
 
-/// The entry of the registry, which reads an [`Ffd3`] from text.
-pub(in crate::deform) struct Entry;
-
 static ABOUT: About3 = About3 {
     info: Info::new("ffd", "pull a model about by a box of control points")
         .group("Lattices")
@@ -414,28 +411,23 @@ cells control points. Default with --spline: 4x4x4."),
     ],
 };
 
-impl Deformation3 for Entry {
-    fn about(&self) -> &About3 {
-        &ABOUT
+/// Reads the deformation from text.
+pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
+    let (lattice, from_file) = lattice(s)?;
+    let extended = s.flat().flag("extend")? || (s.box_if("region")?.is_none() && !from_file);
+    let mut ffd = Ffd3::new(lattice).freeze(frozen(s)?).extend(extended);
+    for (node, change) in changes(s)? {
+        ffd = ffd.change(node, change);
     }
-
-    fn build(&self, s: &Settings3<'_>) -> Result<Built3, Error> {
-        let (lattice, from_file) = lattice(s)?;
-        let extended = s.flat().flag("extend")? || (s.box_if("region")?.is_none() && !from_file);
-        let mut ffd = Ffd3::new(lattice).freeze(frozen(s)?).extend(extended);
-        for (node, change) in changes(s)? {
-            ffd = ffd.change(node, change);
-        }
-        for (from, to) in s.point_pairs("pin")? {
-            ffd = ffd.pin(from, to);
-        }
-        let (mut built, lattice) = ffd.build_with_lattice()?;
-        if let Some(name) = s.last("save-lattice") {
-            built.saves.push(SavedFile { name: name.to_owned(), text: write(&lattice) });
-        }
-        Ok(built)
+    for (from, to) in s.point_pairs("pin")? {
+        ffd = ffd.pin(from, to);
     }
-}
+    let (mut built, lattice) = ffd.build_with_lattice()?;
+    if let Some(name) = s.last("save-lattice") {
+        built.saves.push(SavedFile { name: name.to_owned(), text: write(&lattice) });
+    }
+    Ok(built)
+});
 
 /// Reads the initial lattice. The flag is `true` if a file specifies its region.
 fn lattice(s: &Settings3<'_>) -> Result<(Lattice3, bool), Error> {

@@ -36,10 +36,10 @@ impl Registry3 {
     pub fn builtin() -> Self {
         Self {
             entries: vec![
-                Arc::new(ffd::Entry),
-                Arc::new(anamorph::Entry),
-                Arc::new(bend::Entry),
-                Arc::new(wrap::Entry),
+                Arc::new(ffd::ENTRY),
+                Arc::new(anamorph::ENTRY),
+                Arc::new(bend::ENTRY),
+                Arc::new(wrap::ENTRY),
             ],
         }
     }

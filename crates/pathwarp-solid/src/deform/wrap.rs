@@ -6,7 +6,7 @@
 //! For a cone, the model is first turned by the slope β of its side, sin β = (R₁ − R₀)/H, about the middle of its back; R is the mean
 //! of both radii. Lengths along the side are kept, as are lengths round it in the middle of its height; level lines stay level.
 
-use super::entry::{About3, Built3, Case3, Deformation3, Law3};
+use super::entry::{About3, Built3, Case3, Entry, Law3};
 use crate::map::{Chain3, Collineation, Creases3, Jet3, Map3};
 use crate::settings::{Box3, Extent, Settings3};
 use glam::{DMat3, DMat4, DVec3};
@@ -194,9 +194,6 @@ fn show(length: f64) -> String {
     format!("{} mm", trimmed(length, 6))
 }
 
-/// The registry's entry.
-pub(super) struct Entry;
-
 static ABOUT: About3 = About3 {
     info: Info::new("wrap", "wrap a model round a mug, a bottle, a cup or a ring")
         .group("Along a curve")
@@ -250,23 +247,18 @@ the middle of its height. Use --refine to give long faces enough corners.")
     ],
 };
 
-impl Deformation3 for Entry {
-    fn about(&self) -> &About3 {
-        &ABOUT
+/// Reads the deformation from text.
+pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
+    let radius = radius(s, ["radius", "diameter"])?;
+    let radius =
+        radius.ok_or_else(|| Error::missing("radius", "the radius of what is wrapped round; or its diameter"))?;
+    let mut wrap = Wrap3::new(s.bounds(), radius).level(s.flat().choice("axis")? == "x");
+    if let Some(top) = self::radius(s, ["top-radius", "top-diameter"])? {
+        wrap = wrap.cone(top);
     }
-
-    fn build(&self, s: &Settings3<'_>) -> Result<Built3, Error> {
-        let radius = radius(s, ["radius", "diameter"])?;
-        let radius =
-            radius.ok_or_else(|| Error::missing("radius", "the radius of what is wrapped round; or its diameter"))?;
-        let mut wrap = Wrap3::new(s.bounds(), radius).level(s.flat().choice("axis")? == "x");
-        if let Some(top) = self::radius(s, ["top-radius", "top-diameter"])? {
-            wrap = wrap.cone(top);
-        }
-        if let Some(z) = s.last("surface") {
-            let from = if z.trim().ends_with('%') { s.bounds().min.z } else { 0.0 };
-            wrap = wrap.surface(from + s.length_in("surface", z, Extent::Z)?);
-        }
-        wrap.build()
+    if let Some(z) = s.last("surface") {
+        let from = if z.trim().ends_with('%') { s.bounds().min.z } else { 0.0 };
+        wrap = wrap.surface(from + s.length_in("surface", z, Extent::Z)?);
     }
-}
+    wrap.build()
+});

@@ -146,95 +146,75 @@ pub enum Clones {
     Follow,
 }
 
-/// Options for warping a document.
-///
-/// ```
-/// use pathwarp::refit;
-/// use pathwarp_svg::{Strokes, WarpOptions};
-///
-/// let fine = WarpOptions::new(refit::Options::new(0.01)).with_strokes(Strokes::Outline).with_precision(Some(3));
-/// let coarse = fine.clone().with_refit(refit::Options::new(0.5));
-/// assert_eq!((coarse.refit.tolerance, coarse.precision), (0.5, Some(3)));
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct WarpOptions {
-    /// Options for refitting paths; the tolerance is in root user units.
-    pub refit: refit::Options,
-    /// Number of decimals in written coordinates. `None` takes enough to keep rounding below a hundredth of the tolerance, or a
-    /// tenth of a small contour's own tolerance, and smooth joints smooth.
-    pub precision: Option<u8>,
-    /// An edit to apply to the shapes in place of the map, which is ignored.
-    pub edit: Option<Edit>,
-    /// Treatment of strokes.
-    pub strokes: Strokes,
-    /// Simplify the outlines of strokes so that they cross neither themselves nor each other within one path.
-    pub union: bool,
-    /// Treatment of text.
-    pub text: TextMode,
-    /// Method of writing the file.
-    pub structure: Structure,
-    /// The part of the document to warp.
-    pub selection: Selection,
-    /// Reaction to a shape that cannot be warped.
-    pub on_error: OnError,
-    /// Treatment of gradients.
-    pub gradients: Gradients,
-    /// Treatment of filters.
-    pub filters: Filters,
-    /// Paints the pictures that replace gradients and filters.
-    pub painter: Option<Painter>,
-    /// Treatment of patterns.
-    pub patterns: Patterns,
-    /// Treatment of the page: viewBox, width and height. If it changes, lengths in percent of it become numbers, except in style
-    /// sheets.
-    pub page: PageFit,
-    /// Transforms to the copies of every shape before the warp, in root user space, including the original. A shape and its
-    /// copies become one path, also in clip paths and masks. If empty, there is just the shape.
-    pub copies: Vec<Affine>,
-    /// Letters to place one by one.
-    pub letters: LetterPlaces,
-    /// Treatment of bitmaps.
-    pub images: Images,
-    /// Treatment of `use` elements that are not warped themselves but show something that is.
-    pub clones: Clones,
-    /// Leave viewBox, width and height as they are, to show the result on the page of the source.
-    /// [`WarpedDocument::page`](crate::WarpedDocument::page) still reports the new page.
-    pub same_view: bool,
-    /// The page that an edit before bending has grown to. What lies on it counts as shown, and the page may have to grow although nothing is
-    /// bent.
-    pub grown: Option<Rect>,
-    /// Measure how far the result extends past its page, and list artwork that has moved onto it. This examines every path.
-    pub overhang: bool,
+options! {
+    /// Options for warping a document.
+    ///
+    /// ```
+    /// use pathwarp::refit;
+    /// use pathwarp_svg::{Strokes, WarpOptions};
+    ///
+    /// let fine = WarpOptions::new(refit::Options::new(0.01)).with_strokes(Strokes::Outline).with_precision(Some(3));
+    /// let coarse = fine.clone().with_refit(refit::Options::new(0.5));
+    /// assert_eq!((coarse.refit.tolerance, coarse.precision), (0.5, Some(3)));
+    /// ```
+    #[derive(Debug, Clone, PartialEq)]
+    #[non_exhaustive]
+    pub struct WarpOptions(refit: refit::Options) {
+        /// Options for refitting paths; the tolerance is in root user units.
+        pub refit: refit::Options = refit, with_refit;
+        /// Number of decimals in written coordinates. `None` takes enough to keep rounding below a hundredth of the tolerance, or a
+        /// tenth of a small contour's own tolerance, and smooth joints smooth.
+        pub precision: Option<u8> = None, with_precision;
+        /// An edit to apply to the shapes in place of the map, which is ignored.
+        pub edit: Option<Edit> = None, with_edit;
+        /// Treatment of strokes.
+        pub strokes: Strokes = Strokes::default(), with_strokes;
+        /// Simplify the outlines of strokes so that they cross neither themselves nor each other within one path.
+        pub union: bool = false, with_union;
+        /// Treatment of text.
+        pub text: TextMode = TextMode::default(), with_text;
+        /// Method of writing the file.
+        pub structure: Structure = Structure::default(), with_structure;
+        /// The part of the document to warp.
+        pub selection: Selection = Selection::default(), with_selection;
+        /// Reaction to a shape that cannot be warped.
+        pub on_error: OnError = OnError::default(), with_on_error;
+        /// Treatment of gradients.
+        pub gradients: Gradients = Gradients::default(), with_gradients;
+        /// Treatment of filters.
+        pub filters: Filters = Filters::default(), with_filters;
+        /// Paints the pictures that replace gradients and filters.
+        pub painter: Option<Painter> = None, with_painter;
+        /// Treatment of patterns.
+        pub patterns: Patterns = Patterns::default(), with_patterns;
+        /// Treatment of the page: viewBox, width and height. If it changes, lengths in percent of it become numbers, except in style
+        /// sheets.
+        pub page: PageFit = PageFit::default(), with_page;
+        /// Transforms to the copies of every shape before the warp, in root user space, including the original. A shape and its
+        /// copies become one path, also in clip paths and masks. If empty, there is just the shape.
+        pub copies: Vec<Affine> = Vec::new(), with_copies;
+        /// Letters to place one by one.
+        pub letters: LetterPlaces = LetterPlaces::default(), with_letters;
+        /// Treatment of bitmaps.
+        pub images: Images = Images::default(), with_images;
+        /// Treatment of `use` elements that are not warped themselves but show something that is.
+        pub clones: Clones = Clones::default(), with_clones;
+        /// Leave viewBox, width and height as they are, to show the result on the page of the source.
+        /// [`WarpedDocument::page`](crate::WarpedDocument::page) still reports the new page.
+        pub same_view: bool = false, with_same_view;
+        /// The page that an edit before bending has grown to. What lies on it counts as shown, and the page may have to grow although nothing is
+        /// bent.
+        pub grown: Option<Rect> = None, with_grown;
+        /// Measure how far the result extends past its page, and list artwork that has moved onto it. This examines every path.
+        pub overhang: bool = true, with_overhang;
+    }
 }
 
 impl WarpOptions {
     /// Default options with the given options for refitting.
     #[must_use]
     pub fn new(refit: refit::Options) -> Self {
-        Self {
-            refit,
-            precision: None,
-            edit: None,
-            strokes: Strokes::default(),
-            union: false,
-            text: TextMode::default(),
-            structure: Structure::default(),
-            selection: Selection::default(),
-            on_error: OnError::default(),
-            gradients: Gradients::default(),
-            filters: Filters::default(),
-            painter: None,
-            patterns: Patterns::default(),
-            page: PageFit::default(),
-            copies: Vec::new(),
-            letters: LetterPlaces::default(),
-            images: Images::default(),
-            clones: Clones::default(),
-            same_view: false,
-            grown: None,
-            overhang: true,
-        }
+        Self::defaults(refit)
     }
 
     /// Options for an edit in place of a warp. Everything that the edit doesn't concern stays as it is.
@@ -273,30 +253,6 @@ impl WarpOptions {
     pub(crate) fn paints_gradients(&self) -> bool {
         self.painter.is_some() && matches!(self.gradients, Gradients::Exact | Gradients::Auto)
     }
-}
-
-setters! { WarpOptions,
-    refit: refit::Options, with_refit;
-    precision: Option<u8>, with_precision;
-    edit: Option<Edit>, with_edit;
-    strokes: Strokes, with_strokes;
-    union: bool, with_union;
-    text: TextMode, with_text;
-    structure: Structure, with_structure;
-    selection: Selection, with_selection;
-    on_error: OnError, with_on_error;
-    gradients: Gradients, with_gradients;
-    filters: Filters, with_filters;
-    painter: Option<Painter>, with_painter;
-    patterns: Patterns, with_patterns;
-    page: PageFit, with_page;
-    copies: Vec<Affine>, with_copies;
-    letters: LetterPlaces, with_letters;
-    images: Images, with_images;
-    clones: Clones, with_clones;
-    same_view: bool, with_same_view;
-    grown: Option<Rect>, with_grown;
-    overhang: bool, with_overhang;
 }
 
 /// An edit of the selected shapes, in place of a warp.

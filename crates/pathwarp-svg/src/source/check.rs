@@ -420,12 +420,16 @@ fn urls(value: &str) -> impl Iterator<Item = &str> {
 
 /// An upper bound on the number of vertices of a path, polyline or polygon, from its numbers and commands.
 fn vertices(node: Node<'_, '_>) -> u64 {
+    /// Bytes whose count fits a byte, so that the compiler adds many at once.
+    const BLOCK: usize = u8::MAX as usize;
     let text = node.attribute("d").or_else(|| node.attribute("points")).unwrap_or("");
     // Comparing adjacent bytes needs no state, so the compiler vectorizes it.
-    let starts = |before: u8, b: u8| u64::from(b.is_ascii_digit() & !before.is_ascii_digit() | (b | 0x20 == b'z'));
+    let starts = |(before, b): (&u8, &u8)| u8::from(b.is_ascii_digit() & !before.is_ascii_digit() | (b | 0x20 == b'z'));
     let bytes = text.as_bytes();
-    let first = bytes.first().map_or(0, |b| starts(b' ', *b));
-    first + bytes.windows(2).map(|w| starts(w[0], w[1])).sum::<u64>() + 2
+    let first = bytes.first().map_or(0, |b| starts((&b' ', b)));
+    let pairs = bytes.chunks(BLOCK).zip(bytes.get(1..).unwrap_or_default().chunks(BLOCK));
+    let rest = pairs.map(|(before, block)| u64::from(before.iter().zip(block).map(starts).sum::<u8>()));
+    u64::from(first) + rest.sum::<u64>() + 2
 }
 
 /// Charges for the segments of paths that carry text. Each text measures the whole of its path.

@@ -12,39 +12,41 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Options for reading a file.
-///
-/// ```
-/// use pathwarp_svg::{Document, ReadOptions, Selection};
-///
-/// let options = ReadOptions::default().with_dpi(72.0).with_system_fonts(false);
-/// let svg = "<svg xmlns='http://www.w3.org/2000/svg'><rect width='2in' height='1in'/></svg>";
-/// let artwork = Document::read(svg.as_bytes(), "inches.svg", &options)?.artwork_box(&Selection::default());
-/// assert_eq!(artwork.map(|b| b.width()), Some(144.0));
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct ReadOptions {
-    /// Folder that relative links to images start from. Without it, links are not followed.
-    pub base_dir: Option<PathBuf>,
-    /// Use the fonts installed on the machine for text. They are read only if there is text.
-    pub system_fonts: bool,
-    /// Additional fonts: files, or folders of them.
-    pub fonts: Vec<PathBuf>,
-    /// Families for `serif`, `sans-serif` and so on.
-    pub generic_families: GenericFamilies,
-    /// Resolution in px per inch.
-    pub dpi: f32,
-    /// Limits on the work of reading and warping the drawing. Defaults grow with the size of the file.
-    pub limits: Limits,
-    /// Follow links out of [`base_dir`](Self::base_dir): absolute ones, `..`, and symbolic links.
-    pub external: bool,
-    /// Gives images whose metadata ask for it with their pixels turned, as browsers show them; without it, they are taken as they are
-    /// stored.
-    pub turned: Option<Turned>,
-    /// The budget of the file being read.
-    pub(crate) budget: Arc<Budget>,
+options! {
+    /// Options for reading a file.
+    ///
+    /// ```
+    /// use pathwarp_svg::{Document, ReadOptions, Selection};
+    ///
+    /// let options = ReadOptions::default().with_dpi(72.0).with_system_fonts(false);
+    /// let svg = "<svg xmlns='http://www.w3.org/2000/svg'><rect width='2in' height='1in'/></svg>";
+    /// let artwork = Document::read(svg.as_bytes(), "inches.svg", &options)?.artwork_box(&Selection::default());
+    /// assert_eq!(artwork.map(|b| b.width()), Some(144.0));
+    /// # Ok::<(), pathwarp::Error>(())
+    /// ```
+    #[derive(Debug, Clone)]
+    #[non_exhaustive]
+    pub struct ReadOptions() {
+        /// Folder that relative links to images start from. Without it, links are not followed.
+        pub base_dir: Option<PathBuf> = None, with_base_dir;
+        /// Use the fonts installed on the machine for text. They are read only if there is text.
+        pub system_fonts: bool = true, with_system_fonts;
+        /// Additional fonts: files, or folders of them.
+        pub fonts: Vec<PathBuf> = Vec::new(), with_fonts;
+        /// Families for `serif`, `sans-serif` and so on.
+        pub generic_families: GenericFamilies = GenericFamilies::default(), with_generic_families;
+        /// Resolution in px per inch.
+        pub dpi: f32 = 96.0, with_dpi;
+        /// Limits on the work of reading and warping the drawing. Defaults grow with the size of the file.
+        pub limits: Limits = Limits::default(), with_limits;
+        /// Follow links out of [`base_dir`](Self::base_dir): absolute ones, `..`, and symbolic links.
+        pub external: bool = false, with_external;
+        /// Gives images whose metadata ask for it with their pixels turned, as browsers show them; without it, they are taken as they are
+        /// stored.
+        pub turned: Option<Turned> = None, with_turned;
+        /// The budget of the file being read.
+        pub(crate) budget: Arc<Budget> = Arc::default();
+    }
 }
 
 /// An image with its pixels turned, within limits; `None` where they stay.
@@ -52,17 +54,7 @@ pub type Turned = fn(&[u8], &Limits) -> Option<Vec<u8>>;
 
 impl Default for ReadOptions {
     fn default() -> Self {
-        Self {
-            base_dir: None,
-            system_fonts: true,
-            fonts: Vec::new(),
-            generic_families: GenericFamilies::default(),
-            dpi: 96.0,
-            limits: Limits::default(),
-            external: false,
-            turned: None,
-            budget: Arc::default(),
-        }
+        Self::defaults()
     }
 }
 
@@ -83,17 +75,6 @@ impl ReadOptions {
         let limits = self.limits.with(Limit::Bytes, max_size as f64);
         Self { limits, ..self }
     }
-}
-
-setters! { ReadOptions,
-    base_dir: Option<PathBuf>, with_base_dir;
-    system_fonts: bool, with_system_fonts;
-    fonts: Vec<PathBuf>, with_fonts;
-    generic_families: GenericFamilies, with_generic_families;
-    dpi: f32, with_dpi;
-    limits: Limits, with_limits;
-    external: bool, with_external;
-    turned: Option<Turned>, with_turned;
 }
 
 /// Decodes an SVG or svgz file. `name` identifies it in errors.

@@ -251,7 +251,7 @@ impl SourceText {
     /// Number of characters before `at`. Checkpoints avoid counting from the start of a text that is a single line.
     fn characters(&self, at: usize) -> usize {
         /// Bytes between checkpoints.
-        const STEP: usize = 1 << 12;
+        const STEP: usize = 1 << 8;
         // Count the bytes that begin a character.
         let count = |from: usize, to: usize| {
             self.text.as_bytes()[from.min(to)..to].iter().filter(|b| (**b as i8) >= -0x40).count()

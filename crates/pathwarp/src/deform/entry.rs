@@ -126,82 +126,38 @@ impl Info {
         }
     }
 
-    /// Sets the menu heading.
-    #[must_use]
-    pub const fn group(self, group: &'static str) -> Self {
-        Self { group, ..self }
+    setters! {
+        const:
+        /// Sets the menu heading.
+        group(group: &'static str);
+        /// Sets the text for help and docs.
+        about(about: &'static str);
+        /// Sets the paper or program the mathematics comes from.
+        source(source: &'static str);
+        /// Sets the parameters.
+        params(params: &'static [Param]);
+        /// Sets the values for the required parameters that show the effect.
+        demo(demo: Pairs);
+        /// Sets the command lines for help.
+        examples(examples: &'static [Example]);
+        /// Sets the properties of every instance.
+        laws(laws: &'static [Law]);
+        /// Sets the values known from elsewhere.
+        cases(cases: &'static [Case]);
+        /// Names the parameter that puts a baseline on the deformation's curve.
+        baseline(param: &'static str) => baseline: Some(param);
+        /// Names the path parameters that selected paths stand for, the topmost first, and the usual number of them.
+        guides(params: &'static [&'static str], usual: usize) => guides: Guides { params, usual };
+        /// Sets what a page for bending by hand needs.
+        by_hand(by_hand: ByHand);
+        /// Names the presets that a gallery draws one by one.
+        gallery(gallery: Gallery) => gallery: Some(gallery);
     }
 
     /// Asks for the artwork's letters.
     #[must_use]
     pub const fn with_letters(self) -> Self {
         Self { letters: true, ..self }
-    }
-
-    /// Sets the text for help and docs.
-    #[must_use]
-    pub const fn about(self, about: &'static str) -> Self {
-        Self { about, ..self }
-    }
-
-    /// Sets the paper or program the mathematics comes from.
-    #[must_use]
-    pub const fn source(self, source: &'static str) -> Self {
-        Self { source, ..self }
-    }
-
-    /// Sets the parameters.
-    #[must_use]
-    pub const fn params(self, params: &'static [Param]) -> Self {
-        Self { params, ..self }
-    }
-
-    /// Sets the values for the required parameters that show the effect.
-    #[must_use]
-    pub const fn demo(self, demo: Pairs) -> Self {
-        Self { demo, ..self }
-    }
-
-    /// Sets the command lines for help.
-    #[must_use]
-    pub const fn examples(self, examples: &'static [Example]) -> Self {
-        Self { examples, ..self }
-    }
-
-    /// Sets the properties of every instance.
-    #[must_use]
-    pub const fn laws(self, laws: &'static [Law]) -> Self {
-        Self { laws, ..self }
-    }
-
-    /// Sets the values known from elsewhere.
-    #[must_use]
-    pub const fn cases(self, cases: &'static [Case]) -> Self {
-        Self { cases, ..self }
-    }
-
-    /// Names the parameter that puts a baseline on the deformation's curve.
-    #[must_use]
-    pub const fn baseline(self, param: &'static str) -> Self {
-        Self { baseline: Some(param), ..self }
-    }
-
-    /// Names the path parameters that selected paths stand for, the topmost first, and the usual number of them.
-    #[must_use]
-    pub const fn guides(self, params: &'static [&'static str], usual: usize) -> Self {
-        Self { guides: Guides { params, usual }, ..self }
-    }
-
-    /// Sets what a page for bending by hand needs.
-    #[must_use]
-    pub const fn by_hand(self, by_hand: ByHand) -> Self {
-        Self { by_hand, ..self }
-    }
-
-    /// Names the presets that a gallery draws one by one.
-    #[must_use]
-    pub const fn gallery(self, gallery: Gallery) -> Self {
-        Self { gallery: Some(gallery), ..self }
     }
 }
 

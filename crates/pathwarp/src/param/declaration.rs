@@ -132,10 +132,14 @@ impl Param {
         Self::new(name, Kind::Choice(words), help).default(words[0])
     }
 
-    /// Sets the default, as a user would type it.
-    #[must_use]
-    pub const fn default(self, text: &'static str) -> Self {
-        Self { default: Some(text), ..self }
+    setters! {
+        const:
+        /// Sets the default, as a user would type it.
+        default(text: &'static str) => default: Some(text);
+        /// Sets the legal range, both ends included, and the slider's range with it.
+        within(min: f64, max: f64) => range: (min, max), ui: (min, max);
+        /// Sets the range of an editor's slider.
+        slider(from: f64, to: f64) => ui: (from, to);
     }
 
     /// Makes the parameter required.
@@ -148,18 +152,6 @@ impl Param {
     #[must_use]
     pub const fn repeated(self) -> Self {
         Self { repeat: true, ..self }
-    }
-
-    /// Sets the legal range, both ends included, and the slider's range with it.
-    #[must_use]
-    pub const fn within(self, min: f64, max: f64) -> Self {
-        Self { range: (min, max), ui: (min, max), ..self }
-    }
-
-    /// Sets the range of an editor's slider.
-    #[must_use]
-    pub const fn slider(self, from: f64, to: f64) -> Self {
-        Self { ui: (from, to), ..self }
     }
 
     /// The placeholder of the value in help, such as `PATHREF`.

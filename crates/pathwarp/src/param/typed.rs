@@ -157,7 +157,7 @@ macro_rules! parameters {
             }
         }
     };
-    (@unit length) => { "User units." };
+    (@unit length) => { "User units; percentages are of the frame." };
     (@unit angle) => { "Degrees." };
     (@unit $kind:ident) => { "" };
     (@note default $default:literal) => { concat!(" Default: ", $default, ".") };

@@ -13,7 +13,7 @@
 mod dilation;
 mod reference;
 
-use super::entry::{About3, Built3, Case3, Deformation3, Law3};
+use super::entry::{About3, Built3, Case3, Entry, Law3};
 use crate::map::{Chart, Collineation, Creases3, Fraction3, Jet3, Map3, Radial, for_all};
 use crate::settings::{Box3, Extent, Settings3, show};
 use dilation::{Dilation3, MAX_DEGREE};
@@ -377,9 +377,6 @@ impl Map3 for RadialInverse {
     }
 }
 
-/// The entry of the registry, which reads an [`Anamorph3`] from text.
-pub(in crate::deform) struct Entry;
-
 /// A tetrahedron in the frame of laws and cases, with its eye.
 const TETRAHEDRON: &str = "0,0,0 100,0,0 0,100,0 0,0,100";
 
@@ -479,31 +476,25 @@ const LOCAL: Pairs = &[
     ("local", "true"),
 ];
 
-impl Deformation3 for Entry {
-    fn about(&self) -> &About3 {
-        &ABOUT
+/// Reads the deformation from text.
+pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
+    let eye =
+        s.point_if("eye")?.ok_or_else(|| Error::missing("eye", "the place from which the model looks unchanged"))?;
+    let mut points = Vec::new();
+    for word in s.words("reference").into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty()) {
+        points.push(s.point_in("reference", word)?);
     }
-
-    fn build(&self, s: &Settings3<'_>) -> Result<Built3, Error> {
-        let eye = s
-            .point_if("eye")?
-            .ok_or_else(|| Error::missing("eye", "the place from which the model looks unchanged"))?;
-        let mut points = Vec::new();
-        for word in s.words("reference").into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty()) {
-            points.push(s.point_in("reference", word)?);
-        }
-        if points.is_empty() {
-            points = vec![s.bounds().min, s.bounds().max];
-        }
-        let degree = s.counts_if("degree", MAX_DEGREE)?.unwrap_or([1; 3]);
-        let reference = Reference3::new(&points, degree, eye)?;
-        let mut out = Anamorph3::new(eye, reference).local(s.flat().flag("local")?);
-        for push in pushes(s, &reference)? {
-            out = out.push(push);
-        }
-        out.build()
+    if points.is_empty() {
+        points = vec![s.bounds().min, s.bounds().max];
     }
-}
+    let degree = s.counts_if("degree", MAX_DEGREE)?.unwrap_or([1; 3]);
+    let reference = Reference3::new(&points, degree, eye)?;
+    let mut out = Anamorph3::new(eye, reference).local(s.flat().flag("local")?);
+    for push in pushes(s, &reference)? {
+        out = out.push(push);
+    }
+    out.build()
+});
 
 /// Reads the pushes of control points, then those of points.
 fn pushes(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>, Error> {

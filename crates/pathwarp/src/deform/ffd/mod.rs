@@ -442,7 +442,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     let (grid, from_file) = grid(s)?;
     let ffd = Ffd {
         grid,
-        changes: changes(s)?,
+        changes: changes(s, |text| text.split_whitespace().collect())?,
         pins: pins(s)?,
         frozen: frozen(s)?,
         extended: s.flag("extend")? || (own_region.is_none() && !from_file),
@@ -503,31 +503,25 @@ fn pair(s: &Settings<'_>, name: &str, max: usize) -> Result<Option<[usize; 2]>, 
     }
 }
 
-/// Reads `at`, `move` and `weight`, in this order.
-fn changes(s: &Settings<'_>) -> Result<Vec<([usize; 2], Change)>, Error> {
+/// Reads `at`, `move` and `weight`, in this order; `parts` divides a value into changes.
+pub(super) fn changes<'a, const N: usize>(
+    s: &Settings<'a>,
+    parts: impl Fn(&'a str) -> Vec<&'a str>,
+) -> Result<Vec<([usize; N], Change)>, Error> {
     let mut out = Vec::new();
     for name in ["at", "move", "weight"] {
-        for word in s.texts(name).into_iter().flat_map(str::split_whitespace) {
-            let wrong = |problem: String| Error::usage(name, word, problem);
-            let form = INFO.params.iter().find(|p| p.name == name).map_or(String::new(), Param::value_name);
-            let (index, value) = word.split_once(':').ok_or_else(|| wrong(format!("is not {form}")))?;
-            let parse = |t: &str| t.trim().parse::<usize>().ok();
-            let (i, j) = index
-                .split_once(',')
-                .and_then(|(i, j)| parse(i).zip(parse(j)))
-                .ok_or_else(|| wrong(format!("is not {form}: `{index}` is not a control point i,j")))?;
+        for text in s.texts(name).into_iter().flat_map(&parts) {
+            let (node, value) = s.node_in::<N>(name, text)?;
             let change = match name {
                 "at" => Change::Place(s.point_in(name, value)?),
                 "move" => {
-                    let (x, y) = value.split_once(',').ok_or_else(|| wrong(format!("is not {form}")))?;
+                    let wrong = || Error::usage(name, text, "does not end with a shift DX,DY");
+                    let (x, y) = value.split_once(',').ok_or_else(wrong)?;
                     Change::Shift(Vec2::new(s.length_in(name, x, Axis::X)?, s.length_in(name, y, Axis::Y)?))
                 }
-                _ => {
-                    let w = value.trim().parse::<f64>().ok().filter(|w| w.is_finite());
-                    Change::Weight(w.ok_or_else(|| wrong(format!("is not {form}: `{value}` is not a number")))?)
-                }
+                _ => Change::Weight(s.number_in(name, value)?),
             };
-            out.push(([i, j], change));
+            out.push((node, change));
         }
     }
     Ok(out)

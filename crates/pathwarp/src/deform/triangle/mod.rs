@@ -13,10 +13,10 @@
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
-use super::ffd::Change;
+use super::ffd::{Change, changes};
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Class, Local, Map, Plane, Quotient};
-use crate::param::{Axis, Kind, Settings, parameters};
+use crate::param::{Kind, parameters};
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ parameters! {
         param = new("weight", Kind::Text("I,J,K:W")).repeated();
         /// Let the map continue outside the triangle instead of leaving everything there in place.
         extend: bool = flag("extend");
-        let changes: Vec<([usize; 3], Change)> = changes(s)?;
+        let changes: Vec<([usize; 3], Change)> = changes(s, |text| vec![text])?;
         let frame: Option<Rect> = Some(s.frame().rect);
     }
 }
@@ -423,25 +423,4 @@ fn around(frame: Rect) -> [Point; 3] {
         Point::new(frame.x0 - half, frame.y1),
         Point::new(frame.x1 + half, frame.y1),
     ]
-}
-
-/// Reads `at`, `move` and `weight`, in this order.
-fn changes(s: &Settings<'_>) -> Result<Vec<([usize; 3], Change)>, Error> {
-    let mut out = Vec::new();
-    for text in s.texts("at") {
-        let (node, rest) = s.node_in::<3>("at", text)?;
-        out.push((node, Change::Place(s.point_in("at", rest)?)));
-    }
-    for text in s.texts("move") {
-        let (node, rest) = s.node_in::<3>("move", text)?;
-        let wrong = || Error::usage("move", rest, "is not a shift DX,DY");
-        let (dx, dy) = rest.split_once(',').ok_or_else(wrong)?;
-        let shift = Vec2::new(s.length_in("move", dx, Axis::X)?, s.length_in("move", dy, Axis::Y)?);
-        out.push((node, Change::Shift(shift)));
-    }
-    for text in s.texts("weight") {
-        let (node, rest) = s.node_in::<3>("weight", text)?;
-        out.push((node, Change::Weight(s.number_in("weight", rest)?)));
-    }
-    Ok(out)
 }
