@@ -25,9 +25,11 @@
 // The types without it are `parts`.
 #![allow(missing_debug_implementations)]
 
+mod banded;
 mod breaks;
 mod distances;
 mod fit;
+mod guide;
 mod joined;
 mod judge;
 mod limits;
@@ -36,7 +38,6 @@ mod offset;
 mod options;
 mod part;
 mod path;
-mod points;
 mod proof;
 #[cfg(feature = "area")]
 mod region;
@@ -44,6 +45,7 @@ mod report;
 mod run;
 mod sample;
 mod sampled;
+mod scale;
 mod source;
 mod spline;
 mod stretch;
@@ -52,7 +54,6 @@ mod stroke;
 pub use offset::Offset;
 pub use options::{Degree, Error, MAX_EVALUATIONS, Options, Pieces};
 pub use path::{PathSource, Segment, fit, simplify};
-pub use points::fit_points;
 #[cfg(feature = "area")]
 pub use region::{offset, union, union_even_odd};
 pub use report::{Assurance, Fitted, Piece, PieceReport, Report};

@@ -19,9 +19,10 @@ pub struct Options {
     pub tolerance: f64,
     /// Prove the error where the source is a quotient of polynomials, instead of measuring it by dense sampling. Cubics only.
     pub prove: bool,
-    /// Joints of a path that turn by less than this, in radians, are smooth: by default half a degree, since drawings round their
-    /// coordinates.
-    pub corner: f64,
+    /// Joints of a path that turn by more than this, in radians, are corners. `None`, the default: those for which no smooth curve can stand
+    /// within the tolerance, such as squares with sides of some ten tolerances, but neither stairs of pixels nor noise nor facets. Joints
+    /// of other curves are smooth up to half a degree by default.
+    pub corner: Option<f64>,
     /// Let pieces run across smooth joints. On by default.
     pub merge: bool,
     /// What the pieces are. Cubics by default.
@@ -68,7 +69,7 @@ impl Options {
     pub fn new(tolerance: f64) -> Self {
         let (degree, pieces) = (Degree::Cubic, Pieces::Fewest);
         let (best, evaluations) = (false, MAX_EVALUATIONS);
-        Self { tolerance, prove: false, corner: SMOOTH_JOINT, merge: true, degree, pieces, best, evaluations }
+        Self { tolerance, prove: false, corner: None, merge: true, degree, pieces, best, evaluations }
     }
 
     /// Sets [`Options::prove`].
@@ -80,7 +81,7 @@ impl Options {
     /// Sets [`Options::corner`].
     #[must_use]
     pub fn with_corner(self, corner: f64) -> Self {
-        Self { corner, ..self }
+        Self { corner: Some(corner), ..self }
     }
 
     /// Sets [`Options::merge`].
@@ -118,7 +119,18 @@ impl Options {
         if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
             return Err(Error::Tolerance(self.tolerance));
         }
-        if self.corner >= 0.0 { Ok(()) } else { Err(Error::Corner(self.corner)) }
+        self.corner.filter(|c| !(*c >= 0.0)).map_or(Ok(()), |c| Err(Error::Corner(c)))
+    }
+
+    /// Joints of curves that are no path and turn by less, in radians, are smooth.
+    pub(crate) fn joint(&self) -> f64 {
+        self.corner.unwrap_or(SMOOTH_JOINT)
+    }
+
+    /// Joints that turn by less, in radians, are smooth: half a degree, since drawings round their coordinates, unless corners begin
+    /// below that.
+    pub(crate) fn smooth_joint(&self) -> f64 {
+        self.corner.map_or(SMOOTH_JOINT, |corner| corner.min(SMOOTH_JOINT))
     }
 }
 

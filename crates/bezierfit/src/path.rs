@@ -8,6 +8,7 @@ use crate::part::{Part, parts};
 use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::sample::{Lane, Lanes, fma};
+use crate::scale::smooth_parts;
 use crate::source::{NotFinite, Quotient, SlowSpots, Source};
 use crate::spline::Run;
 use crate::stretch::StretchFitter;
@@ -82,8 +83,8 @@ fn merged_parts<S: Source>(
         own.add(if options.merge { &fitter.joints } else { &[] }, &mut covered);
     }
     if options.merge {
-        let Options { tolerance, corner, prove, .. } = *options;
-        let settings = JoinSettings { tolerance, corner, prove, finely: covered.len() > parts.len() };
+        let Options { tolerance, prove, .. } = *options;
+        let settings = JoinSettings { tolerance, corner: options.joint(), prove, finely: covered.len() > parts.len() };
         joined(&covered, settings, memory, &mut out, report)?;
     } else {
         for own in covered {
@@ -105,7 +106,7 @@ fn splines<S: Source>(
     while let Some(first) = rest.first() {
         let smooth = |w: &[Part<'_, S>]| {
             let (u, v) = (w[0].ends[1].into, w[1].ends[0].away);
-            options.merge && u.cross(v).atan2(u.dot(v)).abs() <= options.corner
+            options.merge && u.cross(v).atan2(u.dot(v)).abs() <= options.joint()
         };
         let count = 1 + rest.windows(2).take_while(|w| smooth(w)).count();
         let ends = [first.ends[0], rest[count - 1].ends[1]];
@@ -117,7 +118,7 @@ fn splines<S: Source>(
     Ok(())
 }
 
-/// Replaces the segments of a path by few, within `options.tolerance`. Corners stay: joints that turn by more than `options.corner`.
+/// Replaces the segments of a path by few, within `options.tolerance`. Corners stay: see [`Options::corner`].
 ///
 /// With [`Degree::Quadratic`], cubics become quadratics; without [`Options::merge`], each on its own.
 ///
@@ -148,25 +149,34 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
         else {
             continue;
         };
-        let segments: Vec<Segment> = subpath.segments().map(Segment::new).collect();
-        if !start.is_finite() {
-            return Err(NotFinite { t: 0.0, at: start });
+        if let Some(at) = subpath.segments().map(|s| s.end()).chain([start]).find(|p| !p.is_finite()) {
+            return Err(NotFinite { t: 0.0, at });
         }
-        let mut pieces = Vec::with_capacity(segments.len());
-        let mut rest = &segments[..];
+        let mut segments: Vec<Segment> = subpath.segments().map(Segment::new).collect();
+        if options.merge && segments.iter().any(Segment::has_length) {
+            segments.retain(Segment::has_length);
+        }
+        let parts = smooth_parts(segments, closed, options);
+        let start = parts.first().and_then(|p| p.segments.first()).map_or(start, |s| s.seg.start());
+        let mut pieces = Vec::new();
         if options.degree == Degree::Quadratic {
             out.path.move_to(start);
+        }
+        for part in parts {
+            let options = Options { tolerance: options.tolerance - part.off, ..*options };
+            let (mut rest, first) = (&part.segments[..], out.report.pieces.len());
             while !rest.is_empty() {
-                rest = &rest[quadratics(rest, options, &mut out)?..];
+                rest = &rest[match options.degree {
+                    Degree::Quadratic => quadratics(rest, &options, &mut out)?,
+                    Degree::Cubic => smooth_run(rest, &options, &mut memory, &mut pieces, &mut out.report)?,
+                }..];
             }
-            if closed {
-                out.path.close_path();
-            }
-        } else {
-            while !rest.is_empty() {
-                rest = &rest[smooth_run(rest, options, &mut memory, &mut pieces, &mut out.report)?..];
-            }
-            append(&mut out.path, start, &pieces, closed);
+            out.report.widen(first, part.off);
+        }
+        match options.degree {
+            Degree::Cubic => append(&mut out.path, start, &pieces, closed),
+            Degree::Quadratic if closed => out.path.close_path(),
+            Degree::Quadratic => {}
         }
     }
     Ok(out)
@@ -176,7 +186,7 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
 fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
     let mut run = SegmentRun::new(true, segments.len().min(64));
     let most = if options.merge { segments.len() } else { 1 };
-    let count = run.extend(&segments[..most], options.corner, |segment| {
+    let count = run.extend(&segments[..most], options.smooth_joint(), |segment| {
         let form = if options.prove { segment.quotient() } else { None };
         let ends = [segment.end(0.0)?, segment.end(1.0)?];
         let is_line = matches!(segment.seg, PathSeg::Line(_));
@@ -195,7 +205,7 @@ fn unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Re
 }
 
 /// Appends the pieces of the first segments, as far as they join smoothly, and returns their number.
-fn smooth_run(
+pub(crate) fn smooth_run(
     segments: &[Segment],
     options: &Options,
     memory: &mut ReachMemory,
@@ -223,7 +233,7 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
             // It has no length, or slow spots to be divided at.
             let slow = |t: f64| one.eval(t);
             let breaks = Broken { curve: slow, at: one.slow_spots() };
-            if one.c[1..].iter().any(|c| c.hypot2() > 0.0) {
+            if one.has_length() {
                 let calls = Cell::new(0);
                 splines(&parts(&breaks, options.tolerance, &calls)?, (options, &calls), out)?;
             }
@@ -376,9 +386,14 @@ impl Segment {
         }
     }
 
+    /// Returns `true` if it is more than a point.
+    fn has_length(&self) -> bool {
+        self.c[1..].iter().any(|c| c.hypot2() > 0.0)
+    }
+
     /// Returns `true` if it has a length and no cusps.
     fn is_smooth(&self) -> bool {
-        self.slow_spots().all().is_empty() && self.c[1..].iter().any(|c| c.hypot2() > 0.0)
+        self.slow_spots().all().is_empty() && self.has_length()
     }
 }
 

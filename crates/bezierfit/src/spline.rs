@@ -5,6 +5,7 @@
 //! grow with the residual (Lawson) bring the largest one down. The least n whose spline passes its check is taken. A single piece has no
 //! freedom: its control point is where the end tangents meet.
 
+use crate::banded::solve_banded;
 use crate::limits::{ACCEPTED, SPLINE_SAMPLES, STRAIGHT};
 use crate::report::{Assurance, REPORT_MARGIN, Report};
 use crate::source::{BreakPoint, NotFinite, Source};
@@ -464,49 +465,4 @@ fn solve(
         _ => Point::new(x[2 * k - 1], x[2 * k]),
     });
     Some(Spline { ends: [from.p, to.p], c: c.collect() })
-}
-
-/// Solves a symmetric system, given the upper half of its band, by L·D·Lᵀ.
-fn solve_banded(mut band: Vec<[f64; BAND]>, mut x: Vec<f64>) -> Option<Vec<f64>> {
-    let n = x.len();
-    let most = band.iter().map(|b| b[0]).fold(0.0, f64::max);
-    for i in 0..n {
-        let pivot = band[i][0] + 1e-13 * most;
-        if pivot.is_nan() || pivot <= 0.0 {
-            return None;
-        }
-        band[i][0] = pivot;
-        for d in 1..BAND.min(n - i) {
-            let factor = band[i][d] / pivot;
-            for e in d..BAND.min(n - i) {
-                let by = factor * band[i][e];
-                band[i + d][e - d] -= by;
-            }
-            x[i + d] -= factor * x[i];
-        }
-    }
-    for i in (0..n).rev() {
-        let sum: f64 = (1..BAND.min(n - i)).map(|d| band[i][d] * x[i + d]).sum();
-        x[i] = (x[i] - sum) / band[i][0];
-    }
-    Some(x)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn banded_systems_are_solved() {
-        let mut band = vec![[0.0; BAND]; 9];
-        for (i, b) in band.iter_mut().enumerate() {
-            *b = [10.0 + i as f64, 1.0, -2.0, 0.5, 0.25, 0.1];
-        }
-        let want: Vec<f64> = (0..9).map(|i| f64::from(i) - 3.5).collect();
-        let entry = |i: usize, j: usize| if j - i < BAND { band[i][j - i] } else { 0.0 };
-        let right = (0..9).map(|i| (0..9).map(|j| entry(i.min(j), i.max(j)) * want[j]).sum()).collect();
-        for (x, want) in solve_banded(band.clone(), right).unwrap().iter().zip(want) {
-            assert!((x - want).abs() < 1e-9);
-        }
-    }
 }

@@ -722,7 +722,7 @@ fn fitted(
     let mut i = 0;
     while i < contour.len() {
         let mut run = SegmentRun::new(false, contour.len() - i);
-        let joined = run.extend(&contour[i..], options.corner, |edge| {
+        let joined = run.extend(&contour[i..], options.joint(), |edge| {
             let ends = [edge.end(0.0)?, edge.end(1.0)?];
             Ok(Some(RunSegment::new(*edge, None, ends, edge.is_line())))
         })?;

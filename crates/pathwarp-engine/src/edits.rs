@@ -16,10 +16,10 @@ pub static EDITS: [Info; 3] = [
                 .slider(0.0, 2.0),
             Param::angle(
                 "corners",
-                "Joints that turn by more than this stay corners [default: 15deg, of polylines 30deg]",
+                "Joints that turn by more than this stay corners. Default: those for which no smooth curve can stand within the distance.",
             )
-            .within(0.0, 80.0),
-            Param::flag("polylines", "Draw curves through the vertices of paths that are all straight lines"),
+            .within(0.0, 180.0),
+            Param::flag("polylines", "No longer needed: straight lines that mean a curve become one."),
         ])
         .by_hand(ByHand { neutral: &[("within", "0.05%")], showing: &[("within", "1%")], ..ByHand::NONE }),
     Info::new("offset", "let areas grow, or shrink")

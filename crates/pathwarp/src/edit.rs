@@ -1,61 +1,13 @@
-//! Edits of outlines that are not maps: curves through vertices, offsets and unions.
+//! Edits of outlines that are not maps: offsets and unions.
 
 use crate::error::GeometryError;
-use crate::outline::{Outline, Seg, Subpath};
-use crate::refit::{Options, PathReport, RefittedPath};
-use bezierfit::{Fitted, fit_points, union_even_odd};
-use kurbo::{BezPath, Join, Point, Rect, Shape};
-
-/// Share of the tolerance spent on turning arcs into cubics.
-const ARCS: f64 = 0.05;
+use crate::outline::Outline;
+use crate::refit::{ARCS, Options, PathReport, RefittedPath};
+use bezierfit::{Fitted, union_even_odd};
+use kurbo::{BezPath, Join, Rect, Shape};
 
 /// How far the miters of an offset reach at most, in distances.
 const MITERS: f64 = 4.0;
-
-/// A contour with so few edges is meant as a polygon, not as a curve in small steps.
-const MAX_POLYGON_EDGES: usize = 4;
-
-/// Fits smooth curves to contours of straight lines, within a tolerance of each vertex. `contours` holds the tolerances; contours beyond
-/// its end have `options.tolerance`. Corners are vertices at which a contour turns by more than [`corner`](Options::corner). Returns `None`
-/// if a contour has other segments than lines, has at most four, or shares an edge with another, which would come apart.
-///
-/// # Errors
-/// A vertex is not finite.
-///
-/// ```
-/// use pathwarp::{Outline, edit::through_vertices, refit::Options};
-///
-/// let hexagon = Outline::from_svg("M10,0L5,8.66L-5,8.66L-10,0L-5,-8.66L5,-8.66Z")?;
-/// let options = Options::new(0.1).with_corner(70.0_f64.to_radians());
-/// let round = through_vertices(&hexagon, &options, &[])?.unwrap();
-/// assert!(round.report.segments_out < 6);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-pub fn through_vertices(
-    outline: &Outline,
-    options: &Options,
-    contours: &[f64],
-) -> Result<Option<RefittedPath>, GeometryError> {
-    let is_line = |s: &Seg| matches!(s, Seg::Line(_));
-    let stays = |s: &Subpath| {
-        s.segs.len() <= MAX_POLYGON_EDGES || !s.segs.iter().all(is_line) || options.shared.holds_any(&s.segs)
-    };
-    if outline.subpaths.iter().any(stays) {
-        return Ok(None);
-    }
-    let (mut path, mut report) = (BezPath::new(), PathReport::default());
-    for (i, s) in outline.subpaths.iter().enumerate() {
-        let tolerance = contours.get(i).copied().unwrap_or(options.tolerance);
-        let fitter = bezierfit::Options::new(tolerance).with_corner(options.corner);
-        let points: Vec<Point> = [s.start].into_iter().chain(s.segs.iter().map(Seg::end)).collect();
-        let fitted = fit_points(&points, s.closed, &fitter)?;
-        report.add(reported(&fitted, tolerance));
-        report.segments_in += s.segs.len();
-        path.extend(fitted.path);
-    }
-    report.segments_out = path.segments().count();
-    Ok(Some(RefittedPath { path, spans: Vec::new(), report }))
-}
 
 /// The side to which [`moved`] moves outlines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,7 +64,7 @@ pub fn moved(
         let tolerance = group.iter().map(own).fold(f64::INFINITY, f64::min);
         let group = Outline { subpaths: group.iter().map(|i| outline.subpaths[*i].clone()).collect() };
         for fitted in moved_group(&group, offset, options, tolerance)? {
-            report.add(reported(&fitted, tolerance));
+            report.add(PathReport::fitted(&fitted.report, tolerance));
             path.extend(fitted.path);
         }
     }
@@ -202,14 +154,6 @@ pub fn united(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Optio
     let closed = outline.subpaths.iter().all(|s| s.closed || s.start == s.end());
     let simple = closed && united.subpaths.len() == outline.subpaths.len();
     Ok((!simple || (area.area().abs() - path.area().abs()).abs() > room).then_some(united))
-}
-
-fn reported(fitted: &Fitted, tolerance: f64) -> PathReport {
-    let r = &fitted.report;
-    let mut out = PathReport::default();
-    (out.max_error, out.share, out.assurance) = (r.max_error, r.max_error / tolerance, r.assurance);
-    out.over_budget.clone_from(&r.unresolved);
-    out
 }
 
 #[cfg(test)]

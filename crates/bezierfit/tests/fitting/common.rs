@@ -78,3 +78,16 @@ pub fn random_path(random: &mut Random, i: usize) -> BezPath {
     }
     path
 }
+
+/// A path of straight lines through points.
+pub fn polygon(points: &[Point], closed: bool) -> BezPath {
+    let mut path = BezPath::new();
+    if let Some((first, rest)) = points.split_first() {
+        path.move_to(*first);
+        rest.iter().for_each(|p| path.line_to(*p));
+        if closed {
+            path.close_path();
+        }
+    }
+    path
+}

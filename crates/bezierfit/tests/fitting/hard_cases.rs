@@ -1,8 +1,8 @@
 //! Curves on which fits hang, panic, leave the curve or cut corners elsewhere: each is covered within the tolerance, by a measurement of
 //! its own, with a bounded number of pieces and of evaluations.
 
-use super::common::{Drawn, distance, off};
-use bezierfit::{Degree, Fitted, Offset, Options, PathSource, Pieces, Source, fit, fit_points, simplify};
+use super::common::{Drawn, distance, off, polygon};
+use bezierfit::{Degree, Fitted, Offset, Options, PathSource, Pieces, Source, fit, simplify};
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, ParamCurveNearest, PathSeg, Point, Vec2};
 use pathwarp_oracle::Random;
 
@@ -21,13 +21,7 @@ fn check(name: &str, source: &dyn Source, tolerance: f64, most: usize) -> Fitted
 }
 
 fn polyline(points: &[(f64, f64)], close: bool) -> BezPath {
-    let mut path = BezPath::new();
-    path.move_to(points[0]);
-    points[1..].iter().for_each(|p| path.line_to(*p));
-    if close {
-        path.close_path();
-    }
-    path
+    polygon(&points.iter().map(|p| (*p).into()).collect::<Vec<_>>(), close)
 }
 
 /// kurbo's issues 601 and 603 (a panic on a sliver), 602 (a hang on a fold) and 604 (a control point 19,000 units away on a nearly flat
@@ -39,8 +33,11 @@ fn polygons_keep_their_corners() {
     let flat = polyline(&[(415.74, 324.0), (440.0, 324.5), (460.0, 325.49), (480.0, 325.0), (493.93, 324.0)], false);
     for path in [sliver, fold, flat] {
         for tolerance in [0.01, 2.0, 16.0] {
-            let simple = simplify(&path, &Options::new(tolerance)).unwrap();
+            let simple = simplify(&path, &Options::new(tolerance).with_corner(0.01)).unwrap();
             assert_eq!(simple.path, path, "{tolerance}");
+            let meant = simplify(&path, &Options::new(tolerance)).unwrap();
+            assert!(meant.path.segments().count() <= path.segments().count());
+            assert!(distance(&PathSource::new(&path).unwrap(), &meant.path, tolerance) <= tolerance);
         }
     }
     // The same polygons as one curve, with what those fits were given: corners where its sides meet.
@@ -69,7 +66,7 @@ fn flat_polygons_stay_flat() {
     for tolerance in [0.01, 0.25, 2.0, 16.0] {
         for degree in [Degree::Cubic, Degree::Quadratic] {
             let options = Options::new(tolerance).with_degree(degree).with_corner(2.0);
-            let fitted = fit_points(&points, false, &options).unwrap();
+            let fitted = simplify(&polygon(&points, false), &options).unwrap();
             assert!(off(&points, &fitted.path) <= tolerance);
             let bounds = kurbo::Shape::bounding_box(&fitted.path);
             assert!(bounds.x0 >= 415.7 && bounds.x1 <= 494.0 && bounds.y0 > 323.0 && bounds.y1 < 326.5, "{bounds:?}");

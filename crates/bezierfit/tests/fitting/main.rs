@@ -19,5 +19,6 @@ mod hidden;
 mod long;
 mod options;
 mod random;
+mod scale;
 #[cfg(feature = "area")]
 mod strokes;

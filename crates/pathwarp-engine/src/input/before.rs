@@ -17,10 +17,6 @@ use std::collections::HashSet;
 /// Distance of `simplify` as a fraction of the artwork's diagonal, if none is given: half a pixel of a thousand.
 const SIMPLIFY_DISTANCE: f64 = 5e-4;
 
-/// Joints that turn by more than these degrees are corners: of paths, and of polylines.
-const CORNERS: f64 = 15.0;
-const POLYLINE_CORNERS: f64 = 30.0;
-
 /// An edit of some artwork.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Planned {
@@ -45,8 +41,7 @@ pub(crate) fn planned(
         |given: Option<Length>, share| Ok::<_, Failure>((distance(given, share, painted, frame)?, given.is_none()));
     let (edit, (tolerance, suited)) = match &*step.deformation {
         "simplify" => {
-            let polylines = s.flag("polylines")?;
-            let corner = s.number_if("corners")?.unwrap_or(if polylines { POLYLINE_CORNERS } else { CORNERS });
+            let corner = s.number_if("corners")?.map(f64::to_radians);
             let held = match s.number_if("within")? {
                 Some(within) => {
                     measurable("simplify", within, painted)?;
@@ -54,7 +49,7 @@ pub(crate) fn planned(
                 }
                 None => held(options.tolerance.filter(|_| is_last), SIMPLIFY_DISTANCE)?,
             };
-            (Edit::Simplify { corner: corner.to_radians(), polylines }, held)
+            (Edit::Simplify { corner }, held)
         }
         "offset" => {
             let join = match s.choice("join")? {

@@ -146,14 +146,20 @@ fn shared<'a>(
     let mut bend = bend.clone();
     let contours = task::of_parts(drawing, &bend, of, k);
     let refit = &bend.options.refit;
-    if (refit.merge || refit.suited) && !bend.is_identity() {
+    let simplifies = matches!(bend.options.edit, Some(Edit::Simplify { .. }));
+    if (refit.merge || refit.suited || simplifies) && !bend.is_identity() {
         let outline = |i: usize| {
             let (whole, own) = (&drawing.shapes()[i].outline, &contours[i]);
             task::placed_outline(whole, own, &bend.options, &pieces[i])
         };
         let placed: Vec<_> = (0..of.len()).filter(|&i| of[i] == Some(k)).map(outline).collect();
         let all = placed.iter().map(|(o, contours)| (&**o, &contours[..]));
-        bend.options.refit.shared = Arc::new(refit::SharedEdges::held(all));
+        if simplifies {
+            let borders = refit::Borders::among(&all.collect::<Vec<_>>(), refit.tolerance);
+            bend.options.refit.borders = Arc::new(borders);
+        } else {
+            bend.options.refit.shared = Arc::new(refit::SharedEdges::held(all));
+        }
     }
     (bend, contours)
 }

@@ -5,7 +5,7 @@ use crate::scene::model::{Part, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::select::Selection;
 use crate::source::text::SourceText;
-use pathwarp::edit::{Offset, moved, through_vertices};
+use pathwarp::edit::{Offset, moved};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::Chain;
 use pathwarp::refit::{self, RefittedPath};
@@ -223,9 +223,8 @@ impl WarpOptions {
         let options = self.with_edit(Some(edit)).with_images(Images::Keep).with_overhang(false);
         let options = options.with_filters(Filters::Affine);
         match edit {
-            Edit::Simplify { corner, .. } => {
-                let refit = options.refit.clone().with_merge(true).with_corner(corner);
-                let options = options.with_refit(refit).with_strokes(Strokes::Keep).with_text(TextMode::Skip);
+            Edit::Simplify { .. } => {
+                let options = options.with_strokes(Strokes::Keep).with_text(TextMode::Skip);
                 let options = options.with_gradients(Gradients::Keep).with_patterns(Patterns::Keep);
                 options.with_clones(Clones::Follow)
             }
@@ -261,10 +260,9 @@ impl WarpOptions {
 pub enum Edit {
     /// Reduces paths to the fewest nodes within the tolerance. A path that would not get fewer stays as it is written.
     Simplify {
-        /// Joints that turn by more than this, in radians, stay corners.
-        corner: f64,
-        /// Replaces contours of straight lines by curves through their vertices.
-        polylines: bool,
+        /// Joints that turn by more than this, in radians, stay corners. `None`: those for which no smooth curve can stand within the
+        /// tolerance.
+        corner: Option<f64>,
     },
     /// Converts strokes and text to filled outlines.
     Outline,
@@ -294,9 +292,9 @@ impl Edit {
         contours: &[f64],
     ) -> Result<Option<RefittedPath>, GeometryError> {
         match self {
-            Self::Simplify { polylines: true, .. } => through_vertices(outline, options, contours),
+            Self::Simplify { corner } => refit::simplified(outline, corner, options, contours).map(Some),
             Self::Offset(offset) => moved(outline, &offset, options, contours).map(Some),
-            Self::Simplify { .. } | Self::Outline | Self::Resolve => Ok(None),
+            Self::Outline | Self::Resolve => Ok(None),
         }
     }
 

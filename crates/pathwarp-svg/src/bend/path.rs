@@ -34,22 +34,15 @@ pub fn edit_path(
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
-    let (simplifies, options) = match edit {
-        Edit::Simplify { corner, .. } => (true, &options.clone().with_merge(true).with_corner(corner)),
-        _ => (false, options),
+    let Some(RefittedPath { path, report, .. }) = edit.edited(outline, options, &[])? else {
+        return warp_path(outline, &AffineMap::IDENTITY, options, precision);
     };
-    let edited = match edit.edited(outline, options, &[])? {
-        Some(RefittedPath { path, report, .. }) => {
-            let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
-            WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report }
-        }
-        None if simplifies => warp_path(outline, &Undeclared, options, precision)?,
-        None => return warp_path(outline, &AffineMap::IDENTITY, options, precision),
-    };
-    if simplifies && edited.report.segments_out >= edited.report.segments_in {
+    // What would not get fewer nodes stays as it is written.
+    if matches!(edit, Edit::Simplify { .. }) && report.segments_out >= report.segments_in {
         return warp_path(outline, &AffineMap::IDENTITY, options, precision);
     }
-    Ok(edited)
+    let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
+    Ok(WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report })
 }
 
 /// Maps a path and writes its image as path data, as [`Document::warp`](crate::Document::warp) writes that of a `<path>` in root

@@ -73,3 +73,6 @@ pub(super) const CARRY_MARGIN: f64 = 2.0;
 
 /// Share of the tolerance by which an image may be off what its samples predict between them, as its enclosure tells.
 pub(super) const HIDDEN: f64 = 0.25;
+
+/// Share of the tolerance spent on turning arcs into cubics before an edit.
+pub(crate) const ARCS: f64 = 0.05;

@@ -5,8 +5,11 @@
 //! The image of each part is a source for the crate `bezierfit`, which fits it. If asked for, fewer pieces are looked for
 //! across smooth joints (`merge`); those of shapes that come again are carried from one place to the next (`repeats`).
 //!
+//! [`simplified`] gives outlines the fewest nodes as they are, and borders that shapes share the same in all (`borders`).
+//!
 //! `docs/refitting.md` derives the method.
 
+mod borders;
 mod limits;
 mod merge;
 mod options;
@@ -19,6 +22,8 @@ mod shared;
 mod source;
 
 pub use bezierfit::Assurance;
+pub use borders::{Borders, simplified};
+pub(crate) use limits::ARCS;
 pub use options::{Options, suited};
 pub use report::{PathReport, RESOLUTION, RefittedPath, SpanReport};
 pub use shared::{SharedEdges, Span};

@@ -1,5 +1,6 @@
 //! Options of a refit, and the tolerance that suits a contour.
 
+use super::borders::Borders;
 use super::shared::{SharedEdges, Span};
 use crate::budget::Budget;
 use crate::error::GeometryError;
@@ -32,6 +33,8 @@ pub struct Options {
     pub corner: f64,
     /// Edges that merging leaves alone, so that neighbouring shapes stay watertight.
     pub shared: Arc<SharedEdges>,
+    /// Borders that [`simplified`](super::simplified) gives the same curves in all outlines that share them.
+    pub borders: Arc<Borders>,
     /// Hold small contours to what [`suited`] finds for them, too, instead of to `tolerance` alone. A contour is a subpath here.
     pub suited: bool,
     /// Tolerances of consecutive segments, over all subpaths. None: `tolerance`, or what suits each subpath, for all.
@@ -50,6 +53,7 @@ impl Options {
             merge: false,
             corner: SMOOTH_JOINT,
             shared: Arc::default(),
+            borders: Arc::default(),
             suited: false,
             spans: Arc::default(),
             budget: Arc::default(),
@@ -83,6 +87,8 @@ impl Options {
         with_corner(corner: f64) => corner: corner.clamp(0.0, MAX_CORNER);
         /// Sets [`Options::shared`].
         with_shared(shared: Arc<SharedEdges>) => shared: shared;
+        /// Sets [`Options::borders`].
+        with_borders(borders: Arc<Borders>) => borders: borders;
         /// Sets [`Options::suited`].
         with_suited(suited: bool) => suited: suited;
         /// Sets [`Options::spans`].

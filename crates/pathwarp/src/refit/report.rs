@@ -48,6 +48,14 @@ impl Default for PathReport {
 }
 
 impl PathReport {
+    /// What the fitter reports, for a part with this tolerance.
+    pub(crate) fn fitted(report: &Report, tolerance: f64) -> Self {
+        let mut out = Self::default();
+        (out.max_error, out.share, out.assurance) = (report.max_error, report.max_error / tolerance, report.assurance);
+        out.over_budget.clone_from(&report.unresolved);
+        out
+    }
+
     /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest one of the image.
     pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
         let resolution = RESOLUTION * outline.extent().max(image);

@@ -51,7 +51,12 @@ impl SharedEdges {
 
     /// Returns `true` if `seg` is shared.
     pub(super) fn contains(&self, seg: &Seg) -> bool {
-        !self.twice.is_empty() && found(&self.twice, fingerprint(seg)).is_some()
+        self.tolerance_of(seg).is_some()
+    }
+
+    /// The smallest tolerance of the contours that share a segment.
+    pub(crate) fn tolerance_of(&self, seg: &Seg) -> Option<f64> {
+        if self.twice.is_empty() { None } else { found(&self.twice, fingerprint(seg)) }
     }
 
     /// Returns `true` if one of the segments is shared.
@@ -67,8 +72,7 @@ impl SharedEdges {
             let at = |p: Point| found(&self.nodes, mixed(&[p])).unwrap_or(contour);
             let (first, mut from) = (out.len(), at(s.start));
             for g in &s.segs {
-                let shared = if self.twice.is_empty() { None } else { found(&self.twice, fingerprint(g)) };
-                let (tolerance, to) = (shared.map_or(contour, |t| t.min(contour)), at(g.end()));
+                let (tolerance, to) = (self.tolerance_of(g).map_or(contour, |t| t.min(contour)), at(g.end()));
                 match out[first..].last_mut() {
                     // A node that others follow more closely stays one.
                     Some(last) if last.tolerance == tolerance && from >= tolerance => {
@@ -107,7 +111,7 @@ fn found(sorted: &[(u64, f64)], key: u64) -> Option<f64> {
 }
 
 /// A hash of the coordinates of a segment in its canonical direction, bit by bit, and of their number.
-fn fingerprint(seg: &Seg) -> u64 {
+pub(crate) fn fingerprint(seg: &Seg) -> u64 {
     let backwards = source::is_backwards(seg);
     let ends = |p: Point, q: Point| if backwards { [q, p] } else { [p, q] };
     match seg {

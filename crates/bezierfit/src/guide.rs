@@ -1,0 +1,354 @@
+//! Smooth guides: splines of cubics with continuous derivative, near to points by least squares.
+
+use crate::banded::solve_banded;
+use kurbo::{CubicBez, Point, Vec2};
+
+/// Points with their weights and their places along a curve.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Samples {
+    pub(crate) place: Vec<f64>,
+    pub(crate) point: Vec<Point>,
+    pub(crate) weight: Vec<f64>,
+    /// Distances from the last guide.
+    off: Vec<f64>,
+}
+
+impl Samples {
+    pub(crate) fn push(&mut self, place: f64, point: Point, weight: f64) {
+        self.place.push(place);
+        self.point.push(point);
+        self.weight.push(weight);
+        self.off.push(0.0);
+    }
+}
+
+/// An end of a guide.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct End {
+    pub(crate) point: Point,
+    /// Its direction, if that is given.
+    pub(crate) along: Option<Vec2>,
+}
+
+/// What lies at the ends of a guide.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Ends {
+    /// It runs from one to the other.
+    Open([End; 2]),
+    /// It is closed.
+    Closed,
+}
+
+/// A spline of cubics with continuous derivative.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Guide {
+    /// Places of the knots.
+    pub(crate) knots: Vec<f64>,
+    /// Points at the knots, and derivatives by the place.
+    values: Vec<(Point, Vec2)>,
+}
+
+/// Weight of the bending of an interval beside the distances of its points.
+const STIFF: f64 = 1e-6;
+/// Weight of given ends.
+const FIXED: f64 = 1e3;
+
+/// The cubic Hermite basis on an interval of length h.
+fn basis(t: f64, h: f64) -> [f64; 4] {
+    let s = 1.0 - t;
+    [s * s * (1.0 + 2.0 * t), s * s * t * h, t * t * (3.0 - 2.0 * t), -t * t * s * h]
+}
+
+impl Guide {
+    /// The spline with these knots that is nearest to the samples.
+    fn nearest(knots: Vec<f64>, samples: &Samples, ends: Ends) -> Option<Self> {
+        let n = knots.len();
+        let (mut band, mut right, mut weights) = (vec![[0.0; 4]; 2 * n], vec![Vec2::ZERO; 2 * n], vec![0.0; n]);
+        for i in 0..samples.place.len() {
+            let (place, p, weight) = (samples.place[i], samples.point[i], samples.weight[i]);
+            let k = interval(&knots, place);
+            let h = knots[k + 1] - knots[k];
+            let b = basis((place - knots[k]) / h, h);
+            for r in 0..4 {
+                for s in r..4 {
+                    band[2 * k + r][s - r] += weight * b[r] * b[s];
+                }
+                right[2 * k + r] += p.to_vec2() * (weight * b[r]);
+            }
+            weights[k] += weight;
+        }
+        let total: f64 = weights.iter().sum();
+        for k in 0..n - 1 {
+            let h = knots[k + 1] - knots[k];
+            let stiff = STIFF * (weights[k] + 1e-3 * total / n as f64);
+            let bending = [
+                [12.0, 6.0 * h, -12.0, 6.0 * h],
+                [0.0, 4.0 * h * h, -6.0 * h, 2.0 * h * h],
+                [0.0, 0.0, 12.0, -6.0 * h],
+                [0.0, 0.0, 0.0, 4.0 * h * h],
+            ];
+            for r in 0..4 {
+                for s in r..4 {
+                    band[2 * k + r][s - r] += stiff * bending[r][s];
+                }
+            }
+        }
+        if let Ends::Open(ends) = ends {
+            for (i, End { point, along }) in [(0, ends[0]), (2 * n - 2, ends[1])] {
+                // Places are lengths, nearly, so that derivatives are directions.
+                for (i, given) in [(i, Some(point.to_vec2())), (i + 1, along)] {
+                    if let Some(given) = given {
+                        band[i][0] += FIXED * total;
+                        right[i] += given * (FIXED * total);
+                    }
+                }
+            }
+        }
+        let values = solve_banded(band, right)?;
+        let values = values.chunks_exact(2).map(|v| (v[0].to_point(), v[1])).collect();
+        let mut out = Self { knots, values };
+        if let Ends::Open(ends) = ends {
+            for (i, End { point, along }) in [(0, ends[0]), (n - 1, ends[1])] {
+                out.values[i] = (point, along.unwrap_or(out.values[i].1));
+            }
+        }
+        Some(out)
+    }
+
+    /// The part between two knots, the first and the last of which become one.
+    fn closed(&self, [first, last]: [usize; 2]) -> Self {
+        let mut values = self.values[first..=last].to_vec();
+        let [(p, d), (q, e)] = [values[0], values[last - first]];
+        let both = (p.midpoint(q), (d + e) * 0.5);
+        (values[0], values[last - first]) = (both, both);
+        Self { knots: self.knots[first..=last].to_vec(), values }
+    }
+
+    /// The point, and the first and second derivative.
+    fn jet(&self, place: f64) -> (Point, Vec2, Vec2) {
+        let k = interval(&self.knots, place);
+        let h = self.knots[k + 1] - self.knots[k];
+        let t = (place - self.knots[k]) / h;
+        let [(p, d), (q, e)] = [self.values[k], self.values[k + 1]];
+        let (a, b) = (d * h, e * h);
+        let (c2, c3) = ((q - p) * 3.0 - a * 2.0 - b, (p - q) * 2.0 + a + b);
+        let point = p + (a + (c2 + c3 * t) * t) * t;
+        (point, (a + (c2 * 2.0 + c3 * (3.0 * t)) * t) / h, (c2 * 2.0 + c3 * (6.0 * t)) / (h * h))
+    }
+
+    /// The foot point of `p` near a place, its distance, and the distance to the left.
+    fn foot(&self, p: Point, place: f64) -> (f64, f64, f64) {
+        let (mut best, mut at, mut left) = (f64::INFINITY, place, 0.0);
+        let mut now = place;
+        let ends = [self.knots[0], self.knots[self.knots.len() - 1]];
+        for _ in 0..3 {
+            let (q, d, dd) = self.jet(now);
+            let v = p - q;
+            let far = v.hypot();
+            if far < best {
+                (best, at, left) = (far, now, d.cross(v) / d.hypot());
+            }
+            let slope = d.hypot2() - v.dot(dd).min(0.5 * d.hypot2());
+            let step = v.dot(d) / slope;
+            if !step.is_finite() {
+                break;
+            }
+            now = (now + step).clamp(ends[0], ends[1]);
+        }
+        (at, best, left)
+    }
+
+    /// The cubics.
+    pub(crate) fn cubics(&self) -> impl Iterator<Item = CubicBez> + '_ {
+        (1..self.knots.len()).map(|k| {
+            let third = (self.knots[k] - self.knots[k - 1]) / 3.0;
+            let [(p, d), (q, e)] = [self.values[k - 1], self.values[k]];
+            CubicBez::new(p, p + d * third, q - e * third, q)
+        })
+    }
+
+    /// Guides for samples over places from the first knot to the last, each with its distance from them: within `within` of each, with few
+    /// knots to begin with, and then with as many as it takes to come near to what remains of the samples without noise. Intervals have at
+    /// least the length `finest`.
+    pub(crate) fn all(
+        samples: &mut Samples,
+        mut knots: Vec<f64>,
+        ends: Ends,
+        [within, finest]: [f64; 2],
+    ) -> Vec<(Self, f64)> {
+        /// How near, as shares of the distance, one after the other.
+        const NEAR: [f64; 3] = [1.0, 0.25, 0.1];
+        /// Rounds of divisions for each.
+        const ROUNDS: usize = 8;
+        /// Distance, in those that are allowed, up to which even weights may be what is wrong.
+        const UNEVEN: f64 = 1.6;
+        /// Fewer samples say nothing about a half.
+        const FEW: usize = 12;
+        let (mut out, fine) = (Vec::new(), 0.25 * within);
+        for near in NEAR {
+            for _ in 0..ROUNDS {
+                // Once more with the foot points as places.
+                let once = Self::missed(&knots, samples, ends);
+                let Some((guide, mut misses)) = once.and_then(|_| Self::missed(&knots, samples, ends)) else {
+                    return out;
+                };
+                guide.strays(samples, ends, fine, &mut misses);
+                let far = furthest(&misses);
+                if far <= UNEVEN * within {
+                    // Without splitting an interval, more weight for what is far.
+                    let evened = Self::evened(&knots, samples, ends, fine);
+                    out.extend([Some((guide, far)), evened].into_iter().flatten().filter(|(_, far)| *far <= within));
+                }
+                let mut next = vec![knots[0]];
+                for (k, miss) in misses.iter().enumerate() {
+                    let [a, b] = [knots[k], knots[k + 1]];
+                    let wanted = miss.far > within || miss.bias() > near * within;
+                    if wanted && b - a > 2.0 * finest && miss.count >= FEW {
+                        next.push(0.5 * (a + b));
+                    }
+                    next.push(b);
+                }
+                let done = next.len() == knots.len();
+                knots = next;
+                if done {
+                    break;
+                }
+            }
+        }
+        out
+    }
+
+    /// A spline whose largest distance is nearly as small as it can be: each sample weighs more the further it is, again and again (C. L.
+    /// Lawson, *Contributions to the theory of linear least maximum approximation*, 1961).
+    fn evened(knots: &[f64], samples: &Samples, ends: Ends, fine: f64) -> Option<(Self, f64)> {
+        const ROUNDS: usize = 4;
+        /// Share of the weight that a sample keeps.
+        const KEPT: f64 = 0.05;
+        let (mut samples, mut best): (Samples, Option<(Self, f64)>) = (samples.clone(), None);
+        for _ in 0..ROUNDS {
+            let (guide, misses) = Self::missed(knots, &mut samples, ends)?;
+            let far = furthest(&misses);
+            for (weight, off) in samples.weight.iter_mut().zip(&samples.off) {
+                *weight *= KEPT + off / far.max(f64::MIN_POSITIVE);
+            }
+            if best.as_ref().is_none_or(|(_, least)| far < *least) {
+                best = Some((guide, far));
+            }
+        }
+        let (guide, _) = best?;
+        let mut misses = guide.misses(&mut samples);
+        guide.strays(&samples, ends, fine, &mut misses);
+        Some((guide, furthest(&misses)))
+    }
+
+    /// The nearest spline, and how each of its intervals misses the samples, which move to their foot points.
+    fn missed(knots: &[f64], samples: &mut Samples, ends: Ends) -> Option<(Self, Vec<Miss>)> {
+        let guide = match ends {
+            Ends::Open(_) => Self::nearest(knots.to_vec(), samples, ends)?,
+            Ends::Closed => Self::nearest_closed(knots, samples)?,
+        };
+        let misses = guide.misses(samples);
+        Some((guide, misses))
+    }
+
+    /// How each interval misses the samples, which move to their foot points.
+    fn misses(&self, samples: &mut Samples) -> Vec<Miss> {
+        let mut out = vec![Miss::default(); self.knots.len() - 1];
+        for i in 0..samples.place.len() {
+            let (place, off, left) = self.foot(samples.point[i], samples.place[i]);
+            let k = interval(&self.knots, place);
+            out[k].add((place - self.knots[k]) / (self.knots[k + 1] - self.knots[k]), off, left, samples.weight[i]);
+            (samples.place[i], samples.off[i]) = (place, off);
+        }
+        out
+    }
+
+    /// Adds how far the guide strays between the foot points of samples, in steps of about `fine`.
+    fn strays(&self, samples: &Samples, ends: Ends, fine: f64, misses: &mut [Miss]) {
+        /// Looks between two samples, at most.
+        const MOST: f64 = 64.0;
+        let mut order: Vec<usize> = (0..samples.place.len()).collect();
+        order.sort_by(|a, b| samples.place[*a].total_cmp(&samples.place[*b]));
+        let Some(first) = order.first() else { return };
+        let [from, to] = match ends {
+            Ends::Open(ends) => ends.map(|e| e.point),
+            Ends::Closed => [samples.point[*first]; 2],
+        };
+        let [start, end] = [self.knots[0], self.knots[self.knots.len() - 1]];
+        let stops = order.iter().map(|i| (samples.place[*i], samples.point[*i]));
+        let before = std::iter::once((start, from)).chain(stops.clone());
+        for ((a, p), (b, q)) in before.zip(stops.chain([(end, to)])) {
+            let speed = self.jet(a).1.hypot().max(self.jet(0.5 * (a + b)).1.hypot());
+            let steps = ((b - a) * speed / fine).min(MOST);
+            for j in 1..steps.ceil() as usize {
+                let place = a + (b - a) * j as f64 / steps.ceil();
+                let miss = &mut misses[interval(&self.knots, place)];
+                miss.far = miss.far.max(off(self.jet(place).0, [p, q]).sqrt());
+            }
+        }
+    }
+
+    /// The nearest closed spline: what lies around its ends comes again before and after them.
+    fn nearest_closed(knots: &[f64], samples: &Samples) -> Option<Self> {
+        let n = knots.len() - 1;
+        let length = knots[n];
+        let more = n.min(3);
+        let mut all: Vec<f64> = knots[n - more..n].iter().map(|k| k - length).collect();
+        all.extend(knots);
+        all.extend(knots[1..=more].iter().map(|k| k + length));
+        let [low, high] = [all[0], all[all.len() - 1]];
+        let mut around = samples.clone();
+        for i in 0..samples.place.len() {
+            for by in [-length, length] {
+                let place = samples.place[i] + by;
+                if place >= low && place <= high {
+                    around.push(place, samples.point[i], samples.weight[i]);
+                }
+            }
+        }
+        Some(Self::nearest(all, &around, Ends::Closed)?.closed([more, more + n]))
+    }
+}
+
+/// Squared distance of a point from an edge.
+pub(crate) fn off(p: Point, [a, b]: [Point; 2]) -> f64 {
+    let (v, w) = (b - a, p - a);
+    let t = (w.dot(v) / v.hypot2()).clamp(0.0, 1.0);
+    let t = if t.is_finite() { t } else { 0.0 };
+    (w - v * t).hypot2()
+}
+
+/// The largest distance in all intervals.
+fn furthest(misses: &[Miss]) -> f64 {
+    misses.iter().map(|m| m.far).fold(0.0, f64::max)
+}
+
+/// How samples of an interval between knots miss a guide.
+#[derive(Debug, Default, Clone, Copy)]
+struct Miss {
+    /// The largest distance.
+    far: f64,
+    count: usize,
+    /// For each quarter, the sum of the distances to the left with their weights, and of the weights.
+    quarters: [[f64; 2]; 4],
+}
+
+impl Miss {
+    fn add(&mut self, share: f64, off: f64, left: f64, weight: f64) {
+        self.far = self.far.max(off);
+        self.count += 1;
+        let quarter = &mut self.quarters[((4.0 * share) as usize).min(3)];
+        quarter[0] += left * weight;
+        quarter[1] += weight;
+    }
+
+    /// The largest mean distance to one side in a quarter: what noise leaves of the distance.
+    fn bias(&self) -> f64 {
+        self.quarters.iter().map(|[sum, weight]| (sum / weight).abs()).fold(0.0, f64::max)
+    }
+}
+
+/// The interval between knots that holds a place.
+fn interval(knots: &[f64], place: f64) -> usize {
+    knots[1..knots.len() - 1].partition_point(|k| *k <= place)
+}

@@ -1,0 +1,476 @@
+//! Paths as they are meant: corners as seen from a tolerance away, and smooth curves in place of what lies between them, such as stairs of
+//! pixels, noise, and facets.
+//!
+//! 1. **Polygon.** The vertices that the path has within the tolerance (D. H. Douglas, T. K. Peucker, *Algorithms for the reduction of
+//!    the number of points required to represent a digitized line or its caricature*, 1973).
+//! 2. **Corners.** Between two sides of length s that turn by θ, the nearest circle is s/4·tan(θ/4) off. Where that exceeds the tolerance,
+//!    no smooth curve replaces the corner.
+//! 3. **Guide.** Between corners, a spline of cubics with continuous derivative, near to the path by least squares, with as many knots as
+//!    it takes to stay well within the tolerance.
+//!
+//! The fewest pieces of the guide are looked for afterwards, within what it leaves of the tolerance.
+
+use crate::guide::{End, Ends, Guide, Samples, off};
+use crate::limits::LONG_EDGE;
+use crate::merge::ReachMemory;
+use crate::options::Options;
+use crate::path::{Segment, smooth_run};
+use crate::report::Report;
+use kurbo::{Line, ParamCurve, PathSeg, Point, Vec2};
+
+/// Share of the tolerance that flattening uses.
+const FLAT: f64 = 1.0 / 64.0;
+/// Distance of vertices from the polygon, in tolerances: what swings by a tolerance to either side of a smooth curve mostly vanishes.
+const POLYGON: f64 = 1.4;
+/// Distance of the circle from a corner, in tolerances, from which on it is one.
+const CORNER: f64 = 1.0;
+/// Distance of a guide from the path, in tolerances, up to which it is used.
+const LOOSEST: f64 = 0.95;
+/// Least length of an interval between knots, in tolerances.
+const FINEST: f64 = 0.5;
+/// Samples of each side of the polygon, at least.
+const SAMPLES: f64 = 16.0;
+/// Sum of turns of the sides that one interval between knots covers at first.
+const FIRST_TURN: f64 = 1.0;
+
+/// A subpath flattened.
+struct Flat {
+    points: Vec<Point>,
+    /// For each point, the segment that it begins, if it is a node.
+    node: Vec<Option<usize>>,
+}
+
+impl Flat {
+    fn new(segments: &[Segment], closed: bool, tolerance: f64) -> Self {
+        let mut out = Self { points: Vec::with_capacity(segments.len() + 1), node: Vec::new() };
+        for (i, s) in segments.iter().enumerate() {
+            let seg = s.segment();
+            out.add(seg.start(), Some(i));
+            if matches!(seg, PathSeg::Line(_)) {
+                continue;
+            }
+            let c = seg.to_cubic();
+            let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
+            let bend = (d1 - d0).hypot().max((d2 - d1).hypot());
+            let n = (6.0 * bend / (8.0 * FLAT * tolerance)).sqrt().ceil().clamp(1.0, 4096.0) as usize;
+            for k in 1..n {
+                out.add(c.eval(k as f64 / n as f64), None);
+            }
+        }
+        if let Some(last) = segments.last() {
+            let end = last.segment().end();
+            if !(closed && end == out.points[0]) {
+                out.add(end, Some(segments.len()));
+            }
+        }
+        out
+    }
+
+    fn add(&mut self, p: Point, node: Option<usize>) {
+        if self.points.last() == Some(&p) {
+            if let (Some(last), Some(_)) = (self.node.last_mut(), node) {
+                *last = node;
+            }
+            return;
+        }
+        self.points.push(p);
+        self.node.push(node);
+    }
+}
+
+/// Marks the vertices of the polygon between two vertices.
+fn reduce(points: &[Point], [first, last]: [usize; 2], within: f64, kept: &mut [bool]) {
+    // Limits the work where division by the furthest point takes off little each time.
+    let mut work = 40 * (last - first + 1);
+    let n = points.len();
+    let mut stack = vec![[first, last]];
+    while let Some([i, j]) = stack.pop() {
+        if j < i + 2 {
+            continue;
+        }
+        let ends = [points[i % n], points[j % n]];
+        let (mut most, mut at) = (within * within, None);
+        for k in i + 1..j {
+            let d = off(points[k % n], ends);
+            if d > most {
+                (most, at) = (d, Some(k));
+            }
+        }
+        let Some(mut k) = at else { continue };
+        work = work.saturating_sub(j - i);
+        if work == 0 {
+            k = i.midpoint(j);
+        }
+        kept[k % n] = true;
+        stack.push([k, j]);
+        stack.push([i, k]);
+    }
+}
+
+/// The vertices of the polygon within a distance, in ascending order; of a closed one, the first comes again a round further.
+fn vertices(points: &[Point], closed: bool, mut kept: Vec<bool>, within: f64) -> Vec<usize> {
+    let n = points.len();
+    let given: Vec<usize> = (0..n).filter(|i| kept[*i]).collect();
+    let mut anchors = given.clone();
+    if !closed {
+        anchors.extend([0, n - 1]);
+    } else if given.len() < 2 {
+        let furthest = |i: usize| {
+            let from = |j: &usize| points[i].distance_squared(points[*j]);
+            (0..n).max_by(|a, b| from(a).total_cmp(&from(b))).unwrap_or(0)
+        };
+        let first = given.first().copied().unwrap_or_else(|| furthest(0));
+        anchors = vec![first, furthest(first)];
+    }
+    anchors.sort_unstable();
+    anchors.dedup();
+    if closed {
+        anchors.push(anchors[0] + n);
+    }
+    for pair in anchors.windows(2) {
+        (kept[pair[0] % n], kept[pair[1] % n]) = (true, true);
+        reduce(points, [pair[0], pair[1]], within, &mut kept);
+    }
+    let mut out: Vec<usize> = (0..n).filter(|i| kept[*i]).collect();
+    if closed {
+        out.push(out[0] + n);
+    }
+    out
+}
+
+/// The polygon of a subpath within a distance.
+struct Polygon<'a> {
+    flat: &'a Flat,
+    closed: bool,
+    /// Indices of points, ascending. A closed polygon's first one comes again at the end, a round further.
+    vertices: Vec<usize>,
+}
+
+impl<'a> Polygon<'a> {
+    /// The polygon of a path with at least three points. Corners by their angle are vertices.
+    fn new(flat: &'a Flat, closed: bool, kept: &[bool], tolerance: f64) -> Self {
+        let n = flat.points.len();
+        let mut within = POLYGON * tolerance;
+        loop {
+            let out = Self { flat, closed, vertices: vertices(&flat.points, closed, kept.to_vec(), within) };
+            // A closed one has an area, unless the path has none.
+            if !closed || out.sides() > 3 || n < 5 || within < 1e-3 * tolerance {
+                return out;
+            }
+            within *= 0.5;
+        }
+    }
+
+    /// The index of a vertex's point, in rounds of a closed polygon.
+    fn place(&self, vertex: usize) -> usize {
+        let (n, sides) = (self.flat.points.len(), self.sides());
+        if self.closed { self.vertices[vertex % sides] + n * (vertex / sides) } else { self.vertices[vertex] }
+    }
+
+    /// The lines from point to point between two vertices.
+    fn edges(&self, [from, to]: [usize; 2]) -> Vec<Segment> {
+        let line = |k: usize| Segment::new(PathSeg::Line(Line::new(self.point(k), self.point(k + 1))));
+        (self.place(from)..self.place(to)).map(line).collect()
+    }
+
+    /// Number of segments of the source that begin between two vertices.
+    fn nodes(&self, [from, to]: [usize; 2]) -> usize {
+        (self.place(from)..self.place(to)).filter(|i| self.flat.is_node(*i)).count()
+    }
+
+    /// The largest distance of the points between two vertices from the line through both.
+    fn off(&self, [from, to]: [usize; 2]) -> f64 {
+        let [a, b] = [from, to].map(|i| self.place(i));
+        let ends = [self.point(a), self.point(b)];
+        (a + 1..b).map(|k| off(self.point(k), ends)).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Samples between two vertices, with their places along the polygon, and knots where it has turned.
+    fn samples(&self, [from, to]: [usize; 2], closed: bool) -> (Samples, Vec<f64>) {
+        let mut samples = Samples::default();
+        let (mut knots, mut along, mut turned) = (vec![0.0], 0.0, 0.0_f64);
+        for i in from..to {
+            let side = self.side(i);
+            let (start, length) = (self.point(self.place(i)), side.hypot());
+            for k in self.place(i)..self.place(i + 1) {
+                let [p, q] = [self.point(k), self.point(k + 1)];
+                let count = (SAMPLES * p.distance(q) / length).ceil().clamp(1.0, SAMPLES);
+                for j in 0..count as usize {
+                    let r = p.lerp(q, j as f64 / count);
+                    let t = ((r - start).dot(side) / side.hypot2()).clamp(0.0, 1.0);
+                    samples.push(along + t * length, r, p.distance(q) / count);
+                }
+            }
+            along += length;
+            turned += if i + 1 < to { self.turn((i + 1) % self.sides()) } else { 0.0 };
+            if turned.abs() > FIRST_TURN || i + 1 == to {
+                knots.push(along);
+                turned = 0.0;
+            }
+        }
+        if closed && knots.len() < 5 {
+            knots = (0..=4).map(|k| along * f64::from(k) / 4.0).collect();
+        }
+        (samples, knots)
+    }
+
+    fn point(&self, i: usize) -> Point {
+        self.flat.points[i % self.flat.points.len()]
+    }
+
+    /// Number of sides.
+    fn sides(&self) -> usize {
+        self.vertices.len() - 1
+    }
+
+    /// A side, in rounds of a closed polygon.
+    fn side(&self, i: usize) -> Vec2 {
+        let i = i % self.sides();
+        self.point(self.vertices[i + 1]) - self.point(self.vertices[i])
+    }
+
+    /// The turn from one side to the next.
+    fn turn(&self, i: usize) -> f64 {
+        let (u, v) = (self.side(i + self.sides() - 1), self.side(i));
+        u.cross(v).atan2(u.dot(v))
+    }
+
+    /// The length from a vertex, forwards or backwards, up to where the sides turn by more than `most`.
+    fn arm(&self, i: usize, forwards: bool, most: f64) -> f64 {
+        let (n, mut length, mut turned) = (self.sides(), 0.0, 0.0_f64);
+        for k in 0..n {
+            let side = if forwards { i + k } else { i + 2 * n - 1 - k };
+            length += self.side(side).hypot();
+            let next = if forwards { i + k + 1 } else { i + 2 * n - 1 - k };
+            if !self.closed && (next % n == 0 || forwards && next >= n || !forwards && next <= n) {
+                break;
+            }
+            turned += self.turn(next % n);
+            if turned.abs() > most {
+                break;
+            }
+        }
+        length
+    }
+
+    /// The distance of the nearest circle from the corner at a vertex: s/4·tan(θ/4).
+    fn corner(&self, i: usize) -> f64 {
+        let turn = self.turn(i).abs();
+        let arm = self.arm(i, true, 0.5 * turn).min(self.arm(i, false, 0.5 * turn));
+        0.25 * arm * (0.25 * turn).tan()
+    }
+
+    /// Returns `true` if a side is one line of the source, or several in a row, and far longer than those beside it that go on smoothly.
+    fn is_edge(&self, i: usize, is_corner: &[bool]) -> bool {
+        let own = self.side(i).hypot();
+        let n = self.sides();
+        let [a, b] = [self.vertices[i], self.vertices[i + 1]];
+        let is_line = (a..b).all(|k| self.flat.is_node(k)) && self.flat.is_node(b) && {
+            let ends = [self.point(a), self.point(b)];
+            (a + 1..b).all(|k| off(self.point(k), ends) <= (1e-6 * own).powi(2))
+        };
+        let beside = |corner: bool, side: usize| corner || own > LONG_EDGE * self.side(side).hypot();
+        let first = !self.closed && i == 0;
+        let last = !self.closed && i + 1 == n;
+        is_line
+            && (first || beside(is_corner[i], i + n - 1))
+            && (last || beside(is_corner[(i + 1) % is_corner.len()], i + 1))
+    }
+}
+
+impl Flat {
+    /// Returns `true` if a point is a node.
+    fn is_node(&self, i: usize) -> bool {
+        self.node[i % self.node.len()].is_some()
+    }
+}
+
+/// A part of a subpath without corners that matter.
+pub(crate) struct SmoothPart {
+    /// Segments that join smoothly, or at corners.
+    pub(crate) segments: Vec<Segment>,
+    /// Their distance from the source.
+    pub(crate) off: f64,
+}
+
+impl SmoothPart {
+    /// Number of pieces that it takes.
+    fn count(&self, tolerance: f64) -> usize {
+        let options = Options::new(tolerance - self.off);
+        let (mut pieces, mut report, mut rest) = (Vec::new(), Report::default(), &self.segments[..]);
+        while !rest.is_empty() {
+            match smooth_run(rest, &options, &mut ReachMemory::default(), &mut pieces, &mut report) {
+                Ok(count) => rest = &rest[count..],
+                Err(_) => return usize::MAX,
+            }
+        }
+        pieces.len()
+    }
+}
+
+/// The turn at the joint of two segments, in radians without sign.
+fn turn(before: &Segment, after: &Segment) -> f64 {
+    let [into, away] = [tangent(before, 1.0), tangent(after, 0.0)];
+    into.cross(away).atan2(into.dot(away)).abs()
+}
+
+/// The direction at an end of a segment.
+fn tangent(segment: &Segment, t: f64) -> Vec2 {
+    let seg = segment.segment();
+    let c = seg.to_cubic();
+    let towards =
+        if t == 0.0 { [c.p1 - c.p0, c.p2 - c.p0, c.p3 - c.p0] } else { [c.p3 - c.p2, c.p3 - c.p1, c.p3 - c.p0] };
+    let long = 1e-9 * (c.p3 - c.p0).hypot().max((c.p2 - c.p1).hypot());
+    towards.into_iter().find(|v| v.hypot() > long).unwrap_or(towards[2])
+}
+
+/// Divides a subpath into smooth parts. Joints that turn by more than the corner angle stay; without one, those that do so as seen from a
+/// tolerance away. Segments of no length are left out.
+pub(crate) fn smooth_parts(segments: Vec<Segment>, closed: bool, options: &Options) -> Vec<SmoothPart> {
+    let n = segments.len();
+    let smooth = options.smooth_joint();
+    let last = n.saturating_sub(usize::from(!closed));
+    let kinked = |i: usize| {
+        let turn = turn(&segments[i], &segments[(i + 1) % n]);
+        turn > smooth && options.corner.is_none_or(|corner| turn <= corner)
+    };
+    if !options.merge || n < 2 || !(0..last).any(kinked) {
+        return vec![SmoothPart { segments, off: 0.0 }];
+    }
+    let flat = Flat::new(&segments, closed, options.tolerance);
+    let is_corner = |i: usize| {
+        options.corner.is_some_and(|c| i < n && (i > 0 || closed) && turn(&segments[(i + n - 1) % n], &segments[i]) > c)
+    };
+    let kept: Vec<bool> = flat.node.iter().map(|node| node.is_some_and(is_corner)).collect();
+    if flat.points.len() < 3 {
+        return vec![SmoothPart { segments, off: 0.0 }];
+    }
+    let polygon = Polygon::new(&flat, closed, &kept, options.tolerance);
+    let scan = Scan { segments: &segments, smooth, tolerance: options.tolerance, polygon };
+    let mut out = Vec::new();
+    scan.divide(options, &mut out);
+    out
+}
+
+/// A subpath with its polygon.
+struct Scan<'a> {
+    segments: &'a [Segment],
+    /// Joints that turn by less are smooth.
+    smooth: f64,
+    tolerance: f64,
+    polygon: Polygon<'a>,
+}
+
+impl Scan<'_> {
+    /// Appends the parts between corners and edges.
+    fn divide(&self, options: &Options, out: &mut Vec<SmoothPart>) {
+        let (polygon, n) = (&self.polygon, self.polygon.sides());
+        let vertices = n + usize::from(!polygon.closed);
+        let is_corner: Vec<bool> = (0..vertices)
+            .map(|i| {
+                let turn = self.turn(i);
+                !polygon.closed && (i == 0 || i == n)
+                    || match options.corner {
+                        Some(corner) => turn > corner,
+                        None => turn > self.smooth && polygon.corner(i) > CORNER * self.tolerance,
+                    }
+            })
+            .collect();
+        let edges: Vec<bool> = (0..n).map(|i| polygon.is_edge(i, &is_corner)).collect();
+        let begins = |i: usize| {
+            let before = if i == 0 && !polygon.closed { None } else { Some((i + n - 1) % n) };
+            is_corner[i % vertices] || i < n && edges[i] || before.is_some_and(|b| edges[b])
+        };
+        let Some(first) = (0..n).find(|i| begins(*i)) else {
+            return self.part([0, n], None, out);
+        };
+        let mut from = first;
+        while from < first + n {
+            let to = (from + 1..first + n).find(|i| begins(i % n)).unwrap_or(first + n);
+            let along = |vertex: usize, beside: usize| {
+                let edge = edges[beside % n] && !is_corner[vertex % vertices];
+                edge.then(|| polygon.side(beside).normalize())
+            };
+            self.part([from, to], Some([along(from, from + n - 1), along(to, to)]), out);
+            from = to;
+        }
+    }
+
+    /// The turn of the source at a vertex; 0 inside of a segment.
+    fn turn(&self, vertex: usize) -> f64 {
+        let n = self.segments.len();
+        match self.polygon.flat.node[self.polygon.vertices[vertex] % self.polygon.flat.points.len()] {
+            Some(i) if i < n && (i > 0 || self.polygon.closed) => {
+                turn(&self.segments[(i + n - 1) % n], &self.segments[i])
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The segments between two vertices, if both are nodes.
+    fn between(&self, [from, to]: [usize; 2]) -> Option<Vec<Segment>> {
+        let (flat, n) = (self.polygon.flat, self.segments.len());
+        let node = |i: usize| flat.node[i % flat.points.len()].map(|s| s + n * (i / flat.points.len()));
+        let (first, last) = (node(self.polygon.place(from))?, node(self.polygon.place(to))?);
+        Some((first..last).map(|i| self.segments[i % n]).collect())
+    }
+
+    /// The source's own segments between two vertices; where it begins or ends inside of one, the lines between points.
+    fn cut(&self, [from, to]: [usize; 2]) -> SmoothPart {
+        match self.between([from, to]) {
+            Some(segments) => SmoothPart { segments, off: 0.0 },
+            None => SmoothPart { segments: self.polygon.edges([from, to]), off: FLAT * self.tolerance },
+        }
+    }
+
+    /// Appends the part from one vertex to another, with given directions at the ends; without ends, that of the whole closed polygon.
+    fn part(&self, [from, to]: [usize; 2], ends: Option<[Option<Vec2>; 2]>, out: &mut Vec<SmoothPart>) {
+        let (polygon, tolerance) = (&self.polygon, self.tolerance);
+        if let Some(segments) = self.between([from, to])
+            && segments.windows(2).all(|w| turn(&w[0], &w[1]) <= self.smooth)
+        {
+            return out.push(SmoothPart { segments, off: 0.0 });
+        }
+        let points = [from, to].map(|i| polygon.point(polygon.place(i)));
+        if to == from + 1 && ends == Some([None, None]) {
+            let far = polygon.off([from, to]) + FLAT * tolerance;
+            if far <= tolerance {
+                let line = Segment::new(PathSeg::Line(Line::new(points[0], points[1])));
+                return out.push(SmoothPart { segments: vec![line], off: far });
+            }
+        }
+        let ends = match ends {
+            Some([a, b]) => Ends::Open([End { point: points[0], along: a }, End { point: points[1], along: b }]),
+            None => Ends::Closed,
+        };
+        let (mut samples, knots) = polygon.samples([from, to], matches!(ends, Ends::Closed));
+        let guides = Guide::all(&mut samples, knots, ends, [LOOSEST * tolerance, FINEST * tolerance]);
+        // The one with the fewest pieces, if they are fewer than the lines and curves of the source.
+        let own = polygon.nodes([from, to]);
+        let mut best = (own, None);
+        for (guide, off) in guides {
+            let segments: Vec<Segment> = guide.cubics().map(|c| Segment::new(PathSeg::Cubic(c))).collect();
+            let part = SmoothPart { segments, off: off + FLAT * tolerance };
+            let count = part.count(tolerance);
+            if count < best.0 {
+                best = (count, Some(part));
+            }
+        }
+        if let Some(part) = best.1 {
+            return out.push(part);
+        }
+        // What no guide follows is divided at its sharpest vertex.
+        let sharpest = (from + 1..to).max_by(|i, j| {
+            let [a, b] = [i, j].map(|i| polygon.corner(i % polygon.sides()));
+            a.total_cmp(&b)
+        });
+        match (sharpest, ends) {
+            (Some(at), Ends::Open(ends)) => {
+                self.part([from, at], Some([ends[0].along, None]), out);
+                self.part([at, to], Some([None, ends[1].along]), out);
+            }
+            (Some(at), Ends::Closed) => self.part([at, at + polygon.sides()], Some([None, None]), out),
+            (None, _) => out.push(self.cut([from, to])),
+        }
+    }
+}

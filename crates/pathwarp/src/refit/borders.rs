@@ -1,0 +1,286 @@
+//! Borders that shapes share, simplified once for all of them.
+//!
+//! Segments are cut at nodes of others that lie on them. A node is a *junction* unless exactly two segments meet there, those that several
+//! outlines have counted once. Between junctions, outlines that share a segment share all of them: what stands in their place is found in
+//! one direction, from the segments alone, so that it is the same for all.
+
+use super::limits::ARCS;
+use super::options::Options;
+use super::report::{PathReport, RefittedPath};
+use super::shared::{SharedEdges, fingerprint};
+use crate::error::GeometryError;
+use crate::outline::{Outline, Seg, Subpath};
+use kurbo::{BezPath, Line, ParamCurve, Point};
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+/// Distance of a node from a line that it cuts, in tolerances: more than rounding to decimals moves it.
+const ON: f64 = 1e-2;
+
+/// The borders of a drawing.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Borders {
+    nodes: Nodes,
+    shared: SharedEdges,
+    /// The nodes at which other than two segments meet, sorted.
+    junctions: Vec<[u64; 2]>,
+}
+
+impl Borders {
+    /// The borders among outlines whose subpaths have these tolerances; without, all have `tolerance`.
+    #[must_use]
+    pub fn among<'a>(outlines: &[(&'a Outline, &'a [f64])], tolerance: f64) -> Self {
+        let nodes = Nodes::new(outlines.iter().map(|(o, _)| *o), ON * tolerance);
+        let cut: Vec<Outline> = outlines.iter().map(|(o, _)| nodes.cut(o)).collect();
+        let shared = SharedEdges::held(cut.iter().zip(outlines).map(|(cut, (_, contours))| (cut, *contours)));
+        // Each segment once, with its ends; an end of an open path is one of another segment.
+        let mut ends: Vec<([[u64; 2]; 2], u64)> = Vec::new();
+        for s in cut.iter().flat_map(|o| &o.subpaths) {
+            for g in &s.segs {
+                let [a, b] = [g.start(), g.end()].map(bits);
+                ends.push(([a.min(b), a.max(b)], fingerprint(g)));
+            }
+            if !s.closed {
+                ends.extend([s.start, s.end()].map(bits).map(|p| ([p, p], 0)));
+            }
+        }
+        ends.sort_unstable();
+        ends.dedup();
+        let mut met: Vec<[u64; 2]> = ends.into_iter().flat_map(|(ends, _)| ends).collect();
+        met.sort_unstable();
+        let junctions = met.chunk_by(|a, b| a == b).filter(|run| run.len() != 2).map(|run| run[0]).collect();
+        Self { nodes, shared, junctions }
+    }
+
+    fn is_junction(&self, p: Point) -> bool {
+        self.junctions.binary_search(&bits(p)).is_ok()
+    }
+
+    /// The parts of a cut subpath between junctions, in their order; the first of a closed one begins at a junction, if it has one.
+    fn chains(&self, s: &Subpath) -> Vec<Vec<Seg>> {
+        let mut segs = s.segs.clone();
+        if s.closed && let Some(first) = segs.iter().position(|g| self.is_junction(g.start())) {
+            segs.rotate_left(first);
+        }
+        let mut out: Vec<Vec<Seg>> = Vec::new();
+        for g in segs {
+            match out.last_mut() {
+                Some(last) if !self.is_junction(g.start()) => last.push(g),
+                _ => out.push(vec![g]),
+            }
+        }
+        out
+    }
+}
+
+/// A node as a key.
+fn bits(p: Point) -> [u64; 2] {
+    // Zero has two signs.
+    [p.x + 0.0, p.y + 0.0].map(f64::to_bits)
+}
+
+/// The nodes of a drawing in square cells.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Nodes {
+    cell: f64,
+    within: f64,
+    cells: HashMap<[i64; 2], Vec<Point>>,
+}
+
+impl Nodes {
+    fn new<'a>(outlines: impl Iterator<Item = &'a Outline> + Clone, within: f64) -> Self {
+        let lines = || outlines.clone().flat_map(Outline::segs).filter(|g| matches!(g, Seg::Line(_)));
+        let (length, count) = lines().fold((0.0, 0.0), |(l, n), g| (l + g.start().distance(g.end()), n + 1.0));
+        let mut out = Self { cell: (length / count).max(4.0 * within), within, cells: HashMap::new() };
+        if !(count > 0.0 && out.cell.is_finite()) {
+            return out;
+        }
+        let ends = |s: &Subpath| s.segs.iter().map(Seg::end).chain([s.start]).collect::<Vec<_>>();
+        for p in outlines.flat_map(|o| &o.subpaths).flat_map(ends) {
+            let nodes = out.cells.entry(out.key(p)).or_default();
+            if !nodes.contains(&p) {
+                nodes.push(p);
+            }
+        }
+        out
+    }
+
+    fn key(&self, p: Point) -> [i64; 2] {
+        [p.x, p.y].map(|v| (v / self.cell).floor() as i64)
+    }
+
+    /// The places of nodes that lie on a line, in their order.
+    fn on(&self, line: Line) -> Vec<Point> {
+        /// Longer lines, in cells, are not cut: what ends on them is far smaller.
+        const MOST_CELLS: f64 = 1e5;
+        let (along, length) = (line.p1 - line.p0, line.p0.distance(line.p1));
+        let steps = (length / self.cell).ceil();
+        let mut out: Vec<(f64, Point)> = Vec::new();
+        if !(length > 0.0 && steps < MOST_CELLS) || self.cells.is_empty() {
+            return Vec::new();
+        }
+        let mut seen: Vec<[i64; 2]> = Vec::new();
+        for k in 0..=steps as usize {
+            let [x, y] = self.key(line.eval((k as f64 / steps).min(1.0)));
+            for (i, j) in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j))) {
+                let key = [x + i, y + j];
+                if seen.contains(&key) {
+                    continue;
+                }
+                seen.push(key);
+                for p in self.cells.get(&key).into_iter().flatten() {
+                    let t = (*p - line.p0).dot(along) / (length * length);
+                    let inside = t * length > self.within && (1.0 - t) * length > self.within;
+                    if inside && (*p - line.p0).cross(along).abs() <= self.within * length {
+                        out.push((t, *p));
+                    }
+                }
+            }
+            // Those of the last places only come again.
+            let old = seen.len().saturating_sub(24);
+            seen.drain(..old);
+        }
+        out.sort_by(|a, b| a.0.total_cmp(&b.0).then(bits(a.1).cmp(&bits(b.1))));
+        out.dedup_by(|a, b| a.1 == b.1);
+        out.into_iter().map(|(_, p)| p).collect()
+    }
+
+    /// The outline with its lines cut at the nodes that lie on them.
+    fn cut(&self, outline: &Outline) -> Outline {
+        let lines = |g: &Seg| match g {
+            Seg::Line(l) => {
+                let stops: Vec<Point> = [l.p0].into_iter().chain(self.on(*l)).chain([l.p1]).collect();
+                stops.windows(2).map(|w| Seg::Line(Line::new(w[0], w[1]))).collect()
+            }
+            other => vec![*other],
+        };
+        let cut = |s: &Subpath| Subpath { segs: s.segs.iter().flat_map(lines).collect(), ..s.clone() };
+        Outline { subpaths: outline.subpaths.iter().map(cut).collect() }
+    }
+}
+
+/// Gives the subpaths of an outline the fewest nodes within a tolerance. `contours` holds their tolerances; those beyond its end have
+/// `options.tolerance`. [`Options::borders`] become the same in all outlines that share them. Corners are joints that turn by more than `corner`, in radians;
+/// `None`: those for which no smooth curve can stand within the tolerance, see [`bezierfit::Options::corner`].
+///
+/// # Errors
+/// A coordinate is not finite.
+///
+/// ```
+/// use pathwarp::{Outline, refit::{Options, simplified}};
+///
+/// let stairs = Outline::from_svg("M0,0H1V1H2V2H3V3H4V4H5V5H6V6H7V7H8V8")?;
+/// let line = simplified(&stairs, None, &Options::new(1.0), &[])?;
+/// assert_eq!(line.path.to_svg(), "M0,0 L8,8");
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+pub fn simplified(
+    outline: &Outline,
+    corner: Option<f64>,
+    options: &Options,
+    contours: &[f64],
+) -> Result<RefittedPath, GeometryError> {
+    let (mut path, mut report, borders) = (BezPath::new(), PathReport::default(), &options.borders);
+    let mut fitted = |segs: Vec<Seg>, closed: bool, tolerance: f64| -> Result<BezPath, GeometryError> {
+        let arcs = if segs.iter().any(|g| matches!(g, Seg::Arc(_))) { ARCS * tolerance } else { 0.0 };
+        let source = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs, closed }] }.to_bez_path(arcs);
+        let options = bezierfit::Options::new(tolerance - arcs).with_prove(options.certify);
+        let fitted = bezierfit::simplify(&source, &corner.map_or(options, |c| options.with_corner(c)))?;
+        report.add(PathReport::fitted(&fitted.report, tolerance));
+        Ok(fitted.path)
+    };
+    for (i, s) in borders.nodes.cut(outline).subpaths.into_iter().enumerate() {
+        if s.segs.is_empty() {
+            path.extend(Outline { subpaths: vec![s] }.to_bez_path(options.tolerance));
+            continue;
+        }
+        let own = contours.get(i).copied().unwrap_or(options.tolerance);
+        let held = |segs: &[Seg]| segs.iter().filter_map(|g| borders.shared.tolerance_of(g)).fold(own, f64::min);
+        if s.segs.iter().any(|g| borders.is_junction(g.start())) {
+            let chains = borders.chains(&s);
+            path.move_to(chains[0][0].start());
+            for chain in chains {
+                let tolerance = held(&chain);
+                let (chain, is_turned) = directed(chain);
+                let part = fitted(chain, false, tolerance)?;
+                path.extend(if is_turned { part.reverse_subpaths() } else { part }.into_iter().skip(1));
+            }
+            if s.closed {
+                path.close_path();
+            }
+        } else if s.closed && borders.shared.holds_any(&s.segs) {
+            let tolerance = held(&s.segs);
+            let (ring, is_turned) = directed(from_least(s.segs));
+            let part = fitted(ring, true, tolerance)?;
+            path.extend(if is_turned { part.reverse_subpaths() } else { part });
+        } else {
+            path.extend(fitted(s.segs, s.closed, own)?);
+        }
+    }
+    (report.segments_in, report.segments_out) = (outline.segs().count(), path.segments().count());
+    Ok(RefittedPath { path, spans: Vec::new(), report })
+}
+
+/// The segments in the direction that all outlines with them agree on, and `true` if that is the other one.
+fn directed(segs: Vec<Seg>) -> (Vec<Seg>, bool) {
+    let key = |p: Point| (p.x, p.y);
+    let (Some(first), Some(last)) = (segs.first(), segs.last()) else { return (segs, false) };
+    // Where both ends are one node, the nodes beside it decide.
+    let ends = if first.start() == last.end() { [first.end(), last.start()] } else { [first.start(), last.end()] };
+    if key(ends[1]) < key(ends[0]) { (segs.iter().rev().map(Seg::reversed).collect(), true) } else { (segs, false) }
+}
+
+/// The segments of a closed path from its node with the least coordinates on.
+fn from_least(mut segs: Vec<Seg>) -> Vec<Seg> {
+    let key = |g: &Seg| (g.start().x, g.start().y);
+    let least = (0..segs.len()).min_by(|a, b| key(&segs[*a]).partial_cmp(&key(&segs[*b])).unwrap_or(Ordering::Equal));
+    segs.rotate_left(least.unwrap_or(0));
+    segs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    /// Two areas on either side of a border whose nodes differ, and a line along it.
+    #[test]
+    fn borders_become_the_same_on_both_sides() {
+        let border: Vec<Point> = (0..=60).map(|i| Point::new(f64::from(i), 50.0 + 0.3 * f64::from(i * 37 % 11))).collect();
+        let d = |points: &[Point]| points.iter().map(|p| format!("L{},{} ", p.x, p.y)).collect::<String>();
+        let back: Vec<Point> = border.iter().rev().copied().collect();
+        let a = format!("M0,0 {}L60,0Z", d(&border));
+        let b = format!("M60,100 {}L0,100Z", d(&back));
+        let line = format!("M{},{} {}", border[20].x, border[20].y, d(&border[21..41]));
+        let all: Vec<Outline> = [a, b, line].iter().map(|d| Outline::from_svg(d).unwrap()).collect();
+        let pairs: Vec<(&Outline, &[f64])> = all.iter().map(|o| (o, &[][..])).collect();
+        let borders = Borders::among(&pairs, 2.0);
+        let options = Options::new(2.0).with_borders(Arc::new(borders));
+        let done: Vec<BezPath> =
+            all.iter().map(|o| simplified(o, None, &options, &[]).unwrap().path).collect();
+        let between = |path: &BezPath| {
+            let mut segs: Vec<String> = path
+                .segments()
+                .filter(|s| s.start().y > 49.0 && s.end().y > 49.0 && s.start().y < 60.0 && s.end().y < 60.0)
+                .map(|s| if s.start().x < s.end().x { s } else { s.reverse() })
+                .map(|s| format!("{s:?}"))
+                .collect();
+            segs.sort();
+            segs
+        };
+        let [of_a, of_b, of_line] = [0, 1, 2].map(|i| between(&done[i]));
+        assert_eq!(of_a, of_b);
+        assert!(of_a.len() < 12 && of_line.iter().all(|s| of_a.contains(s)), "{of_a:?}");
+    }
+
+    #[test]
+    fn lines_are_cut_where_others_end_on_them() {
+        let all = ["M0,0H30V10H0Z", "M10,10V20H20V10Z", "M0,10H30V-1"].map(|d| Outline::from_svg(d).unwrap());
+        let pairs: Vec<(&Outline, &[f64])> = all.iter().map(|o| (o, &[][..])).collect();
+        let borders = Borders::among(&pairs, 0.1);
+        let cut = borders.nodes.cut(&all[0]);
+        assert_eq!(cut.segs().count(), 6);
+        assert!(borders.is_junction(Point::new(10.0, 10.0)) && borders.is_junction(Point::new(20.0, 10.0)));
+        assert!(!borders.is_junction(Point::new(0.0, 0.0)));
+    }
+}
