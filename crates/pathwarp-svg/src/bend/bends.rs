@@ -1,6 +1,6 @@
 //! The maps that bend a drawing, each with the part that it bends.
 
-use super::options::{Edit, WarpOptions};
+use super::options::WarpOptions;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{PartRole, Referrer, Scene};
 use crate::source::elements::ElementId;
@@ -8,7 +8,7 @@ use crate::source::select::Selection;
 use crate::source::text::SourceText;
 use pathwarp::Error;
 use pathwarp::kurbo::Affine;
-use pathwarp::map::{AffineMap, Class, Map, Undeclared};
+use pathwarp::map::{AffineMap, Class, Map};
 use std::ops::Range;
 
 /// A map with the options for its part of the drawing.
@@ -22,7 +22,6 @@ impl<'a> Bend<'a> {
     pub(crate) fn new(map: &'a dyn Map, options: WarpOptions) -> Self {
         let map = match options.edit {
             None => map,
-            Some(Edit::Simplify { .. }) => &Undeclared,
             Some(_) => &AffineMap(Affine::IDENTITY),
         };
         Self { map, options }

@@ -3,7 +3,7 @@
 use super::options::Edit;
 use crate::source::number::{MAX_DECIMALS, arcs_data, path_data, path_data_by};
 use pathwarp::kurbo::{BezPath, PathEl, Point, Vec2};
-use pathwarp::map::{AffineMap, Class, Map, Undeclared};
+use pathwarp::map::{AffineMap, Class, Map};
 use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::refit::{self, Assurance, PathReport, RefittedPath, SharedEdges, Span, SpanReport};
 use pathwarp::{GeometryError, Outline, Seg};

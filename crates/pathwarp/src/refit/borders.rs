@@ -12,7 +12,7 @@ use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{BezPath, Line, ParamCurve, Point};
 use std::cmp::Ordering;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Distance of a node from a line that it cuts, in tolerances: more than rounding to decimals moves it.
 const ON: f64 = 1e-2;
@@ -48,7 +48,15 @@ impl Borders {
         ends.dedup();
         let mut met: Vec<[u64; 2]> = ends.into_iter().flat_map(|(ends, _)| ends).collect();
         met.sort_unstable();
-        let junctions = met.chunk_by(|a, b| a == b).filter(|run| run.len() != 2).map(|run| run[0]).collect();
+        let met = met.chunk_by(|a, b| a == b).filter(|run| run.len() != 2).map(|run| run[0]);
+        // Where no border ends, outlines may meet as they like.
+        let on_border: HashSet<[u64; 2]> = cut
+            .iter()
+            .flat_map(Outline::segs)
+            .filter(|g| shared.tolerance_of(g).is_some())
+            .flat_map(|g| [g.start(), g.end()].map(bits))
+            .collect();
+        let junctions = met.filter(|p| on_border.contains(p)).collect();
         Self { nodes, shared, junctions }
     }
 
@@ -59,7 +67,9 @@ impl Borders {
     /// The parts of a cut subpath between junctions, in their order; the first of a closed one begins at a junction, if it has one.
     fn chains(&self, s: &Subpath) -> Vec<Vec<Seg>> {
         let mut segs = s.segs.clone();
-        if s.closed && let Some(first) = segs.iter().position(|g| self.is_junction(g.start())) {
+        if s.closed
+            && let Some(first) = segs.iter().position(|g| self.is_junction(g.start()))
+        {
             segs.rotate_left(first);
         }
         let mut out: Vec<Vec<Seg>> = Vec::new();
@@ -84,7 +94,8 @@ fn bits(p: Point) -> [u64; 2] {
 struct Nodes {
     cell: f64,
     within: f64,
-    cells: HashMap<[i64; 2], Vec<Point>>,
+    /// Each with the number of the subpath that has it; `None` for several.
+    cells: HashMap<[i64; 2], Vec<(Point, Option<usize>)>>,
 }
 
 impl Nodes {
@@ -96,10 +107,14 @@ impl Nodes {
             return out;
         }
         let ends = |s: &Subpath| s.segs.iter().map(Seg::end).chain([s.start]).collect::<Vec<_>>();
-        for p in outlines.flat_map(|o| &o.subpaths).flat_map(ends) {
-            let nodes = out.cells.entry(out.key(p)).or_default();
-            if !nodes.contains(&p) {
-                nodes.push(p);
+        for (i, s) in outlines.flat_map(|o| &o.subpaths).enumerate() {
+            for p in ends(s) {
+                let nodes = out.cells.entry(out.key(p)).or_default();
+                match nodes.iter_mut().find(|(q, _)| *q == p) {
+                    Some((_, owner)) if *owner != Some(i) => *owner = None,
+                    Some(_) => {}
+                    None => nodes.push((p, Some(i))),
+                }
             }
         }
         out
@@ -109,8 +124,8 @@ impl Nodes {
         [p.x, p.y].map(|v| (v / self.cell).floor() as i64)
     }
 
-    /// The places of nodes that lie on a line, in their order.
-    fn on(&self, line: Line) -> Vec<Point> {
+    /// The nodes that lie on a line, in their order, but for those that only its own subpath has.
+    fn on(&self, line: Line, own: Option<usize>) -> Vec<Point> {
         /// Longer lines, in cells, are not cut: what ends on them is far smaller.
         const MOST_CELLS: f64 = 1e5;
         let (along, length) = (line.p1 - line.p0, line.p0.distance(line.p1));
@@ -128,7 +143,8 @@ impl Nodes {
                     continue;
                 }
                 seen.push(key);
-                for p in self.cells.get(&key).into_iter().flatten() {
+                let all = self.cells.get(&key).into_iter().flatten();
+                for (p, _) in all.filter(|(_, owner)| owner.is_none() || *owner != own) {
                     let t = (*p - line.p0).dot(along) / (length * length);
                     let inside = t * length > self.within && (1.0 - t) * length > self.within;
                     if inside && (*p - line.p0).cross(along).abs() <= self.within * length {
@@ -145,16 +161,23 @@ impl Nodes {
         out.into_iter().map(|(_, p)| p).collect()
     }
 
-    /// The outline with its lines cut at the nodes that lie on them.
+    /// The outline with its lines cut at the nodes that lie on them, without segments of no length beside others.
     fn cut(&self, outline: &Outline) -> Outline {
-        let lines = |g: &Seg| match g {
+        let lines = |g: &Seg, own: Option<usize>| match g {
             Seg::Line(l) => {
-                let stops: Vec<Point> = [l.p0].into_iter().chain(self.on(*l)).chain([l.p1]).collect();
+                let stops: Vec<Point> = [l.p0].into_iter().chain(self.on(*l, own)).chain([l.p1]).collect();
                 stops.windows(2).map(|w| Seg::Line(Line::new(w[0], w[1]))).collect()
             }
             other => vec![*other],
         };
-        let cut = |s: &Subpath| Subpath { segs: s.segs.iter().flat_map(lines).collect(), ..s.clone() };
+        let owner = |p: Point| self.cells.get(&self.key(p))?.iter().find(|(q, _)| *q == p)?.1;
+        let is_point = |g: &Seg| matches!(g, Seg::Line(l) if l.p0 == l.p1);
+        let cut = |s: &Subpath| {
+            let only_points = s.segs.iter().all(is_point);
+            let own = s.segs.iter().find_map(|g| owner(g.start()));
+            let segs = s.segs.iter().filter(|g| only_points || !is_point(g)).flat_map(|g| lines(g, own)).collect();
+            Subpath { segs, ..s.clone() }
+        };
         Outline { subpaths: outline.subpaths.iter().map(cut).collect() }
     }
 }
@@ -246,7 +269,8 @@ mod tests {
     /// Two areas on either side of a border whose nodes differ, and a line along it.
     #[test]
     fn borders_become_the_same_on_both_sides() {
-        let border: Vec<Point> = (0..=60).map(|i| Point::new(f64::from(i), 50.0 + 0.3 * f64::from(i * 37 % 11))).collect();
+        let border: Vec<Point> =
+            (0..=60).map(|i| Point::new(f64::from(i), 50.0 + 0.3 * f64::from(i * 37 % 11))).collect();
         let d = |points: &[Point]| points.iter().map(|p| format!("L{},{} ", p.x, p.y)).collect::<String>();
         let back: Vec<Point> = border.iter().rev().copied().collect();
         let a = format!("M0,0 {}L60,0Z", d(&border));
@@ -256,8 +280,7 @@ mod tests {
         let pairs: Vec<(&Outline, &[f64])> = all.iter().map(|o| (o, &[][..])).collect();
         let borders = Borders::among(&pairs, 2.0);
         let options = Options::new(2.0).with_borders(Arc::new(borders));
-        let done: Vec<BezPath> =
-            all.iter().map(|o| simplified(o, None, &options, &[]).unwrap().path).collect();
+        let done: Vec<BezPath> = all.iter().map(|o| simplified(o, None, &options, &[]).unwrap().path).collect();
         let between = |path: &BezPath| {
             let mut segs: Vec<String> = path
                 .segments()
