@@ -169,28 +169,30 @@ impl Guide {
 
     /// Guides for samples over places from the first knot to the last, each with its distance from them: within `within` of each, with few
     /// knots to begin with, and then with as many as it takes to come near to what remains of the samples without noise. Intervals have at
-    /// least the length `finest`.
+    /// least the length `finest`. Without any, the intervals in which the last one was too far away.
     pub(crate) fn all(
         samples: &mut Samples,
         mut knots: Vec<f64>,
         ends: Ends,
         [within, finest]: [f64; 2],
-    ) -> Vec<(Self, f64)> {
+    ) -> Result<Vec<(Self, f64)>, Vec<[f64; 2]>> {
         /// How near, as shares of the distance, one after the other.
         const NEAR: [f64; 3] = [1.0, 0.25, 0.1];
         /// Rounds of divisions for each.
         const ROUNDS: usize = 8;
         /// Distance, in those that are allowed, up to which even weights may be what is wrong.
         const UNEVEN: f64 = 1.6;
+        /// Share of the distance that a bias has where more knots help.
+        const BIASED: f64 = 0.2;
         /// Fewer samples say nothing about a half.
         const FEW: usize = 12;
-        let (mut out, fine) = (Vec::new(), 0.25 * within);
+        let (mut out, mut failed, fine) = (Vec::new(), Vec::new(), 0.25 * within);
         for near in NEAR {
             for _ in 0..ROUNDS {
                 // Once more with the foot points as places.
                 let once = Self::missed(&knots, samples, ends);
                 let Some((guide, mut misses)) = once.and_then(|_| Self::missed(&knots, samples, ends)) else {
-                    return out;
+                    break;
                 };
                 guide.strays(samples, ends, fine, &mut misses);
                 let far = furthest(&misses);
@@ -202,20 +204,26 @@ impl Guide {
                 let mut next = vec![knots[0]];
                 for (k, miss) in misses.iter().enumerate() {
                     let [a, b] = [knots[k], knots[k + 1]];
-                    let wanted = miss.far > within || miss.bias() > near * within;
+                    // What is far to either side alike is noise, which no division brings nearer.
+                    let wanted = miss.far > within && miss.bias() > BIASED * miss.far || miss.bias() > near * within;
                     if wanted && b - a > 2.0 * finest && miss.count >= FEW {
                         next.push(0.5 * (a + b));
                     }
                     next.push(b);
                 }
                 let done = next.len() == knots.len();
+                let far = (0..misses.len()).filter(|k| misses[*k].far > within);
+                failed = far.map(|k| [knots[k], knots[k + 1]]).collect();
                 knots = next;
                 if done {
                     break;
                 }
             }
+            if out.is_empty() {
+                return Err(failed);
+            }
         }
-        out
+        Ok(out)
     }
 
     /// A spline whose largest distance is nearly as small as it can be: each sample weighs more the further it is, again and again (C. L.

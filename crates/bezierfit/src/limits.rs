@@ -22,13 +22,17 @@ pub(crate) const STROKED: f64 = 1.0 - (0.5 + POINTS) * GAPS;
 #[cfg(feature = "area")]
 pub(crate) const CROSSINGS: f64 = 0.02;
 
+/// For fewer pieces of an area's edges before it grows or shrinks.
+#[cfg(feature = "area")]
+pub(crate) const SOURCE: f64 = 0.2;
+
 /// For the edges of an area before fewer pieces are looked for.
 #[cfg(feature = "area")]
 pub(crate) const EDGES: f64 = 0.3;
 
 /// For those pieces.
 #[cfg(feature = "area")]
-pub(crate) const SIMPLIFIED: f64 = 1.0 - CROSSINGS - EDGES;
+pub(crate) const SIMPLIFIED: f64 = 1.0 - SOURCE - 2.0 * CROSSINGS - EDGES;
 
 /// For the cubics that a long run becomes before it is covered with quadratics, which have the rest.
 pub(crate) const CUBICS_FIRST: f64 = 0.05;

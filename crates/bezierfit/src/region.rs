@@ -1,6 +1,6 @@
 //! Areas: what outlines cover together, and areas that grow or shrink. linesweeper finds how their edges cross.
 
-use crate::limits::{CROSSINGS, EDGES, SIMPLIFIED};
+use crate::limits::{CROSSINGS, EDGES, SIMPLIFIED, SMOOTH_JOINT, SOURCE};
 use crate::options::{Error, Options};
 use crate::path::{simplify, subpaths};
 use crate::report::{Assurance, Fitted, Report};
@@ -79,6 +79,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
     let style = Stroke::new(2.0 * distance.abs()).with_join(join).with_caps(Cap::Round).with_miter_limit(MITER_LIMIT);
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
     let rest = Options { tolerance: SIMPLIFIED * options.tolerance, best: true, ..*options };
+    let path = &simplify(path, &Options { tolerance: SOURCE * options.tolerance, best: true, ..*options })?.path;
     let mut area = BezPath::new();
     for subpath in subpaths(path) {
         if matches!(subpath.elements().last(), Some(PathEl::ClosePath)) {
@@ -101,11 +102,18 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
             true => w.shape_a != 0 || w.shape_b != 0,
             false => w.shape_a != 0 && w.shape_b == 0,
         })?;
-        let moved = at_least(distance.abs() - options.tolerance, &segs, &moved, &mut out.report);
+        let (moved, near) = at_least(distance.abs() - options.tolerance, &segs, &moved);
+        // Bevels are nearer than the distance.
+        if join != Join::Bevel {
+            out.report.unresolved.extend(near);
+        }
         add(&mut out, &simplify(&moved, &rest)?, edge.report, (distance.abs(), options));
     }
     if !out.path.is_empty() {
-        out.report.add_error((EDGES + CROSSINGS) * options.tolerance + out.report.max_error, Assurance::Checked);
+        out.report.add_error(
+            (SOURCE + EDGES + 2.0 * CROSSINGS) * options.tolerance + out.report.max_error,
+            Assurance::Checked,
+        );
     }
     Ok(out)
 }
@@ -149,27 +157,47 @@ fn covered(
             }
         }
     }
-    Ok(out)
+    // Where edges cross, they leave segments of hardly any length, and nodes on lines.
+    Ok(simplify(&without_dust(&out, fine), &Options::new(fine).with_corner(SMOOTH_JOINT))?.path)
 }
 
-/// The outlines that are at least so far from the source. Where a stroke is wider than all that it encloses, its outline is bare inside.
-/// Places that are nearer in other outlines are reported.
-fn at_least(distance: f64, source: &[PathSeg], outlines: &BezPath, report: &mut Report) -> BezPath {
+/// The same path without segments that are shorter than a length.
+fn without_dust(path: &BezPath, length: f64) -> BezPath {
+    let mut out = BezPath::new();
+    for subpath in subpaths(path) {
+        let is_dust = |s: &PathSeg| {
+            let c = s.to_cubic();
+            c.p0.distance(c.p1).max(c.p0.distance(c.p2)).max(c.p0.distance(c.p3)) < length
+        };
+        let kept: Vec<PathSeg> = subpath.segments().filter(|s| !is_dust(s)).collect();
+        let Some(last) = kept.last() else { continue };
+        out.move_to(last.end());
+        for s in kept {
+            out.push(s.as_path_el());
+        }
+        out.close_path();
+    }
+    out
+}
+
+/// The outlines that are at least so far from the source, and the places of others that are nearer. Where a stroke is wider than all that
+/// it encloses, its outline is bare inside.
+fn at_least(distance: f64, source: &[PathSeg], outlines: &BezPath) -> (BezPath, Vec<Point>) {
     let boxes: Vec<_> = source.iter().map(Shape::bounding_box).collect();
     let is_near = |p: &Point| {
         let mut near = boxes.iter().zip(source).filter(|(b, _)| b.inflate(distance, distance).contains(*p));
         near.any(|(_, s)| s.nearest(*p, 1e-3 * distance).distance_sq < distance * distance)
     };
-    let mut out = BezPath::new();
+    let (mut out, mut too_near) = (BezPath::new(), Vec::new());
     for contour in subpaths(outlines) {
         let middles: Vec<Point> = contour.segments().map(|s| s.eval(0.5)).collect();
         let near: Vec<Point> = middles.iter().copied().filter(|p| distance > 0.0 && is_near(p)).collect();
         if 2 * near.len() <= middles.len() {
             out.extend(&contour);
-            report.unresolved.extend(near);
+            too_near.extend(near);
         }
     }
-    out
+    (out, too_near)
 }
 
 /// The largest magnitude of a path's coordinates.

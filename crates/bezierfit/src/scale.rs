@@ -28,6 +28,8 @@ const CORNER: f64 = 1.0;
 const LOOSEST: f64 = 0.95;
 /// Least length of an interval between knots, in tolerances.
 const FINEST: f64 = 0.5;
+/// Times that what no guide follows is divided.
+const DIVISIONS: usize = 6;
 /// Samples of each side of the polygon, at least.
 const SAMPLES: f64 = 16.0;
 /// Sum of turns of the sides that one interval between knots covers at first.
@@ -382,7 +384,7 @@ impl Scan<'_> {
             is_corner[i % vertices] || i < n && edges[i] || before.is_some_and(|b| edges[b])
         };
         let Some(first) = (0..n).find(|i| begins(*i)) else {
-            return self.part([0, n], None, out);
+            return self.part([0, n], None, DIVISIONS, out);
         };
         let mut from = first;
         while from < first + n {
@@ -391,7 +393,7 @@ impl Scan<'_> {
                 let edge = edges[beside % n] && !is_corner[vertex % vertices];
                 edge.then(|| polygon.side(beside).normalize())
             };
-            self.part([from, to], Some([along(from, from + n - 1), along(to, to)]), out);
+            self.part([from, to], Some([along(from, from + n - 1), along(to, to)]), DIVISIONS, out);
             from = to;
         }
     }
@@ -423,8 +425,15 @@ impl Scan<'_> {
         }
     }
 
-    /// Appends the part from one vertex to another, with given directions at the ends; without ends, that of the whole closed polygon.
-    fn part(&self, [from, to]: [usize; 2], ends: Option<[Option<Vec2>; 2]>, out: &mut Vec<SmoothPart>) {
+    /// Appends the part from one vertex to another, with given directions at the ends; without ends, that of the whole closed polygon. It is divided
+    /// at most so many times.
+    fn part(
+        &self,
+        [from, to]: [usize; 2],
+        ends: Option<[Option<Vec2>; 2]>,
+        divisions: usize,
+        out: &mut Vec<SmoothPart>,
+    ) {
         let (polygon, tolerance) = (&self.polygon, self.tolerance);
         if let Some(segments) = self.between([from, to])
             && segments.windows(2).all(|w| turn(&w[0], &w[1]) <= self.smooth)
@@ -445,32 +454,56 @@ impl Scan<'_> {
         };
         let (mut samples, knots) = polygon.samples([from, to], matches!(ends, Ends::Closed));
         let guides = Guide::all(&mut samples, knots, ends, [LOOSEST * tolerance, FINEST * tolerance]);
-        // The one with the fewest pieces, if they are fewer than the lines and curves of the source.
-        let own = polygon.nodes([from, to]);
-        let mut best = (own, None);
-        for (guide, off) in guides {
-            let segments: Vec<Segment> = guide.cubics().map(|c| Segment::new(PathSeg::Cubic(c))).collect();
-            let part = SmoothPart { segments, off: off + FLAT * tolerance };
-            let count = part.count(tolerance);
-            if count < best.0 {
-                best = (count, Some(part));
+        let corners = match guides {
+            Ok(guides) => {
+                // The one with the fewest pieces, if they are fewer than the lines and curves of the source.
+                let part = |(guide, off): (Guide, f64)| {
+                    let segments = guide.cubics().map(|c| Segment::new(PathSeg::Cubic(c))).collect();
+                    let part = SmoothPart { segments, off: off + FLAT * tolerance };
+                    (part.count(tolerance), part)
+                };
+                let best = guides.into_iter().map(part).min_by_key(|(count, _)| *count);
+                match best.filter(|(count, _)| *count < polygon.nodes([from, to])) {
+                    Some((_, part)) => return out.push(part),
+                    None => self.sharpest([from, to]).into_iter().collect(),
+                }
+            }
+            Err(failed) => self.beside([from, to], &failed),
+        };
+        // What no guide follows has corners after all.
+        if corners.is_empty() || divisions == 0 {
+            return out.push(self.cut([from, to]));
+        }
+        let (stops, along) = match ends {
+            Ends::Open([a, b]) => ([&[from], &corners[..], &[to]].concat(), [a.along, b.along]),
+            Ends::Closed => ([&corners[..], &[corners[0] + polygon.sides()]].concat(), [None, None]),
+        };
+        for (i, w) in stops.windows(2).enumerate() {
+            let ends = [if i == 0 { along[0] } else { None }, if i + 2 == stops.len() { along[1] } else { None }];
+            self.part([w[0], w[1]], Some(ends), divisions - 1, out);
+        }
+    }
+
+    /// The sharpest vertex between two, if they are near to each other.
+    fn sharpest(&self, [from, to]: [usize; 2]) -> Option<usize> {
+        const NEAR: usize = 8;
+        let corner = |i: &usize| self.polygon.corner(i % self.polygon.sides());
+        (from + 1..to).filter(|_| to - from <= NEAR).max_by(|i, j| corner(i).total_cmp(&corner(j)))
+    }
+
+    /// The vertices between two that lie in or beside intervals of places; if there are none, the sharpest.
+    fn beside(&self, [from, to]: [usize; 2], intervals: &[[f64; 2]]) -> Vec<usize> {
+        let (mut out, mut along, mut k) = (Vec::new(), 0.0, 0);
+        for i in from + 1..to {
+            let (before, after) = (self.polygon.side(i - 1).hypot(), self.polygon.side(i).hypot());
+            along += before;
+            while intervals.get(k).is_some_and(|[_, end]| *end < along - before) {
+                k += 1;
+            }
+            if intervals.get(k).is_some_and(|[start, _]| *start <= along + after) {
+                out.push(i);
             }
         }
-        if let Some(part) = best.1 {
-            return out.push(part);
-        }
-        // What no guide follows is divided at its sharpest vertex.
-        let sharpest = (from + 1..to).max_by(|i, j| {
-            let [a, b] = [i, j].map(|i| polygon.corner(i % polygon.sides()));
-            a.total_cmp(&b)
-        });
-        match (sharpest, ends) {
-            (Some(at), Ends::Open(ends)) => {
-                self.part([from, at], Some([ends[0].along, None]), out);
-                self.part([at, to], Some([None, ends[1].along]), out);
-            }
-            (Some(at), Ends::Closed) => self.part([at, at + polygon.sides()], Some([None, None]), out),
-            (None, _) => out.push(self.cut([from, to])),
-        }
+        if out.is_empty() { self.sharpest([from, to]).into_iter().collect() } else { out }
     }
 }

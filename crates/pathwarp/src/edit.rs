@@ -80,7 +80,7 @@ fn moved_group(
     tolerance: f64,
 ) -> Result<Vec<Fitted>, GeometryError> {
     let fine = ARCS * tolerance;
-    let fitter = bezierfit::Options::new(tolerance - fine).with_corner(options.corner);
+    let fitter = bezierfit::Options::new(tolerance - fine);
     let mut source = outline.to_bez_path(fine);
     if offset.even_odd {
         let open = outline.subpaths.iter().filter(|s| !s.closed).cloned().collect();
