@@ -184,6 +184,8 @@ impl Guide {
         const UNEVEN: f64 = 1.6;
         /// Share of the distance that a bias has where more knots help.
         const BIASED: f64 = 0.2;
+        /// The same by chance, times the root of the number of samples.
+        const CHANCE: f64 = 1.5;
         /// Fewer samples say nothing about a half.
         const FEW: usize = 12;
         let (mut out, mut failed, fine) = (Vec::new(), Vec::new(), 0.25 * within);
@@ -205,7 +207,8 @@ impl Guide {
                 for (k, miss) in misses.iter().enumerate() {
                     let [a, b] = [knots[k], knots[k + 1]];
                     // What is far to either side alike is noise, which no division brings nearer.
-                    let wanted = miss.far > within && miss.bias() > BIASED * miss.far || miss.bias() > near * within;
+                    let noise = f64::max(BIASED, CHANCE / (miss.count as f64).sqrt()) * miss.far;
+                    let wanted = miss.far > within && miss.bias() > noise || miss.bias() > near * within;
                     if wanted && b - a > 2.0 * finest && miss.count >= FEW {
                         next.push(0.5 * (a + b));
                     }

@@ -29,7 +29,7 @@ const LOOSEST: f64 = 0.95;
 /// Least length of an interval between knots, in tolerances.
 const FINEST: f64 = 0.5;
 /// Times that what no guide follows is divided.
-const DIVISIONS: usize = 6;
+const DIVISIONS: usize = 3;
 /// Samples of each side of the polygon, at least.
 const SAMPLES: f64 = 16.0;
 /// Sum of turns of the sides that one interval between knots covers at first.

@@ -337,11 +337,24 @@ mod tests {
     use crate::map::{BicubicNet, Formula, Homography, Real};
     use crate::outline::Seg;
     use kurbo::Line;
+    use std::f64::consts::FRAC_PI_2;
 
     struct Shear;
     impl Formula for Shear {
         fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
             (x + y * y * 0.1, y)
+        }
+    }
+
+    /// Waves of length 2π.
+    struct Waves;
+    impl Formula for Waves {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x, y + x.sin())
+        }
+
+        fn detail(&self, _area: Rect) -> Option<f64> {
+            Some(FRAC_PI_2)
         }
     }
 
@@ -367,6 +380,18 @@ mod tests {
         assert!(c.point(p).distance(by_hand) < 1e-14);
         let back = Chain::new([affine([2.0, 0.0, 0.0, 2.0, 0.0, 0.0]), affine([0.5, 0.0, 0.0, 0.5, 0.0, 0.0])]);
         assert_eq!(back.class(), Class::Affine(Affine::IDENTITY));
+    }
+
+    #[test]
+    fn details_of_chains_are_those_of_the_source_plane() {
+        let area = Rect::new(0.0, 0.0, 0.1, 0.1);
+        let threefold = || affine([3.0, 0.0, 0.0, 3.0, 0.0, 0.0]);
+        assert_eq!(Chain::new([Arc::new(Shear) as Arc<dyn Map>, threefold()]).detail(area), None);
+        // Waves of length 2π are a third as long where the source is stretched threefold first, and as long where it is afterwards.
+        let after = Chain::new([threefold(), Arc::new(Waves)]).detail(area).unwrap();
+        assert!(after <= FRAC_PI_2 / 3.0 && after > 0.7 * FRAC_PI_2 / 3.0, "{after}");
+        let before = Chain::new([Arc::new(Waves) as Arc<dyn Map>, threefold()]).detail(area).unwrap();
+        assert!(before <= FRAC_PI_2 && before > 0.7 * FRAC_PI_2, "{before}");
     }
 
     #[test]
