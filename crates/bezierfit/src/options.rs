@@ -127,10 +127,11 @@ impl Options {
         self.corner.unwrap_or(SMOOTH_JOINT)
     }
 
-    /// Joints that turn by less, in radians, are smooth: half a degree, since drawings round their coordinates, unless corners begin
-    /// below that.
-    pub(crate) fn smooth_joint(&self) -> f64 {
-        self.corner.map_or(SMOOTH_JOINT, |corner| corner.min(SMOOTH_JOINT))
+    /// Joints of paths that turn by less, in radians, may lie inside of a piece, unless corners begin below that. At larger turns it would
+    /// differ from the path in direction, although not in distance.
+    pub(crate) fn path_joint(&self) -> f64 {
+        const MOST: f64 = 15.0 / 180.0 * std::f64::consts::PI;
+        self.corner.map_or(MOST, |corner| corner.min(MOST))
     }
 }
 

@@ -186,7 +186,7 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
 fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
     let mut run = SegmentRun::new(true, segments.len().min(64));
     let most = if options.merge { segments.len() } else { 1 };
-    let count = run.extend(&segments[..most], options.smooth_joint(), |segment| {
+    let count = run.extend(&segments[..most], options.path_joint(), |segment| {
         let form = if options.prove { segment.quotient() } else { None };
         let ends = [segment.end(0.0)?, segment.end(1.0)?];
         let is_line = matches!(segment.seg, PathSeg::Line(_));

@@ -11,7 +11,7 @@
 //! The fewest pieces of the guide are looked for afterwards, within what it leaves of the tolerance.
 
 use crate::guide::{End, Ends, Guide, Samples, off};
-use crate::limits::LONG_EDGE;
+use crate::limits::{LONG_EDGE, SMOOTH_JOINT};
 use crate::merge::ReachMemory;
 use crate::options::Options;
 use crate::path::{Segment, smooth_run};
@@ -38,16 +38,16 @@ const FIRST_TURN: f64 = 1.0;
 /// A subpath flattened.
 struct Flat {
     points: Vec<Point>,
-    /// For each point, the segment that it begins, if it is a node.
-    node: Vec<Option<usize>>,
+    /// For each point, its segment and the parameter there: zero at nodes.
+    at: Vec<(usize, f64)>,
 }
 
 impl Flat {
     fn new(segments: &[Segment], closed: bool, tolerance: f64) -> Self {
-        let mut out = Self { points: Vec::with_capacity(segments.len() + 1), node: Vec::new() };
+        let mut out = Self { points: Vec::with_capacity(segments.len() + 1), at: Vec::new() };
         for (i, s) in segments.iter().enumerate() {
             let seg = s.segment();
-            out.add(seg.start(), Some(i));
+            out.add(seg.start(), (i, 0.0));
             if matches!(seg, PathSeg::Line(_)) {
                 continue;
             }
@@ -55,28 +55,35 @@ impl Flat {
             let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
             let bend = (d1 - d0).hypot().max((d2 - d1).hypot());
             let n = (6.0 * bend / (8.0 * FLAT * tolerance)).sqrt().ceil().clamp(1.0, 4096.0) as usize;
-            for k in 1..n {
-                out.add(c.eval(k as f64 / n as f64), None);
+            for t in (1..n).map(|k| k as f64 / n as f64) {
+                out.add(c.eval(t), (i, t));
             }
         }
         if let Some(last) = segments.last() {
             let end = last.segment().end();
             if !(closed && end == out.points[0]) {
-                out.add(end, Some(segments.len()));
+                out.add(end, (segments.len(), 0.0));
             }
         }
         out
     }
 
-    fn add(&mut self, p: Point, node: Option<usize>) {
+    fn add(&mut self, p: Point, at: (usize, f64)) {
         if self.points.last() == Some(&p) {
-            if let (Some(last), Some(_)) = (self.node.last_mut(), node) {
-                *last = node;
+            if at.1 == 0.0 {
+                self.at.pop();
+                self.at.push(at);
             }
             return;
         }
         self.points.push(p);
-        self.node.push(node);
+        self.at.push(at);
+    }
+
+    /// The number of the segment that begins at a point, if that is a node.
+    fn node(&self, i: usize) -> Option<usize> {
+        let (segment, t) = self.at[i % self.at.len()];
+        (t == 0.0).then_some(segment)
     }
 }
 
@@ -169,17 +176,6 @@ impl<'a> Polygon<'a> {
         if self.closed { self.vertices[vertex % sides] + n * (vertex / sides) } else { self.vertices[vertex] }
     }
 
-    /// The lines from point to point between two vertices.
-    fn edges(&self, [from, to]: [usize; 2]) -> Vec<Segment> {
-        let line = |k: usize| Segment::new(PathSeg::Line(Line::new(self.point(k), self.point(k + 1))));
-        (self.place(from)..self.place(to)).map(line).collect()
-    }
-
-    /// Number of segments of the source that begin between two vertices.
-    fn nodes(&self, [from, to]: [usize; 2]) -> usize {
-        (self.place(from)..self.place(to)).filter(|i| self.flat.is_node(*i)).count()
-    }
-
     /// The largest distance of the points between two vertices from the line through both.
     fn off(&self, [from, to]: [usize; 2]) -> f64 {
         let [a, b] = [from, to].map(|i| self.place(i));
@@ -267,7 +263,7 @@ impl<'a> Polygon<'a> {
         let own = self.side(i).hypot();
         let n = self.sides();
         let [a, b] = [self.vertices[i], self.vertices[i + 1]];
-        let is_line = (a..b).all(|k| self.flat.is_node(k)) && self.flat.is_node(b) && {
+        let is_line = (a..=b).all(|k| self.flat.node(k).is_some()) && {
             let ends = [self.point(a), self.point(b)];
             (a + 1..b).all(|k| off(self.point(k), ends) <= (1e-6 * own).powi(2))
         };
@@ -280,13 +276,6 @@ impl<'a> Polygon<'a> {
     }
 }
 
-impl Flat {
-    /// Returns `true` if a point is a node.
-    fn is_node(&self, i: usize) -> bool {
-        self.node[i % self.node.len()].is_some()
-    }
-}
-
 /// A part of a subpath without corners that matter.
 pub(crate) struct SmoothPart {
     /// Segments that join smoothly, or at corners.
@@ -296,6 +285,11 @@ pub(crate) struct SmoothPart {
 }
 
 impl SmoothPart {
+    /// Segments of the source itself.
+    fn of(segments: Vec<Segment>) -> Self {
+        Self { segments, off: 0.0 }
+    }
+
     /// Number of pieces that it takes.
     fn count(&self, tolerance: f64) -> usize {
         let options = Options::new(tolerance - self.off);
@@ -330,28 +324,34 @@ fn tangent(segment: &Segment, t: f64) -> Vec2 {
 /// tolerance away. Segments of no length are left out.
 pub(crate) fn smooth_parts(segments: Vec<Segment>, closed: bool, options: &Options) -> Vec<SmoothPart> {
     let n = segments.len();
-    let smooth = options.smooth_joint();
+    let smooth = options.path_joint().min(SMOOTH_JOINT);
     let last = n.saturating_sub(usize::from(!closed));
     let kinked = |i: usize| {
         let turn = turn(&segments[i], &segments[(i + 1) % n]);
         turn > smooth && options.corner.is_none_or(|corner| turn <= corner)
     };
     if !options.merge || n < 2 || !(0..last).any(kinked) {
-        return vec![SmoothPart { segments, off: 0.0 }];
+        return vec![SmoothPart::of(segments)];
     }
     let flat = Flat::new(&segments, closed, options.tolerance);
     let is_corner = |i: usize| {
         options.corner.is_some_and(|c| i < n && (i > 0 || closed) && turn(&segments[(i + n - 1) % n], &segments[i]) > c)
     };
-    let kept: Vec<bool> = flat.node.iter().map(|node| node.is_some_and(is_corner)).collect();
+    let kept: Vec<bool> = (0..flat.points.len()).map(|i| flat.node(i).is_some_and(is_corner)).collect();
     if flat.points.len() < 3 {
-        return vec![SmoothPart { segments, off: 0.0 }];
+        return vec![SmoothPart::of(segments)];
     }
     let polygon = Polygon::new(&flat, closed, &kept, options.tolerance);
     let scan = Scan { segments: &segments, smooth, tolerance: options.tolerance, polygon };
-    let mut out = Vec::new();
-    scan.divide(options, &mut out);
-    out
+    let (count, parts) = scan.divide(options);
+    let own = SmoothPart::of(segments);
+    if count < own.count(options.tolerance) { parts } else { vec![own] }
+}
+
+/// Parts that follow each other with the numbers of their pieces, and the sum of these.
+fn together(parts: Vec<(usize, Vec<SmoothPart>)>) -> (usize, Vec<SmoothPart>) {
+    let count = parts.iter().fold(0, |sum: usize, (count, _)| sum.saturating_add(*count));
+    (count, parts.into_iter().flat_map(|(_, parts)| parts).collect())
 }
 
 /// A subpath with its polygon.
@@ -364,8 +364,8 @@ struct Scan<'a> {
 }
 
 impl Scan<'_> {
-    /// Appends the parts between corners and edges.
-    fn divide(&self, options: &Options, out: &mut Vec<SmoothPart>) {
+    /// The parts between corners and edges, and the number of their pieces.
+    fn divide(&self, options: &Options) -> (usize, Vec<SmoothPart>) {
         let (polygon, n) = (&self.polygon, self.polygon.sides());
         let vertices = n + usize::from(!polygon.closed);
         let is_corner: Vec<bool> = (0..vertices)
@@ -384,24 +384,25 @@ impl Scan<'_> {
             is_corner[i % vertices] || i < n && edges[i] || before.is_some_and(|b| edges[b])
         };
         let Some(first) = (0..n).find(|i| begins(*i)) else {
-            return self.part([0, n], None, DIVISIONS, out);
+            return self.part([0, n], None, DIVISIONS);
         };
-        let mut from = first;
+        let (mut from, mut out) = (first, Vec::new());
         while from < first + n {
             let to = (from + 1..first + n).find(|i| begins(i % n)).unwrap_or(first + n);
             let along = |vertex: usize, beside: usize| {
                 let edge = edges[beside % n] && !is_corner[vertex % vertices];
                 edge.then(|| polygon.side(beside).normalize())
             };
-            self.part([from, to], Some([along(from, from + n - 1), along(to, to)]), DIVISIONS, out);
+            out.push(self.part([from, to], Some([along(from, from + n - 1), along(to, to)]), DIVISIONS));
             from = to;
         }
+        together(out)
     }
 
     /// The turn of the source at a vertex; 0 inside of a segment.
     fn turn(&self, vertex: usize) -> f64 {
         let n = self.segments.len();
-        match self.polygon.flat.node[self.polygon.vertices[vertex] % self.polygon.flat.points.len()] {
+        match self.polygon.flat.node(self.polygon.vertices[vertex]) {
             Some(i) if i < n && (i > 0 || self.polygon.closed) => {
                 turn(&self.segments[(i + n - 1) % n], &self.segments[i])
             }
@@ -409,43 +410,46 @@ impl Scan<'_> {
         }
     }
 
-    /// The segments between two vertices, if both are nodes.
-    fn between(&self, [from, to]: [usize; 2]) -> Option<Vec<Segment>> {
-        let (flat, n) = (self.polygon.flat, self.segments.len());
-        let node = |i: usize| flat.node[i % flat.points.len()].map(|s| s + n * (i / flat.points.len()));
-        let (first, last) = (node(self.polygon.place(from))?, node(self.polygon.place(to))?);
-        Some((first..last).map(|i| self.segments[i % n]).collect())
+    /// The source's own segments between two vertices.
+    fn between(&self, [from, to]: [usize; 2]) -> Vec<Segment> {
+        let (at, n) = (&self.polygon.flat.at, self.segments.len());
+        let [(first, t0), (last, t1)] = [from, to].map(|i| {
+            let place = self.polygon.place(i);
+            let (segment, t) = at[place % at.len()];
+            (segment + n * (place / at.len()), t)
+        });
+        let part = |i: usize| {
+            let (t0, t1) = (if i == first { t0 } else { 0.0 }, if i == last { t1 } else { 1.0 });
+            let whole = self.segments[i % n];
+            if t1 - t0 == 1.0 {
+                whole
+            } else {
+                Segment::new(PathSeg::Cubic(whole.segment().to_cubic().subsegment(t0..t1)))
+            }
+        };
+        (first..last + usize::from(t1 > 0.0)).map(part).collect()
     }
 
-    /// The source's own segments between two vertices; where it begins or ends inside of one, the lines between points.
-    fn cut(&self, [from, to]: [usize; 2]) -> SmoothPart {
-        match self.between([from, to]) {
-            Some(segments) => SmoothPart { segments, off: 0.0 },
-            None => SmoothPart { segments: self.polygon.edges([from, to]), off: FLAT * self.tolerance },
-        }
-    }
-
-    /// Appends the part from one vertex to another, with given directions at the ends; without ends, that of the whole closed polygon. It is divided
-    /// at most so many times.
+    /// The part from one vertex to another, with given directions at the ends, and the number of its pieces; without ends, that of the
+    /// whole closed polygon. It is divided at most so many times.
     fn part(
         &self,
         [from, to]: [usize; 2],
         ends: Option<[Option<Vec2>; 2]>,
         divisions: usize,
-        out: &mut Vec<SmoothPart>,
-    ) {
+    ) -> (usize, Vec<SmoothPart>) {
         let (polygon, tolerance) = (&self.polygon, self.tolerance);
-        if let Some(segments) = self.between([from, to])
-            && segments.windows(2).all(|w| turn(&w[0], &w[1]) <= self.smooth)
-        {
-            return out.push(SmoothPart { segments, off: 0.0 });
+        let counted = |part: SmoothPart| (part.count(tolerance), vec![part]);
+        let own = counted(SmoothPart::of(self.between([from, to])));
+        if own.1[0].segments.windows(2).all(|w| turn(&w[0], &w[1]) <= self.smooth) {
+            return own;
         }
         let points = [from, to].map(|i| polygon.point(polygon.place(i)));
         if to == from + 1 && ends == Some([None, None]) {
-            let far = polygon.off([from, to]) + FLAT * tolerance;
-            if far <= tolerance {
+            let off = polygon.off([from, to]) + FLAT * tolerance;
+            if off <= tolerance {
                 let line = Segment::new(PathSeg::Line(Line::new(points[0], points[1])));
-                return out.push(SmoothPart { segments: vec![line], off: far });
+                return (1, vec![SmoothPart { segments: vec![line], off }]);
             }
         }
         let ends = match ends {
@@ -459,12 +463,11 @@ impl Scan<'_> {
                 // The one with the fewest pieces, if they are fewer than the lines and curves of the source.
                 let part = |(guide, off): (Guide, f64)| {
                     let segments = guide.cubics().map(|c| Segment::new(PathSeg::Cubic(c))).collect();
-                    let part = SmoothPart { segments, off: off + FLAT * tolerance };
-                    (part.count(tolerance), part)
+                    counted(SmoothPart { segments, off: off + FLAT * tolerance })
                 };
                 let best = guides.into_iter().map(part).min_by_key(|(count, _)| *count);
-                match best.filter(|(count, _)| *count < polygon.nodes([from, to])) {
-                    Some((_, part)) => return out.push(part),
+                match best.filter(|(count, _)| *count < own.0) {
+                    Some(best) => return best,
                     None => self.sharpest([from, to]).into_iter().collect(),
                 }
             }
@@ -472,16 +475,18 @@ impl Scan<'_> {
         };
         // What no guide follows has corners after all.
         if corners.is_empty() || divisions == 0 {
-            return out.push(self.cut([from, to]));
+            return own;
         }
         let (stops, along) = match ends {
             Ends::Open([a, b]) => ([&[from], &corners[..], &[to]].concat(), [a.along, b.along]),
             Ends::Closed => ([&corners[..], &[corners[0] + polygon.sides()]].concat(), [None, None]),
         };
-        for (i, w) in stops.windows(2).enumerate() {
+        let parts = stops.windows(2).enumerate().map(|(i, w)| {
             let ends = [if i == 0 { along[0] } else { None }, if i + 2 == stops.len() { along[1] } else { None }];
-            self.part([w[0], w[1]], Some(ends), divisions - 1, out);
-        }
+            self.part([w[0], w[1]], Some(ends), divisions - 1)
+        });
+        let divided = together(parts.collect());
+        if divided.0 < own.0 { divided } else { own }
     }
 
     /// The sharpest vertex between two, if they are near to each other.
