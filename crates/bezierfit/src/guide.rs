@@ -52,6 +52,8 @@ pub(crate) struct Guide {
 const STIFF: f64 = 1e-6;
 /// Weight of given ends.
 const FIXED: f64 = 1e3;
+/// Distance, in those that are allowed, up to which even weights may be what is wrong.
+const UNEVEN: f64 = 1.6;
 
 /// The cubic Hermite basis on an interval of length h.
 fn basis(t: f64, h: f64) -> [f64; 4] {
@@ -150,7 +152,8 @@ impl Guide {
             }
             let slope = d.hypot2() - v.dot(dd).min(0.5 * d.hypot2());
             let step = v.dot(d) / slope;
-            if !step.is_finite() {
+            // A small step changes the distance by half of its square.
+            if !step.is_finite() || (v.dot(d) * step).abs() < 1e-6 * far * far {
                 break;
             }
             now = (now + step).clamp(ends[0], ends[1]);
@@ -180,53 +183,40 @@ impl Guide {
         const NEAR: [f64; 3] = [1.0, 0.25, 0.1];
         /// Rounds of divisions for each.
         const ROUNDS: usize = 8;
-        /// Distance, in those that are allowed, up to which even weights may be what is wrong.
-        const UNEVEN: f64 = 1.6;
-        /// Share of the distance that a bias has where more knots help.
-        const BIASED: f64 = 0.2;
-        /// The same by chance, times the root of the number of samples.
-        const CHANCE: f64 = 1.5;
-        /// Fewer samples say nothing about a half.
-        const FEW: usize = 12;
         let (mut out, mut failed, fine) = (Vec::new(), Vec::new(), 0.25 * within);
-        for near in NEAR {
-            for _ in 0..ROUNDS {
-                // Once more with the foot points as places.
-                let once = Self::missed(&knots, samples, ends);
-                let Some((guide, mut misses)) = once.and_then(|_| Self::missed(&knots, samples, ends)) else {
-                    break;
-                };
-                guide.strays(samples, ends, fine, &mut misses);
-                let far = furthest(&misses);
-                if far <= UNEVEN * within {
-                    // Without splitting an interval, more weight for what is far.
-                    let evened = Self::evened(&knots, samples, ends, fine);
-                    out.extend([Some((guide, far)), evened].into_iter().flatten().filter(|(_, far)| *far <= within));
-                }
-                let mut next = vec![knots[0]];
-                for (k, miss) in misses.iter().enumerate() {
-                    let [a, b] = [knots[k], knots[k + 1]];
-                    // What is far to either side alike is noise, which no division brings nearer.
-                    let noise = f64::max(BIASED, CHANCE / (miss.count as f64).sqrt()) * miss.far;
-                    let wanted = miss.far > within && miss.bias() > noise || miss.bias() > near * within;
-                    if wanted && b - a > 2.0 * finest && miss.count >= FEW {
-                        next.push(0.5 * (a + b));
-                    }
-                    next.push(b);
-                }
-                let done = next.len() == knots.len();
-                let far = (0..misses.len()).filter(|k| misses[*k].far > within);
-                failed = far.map(|k| [knots[k], knots[k + 1]]).collect();
-                knots = next;
-                if done {
-                    break;
-                }
+        let (mut levels, mut rounds) = (NEAR.iter().peekable(), 0);
+        while let Some(near) = levels.peek() {
+            // Once more with the foot points as places.
+            let once = Self::missed(&knots, samples, ends);
+            let Some((guide, mut misses)) = once.and_then(|_| Self::missed(&knots, samples, ends)) else {
+                break;
+            };
+            guide.strays(samples, ends, fine, &mut misses);
+            let far = furthest(&misses);
+            if far <= UNEVEN * within {
+                // Without splitting an interval, more weight for what is far.
+                let evened = Self::evened(&knots, samples, ends, fine);
+                out.extend([Some((guide, far)), evened].into_iter().flatten().filter(|(_, far)| *far <= within));
             }
-            if out.is_empty() {
+            let far = (0..misses.len()).filter(|k| misses[*k].far > within);
+            failed = far.map(|k| [knots[k], knots[k + 1]]).collect();
+            let divided = |near: f64| divided(&knots, &misses, [within, near * within, finest]);
+            let (mut next, hopeless) = divided(**near);
+            if hopeless && out.is_empty() {
                 return Err(failed);
             }
+            while next.len() == knots.len() || rounds == ROUNDS {
+                levels.next();
+                rounds = 0;
+                match levels.peek() {
+                    Some(near) if !out.is_empty() => next = divided(**near).0,
+                    _ => return if out.is_empty() { Err(failed) } else { Ok(out) },
+                }
+            }
+            rounds += 1;
+            knots = next;
         }
-        Ok(out)
+        if out.is_empty() { Err(failed) } else { Ok(out) }
     }
 
     /// A spline whose largest distance is nearly as small as it can be: each sample weighs more the further it is, again and again (C. L.
@@ -235,6 +225,8 @@ impl Guide {
         const ROUNDS: usize = 4;
         /// Share of the weight that a sample keeps.
         const KEPT: f64 = 0.05;
+        /// Ratio of a distance to the one before, beyond which the next one is not looked for.
+        const GAIN: f64 = 0.99;
         let (mut samples, mut best): (Samples, Option<(Self, f64)>) = (samples.clone(), None);
         for _ in 0..ROUNDS {
             let (guide, misses) = Self::missed(knots, &mut samples, ends)?;
@@ -242,8 +234,12 @@ impl Guide {
             for (weight, off) in samples.weight.iter_mut().zip(&samples.off) {
                 *weight *= KEPT + off / far.max(f64::MIN_POSITIVE);
             }
-            if best.as_ref().is_none_or(|(_, least)| far < *least) {
+            let least = best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
+            if far < least {
                 best = Some((guide, far));
+            }
+            if far > GAIN * least {
+                break;
             }
         }
         let (guide, _) = best?;
@@ -357,6 +353,30 @@ impl Miss {
     fn bias(&self) -> f64 {
         self.quarters.iter().map(|[sum, weight]| (sum / weight).abs()).fold(0.0, f64::max)
     }
+}
+
+/// Knots with those intervals divided that are too far away or, on a mean, further than `near` to one side. `true` if another one is so far
+/// away that weights do not bring it near, either.
+fn divided(knots: &[f64], misses: &[Miss], [within, near, finest]: [f64; 3]) -> (Vec<f64>, bool) {
+    /// Share of the distance that a bias has where more knots help.
+    const BIASED: f64 = 0.2;
+    /// The same by chance, times the root of the number of samples.
+    const CHANCE: f64 = 1.5;
+    /// Fewer samples say nothing about a half.
+    const FEW: usize = 12;
+    let (mut out, mut hopeless) = (vec![knots[0]], false);
+    for (ends, miss) in knots.windows(2).zip(misses) {
+        // What is far to either side alike is noise, which no division brings nearer.
+        let noise = f64::max(BIASED, CHANCE / (miss.count as f64).sqrt()) * miss.far;
+        let wanted = miss.far > within && miss.bias() > noise || miss.bias() > near;
+        if wanted && ends[1] - ends[0] > 2.0 * finest && miss.count >= FEW {
+            out.push(0.5 * (ends[0] + ends[1]));
+        } else {
+            hopeless |= miss.far > UNEVEN * within;
+        }
+        out.push(ends[1]);
+    }
+    (out, hopeless)
 }
 
 /// The interval between knots that holds a place.

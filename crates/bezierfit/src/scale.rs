@@ -190,9 +190,10 @@ impl<'a> Polygon<'a> {
         for i in from..to {
             let side = self.side(i);
             let (start, length) = (self.point(self.place(i)), side.hypot());
-            for k in self.place(i)..self.place(i + 1) {
-                let [p, q] = [self.point(k), self.point(k + 1)];
-                let count = (SAMPLES * p.distance(q) / length).ceil().clamp(1.0, SAMPLES);
+            let edges = || (self.place(i)..self.place(i + 1)).map(|k| [self.point(k), self.point(k + 1)]);
+            let fine = edges().map(|[p, q]| p.distance(q)).sum::<f64>() / SAMPLES;
+            for [p, q] in edges() {
+                let count = (p.distance(q) / fine).round().clamp(1.0, SAMPLES);
                 for j in 0..count as usize {
                     let r = p.lerp(q, j as f64 / count);
                     let t = ((r - start).dot(side) / side.hypot2()).clamp(0.0, 1.0);
