@@ -53,7 +53,7 @@ const STIFF: f64 = 1e-6;
 /// Weight of given ends.
 const FIXED: f64 = 1e3;
 /// Distance, in those that are allowed, up to which even weights may be what is wrong.
-const UNEVEN: f64 = 1.6;
+const UNEVEN: f64 = 2.5;
 
 /// The cubic Hermite basis on an interval of length h.
 fn basis(t: f64, h: f64) -> [f64; 4] {

@@ -32,8 +32,10 @@ const FINEST: f64 = 0.5;
 const DIVISIONS: usize = 3;
 /// Samples of each side of the polygon, at least.
 const SAMPLES: f64 = 16.0;
-/// Sum of turns of the sides that one interval between knots covers at first.
+/// Sum of turns of the sides that one interval between knots covers at first, and that of all sides, up to which one covers them all: an arc
+/// of a quarter turn.
 const FIRST_TURN: f64 = 1.0;
+const ONE_TURN: f64 = 1.7;
 
 /// A subpath flattened.
 struct Flat {
@@ -187,6 +189,8 @@ impl<'a> Polygon<'a> {
     fn samples(&self, [from, to]: [usize; 2], closed: bool) -> (Samples, Vec<f64>) {
         let mut samples = Samples::default();
         let (mut knots, mut along, mut turned) = (vec![0.0], 0.0, 0.0_f64);
+        let turns = (from + 1..to).map(|i| self.turn(i % self.sides()).abs()).sum::<f64>();
+        let first = if turns <= ONE_TURN { ONE_TURN } else { FIRST_TURN };
         for i in from..to {
             let side = self.side(i);
             let (start, length) = (self.point(self.place(i)), side.hypot());
@@ -202,7 +206,7 @@ impl<'a> Polygon<'a> {
             }
             along += length;
             turned += if i + 1 < to { self.turn((i + 1) % self.sides()) } else { 0.0 };
-            if turned.abs() > FIRST_TURN || i + 1 == to {
+            if turned.abs() > first || i + 1 == to {
                 knots.push(along);
                 turned = 0.0;
             }

@@ -80,7 +80,7 @@ pub(crate) fn param_arg(p: &Param) -> Arg {
     if let Some(d) = p.default {
         let _ = write!(help, " [default: {d}]");
     }
-    let arg = Arg::new(p.name).long(p.name).help(help).help_heading(HEADING);
+    let arg = Arg::new(p.name).long(p.name).help(help).help_heading(HEADING).hide(p.help.is_empty());
     if p.kind == Kind::Flag {
         return arg.action(ArgAction::SetTrue);
     }

@@ -19,7 +19,8 @@ pub static EDITS: [Info; 3] = [
                 "Joints that turn by more than this stay corners. Default: those for which no smooth curve can stand within the distance.",
             )
             .within(0.0, 180.0),
-            Param::flag("polylines", "No longer needed: straight lines that mean a curve become one."),
+            // Recipes of older versions have it.
+            Param::flag("polylines", ""),
         ])
         .by_hand(ByHand { neutral: &[("within", "0.05%")], showing: &[("within", "1%")], ..ByHand::NONE }),
     Info::new("offset", "let areas grow, or shrink")

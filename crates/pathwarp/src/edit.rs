@@ -63,7 +63,7 @@ pub fn moved(
         let own = |i: &usize| contours.get(*i).copied().unwrap_or_else(|| options.of_contour(&outline.subpaths[*i]));
         let tolerance = group.iter().map(own).fold(f64::INFINITY, f64::min);
         let group = Outline { subpaths: group.iter().map(|i| outline.subpaths[*i].clone()).collect() };
-        for fitted in moved_group(&group, offset, options, tolerance)? {
+        for fitted in moved_group(&group, offset, tolerance)? {
             report.add(PathReport::fitted(&fitted.report, tolerance));
             path.extend(fitted.path);
         }
@@ -73,12 +73,7 @@ pub fn moved(
 }
 
 /// Offsets subpaths together, to each side that is wanted.
-fn moved_group(
-    outline: &Outline,
-    offset: &Offset,
-    options: &Options,
-    tolerance: f64,
-) -> Result<Vec<Fitted>, GeometryError> {
+fn moved_group(outline: &Outline, offset: &Offset, tolerance: f64) -> Result<Vec<Fitted>, GeometryError> {
     let fine = ARCS * tolerance;
     let fitter = bezierfit::Options::new(tolerance - fine);
     let mut source = outline.to_bez_path(fine);

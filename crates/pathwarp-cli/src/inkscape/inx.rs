@@ -299,6 +299,7 @@ fn of_param(p: &Param) -> String {
     let number = default.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%');
     match p.kind {
         Kind::Save => {}
+        Kind::Flag if p.help.is_empty() => {}
         Kind::Flag => widget(p.name, "bool", String::new(), own, "false".into()).write(&mut out),
         Kind::Number if default.ends_with('%') => {
             let name = format!("{}{PERCENT}", p.name);

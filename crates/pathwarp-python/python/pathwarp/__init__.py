@@ -102,8 +102,8 @@ def simplify(
 ) -> Warped:
     """Gives the paths of a drawing the fewest nodes within `tolerance`, as `pathwarp simplify` does, and returns the file.
 
-    `svg` is what `warp_svg` takes. Joints that turn by more than `corners` degrees stay corners (15, of polylines 30). With `polylines`,
-    contours of straight lines become curves through their vertices.
+    `svg` is what `warp_svg` takes. Joints that turn by more than `corners` degrees stay corners; without it, those for which no smooth curve
+    can stand within `tolerance`. `polylines` is no longer needed.
     """
     edit = Deformation._edit("simplify", {"corners": corners, "polylines": polylines})
     return edit.warp_svg(svg, name=name, **options)

@@ -135,7 +135,7 @@ fn bent<'a>(drawing: &'a Drawing, of: &[Option<usize>], k: usize) -> impl Iterat
     drawing.shapes().iter().zip(of).filter(move |(_, of)| **of == Some(k)).map(|(s, _)| &*s.outline)
 }
 
-/// Adds to a bend the edges that its shapes share, which keep their own pieces. An edge with another map on its other side is not
+/// Adds to a bend the edges that its shapes share, which have the same pieces in all. An edge with another map on its other side is not
 /// shared. Also returns the tolerances of the contours of every part.
 fn shared<'a>(
     drawing: &Drawing,

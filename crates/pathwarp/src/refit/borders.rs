@@ -7,12 +7,12 @@
 use super::limits::ARCS;
 use super::options::Options;
 use super::report::{PathReport, RefittedPath};
-use super::shared::{SharedEdges, fingerprint};
+use super::shared::{SharedEdges, is_turned};
 use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{BezPath, Line, ParamCurve, Point};
 use std::cmp::Ordering;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// Distance of a node from a line that it cuts, in tolerances: more than rounding to decimals moves it.
 const ON: f64 = 1e-2;
@@ -22,8 +22,6 @@ const ON: f64 = 1e-2;
 pub struct Borders {
     nodes: Nodes,
     shared: SharedEdges,
-    /// The nodes at which other than two segments meet, sorted.
-    junctions: Vec<[u64; 2]>,
 }
 
 impl Borders {
@@ -33,60 +31,26 @@ impl Borders {
         let nodes = Nodes::new(outlines.iter().map(|(o, _)| *o), ON * tolerance);
         let cut: Vec<Outline> = outlines.iter().map(|(o, _)| nodes.cut(o)).collect();
         let shared = SharedEdges::held(cut.iter().zip(outlines).map(|(cut, (_, contours))| (cut, *contours)));
-        // Each segment once, with its ends; an end of an open path is one of another segment.
-        let mut ends: Vec<([[u64; 2]; 2], u64)> = Vec::new();
-        for s in cut.iter().flat_map(|o| &o.subpaths) {
-            for g in &s.segs {
-                let [a, b] = [g.start(), g.end()].map(bits);
-                ends.push(([a.min(b), a.max(b)], fingerprint(g)));
-            }
-            if !s.closed {
-                ends.extend([s.start, s.end()].map(bits).map(|p| ([p, p], 0)));
-            }
-        }
-        ends.sort_unstable();
-        ends.dedup();
-        let mut met: Vec<[u64; 2]> = ends.into_iter().flat_map(|(ends, _)| ends).collect();
-        met.sort_unstable();
-        let met = met.chunk_by(|a, b| a == b).filter(|run| run.len() != 2).map(|run| run[0]);
-        // Where no border ends, outlines may meet as they like.
-        let on_border: HashSet<[u64; 2]> = cut
-            .iter()
-            .flat_map(Outline::segs)
-            .filter(|g| shared.tolerance_of(g).is_some())
-            .flat_map(|g| [g.start(), g.end()].map(bits))
-            .collect();
-        let junctions = met.filter(|p| on_border.contains(p)).collect();
-        Self { nodes, shared, junctions }
-    }
-
-    fn is_junction(&self, p: Point) -> bool {
-        self.junctions.binary_search(&bits(p)).is_ok()
+        Self { nodes, shared }
     }
 
     /// The parts of a cut subpath between junctions, in their order; the first of a closed one begins at a junction, if it has one.
     fn chains(&self, s: &Subpath) -> Vec<Vec<Seg>> {
         let mut segs = s.segs.clone();
         if s.closed
-            && let Some(first) = segs.iter().position(|g| self.is_junction(g.start()))
+            && let Some(first) = segs.iter().position(|g| self.shared.is_junction(g.start()))
         {
             segs.rotate_left(first);
         }
         let mut out: Vec<Vec<Seg>> = Vec::new();
         for g in segs {
             match out.last_mut() {
-                Some(last) if !self.is_junction(g.start()) => last.push(g),
+                Some(last) if !self.shared.is_junction(g.start()) => last.push(g),
                 _ => out.push(vec![g]),
             }
         }
         out
     }
-}
-
-/// A node as a key.
-fn bits(p: Point) -> [u64; 2] {
-    // Zero has two signs.
-    [p.x + 0.0, p.y + 0.0].map(f64::to_bits)
 }
 
 /// The nodes of a drawing in square cells.
@@ -156,7 +120,7 @@ impl Nodes {
             let old = seen.len().saturating_sub(24);
             seen.drain(..old);
         }
-        out.sort_by(|a, b| a.0.total_cmp(&b.0).then(bits(a.1).cmp(&bits(b.1))));
+        out.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.x.total_cmp(&b.1.x)));
         out.dedup_by(|a, b| a.1 == b.1);
         out.into_iter().map(|(_, p)| p).collect()
     }
@@ -219,7 +183,7 @@ pub fn simplified(
         }
         let own = contours.get(i).copied().unwrap_or(options.tolerance);
         let held = |segs: &[Seg]| segs.iter().filter_map(|g| borders.shared.tolerance_of(g)).fold(own, f64::min);
-        if s.segs.iter().any(|g| borders.is_junction(g.start())) {
+        if s.segs.iter().any(|g| borders.shared.is_junction(g.start())) {
             let chains = borders.chains(&s);
             path.move_to(chains[0][0].start());
             for chain in chains {
@@ -246,11 +210,8 @@ pub fn simplified(
 
 /// The segments in the direction that all outlines with them agree on, and `true` if that is the other one.
 fn directed(segs: Vec<Seg>) -> (Vec<Seg>, bool) {
-    let key = |p: Point| (p.x, p.y);
-    let (Some(first), Some(last)) = (segs.first(), segs.last()) else { return (segs, false) };
-    // Where both ends are one node, the nodes beside it decide.
-    let ends = if first.start() == last.end() { [first.end(), last.start()] } else { [first.start(), last.end()] };
-    if key(ends[1]) < key(ends[0]) { (segs.iter().rev().map(Seg::reversed).collect(), true) } else { (segs, false) }
+    let turned = is_turned(&segs);
+    (if turned { segs.iter().rev().map(Seg::reversed).collect() } else { segs }, turned)
 }
 
 /// The segments of a closed path from its node with the least coordinates on.
@@ -303,7 +264,9 @@ mod tests {
         let borders = Borders::among(&pairs, 0.1);
         let cut = borders.nodes.cut(&all[0]);
         assert_eq!(cut.segs().count(), 6);
-        assert!(borders.is_junction(Point::new(10.0, 10.0)) && borders.is_junction(Point::new(20.0, 10.0)));
-        assert!(!borders.is_junction(Point::new(0.0, 0.0)));
+        assert!(
+            borders.shared.is_junction(Point::new(10.0, 10.0)) && borders.shared.is_junction(Point::new(20.0, 10.0))
+        );
+        assert!(!borders.shared.is_junction(Point::new(0.0, 0.0)));
     }
 }

@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// Work of a trial with its share of the checks, in evaluations of the map. The samples themselves are fewer.
 const TRIAL_WORK: f64 = 40.0;
 
-/// What outlasts a subpath.
+/// State reused from one subpath to the next.
 #[derive(Default)]
 pub(super) struct MergeMemory {
     repeats: Repeats,
@@ -161,9 +161,6 @@ impl<'a> Merger<'a> {
             let unlike = 2.0 * magnified * (off + other);
             let tolerance = ACCEPTED * self.fitter.options.tolerance - unlike;
             let site = self.site(start, start + way.segments);
-            if site.parts.iter().any(|p| self.fitter.options.shared.contains(&p.seg)) {
-                continue;
-            }
             let piece = |(leg, cubic): &(Leg, Option<Carried>)| {
                 let piece = if leg.merged { cubic.as_ref()?.at(&site, *leg, tolerance) } else { None };
                 let piece = piece.map(|(piece, error)| (piece, error + unlike));
@@ -197,9 +194,6 @@ impl<'a> Merger<'a> {
     /// A segment of a run. `None` if it cannot be in one, having no length or slow spots.
     fn run_segment(&self, part: &'a Part) -> Option<RunSegment<SourceCurve<'a>>> {
         let options = self.fitter.options;
-        if options.shared.contains(&part.seg) {
-            return None;
-        }
         let source = part.source(self.fitter, &part.seg);
         let form = if options.certify { source.quotient().and_then(Quotient::provable) } else { None };
         if source.size() == 0.0 || !source::slow_spots(&part.seg).all().is_empty() {

@@ -31,7 +31,7 @@ pub struct Options {
     /// Joints that turn by less than this, in radians, are smooth, so that pieces merge across them: by default half a degree, since
     /// drawings round their coordinates. Less than a quarter turn.
     pub corner: f64,
-    /// Edges that merging leaves alone, so that neighbouring shapes stay watertight.
+    /// Edges that become the same in all outlines that share them, so that neighbouring shapes stay watertight.
     pub shared: Arc<SharedEdges>,
     /// Borders that [`simplified`](super::simplified) gives the same curves in all outlines that share them.
     pub borders: Arc<Borders>,

@@ -14,7 +14,7 @@ use super::options::Options;
 use super::overview::Overview;
 use super::report::{PathReport, RefittedPath, SUMMED, SpanReport, reverse};
 use super::segment::{Part, SegmentFitter};
-use super::shared::Span;
+use super::shared::{Span, is_turned};
 use super::source;
 use super::source::SourceCurve;
 use crate::error::GeometryError;
@@ -223,18 +223,53 @@ fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> R
     Ok((pieces, report))
 }
 
-/// Refits segments, with fewer pieces across smooth joints.
+/// Refits segments, with fewer pieces across smooth joints. Chains of shared segments are refitted on their own, in one direction.
 fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory: &mut MergeMemory) -> Refitted {
-    let mut parts = Vec::with_capacity(segs.len());
-    for seg in segs {
-        let ends = nodes.next(seg)?;
-        fitter.parts(seg, ends, fitter.options.shared.contains(seg), &mut parts).map_err(lost)?;
+    let (mut parts, mut chains) = (Vec::with_capacity(segs.len()), Vec::new());
+    let shared = &fitter.options.shared;
+    for chain in segs.chunk_by(|a, b| shared.goes_on(a, b)) {
+        let is_shared = shared.contains(&chain[0]);
+        for seg in chain {
+            let ends = nodes.next(seg)?;
+            fitter.parts(seg, ends, is_shared && matches!(seg, Seg::Arc(_)), &mut parts).map_err(lost)?;
+        }
+        chains.push((parts.len(), is_shared.then(|| is_turned(chain))));
     }
     for i in 1..parts.len() {
         let (before, after) = parts.split_at_mut(i);
         Part::join(&mut before[i - 1], &mut after[0]);
     }
-    let found = Merger::new(fitter, &parts, memory).merged().map_err(lost)?;
+    let (mut pieces, mut report, mut from) = (Vec::with_capacity(parts.len()), Report::default(), 0);
+    for (to, turned) in chains {
+        let own = &mut parts[from..to];
+        let (mut more, mut found) = match turned {
+            None => merged_parts(fitter, own, memory)?,
+            Some(turned) => {
+                if turned {
+                    own.reverse();
+                    own.iter_mut().for_each(Part::reverse);
+                }
+                // What other paths have may be known here, and not on the other side.
+                merged_parts(fitter, own, &mut MergeMemory::default())?
+            }
+        };
+        if turned == Some(true) {
+            reverse(&mut more);
+            found.pieces.reverse();
+        }
+        report.add(&found);
+        if pieces.is_empty() {
+            pieces = more
+        } else {
+            pieces.extend(more)
+        }
+        from = to;
+    }
+    Ok((pieces, report))
+}
+
+fn merged_parts(fitter: &SegmentFitter<'_>, parts: &[Part], memory: &mut MergeMemory) -> Refitted {
+    let found = Merger::new(fitter, parts, memory).merged().map_err(lost)?;
     // What a map moves as it is keeps its control points, unless it has many more than it needs: flattened curves, outlines of dashes.
     if !parts.is_empty() && parts.len() <= MANY_NODES * found.0.len() && parts.iter().all(Part::is_affine) {
         let (mut pieces, mut report) = (Vec::with_capacity(parts.len()), Report::default());
@@ -250,6 +285,7 @@ fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<(usize, &'s [Seg])> {
     let is_corner = |w: &[Seg]| {
         let (into, away) = (w[0].deriv(1.0), w[1].deriv(0.0));
         into.cross(away).abs() >= CHUNK_CORNER * into.dot(away)
+            && !(options.shared.contains(&w[0]) && options.shared.goes_on(&w[0], &w[1]))
     };
     let mut out = Vec::new();
     let mut rest = segs;

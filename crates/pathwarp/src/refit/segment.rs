@@ -165,7 +165,10 @@ impl SegmentFitter<'_> {
         let (canonical, flipped) = source::canonical(seg);
         let parts = self.cut(&canonical, if flipped { [jets[1], jets[0]] } else { jets })?;
         if flipped {
-            out.extend(parts.into_iter().rev().map(Part::reversed));
+            out.extend(parts.into_iter().rev().map(|mut part| {
+                part.reverse();
+                part
+            }));
         } else {
             out.extend(parts);
         }
@@ -295,12 +298,12 @@ impl Part {
         Self { seg, jets: jets.map(|j| *j), cut: None }
     }
 
-    fn reversed(mut self) -> Self {
+    pub(super) fn reverse(&mut self) {
         self.jets.reverse();
         if let Some(cut) = &mut self.cut {
             cut.torn.reverse();
         }
-        Self { seg: self.seg.reversed(), ..self }
+        self.seg = self.seg.reversed();
     }
 
     /// The image of `seg`, the part's segment in either direction.

@@ -1,10 +1,10 @@
-//! Edges that neighbouring shapes share. Merging leaves them alone, so that no gap opens between two shapes.
+//! Edges that neighbouring shapes share.
 //!
-//! A merged piece continues into the segments after an edge, and those differ on its two sides. The pieces of the edge alone
-//! are the same for both.
+//! A piece that continued into the segments after an edge would differ on its two sides, as those do, and a gap would open. So edges are
+//! fitted in chains, from one *junction* to the next, each in one direction: that is the same for all shapes that share it.
 
 use super::source;
-use crate::outline::{Outline, Seg};
+use crate::outline::{Outline, Seg, Subpath};
 use kurbo::Point;
 use std::collections::HashSet;
 
@@ -17,6 +17,11 @@ pub struct SharedEdges {
     twice: Vec<(u64, f64)>,
     /// The same for the nodes at which contours of different tolerances meet.
     nodes: Vec<(u64, f64)>,
+    /// The nodes on shared segments at which other than two segments meet, those that several contours have counted once; hashed and
+    /// sorted.
+    junctions: Vec<u64>,
+    /// The nodes on shared segments at which closed contours begin.
+    starts: Vec<u64>,
 }
 
 impl SharedEdges {
@@ -30,8 +35,9 @@ impl SharedEdges {
     /// whole, from the same start and with the same tolerance, shares nothing with the first one: both become the same.
     #[must_use]
     pub fn held<'a>(outlines: impl IntoIterator<Item = (&'a Outline, &'a [f64])>) -> Self {
+        let outlines: Vec<(&Outline, &[f64])> = outlines.into_iter().collect();
         let (mut all, mut nodes, mut whole) = (Vec::new(), Vec::new(), HashSet::new());
-        for (outline, contours) in outlines {
+        for (outline, contours) in &outlines {
             for (i, s) in outline.subpaths.iter().enumerate() {
                 let held = contours.get(i).copied();
                 let directed = s.segs.iter().flat_map(|g| [mixed(&[g.start(), g.end()]), fingerprint(g)]);
@@ -46,7 +52,51 @@ impl SharedEdges {
             }
         }
         let differ = |run: &[(u64, f64)]| run[0].1 < run[run.len() - 1].1;
-        Self { twice: smallest(all, |run| run.len() > 1), nodes: smallest(nodes, differ) }
+        let mut out =
+            Self { twice: smallest(all, |run| run.len() > 1), nodes: smallest(nodes, differ), ..Self::default() };
+        if !out.twice.is_empty() {
+            out.add_junctions(outlines.iter().flat_map(|(o, _)| &o.subpaths));
+        }
+        out
+    }
+
+    fn add_junctions<'a>(&mut self, subpaths: impl Iterator<Item = &'a Subpath> + Clone) {
+        let shared = subpaths.clone().flat_map(|s| &s.segs).filter(|g| self.contains(g));
+        let nodes: HashSet<u64> = shared.flat_map(|g| [g.start(), g.end()].map(node)).collect();
+        let (mut ends, mut starts) = (Vec::new(), Vec::new());
+        for s in subpaths {
+            for g in &s.segs {
+                let both = [g.start(), g.end()].map(node).into_iter().filter(|p| nodes.contains(p));
+                ends.extend(both.map(|p| (p, fingerprint(g))));
+            }
+            // An end of an open path is one of another segment.
+            let own = [s.start, s.end()].map(node).into_iter().filter(|p| nodes.contains(p));
+            if s.closed { starts.extend(own.take(1)) } else { ends.extend(own.map(|p| (p, 0))) }
+        }
+        ends.sort_unstable();
+        ends.dedup();
+        starts.sort_unstable();
+        let met = ends.chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() != 2);
+        (self.junctions, self.starts) = (met.map(|run| run[0].0).collect(), starts);
+    }
+
+    /// Returns `true` if other than two segments meet at a node of a shared segment.
+    pub(super) fn is_junction(&self, p: Point) -> bool {
+        self.junctions.binary_search(&node(p)).is_ok()
+    }
+
+    /// Returns `true` if two consecutive segments lie on one chain, or if neither is shared.
+    pub(super) fn goes_on(&self, before: &Seg, after: &Seg) -> bool {
+        // The two directions of an arc are computed differently.
+        let is_arc = |g: &Seg| matches!(g, Seg::Arc(_));
+        match [before, after].map(|g| self.contains(g)) {
+            [true, true] => {
+                let ends =
+                    || self.is_junction(after.start()) || self.starts.binary_search(&node(after.start())).is_ok();
+                !(is_arc(before) || is_arc(after) || ends())
+            }
+            [a, b] => a == b,
+        }
     }
 
     /// Returns `true` if `seg` is shared.
@@ -133,6 +183,20 @@ pub(crate) fn fingerprint(seg: &Seg) -> u64 {
             mixed(&[p, q, Point::new(f64::from(m.x as f32), f64::from(m.y as f32))])
         }
     }
+}
+
+/// A hash of a node, whichever signs its zeros have.
+fn node(p: Point) -> u64 {
+    mixed(&[Point::new(p.x + 0.0, p.y + 0.0)])
+}
+
+/// Returns `true` if all outlines with a chain take it in the other direction.
+pub(super) fn is_turned(chain: &[Seg]) -> bool {
+    let key = |p: Point| (p.x, p.y);
+    let (Some(first), Some(last)) = (chain.first(), chain.last()) else { return false };
+    // Where both ends are one node, the nodes beside it decide.
+    let ends = if first.start() == last.end() { [first.end(), last.start()] } else { [first.start(), last.end()] };
+    key(ends[1]) < key(ends[0])
 }
 
 /// A hash of points, in which every bit of a coordinate counts.
