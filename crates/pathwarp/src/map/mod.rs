@@ -74,7 +74,7 @@ pub use formula::{Formula, FromFn, FromFnWith, from_fn, from_fn_with};
 pub use homography::Homography;
 pub use lattice::{Lattice, LatticeMap};
 pub use newton::{NewtonInverse, inverse_over};
-pub use projective::{AffineMap, Undeclared};
+pub use projective::AffineMap;
 pub use rational_bezier::RationalBezier;
 pub use real::{Dual, Real};
 

@@ -1,6 +1,6 @@
 //! Affine and projective maps as [`Map`]s: the two classes that keep straight lines.
 
-use super::{Class, Crease, Creases, Enclosure, Formula, Homography, Jet, Level, Map, RationalBezier, Real};
+use super::{Class, Crease, Creases, Enclosure, Homography, Jet, Level, Map, RationalBezier};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -100,26 +100,6 @@ impl Map for Homography {
         let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| self.times(v));
         let [u, v, w] = [0, 1, 2].map(|k| x * columns[0][k] + y * columns[1][k] + columns[2][k]);
         Some([u / w, v / w])
-    }
-}
-
-/// The identity without [declaring](Map::class) that it is one, so that [`warp_path`](crate::refit::warp_path) refits paths instead of
-/// copying them: with [`merge`](crate::refit::Options::merge), a path gets the fewest nodes.
-///
-/// ```
-/// use pathwarp::{Outline, map::Undeclared, refit};
-///
-/// let five = Outline::from_svg("M0,0C10,0 20,1 30,3S50,8 60,12S80,22 85,25S95,31 100,35")?;
-/// let options = refit::Options::new(0.5).with_merge(true).with_corner(0.2);
-/// assert!(refit::warp_path(&five, &Undeclared, &options)?.report.segments_out < 3);
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy)]
-pub struct Undeclared;
-
-impl Formula for Undeclared {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        (x, y)
     }
 }
 

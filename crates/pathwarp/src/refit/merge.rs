@@ -12,8 +12,8 @@ use super::source::SourceCurve;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use bezierfit::parts::{
-    ACCEPTED, FitOwn, Leg, MERGE_GRID, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, RunSegment, STRAIGHT,
-    STRAIGHT_TURN, SegmentRun, per_segment, refined, sample_lanes,
+    ACCEPTED, FitOwn, Leg, MERGE_GRID, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, RunSegment,
+    SMOOTH_JOINT, STRAIGHT, STRAIGHT_TURN, SegmentRun, per_segment, refined, sample_lanes,
 };
 use bezierfit::{Assurance, NotFinite, Piece, Quotient, Report, Source};
 use kurbo::Vec2;
@@ -55,10 +55,10 @@ pub(super) struct Merger<'a> {
     memory: &'a mut MergeMemory,
 }
 
-/// Returns `false` if the images of two consecutive segments certainly turn by more than `corner` radians, given the map's jets where
+/// Returns `false` if the images of two consecutive segments certainly turn by more than `SMOOTH_JOINT`, given the map's jets where
 /// they meet.
 #[inline]
-fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2], corner: f64) -> bool {
+fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2]) -> bool {
     let (into, away) = (jets[0].push(before.deriv(1.0)), jets[1].push(after.deriv(0.0)));
     // One-sided tangents decide where a derivative vanishes or nearly does.
     let clear = |d: Vec2, jet: &Jet, seg: &Seg| {
@@ -66,7 +66,9 @@ fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2], corner: f64) -> bo
         d.hypot2() > scale * seg.end().distance_squared(seg.start())
     };
     let (dot, cross) = (into.dot(away), into.cross(away).abs());
-    dot > 0.0 && cross <= 1.03 * corner.tan() * dot || !clear(into, jets[0], before) || !clear(away, jets[1], after)
+    dot > 0.0 && cross <= 1.03 * SMOOTH_JOINT.tan() * dot
+        || !clear(into, jets[0], before)
+        || !clear(away, jets[1], after)
 }
 
 /// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
@@ -75,7 +77,7 @@ pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
     let mut sources = Vec::new();
     for segs in runs {
         let smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
-            (Some(before), Some(after)) => may_be_smooth([before, after], [&map.jet(after.start()); 2], options.corner),
+            (Some(before), Some(after)) => may_be_smooth([before, after], [&map.jet(after.start()); 2]),
             _ => false,
         };
         let in_run = |(i, seg): (usize, &'_ Seg)| (smooth(i) || smooth(i + 1)).then_some(*seg);
@@ -99,11 +101,10 @@ impl<'a> Merger<'a> {
 
     /// The pieces of all segments, merged where that saves some.
     pub(super) fn merged(mut self) -> Result<(Vec<Piece>, Report), NotFinite> {
-        let corner = self.fitter.options.corner;
         let smooth = |w: &[Part]| {
             let [before, after] = w else { return false };
             let torn = before.bridge(1).is_some() || after.bridge(0).is_some();
-            !torn && may_be_smooth([&before.seg, &after.seg], [&before.jets[1], &after.jets[0]], corner)
+            !torn && may_be_smooth([&before.seg, &after.seg], [&before.jets[1], &after.jets[0]])
         };
         let mut i = 0;
         while i < self.parts.len() {
@@ -187,7 +188,7 @@ impl<'a> Merger<'a> {
     fn run(&self, start: usize, end: usize) -> Result<SegmentRun<SourceCurve<'a>>, NotFinite> {
         let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
         let parts: &'a [Part] = self.parts;
-        run.extend(&parts[start..end], self.fitter.options.corner, |part| Ok(self.run_segment(part)))?;
+        run.extend(&parts[start..end], SMOOTH_JOINT, |part| Ok(self.run_segment(part)))?;
         Ok(run)
     }
 

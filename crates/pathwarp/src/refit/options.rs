@@ -5,11 +5,7 @@ use super::shared::{SharedEdges, Span};
 use crate::budget::Budget;
 use crate::error::GeometryError;
 use crate::outline::Subpath;
-use bezierfit::parts::SMOOTH_JOINT;
 use std::sync::Arc;
-
-/// Largest [`Options::corner`]: a little less than a quarter turn.
-const MAX_CORNER: f64 = 1.5;
 
 /// Options of [`warp_path`](super::warp_path).
 ///
@@ -26,11 +22,9 @@ pub struct Options {
     pub tolerance: f64,
     /// Prove the error bound where the map allows it, instead of estimating it by dense sampling.
     pub certify: bool,
-    /// Merge consecutive pieces across smooth joints where that saves nodes.
+    /// Merge consecutive pieces across smooth joints where that saves nodes. Joints that turn by up to half a degree are smooth, since
+    /// drawings round their coordinates.
     pub merge: bool,
-    /// Joints that turn by less than this, in radians, are smooth, so that pieces merge across them: by default half a degree, since
-    /// drawings round their coordinates. Less than a quarter turn.
-    pub corner: f64,
     /// Edges that become the same in all outlines that share them, so that neighbouring shapes stay watertight.
     pub shared: Arc<SharedEdges>,
     /// Borders that [`simplified`](super::simplified) gives the same curves in all outlines that share them.
@@ -51,7 +45,6 @@ impl Options {
             tolerance,
             certify: false,
             merge: false,
-            corner: SMOOTH_JOINT,
             shared: Arc::default(),
             borders: Arc::default(),
             suited: false,
@@ -83,8 +76,6 @@ impl Options {
         with_certify(certify: bool) => certify: certify;
         /// Sets [`Options::merge`].
         with_merge(merge: bool) => merge: merge;
-        /// Sets [`Options::corner`].
-        with_corner(corner: f64) => corner: corner.clamp(0.0, MAX_CORNER);
         /// Sets [`Options::shared`].
         with_shared(shared: Arc<SharedEdges>) => shared: shared;
         /// Sets [`Options::borders`].
