@@ -119,7 +119,7 @@ impl Options {
         if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
             return Err(Error::Tolerance(self.tolerance));
         }
-        self.corner.filter(|c| !(*c >= 0.0)).map_or(Ok(()), |c| Err(Error::Corner(c)))
+        self.corner.filter(|c| c.is_nan() || *c < 0.0).map_or(Ok(()), |c| Err(Error::Corner(c)))
     }
 
     /// Joints of curves that are no path and turn by less, in radians, are smooth.

@@ -40,24 +40,39 @@ const MOST_DASHES: f64 = 20_000.0;
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitted, Error> {
-    outlined(path, style, false, options)
+    let contours = contours(path, style, false, GAPS * options.tolerance)?;
+    Ok(fit_contours(&contours, options)?)
 }
 
-/// The same; if `clipped`, miters beyond the limit are cut off there.
-pub(crate) fn outlined(path: &BezPath, style: &Stroke, clipped: bool, options: &Options) -> Result<Fitted, Error> {
-    let gap = GAPS * options.tolerance;
-    let contours = contours(path, style, clipped, gap)?;
+fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<Fitted, NotFinite> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let inner = Options { tolerance: STROKED * options.tolerance, ..*options };
-    for contour in contours {
-        let pieces = fitted(&contour, &inner, &mut memory, &mut out.report)?;
+    for contour in contours.iter().filter(|c| !c.is_empty()) {
+        let pieces = fitted(contour, &inner, &mut memory, &mut out.report)?;
         append(&mut out.path, contour[0].p0, &pieces, true);
     }
     if out.report.max_error > 0.0 {
         out.report.max_error += options.tolerance - inner.tolerance;
     }
     Ok(out)
+}
+
+/// One side of the strokes of closed subpaths, at a distance from them, with joins; miters beyond the limit are cut off there.
+#[cfg(feature = "area")]
+pub(crate) fn beside_area(
+    path: &BezPath,
+    style: &Stroke,
+    distance: f64,
+    options: &Options,
+) -> Result<Fitted, NotFinite> {
+    let gap = GAPS * options.tolerance;
+    let pen = Pen { style, clipped: true, half: distance.abs(), gap, point: POINTS * gap };
+    let side = |subpath: BezPath| {
+        let (stretches, corners) = pen.course(&subpath, true);
+        if stretches.is_empty() { Vec::new() } else { pen.side(&stretches, &corners, true, distance) }
+    };
+    fit_contours(&subpaths(path).map(side).collect::<Vec<_>>(), options)
 }
 
 /// One side of an open path's stroke, at a distance from it, with joins.

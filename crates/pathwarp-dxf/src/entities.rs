@@ -16,7 +16,7 @@ pub(crate) struct Pen<'a> {
 /// cubics within a hundredth of the tolerance.
 pub(crate) fn exact(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance: f64) {
     let near = OF_TOLERANCE * tolerance;
-    let segs = merged(subpath);
+    let segs = merged(subpath, near);
     let straight = |s: &Seg| match s {
         Seg::Line(_) => true,
         Seg::Arc(a) => is_circular(a, near),
@@ -38,7 +38,7 @@ pub(crate) fn exact(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance
 pub(crate) fn polyline(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance: f64) {
     let near = OF_TOLERANCE * tolerance;
     let mut segs = Vec::new();
-    for seg in merged(subpath) {
+    for seg in merged(subpath, near) {
         match seg {
             Seg::Arc(a) if is_circular(&a, near) => segs.push(seg),
             Seg::Line(_) => segs.push(seg),
@@ -188,34 +188,39 @@ fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64)
 /// Share of the tolerance by which an arc may miss a circle and still be written as one.
 const OF_TOLERANCE: f64 = 0.1;
 
-/// The segments that have a length, with consecutive arcs of one ellipse as one.
-fn merged(subpath: &Subpath) -> Vec<Seg> {
+/// The segments that have a length: cubics that approximate circles as arcs, and consecutive arcs of one ellipse as one, within `near`.
+fn merged(subpath: &Subpath, near: f64) -> Vec<Seg> {
     let mut out: Vec<Seg> = Vec::with_capacity(subpath.segs.len());
     for seg in &subpath.segs {
-        if matches!(seg, Seg::Line(l) if l.p0 == l.p1) {
-            continue;
-        }
+        let seg = match seg {
+            Seg::Line(l) if l.p0 == l.p1 => continue,
+            Seg::Cubic(c) => EllipticArc::of_cubic(c, near).map_or(*seg, Seg::Arc),
+            other => *other,
+        };
         match (out.last_mut(), seg) {
-            (Some(Seg::Arc(last)), Seg::Arc(next)) if is_continued(last, next) => {
-                *last = EllipticArc { p1: next.p1, sweep: last.sweep + next.sweep, ..*last };
+            (Some(Seg::Arc(last)), Seg::Arc(next)) if is_continued(last, &next, near) => {
+                let closes = next.p1 == subpath.start && (last.sweep + next.sweep).abs() > TAU - ROUNDING;
+                let sweep = if closes { TAU.copysign(last.sweep) } else { last.sweep + next.sweep };
+                *last = EllipticArc { p1: next.p1, sweep, ..*last };
             }
-            _ => out.push(*seg),
+            _ => out.push(seg),
         }
     }
     out
 }
 
-/// Returns `true` if an arc goes on along the ellipse of another, up to a full turn.
-fn is_continued(last: &EllipticArc, next: &EllipticArc) -> bool {
-    /// Rounding, as a share of the size.
-    const SLACK: f64 = 1e-9;
-    let slack = SLACK * last.major();
+/// Rounding of angles of arcs that cubics stand for, in radians.
+const ROUNDING: f64 = 1e-2;
+
+/// Returns `true` if an arc goes on along the ellipse of another, within `near`, up to a full turn.
+fn is_continued(last: &EllipticArc, next: &EllipticArc, near: f64) -> bool {
+    let slack = near.max(1e-9 * last.major());
     let same = last.center.distance(next.center) <= slack
         && (last.a - next.a).hypot() <= slack
         && (last.b - next.b).hypot() <= slack;
     let turn = (last.start + last.sweep - next.start).rem_euclid(TAU);
-    let follows = turn.min(TAU - turn) <= SLACK;
-    same && follows && last.sweep * next.sweep > 0.0 && (last.sweep + next.sweep).abs() <= TAU + SLACK
+    let follows = turn.min(TAU - turn) * last.major() <= slack;
+    same && follows && last.sweep * next.sweep > 0.0 && (last.sweep + next.sweep).abs() <= TAU + ROUNDING
 }
 
 /// Returns `true` if an arc is within `near` of a circular one.

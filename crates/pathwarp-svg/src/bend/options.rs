@@ -293,7 +293,7 @@ impl Edit {
     ) -> Result<Option<RefittedPath>, GeometryError> {
         match self {
             Self::Simplify { corner } => refit::simplified(outline, corner, options, contours).map(Some),
-            Self::Offset(offset) => moved(outline, &offset, options, contours).map(Some),
+            Self::Offset(offset) => moved(outline, &offset, options, contours).map(|m| Some(m.path)),
             Self::Outline | Self::Resolve => Ok(None),
         }
     }

@@ -98,6 +98,33 @@ impl EllipticArc {
         })
     }
 
+    /// The circular arc that a cubic was written for: its handles are within `near` of those of the usual approximation. `None` for other
+    /// cubics, and for arcs of more than a quarter and a half.
+    #[must_use]
+    pub fn of_cubic(c: &CubicBez, near: f64) -> Option<Self> {
+        let (u, v, chord) = (c.p1 - c.p0, c.p3 - c.p2, c.p3 - c.p0);
+        let sweep = u.cross(v).atan2(u.dot(v));
+        if !(1e-3..=0.75 * PI).contains(&sweep.abs()) {
+            return None;
+        }
+        let radius = chord.hypot() / (2.0 * (0.5 * sweep).sin().abs());
+        let across = Vec2::new(-chord.y, chord.x).normalize() * sweep.signum();
+        let center = c.p0.midpoint(c.p3) + across * (radius * (0.5 * sweep).cos());
+        let (a, b) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
+        let arc = Self { p0: c.p0, p1: c.p3, ..Self::new(center, a, b, (c.p0 - center).angle(), sweep) };
+        let usual = arc.to_cubic();
+        (usual.p1.distance(c.p1) <= near && usual.p2.distance(c.p2) <= near).then_some(arc)
+    }
+
+    /// Returns `true` for an arc of a circle, but for rounding.
+    #[must_use]
+    pub fn is_circular(&self) -> bool {
+        /// Rounding, as a share of a radius.
+        const SLACK: f64 = 1e-6;
+        let (size, slack) = (self.a.hypot(), SLACK * self.a.hypot());
+        (size - self.b.hypot()).abs() <= slack && self.a.dot(self.b).abs() <= slack * size
+    }
+
     /// The point at `t` in [0, 1]. The ends are exact.
     #[inline]
     #[must_use]
@@ -251,6 +278,21 @@ mod tests {
 
     fn svg(p0: (f64, f64), r: (f64, f64), rot: f64, large: bool, sweep: bool, p1: (f64, f64)) -> EllipticArc {
         EllipticArc::from_svg(p0.into(), r.into(), rot, large, sweep, p1.into()).unwrap()
+    }
+
+    #[test]
+    fn cubics_that_approximate_circles_are_told_from_others() {
+        for sweep in [0.3, -1.2, PI / 2.0, -PI / 2.0, 2.0] {
+            let arc = EllipticArc::new(Point::new(5.0, -2.0), Vec2::new(9.0, 0.0), Vec2::new(0.0, 9.0), 0.7, sweep);
+            let mut c = arc.to_cubic();
+            let found = EllipticArc::of_cubic(&c, 1e-6).unwrap();
+            assert!(found.center.distance(arc.center) + (found.sweep - sweep).abs() < 1e-9, "{found:?}");
+            c.p1 += Vec2::new(2e-3, 0.0);
+            assert_eq!(EllipticArc::of_cubic(&c, 1e-3), None);
+        }
+        let line = CubicBez::new((0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0));
+        let swing = CubicBez::new((0.0, 0.0), (1.0, 1.0), (2.0, -1.0), (3.0, 0.0));
+        assert_eq!([line, swing].map(|c| EllipticArc::of_cubic(&c, 1e-3)), [None; 2]);
     }
 
     #[test]

@@ -1,13 +1,18 @@
 //! Edits of outlines that are not maps: offsets and unions.
 
+mod known;
+
 use crate::error::GeometryError;
-use crate::outline::Outline;
+use crate::outline::{Outline, Seg};
 use crate::refit::{ARCS, Options, PathReport, RefittedPath};
 use bezierfit::{Fitted, union_even_odd};
 use kurbo::{BezPath, Join, Rect, Shape};
 
 /// How far the miters of an offset reach at most, in distances.
 const MITERS: f64 = 4.0;
+
+/// Share of the tolerance that cubics in place of arcs may take.
+const ACCEPTED: f64 = 0.99;
 
 /// The side to which [`moved`] moves outlines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,8 +38,18 @@ pub struct Offset {
     pub even_odd: bool,
 }
 
+/// The result of [`moved`].
+#[derive(Debug, Clone)]
+pub struct Moved {
+    /// Lines and arcs beside those of the source, and curves.
+    pub outline: Outline,
+    /// The same with cubics for arcs, and what was done.
+    pub path: RefittedPath,
+}
+
 /// Offsets an outline: each point of the result has the given distance from it, within `options.tolerance`. Closed subpaths enclose an area,
-/// which grows or shrinks, and vanishes where it is too narrow; loops are removed. `contours` holds tolerances of the subpaths; those beyond
+/// which grows or shrinks, and vanishes where it is too narrow; loops are removed. What runs beside lines and circular arcs, or around
+/// corners, is exact. Closed subpaths begin near to where the source does. `contours` holds tolerances of the subpaths; those beyond
 /// its end have that of the options. What lies close together has the smallest of them.
 ///
 /// # Errors
@@ -47,29 +62,35 @@ pub struct Offset {
 ///
 /// let square = Outline::from_svg("M0,0H60V60H0Z")?;
 /// let by = Offset { by: 10.0, join: Join::Miter, side: Side::Outside, even_odd: false };
-/// assert!((moved(&square, &by, &Options::new(0.01), &[])?.path.area().abs() - 6400.0).abs() < 1.0);
+/// let larger = moved(&square, &by, &Options::new(0.01), &[])?;
+/// assert_eq!(larger.path.path.to_svg(), "M-10,-10 L70,-10 L70,70 L-10,70 Z");
 /// # Ok::<(), pathwarp::Error>(())
 /// ```
-pub fn moved(
-    outline: &Outline,
-    offset: &Offset,
-    options: &Options,
-    contours: &[f64],
-) -> Result<RefittedPath, GeometryError> {
+pub fn moved(outline: &Outline, offset: &Offset, options: &Options, contours: &[f64]) -> Result<Moved, GeometryError> {
     let reach = if offset.join == Join::Miter { MITERS } else { 1.0 } * offset.by;
     let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
-    let (mut path, mut report) = (BezPath::new(), PathReport::default());
+    let (mut out, mut path, mut report) = (Outline::default(), BezPath::new(), PathReport::default());
     for group in apart(&boxes) {
         let own = |i: &usize| contours.get(*i).copied().unwrap_or_else(|| options.of_contour(&outline.subpaths[*i]));
         let tolerance = group.iter().map(own).fold(f64::INFINITY, f64::min);
         let group = Outline { subpaths: group.iter().map(|i| outline.subpaths[*i].clone()).collect() };
         for fitted in moved_group(&group, offset, tolerance)? {
-            report.add(PathReport::fitted(&fitted.report, tolerance));
-            path.extend(fitted.path);
+            let beside = (offset.by, offset.join == Join::Round, reach);
+            let moved = known::with_edges(Outline::from(&fitted.path), &group, beside, tolerance);
+            let fine = ACCEPTED * tolerance;
+            let mut own = PathReport::fitted(&fitted.report, tolerance);
+            for seg in moved.segs() {
+                if let Seg::Arc(a) = seg {
+                    own.max_error = own.max_error.max(a.cubics_error(a.cubics_needed(fine)));
+                }
+            }
+            report.add(own);
+            path.extend(moved.to_bez_path(fine));
+            out.subpaths.extend(moved.subpaths);
         }
     }
     (report.segments_in, report.segments_out) = (outline.segs().count(), path.segments().count());
-    Ok(RefittedPath { path, spans: Vec::new(), report })
+    Ok(Moved { outline: out, path: RefittedPath { path, spans: Vec::new(), report } })
 }
 
 /// Offsets subpaths together, to each side that is wanted.
@@ -161,8 +182,7 @@ mod tests {
         let outline = Outline::from_svg("M0,0L36,10L0,20ZM39,0H49V20H39Z").unwrap();
         let by = Offset { by: 1.0, join: Join::Miter, side: Side::Outside, even_odd: false };
         let grown = moved(&outline, &by, &Options::new(0.01), &[]).unwrap();
-        let grown = Outline::from(&grown.path);
-        assert_eq!(grown.subpaths.len(), 1);
-        assert_eq!(united(&grown, false, 0.01).unwrap(), None);
+        assert_eq!(grown.outline.subpaths.len(), 1);
+        assert_eq!(united(&grown.outline, false, 0.01).unwrap(), None);
     }
 }

@@ -1,0 +1,388 @@
+//! Exact edges of an offset: beside lines run lines, beside arcs and around corners run arcs, which a fit only approximates.
+//!
+//! Pieces of a fitted contour that follow such an edge give way to it. Neighbouring edges meet where they cross or touch.
+
+use crate::outline::{EllipticArc, Outline, Seg, Subpath};
+use kurbo::{Line, ParamCurve as _, ParamCurveArclen as _, PathSeg, Point, Vec2};
+use std::f64::consts::TAU;
+
+/// Limit on comparisons of pieces with edges.
+const MOST: usize = 2_000_000;
+/// Parameters at which a piece is compared.
+const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// Rounding, as a share of a radius: nearer than this, edges touch.
+const TOUCH: f64 = 1e-6;
+
+/// An edge beside the source.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Edge {
+    /// Beside a line, which is this long.
+    Line(Line),
+    /// Beside an arc, or around a corner, from an angle over a positive sweep.
+    Arc { center: Point, radius: f64, start: f64, sweep: f64 },
+}
+
+impl Edge {
+    /// The largest distance of a piece from the edge; `None` if it does not run along it. `reach` is how far lines go on beyond their ends.
+    fn distance(&self, piece: &PathSeg, within: f64, reach: f64) -> Option<f64> {
+        let each = SAMPLES.map(|t| {
+            let p = piece.eval(t);
+            match *self {
+                Self::Line(l) => {
+                    let along = (l.p1 - l.p0).normalize();
+                    let place = (p - l.p0).dot(along);
+                    let is_beside = place >= -reach && place <= l.p0.distance(l.p1) + reach;
+                    is_beside.then(|| along.cross(p - l.p0).abs())
+                }
+                Self::Arc { center, radius, start, sweep } => {
+                    // What touches an arc leaves it slowly.
+                    let slack = (2.0 * within / radius).sqrt();
+                    let turn = ((p - center).angle() - start + slack).rem_euclid(TAU);
+                    (turn <= sweep + 2.0 * slack).then(|| (p.distance(center) - radius).abs())
+                }
+            }
+        });
+        let most = each.into_iter().try_fold(0.0, |most: f64, d| Some(most.max(d?)))?;
+        (most <= within).then_some(most)
+    }
+
+    /// The nearest point of the line or circle.
+    fn foot(&self, p: Point) -> Point {
+        match *self {
+            Self::Line(l) => {
+                let along = (l.p1 - l.p0).normalize();
+                l.p0 + along * along.dot(p - l.p0)
+            }
+            Self::Arc { center, radius, .. } => center + (p - center).normalize() * radius,
+        }
+    }
+
+    /// The point near `p` in which the lines or circles meet.
+    fn meeting(&self, other: &Self, p: Point) -> Option<Point> {
+        match (*self, *other) {
+            (Self::Line(a), Self::Line(b)) => a.crossing_point(b),
+            (line @ Self::Line(l), Self::Arc { center, radius, .. })
+            | (Self::Arc { center, radius, .. }, line @ Self::Line(l)) => {
+                let foot = line.foot(center);
+                let along = (l.p1 - l.p0).normalize();
+                let side = if along.dot(p - foot) < 0.0 { -1.0 } else { 1.0 };
+                half_chord(foot.distance(center), radius).map(|h| foot + along * (side * h))
+            }
+            (Self::Arc { center: c, radius: r, .. }, Self::Arc { center: d, radius: s, .. }) => {
+                let between = d - c;
+                let apart = between.hypot();
+                if apart <= TOUCH * r {
+                    return None;
+                }
+                // The distance from the first center to the line through both meetings.
+                let to = (apart * apart + r * r - s * s) / (2.0 * apart);
+                let (foot, across) = (c + between * (to / apart), Vec2::new(-between.y, between.x) / apart);
+                let side = if across.dot(p - foot) < 0.0 { -1.0 } else { 1.0 };
+                half_chord(to.abs(), r).map(|h| foot + across * (side * h))
+            }
+        }
+    }
+}
+
+/// Half the chord of a circle at a distance from its center: 0 where it only touches, `None` beyond.
+fn half_chord(distance: f64, radius: f64) -> Option<f64> {
+    let rest = radius - distance;
+    if rest.abs() <= TOUCH * radius {
+        return Some(0.0);
+    }
+    (rest > 0.0).then(|| (rest * (radius + distance)).sqrt())
+}
+
+/// The edges at a distance from the closed subpaths of a source, on both sides.
+fn edges(source: &Outline, by: f64, round: bool) -> Vec<Edge> {
+    let mut out = Vec::new();
+    for subpath in source.subpaths.iter().filter(|s| s.closed) {
+        let mut segs: Vec<Seg> = Vec::with_capacity(subpath.segs.len());
+        for seg in &subpath.segs {
+            match segs.last_mut().and_then(|last| Some((continued(last, seg)?, last))) {
+                Some((longer, last)) => *last = longer,
+                None => segs.push(*seg),
+            }
+        }
+        if let [first, .., last] = segs.as_slice()
+            && let Some(longer) = continued(last, first)
+        {
+            segs[0] = longer;
+            segs.pop();
+        }
+        for seg in &segs {
+            match *seg {
+                Seg::Line(l) => {
+                    let across = (l.p1 - l.p0).normalize();
+                    let beside = |side: f64| Vec2::new(-across.y, across.x) * (side * by);
+                    out.extend([1.0, -1.0].map(|side| Edge::Line(Line::new(l.p0 + beside(side), l.p1 + beside(side)))));
+                }
+                Seg::Arc(a) if a.is_circular() => {
+                    let start = (if a.sweep > 0.0 { a.p0 } else { a.p1 } - a.center).angle();
+                    let (center, r, sweep) = (a.center, a.a.hypot(), a.sweep.abs());
+                    let radii = [r + by, r - by].into_iter().filter(|radius| *radius > TOUCH * r);
+                    out.extend(radii.map(|radius| Edge::Arc { center, radius, start, sweep }));
+                }
+                _ => {}
+            }
+            if round {
+                out.push(Edge::Arc { center: seg.start(), radius: by, start: 0.0, sweep: TAU });
+            }
+        }
+    }
+    out
+}
+
+/// Two segments that are one line or one circular arc.
+fn continued(a: &Seg, b: &Seg) -> Option<Seg> {
+    match (a, b) {
+        (Seg::Line(k), Seg::Line(l)) => {
+            let (u, v) = (k.p1 - k.p0, l.p1 - l.p0);
+            let goes_on = u.cross(v).abs() <= TOUCH * u.hypot() * v.hypot() && u.dot(v) > 0.0;
+            goes_on.then(|| Seg::Line(Line::new(k.p0, l.p1)))
+        }
+        (Seg::Arc(k), Seg::Arc(l)) => {
+            let slack = TOUCH * k.a.hypot();
+            let same = k.center.distance(l.center) <= slack && (k.a.hypot() - l.a.hypot()).abs() <= slack;
+            let goes_on = same && k.is_circular() && l.is_circular() && k.sweep * l.sweep > 0.0;
+            let sweep = (k.sweep + l.sweep).clamp(-TAU, TAU);
+            goes_on.then_some(Seg::Arc(EllipticArc { p1: l.p1, sweep, ..*k }))
+        }
+        _ => None,
+    }
+}
+
+/// What a contour is made of.
+#[derive(Debug, Clone)]
+struct Run {
+    /// A fitted piece, or an edge in place of pieces from the first to the last point.
+    piece: PathSeg,
+    edge: Option<Edge>,
+    /// The middle of what the edge stands for, and the angle it has swept around its center.
+    middle: Point,
+    sweep: f64,
+}
+
+/// The outline with exact edges in place of fitted pieces that are within `tolerance` of them: `by` beside lines and circular arcs of the
+/// source, and around its corners if joins are `round`; else lines go on by `reach` to their miters.
+pub(super) fn with_edges(
+    outline: Outline,
+    source: &Outline,
+    (by, round, reach): (f64, bool, f64),
+    tolerance: f64,
+) -> Outline {
+    let edges = edges(source, by, round);
+    if edges.len().saturating_mul(outline.segs().count()) > MOST {
+        return outline;
+    }
+    let reach = if round { (2.0 * by * tolerance).sqrt() } else { reach };
+    let starts: Vec<Point> = source.subpaths.iter().map(|s| s.start).collect();
+    let subpaths = outline.subpaths.into_iter().map(|s| {
+        let exact = s.closed.then(|| contour(&s, (&edges, &starts), reach, tolerance)).flatten();
+        exact.unwrap_or(s)
+    });
+    Outline { subpaths: subpaths.collect() }
+}
+
+/// A closed contour of edges, as far as it follows some. `None` if they do not meet where the contour has its nodes. `starts` are those of
+/// the source.
+fn contour(subpath: &Subpath, (edges, starts): (&[Edge], &[Point]), reach: f64, tolerance: f64) -> Option<Subpath> {
+    let mut runs: Vec<Run> = subpath.segs.iter().map(|s| run(s, edges, reach, tolerance)).collect();
+    // Bits between two edges are left from the sweep.
+    let is_bit = |i: usize| {
+        let [before, after] = [i + runs.len() - 1, i + 1].map(|k| &runs[k % runs.len()]);
+        runs[i].edge.is_none()
+            && before.edge.is_some()
+            && after.edge.is_some()
+            && runs[i].piece.arclen(0.1 * tolerance) <= 2.0 * tolerance
+    };
+    let kept: Vec<bool> = (0..runs.len()).map(|i| !is_bit(i)).collect();
+    let mut kept = kept.into_iter();
+    runs.retain(|_| kept.next() == Some(true));
+    let mut joined: Vec<Run> = Vec::with_capacity(runs.len());
+    for run in runs {
+        match joined.last_mut().filter(|last| goes_on(last, &run)) {
+            Some(last) => {
+                last.sweep += run.sweep;
+                last.piece = PathSeg::Line(Line::new(last.piece.start(), run.piece.end()));
+            }
+            None => joined.push(run),
+        }
+    }
+    if let [only] = joined.as_slice() {
+        return whole_circle(only, starts);
+    }
+    if let [first, .., last] = joined.as_slice()
+        && goes_on(last, first)
+    {
+        // The seam is inside of an edge.
+        let last = joined.pop()?;
+        joined[0].sweep += last.sweep;
+        joined[0].piece = PathSeg::Line(Line::new(last.piece.start(), joined[0].piece.end()));
+    }
+    if joined.iter().all(|r| r.edge.is_none()) {
+        return None;
+    }
+    let count = joined.len();
+    let node = |i: usize| {
+        let (before, after) = (&joined[(i + count - 1) % count], &joined[i]);
+        let at = before.piece.end().midpoint(after.piece.start());
+        match (before.edge, after.edge) {
+            (Some(a), Some(b)) => a.meeting(&b, at),
+            (Some(a), None) | (None, Some(a)) => Some(a.foot(at)),
+            (None, None) => Some(at),
+        }
+    };
+    let nodes = (0..count).map(node).collect::<Option<Vec<Point>>>()?;
+    let segs = joined.iter().enumerate().map(|(i, r)| r.between(nodes[i], nodes[(i + 1) % count], tolerance));
+    Some(Subpath { start: nodes[0], segs: segs.collect::<Option<_>>()?, closed: true })
+}
+
+/// A piece with the edge that it follows most closely.
+fn run(seg: &Seg, edges: &[Edge], reach: f64, tolerance: f64) -> Run {
+    let piece = match *seg {
+        Seg::Line(l) => PathSeg::Line(l),
+        ref other => PathSeg::Cubic(other.to_cubic()),
+    };
+    let near = edges.iter().filter_map(|e| Some((e.distance(&piece, tolerance, reach)?, *e)));
+    let edge = near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, edge)| edge);
+    let turn = |c: Point, a: Point, b: Point| (a - c).cross(b - c).atan2((a - c).dot(b - c));
+    let sweep = match edge {
+        Some(Edge::Arc { center, .. }) => {
+            SAMPLES.windows(2).map(|w| turn(center, piece.eval(w[0]), piece.eval(w[1]))).sum()
+        }
+        _ => 0.0,
+    };
+    Run { piece, edge, middle: piece.eval(0.5), sweep }
+}
+
+/// Returns `true` if two runs follow the same line or circle in the same direction.
+fn goes_on(a: &Run, b: &Run) -> bool {
+    match (a.edge, b.edge) {
+        (Some(Edge::Line(k)), Some(Edge::Line(l))) => {
+            let (u, v) = (k.p1 - k.p0, l.p1 - l.p0);
+            let slack = TOUCH * u.hypot();
+            u.cross(v).abs() <= slack * v.hypot() && u.cross(l.p0 - k.p0).abs() <= slack * u.hypot()
+        }
+        (Some(Edge::Arc { center: c, radius: r, .. }), Some(Edge::Arc { center: d, radius: s, .. })) => {
+            c.distance(d) + (r - s).abs() <= TOUCH * r && a.sweep * b.sweep > 0.0
+        }
+        _ => false,
+    }
+}
+
+/// A contour that is one circle. It begins in the direction of one of `starts` that is near to where it did.
+fn whole_circle(run: &Run, starts: &[Point]) -> Option<Subpath> {
+    /// Directions nearer than this are meant to be the same, in radians.
+    const NEAR: f64 = 0.1;
+    let Some(Edge::Arc { center, radius, .. }) = run.edge else { return None };
+    let is_whole = (run.sweep.abs() - TAU).abs() < 1.0;
+    let begun = run.piece.start() - center;
+    let off = |v: Vec2| begun.cross(v).atan2(begun.dot(v)).abs();
+    let wanted = starts.iter().map(|p| *p - center).filter(|v| off(*v) < NEAR);
+    let start = wanted.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(begun).angle();
+    let (a, b) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
+    let arc = EllipticArc::new(center, a, b, start, TAU.copysign(run.sweep));
+    is_whole.then(|| Subpath { start: arc.p0, segs: vec![Seg::Arc(arc)], closed: true })
+}
+
+impl Run {
+    /// The run between two nodes. `None` if it turns round on the way, or strays from what it stands for.
+    fn between(&self, p0: Point, p1: Point, tolerance: f64) -> Option<Seg> {
+        let chord = self.piece.end() - self.piece.start();
+        match self.edge {
+            Some(Edge::Line(_)) => (chord.dot(p1 - p0) > 0.0).then(|| Seg::Line(Line::new(p0, p1))),
+            Some(Edge::Arc { center, radius, .. }) => {
+                let from = (p0 - center).angle();
+                let turn = ((p1 - center).angle() - from).rem_euclid(TAU);
+                let sweep = if self.sweep > 0.0 { turn } else { turn - TAU };
+                let (a, b) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
+                let arc = EllipticArc::new(center, a, b, from, sweep);
+                // The middle lies on the arc, and not across.
+                let place = ((self.middle - center).angle() - from) * sweep.signum();
+                let is_on = place.rem_euclid(TAU) <= sweep.abs();
+                (is_on && (sweep - self.sweep).abs() < 1.0).then_some(Seg::Arc(EllipticArc { p0, p1, ..arc }))
+            }
+            None => {
+                let [by0, by1] = [p0 - self.piece.start(), p1 - self.piece.end()];
+                let is_near = by0.hypot() <= tolerance && by1.hypot() <= tolerance;
+                is_near.then(|| match self.piece {
+                    PathSeg::Line(_) => Seg::Line(Line::new(p0, p1)),
+                    other => {
+                        let mut c = other.to_cubic();
+                        (c.p0, c.p1, c.p2, c.p3) = (p0, c.p1 + by0, c.p2 + by1, p1);
+                        Seg::Cubic(c)
+                    }
+                })
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::edit::{Offset, Side, moved};
+    use crate::refit::Options;
+    use kurbo::{Join, Rect};
+
+    fn grown(path: &str, by: f64, join: Join) -> Outline {
+        let side = if by > 0.0 { Side::Outside } else { Side::Inside };
+        let offset = Offset { by: by.abs(), join, side, even_odd: false };
+        moved(&Outline::from_svg(path).unwrap(), &offset, &Options::new(0.05), &[]).unwrap().outline
+    }
+
+    /// Rectangles with rounded corners come back, with corners where their arcs collapse.
+    #[test]
+    fn lines_and_arcs_stay_exact() {
+        let path = "M20,10H80A10,10 0 0 1 90,20V60A10,10 0 0 1 80,70H20A10,10 0 0 1 10,60V20A10,10 0 0 1 20,10Z";
+        for (by, join) in
+            [(3.0, Join::Round), (-4.0, Join::Round), (-10.0, Join::Round), (-10.0, Join::Miter), (-17.5, Join::Round)]
+        {
+            let out = grown(path, by, join);
+            let [subpath] = out.subpaths.as_slice() else { panic!("{by}: {out:?}") };
+            let (radius, count) = (10.0 + by, if by > -10.0 { 8 } else { 4 });
+            assert_eq!(subpath.segs.len(), count, "{by}: {subpath:?}");
+            for seg in &subpath.segs {
+                match seg {
+                    Seg::Arc(a) => assert!((a.a.hypot() - radius).abs() < 1e-9, "{by}: {a:?}"),
+                    Seg::Line(l) => assert!((l.p1 - l.p0).x.abs().min((l.p1 - l.p0).y.abs()) < 1e-9, "{by}: {l:?}"),
+                    other => panic!("{by}: {other:?}"),
+                }
+            }
+            let bounds = Outline::from(&out.to_bez_path(1e-9)).bounding_box().unwrap();
+            let wanted = Rect::new(10.0, 10.0, 90.0, 70.0).inflate(by, by);
+            assert!((bounds.x0 - wanted.x0).abs() + (bounds.y1 - wanted.y1).abs() < 1e-6, "{by}: {bounds:?}");
+        }
+    }
+
+    /// A hexagon grows by arcs around its corners, or by miters.
+    #[test]
+    fn corners_are_arcs_or_miters() {
+        let path =
+            "M60,0 L30,51.9615242270663 L-30,51.9615242270663 L-60,0 L-30,-51.9615242270663 L30,-51.9615242270663 Z";
+        let round = grown(path, 7.0, Join::Round);
+        let kinds = round.segs().filter(|s| matches!(s, Seg::Arc(a) if (a.a.hypot() - 7.0).abs() < 1e-9)).count();
+        assert_eq!((kinds, round.segs().count()), (6, 12), "{round:?}");
+        let sharp = grown(path, 7.0, Join::Miter);
+        let tips = sharp.subpaths[0].anchors();
+        let reach = 60.0 + 7.0 / (std::f64::consts::PI / 3.0).sin();
+        assert!(tips.len() == 6 && tips.iter().all(|p| (p.to_vec2().hypot() - reach).abs() < 1e-9), "{tips:?}");
+    }
+
+    #[test]
+    fn circles_stay_circles_where_they_begin() {
+        for start in [0.0_f64, 0.7, 2.0, 4.4] {
+            for (r, by) in [(30.0, 3.0), (30.0, -3.0), (5.0, 40.0), (300.0, -299.0)] {
+                let at = |angle: f64| Point::new(7.0 + r * angle.cos(), -3.0 + r * angle.sin());
+                let [p, q] = [at(start), at(start + 2.5)];
+                let path = format!("M{},{}A{r},{r} 0 0 1 {},{}A{r},{r} 0 1 1 {},{}Z", p.x, p.y, q.x, q.y, p.x, p.y);
+                let out = grown(&path, by, Join::Round);
+                let [Seg::Arc(arc)] = out.subpaths[0].segs[..] else { panic!("{start} {r} {by}: {out:?}") };
+                assert!(arc.center.distance(Point::new(7.0, -3.0)) < 1e-9 && (arc.a.hypot() - r - by).abs() < 1e-9);
+                let (from, wanted) = ((arc.p0 - arc.center).normalize(), (p - arc.center).normalize());
+                assert!((from - wanted).hypot() < 1e-9, "{start} {r} {by}: starts at {:?}", arc.p0);
+            }
+        }
+    }
+}
