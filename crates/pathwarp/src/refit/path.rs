@@ -259,9 +259,9 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
         }
         report.add(&found);
         if pieces.is_empty() {
-            pieces = more
+            pieces = more;
         } else {
-            pieces.extend(more)
+            pieces.extend(more);
         }
         from = to;
     }
