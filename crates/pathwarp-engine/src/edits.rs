@@ -35,9 +35,10 @@ pub static EDITS: [Info; 3] = [
             Param::new(
                 "side",
                 Kind::Choice(&["outside", "inside", "both"]),
-                "outside: areas grow, and open paths run to their right, as one walks along them; inside: they shrink, and run to their left.",
+                "outside: areas grow, and open lines run to their right, as one walks along them; inside: they shrink, and run to their left.",
             )
             .default("outside"),
+            Param::flag("lines", "Move open lines sideways where there are areas, too. Default: they stay, unless there is nothing else."),
         ])
         .by_hand(ByHand {
             labels: &[("by", "Distance")],

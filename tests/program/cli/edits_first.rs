@@ -150,3 +150,29 @@ fn dots_of_large_drawings_grow_evenly() {
         assert!(radii.len() > 60 && radii.iter().all(|r| (r - 3.0).abs() <= allowed), "{drawing}: {radii:?}");
     }
 }
+
+/// Open lines stay to the letter beside areas, and move where they are wanted to, or alone. What is filled is an area, closed or not.
+#[test]
+fn lines_stay_beside_areas() {
+    let leaf = "<path id='leaf' fill='#6a4' d='M10,10H90V60H10Z'/>";
+    let vein = "<path id='vein' fill='none' stroke='#000' d='M20,35H80'/>";
+    let drawing = |body: &str| format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 70'>{body}</svg>");
+    let offset = |body: &str, more: &[&str]| {
+        let args = [&["offset", "-", "--by", "4", "--join", "miter"], more].concat();
+        let out = pathwarp_in(Path::new("."), &args, drawing(body).as_bytes());
+        (String::from_utf8(out.stdout).unwrap(), String::from_utf8(out.stderr).unwrap())
+    };
+    let (grown, notes) = offset(&format!("{leaf}{vein}"), &[]);
+    assert!(grown.contains("M6,6") && grown.contains("M20,35H80"), "{grown}");
+    assert!(notes.contains("--lines") && notes.contains("vein"), "{notes}");
+    for (body, more) in [
+        (format!("{leaf}{vein}"), &["--lines"][..]),
+        (format!("{leaf}{vein}"), &["--select", "#vein"]),
+        (vein.into(), &[]),
+    ] {
+        let (moved, notes) = offset(&body, more);
+        assert!(moved.contains("39") && !moved.contains("M20,35H80") && !notes.contains("--lines"), "{moved} {notes}");
+    }
+    let (grown, _) = offset(&format!("{}{vein}", leaf.replace('Z', "")), &[]);
+    assert!(grown.contains("M6,6") && grown.contains("M20,35H80"), "{grown}");
+}

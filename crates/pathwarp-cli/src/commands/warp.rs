@@ -193,7 +193,8 @@ pub(super) fn offset_command() -> Command {
         .long_about(format!(
             "{about}.\n\nEach point of the result has its distance from the source, within --tolerance. Loops and slivers are removed; what is \
              narrower than the distance vanishes, and a note says so. A path is one area: its outlines unite, those of different paths do \
-             not. Strokes keep their width; text becomes outlines.",
+             not. Open lines stay where they are, unless --lines is given or there is nothing else: then each runs beside itself. Strokes keep \
+             their width; text becomes outlines.",
         ))
         .after_help(
             "Examples:\n  A sticker's edge around a badge:\n    pathwarp offset badge.svg --by 3mm -o edge.svg\n  Parts a little larger, for a \

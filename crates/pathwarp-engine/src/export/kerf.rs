@@ -1,6 +1,6 @@
 //! Room for the width of the cut: parts grow by half of it and their holes shrink, so that what is cut has the size drawn.
 
-use pathwarp::edit::{Offset, Side, moved};
+use pathwarp::edit::{Offset, OpenPaths, Side, moved};
 use pathwarp::kurbo::{BezPath, Join, Point, Rect, Shape as _};
 use pathwarp::outline::Subpath;
 use pathwarp::{GeometryError, Outline, refit};
@@ -46,7 +46,8 @@ pub(super) fn widen<K: PartialEq>(
                 .collect(),
         };
         for (area, side) in areas {
-            let offset = Offset { by, join: Join::Miter, side, even_odd: cut.even_odd == Some(true) };
+            let even_odd = cut.even_odd == Some(true);
+            let offset = Offset { by, join: Join::Miter, side, even_odd, open: OpenPaths::Stay };
             let to = moved(&area, &offset, options, &[])?.outline;
             fewer += area.subpaths.len().saturating_sub(to.subpaths.len());
             cut.outline.subpaths.extend(to.subpaths);

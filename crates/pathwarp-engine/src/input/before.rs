@@ -5,7 +5,7 @@ use crate::edits;
 use crate::failure::Failure;
 use crate::options::{CommonOptions, TOLERANCE_OF_DIAGONAL, distance, measurable};
 use crate::units::units_per_px;
-use pathwarp::edit::{Offset, Side};
+use pathwarp::edit::{Offset, OpenPaths, Side};
 use pathwarp::kurbo::{Affine, Join, Rect};
 use pathwarp::map::AffineMap;
 use pathwarp::param::{Frame, Length, Settings};
@@ -64,7 +64,11 @@ pub(crate) fn planned(
             };
             let by = s.number("by")?;
             measurable(if is_last { "by" } else { "outset" }, by, painted)?;
-            (Edit::Offset(Offset { by, join, side, even_odd: false }), held(options.tolerance, TOLERANCE_OF_DIAGONAL)?)
+            let open = if s.flag("lines")? { OpenPaths::Move } else { OpenPaths::Stay };
+            (
+                Edit::Offset(Offset { by, join, side, even_odd: false, open }),
+                held(options.tolerance, TOLERANCE_OF_DIAGONAL)?,
+            )
         }
         _ => (Edit::Outline, held(options.tolerance, TOLERANCE_OF_DIAGONAL)?),
     };

@@ -2,7 +2,7 @@
 
 use super::bends::{Bend, Bends};
 use super::fits::{self, EmbeddedImage, FilterOutcome, PlacedSlot, written};
-use super::options::{Edit, OnError};
+use super::options::{Edit, OnError, has_lines_that_stay};
 use super::outcome::{PartOutcome, Skipped, Warning, WarpedDocument, WarpedPart};
 use super::part;
 use super::path::ROUNDING;
@@ -82,7 +82,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
         });
     }
     out.skipped.extend(drawing.far().reasons.iter().map(|(id, why)| Skipped { id: id.clone(), why: why.clone() }));
-    warn(drawing, bends, &outcomes, &slots, out);
+    warn(drawing, bends, &of, &outcomes, &slots, out);
     let bend = |b: &Bitmap| fits::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
     let images = scene.bitmaps.iter().map(bend).collect();
     Ok(BentDrawing { outcomes, images, slots, of, filters: BTreeMap::new() })
@@ -144,6 +144,7 @@ fn shared<'a>(
     pieces: &[Vec<LetterPiece>],
 ) -> (Bend<'a>, Vec<Vec<f64>>) {
     let mut bend = bend.clone();
+    bend.options.edit = edit_of(drawing, &bend, of, k);
     let contours = task::of_parts(drawing, &bend, of, k);
     let refit = &bend.options.refit;
     let simplifies = matches!(bend.options.edit, Some(Edit::Simplify { .. }));
@@ -162,6 +163,12 @@ fn shared<'a>(
         }
     }
     (bend, contours)
+}
+
+/// The edit of bend `k`, by what it applies to.
+fn edit_of(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usize) -> Option<Edit> {
+    let parts = drawing.scene().parts.iter().zip(of).filter(|(_, of)| **of == Some(k));
+    bend.options.edit.map(|edit| edit.among(parts.map(|(p, _)| p)))
 }
 
 /// The shapes that recur in several parts.
@@ -197,6 +204,7 @@ impl BentDrawing {
 fn warn(
     drawing: &Drawing,
     bends: &Bends<'_>,
+    of: &[Option<usize>],
     outcomes: &[PartOutcome],
     slots: &[PlacedSlot],
     out: &mut WarpedDocument,
@@ -207,6 +215,16 @@ fn warn(
     }
     if repeats && slots.iter().any(|s| s.fit != Affine::IDENTITY) {
         out.warnings.push(Warning::SharedImages);
+    }
+    for (k, bend) in bends.each.iter().enumerate() {
+        let Some(edit) = edit_of(drawing, bend, of, k) else { continue };
+        let stay = |i: &usize| of[*i] == Some(k) && has_lines_that_stay(edit, &drawing.scene().parts[*i]);
+        let mut names: Vec<String> = (0..of.len()).filter(stay).map(|i| drawing.shapes()[i].id.clone()).collect();
+        names.dedup();
+        if !names.is_empty() {
+            out.warnings
+                .push(Warning::Note { text: "open lines stay where they are (--lines moves them, too)", names });
+        }
     }
     let bends_text =
         || drawing.scene().texts.iter().any(|t| outcomes.get(t.first).is_some_and(|o| o.warped().is_some()));

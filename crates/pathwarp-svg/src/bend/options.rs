@@ -5,7 +5,7 @@ use crate::scene::model::{Part, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::select::Selection;
 use crate::source::text::SourceText;
-use pathwarp::edit::{Offset, moved};
+use pathwarp::edit::{Offset, OpenPaths, moved};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::Chain;
 use pathwarp::refit::{self, RefittedPath};
@@ -266,7 +266,8 @@ pub enum Edit {
     },
     /// Converts strokes and text to filled outlines.
     Outline,
-    /// Grows or shrinks areas, by the rule of their fill, and moves open paths sideways.
+    /// Grows or shrinks areas, by the rule of their fill. Open paths without a fill move sideways if that is wanted, or if there is nothing
+    /// else.
     Offset(Offset),
     /// Writes markers and strokes that usvg draws otherwise than browsers as plain shapes.
     Resolve,
@@ -278,7 +279,8 @@ impl Edit {
         match self {
             Self::Offset(offset) => {
                 let even_odd = part.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd);
-                Self::Offset(Offset { even_odd, ..offset })
+                let open = if part.fill.is_some() { OpenPaths::Close } else { offset.open };
+                Self::Offset(Offset { even_odd, open, ..offset })
             }
             other => other,
         }
@@ -298,6 +300,16 @@ impl Edit {
         }
     }
 
+    /// The edit for parts, of which some may be areas: without any, lines move.
+    pub(super) fn among<'p>(self, mut parts: impl Iterator<Item = &'p Part>) -> Self {
+        match self {
+            Self::Offset(offset) if !parts.any(|p| p.role == PartRole::Paint && p.painted() && is_area(p)) => {
+                Self::Offset(Offset { open: OpenPaths::Move, ..offset })
+            }
+            other => other,
+        }
+    }
+
     /// Whether a part may change.
     pub(super) fn concerns(self, part: &Part, source: &SourceText) -> bool {
         let tag = |e: Option<ElementId>| e.map_or("", |e| &*source.elements[e].tag);
@@ -307,10 +319,25 @@ impl Edit {
                 part.owner.is_none() && matches!(tag(part.source), "path" | "polygon" | "polyline")
             }
             Self::Outline => part.stroke.is_some() || tag(part.owner) == "text",
-            Self::Offset(_) => part.role == PartRole::Paint && part.painted(),
+            Self::Offset(offset) => {
+                let is_painted = part.role == PartRole::Paint && part.painted();
+                is_painted && (offset.open != OpenPaths::Stay || is_area(part))
+            }
             Self::Resolve => part.is_own,
         }
     }
+}
+
+/// Whether a part has a fill or closed lines.
+fn is_area(part: &Part) -> bool {
+    part.fill.is_some() || part.local.subpaths.iter().any(|s| s.closed)
+}
+
+/// Whether a part has open lines that an edit leaves where they are.
+pub(super) fn has_lines_that_stay(edit: Edit, part: &Part) -> bool {
+    let stay = matches!(edit, Edit::Offset(offset) if offset.open == OpenPaths::Stay);
+    let is_line = part.role == PartRole::Paint && part.painted() && part.fill.is_none();
+    stay && is_line && part.local.subpaths.iter().any(|s| !s.closed)
 }
 
 /// Placement of letters one by one.

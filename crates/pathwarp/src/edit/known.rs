@@ -322,13 +322,13 @@ impl Run {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edit::{Offset, Side, moved};
+    use crate::edit::{Offset, OpenPaths, Side, moved};
     use crate::refit::Options;
     use kurbo::{Join, Rect};
 
     fn grown(path: &str, by: f64, join: Join) -> Outline {
         let side = if by > 0.0 { Side::Outside } else { Side::Inside };
-        let offset = Offset { by: by.abs(), join, side, even_odd: false };
+        let offset = Offset { by: by.abs(), join, side, even_odd: false, open: OpenPaths::Move };
         moved(&Outline::from_svg(path).unwrap(), &offset, &Options::new(0.05), &[]).unwrap().outline
     }
 

@@ -6,7 +6,7 @@ use crate::error::GeometryError;
 use crate::outline::{Outline, Seg};
 use crate::refit::{ARCS, Options, PathReport, RefittedPath};
 use bezierfit::{Fitted, union_even_odd};
-use kurbo::{BezPath, Join, Rect, Shape};
+use kurbo::{BezPath, Join, Line, Rect, Shape};
 
 /// How far the miters of an offset reach at most, in distances.
 const MITERS: f64 = 4.0;
@@ -25,6 +25,17 @@ pub enum Side {
     Both,
 }
 
+/// What [`moved`] does with open subpaths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OpenPaths {
+    /// They stay as they are.
+    Stay,
+    /// They become the paths beside them.
+    Move,
+    /// They enclose areas, as fills do.
+    Close,
+}
+
 /// How far [`moved`] moves outlines, and in which direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offset {
@@ -36,6 +47,8 @@ pub struct Offset {
     pub side: Side,
     /// Closed subpaths enclose an area by the even-odd rule, instead of the nonzero rule.
     pub even_odd: bool,
+    /// Open subpaths.
+    pub open: OpenPaths,
 }
 
 /// The result of [`moved`].
@@ -56,18 +69,20 @@ pub struct Moved {
 /// A coordinate is not finite.
 ///
 /// ```
-/// use pathwarp::edit::{Offset, Side, moved};
+/// use pathwarp::edit::{Offset, OpenPaths, Side, moved};
 /// use pathwarp::kurbo::{Join, Shape};
 /// use pathwarp::{Outline, refit::Options};
 ///
 /// let square = Outline::from_svg("M0,0H60V60H0Z")?;
-/// let by = Offset { by: 10.0, join: Join::Miter, side: Side::Outside, even_odd: false };
+/// let by = Offset { by: 10.0, join: Join::Miter, side: Side::Outside, even_odd: false, open: OpenPaths::Move };
 /// let larger = moved(&square, &by, &Options::new(0.01), &[])?;
 /// assert_eq!(larger.path.path.to_svg(), "M-10,-10 L70,-10 L70,70 L-10,70 Z");
 /// # Ok::<(), pathwarp::Error>(())
 /// ```
 pub fn moved(outline: &Outline, offset: &Offset, options: &Options, contours: &[f64]) -> Result<Moved, GeometryError> {
     let reach = if offset.join == Join::Miter { MITERS } else { 1.0 } * offset.by;
+    let segments_in = outline.segs().count();
+    let (outline, staying) = &prepared(outline, offset.open);
     let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
     let (mut out, mut path, mut report) = (Outline::default(), BezPath::new(), PathReport::default());
     for group in apart(&boxes) {
@@ -89,8 +104,30 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options, contours: &[
             out.subpaths.extend(moved.subpaths);
         }
     }
-    (report.segments_in, report.segments_out) = (outline.segs().count(), path.segments().count());
+    path.extend(staying.to_bez_path(ARCS * options.tolerance));
+    out.subpaths.extend(staying.subpaths.iter().cloned());
+    (report.segments_in, report.segments_out) = (segments_in, path.segments().count());
     Ok(Moved { outline: out, path: RefittedPath { path, spans: Vec::new(), report } })
+}
+
+/// The subpaths that move, and those that stay.
+fn prepared(outline: &Outline, open: OpenPaths) -> (Outline, Outline) {
+    let (mut moving, mut staying) = (outline.clone(), Outline::default());
+    match open {
+        OpenPaths::Move => {}
+        OpenPaths::Stay => {
+            (moving.subpaths, staying.subpaths) = moving.subpaths.into_iter().partition(|s| s.closed);
+        }
+        OpenPaths::Close => {
+            for s in moving.subpaths.iter_mut().filter(|s| !s.closed) {
+                if s.end() != s.start {
+                    s.segs.push(Seg::Line(Line::new(s.end(), s.start)));
+                }
+                s.closed = true;
+            }
+        }
+    }
+    (moving, staying)
 }
 
 /// Offsets subpaths together, to each side that is wanted.
@@ -180,7 +217,7 @@ mod tests {
     #[test]
     fn miters_unite_with_what_they_reach() {
         let outline = Outline::from_svg("M0,0L36,10L0,20ZM39,0H49V20H39Z").unwrap();
-        let by = Offset { by: 1.0, join: Join::Miter, side: Side::Outside, even_odd: false };
+        let by = Offset { by: 1.0, join: Join::Miter, side: Side::Outside, even_odd: false, open: OpenPaths::Move };
         let grown = moved(&outline, &by, &Options::new(0.01), &[]).unwrap();
         assert_eq!(grown.outline.subpaths.len(), 1);
         assert_eq!(united(&grown.outline, false, 0.01).unwrap(), None);
