@@ -28,6 +28,9 @@ const FEW_NODES: usize = 3000;
 /// Halvings of a distance, at most.
 const MOST_HALVES: usize = 16;
 
+/// Share of the distance that bevels keep where most corners turn by less than 120°.
+const BEVELS: f64 = 0.5;
+
 /// Limit of miters, as the drawing of plans knows it.
 const MITER_LIMIT: f64 = 4.0;
 
@@ -164,8 +167,9 @@ fn moved(
         true => w.shape_a != 0 || turns_with(w),
         false => w.shape_a != 0 && turns_with(w),
     })?;
-    let (moved, near) = at_least(distance.abs() - options.tolerance, &segs, &moved);
-    // Bevels are nearer than the distance.
+    // Bevels are nearer than the distance, and what is left inside is nearer still.
+    let least = if style.join == Join::Bevel { BEVELS * distance.abs() } else { distance.abs() - options.tolerance };
+    let (moved, near) = at_least(least, &segs, &moved);
     if style.join != Join::Bevel {
         out.report.unresolved.extend(near);
     }

@@ -4,6 +4,7 @@ use super::common::random_path;
 use bezierfit::{Options, offset, stroke, union};
 use kurbo::{BezPath, Cap, Join, ParamCurve, PathSeg, Point, Shape, Stroke, Vec2};
 use pathwarp_oracle::{Polygon, Random, flat};
+use std::f64::consts::PI;
 
 const TOLERANCE: f64 = 0.02;
 
@@ -180,4 +181,22 @@ fn tips_keep_their_distance() {
         let nearest = flat(&grown, FLAT).distance(tip);
         assert!((nearest - BY).abs() < 2.0 * TOLERANCE, "{degrees}°: {nearest}");
     }
+}
+
+/// Bevels are nearer than the distance: rough outlines do not vanish because most of what they become are bevels.
+#[test]
+fn rough_outlines_grow_by_bevels() {
+    let points = (0..120).map(|i| {
+        let (angle, r) = (f64::from(i) * PI / 60.0, if i % 2 == 0 { 30.0 } else { 31.2 });
+        Point::new(r * angle.cos(), r * angle.sin())
+    });
+    let mut path = BezPath::new();
+    for (i, p) in points.enumerate() {
+        if i == 0 { path.move_to(p) } else { path.line_to(p) }
+    }
+    path.close_path();
+    let grown = offset(&path, 12.0, Join::Bevel, &Options::new(0.05)).unwrap().path;
+    let area = grown.area().abs();
+    // Between the circles that the inner corners' edges and the outer corners' tips reach.
+    assert!((PI * 40.0_f64.powi(2)..PI * 43.3_f64.powi(2)).contains(&area), "{area}");
 }
