@@ -118,7 +118,8 @@ fn edges(source: &Outline, by: f64, round: bool) -> Vec<Edge> {
                     out.extend([1.0, -1.0].map(|side| Edge::Line(Line::new(l.p0 + beside(side), l.p1 + beside(side)))));
                 }
                 Seg::Arc(a) if a.is_circular() => {
-                    let start = (if a.sweep > 0.0 { a.p0 } else { a.p1 } - a.center).angle();
+                    let turn = a.sweep * a.a.cross(a.b);
+                    let start = (if turn > 0.0 { a.p0 } else { a.p1 } - a.center).angle();
                     let (center, r, sweep) = (a.center, a.a.hypot(), a.sweep.abs());
                     let radii = [r + by, r - by].into_iter().filter(|radius| *radius > TOUCH * r);
                     out.extend(radii.map(|radius| Edge::Arc { center, radius, start, sweep }));
@@ -144,7 +145,8 @@ fn continued(a: &Seg, b: &Seg) -> Option<Seg> {
         (Seg::Arc(k), Seg::Arc(l)) => {
             let slack = TOUCH * k.a.hypot();
             let same = k.center.distance(l.center) <= slack && (k.a.hypot() - l.a.hypot()).abs() <= slack;
-            let goes_on = same && k.is_circular() && l.is_circular() && k.sweep * l.sweep > 0.0;
+            let goes_on =
+                same && k.is_circular() && l.is_circular() && (k.a, k.b) == (l.a, l.b) && k.sweep * l.sweep > 0.0;
             let sweep = (k.sweep + l.sweep).clamp(-TAU, TAU);
             goes_on.then_some(Seg::Arc(EllipticArc { p1: l.p1, sweep, ..*k }))
         }
@@ -354,6 +356,17 @@ mod tests {
             let wanted = Rect::new(10.0, 10.0, 90.0, 70.0).inflate(by, by);
             assert!((bounds.x0 - wanted.x0).abs() + (bounds.y1 - wanted.y1).abs() < 1e-6, "{by}: {bounds:?}");
         }
+    }
+
+    /// A mirror turns the axes of arcs round.
+    #[test]
+    fn mirrored_arcs_stay_arcs() {
+        let path = "M60,20H80A8,8 0 0 1 80,36H60A8,8 0 0 1 60,20Z";
+        let mirrored = Outline::from_svg(path).unwrap().transformed(kurbo::Affine::FLIP_Y);
+        let offset = Offset { by: 0.2, join: Join::Miter, side: Side::Outside, even_odd: false, open: OpenPaths::Move };
+        let out = moved(&mirrored, &offset, &Options::new(0.02), &[]).unwrap().outline;
+        let arcs = out.segs().filter(|s| matches!(s, Seg::Arc(a) if (a.a.hypot() - 8.2).abs() < 1e-9));
+        assert_eq!((arcs.count(), out.segs().count()), (2, 4), "{out:?}");
     }
 
     /// A hexagon grows by arcs around its corners, or by miters.
