@@ -30,7 +30,7 @@ pub(crate) struct End {
     pub(crate) along: Option<Vec2>,
 }
 
-/// What lies at the ends of a guide.
+/// The ends of a guide: points with directions, or none where it is closed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Ends {
     /// It runs from one to the other.
@@ -360,13 +360,13 @@ impl Miss {
 fn divided(knots: &[f64], misses: &[Miss], [within, near, finest]: [f64; 3]) -> (Vec<f64>, bool) {
     /// Share of the distance that a bias has where more knots help.
     const BIASED: f64 = 0.2;
-    /// The same by chance, times the root of the number of samples.
+    /// Share of the distance that the bias of noise has by chance, times the root of the number of samples.
     const CHANCE: f64 = 1.5;
     /// Fewer samples say nothing about a half.
     const FEW: usize = 12;
     let (mut out, mut hopeless) = (vec![knots[0]], false);
     for (ends, miss) in knots.windows(2).zip(misses) {
-        // What is far to either side alike is noise, which no division brings nearer.
+        // Samples that are as far to one side as to the other are noise, which no division brings nearer.
         let noise = f64::max(BIASED, CHANCE / (miss.count as f64).sqrt()) * miss.far;
         let wanted = miss.far > within && miss.bias() > noise || miss.bias() > near;
         if wanted && ends[1] - ends[0] > 2.0 * finest && miss.count >= FEW {

@@ -2,13 +2,13 @@
 
 use crate::limits::{CROSSINGS, EDGES, SIMPLIFIED, SMOOTH_JOINT, SOURCE};
 use crate::options::{Error, Options};
-use crate::path::{simplify, subpaths};
+use crate::path::{Segment, simplify, subpaths};
 use crate::report::{Assurance, Fitted, Report};
+use crate::scale::turn;
 use crate::source::NotFinite;
 use crate::stroke::{beside_area, beside_path, stroke};
 use kurbo::{
     Affine, BezPath, Cap, Join, ParamCurve, ParamCurveArclen, ParamCurveNearest, PathEl, PathSeg, Point, Shape, Stroke,
-    Vec2,
 };
 use linesweeper::topology::{BinaryWindingNumber, Topology};
 use std::collections::HashMap;
@@ -205,12 +205,11 @@ fn manageable(area: &BezPath, distance: f64) -> f64 {
 fn begun(contour: &BezPath, starts: &[Point]) -> BezPath {
     let mut segs: Vec<PathSeg> = contour.segments().collect();
     let distance = |p: Point| starts.iter().map(|s| s.distance_squared(p)).fold(f64::INFINITY, f64::min);
-    let turn = |i: usize| {
-        let (into, away) = (segs[(i + segs.len() - 1) % segs.len()].reverse(), segs[i]);
-        let (u, v) = (-leaving(&into), leaving(&away));
-        u.cross(v).atan2(u.dot(v)).abs()
-    };
-    let corners = (0..segs.len()).filter(|i| turn(*i) > SMOOTH_JOINT);
+    let joint = |i: usize| [segs[(i + segs.len() - 1) % segs.len()], segs[i]].map(Segment::new);
+    let corners = (0..segs.len()).filter(|i| {
+        let [before, after] = joint(*i);
+        turn(&before, &after) > SMOOTH_JOINT
+    });
     let nearest = corners.min_by(|a, b| distance(segs[*a].start()).total_cmp(&distance(segs[*b].start())));
     if let Some(corner) = nearest {
         segs.rotate_left(corner);
@@ -236,12 +235,6 @@ fn begun(contour: &BezPath, starts: &[Point]) -> BezPath {
     let mut out = BezPath::from_path_segments(segs.into_iter());
     out.close_path();
     out
-}
-
-/// The direction in which a segment leaves its start.
-fn leaving(seg: &PathSeg) -> Vec2 {
-    let c = seg.to_cubic();
-    [c.p1, c.p2, c.p3].into_iter().map(|p| p - c.p0).find(|v| v.hypot2() > 0.0).unwrap_or_default()
 }
 
 /// Adds a part with the report of its edges.
@@ -287,7 +280,7 @@ fn covered(
     Ok(simplify(&without_dust(&out, fine), &Options::new(fine).with_corner(SMOOTH_JOINT))?.path)
 }
 
-/// The same path without segments that are shorter than a length.
+/// A closed path without its segments that are shorter than a length.
 fn without_dust(path: &BezPath, length: f64) -> BezPath {
     let mut out = BezPath::new();
     for subpath in subpaths(path) {

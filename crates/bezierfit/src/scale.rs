@@ -310,7 +310,7 @@ impl SmoothPart {
 }
 
 /// The turn at the joint of two segments, in radians without sign.
-fn turn(before: &Segment, after: &Segment) -> f64 {
+pub(crate) fn turn(before: &Segment, after: &Segment) -> f64 {
     let [into, away] = [tangent(before, 1.0), tangent(after, 0.0)];
     into.cross(away).atan2(into.dot(away)).abs()
 }
@@ -478,7 +478,7 @@ impl Scan<'_> {
             }
             Err(failed) => self.beside([from, to], &failed),
         };
-        // What no guide follows has corners after all.
+        // A part that no guide follows has corners after all.
         if corners.is_empty() || divisions == 0 {
             return own;
         }
