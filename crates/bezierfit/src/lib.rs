@@ -49,6 +49,8 @@ mod scale;
 mod source;
 mod spline;
 mod stretch;
+#[cfg(feature = "area")]
+mod strips;
 mod stroke;
 
 pub use offset::Offset;

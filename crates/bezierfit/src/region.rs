@@ -6,7 +6,8 @@ use crate::path::{Segment, simplify, subpaths};
 use crate::report::{Assurance, Fitted, Report};
 use crate::scale::turn;
 use crate::source::NotFinite;
-use crate::stroke::{beside_area, beside_path, stroke};
+use crate::strips::{Neighbors, cell_of, strips};
+use crate::stroke::{Edge, beside_area, beside_path, edges_beside_area, fit_contours, stroke};
 use kurbo::{
     Affine, BezPath, Cap, Join, ParamCurve, ParamCurveArclen, ParamCurveNearest, PathEl, PathSeg, Point, Shape, Stroke,
 };
@@ -19,14 +20,9 @@ use std::panic::{self, AssertUnwindSafe};
 /// turned by the first angle.
 const TURNS: [f64; 6] = [0.3, 1.1, 0.7, 2.0, 2.6, 1.4];
 
-/// Steps of an offset, at most, and the share of the tolerance of each but the last in what is left of it.
-const MOST_STEPS: usize = 8;
-const FIRST_STEP: f64 = 0.25;
 /// Neighbours of a node within the distance, on average, with which outlines are moved at once; fewer nodes than these never count as many.
 const MOST_NEIGHBORS: usize = 4;
 const FEW_NODES: usize = 3000;
-/// Halvings of a distance, at most.
-const MOST_HALVES: usize = 16;
 
 /// Share of the distance that bevels keep where most corners turn by less than 120°.
 const BEVELS: f64 = 0.5;
@@ -111,7 +107,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
     // Edges inside of it do not count.
     let area = union(&area, options.tolerance)?;
     if !area.is_empty() {
-        let moved = moved(&area, distance, &style, (&starts, MOST_STEPS), options)?;
+        let moved = moved(&area, distance, &style, &starts, options)?;
         out.path.extend(&moved.path);
         out.report.add(&moved.report);
     }
@@ -130,43 +126,32 @@ fn lighter(path: &BezPath, options: &Options) -> Result<BezPath, Error> {
     Ok(if 2 * simple.segments().count() < path.segments().count() { simple } else { path.clone() })
 }
 
-/// Moves the outlines of an area, which begin near one of `starts`. Round edges of rough outlines move in up to `steps` steps, each of
-/// which leaves fewer of them: moved at once, all that lie within the distance of each other would cross.
-fn moved(
-    area: &BezPath,
-    distance: f64,
-    style: &Stroke,
-    (starts, steps): (&[Point], usize),
-    options: &Options,
-) -> Result<Fitted, Error> {
-    let part = if style.join == Join::Round && steps > 0 { manageable(area, distance) } else { distance };
-    if part != distance {
-        let [first, rest] =
-            [FIRST_STEP, 1.0 - FIRST_STEP].map(|s| Options { tolerance: s * options.tolerance, ..*options });
-        let begun = moved(area, part, style, (starts, 0), &first)?;
-        if begun.path.is_empty() {
-            return Ok(begun);
-        }
-        let mut out = moved(&begun.path, distance - part, style, (starts, steps - 1), &rest)?;
-        out.report.max_error += begun.report.max_error;
-        let reach = ((distance - part).abs() + options.tolerance).powi(2);
-        let is_near = |p: &Point| out.path.segments().any(|s| s.nearest(*p, options.tolerance).distance_sq <= reach);
-        let left: Vec<Point> = begun.report.unresolved.into_iter().filter(is_near).collect();
-        out.report.unresolved.extend(left);
-        return Ok(out);
-    }
+/// Moves the outlines of an area, which begin near one of `starts`.
+fn moved(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], options: &Options) -> Result<Fitted, Error> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
     let rest = Options { tolerance: SIMPLIFIED * options.tolerance, best: true, ..*options };
     // All outlines of an area turn around it in one direction.
     let (outside, turn) = if area.area() > 0.0 { (-distance, 1) } else { (distance, -1) };
-    let edge = beside_area(area, style, outside, &fine)?;
-    let segs: Vec<PathSeg> = area.segments().collect();
     let turns_with = |w: &BinaryWindingNumber| w.shape_b * turn > 0;
-    let moved = covered(area, &edge.path, options.tolerance, |w| match distance > 0.0 {
-        true => w.shape_a != 0 || turns_with(w),
-        false => w.shape_a != 0 && turns_with(w),
-    })?;
+    let (edge, moved) = if style.join == Join::Round && is_crowded(area, distance) {
+        let edges = edges_beside_area(area, style, outside, &fine);
+        let neighbors = Neighbors::new(area, distance);
+        let strips: Vec<Vec<Edge>> =
+            edges.iter().flat_map(|e| strips(e, outside, fine.tolerance, &neighbors)).collect();
+        let edge = fit_contours(&strips, &fine)?;
+        let around = covered(&BezPath::new(), &edge.path, options.tolerance, |w| w.shape_b != 0)?;
+        let around = if distance > 0.0 { around } else { around.reverse_subpaths() };
+        (edge, around)
+    } else {
+        let edge = beside_area(area, style, outside, &fine)?;
+        let moved = covered(area, &edge.path, options.tolerance, |w| match distance > 0.0 {
+            true => w.shape_a != 0 || turns_with(w),
+            false => w.shape_a != 0 && turns_with(w),
+        })?;
+        (edge, moved)
+    };
+    let segs: Vec<PathSeg> = area.segments().collect();
     // Bevels are nearer than the distance, and what is left inside is nearer still.
     let least = if style.join == Join::Bevel { BEVELS * distance.abs() } else { distance.abs() - options.tolerance };
     let (moved, near) = at_least(least, &segs, &moved);
@@ -178,27 +163,14 @@ fn moved(
     Ok(out)
 }
 
-/// The distance, or the part of it by which outlines can be moved with few crossings.
-fn manageable(area: &BezPath, distance: f64) -> f64 {
+/// Returns `true` if so much of the outlines lies within the distance of other parts that most of what is beside them would cross.
+fn is_crowded(area: &BezPath, distance: f64) -> bool {
     let nodes: Vec<Point> = area.segments().map(|s| s.start()).collect();
-    let most = MOST_NEIGHBORS * nodes.len().max(FEW_NODES);
-    let neighbors = |reach: f64| {
-        let mut cells = HashMap::new();
-        for p in &nodes {
-            #[expect(clippy::cast_possible_truncation, reason = "saturates, far from all drawings")]
-            let cell = [p.x, p.y].map(|v| (v / reach).floor() as i64);
-            *cells.entry(cell).or_insert(0_usize) += 1;
-        }
-        cells.values().map(|n| n * n).sum::<usize>()
-    };
-    let mut part = distance;
-    for _ in 0..MOST_HALVES {
-        if neighbors(2.0 * part.abs()) <= most {
-            break;
-        }
-        part *= 0.5;
+    let mut cells = HashMap::new();
+    for p in &nodes {
+        *cells.entry(cell_of(*p, 2.0 * distance.abs())).or_insert(0_usize) += 1;
     }
-    part
+    cells.values().map(|n| n * n).sum::<usize>() > MOST_NEIGHBORS * nodes.len().max(FEW_NODES)
 }
 
 /// A closed contour that begins at the corner, or else at the place, that is nearest to one of `starts`.

@@ -44,7 +44,7 @@ pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitte
     Ok(fit_contours(&contours, options)?)
 }
 
-fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<Fitted, NotFinite> {
+pub(crate) fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<Fitted, NotFinite> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let inner = Options { tolerance: STROKED * options.tolerance, ..*options };
@@ -66,13 +66,20 @@ pub(crate) fn beside_area(
     distance: f64,
     options: &Options,
 ) -> Result<Fitted, NotFinite> {
+    let whole = |edges: Vec<Kept>| whole(&edges, true);
+    fit_contours(&edges_beside_area(path, style, distance, options).into_iter().map(whole).collect::<Vec<_>>(), options)
+}
+
+/// The edges of [`beside_area`] for each subpath, before parts of them are joined.
+#[cfg(feature = "area")]
+pub(crate) fn edges_beside_area(path: &BezPath, style: &Stroke, distance: f64, options: &Options) -> Vec<Vec<Kept>> {
     let gap = GAPS * options.tolerance;
     let pen = Pen { style, clipped: true, half: distance.abs(), gap, point: POINTS * gap };
     let side = |subpath: BezPath| {
         let (stretches, corners) = pen.course(&subpath, true);
         if stretches.is_empty() { Vec::new() } else { pen.side(&stretches, &corners, true, distance) }
     };
-    fit_contours(&subpaths(path).map(side).collect::<Vec<_>>(), options)
+    subpaths(path).map(side).collect()
 }
 
 /// One side of an open path's stroke, at a distance from it, with joins.
@@ -90,7 +97,7 @@ pub(crate) fn beside_path(
     if stretches.is_empty() {
         return Ok(out);
     }
-    let edges = pen.side(&stretches, &corners, false, distance);
+    let edges = whole(&pen.side(&stretches, &corners, false, distance), false);
     let mut pieces = Vec::new();
     for edge in &edges {
         edge.fit(options.tolerance, &mut pieces, &mut Report::default())?;
@@ -122,7 +129,7 @@ pub enum EdgeCurve {
 }
 
 impl Edge {
-    fn line(p0: Point, p1: Point) -> Self {
+    pub(crate) fn line(p0: Point, p1: Point) -> Self {
         Self { p0, p1, curve: EdgeCurve::Line }
     }
 
@@ -146,14 +153,19 @@ impl Edge {
     }
 
     /// The part between two parameters.
-    fn part(&self, t0: f64, t1: f64) -> Self {
+    pub(crate) fn part(&self, t0: f64, t1: f64) -> Self {
         if (t0, t1) == (0.0, 1.0) {
             return *self;
         }
         let (p0, p1) = (self.eval(t0).0, self.eval(t1).0);
         let curve = match self.curve {
+            EdgeCurve::Line => EdgeCurve::Line,
+            EdgeCurve::Arc(a) => EdgeCurve::Arc(Arc {
+                start_angle: a.start_angle + a.sweep_angle * t0,
+                sweep_angle: a.sweep_angle * (t1 - t0),
+                ..a
+            }),
             EdgeCurve::Side(s) => EdgeCurve::Side(s.part(t0, t1)),
-            other => other,
         };
         Self { p0, p1, curve }
     }
@@ -351,8 +363,7 @@ impl Pen<'_> {
             }
             return;
         };
-        let left = self.side(&stretches, &corners, closed, self.half);
-        let right = self.side(&stretches, &corners, closed, -self.half);
+        let [left, right] = [self.half, -self.half].map(|d| whole(&self.side(&stretches, &corners, closed, d), closed));
         let back = right.iter().rev().map(Edge::reversed);
         if closed {
             out.extend([left, back.collect()]);
@@ -506,11 +517,11 @@ impl Pen<'_> {
     }
 
     /// The edges on one side of a path, with their joins.
-    fn side(&self, stretches: &[Stretch], corners: &[Corner], closed: bool, distance: f64) -> Vec<Edge> {
+    fn side(&self, stretches: &[Stretch], corners: &[Corner], closed: bool, distance: f64) -> Vec<Kept> {
         let mut side = Side { pen: self, distance, edges: Vec::with_capacity(2 * stretches.len()) };
         for (i, stretch) in stretches.iter().enumerate() {
             let first = side.edges.len();
-            side.edges.extend(beside(&stretch.seg, distance).into_iter().map(|edge| Kept { edge, from: 0.0, to: 1.0 }));
+            side.edges.extend(beside(&stretch.seg, distance).into_iter().map(|edge| Kept::new(edge, false)));
             if i > 0 {
                 side.join(first - 1, first, &corners[i - 1]);
             }
@@ -519,24 +530,37 @@ impl Pen<'_> {
             let last = side.edges.len() - 1;
             side.join(last, 0, corner);
         }
-        let kept = side.edges.iter().map(|k| k.edge.part(k.from, k.to));
-        // Parts of one edge meet where the edges do, to the last bit.
-        let mut edges: Vec<Edge> = kept.collect();
-        for i in 0..edges.len() {
-            let next = (i + 1) % edges.len();
-            if next != 0 || closed {
-                edges[next].p0 = edges[i].p1;
-            }
-        }
-        if closed { joined_round(edges) } else { edges }
+        side.edges
     }
 }
 
+/// The parts that are kept, as one contour.
+fn whole(kept: &[Kept], closed: bool) -> Vec<Edge> {
+    let mut edges: Vec<Edge> = kept.iter().map(|k| k.edge.part(k.from, k.to)).collect();
+    // Parts of one edge meet where the edges do, to the last bit.
+    for i in 0..edges.len() {
+        let next = (i + 1) % edges.len();
+        if next != 0 || closed {
+            edges[next].p0 = edges[i].p1;
+        }
+    }
+    if closed { joined_round(edges) } else { edges }
+}
+
 /// An edge of which the part between two parameters is kept.
-struct Kept {
-    edge: Edge,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Kept {
+    pub(crate) edge: Edge,
     from: f64,
     to: f64,
+    /// It leads by way of an inner corner, nearer to the path than the distance.
+    pub(crate) is_link: bool,
+}
+
+impl Kept {
+    fn new(edge: Edge, is_link: bool) -> Self {
+        Self { edge, from: 0.0, to: 1.0, is_link }
+    }
 }
 
 /// One side of a stroke under construction.
@@ -560,7 +584,8 @@ impl Side<'_> {
             self.edges[b].edge = to.with_ends(at, to.p1);
             return;
         }
-        let links = if self.distance * turn > 0.0 {
+        let is_inner = self.distance * turn > 0.0;
+        let links = if is_inner {
             if let Some((s, t)) = crossing(&self.edges[a].edge, &self.edges[b].edge, self.distance) {
                 self.edges[a].to = s;
                 self.edges[b].from = t;
@@ -570,7 +595,7 @@ impl Side<'_> {
         } else {
             self.outer([p, q], turn, corner)
         };
-        let links = links.into_iter().map(|edge| Kept { edge, from: 0.0, to: 1.0 });
+        let links = links.into_iter().map(|edge| Kept::new(edge, is_inner));
         let place = if b > a { b } else { self.edges.len() };
         self.edges.splice(place..place, links);
     }

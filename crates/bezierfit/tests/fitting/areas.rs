@@ -200,3 +200,36 @@ fn rough_outlines_grow_by_bevels() {
     // Between the circles that the inner corners' edges and the outer corners' tips reach.
     assert!((PI * 40.0_f64.powi(2)..PI * 43.3_f64.powi(2)).contains(&area), "{area}");
 }
+
+/// Rough outlines, of which most neighbors lie within the distance, keep it: a flower with a hole whose middle closes.
+#[test]
+fn rough_outlines_keep_their_distance() {
+    const POINTS: u32 = 1500;
+    const TOLERANCE: f64 = 0.05;
+    let mut random = Random::new(62);
+    let mut path = BezPath::new();
+    for (radius, lobes) in [(90.0, 9.0), (20.0, 5.0)] {
+        for i in 0..POINTS {
+            let angle = f64::from(i) * 2.0 * PI / f64::from(POINTS) * if lobes == 9.0 { 1.0 } else { -1.0 };
+            let r = radius + 0.1 * radius * (lobes * angle).cos() + random.between(-0.3, 0.3);
+            let p = Point::new(r * angle.cos(), r * angle.sin());
+            if i == 0 { path.move_to(p) } else { path.line_to(p) }
+        }
+        path.close_path();
+    }
+    let source = flat(&path, FLAT);
+    for by in [-25.0, -6.0, 6.0, 17.0, 25.0_f64] {
+        let moved = offset(&path, by, Join::Round, &Options::new(TOLERANCE)).unwrap();
+        assert!(moved.report.unresolved.is_empty(), "{by}: {:?}", moved.report.unresolved);
+        let result = flat(&moved.path, FLAT);
+        for _ in 0..1500 {
+            let p = Point::new(random.between(-130.0, 130.0), random.between(-130.0, 130.0));
+            let apart = source.distance(p) * if source.covers(p) { -1.0 } else { 1.0 };
+            if (apart - by).abs() > 2.0 * TOLERANCE {
+                assert_eq!(result.covers(p), apart < by, "{by}: {p:?} at {apart}");
+            }
+        }
+        let least = samples(&moved.path).map(|p| source.distance(p)).fold(f64::INFINITY, f64::min);
+        assert!(least > by.abs() - 1.5 * TOLERANCE, "{by}: {least}");
+    }
+}

@@ -1,0 +1,221 @@
+//! Strips beside outlines: where outlines are rough, most of what lies beside them at a distance is nearer to another part of them. Strips
+//! cover what is left, so that few edges cross.
+
+use crate::source::Source;
+use crate::stroke::{Edge, EdgeCurve, Kept};
+use kurbo::{BezPath, ParamCurve, ParamCurveArclen, Point, Vec2};
+use std::cell::Cell;
+use std::collections::HashMap;
+
+/// Cells to the distance.
+const CELLS: f64 = 6.0;
+/// Longest step along the source between points that stand for it, and between those of a strip's way back, as a share of the distance.
+const STEP: f64 = 0.25;
+/// Parts of edges that are shorter are not divided, as a share of the distance.
+const FINEST: f64 = 1e-3;
+
+/// Points of outlines, by cell.
+pub(crate) struct Neighbors {
+    cell: f64,
+    points: HashMap<[i64; 2], Vec<Point>>,
+    /// Cells that a circle of the distance touches, the nearest first, with the distance between the cells.
+    around: Vec<([i64; 2], f64)>,
+    /// The point that was near last: it is near to what follows, more often than not.
+    last: Cell<Point>,
+}
+
+impl Neighbors {
+    pub(crate) fn new(outlines: &BezPath, distance: f64) -> Self {
+        let distance = distance.abs();
+        let cell = distance / CELLS;
+        let mut points: HashMap<[i64; 2], Vec<Point>> = HashMap::new();
+        for s in outlines.segments() {
+            let steps = (s.arclen(STEP * distance) / (STEP * distance)).ceil().max(1.0);
+            for i in 0..steps as usize {
+                let p = s.eval(i as f64 / steps);
+                points.entry(cell_of(p, cell)).or_default().push(p);
+            }
+        }
+        let reach = CELLS.ceil() as i64 + 1;
+        let cells = (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| [x, y]));
+        let apart = |c: [i64; 2]| c.map(|v| (v.abs() - 1).max(0) as f64 * cell);
+        let mut around: Vec<_> =
+            cells.map(|c| (c, apart(c)[0].hypot(apart(c)[1]))).filter(|(_, near)| *near < distance).collect();
+        around.sort_by_key(|(c, _)| (c[0] * c[0] + c[1] * c[1], *c));
+        Self { cell, points, around, last: Cell::new(Point::new(f64::NAN, f64::NAN)) }
+    }
+
+    /// Returns `true` if a point of the outlines is known to be nearer than `reach`, which is at most the distance.
+    fn is_near(&self, p: Point, reach: f64) -> bool {
+        if reach <= 0.0 {
+            return false;
+        }
+        let is_near = |q: &&Point| q.distance_squared(p) < reach * reach;
+        if is_near(&&self.last.get()) {
+            return true;
+        }
+        let [x, y] = cell_of(p, self.cell);
+        let cells = self.around.iter().filter(|(_, near)| *near < reach);
+        let mut near = cells.filter_map(|([i, j], _)| self.points.get(&[x + i, y + j])?.iter().find(is_near));
+        near.next().inspect(|q| self.last.set(**q)).is_some()
+    }
+}
+
+/// The square cell that a point is in.
+pub(crate) fn cell_of(p: Point, cell: f64) -> [i64; 2] {
+    #[expect(clippy::cast_possible_truncation, reason = "saturates, far from all drawings")]
+    [p.x, p.y].map(|v| (v / cell).floor() as i64)
+}
+
+/// Closed contours, each along parts of a contour's edges at `distance` that are not known to be nearer to the outlines by more than
+/// `slack`, and back beside the outline.
+pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neighbors) -> Vec<Vec<Edge>> {
+    let reach = distance.abs();
+    let step = STEP * reach;
+    let least = (0.5 * slack).max(FINEST * reach);
+    let left = |edge: &Edge, whole: [f64; 2], slack: f64| {
+        let mut out = Vec::new();
+        let is_near = |p, half| neighbors.is_near(p, reach - slack - half);
+        remaining(edge, whole, &is_near, least, &mut out);
+        out
+    };
+    // Parts that follow each other are one strip where the line between them is near, too.
+    let follows = |a: &Strip, b: &Strip| {
+        let (from, to) = (a.end(), b.edges[0].p0);
+        let is_short = from.distance(to) <= step && a.feet[a.feet.len() - 1].distance(b.feet[0]) <= step;
+        from == to || is_short && left(&Edge::line(from, to), [0.0, 1.0], 0.0).is_empty()
+    };
+    let mut out: Vec<Strip> = Vec::new();
+    for kept in edges {
+        // Beyond the places where edges cross, too: strips overlap there.
+        let is_backwards = matches!(kept.edge.curve, EdgeCurve::Side(s) if s.speed(0.5) < 0.0);
+        if kept.is_link || is_backwards {
+            continue;
+        }
+        for [t0, t1] in left(&kept.edge, [0.0, 1.0], slack) {
+            let part = kept.edge.part(t0, t1);
+            let steps = (length(&part, [0.0, 1.0]) / step).ceil().max(1.0);
+            let feet = (0..=steps as usize).map(|i| foot(&kept.edge, t0 + (t1 - t0) * (i as f64 / steps), distance));
+            let next = Strip { edges: vec![part], feet: feet.collect() };
+            match out.last_mut() {
+                Some(last) if follows(last, &next) => last.add(next),
+                _ => out.push(next),
+            }
+        }
+    }
+    if let [first, .., last] = &out[..]
+        && follows(last, first)
+    {
+        let first = out.swap_remove(0);
+        out[0].add(first);
+    }
+    match &out[..] {
+        [ring] if follows(ring, ring) => ring.rings(step),
+        _ => out.iter().map(|s| s.contour(step)).collect(),
+    }
+}
+
+/// Parts of the edges, and the points of the outline that they are beside.
+struct Strip {
+    edges: Vec<Edge>,
+    feet: Vec<Point>,
+}
+
+impl Strip {
+    fn end(&self) -> Point {
+        self.edges[self.edges.len() - 1].p1
+    }
+
+    /// Goes on, by a line where there is a gap.
+    fn add(&mut self, next: Self) {
+        let (from, to) = (self.end(), next.edges[0].p0);
+        if from != to {
+            self.edges.push(Edge::line(from, to));
+        }
+        self.edges.extend(next.edges);
+        self.feet.extend(next.feet);
+    }
+
+    /// The points that it is beside, backwards, in steps of `step` or more.
+    fn back(&self, step: f64) -> Vec<Point> {
+        let mut out: Vec<Point> = Vec::new();
+        for p in self.feet.iter().rev() {
+            if out.last().is_none_or(|last| last.distance(*p) > step) {
+                out.push(*p);
+            }
+        }
+        out
+    }
+
+    /// There along the edges, and back beside the outline.
+    fn contour(&self, step: f64) -> Vec<Edge> {
+        let mut out = self.edges.clone();
+        add_lines(&mut out, self.back(step).into_iter().chain([self.feet[0], self.edges[0].p0]));
+        out
+    }
+
+    /// All round along the edges, and all round beside the outline.
+    fn rings(&self, step: f64) -> Vec<Vec<Edge>> {
+        let mut outer = self.edges.clone();
+        add_lines(&mut outer, [self.edges[0].p0]);
+        let back = self.back(step);
+        let mut inner = Vec::new();
+        if let [from, to, ..] = back[..] {
+            inner.push(Edge::line(from, to));
+            add_lines(&mut inner, back[2..].iter().copied().chain([from]));
+        }
+        vec![outer, inner]
+    }
+}
+
+/// Lines from the end of an edge to one point after the other.
+fn add_lines(edges: &mut Vec<Edge>, points: impl IntoIterator<Item = Point>) {
+    for p in points {
+        let from = edges[edges.len() - 1].p1;
+        if p != from {
+            edges.push(Edge::line(from, p));
+        }
+    }
+}
+
+/// Appends the parts of an edge that are not known to be near. A place is asked for with half the length of the part around it.
+fn remaining(
+    edge: &Edge,
+    [t0, t1]: [f64; 2],
+    is_near: &dyn Fn(Point, f64) -> bool,
+    least: f64,
+    out: &mut Vec<[f64; 2]>,
+) {
+    let half = 0.5 * length(edge, [t0, t1]);
+    let middle = 0.5 * (t0 + t1);
+    if is_near(edge.eval(middle).0, half) {
+        return;
+    }
+    if half > least {
+        remaining(edge, [t0, middle], is_near, least, out);
+        remaining(edge, [middle, t1], is_near, least, out);
+    } else if let Some(last) = out.last_mut().filter(|last| last[1] == t0) {
+        last[1] = t1;
+    } else {
+        out.push([t0, t1]);
+    }
+}
+
+/// The point of the outline that a point of an edge is beside.
+fn foot(edge: &Edge, t: f64, distance: f64) -> Point {
+    match edge.curve {
+        EdgeCurve::Line => {
+            let along = (edge.p1 - edge.p0).normalize();
+            edge.p0.lerp(edge.p1, t) - Vec2::new(-along.y, along.x) * distance
+        }
+        EdgeCurve::Arc(a) => a.center,
+        EdgeCurve::Side(s) => s.segment().eval(t),
+    }
+}
+
+/// About the length of a part of an edge, by its speed at a few places.
+fn length(edge: &Edge, [t0, t1]: [f64; 2]) -> f64 {
+    let places = if matches!(edge.curve, EdgeCurve::Side(_)) { 8 } else { 0 };
+    let speeds = (0..=places).map(|i| edge.eval(t0 + (t1 - t0) * f64::from(i) / f64::from(places.max(1))).1.hypot());
+    speeds.fold(0.0, f64::max) * (t1 - t0)
+}
