@@ -57,6 +57,22 @@ pub fn union_even_odd(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> 
     covered(path, &BezPath::new(), tolerance, |w| w.shape_a % 2 != 0)
 }
 
+/// The area that lies in both of two areas, each covered under the nonzero rule.
+///
+/// # Errors
+/// As [`union`].
+pub fn intersection(a: &BezPath, b: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
+    covered(a, b, tolerance, |w| w.shape_a != 0 && w.shape_b != 0)
+}
+
+/// The area that lies in the first of two areas and not in the second.
+///
+/// # Errors
+/// As [`union`].
+pub fn difference(a: &BezPath, b: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
+    covered(a, b, tolerance, |w| w.shape_a != 0 && w.shape_b == 0)
+}
+
 /// Moves outlines by a distance. Closed subpaths are the outlines of an area under the nonzero rule, which grows, or shrinks if the distance
 /// is negative. Open subpaths become the path beside them: to their left where y points up, to their right where y points down; on
 /// the other side if the distance is negative. What would be nearer to the source than the distance is removed. Corners are joined as

@@ -44,6 +44,15 @@ pub struct DrawingPart {
     pub depth: usize,
 }
 
+/// An ink of its own on a printing press.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Spot {
+    /// Its name; `All` stands for every plate.
+    pub name: String,
+    /// It knocks out what lies below, instead of being printed over it.
+    pub knockout: bool,
+}
+
 /// An SVG file.
 #[derive(Debug)]
 pub struct Document {
@@ -186,6 +195,18 @@ impl Document {
     #[cfg(feature = "usvg")]
     pub(crate) fn drawing(&self) -> &Drawing {
         &self.drawing
+    }
+
+    /// The paths that are printed in an ink of their own, by their ids.
+    #[must_use]
+    pub fn spots(&self) -> HashMap<String, Spot> {
+        let source = &self.drawing.source;
+        let spot = |e: ElementId| {
+            let name = source.attr(e, "data-spot")?.into_owned();
+            let knockout = source.attr(e, "data-knockout").is_some();
+            Some((source.attr(e, "id")?.into_owned(), Spot { name, knockout }))
+        };
+        (0..source.elements.len()).filter_map(spot).collect()
     }
 
     /// Families of fonts that the drawing asks for and that were not found.
