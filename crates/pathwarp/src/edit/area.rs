@@ -118,6 +118,9 @@ impl Area {
     }
 
     fn closed(&self, width: f64, sources: &Outline) -> Option<Outline> {
+        if !self.has_gap(width) {
+            return None;
+        }
         let options = bezierfit::Options::new(FITTED * width);
         let moved = |path: &BezPath, by: f64| Some(bezierfit::offset(path, by, Join::Round, &options).ok()?.path);
         let grown = moved(&self.path(), 0.5 * width)?;
@@ -138,10 +141,36 @@ impl Area {
         (follows && exact.area().abs() >= self.path().area().abs()).then(|| Outline::from(&exact))
     }
 
+    /// Whether segments that do not follow one another are nearer than `width`.
+    fn has_gap(&self, width: f64) -> bool {
+        let mut segs: Vec<(Rect, PathSeg)> = self.path().segments().map(|s| (s.bounding_box(), s)).collect();
+        segs.sort_by(|a, b| a.0.x0.total_cmp(&b.0.x0));
+        let meet = |a: &PathSeg, b: &PathSeg| a.end() == b.start() || b.end() == a.start();
+        segs.iter().enumerate().any(|(i, (box_of, a))| {
+            let near = segs[i + 1..].iter().take_while(|(b, _)| b.x0 <= box_of.x1 + width);
+            near.filter(|(_, b)| !meet(a, b)).any(|(_, b)| are_near(a, b, width))
+        })
+    }
+
     fn path(&self) -> BezPath {
         // It has no arcs.
         self.0.to_bez_path(1.0)
     }
+}
+
+/// Whether two segments are nearer than `width`, or a little more.
+fn are_near(a: &PathSeg, b: &PathSeg, width: f64) -> bool {
+    let [around, other] = [a, b].map(|s| s.bounding_box());
+    let [m, n] = [around, other].map(|b| b.size().max_side());
+    let room = around.inflate(width, width);
+    if room.x0 > other.x1 || other.x0 > room.x1 || room.y0 > other.y1 || other.y0 > room.y1 {
+        return false;
+    }
+    if m.max(n) <= width {
+        return true;
+    }
+    let (long, short) = if m >= n { (a, b) } else { (b, a) };
+    [0.0..0.5, 0.5..1.0].into_iter().any(|half| are_near(&long.subsegment(half), short, width))
 }
 
 /// The subpaths that go around islands rather than holes.
