@@ -3,7 +3,7 @@
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
 use crate::bend::fits::{self, FilterOutcome};
-use crate::bend::options::{Edit, OnError, PageFit, Strokes, Structure, WarpOptions};
+use crate::bend::options::{CutLine, Edit, OnError, PageFit, Strokes, Structure, WarpOptions};
 use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::task::placed_outlines;
 use crate::scene::areas::{self, stroked};
@@ -42,15 +42,6 @@ pub struct DrawingPart {
     pub element: String,
     /// The number of elements around it, without the root.
     pub depth: usize,
-}
-
-/// An ink of its own on a printing press.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Spot {
-    /// Its name; `All` stands for every plate.
-    pub name: String,
-    /// It knocks out what lies below, instead of being printed over it.
-    pub knockout: bool,
 }
 
 /// An SVG file.
@@ -197,14 +188,14 @@ impl Document {
         &self.drawing
     }
 
-    /// The paths that are printed in an ink of their own, by their ids.
+    /// The paths that are printed in an ink of their own, by their ids; `All` stands for every plate.
     #[must_use]
-    pub fn spots(&self) -> HashMap<String, Spot> {
+    pub fn spots(&self) -> HashMap<String, CutLine> {
         let source = &self.drawing.source;
         let spot = |e: ElementId| {
-            let name = source.attr(e, "data-spot")?.into_owned();
+            let spot = Some(source.attr(e, "data-spot")?.into_owned());
             let knockout = source.attr(e, "data-knockout").is_some();
-            Some((source.attr(e, "id")?.into_owned(), Spot { name, knockout }))
+            Some((source.attr(e, "id")?.into_owned(), CutLine { spot, knockout, ..CutLine::default() }))
         };
         (0..source.elements.len()).filter_map(spot).collect()
     }

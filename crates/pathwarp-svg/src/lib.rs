@@ -99,7 +99,7 @@ pub use bend::pictures::{
     GradientRequest, ImageRequest, ImageWarper, Images, Painter, PictureError, SeenColor,
 };
 pub use bend::traced::Opacity;
-pub use document::{Document, DrawingPart, Spot};
+pub use document::{Document, DrawingPart};
 pub use embed::Origin;
 pub use scene::drawing::{NamedPath, Shape, UnreadImages};
 pub use scene::plot::{Plot, PlotLoss, PlotShape};

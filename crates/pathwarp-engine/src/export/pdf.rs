@@ -13,8 +13,8 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, _: Option<f64>) -> 
         let outline = |path: &_| exact.get(path).cloned();
         let mesh = |paint: &_, bounds| usvg_tree::mesh(doc, paint, bounds);
         let spot: &pathwarp_pdf::SpotOf<'_> = &|path| {
-            let spot = spots.get(path.id())?;
-            Some(pathwarp_pdf::Spot { name: spot.name.clone(), knockout: spot.knockout })
+            let line = spots.get(path.id())?;
+            Some(pathwarp_pdf::Spot { name: line.spot.clone()?, knockout: line.knockout })
         };
         let limits = doc.budget().limits();
         let options =
