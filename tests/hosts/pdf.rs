@@ -235,3 +235,64 @@ fn far_drawings_keep_their_shape() {
         assert!(there.max(back) < 1e-3, "{there} {back}");
     }
 }
+
+/// Ghostscript's plates of a PDF: their names and files.
+fn plates(dir: &Path, pdf: &Path) -> Option<Vec<(String, Vec<u8>)>> {
+    let out = dir.join(format!("{}-plate.tif", pdf.file_stem()?.to_str()?));
+    let to = format!("-sOutputFile={}", out.display());
+    let device = ["-q", "-dNOPAUSE", "-dBATCH", "-dSAFER", "-sDEVICE=tiffsep", "-sCompression=none", "-r144", &to];
+    let Ok(run) = Command::new("gs").args(device).arg(pdf).output() else {
+        crate::support::skipped(format_args!("inks of a PDF are not separated without Ghostscript"));
+        return None;
+    };
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let begins = format!("{}(", out.file_stem()?.to_str()?);
+    let mut found = Vec::new();
+    for file in fs::read_dir(dir).unwrap() {
+        let name = file.unwrap().file_name().into_string().unwrap();
+        if let Some(ink) = name.strip_prefix(&begins).and_then(|n| n.strip_suffix(").tif")) {
+            found.push((ink.to_owned(), fs::read(dir.join(&name)).unwrap()));
+        }
+    }
+    Some(found)
+}
+
+/// The line is one plate of its name, printed over the others, which are what they are without it, unless it knocks out.
+#[test]
+fn a_cutting_line_is_an_ink() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    let source = "<svg xmlns='http://www.w3.org/2000/svg' width='60mm' height='40mm' viewBox='0 0 60 40'><rect x='5' y='5' width='50' height='30' fill='#246'/></svg>";
+    fs::write(at("a.svg"), source).unwrap();
+    let path = |p: &Path| p.to_str().unwrap().to_owned();
+    let run = |name: &str, args: &[&str]| {
+        let (from, to) = (path(&at("a.svg")), path(&at(name)));
+        expect_code(0, &[&[args[0], from.as_str()][..], &args[1..], &["-o", to.as_str()]].concat());
+        at(name)
+    };
+    let spot = ["contour", "--by=-3mm", "--spot", "CutContour"];
+    let over = run("over.pdf", &spot);
+    let out = run("out.pdf", &[&spot[..], &["--knockout"]].concat());
+    let plain = run("plain.pdf", &["convert"]);
+    for pdf in [&over, &out] {
+        match Command::new("qpdf").arg("--check").arg(pdf).output() {
+            Ok(run) => assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stdout)),
+            Err(_) => crate::support::skipped(format_args!("PDF files are not checked without qpdf")),
+        }
+    }
+    let [Some(over), Some(out), Some(plain)] = [&over, &out, &plain].map(|pdf| plates(dir.path(), pdf)) else { return };
+    let names = |plates: &[(String, Vec<u8>)]| {
+        let mut names: Vec<String> = plates.iter().map(|p| p.0.clone()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(&over), ["Black", "CutContour", "Cyan", "Magenta", "Yellow"]);
+    assert_eq!(names(&plain), ["Black", "Cyan", "Magenta", "Yellow"]);
+    let plate = |plates: &[(String, Vec<u8>)], name: &str| plates.iter().find(|p| p.0 == name).unwrap().1.clone();
+    let differing = |a: &[(String, Vec<u8>)]| {
+        let [a, b] = [plate(a, "Cyan"), plate(&plain, "Cyan")];
+        a.iter().zip(&b).filter(|(a, b)| a != b).count() + a.len().abs_diff(b.len())
+    };
+    // A TIFF says when it was made, in 19 letters.
+    assert!(differing(&over) <= 19 && differing(&out) > 500, "{} {}", differing(&over), differing(&out));
+}

@@ -57,7 +57,7 @@ pub use offset::Offset;
 pub use options::{Degree, Error, MAX_EVALUATIONS, Options, Pieces};
 pub use path::{PathSource, Segment, fit, simplify};
 #[cfg(feature = "area")]
-pub use region::{offset, union, union_even_odd};
+pub use region::{difference, intersection, offset, union, union_even_odd};
 pub use report::{Assurance, Fitted, Piece, PieceReport, Report};
 pub use sample::{Lane, Lanes};
 pub use source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};

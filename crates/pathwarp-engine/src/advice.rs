@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The error of edits of a picture.
 pub(crate) const NO_PATHS_TO_EDIT: &str =
-    "edits (simplify, offset, outline, --simplify, --outset) work on paths; a picture has none";
+    "edits (simplify, offset, unite, contour, outline, --simplify, --outset) work on paths; a picture has none";
 
 /// The warning about shapes of which an edit leaves nothing.
 pub(crate) fn vanished<'a>(shapes: impl Iterator<Item = &'a ShapeReport>) -> Option<String> {

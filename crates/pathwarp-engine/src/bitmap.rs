@@ -58,6 +58,11 @@ impl Bender {
         self.with_budget(Arc::new(Budget::new(limits)))
     }
 
+    /// Pixels per inch, if they are given.
+    pub(crate) fn dpi(&self) -> Option<f64> {
+        self.dpi
+    }
+
     /// Pixels per unit of a result of this size, beyond which nobody sees a difference. `unit` is the size of a unit in px.
     pub(crate) fn seen_density(&self, unit: f64, (width, height): (f64, f64)) -> f64 {
         /// Pixels per px of the drawing in each direction: the resolution of a screen of twice the density.

@@ -7,7 +7,7 @@ use pathwarp::param::{Axis, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 
 /// The edits. Each has the name of its command.
-pub static EDITS: [Info; 3] = [
+pub static EDITS: [Info; 5] = [
     Info::new("simplify", "give paths the fewest nodes within a distance")
         .group("Before bending")
         .params(&[
@@ -46,7 +46,53 @@ pub static EDITS: [Info; 3] = [
             showing: &[("by", "2%")],
             ..ByHand::NONE
         }),
+    Info::new("unite", "make one shape of those that overlap or touch")
+        .group("Before bending")
+        .params(&[Param::new(
+            "by",
+            Kind::Choice(&["all", "fill"]),
+            "all: one shape of all; fill: one for each colour, gradient or pattern.",
+        )
+        .default("all")])
+        .by_hand(ByHand { labels: &[("by", "One shape of")], ..ByHand::NONE }),
+    Info::new("contour", "draw one line around all that is visible")
+        .group("Before bending")
+        .params(&CONTOUR)
+        .by_hand(ByHand {
+            labels: &[("by", "Distance"), ("holes", "Holes"), ("join", "Join"), ("only", "Only the line")],
+            neutral: &[("by", "1%")],
+            showing: &[("by", "3%")],
+            ..ByHand::NONE
+        }),
     Info::new("outline", "turn strokes and text into filled outlines").group("Before bending"),
+];
+
+const CONTOUR: [Param; 8] = [
+    Param::length(
+        "by",
+        Axis::Diagonal,
+        "Distance of the line from the artwork, such as 3mm; inside of its edge if below zero.",
+    )
+    .within(-1e9, 1e9)
+    .slider(0.0, 20.0)
+    .needed(),
+    Param::new(
+        "holes",
+        Kind::Choice(&["fill", "keep"]),
+        "fill: one line around each island; keep: another in each hole that is left.",
+    )
+    .default("fill"),
+    Param::flag("join", "Bridge what lies further apart than twice the distance with necks as wide as the distance."),
+    Param::flag("only", "The line without the artwork."),
+    Param::new(
+        "spot",
+        Kind::Text("NAME"),
+        "Name of the line's layer, and in a PDF of its ink, such as CutContour, which is printed over what lies below.",
+    ),
+    Param::flag("knockout", "Let the ink of --spot knock out what lies below."),
+    Param::length("bleed", Axis::Diagonal, "How far the artwork's edge colours go on beyond the line, such as 2mm.")
+        .within(0.0, 1e9),
+    Param::flag("marks", "Draw crop and register marks around the line."),
 ];
 
 /// The description of the edit called `name`.

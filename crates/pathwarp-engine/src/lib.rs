@@ -24,6 +24,7 @@ pub mod advice;
 pub mod bitmap;
 pub mod catalogue;
 pub mod coming_from;
+mod edges;
 pub mod edits;
 mod embed;
 pub mod export;

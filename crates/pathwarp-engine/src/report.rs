@@ -106,7 +106,7 @@ impl Fold {
 /// Numbers that are usual, and texts that have nothing to say, are omitted. Unknown numbers are infinite here and null in JSON.
 impl Serialize for ReportedShape {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let ShapeReport { id, copies, path, paint_residual, pictures, stroke_error, outlined_strokes, .. } =
+        let ShapeReport { id, copies, path, paint_residual, pictures, stroke_error, outlined_strokes, united, .. } =
             &self.shape;
         let place = |p: &Point| [p.x, p.y];
         let mut map = to.serialize_map(None)?;
@@ -145,6 +145,9 @@ impl Serialize for ReportedShape {
         }
         if *outlined_strokes > 0 {
             map.serialize_entry("outlined_strokes", outlined_strokes)?;
+        }
+        if !united.is_empty() {
+            map.serialize_entry("united", united)?;
         }
         map.end()
     }

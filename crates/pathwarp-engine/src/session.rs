@@ -169,11 +169,23 @@ impl Session<'_> {
         let (options, painted) = (self.options, artwork.painted_box());
         let edit = ready.edit.as_ref().map(|step| planned(step, options, (painted, &ready.frame), true));
         let (edit, tolerance, suited) = match edit.transpose()? {
-            Some(Planned { edit, tolerance, suited }) => (Some(edit), tolerance, suited),
+            Some(Planned { edit, line, tolerance, suited }) => (Some((edit, line)), tolerance, suited),
             None => (None, options.tolerance_for(painted, &ready.frame)?, options.tolerance.is_none()),
         };
         let (recipe, built) = (self.recipe, &ready.built);
-        Ok(WarpRequest { recipe, built, options, tolerance, suited, edit, embedded_recipe: None, same_view: false })
+        let (edit, line) = edit.unzip();
+        let line = line.unwrap_or_default();
+        Ok(WarpRequest {
+            recipe,
+            built,
+            options,
+            tolerance,
+            suited,
+            edit,
+            line,
+            embedded_recipe: None,
+            same_view: false,
+        })
     }
 
     /// Warps artwork, and writes nothing. Messages of the steps get parameters as flags.
@@ -213,6 +225,8 @@ impl Session<'_> {
         let partial = warped.partial || is_coarse || report.is_partial();
         let is_simplified = ready.edit.as_ref().is_some_and(|e| e.deformation == "simplify") && !options.quiet;
         let mut notes: Vec<String> = is_simplified.then(|| simplified(&report.shapes)).into_iter().collect();
+        notes.extend(islands(&ready, &report.shapes).filter(|_| !options.quiet));
+        notes.extend(united(&report.shapes).filter(|_| !options.quiet));
         notes.extend(self.notes(flags, whole, &frames(options.frame, ready.steps(), starts, seen), &report.shapes));
         notes.extend(filters(&warped.filters).filter(|_| self.options.explain));
         Ok(Warped {
@@ -248,6 +262,26 @@ fn simplified(shapes: &[ReportedShape]) -> String {
     let error =
         if (1e-3..1e4).contains(&error) || error == 0.0 { format!("{error:.3}") } else { format!("{error:.2e}") };
     format!("{before} nodes became {after}, within {error} units of the original")
+}
+
+/// The number of lines around artwork, if there are several.
+fn islands(ready: &Ready, shapes: &[ReportedShape]) -> Option<String> {
+    let count =
+        shapes.first().filter(|_| ready.edit.as_ref().is_some_and(|e| e.deformation == "contour"))?.shape.copies;
+    (count > 1).then(|| {
+        format!(
+            "{count} lines around {count} islands, which lie further apart than twice the distance; --join bridges them"
+        )
+    })
+}
+
+/// What shapes have become one.
+fn united(shapes: &[ReportedShape]) -> Option<String> {
+    const NAMED: usize = 5;
+    let all: Vec<&ReportedShape> = shapes.iter().filter(|s| !s.shape.united.is_empty()).collect();
+    let count: usize = all.iter().map(|s| s.shape.united.len()).sum();
+    let names: Vec<&str> = all.iter().flat_map(|s| &s.shape.united).map(String::as_str).collect();
+    (!all.is_empty()).then(|| format!("{count} shapes became {}: {}", all.len(), listed(&names, NAMED)))
 }
 
 /// The warning about shapes of which nothing is left.

@@ -7,7 +7,7 @@ use flate2::write::ZlibEncoder;
 use kurbo::{Rect, Vec2};
 use pathwarp::budget::Budget;
 use pathwarp_raster::Error;
-use pdf_writer::types::{BlendMode, MaskType};
+use pdf_writer::types::{BlendMode, MaskType, OverprintMode};
 use pdf_writer::{Filter, Name, Pdf, Ref};
 use std::collections::HashMap;
 use std::io::Write as _;
@@ -29,6 +29,7 @@ pub(crate) struct File<'a> {
     pub(crate) embedded: HashMap<(Arc<Vec<u8>>, bool), Ref>,
     last: i32,
     states: HashMap<State, Ref>,
+    inks: HashMap<String, Ref>,
 }
 
 /// Parameters of a graphics state.
@@ -38,6 +39,7 @@ pub(crate) struct State {
     opacity: Option<u32>,
     blend: Option<Blend>,
     mask: Option<(MaskKind, Ref)>,
+    overprint: bool,
 }
 
 /// Index of a blend mode in [`BLEND_MODES`].
@@ -59,6 +61,12 @@ impl State {
 
     pub(crate) fn mask(mut self, kind: MaskKind, group: Ref) -> Self {
         self.mask = Some((kind, group));
+        self
+    }
+
+    /// Inks are printed over what lies below.
+    pub(crate) fn overprint(mut self) -> Self {
+        self.overprint = true;
         self
     }
 
@@ -108,6 +116,7 @@ impl<'a> File<'a> {
             embedded: HashMap::new(),
             last: 0,
             states: HashMap::new(),
+            inks: HashMap::new(),
         }
     }
 
@@ -138,6 +147,21 @@ impl<'a> File<'a> {
         at
     }
 
+    /// Returns the colour space of an ink, adding it if it is new. A device without that ink shows it as magenta, or if it stands for all
+    /// plates, as all of them.
+    pub(crate) fn ink(&mut self, name: &str) -> Ref {
+        if let Some(known) = self.inks.get(name) {
+            return *known;
+        }
+        let at = self.new_ref();
+        self.inks.insert(name.to_owned(), at);
+        let full = if name == "All" { [1.0; 4] } else { [0.0, 1.0, 0.0, 0.0] };
+        let mut ink = self.pdf.color_space(at).separation(Name(name.as_bytes()));
+        ink.alternate_color_space().device_cmyk();
+        ink.tint_exponential().domain([0.0, 1.0]).n(1.0).c0([0.0; 4]).c1(full);
+        at
+    }
+
     /// Returns the graphics state with these parameters, adding it if it is new.
     pub(crate) fn state(&mut self, state: State) -> Ref {
         if let Some(known) = self.states.get(&state) {
@@ -151,6 +175,9 @@ impl<'a> File<'a> {
         }
         if let Some((_, mode)) = state.blend.and_then(|b| BLEND_MODES.get(usize::from(b.0))) {
             out.blend_mode(*mode);
+        }
+        if state.overprint {
+            out.overprint(true).overprint_fill(true).overprint_mode(OverprintMode::IgnoreZeroChannel);
         }
         if let Some((kind, group)) = state.mask {
             let subtype = match kind {

@@ -22,7 +22,7 @@ mod options;
 mod paint;
 mod stream;
 
-pub use options::{ExactOutline, MeshOf, MeshPatch, Options};
+pub use options::{ExactOutline, MeshOf, MeshPatch, Options, Spot, SpotOf};
 pub use pathwarp_raster::Error;
 
 use file::File;

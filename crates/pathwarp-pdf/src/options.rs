@@ -17,12 +17,26 @@ pub type MeshPatch = ([Point; 12], [[f64; 4]; 4]);
 /// Returns the patches of the mesh gradient that a paint stands for, in the user space of a path with this box. usvg has no mesh gradients.
 pub type MeshOf<'a> = dyn Fn(&usvg::Paint, Rect) -> Option<Vec<MeshPatch>> + 'a;
 
+/// An ink of its own, in which a stroke is printed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Spot {
+    /// Its name; `All` stands for all plates.
+    pub name: String,
+    /// It knocks out what lies below, instead of being printed over it.
+    pub knockout: bool,
+}
+
+/// Returns the ink of a path's stroke, if it has one of its own.
+pub type SpotOf<'a> = dyn Fn(&usvg::Path) -> Option<Spot> + 'a;
+
 /// Options for writing a PDF.
 pub struct Options<'a> {
     /// Provides outlines in place of usvg's, which approximates arcs.
     pub exact: &'a ExactOutline<'a>,
     /// Provides mesh gradients in place of paints.
     pub mesh: &'a MeshOf<'a>,
+    /// Provides inks in place of the colours of strokes.
+    pub spot: &'a SpotOf<'a>,
     /// Pixels per inch of pictures that replace filters; `None` stands for 300.
     pub picture_dpi: Option<f64>,
     /// Limits on embedded pictures, and on those that replace filters.
@@ -40,6 +54,6 @@ impl fmt::Debug for Options<'_> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { exact: &|_| None, mesh: &|_, _| None, picture_dpi: None, limits: Limits::default() }
+        Self { exact: &|_| None, mesh: &|_, _| None, spot: &|_| None, picture_dpi: None, limits: Limits::default() }
     }
 }

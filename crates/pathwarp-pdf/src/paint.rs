@@ -106,6 +106,20 @@ fn fill(file: &mut File<'_>, stream: &mut Stream, path: &Path, outline: &BezPath
 
 fn stroke(file: &mut File<'_>, stream: &mut Stream, path: &Path, outline: &BezPath) {
     let Some(stroke) = path.stroke() else { return };
+    if let Some(spot) = (file.options.spot)(path) {
+        stream.save();
+        if !spot.knockout {
+            let state = file.state(State::default().overprint());
+            stream.state(state);
+        }
+        let ink = file.ink(&spot.name);
+        stream.ink(ink);
+        pen(stream, stroke);
+        stream.outline(outline);
+        stream.content.stroke();
+        stream.restore();
+        return;
+    }
     let paint: &Paint = Stroke::paint(stroke);
     let painted = Use { paint, opacity: stroke.opacity().get(), strokes: true, path };
     with_paint(file, stream, &painted, |stream| {

@@ -20,6 +20,8 @@ enum Kind {
     Pattern,
     /// A picture or a group.
     Object,
+    /// A colour space.
+    Ink,
 }
 
 /// The resources that a content stream uses.
@@ -121,6 +123,13 @@ impl Stream {
         }
     }
 
+    /// Sets all of an ink as the paint of strokes.
+    pub(crate) fn ink(&mut self, space: Ref) {
+        let name = self.used.name(Kind::Ink, space);
+        let space = ColorSpaceOperand::Named(Name(name.as_bytes()));
+        self.content.set_stroke_color_space(space).set_stroke_color([1.0]);
+    }
+
     /// Returns the bytes and the resources.
     pub(crate) fn finish(self) -> (Vec<u8>, Used) {
         (self.content.finish().into_vec(), self.used)
@@ -136,7 +145,7 @@ impl Used {
 
     /// Writes the dictionary of resources.
     pub(crate) fn write(&self, out: &mut Resources<'_>) {
-        for kind in [Kind::State, Kind::Pattern, Kind::Object] {
+        for kind in [Kind::State, Kind::Pattern, Kind::Object, Kind::Ink] {
             let mut of_kind = self.0.iter().filter(|(k, _)| *k == kind).peekable();
             if of_kind.peek().is_none() {
                 continue;
@@ -145,6 +154,7 @@ impl Used {
                 Kind::State => out.ext_g_states(),
                 Kind::Pattern => out.patterns(),
                 Kind::Object => out.x_objects(),
+                Kind::Ink => out.color_spaces(),
             };
             for (_, r) in of_kind {
                 dict.pair(Name(name(kind, *r).as_bytes()), Ref::new(*r));
@@ -159,6 +169,7 @@ fn name(kind: Kind, r: i32) -> String {
         Kind::State => 'G',
         Kind::Pattern => 'P',
         Kind::Object => 'X',
+        Kind::Ink => 'C',
     };
     format!("{letter}{r}")
 }

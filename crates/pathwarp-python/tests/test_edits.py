@@ -48,3 +48,18 @@ def test_areas_grow_and_shrink():
     svg = drawing("<rect id='a' width='40' height='40'/>")
     assert pathwarp.offset(svg, 5, side="inside").report["shapes"][0]["segments_out"] == 4
     assert any("nothing is left of a" in w for w in pathwarp.offset(svg, "30", side="inside").warnings)
+
+
+def test_shapes_become_one():
+    svg = drawing("<rect id='a' width='40' height='40'/><rect id='b' x='20' width='40' height='40'/>")
+    done = pathwarp.unite(svg)
+    assert done.report["shapes"][0]["united"] == ["a", "b"] and done.count(b"<path") == 1
+    assert b"<rect" in pathwarp.unite(svg.replace("id='b'", "id='b' fill='red'"), by="fill")
+
+
+def test_a_line_runs_around_all():
+    svg = drawing("<rect width='40' height='40'/><rect x='60' width='40' height='40'/>")
+    done = pathwarp.contour(svg, 5, spot="CutContour", only=True, tolerance=0.01)
+    assert done.count(b"<rect") == 0 and b'data-spot="CutContour"' in done
+    assert done.report["shapes"][0]["copies"] == 2
+    assert "copies" not in pathwarp.contour(svg, 5, join=True).report["shapes"][0]

@@ -3,7 +3,7 @@
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
 use crate::bend::fits::{self, FilterOutcome};
-use crate::bend::options::{Edit, OnError, PageFit, Strokes, Structure, WarpOptions};
+use crate::bend::options::{CutLine, Edit, OnError, PageFit, Strokes, Structure, WarpOptions};
 use crate::bend::outcome::{Notes, WarpedDocument};
 use crate::bend::task::placed_outlines;
 use crate::scene::areas::{self, stroked};
@@ -186,6 +186,18 @@ impl Document {
     #[cfg(feature = "usvg")]
     pub(crate) fn drawing(&self) -> &Drawing {
         &self.drawing
+    }
+
+    /// The paths that are printed in an ink of their own, by their ids; `All` stands for every plate.
+    #[must_use]
+    pub fn spots(&self) -> HashMap<String, CutLine> {
+        let source = &self.drawing.source;
+        let spot = |e: ElementId| {
+            let spot = Some(source.attr(e, "data-spot")?.into_owned());
+            let knockout = source.attr(e, "data-knockout").is_some();
+            Some((source.attr(e, "id")?.into_owned(), CutLine { spot, knockout, ..CutLine::default() }))
+        };
+        (0..source.elements.len()).filter_map(spot).collect()
     }
 
     /// Families of fonts that the drawing asks for and that were not found.

@@ -89,15 +89,16 @@ pub mod usvg_tree;
 mod write;
 
 pub use bend::options::{
-    Clones, Edit, Filters, Gradients, LetterPlaces, OnError, PageFit, Patterns, Strokes, Structure, TextMode,
+    Clones, CutLine, Edit, Filters, Gradients, LetterPlaces, OnError, PageFit, Patterns, Strokes, Structure, TextMode,
     WarpOptions,
 };
 pub use bend::outcome::{Overhang, ShapeReport, Skipped, Warning, WarpedDocument};
 pub use bend::path::{WarpedPath, edit_path, warp_path};
 pub use bend::pictures::{
-    BentImage, FilterDrawing, FilterPainter, FilterRequest, GradientColors, GradientPainter, GradientRequest,
-    ImageRequest, ImageWarper, Images, Painter, PictureError, SeenColor,
+    BentImage, EdgePainter, FilterDrawing, FilterPainter, FilterRequest, GradientColors, GradientPainter,
+    GradientRequest, ImageRequest, ImageWarper, Images, Painter, PictureError, SeenColor,
 };
+pub use bend::traced::Opacity;
 pub use document::{Document, DrawingPart};
 pub use embed::Origin;
 pub use scene::drawing::{NamedPath, Shape, UnreadImages};

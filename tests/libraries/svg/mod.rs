@@ -1,6 +1,7 @@
 //! Drawings read, warped and written.
 
 mod arcs;
+mod contour;
 mod covers;
 mod degenerate_strokes;
 mod features;
@@ -20,5 +21,6 @@ mod strokes;
 mod structure;
 mod style;
 mod themes;
+mod united;
 mod unsupported;
 mod vector_images;

@@ -131,6 +131,8 @@ static OTHERS: &[Subcommand] = &[
     subcommand("paths", |_| convert::paths_command(), |c| Ok(convert::list_paths(c.matches)?)),
     subcommand("simplify", |_| warp::simplify_command(), |c| c.deform("simplify")),
     subcommand("offset", |_| warp::offset_command(), |c| c.deform("offset")),
+    subcommand("unite", |_| warp::unite_command(), |c| c.deform("unite")),
+    subcommand("contour", |_| warp::contour_command(), |c| c.deform("contour")),
     subcommand("outline", |_| warp::outline_command(), |c| c.deform("outline")),
     subcommand("convert", |_| convert::convert_command(), |c| Ok(convert::convert(c.matches)?)),
     subcommand("render", |_| render::render_command(), |c| Ok(render::render(c.matches)?)),

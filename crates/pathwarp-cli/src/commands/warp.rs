@@ -1,5 +1,5 @@
 //! Commands that warp files: `pathwarp DEFORMATION …` by one deformation or a chain, `run` by a saved recipe, and the edits `simplify`,
-//! `offset` and `outline`.
+//! `offset`, `unite`, `contour` and `outline`.
 
 use crate::arguments;
 use crate::arguments::inputs_arg;
@@ -170,7 +170,7 @@ const SHARED: [&str; 27] = [
 ];
 
 /// The options that some of the three commands have beside their parameters.
-const OF_EDITS: [&str; 2] = ["text", "union"];
+const OF_EDITS: [&str; 3] = ["text", "union", "image-dpi"];
 
 pub(super) fn simplify_command() -> Command {
     let about = "Give paths the fewest nodes within a distance";
@@ -197,9 +197,42 @@ pub(super) fn offset_command() -> Command {
              their width; text becomes outlines.",
         ))
         .after_help(
-            "Examples:\n  A sticker's edge around a badge:\n    pathwarp offset badge.svg --by 3mm -o edge.svg\n  Parts a little larger, for a \
+            "Examples:\n  Bolder letters:\n    pathwarp offset word.svg --by 0.3mm -o bolder.svg\n  One line around all of a sticker (see contour):\n    \
+             pathwarp contour badge.svg --by 3mm -o sticker.svg\n  Parts a little larger, for a \
              tight fit, with room for the cut:\n    pathwarp offset parts.svg --by 0.05mm --join miter --kerf 0.2mm -o parts.dxf\n  Inlays, a little smaller than their \
              holes:\n    pathwarp offset inlays.svg --by 0.2mm --side inside -o smaller.svg",
+        )
+}
+
+pub(super) fn unite_command() -> Command {
+    let about = "Make one shape of those that overlap or touch";
+    declared("unite", about, &["text"])
+        .long_about(format!(
+            "{about}.\n\nLetters of a script, joined Arabic, a word on a bar, a logo of parts: what has a fill becomes one outline, in the place \
+             and with the paint of the uppermost shape, which names the others in data-united. Curves stay curves, and gaps narrower than \
+             --tolerance close. Shapes without a fill stay, and so do strokes; outline turns them into shapes. Clip paths, masks, filters and \
+             transparent groups each keep a shape of their own.",
+        ))
+        .after_help(
+            "Examples:\n  A script name, for a cutter:\n    pathwarp unite name.svg -o welded.dxf\n  One shape for each \
+             colour, for vinyl:\n    pathwarp unite logo.svg --by fill -o layers.svg\n  A word and the bar below it, and nothing else:\n    pathwarp unite sign.svg \
+             --select '#word' --select '#bar' -o sign-cut.svg",
+        )
+}
+
+pub(super) fn contour_command() -> Command {
+    let about = "Draw one line around all that is visible, for stickers and signs";
+    declared("contour", about, &["text", "image-dpi"])
+        .long_about(format!(
+            "{about}.\n\nStrokes count with their width, letters as they are set, pictures by their opacity, and clip paths and masks leave what \
+             they leave; filters do not count. The line is round around corners, has the distance everywhere within --tolerance, and lies \
+             in a layer of its own above the artwork. What is nearer than twice the distance shares a line; a note says how many lines \
+             there are. In a PDF, --spot makes the line an ink of its own, as cutting machines look for it.",
+        ))
+        .after_help(
+            "Examples:\n  A sticker's edge around a badge:\n    pathwarp contour badge.svg --by 3mm -o sticker.svg\n  For a print shop, with room to \
+             cut:\n    pathwarp contour badge.svg --by 1mm --spot CutContour --bleed 2mm --marks -o sticker.pdf\n  A sign in one piece, \
+             only its edge:\n    pathwarp contour word.svg --by 4mm --join --only -o sign.dxf",
         )
 }
 

@@ -98,7 +98,7 @@ impl Warper {
         Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
     }
 
-    /// An edit of shapes, as by the command of this name: `simplify`, `offset` or `outline`, with values as a user would type them.
+    /// An edit of shapes, as by the command of this name: `simplify`, `offset`, `unite`, `contour` or `outline`, with values as a user would type them.
     ///
     /// # Errors
     /// There is no such edit or parameter.
@@ -281,10 +281,10 @@ impl Warper {
                 return Err(Failure::usage("a path is edited or bent; do one after the other"));
             }
             let edit = edits.first().map(|e| planned(e, &options, (bounds, &frame), true)).transpose()?;
-            let tolerance = edit.map_or(tolerance, |planned| share * planned.tolerance);
+            let tolerance = edit.as_ref().map_or(tolerance, |planned| share * planned.tolerance);
             let built = self.build(&options, &frame, outline, &budget)?;
             let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
-            let refit = refit.with_suited(edit.map_or(options.tolerance.is_none(), |planned| planned.suited));
+            let refit = refit.with_suited(edit.as_ref().map_or(options.tolerance.is_none(), |planned| planned.suited));
             let copies = &built.placement.copies;
             let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };
             let (refit, digits) = (refit.with_budget(budget), options.precision);

@@ -8,12 +8,17 @@ use pathwarp_svg::usvg_tree::{self, ExactOutlines};
 
 /// The drawing as PDF.
 pub(super) fn write(doc: &Document, options: &CommonOptions, _: Option<f64>) -> Result<Exported, Failure> {
-    let exact = ExactOutlines::of(doc);
+    let (exact, spots) = (ExactOutlines::of(doc), doc.spots());
     let written = usvg_tree::with_stack(doc, || {
         let outline = |path: &_| exact.get(path).cloned();
         let mesh = |paint: &_, bounds| usvg_tree::mesh(doc, paint, bounds);
+        let spot: &pathwarp_pdf::SpotOf<'_> = &|path| {
+            let line = spots.get(path.id())?;
+            Some(pathwarp_pdf::Spot { name: line.spot.clone()?, knockout: line.knockout })
+        };
         let limits = doc.budget().limits();
-        let options = pathwarp_pdf::Options { exact: &outline, mesh: &mesh, picture_dpi: options.image_dpi, limits };
+        let options =
+            pathwarp_pdf::Options { exact: &outline, mesh: &mesh, spot, picture_dpi: options.image_dpi, limits };
         Ok(pathwarp_pdf::write(usvg_tree::tree(doc), &options))
     })??;
     let (pictures, coarser) = (written.pictures, written.coarser);

@@ -14,7 +14,7 @@ use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::{Frame, Letter};
 use pathwarp::recipe::{BuiltParts, Recipe, Step};
 use pathwarp::{Error, Outline};
-use pathwarp_svg::Edit;
+use pathwarp_svg::{CutLine, Edit};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -177,6 +177,8 @@ pub struct WarpRequest<'a> {
     pub suited: bool,
     /// What is done to the artwork instead of bending it.
     pub edit: Option<Edit>,
+    /// How the line of a contour is written.
+    pub line: CutLine,
     /// The recipe file's text, to be embedded in the result.
     pub embedded_recipe: Option<String>,
     /// Show the result on the page of the source.

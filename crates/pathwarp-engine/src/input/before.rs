@@ -1,26 +1,31 @@
 //! Edits of a drawing before it is bent.
 
 use crate::advice;
+use crate::bitmap::Bender;
 use crate::edits;
 use crate::failure::Failure;
 use crate::options::{CommonOptions, TOLERANCE_OF_DIAGONAL, distance, measurable};
 use crate::units::units_per_px;
-use pathwarp::edit::{Offset, OpenPaths, Side};
+use pathwarp::budget::Budget;
+use pathwarp::edit::{Contour, Offset, OpenPaths, Side};
 use pathwarp::kurbo::{Affine, Join, Rect};
 use pathwarp::map::AffineMap;
 use pathwarp::param::{Frame, Length, Settings};
 use pathwarp::recipe::Step;
 use pathwarp::refit;
-use pathwarp_svg::{Document, Edit, PageFit, ReadOptions, Selection, WarpOptions};
+use pathwarp_svg::{CutLine, Document, Edit, PageFit, Painter, ReadOptions, Selection, WarpOptions};
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// Distance of `simplify` as a fraction of the artwork's diagonal, if none is given: half a pixel of a thousand.
 const SIMPLIFY_DISTANCE: f64 = 5e-4;
 
 /// An edit of some artwork.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Planned {
     pub(crate) edit: Edit,
+    /// How the line of a contour is written.
+    pub(crate) line: CutLine,
     /// User units.
     pub(crate) tolerance: f64,
     /// Small contours are held to less.
@@ -39,6 +44,7 @@ pub(crate) fn planned(
     let s = Settings::new(known, &step.args, frame)?;
     let held =
         |given: Option<Length>, share| Ok::<_, Failure>((distance(given, share, painted, frame)?, given.is_none()));
+    let mut line = CutLine::default();
     let (edit, (tolerance, suited)) = match &*step.deformation {
         "simplify" => {
             let corner = s.number_if("corners")?.map(f64::to_radians);
@@ -70,9 +76,53 @@ pub(crate) fn planned(
                 held(options.tolerance, TOLERANCE_OF_DIAGONAL)?,
             )
         }
+        "contour" => {
+            line = cut_line(&s)?;
+            let (by, holes) = (s.number("by")?, s.choice("holes")? == "keep");
+            let contour = Contour { by, holes, join: s.flag("join")? };
+            (Edit::Contour(contour), held(options.tolerance, TOLERANCE_OF_DIAGONAL)?)
+        }
+        "unite" => {
+            (Edit::Unite { by_fill: s.choice("by")? == "fill" }, held(options.tolerance, TOLERANCE_OF_DIAGONAL)?)
+        }
         _ => (Edit::Outline, held(options.tolerance, TOLERANCE_OF_DIAGONAL)?),
     };
-    Ok(Planned { edit, tolerance, suited })
+    Ok(Planned { edit, line, tolerance, suited })
+}
+
+/// How the line of a contour is written.
+fn cut_line(s: &Settings<'_>) -> Result<CutLine, Failure> {
+    let spot = s.texts("spot").first().map(|name| spot_name(name)).transpose()?;
+    let (knockout, only, marks) = (s.flag("knockout")?, s.flag("only")?, s.flag("marks")?);
+    if knockout && spot.is_none() {
+        return Err(Failure::usage("--knockout is for the ink of --spot"));
+    }
+    let bleed = s.number_if("bleed")?.unwrap_or(0.0);
+    if only && bleed > 0.0 {
+        return Err(Failure::usage("--bleed continues the artwork, and --only leaves that out"));
+    }
+    Ok(CutLine { spot, knockout, only, bleed, marks })
+}
+
+/// The name of an ink, if PDF can hold it (ISO 32000-1, annex C.2, 7.3.5 and 8.6.6.4).
+fn spot_name(name: &str) -> Result<String, Failure> {
+    /// Bytes of a name.
+    const LONGEST: usize = 127;
+    let why = match name.trim() {
+        "" => "a name of at least one letter",
+        n if n.len() > LONGEST => "a name of at most 127 bytes",
+        n if n.chars().any(char::is_control) => "a name without control characters",
+        "All" | "None" | "Cyan" | "Magenta" | "Yellow" | "Black" => {
+            "another name: this one has a meaning of its own in PDF"
+        }
+        n => return Ok(n.to_owned()),
+    };
+    Err(Failure::usage(format!("--spot `{name}`: a PDF needs {why}")))
+}
+
+/// What reads the opacity of pictures, and continues their edges.
+fn painter(budget: &Arc<Budget>) -> Painter {
+    Painter::new(Arc::new(Bender::new(Arc::new(AffineMap(Affine::IDENTITY)), None).with_budget(budget.clone())))
 }
 
 /// What is done to a drawing, and to what of it.
@@ -158,7 +208,7 @@ impl Wanted {
             let bounds = document.seen_box(&selection).unwrap_or_else(|| document.view_box());
             let frame = Frame::new(bounds).with_units_per_px(units_per_px(&document));
             let painted = document.painted_box(&selection);
-            let Planned { edit, tolerance, suited } = planned(step, options, (painted, &frame), false)?;
+            let Planned { edit, line, tolerance, suited } = planned(step, options, (painted, &frame), false)?;
             let refit = refit::Options::new(tolerance).with_suited(suited).with_budget(document.budget().clone());
             let warp = WarpOptions::new(refit)
                 .with_selection(selection)
@@ -168,6 +218,8 @@ impl Wanted {
                 .with_on_error(options.on_failure.of_shapes())
                 .with_page(PageFit::Auto)
                 .with_same_view(true)
+                .with_painter(Some(painter(document.budget())))
+                .with_line(line)
                 .editing(edit);
             let warped = document.warp(&AffineMap(Affine::IDENTITY), &warp)?;
             grown = warped.page.map(|[_, after]| after);

@@ -197,7 +197,8 @@ impl SvgArtwork {
             && (scale.by - 1.0).abs() > SAME_SCALE
         {
             tolerance /= scale.by;
-            let finer = WarpRequest { tolerance, edit: request.edit, embedded_recipe: None, ..*request };
+            let line = request.line.clone();
+            let finer = WarpRequest { tolerance, line, embedded_recipe: None, ..*request };
             (options, warped) = self.bent(&built.parts, |k, part| self.warp_options(&finer, k, part))?;
         }
         if let Some(recipe) = &request.embedded_recipe {
@@ -245,6 +246,7 @@ impl SvgArtwork {
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
+        let warp = warp.with_line(request.line.clone());
         let warp = request.edit.map_or(warp.clone(), |e| warp.editing(e));
         if self.paths.is_none() {
             return warp;
@@ -525,6 +527,19 @@ impl Artwork for SvgArtwork {
     }
 }
 
+/// The warning about lengths of a contour on a page that has none.
+fn unmeasured(doc: &Document, request: &WarpRequest<'_>) -> Option<String> {
+    const UNITS: [&str; 6] = ["mm", "cm", "in", "pt", "pc", "q"];
+    let Some(Edit::Contour(_)) = request.edit else { return None };
+    let args = &request.recipe.steps.last()?.args;
+    let given = ["by", "bleed"].iter().flat_map(|name| args.get(name));
+    let one = given.into_iter().find(|v| UNITS.iter().any(|u| v.to_lowercase().ends_with(u)))?;
+    let sized = doc.is_measured() || request.options.page_width.or(request.options.page_height).is_some();
+    (!sized).then(|| {
+        format!("the page has no unit: {one} is taken as 96 px an inch have it; --page-width gives the page its size")
+    })
+}
+
 /// The warning about gradients that became pictures.
 fn pictured(shapes: &[ReportedShape]) -> Option<String> {
     match shapes.iter().map(|s| s.shape.pictures).sum() {
@@ -541,8 +556,14 @@ impl FileArtwork for SvgArtwork {
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options: common, .. } = request;
-        if self.paths.is_some() && request.edit == Some(Edit::Outline) {
-            return Err(Failure::usage("GIMP's paths have no strokes that could become outlines"));
+        match request.edit.filter(|_| self.paths.is_some()) {
+            Some(Edit::Outline) => {
+                return Err(Failure::usage("GIMP's paths have no strokes that could become outlines"));
+            }
+            Some(Edit::Unite { .. } | Edit::Contour(_)) => {
+                return Err(Failure::usage("GIMP's paths have no fills; unite and contour are for drawings"));
+            }
+            _ => {}
         }
         let (options, mut warped, tolerance) = self.warped(request)?;
         let page = PageNews::of(&mut warped, common.page, self.stays(request));
@@ -556,6 +577,7 @@ impl FileArtwork for SvgArtwork {
         if empty {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
         }
+        warnings.extend(unmeasured(&self.doc, request));
         warnings.extend(pictured(&shapes));
         warnings.extend(match warped.filters[0].len() {
             0 => None,

@@ -235,7 +235,8 @@ pub static OPTIONS: &[CommonOption] = &[
     stored(
         "union",
         OptionValue::Switch(|o| o.union = true),
-        "Make outlines of strokes simple, and in a DXF those of filled shapes, as cutters need them: no overlaps and no inner loops within a path",
+        "Make outlines of strokes simple, and in a DXF those of filled shapes, as cutters need them: no overlaps and no inner loops within a path. \
+         `pathwarp unite` makes one shape of several",
     ),
     CommonOption {
         default: Some("outline"),

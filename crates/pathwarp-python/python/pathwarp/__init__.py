@@ -42,6 +42,7 @@ __all__ = [
     "Warped",
     "WarpedPath",
     "__version__",
+    "contour",
     "deform",
     "deformations",
     "offset",
@@ -50,6 +51,7 @@ __all__ = [
     "outline",
     "simplify",
     "simplify_path",
+    "unite",
     "use_threads",
     "warp_path",
     "warp_svg",
@@ -145,6 +147,26 @@ def offset_path(d: Any, by: Any, /, *, join: str = "round", side: str = "outside
 def outline(svg: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **options: Any) -> Warped:
     """Turns the strokes and text of a drawing into filled outlines, as `pathwarp outline` does, and returns the file."""
     return Deformation._edit("outline", {}).warp_svg(svg, name=name, **options)
+
+
+def unite(
+    svg: Any, /, *, by: str = "all", name: Union[str, "os.PathLike[str]", None] = None, **options: Any
+) -> Warped:
+    """Makes one shape of those of a drawing that overlap or touch, as `pathwarp unite` does; by "fill", one for each paint."""
+    return Deformation._edit("unite", {"by": by}).warp_svg(svg, name=name, **options)
+
+
+def contour(
+    svg: Any, by: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **values: Any
+) -> Warped:
+    """Draws one line around all that is visible of a drawing, at a distance (`"3mm"`), as `pathwarp contour` does.
+
+    `values` are its parameters `holes`, `join`, `only`, `spot`, `knockout`, `bleed` and `marks`, and options.
+    """
+    known = options()
+    given = {name: value for name, value in values.items() if name in known}
+    parameters = {name: value for name, value in values.items() if name not in known}
+    return Deformation._edit("contour", {"by": by, **parameters}).warp_svg(svg, name=name, **given)
 
 
 def _divided(deformation: Steps, values: Mapping[str, Any]) -> Tuple[Deformation, Dict[str, Any]]:

@@ -2,12 +2,14 @@
 
 use super::bends::{Bend, Bends};
 use super::fits::{self, EmbeddedImage, FilterOutcome, PlacedSlot, written};
+use super::line::{self, Line};
 use super::options::{Edit, OnError, has_lines_that_stay};
 use super::outcome::{PartOutcome, Skipped, Warning, WarpedDocument, WarpedPart};
 use super::part;
 use super::path::ROUNDING;
 use super::shading::Shading;
 use super::task::{self, LetterPiece, PartContext, PartTask};
+use super::united::{self, United};
 use crate::scene::drawing::Drawing;
 use crate::scene::geometry::is_invertible;
 use crate::scene::model::{Bitmap, Part, Scene};
@@ -36,6 +38,9 @@ pub(crate) struct BentDrawing {
     pub(crate) of: Vec<Option<usize>>,
     /// By the index of their slot.
     pub(crate) filters: BTreeMap<usize, FilterOutcome>,
+    pub(crate) united: United,
+    /// The line around what is seen.
+    pub(crate) line: Option<Line>,
 }
 
 /// Bends everything in a drawing and reports to `out`.
@@ -43,7 +48,8 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     let (scene, options) = (drawing.scene(), &bends.options);
     let of = bends.of_parts(drawing);
     let slots = fits::place(drawing, bends, &of);
-    let results = warp_parts(drawing, bends, &of, &slots);
+    let united = united::all(drawing, bends, &of)?;
+    let results = warp_parts(drawing, bends, &of, (&slots, &united));
     let mut outcomes = Vec::with_capacity(scene.parts.len());
     // Index each element's report, since tiles and markers may come between the parts of an element.
     let mut reports: HashMap<ElementId, usize> = HashMap::new();
@@ -51,6 +57,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
         let part = &scene.parts[i];
         outcomes.push(match r {
             None => PartOutcome::Kept,
+            Some(Ok(warped)) if united.absorbs(i) => PartOutcome::Warped(Box::new(warped)),
             Some(Ok(mut warped)) => {
                 let stays = matches!(options.edit, Some(Edit::Simplify { .. })) && warped.stays();
                 let id = &drawing.shapes()[i].id;
@@ -83,9 +90,11 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     }
     out.skipped.extend(drawing.far().reasons.iter().map(|(id, why)| Skipped { id: id.clone(), why: why.clone() }));
     warn(drawing, bends, &of, &outcomes, &slots, out);
+    united.report(drawing, &reports, out);
+    let line = line::drawn(drawing, bends, &of, out)?;
     let bend = |b: &Bitmap| fits::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
     let images = scene.bitmaps.iter().map(bend).collect();
-    Ok(BentDrawing { outcomes, images, slots, of, filters: BTreeMap::new() })
+    Ok(BentDrawing { outcomes, images, slots, of, filters: BTreeMap::new(), united, line })
 }
 
 /// Warps every part by the bend whose index `of` gives; `None` for parts that are not bent.
@@ -93,7 +102,7 @@ fn warp_parts(
     drawing: &Drawing,
     bends: &Bends<'_>,
     of: &[Option<usize>],
-    slots: &[PlacedSlot],
+    (slots, united): (&[PlacedSlot], &United),
 ) -> Vec<Option<Result<WarpedPart, GeometryError>>> {
     /// With fewer segments, starting threads takes longer than the work.
     const WORTH_IT: usize = 1000;
@@ -109,7 +118,9 @@ fn warp_parts(
     let warp = |i: usize| {
         let k = of[i].filter(|&k| !each[k].is_identity())?;
         let (p, Bend { map, options }) = (&parts[i], &each[k]);
-        if options.edit.is_some_and(|e| !e.concerns(p, &drawing.source)) {
+        let one = united.outlines.get(&i);
+        let unites = matches!(options.edit, Some(Edit::Unite { .. }));
+        if unites && one.is_none() || options.edit.is_some_and(|e| !e.concerns(p, &drawing.source)) {
             return None;
         }
         let gathered = map.prefers_batches().then(|| Gathered::new(*map));
@@ -117,7 +128,10 @@ fn warp_parts(
         let context = PartContext { map, options, known: &known[k], drawing, to_px: scene.to_px, gradients, hairline };
         let write = written(scene, slots, p.slot, p.frame);
         (is_invertible(p.frame) && is_invertible(write)).then(|| {
-            let outline = (shapes[i].outline.clone(), &contours[k][i][..]);
+            let outline = match one {
+                Some(one) => (one.clone(), &[][..]),
+                None => (shapes[i].outline.clone(), &contours[k][i][..]),
+            };
             part::warp(&PartTask::new(p, outline, write, &context, &pieces[k][i]))
         })
     };
@@ -197,6 +211,8 @@ impl BentDrawing {
             slots: fits::unmoved(scene),
             of: vec![None; scene.parts.len()],
             filters: BTreeMap::new(),
+            united: United::default(),
+            line: None,
         }
     }
 }

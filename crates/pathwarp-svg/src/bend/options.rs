@@ -5,7 +5,7 @@ use crate::scene::model::{Part, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::select::Selection;
 use crate::source::text::SourceText;
-use pathwarp::edit::{Offset, OpenPaths, moved};
+use pathwarp::edit::{Area, Contour, Offset, OpenPaths, around, moved};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::Chain;
 use pathwarp::refit::{self, RefittedPath};
@@ -146,6 +146,21 @@ pub enum Clones {
     Follow,
 }
 
+/// How the line around artwork is written.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CutLine {
+    /// The name of its layer, and of its ink on a printing press. `None`: an ordinary colour.
+    pub spot: Option<String>,
+    /// The ink knocks out what lies below. Otherwise it is printed over that.
+    pub knockout: bool,
+    /// Without the artwork.
+    pub only: bool,
+    /// How far the artwork's colours go on beyond the line, in user units.
+    pub bleed: f64,
+    /// Crop and register marks around it.
+    pub marks: bool,
+}
+
 options! {
     /// Options for warping a document.
     ///
@@ -165,6 +180,8 @@ options! {
         /// Number of decimals in written coordinates. `None` takes enough to keep rounding below a hundredth of the tolerance, or a
         /// tenth of a small contour's own tolerance, and smooth joints smooth.
         pub precision: Option<u8> = None, with_precision;
+        /// How the line of [`Edit::Contour`] is written.
+        pub line: CutLine = CutLine::default(), with_line;
         /// An edit to apply to the shapes in place of the map, which is ignored.
         pub edit: Option<Edit> = None, with_edit;
         /// Treatment of strokes.
@@ -229,6 +246,9 @@ impl WarpOptions {
                 options.with_clones(Clones::Follow)
             }
             Edit::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
+            // Nothing of the artwork changes.
+            Edit::Contour(_) => options.with_overhang(true),
+            Edit::Unite { .. } => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit),
             Edit::Offset(_) => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit).with_overhang(true),
             Edit::Resolve => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit),
         }
@@ -266,6 +286,16 @@ pub enum Edit {
     },
     /// Converts strokes and text to filled outlines.
     Outline,
+    /// Makes one shape of all that have an area, by the rules of their fills: the last in painting order that is an element of its own gets
+    /// the outline of all and names them in `data-united`. Gaps narrower than the tolerance close. What clip paths, masks, filters and
+    /// transparent groups hold is united within them.
+    Unite {
+        /// One shape for each paint.
+        by_fill: bool,
+    },
+    /// Draws a line around all that is visible, in a layer of its own ([`WarpOptions::line`]): strokes with their width, text, pictures by their
+    /// opacity, as clip paths and masks leave them. Filters do not count. A distance below zero is inside.
+    Contour(Contour),
     /// Grows or shrinks areas, by the rule of their fill. Open paths without a fill move sideways if that is wanted, or if there is nothing
     /// else.
     Offset(Offset),
@@ -296,7 +326,15 @@ impl Edit {
         match self {
             Self::Simplify { corner } => refit::simplified(outline, corner, options, contours).map(Some),
             Self::Offset(offset) => moved(outline, &offset, options, contours).map(|m| Some(m.path)),
-            Self::Outline | Self::Resolve => Ok(None),
+            Self::Contour(contour) => {
+                let area = Area::of(outline, false, 0.1 * options.tolerance)?;
+                let around = around(&area, &contour, options)?;
+                let path = around.outline.to_bez_path(0.1 * options.tolerance);
+                let mut out = RefittedPath::default();
+                (out.path, out.report) = (path, around.report);
+                Ok(Some(out))
+            }
+            Self::Outline | Self::Unite { .. } | Self::Resolve => Ok(None),
         }
     }
 
@@ -323,6 +361,8 @@ impl Edit {
                 let is_painted = part.role == PartRole::Paint && part.painted();
                 is_painted && (offset.open != OpenPaths::Stay || is_area(part))
             }
+            Self::Unite { .. } => true,
+            Self::Contour(_) => false,
             Self::Resolve => part.is_own,
         }
     }

@@ -58,6 +58,8 @@ pub struct ShapeReport {
     pub stroke_error: Option<f64>,
     /// Number of strokes that became outlines.
     pub outlined_strokes: usize,
+    /// Names of the shapes that have become this one, itself among them; empty for others.
+    pub united: Vec<String>,
 }
 
 impl ShapeReport {
@@ -65,7 +67,16 @@ impl ShapeReport {
     #[must_use]
     pub fn new(id: &str, copies: usize, path: PathReport) -> Self {
         let (paint_residual, stroke_error) = (None, None);
-        Self { id: id.to_owned(), copies, path, paint_residual, pictures: 0, stroke_error, outlined_strokes: 0 }
+        Self {
+            id: id.to_owned(),
+            copies,
+            path,
+            paint_residual,
+            pictures: 0,
+            stroke_error,
+            outlined_strokes: 0,
+            united: Vec::new(),
+        }
     }
 
     /// Adds another part of the same shape.
@@ -113,6 +124,7 @@ impl WarpedDocument {
             pictures: usize::from(part.fill_image.is_some()) + usize::from(part.stroke_image.is_some()),
             stroke_error: part.stroke_error,
             outlined_strokes: usize::from(part.stroke.outline().is_some()),
+            united: Vec::new(),
         };
         if let Some((i, shape)) = known.and_then(|i| Some((i, self.shapes.get_mut(i)?))) {
             shape.add(of_part);

@@ -1,7 +1,9 @@
 //! Bends an outline and writes it as path data: keeps arcs, chooses decimals, drops closing lines that come from rounding.
 
 use super::options::Edit;
+use super::united::FINE;
 use crate::source::number::{MAX_DECIMALS, arcs_data, path_data, path_data_by};
+use pathwarp::edit::Area;
 use pathwarp::kurbo::{BezPath, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Class, Map};
 use pathwarp::outline::{EllipticArc, Subpath};
@@ -34,6 +36,11 @@ pub fn edit_path(
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
+    if let Edit::Unite { .. } = edit {
+        let area = Area::of(outline, false, FINE * options.tolerance)?.with_gaps_closed(options.tolerance, outline);
+        let one = area.with_arcs_of(outline, FINE * options.tolerance);
+        return warp_path(&one, &AffineMap::IDENTITY, options, precision);
+    }
     let Some(RefittedPath { path, report, .. }) = edit.edited(outline, options, &[])? else {
         return warp_path(outline, &AffineMap::IDENTITY, options, precision);
     };

@@ -1,5 +1,6 @@
 //! Interfaces to programs that make pictures for this library: bent bitmaps and gradients.
 
+use super::traced::Opacity;
 use pathwarp::kurbo::{Affine, BezPath, Point, Rect};
 use pathwarp::map::Map;
 use std::error::Error;
@@ -192,6 +193,18 @@ impl fmt::Debug for FilterRequest<'_> {
     }
 }
 
+/// Reads where pictures are opaque, and continues what is drawn beyond its edge.
+pub trait EdgePainter: Send + Sync {
+    /// The opacity of a PNG, GIF or WebP; `None` if it cannot be read.
+    fn opacity(&self, data: &[u8]) -> Option<Opacity>;
+
+    /// Returns a PNG of an SVG drawing in which transparent pixels have the colour of the nearest that are not. `size` is its size in px.
+    ///
+    /// # Errors
+    /// Returns the reason why it cannot be drawn.
+    fn continued(&self, drawing: &str, size: [f64; 2]) -> Result<Vec<u8>, PictureError>;
+}
+
 /// A colour of a bent gradient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenColor {
@@ -201,21 +214,29 @@ pub struct SeenColor {
     pub color: [f64; 4],
 }
 
-/// Paints bent gradients and what filters draw.
+/// Paints bent gradients, what filters draw, and what goes on beyond edges.
 #[derive(Clone)]
-pub struct Painter(Arc<dyn PaintsBoth>);
+pub struct Painter(Arc<dyn PaintsAll>);
 
-trait PaintsBoth: GradientPainter + FilterPainter {}
-impl<P: GradientPainter + FilterPainter> PaintsBoth for P {}
+trait PaintsAll: GradientPainter + FilterPainter + EdgePainter {}
+impl<P: GradientPainter + FilterPainter + EdgePainter> PaintsAll for P {}
 
 impl Painter {
-    /// A painter of both.
-    pub fn new(painter: Arc<impl GradientPainter + FilterPainter + 'static>) -> Self {
+    /// A painter of all.
+    pub fn new(painter: Arc<impl GradientPainter + FilterPainter + EdgePainter + 'static>) -> Self {
         Self(painter)
     }
 
     pub(crate) fn gradient(&self, request: &GradientRequest<'_>) -> Result<BentImage, PictureError> {
         GradientPainter::paint(&*self.0, request)
+    }
+
+    pub(crate) fn opacity(&self, data: &[u8]) -> Option<Opacity> {
+        self.0.opacity(data)
+    }
+
+    pub(crate) fn continued(&self, drawing: &str, size: [f64; 2]) -> Result<Vec<u8>, PictureError> {
+        self.0.continued(drawing, size)
     }
 
     pub(crate) fn filter(&self, request: &FilterRequest<'_>) -> Result<Option<Vec<Option<BentImage>>>, PictureError> {

@@ -201,7 +201,12 @@ impl Layers {
         let is_layer =
             |e: &ElementId| source.attr_in(*e, Namespace::Inkscape, "groupmode").is_some_and(|mode| mode == "layer");
         let elements: HashSet<ElementId> = all.filter(is_layer).collect();
-        if elements.is_empty() { Self::of_groups(source) } else { Self { elements, rest: None } }
+        // The layer of a cutting line is no reason to take named groups for less than layers.
+        if elements.iter().all(|e| source.attr(*e, "data-contour").is_some()) {
+            Self::of_groups(source)
+        } else {
+            Self { elements, rest: None }
+        }
     }
 
     /// The named groups of the outermost level that has several members.

@@ -190,7 +190,11 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
         out.push((el.range.end, el.range.end, c.after));
     }
     if let Some(new) = c.replaced {
-        out.push((el.range.start, el.range.end, new));
+        // What is removed leaves no empty line.
+        let indented = text[..el.range.start].trim_end_matches([' ', '\t']);
+        let line = indented.len() - usize::from(indented.ends_with('\n'));
+        let start = if new.is_empty() && line < indented.len() { line } else { el.range.start };
+        out.push((start, el.range.end, new));
         return;
     }
     let prefix = text[el.qname.clone()].find(':').map_or("", |i| &text[el.qname.start..=el.qname.start + i]);

@@ -2,7 +2,7 @@
 
 use super::fragment::Writer;
 use super::input::WriteInput;
-use super::{keep, page};
+use super::{keep, line, page};
 use crate::bend::options::{Structure, WarpOptions};
 use crate::bend::outcome::{Notes, Skipped, Warning, WarpedDocument};
 use crate::scene::drawing::Drawing;
@@ -33,6 +33,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
     let written = change.filter(|_| !input.options.same_view);
     let patched = match (structure, &input.scene.unpatchable) {
         (Structure::Flatten, _) => None,
+        _ if input.options.line.only && input.line.is_some() => None,
         (_, Some(why)) => Some(Err(why.clone())),
         _ => Some(keep::write(input, written, &mut out.skipped, &mut notes)),
     };
@@ -117,8 +118,8 @@ fn flattened(
     if let Some(t) = source.elements.first().and_then(|e| e.title.as_ref()) {
         let _ = writeln!(out, "<title>{}</title>", escape(t));
     }
-    let mut body = String::new();
-    for n in &input.scene.root.children {
+    let [mut body, above] = line::layers(&mut w);
+    for n in input.scene.root.children.iter().filter(|_| !(input.options.line.only && input.line.is_some())) {
         body.push_str(&w.node(n));
         body.push('\n');
     }
@@ -126,6 +127,7 @@ fn flattened(
         let _ = write!(out, "<defs>\n{}</defs>\n", w.defs.text);
     }
     out.push_str(&body);
+    out.push_str(&above);
     out.push_str("</svg>\n");
     out
 }

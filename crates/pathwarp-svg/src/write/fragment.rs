@@ -180,6 +180,9 @@ impl<'a> Writer<'a> {
 
     /// Writes a part: as one path, or as two if fill and stroke have different outlines.
     pub(super) fn part(&mut self, i: usize) -> String {
+        if self.input.united.absorbs(i) {
+            return String::new();
+        }
         let p = self.input.part(i);
         let warped = self.input.warped(i);
         let d = part_data(p, warped, self.input.source);

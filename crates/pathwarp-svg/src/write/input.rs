@@ -4,8 +4,10 @@ use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::BentDrawing;
 use crate::bend::fits::{EmbeddedImage, FilterOutcome, PaintFit, PlacedSlot, written};
 use crate::bend::gradients::NewGradient;
+use crate::bend::line::Line;
 use crate::bend::options::WarpOptions;
 use crate::bend::outcome::{PartOutcome, WarpedPart};
+use crate::bend::united::United;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{Group, Node, Part, Scene, Tiles};
 use crate::source::text::SourceText;
@@ -27,6 +29,8 @@ pub(crate) struct WriteInput<'a> {
     pub(super) bends: &'a Bends<'a>,
     pub(super) of: &'a [Option<usize>],
     pub(super) filters: &'a BTreeMap<usize, FilterOutcome>,
+    pub(super) united: &'a United,
+    pub(super) line: Option<&'a Line>,
     /// For the document.
     pub(super) options: &'a WarpOptions,
 }
@@ -43,6 +47,8 @@ impl<'a> WriteInput<'a> {
             bends,
             of: &bent.of,
             filters: &bent.filters,
+            united: &bent.united,
+            line: bent.line.as_ref(),
             options: &bends.options,
         }
     }
@@ -69,6 +75,17 @@ impl<'a> WriteInput<'a> {
     /// The image of a part; `None` if it is unchanged.
     pub(super) fn warped(&self, i: usize) -> Option<&'a WarpedPart> {
         self.outcomes[i].warped()
+    }
+
+    /// Returns `true` if all of a node has become part of another shape.
+    pub(super) fn is_absorbed(&self, n: &Node) -> bool {
+        let all = |nodes: &[Node]| !nodes.is_empty() && nodes.iter().all(|n| self.is_absorbed(n));
+        match n {
+            Node::Part(i) => self.united.absorbs(*i),
+            Node::Group(g) => all(&g.children),
+            Node::Text { content, .. } => all(&content.children),
+            Node::Image(_) => false,
+        }
     }
 
     /// Returns `true` if any of the parts is warped.

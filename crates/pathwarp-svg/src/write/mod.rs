@@ -9,6 +9,7 @@ pub(crate) mod input;
 mod keep;
 mod layers;
 pub(crate) mod lettering;
+mod line;
 mod markup;
 mod mesh;
 mod page;

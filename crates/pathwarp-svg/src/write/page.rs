@@ -2,6 +2,7 @@
 
 use super::boxes::{self, bound, box_under, painted_box, paints_in, path};
 use super::input::WriteInput;
+use super::line;
 use crate::bend::bends::Bend;
 use crate::bend::fits::EmbeddedImage;
 use crate::bend::options::PageFit;
@@ -118,6 +119,7 @@ pub(super) fn is_blank(input: &WriteInput<'_>, shown: Rect) -> bool {
 /// Returns `true` if anything of the result has moved.
 fn moved(input: &WriteInput<'_>) -> bool {
     input.options.grown.is_some()
+        || input.line.is_some()
         || input.outcomes.iter().any(|o| o.warped().is_some())
         || input.slots.iter().any(|s| s.fit != Affine::IDENTITY)
         || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent(_)))
@@ -184,17 +186,16 @@ fn original(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
         input.outcomes.iter().map(|_| PartOutcome::Kept).collect(),
         input.images.iter().map(|_| EmbeddedImage::Placed).collect(),
     );
-    artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], ..*input }, room)
+    artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], line: None, ..*input }, room)
 }
 
 /// Bounding box of everything painted, strokes included, in root user space. Guides do not count.
 fn artwork(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
     let counts = guideless(input);
-    group_box(
-        input,
-        &input.scene.root,
-        Measure { counts: &counts, room, page: input.options.grown.or(input.drawing.specified_area()) },
-    )
+    let measure = Measure { counts: &counts, room, page: input.options.grown.or(input.drawing.specified_area()) };
+    let line = input.line.map(|l| line::bounds(input, l));
+    let drawn = group_box(input, &input.scene.root, measure);
+    drawn.into_iter().chain(line).reduce(|a, b| a.union(b))
 }
 
 /// For every element, `true` unless it is a guide.

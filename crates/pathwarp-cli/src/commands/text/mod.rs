@@ -14,7 +14,7 @@ use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, DRAWINGS};
 use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out, read_font};
 use pathwarp_engine::readable::listed;
-use pathwarp_engine::{export, input, output};
+use pathwarp_engine::{Warper, export, input, output};
 use pathwarp_svg::{FontFile, LetteringOptions, write_lettering, write_set_lines};
 use pathwarp_text::Font;
 use std::collections::BTreeSet;
@@ -81,9 +81,20 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     if !m.get_flag("quiet") {
         warnings.iter().for_each(|w| terminal::warning(w));
     }
+    let svg = if m.get_flag("unite") { welded(registry, svg, m)? } else { svg };
     let result = export::drawing(svg, format, &read, &options, None)?;
     output::write(target, &result.bytes)?;
     Ok(Status::partial_if(!lacking.is_empty()))
+}
+
+/// The lettering as one shape.
+fn welded(registry: &Registry, svg: String, m: &ArgMatches) -> Result<String, Failure> {
+    let mut unite = Warper::edit(registry, "unite", &[("by", "all")]).map_err(|e| Failure::usage(e.to_string()))?;
+    if let Some(tolerance) = m.get_one::<String>("tolerance") {
+        unite.set_option("tolerance", tolerance).map_err(|e| Failure::usage(e.to_string()))?;
+    }
+    let drawing = unite.warp_drawing(svg.as_bytes(), None).map_err(|e| Failure::Geometry(e.to_string()))?;
+    Ok(String::from_utf8(drawing.bytes).unwrap_or(svg))
 }
 
 /// The warning about characters that no font has.
@@ -109,7 +120,7 @@ Examples:
   pathwarp text LOVE MUSIC --align fill --gap 6% -o poster.svg
   pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
   pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
-  pathwarp text Welcome --size 40mm -o sign.dxf
+  pathwarp text Welcome --size 40mm --unite -o sign.dxf
   pathwarp text 'HARBOUR COFFEE' --below 'SINCE 1887' --on circle:r=60mm -o badge.svg
   pathwarp text 'Round and round' --on spiral:turns=2,inner=9mm,outer=40mm --size 8mm -o out.svg
   pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' -o arc.svg";
@@ -168,6 +179,7 @@ fn text_and_font() -> Vec<Arg> {
         value("variation", "AXIS=N,…", "Positions on the axes of a variable font, such as wght=600,wdth=80")
             .action(ArgAction::Append),
         value("fill", "COLOUR", "Colour, as in CSS [default: black]"),
+        switch("unite", "Make one shape of letters that overlap or join, for cutters, as `pathwarp unite` does"),
         value("margin", "LENGTH", "Margin around the text; percentages refer to the size [default: 0]"),
     ]
 }

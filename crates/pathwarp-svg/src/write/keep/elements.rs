@@ -31,11 +31,13 @@ pub(super) fn group(k: &mut Keeper<'_, '_>, g: &Group) {
     for n in &g.children {
         match n {
             Node::Group(c) => match c.owner {
+                Some(e) if k.tag(e) == "use" && k.input.is_absorbed(n) => k.edits.replace(e, String::new()),
                 Some(e) if k.tag(e) == "use" => copy(k, e, c),
                 Some(e) if k.tag(e) == "image" => drawing(k, e, n, c),
                 Some(e) if is_shape(k.tag(e)) => marked.entry(e).or_default().push(n),
                 _ => group(k, c),
             },
+            Node::Text { element: Some(e), .. } if k.input.is_absorbed(n) => k.edits.replace(*e, String::new()),
             Node::Text { element: Some(e), content, owners } => text::text(k, *e, content, owners),
             Node::Text { element: None, .. } => {}
             Node::Image(i) => bitmap(k, g, *i),
@@ -43,6 +45,7 @@ pub(super) fn group(k: &mut Keeper<'_, '_>, g: &Group) {
                 let p = k.input.part(*i);
                 match (p.owner, p.source) {
                     (Some(e), _) if is_shape(k.tag(e)) => marked.entry(e).or_default().push(n),
+                    (None, Some(e)) if k.input.is_absorbed(n) => k.edits.replace(e, String::new()),
                     (None, Some(e)) if k.input.warped(*i).is_some() => shape(k, e, *i),
                     _ => {}
                 }
@@ -187,6 +190,9 @@ fn marked_shape(k: &mut Keeper<'_, '_>, e: ElementId, nodes: &[&Node]) {
     if !nodes.iter().any(|n| k.changed(n)) {
         return;
     }
+    if nodes.iter().all(|n| k.input.is_absorbed(n)) {
+        return k.edits.replace(e, String::new());
+    }
     let content = k.written_inside(e, |w| nodes.iter().map(|n| w.node(n)).collect());
     let content = k.between_pictures(e, content);
     k.make_group(e, content);
@@ -265,6 +271,8 @@ pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
         .filter(|a| !is_live(a, text))
         .map(|a| format!(" {}", &text[a.range.clone()]))
         .collect();
+    let united = united_attributes(k.input, e).into_iter();
+    let head = united.fold(head, |head, (name, value)| format!("{head} {name}=\"{}\"", escape(&value)));
     let title = el.title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
     k.fragments.insert(e);
     let lead = title + &keeper::kept(source, e);
@@ -272,6 +280,40 @@ pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     let text = k.writer.group_with(g, &head, &lead);
     k.writer.place = None;
     k.edits.replace(e, text);
+}
+
+/// Names what went in on the shapes that it has become: by ids in `data-united`, by classes, and if they have no title, by the titles.
+pub(super) fn united(k: &mut Keeper<'_, '_>) {
+    let (source, input) = (k.source, k.input);
+    for (&e, all) in input.united.of.iter().filter(|(e, _)| source.elements[**e].tag != "use") {
+        for (name, value) in united_attributes(input, e) {
+            k.edits.set_attr(e, name, value);
+        }
+        let mut titles: Vec<&str> = all.iter().filter_map(|e| source.elements[*e].title.as_deref()).collect();
+        titles.dedup();
+        if source.elements[e].title.is_none() && !titles.is_empty() && k.tag(e) != "text" {
+            let title = k.writer.markup.title(&titles.join(", "));
+            k.edits.wrap_content(e, title, String::new());
+        }
+    }
+}
+
+/// The attributes of a shape that name what went in. Classes of others could change what style sheets say.
+fn united_attributes(input: WriteInput<'_>, e: ElementId) -> Vec<(&'static str, String)> {
+    let Some(all) = input.united.of.get(&e) else { return Vec::new() };
+    let values = |name: &'static str| all.iter().filter_map(move |e| input.source.attr(*e, name));
+    let joined = |name: &'static str| {
+        let mut seen = BTreeSet::new();
+        let values: Vec<_> = values(name).collect();
+        let words = values.iter().flat_map(|v| v.split_ascii_whitespace());
+        words.filter(|w| seen.insert(*w)).collect::<Vec<_>>().join(" ")
+    };
+    let class = (!input.source.has_css()).then(|| ("class", joined("class")));
+    // Letters make words.
+    let is_letter = |e: &ElementId| input.source.attr(*e, "data-glyph").is_some();
+    let word = all.iter().all(is_letter).then(|| ("aria-label", values("aria-label").collect::<String>()));
+    let all = [("data-united", joined("id"))].into_iter().chain(class).chain(word);
+    all.filter(|(_, words)| !words.is_empty()).collect()
 }
 
 /// Patches the clip paths. For a clip path used in several frames, the first stays in its place and the others get

@@ -8,10 +8,10 @@ mod text;
 use super::fragment::Writer;
 use super::input::WriteInput;
 use super::keep::keeper::{Keeper, Warped};
-use super::page;
+use super::{line, page};
 use crate::bend::outcome::{Notes, Skipped};
 use crate::source::edit::Edits;
-use crate::source::elements::{Element, ElementId, Unpatchable, is_live};
+use crate::source::elements::{Element, ElementId, Unpatchable, is_live, is_shape};
 use crate::source::number::rectangle;
 use crate::source::text::SourceText;
 use pathwarp::decimal::matrix;
@@ -33,6 +33,19 @@ pub(super) fn write(
     elements::clips(&mut k)?;
     elements::masks(&mut k)?;
     elements::group(&mut k, &input.scene.root);
+    elements::united(&mut k);
+    let [beneath, above] = line::layers(k.writer);
+    if !above.is_empty() {
+        let first = (1..input.source.elements.len()).find(|&e| {
+            let e = &input.source.elements[e];
+            e.parent == Some(0)
+                && (is_shape(&e.tag) || matches!(&*e.tag, "g" | "a" | "svg" | "switch" | "use" | "text" | "image"))
+        });
+        if let Some(first) = first {
+            k.edits.insert_before(first, &beneath);
+        }
+        k.edits.wrap_content(0, String::new(), above);
+    }
     slots(&mut k);
     regions(&mut k);
     let warped = Warped::new(input);

@@ -1,0 +1,168 @@
+//! The area of all that a drawing shows.
+
+use super::pictures::Painter;
+use crate::scene::areas::{is_seen, picture_corners, stroked};
+use crate::scene::drawing::Drawing;
+use crate::scene::geometry::stretch;
+use crate::scene::model::{Group, Node, Part, PartRole};
+use pathwarp::edit::Area;
+use pathwarp::kurbo::Point;
+use pathwarp::refit;
+use pathwarp::{GeometryError, Outline};
+use usvg::{FillRule, ImageKind, MaskType, Paint};
+
+/// What is visible of the selected parts and bitmaps.
+pub(super) struct Seen<'a> {
+    pub(super) drawing: &'a Drawing,
+    pub(super) parts: &'a [bool],
+    pub(super) bitmaps: &'a [bool],
+    /// Reads the opacity of pictures; without it, they are as large as their boxes.
+    pub(super) painter: Option<&'a Painter>,
+    /// How closely areas are found.
+    pub(super) fine: f64,
+}
+
+/// What counts of a part.
+#[derive(Clone, Copy, PartialEq)]
+enum Ink {
+    /// What is painted.
+    Paint,
+    /// The area of clip paths, whatever their paint.
+    Clip,
+    /// What is not black.
+    Light,
+}
+
+impl Seen<'_> {
+    /// The area of all.
+    pub(super) fn area(&self) -> Result<Area, GeometryError> {
+        self.of_group(&self.drawing.scene().root, Ink::Paint)
+    }
+
+    fn of_group(&self, g: &Group, ink: Ink) -> Result<Area, GeometryError> {
+        let mut areas = Vec::new();
+        self.add_group(g, ink, &mut areas)?;
+        Area::union(&areas, self.fine)
+    }
+
+    fn add_group(&self, g: &Group, ink: Ink, out: &mut Vec<Area>) -> Result<(), GeometryError> {
+        if g.opacity <= 0.0 && ink != Ink::Clip {
+            return Ok(());
+        }
+        let first = out.len();
+        for n in &g.children {
+            match n {
+                Node::Group(g) => self.add_group(g, ink, out)?,
+                Node::Text { content, .. } => self.add_group(content, ink, out)?,
+                Node::Image(i) if ink == Ink::Light || ink == Ink::Paint && self.bitmaps[*i] => {
+                    out.push(self.picture(*i)?)
+                }
+                Node::Image(_) => {}
+                Node::Part(i) if ink == Ink::Light && is_black(&self.drawing.scene().parts[*i]) => {
+                    let black = self.filled(*i)?;
+                    for area in &mut out[first..] {
+                        *area = area.difference(&black, self.fine)?;
+                    }
+                }
+                Node::Part(i) => self.add_part(*i, ink, out)?,
+            }
+        }
+        if (g.clip.is_some() || g.mask.is_some()) && out.len() > first {
+            let mut area = Area::union(&out[first..], self.fine)?;
+            if let Some(clip) = g.clip {
+                area = area.intersection(&self.clip(clip)?, self.fine)?;
+            }
+            if let Some(mask) = g.mask {
+                area = area.intersection(&self.mask(mask)?, self.fine)?;
+            }
+            out.splice(first.., [area]);
+        }
+        Ok(())
+    }
+
+    fn add_part(&self, i: usize, ink: Ink, out: &mut Vec<Area>) -> Result<(), GeometryError> {
+        let p = &self.drawing.scene().parts[i];
+        if ink == Ink::Clip {
+            out.extend(p.visible.then(|| self.filled(i)).transpose()?);
+            return Ok(());
+        }
+        if !is_seen(p) || p.in_tile || p.role == PartRole::Paint && !self.parts[i] {
+            return Ok(());
+        }
+        let shows = |paint: &Paint| ink == Ink::Paint || is_bright(paint);
+        if p.fill.as_ref().is_some_and(|f| f.opacity().get() > 0.0 && shows(f.paint())) {
+            out.push(self.filled(i)?);
+        }
+        if p.stroke.as_ref().is_some_and(|s| s.opacity().get() > 0.0 && shows(s.paint())) {
+            let drawing = self.drawing;
+            let stroke = stroked(p, drawing.scene().to_px, self.fine, &drawing.budget).map_err(GeometryError::Limit)?;
+            out.extend(stroke.map(|s| Area::of(&s, false, self.fine)).transpose()?);
+        }
+        Ok(())
+    }
+
+    fn filled(&self, i: usize) -> Result<Area, GeometryError> {
+        let fill = self.drawing.scene().parts[i].fill.as_ref();
+        let even_odd = fill.is_some_and(|f| f.rule() == FillRule::EvenOdd);
+        Area::of(&self.drawing.shapes()[i].outline, even_odd, self.fine)
+    }
+
+    fn clip(&self, i: usize) -> Result<Area, GeometryError> {
+        let clip = &self.drawing.scene().clips[i];
+        let own = self.of_group(&clip.root, Ink::Clip)?;
+        match clip.clip {
+            Some(next) => own.intersection(&self.clip(next)?, self.fine),
+            None => Ok(own),
+        }
+    }
+
+    /// Where a mask is neither black nor transparent.
+    fn mask(&self, i: usize) -> Result<Area, GeometryError> {
+        let mask = &self.drawing.scene().masks[i];
+        let r = mask.rect;
+        let corners = [(r.x0, r.y0), (r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)].map(|p| mask.frame * Point::from(p));
+        let region = Area::of(&Outline::from_points(&corners, true), false, self.fine)?;
+        let ink = if mask.kind == MaskType::Luminance { Ink::Light } else { Ink::Paint };
+        let own = self.of_group(&mask.root, ink)?.intersection(&region, self.fine)?;
+        match mask.mask {
+            Some(next) => own.intersection(&self.mask(next)?, self.fine),
+            None => Ok(own),
+        }
+    }
+
+    /// What of a picture is more than half opaque.
+    fn picture(&self, i: usize) -> Result<Area, GeometryError> {
+        /// Within this many pixels it is not known where the picture ends.
+        const UNKNOWN: f64 = 0.2;
+        let b = &self.drawing.scene().bitmaps[i];
+        let Some(corners) = picture_corners(b) else { return Ok(Area::default()) };
+        let shown = Area::of(&Outline::from_points(&corners, true), false, self.fine)?;
+        let (ImageKind::PNG(data) | ImageKind::GIF(data) | ImageKind::WEBP(data)) = b.image.kind() else {
+            return Ok(shown);
+        };
+        let Some(opacity) = self.painter.and_then(|p| p.opacity(data)).filter(|o| !o.is_full()) else {
+            return Ok(shown);
+        };
+        let traced = opacity.traced().transformed(b.frame);
+        let options = refit::Options::new(self.fine.max(UNKNOWN * stretch(b.frame)));
+        let outline = Outline::from(&refit::simplified(&traced, None, &options, &[])?.path);
+        Area::of(&outline, false, self.fine)?.intersection(&shown, self.fine)
+    }
+}
+
+/// Whether a part paints black over what lies below.
+fn is_black(p: &Part) -> bool {
+    let fill = p.fill.as_ref().filter(|f| f.opacity().get() >= 1.0);
+    p.visible && fill.is_some_and(|f| !is_bright(f.paint()))
+}
+
+/// Whether any colour of a paint is other than black. Patterns are.
+fn is_bright(paint: &Paint) -> bool {
+    let is_bright = |c: usvg::Color| [c.red, c.green, c.blue] != [0; 3];
+    match paint {
+        Paint::Color(c) => is_bright(*c),
+        Paint::LinearGradient(g) => g.stops().iter().any(|s| is_bright(s.color())),
+        Paint::RadialGradient(g) => g.stops().iter().any(|s| is_bright(s.color())),
+        Paint::Pattern(_) => true,
+    }
+}

@@ -1,0 +1,125 @@
+//! Writes the line around artwork as a layer of its own, with what printers and cutters need beside it.
+
+use super::fragment::Writer;
+use super::input::WriteInput;
+use crate::bend::line::Line;
+use crate::bend::outcome::{Notes, Skipped};
+use crate::scene::geometry::stretch;
+use crate::source::markup::Tag;
+use crate::source::number::{rectangle, single};
+use pathwarp::kurbo::{Point, Rect};
+use std::fmt::Write as _;
+
+/// A millimetre and a quarter of a point in px.
+const MM: f64 = 96.0 / 25.4;
+const HAIRLINE: f64 = 0.25 * 96.0 / 72.0;
+
+/// Lengths of marks in millimetres: the gap beyond the bleed, the arms, and the radius of register marks.
+const GAP: f64 = 2.0;
+const ARM: f64 = 5.0;
+const RADIUS: f64 = 1.5;
+
+/// The box of the line with all that belongs to it.
+pub(super) fn bounds(input: &WriteInput<'_>, line: &Line) -> Rect {
+    let bounds = line.bled.as_ref().map_or(line.bounds, |b| b.1);
+    let by = if input.options.line.marks { (GAP + ARM) * MM * unit(input) } else { 0.0 };
+    let width = 0.5 * HAIRLINE * unit(input);
+    bounds.inflate(by + width, by + width)
+}
+
+/// A px in root user units.
+fn unit(input: &WriteInput<'_>) -> f64 {
+    1.0 / stretch(input.scene.to_px)
+}
+
+/// What lies beneath all artwork, and the layers above it.
+pub(super) fn layers(w: &mut Writer<'_>) -> [String; 2] {
+    let Some(line) = w.input.line else { return Default::default() };
+    let style = &w.input.options.line;
+    let beneath = bleed(w, line).unwrap_or_default();
+    let name = style.spot.as_deref().unwrap_or("Contour");
+    let mut above = layer(w, name, ("#ec008c", &line.data), style.spot.as_deref());
+    if style.marks {
+        let bled = line.bled.as_ref().map_or(line.bounds, |b| b.1);
+        // Every plate of a print has the marks.
+        above.push_str(&layer(w, "Marks", ("#000", &marks(line.bounds, bled, MM * unit(&w.input))), Some("All")));
+    }
+    [beneath, above]
+}
+
+/// A layer with one hairline.
+fn layer(w: &mut Writer<'_>, name: &str, (color, data): (&str, &str), spot: Option<&str>) -> String {
+    let id: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+    let group = w.defs.new_id(&id);
+    let width = single(HAIRLINE * unit(&w.input));
+    let path = w.markup.element("path").with("id", &w.defs.new_id(&format!("{id}-line"))).with("d", data);
+    let path = path.with("style", &format!("fill:none;stroke:{color};stroke-width:{width}"));
+    let path = match spot {
+        Some(name) => path.with("data-spot", name),
+        None => path,
+    };
+    let path = if w.input.options.line.knockout { path.with("data-knockout", "true") } else { path };
+    let inkscape = " xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" inkscape:groupmode=\"layer\"";
+    let group = w.markup.element("g").with("id", &group).with("data-contour", name).raw(inkscape);
+    group.with("inkscape:label", name).around(&path.empty()) + "\n"
+}
+
+/// Crop marks at the corners of the line's box, and register marks in the middles of its sides, beyond the bleed.
+fn marks(line: Rect, bled: Rect, mm: f64) -> String {
+    let (near, far) = (bled.inflate(GAP * mm, GAP * mm), bled.inflate((GAP + ARM) * mm, (GAP + ARM) * mm));
+    let mut out = String::new();
+    let mut stroke = |p: Point, q: Point| {
+        let [x0, y0, x1, y1] = [p.x, p.y, q.x, q.y].map(single);
+        let _ = write!(out, "M{x0},{y0} L{x1},{y1} ");
+    };
+    for (x, [from, to]) in [(line.x0, [near.x0, far.x0]), (line.x1, [near.x1, far.x1])] {
+        for (y, [above, below]) in [(line.y0, [near.y0, far.y0]), (line.y1, [near.y1, far.y1])] {
+            stroke(Point::new(from, y), Point::new(to, y));
+            stroke(Point::new(x, above), Point::new(x, below));
+        }
+    }
+    let (middle, reach, r) = (line.center(), 0.5 * ARM * mm, RADIUS * mm);
+    let beside = [
+        (near.x0 - reach, middle.y),
+        (near.x1 + reach, middle.y),
+        (middle.x, near.y0 - reach),
+        (middle.x, near.y1 + reach),
+    ];
+    for (x, y) in beside {
+        stroke(Point::new(x - reach, y), Point::new(x + reach, y));
+        stroke(Point::new(x, y - reach), Point::new(x, y + reach));
+    }
+    for (x, y) in beside {
+        let [left, right, y, r] = [x - r, x + r, y, r].map(single);
+        let _ = write!(out, "M{left},{y} A{r} {r} 0 0 1 {right} {y} A{r} {r} 0 0 1 {left} {y} Z ");
+    }
+    out.trim_end().to_owned()
+}
+
+/// The artwork's colours, as they go on beyond its edge.
+fn bleed(w: &mut Writer<'_>, line: &Line) -> Option<String> {
+    let (input, (data, area)) = (w.input, line.bled.as_ref()?);
+    let (mut skipped, mut notes) = (Vec::new(), Notes::default());
+    let mut plain = Writer::new(WriteInput { line: None, ..input }, false, &mut skipped, &mut notes);
+    let body: String = input.scene.root.children.iter().map(|n| plain.node(n)).collect();
+    let view = rectangle(*area).map(|side| side.1).join(" ");
+    let root =
+        Tag::new("svg").with("xmlns", "http://www.w3.org/2000/svg").with("xmlns:xlink", "http://www.w3.org/1999/xlink");
+    let text = root.with("viewBox", &view).around(&format!("<defs>{}</defs>{body}", plain.defs.text));
+    let size = area.size() / unit(&input);
+    let painted = input.options.painter.as_ref()?.continued(&text, [size.width, size.height]);
+    let png = match painted {
+        Ok(png) => png,
+        Err(why) => {
+            w.skipped.push(Skipped { id: "the bleed".into(), why: why.to_string() });
+            return None;
+        }
+    };
+    let id = w.defs.new_id("bleed-edge");
+    let clip = w.markup.element("clipPath").with("id", &id).around(&w.markup.element("path").with("d", data).empty());
+    let url = super::markup::data_url("image/png", &png);
+    let image = w.markup.element("image").with_all(rectangle(*area)).with("preserveAspectRatio", "none");
+    let image = image.raw(&format!(" {}=\"{url}\"", w.markup.link())).empty();
+    let group = w.markup.element("g").with("id", &w.defs.new_id("Bleed")).with("clip-path", &format!("url(#{id})"));
+    Some(group.around(&(clip + &image)) + "\n")
+}

@@ -1,0 +1,254 @@
+//! Areas: what outlines enclose, and what several areas make together.
+
+use super::known;
+use crate::error::GeometryError;
+use crate::outline::{Outline, Subpath};
+use crate::refit::ARCS;
+use bezierfit::union_even_odd;
+use kurbo::{BezPath, Join, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect, Shape as _};
+
+/// Share of the width of a gap within which outlines that close it are fitted.
+const FITTED: f64 = 0.1;
+/// The same within which they follow lines and arcs of the sources.
+const SNAPPED: f64 = 0.8;
+
+/// Where segments of outlines that close gaps are compared with what they come from.
+const PLACES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+
+/// An area of the plane, with outlines that meet neither themselves nor each other.
+///
+/// ```
+/// use pathwarp::{Outline, edit::Area};
+///
+/// let area = |d: &str| Area::of(&Outline::from_svg(d).unwrap(), false, 0.01);
+/// // One turns to the left, one to the right.
+/// let (a, b) = (area("M0,0H60V60H0Z")?, area("M40,40V100H100V40Z")?);
+/// assert_eq!(Area::union([&a, &b], 0.01)?.outline().segs().count(), 8);
+/// assert_eq!(a.intersection(&b, 0.01)?.outline().bounding_box().unwrap().area(), 400.0);
+/// # Ok::<(), pathwarp::GeometryError>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Area(Outline);
+
+impl Area {
+    /// The area of a fill, within `tolerance`. Open subpaths are closed.
+    ///
+    /// # Errors
+    /// A coordinate is not finite, or it is not found how edges cross; so in all that follows.
+    pub fn of(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Self, GeometryError> {
+        let fine = ARCS * tolerance;
+        let unite = if even_odd { union_even_odd } else { bezierfit::union };
+        Ok(Self(Outline::from(&unite(&outline.to_bez_path(fine), tolerance - fine)?)))
+    }
+
+    /// What lies in any of the areas.
+    ///
+    /// # Errors
+    /// As [`Area::of`].
+    pub fn union<'a>(all: impl IntoIterator<Item = &'a Self>, tolerance: f64) -> Result<Self, GeometryError> {
+        // The outlines of each turn around it in one direction.
+        let mut areas = all.into_iter().filter(|a| !a.is_empty()).map(Self::path);
+        let Some(mut path) = areas.next() else { return Ok(Self::default()) };
+        let alone = path.elements().len();
+        areas.for_each(|other| path.extend(other));
+        let is_alone = path.elements().len() == alone;
+        Ok(Self(Outline::from(&if is_alone { path } else { bezierfit::union(&path, tolerance)? })))
+    }
+
+    /// What lies in both areas.
+    ///
+    /// # Errors
+    /// As [`Area::of`].
+    pub fn intersection(&self, other: &Self, tolerance: f64) -> Result<Self, GeometryError> {
+        Ok(Self(Outline::from(&bezierfit::intersection(&self.path(), &other.path(), tolerance)?)))
+    }
+
+    /// What lies in this area and not in the other.
+    ///
+    /// # Errors
+    /// As [`Area::of`].
+    pub fn difference(&self, other: &Self, tolerance: f64) -> Result<Self, GeometryError> {
+        if self.is_empty() || other.is_empty() {
+            return Ok(self.clone());
+        }
+        Ok(Self(Outline::from(&bezierfit::difference(&self.path(), &other.path(), tolerance)?)))
+    }
+
+    /// Whether there is no area.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The outlines, of lines and cubics.
+    #[must_use]
+    pub fn outline(&self) -> &Outline {
+        &self.0
+    }
+
+    /// The outlines, with the circular arcs of the sources where they follow those within `tolerance`.
+    #[must_use]
+    pub fn with_arcs_of(&self, sources: &Outline, tolerance: f64) -> Outline {
+        known::with_edges(self.0.clone(), sources, (0.0, false, 0.0), tolerance)
+    }
+
+    /// The numbers of islands and of holes.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 2] {
+        let outer = outer(&self.0, 1.0).count();
+        [outer, self.0.subpaths.len() - outer]
+    }
+
+    /// The outlines around the islands.
+    pub(super) fn islands(&self) -> Vec<Subpath> {
+        outer(&self.0, 1.0).cloned().collect()
+    }
+
+    /// The area without gaps and holes narrower than `width`, where closing them joins or fills something. Lines and circular arcs of the
+    /// sources stay exact. Where it is not found how outlines so close cross, gaps stay.
+    #[must_use]
+    pub fn with_gaps_closed(&self, width: f64, sources: &Outline) -> Self {
+        let boxes: Vec<Rect> = self.0.subpaths.iter().map(|s| s.bounding_box().inflate(width, width)).collect();
+        let mut out = Outline::default();
+        for group in apart(&boxes) {
+            let own = Self(Outline { subpaths: group.iter().map(|i| self.0.subpaths[*i].clone()).collect() });
+            out.subpaths.extend(own.closed(width, sources).unwrap_or(own.0).subpaths);
+        }
+        Self(out)
+    }
+
+    fn closed(&self, width: f64, sources: &Outline) -> Option<Outline> {
+        if !self.has_gap(width) {
+            return None;
+        }
+        let options = bezierfit::Options::new(FITTED * width);
+        let moved = |path: &BezPath, by: f64| Some(bezierfit::offset(path, by, Join::Round, &options).ok()?.path);
+        let grown = moved(&self.path(), 0.5 * width)?;
+        if Self(Outline::from(&grown)).counts() == self.counts() {
+            return None;
+        }
+        let closed = Outline::from(&moved(&grown, -0.5 * width)?);
+        // Lines go on across gaps.
+        let exact =
+            known::with_edges(closed, sources, (0.0, false, f64::INFINITY), SNAPPED * width).to_bez_path(ARCS * width);
+        // It runs along the outlines that it comes from.
+        let own: Vec<(Rect, PathSeg)> =
+            self.path().segments().map(|s| (s.bounding_box().inflate(width, width), s)).collect();
+        let is_near = |p: Point| {
+            own.iter().any(|(b, s)| b.contains(p) && s.nearest(p, FITTED * width).distance_sq <= width * width)
+        };
+        let follows = exact.segments().all(|s| PLACES.iter().all(|t| is_near(s.eval(*t))));
+        (follows && exact.area().abs() >= self.path().area().abs()).then(|| Outline::from(&exact))
+    }
+
+    /// Whether segments that do not follow one another are nearer than `width`.
+    fn has_gap(&self, width: f64) -> bool {
+        let mut segs: Vec<(Rect, PathSeg)> = self.path().segments().map(|s| (s.bounding_box(), s)).collect();
+        segs.sort_by(|a, b| a.0.x0.total_cmp(&b.0.x0));
+        let meet = |a: &PathSeg, b: &PathSeg| a.end() == b.start() || b.end() == a.start();
+        segs.iter().enumerate().any(|(i, (box_of, a))| {
+            let near = segs[i + 1..].iter().take_while(|(b, _)| b.x0 <= box_of.x1 + width);
+            near.filter(|(_, b)| !meet(a, b)).any(|(_, b)| are_near(a, b, width))
+        })
+    }
+
+    fn path(&self) -> BezPath {
+        // It has no arcs.
+        self.0.to_bez_path(1.0)
+    }
+}
+
+/// Whether two segments are nearer than `width`, or a little more.
+fn are_near(a: &PathSeg, b: &PathSeg, width: f64) -> bool {
+    let [around, other] = [a, b].map(|s| s.bounding_box());
+    let [m, n] = [around, other].map(|b| b.size().max_side());
+    let room = around.inflate(width, width);
+    if room.x0 > other.x1 || other.x0 > room.x1 || room.y0 > other.y1 || other.y0 > room.y1 {
+        return false;
+    }
+    if m.max(n) <= width {
+        return true;
+    }
+    let (long, short) = if m >= n { (a, b) } else { (b, a) };
+    [0.0..0.5, 0.5..1.0].into_iter().any(|half| are_near(&long.subsegment(half), short, width))
+}
+
+/// The subpaths that go around islands rather than holes.
+fn outer(outline: &Outline, fine: f64) -> impl Iterator<Item = &Subpath> {
+    let areas: Vec<f64> = outline.subpaths.iter().map(|s| path(s, fine).area()).collect();
+    let all: f64 = areas.iter().sum();
+    outline.subpaths.iter().zip(areas).filter_map(move |(s, area)| (area * all > 0.0).then_some(s))
+}
+
+/// The outlines of an area, without those that lie inside of another. Arcs become cubics within `fine`.
+pub(super) fn outermost(outline: Outline, fine: f64) -> Outline {
+    let islands: Vec<(&Subpath, Rect, BezPath)> =
+        outer(&outline, fine).map(|s| (s, s.bounding_box(), path(s, fine))).collect();
+    let is_inside = |(s, b, _): &(&Subpath, Rect, BezPath)| {
+        islands.iter().any(|(_, around, path)| around != b && around.union(*b) == *around && path.contains(s.start))
+    };
+    Outline { subpaths: islands.iter().filter(|i| !is_inside(i)).map(|i| i.0.clone()).collect() }
+}
+
+fn path(subpath: &Subpath, fine: f64) -> BezPath {
+    Outline { subpaths: vec![subpath.clone()] }.to_bez_path(fine)
+}
+
+/// The numbers of boxes in groups, ordered as their first boxes are: lines along the axes lie between any two groups.
+pub(super) fn apart(boxes: &[Rect]) -> Vec<Vec<usize>> {
+    /// Limit on the cuts one after the other, across and along by turns. Only staircases take as many.
+    const MAX_CUTS: usize = 64;
+    let spans: [fn(&Rect) -> [f64; 2]; 2] = [|b| [b.x0, b.x1], |b| [b.y0, b.y1]];
+    // Groups, with the cuts so far and how many of the last ones had no effect.
+    let (mut open, mut done) = (vec![((0..boxes.len()).collect::<Vec<usize>>(), 0, 0)], Vec::new());
+    while let Some((mut group, cuts, vain)) = open.pop() {
+        if vain == spans.len() || cuts == MAX_CUTS || group.len() < 2 {
+            group.sort_unstable();
+            done.push(group);
+            continue;
+        }
+        let span = |i: usize| spans[cuts % spans.len()](&boxes[i]);
+        group.sort_by(|a, b| span(*a)[0].total_cmp(&span(*b)[0]));
+        let mut end = f64::NEG_INFINITY;
+        let mut parts: Vec<Vec<usize>> = Vec::new();
+        for i in group {
+            match parts.last_mut().filter(|_| span(i)[0] <= end) {
+                Some(part) => part.push(i),
+                None => parts.push(vec![i]),
+            }
+            end = end.max(span(i)[1]);
+        }
+        let vain = if parts.len() == 1 { vain + 1 } else { 0 };
+        open.extend(parts.into_iter().map(|part| (part, cuts + 1, vain)));
+    }
+    done.retain(|group| !group.is_empty());
+    done.sort_unstable();
+    done
+}
+
+/// Returns the area of a fill as outlines that meet neither themselves nor each other, within `tolerance`; `None` if that holds already.
+///
+/// # Errors
+/// A coordinate is not finite.
+///
+/// ```
+/// use pathwarp::{Outline, edit::united};
+///
+/// let cross = Outline::from_svg("M20,0H40V60H20ZM0,20H60V40H0Z")?;
+/// assert_eq!(united(&cross, false, 0.01)?.unwrap().segs().count(), 12);
+/// let ring = Outline::from_svg("M0,0H60V60H0ZM20,20V40H40V20Z")?;
+/// assert_eq!(united(&ring, false, 0.01)?, None);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+pub fn united(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Option<Outline>, GeometryError> {
+    let fine = ARCS * tolerance;
+    let path = outline.to_bez_path(fine);
+    let unite = if even_odd { union_even_odd } else { bezierfit::union };
+    let area = unite(&path, tolerance - fine)?;
+    let united = Outline::from(&area);
+    // Overlaps change the area or the number of outlines. Only closed ones enclose it.
+    let room = tolerance * path.perimeter(tolerance);
+    let closed = outline.subpaths.iter().all(|s| s.closed || s.start == s.end());
+    let simple = closed && united.subpaths.len() == outline.subpaths.len();
+    Ok((!simple || (area.area().abs() - path.area().abs()).abs() > room).then_some(united))
+}

@@ -1,0 +1,127 @@
+//! One line around an area, at a distance.
+
+use super::area::{Area, outermost};
+use super::offset::{Moved, Offset, OpenPaths, Side, moved};
+use crate::budget::cost;
+use crate::error::GeometryError;
+use crate::outline::{Outline, Seg, Subpath};
+use crate::refit::{ARCS, Options, PathReport};
+use kurbo::{Join, Point, Rect};
+
+/// A line around an area.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contour {
+    /// Its distance from the area in user units; inside of it if that is below zero.
+    pub by: f64,
+    /// Holes that are left of the area get a line, too.
+    pub holes: bool,
+    /// Necks as wide as the distance bridge what is further apart than twice the distance.
+    pub join: bool,
+}
+
+/// What [`around`] finds.
+#[derive(Debug, Clone)]
+pub struct Around {
+    /// Lines, arcs and curves.
+    pub outline: Outline,
+    /// The number of islands, each with a line of its own.
+    pub islands: usize,
+    /// The number of nodes, and how far they are off.
+    pub report: PathReport,
+}
+
+/// The line around an area, round where it goes around corners. Each of its points has the distance from the area, within
+/// `options.tolerance`, unless it lies on a neck.
+///
+/// # Errors
+/// A coordinate is not finite, it is not found how edges cross, or there are too many islands to join.
+///
+/// ```
+/// use pathwarp::edit::{Area, Contour, around};
+/// use pathwarp::{Outline, refit::Options};
+///
+/// let two = Outline::from_svg("M0,0H10V10H0ZM15,0H25V10H15Z")?;
+/// let area = Area::of(&two, false, 0.01)?;
+/// let line = |by, join| around(&area, &Contour { by, holes: false, join }, &Options::new(0.01));
+/// assert_eq!([line(2.0, false)?.islands, line(2.0, true)?.islands, line(3.0, false)?.islands], [2, 1, 1]);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+pub fn around(area: &Area, contour: &Contour, options: &Options) -> Result<Around, GeometryError> {
+    let side = if contour.by < 0.0 { Side::Inside } else { Side::Outside };
+    let offset = Offset { by: contour.by.abs(), join: Join::Round, side, even_odd: false, open: OpenPaths::Close };
+    let Moved { mut outline, path } = moved(area.outline(), &offset, options, &[])?;
+    let (mut report, fine) = (path.report, ARCS * options.tolerance);
+    if !contour.holes {
+        outline = outermost(outline, fine);
+    }
+    let mut area = Area::of(&outline, false, options.tolerance)?;
+    if contour.join && area.counts()[0] > 1 {
+        let necks = necks(&area, contour.by.abs(), options)?;
+        let necks = Area::union(&necks, options.tolerance)?;
+        area = Area::union([&area, &necks], options.tolerance)?;
+        outline = area.with_arcs_of(&outline, options.tolerance);
+        if !contour.holes {
+            outline = outermost(outline, fine);
+        }
+    }
+    let islands = area.counts()[0];
+    report.segments_out = outline.segs().count();
+    Ok(Around { outline, islands, report })
+}
+
+/// Places on an island, and their box.
+struct Island(Vec<Point>, Rect);
+
+impl Island {
+    fn of(subpath: &Subpath) -> Self {
+        /// Places on each segment.
+        const EACH: u32 = 16;
+        let on = |s: &Seg| (0..EACH).map(|i| s.eval(f64::from(i) / f64::from(EACH))).collect::<Vec<_>>();
+        Self(subpath.segs.iter().flat_map(on).collect(), subpath.bounding_box())
+    }
+
+    /// The shortest way to another.
+    fn way(&self, other: &Self) -> Option<[Point; 2]> {
+        let pairs = self.0.iter().flat_map(|p| other.0.iter().map(move |q| [*p, *q]));
+        pairs.min_by(|a, b| a[0].distance_squared(a[1]).total_cmp(&b[0].distance_squared(b[1])))
+    }
+}
+
+/// Necks of a width that join all islands of an area, over the shortest ways.
+fn necks(area: &Area, width: f64, options: &Options) -> Result<Vec<Area>, GeometryError> {
+    let islands: Vec<Island> = area.islands().iter().map(Island::of).collect();
+    let places: usize = islands.iter().map(|i| i.0.len()).sum();
+    options.budget.spend(cost::COMPARISON * (places as f64).powi(2)).map_err(GeometryError::Limit)?;
+    let apart = |a: &Rect, b: &Rect| {
+        let gap = |p: f64, q: f64| p.max(q).max(0.0);
+        gap(a.x0 - b.x1, b.x0 - a.x1).hypot(gap(a.y0 - b.y1, b.y0 - a.y1))
+    };
+    // The way to each island from those that are joined; the first is.
+    let mut ways: Vec<Option<[Point; 2]>> = vec![None; islands.len()];
+    let mut left: Vec<usize> = (1..islands.len()).collect();
+    let (mut last, mut out) = (0, Vec::new());
+    let length = |way: &Option<[Point; 2]>| way.map_or(f64::INFINITY, |[p, q]| p.distance(q));
+    while !left.is_empty() {
+        for &i in &left {
+            if apart(&islands[last].1, &islands[i].1) < length(&ways[i]) {
+                let way = islands[last].way(&islands[i]);
+                if length(&way) < length(&ways[i]) {
+                    ways[i] = way;
+                }
+            }
+        }
+        let Some(next) = (0..left.len()).min_by(|a, b| length(&ways[left[*a]]).total_cmp(&length(&ways[left[*b]])))
+        else {
+            break;
+        };
+        last = left.swap_remove(next);
+        if let Some([p, q]) = ways[last].filter(|[p, q]| p.distance(*q) > 0.0) {
+            // The ends reach into the islands, which curve away beside them.
+            let along = (q - p).normalize() * (0.5 * width);
+            let across = kurbo::Vec2::new(-along.y, along.x);
+            let corners = [p - along + across, q + along + across, q + along - across, p - along - across];
+            out.push(Area::of(&Outline::from_points(&corners, true), false, options.tolerance)?);
+        }
+    }
+    Ok(out)
+}

@@ -1,0 +1,167 @@
+//! Offsets: outlines at a distance.
+
+use super::area::apart;
+use super::known;
+use crate::error::GeometryError;
+use crate::outline::{Outline, Seg};
+use crate::refit::{ARCS, Options, PathReport, RefittedPath};
+use bezierfit::{Fitted, union_even_odd};
+use kurbo::{BezPath, Join, Line, Rect};
+
+/// How far the miters of an offset reach at most, in distances.
+const MITERS: f64 = 4.0;
+
+/// Share of the tolerance that cubics in place of arcs may take.
+const ACCEPTED: f64 = 0.99;
+
+/// The side to which [`moved`] moves outlines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Areas grow; open paths move to their right, seen along them.
+    Outside,
+    /// Areas shrink; open paths move to their left.
+    Inside,
+    /// Both at once.
+    Both,
+}
+
+/// What [`moved`] does with open subpaths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OpenPaths {
+    /// They stay as they are.
+    Stay,
+    /// They become the paths beside them.
+    Move,
+    /// They enclose areas, as fills do.
+    Close,
+}
+
+/// How far [`moved`] moves outlines, and in which direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Offset {
+    /// Distance in user units, above zero.
+    pub by: f64,
+    /// The join at corners that open; miters reach up to four times the distance, where those of areas are cut off.
+    pub join: Join,
+    /// The side.
+    pub side: Side,
+    /// Closed subpaths enclose an area by the even-odd rule, instead of the nonzero rule.
+    pub even_odd: bool,
+    /// Open subpaths.
+    pub open: OpenPaths,
+}
+
+/// The result of [`moved`].
+#[derive(Debug, Clone)]
+pub struct Moved {
+    /// Lines and arcs beside those of the source, and curves.
+    pub outline: Outline,
+    /// The same with cubics for arcs, and what was done.
+    pub path: RefittedPath,
+}
+
+/// Offsets an outline: each point of the result has the given distance from it, within `options.tolerance`. Closed subpaths enclose an area,
+/// which grows or shrinks, and vanishes where it is too narrow; loops are removed. What runs beside lines and circular arcs, or around
+/// corners, is exact. Closed subpaths begin near to where the source does. `contours` holds tolerances of the subpaths; those beyond
+/// its end have that of the options. What lies close together has the smallest of them.
+///
+/// # Errors
+/// A coordinate is not finite.
+///
+/// ```
+/// use pathwarp::edit::{Offset, OpenPaths, Side, moved};
+/// use pathwarp::kurbo::{Join, Shape};
+/// use pathwarp::{Outline, refit::Options};
+///
+/// let square = Outline::from_svg("M0,0H60V60H0Z")?;
+/// let by = Offset { by: 10.0, join: Join::Miter, side: Side::Outside, even_odd: false, open: OpenPaths::Move };
+/// let larger = moved(&square, &by, &Options::new(0.01), &[])?;
+/// assert_eq!(larger.path.path.to_svg(), "M-10,-10 L70,-10 L70,70 L-10,70 Z");
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+pub fn moved(outline: &Outline, offset: &Offset, options: &Options, contours: &[f64]) -> Result<Moved, GeometryError> {
+    let reach = if offset.join == Join::Miter { MITERS } else { 1.0 } * offset.by;
+    let segments_in = outline.segs().count();
+    let (outline, staying) = &prepared(outline, offset.open);
+    let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
+    let (mut out, mut path, mut report) = (Outline::default(), BezPath::new(), PathReport::default());
+    for group in apart(&boxes) {
+        let own = |i: &usize| contours.get(*i).copied().unwrap_or_else(|| options.of_contour(&outline.subpaths[*i]));
+        let tolerance = group.iter().map(own).fold(f64::INFINITY, f64::min);
+        let group = Outline { subpaths: group.iter().map(|i| outline.subpaths[*i].clone()).collect() };
+        for fitted in moved_group(&group, offset, tolerance)? {
+            let beside = (offset.by, offset.join == Join::Round, reach);
+            let moved = known::with_edges(Outline::from(&fitted.path), &group, beside, tolerance);
+            let fine = ACCEPTED * tolerance;
+            let mut own = PathReport::fitted(&fitted.report, tolerance);
+            for seg in moved.segs() {
+                if let Seg::Arc(a) = seg {
+                    own.max_error = own.max_error.max(a.cubics_error(a.cubics_needed(fine)));
+                }
+            }
+            report.add(own);
+            path.extend(moved.to_bez_path(fine));
+            out.subpaths.extend(moved.subpaths);
+        }
+    }
+    path.extend(staying.to_bez_path(ARCS * options.tolerance));
+    out.subpaths.extend(staying.subpaths.iter().cloned());
+    (report.segments_in, report.segments_out) = (segments_in, path.segments().count());
+    Ok(Moved { outline: out, path: RefittedPath { path, spans: Vec::new(), report } })
+}
+
+/// The subpaths that move, and those that stay.
+fn prepared(outline: &Outline, open: OpenPaths) -> (Outline, Outline) {
+    let (mut moving, mut staying) = (outline.clone(), Outline::default());
+    match open {
+        OpenPaths::Move => {}
+        OpenPaths::Stay => {
+            (moving.subpaths, staying.subpaths) = moving.subpaths.into_iter().partition(|s| s.closed);
+        }
+        OpenPaths::Close => {
+            for s in moving.subpaths.iter_mut().filter(|s| !s.closed) {
+                if s.end() != s.start {
+                    s.segs.push(Seg::Line(Line::new(s.end(), s.start)));
+                }
+                s.closed = true;
+            }
+        }
+    }
+    (moving, staying)
+}
+
+/// Offsets subpaths together, to each side that is wanted.
+fn moved_group(outline: &Outline, offset: &Offset, tolerance: f64) -> Result<Vec<Fitted>, GeometryError> {
+    let fine = ARCS * tolerance;
+    let fitter = bezierfit::Options::new(tolerance - fine);
+    let mut source = outline.to_bez_path(fine);
+    if offset.even_odd {
+        let open = outline.subpaths.iter().filter(|s| !s.closed).cloned().collect();
+        let mut area = union_even_odd(&source, fine)?;
+        area.extend(Outline { subpaths: open }.to_bez_path(fine));
+        source = area;
+    }
+    let signs: &[f64] = match offset.side {
+        Side::Outside => &[1.0],
+        Side::Inside => &[-1.0],
+        Side::Both => &[1.0, -1.0],
+    };
+    let one = |sign: &f64| bezierfit::offset(&source, sign * offset.by, offset.join, &fitter);
+    Ok(signs.iter().map(one).collect::<Result<_, _>>()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::edit::united;
+
+    /// The miter of a tip of 31° reaches 3.7 times the distance, into a bar that lies three times the distance away.
+    #[test]
+    fn miters_unite_with_what_they_reach() {
+        let outline = Outline::from_svg("M0,0L36,10L0,20ZM39,0H49V20H39Z").unwrap();
+        let by = Offset { by: 1.0, join: Join::Miter, side: Side::Outside, even_odd: false, open: OpenPaths::Move };
+        let grown = moved(&outline, &by, &Options::new(0.01), &[]).unwrap();
+        assert_eq!(grown.outline.subpaths.len(), 1);
+        assert_eq!(united(&grown.outline, false, 0.01).unwrap(), None);
+    }
+}
