@@ -318,8 +318,13 @@ impl Document {
 
     /// The selected painted shapes, in painting order.
     pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
-        let selected = self.drawing.selected_parts(selection);
-        self.shapes().iter().zip(selected).filter(|(s, selected)| *selected && s.painted).map(|(s, _)| s)
+        self.shapes().iter().zip(self.are_selected(selection)).filter(|(s, is)| *is && s.painted).map(|(s, _)| s)
+    }
+
+    /// For each of [`Document::shapes`], whether it is selected.
+    #[must_use]
+    pub fn are_selected(&self, selection: &Selection) -> Vec<bool> {
+        self.drawing.selected_parts(selection)
     }
 
     /// Returns `true` if the selection holds a painted shape or a bitmap.

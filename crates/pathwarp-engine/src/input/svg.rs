@@ -6,6 +6,7 @@ use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use super::gimp::GimpPaths;
 use crate::bitmap::Bender;
+use crate::export::{self, KerfReport};
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
 use crate::options::{CommonOptions, FrameChoice};
@@ -13,7 +14,7 @@ use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{Fold, ReportedShape};
 use crate::units::units_per_px;
-use crate::{advice, export, meter};
+use crate::{advice, meter};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect, Size};
@@ -573,14 +574,14 @@ impl FileArtwork for SvgArtwork {
         let preview = common.preview.as_deref();
         let shown = (warped.svg.as_str(), warped.back.unwrap_or_default());
         let preview = preview.map(|file| beside::preview(&self.doc, shown, built, &self.read, (file, common.quality)));
-        let (result, lost) = match &self.paths {
+        let (result, (lost, kerf)) = match &self.paths {
             Some(paths) => {
                 let guides = &self.selection.guides;
                 paths.written(&warped.svg, guides, (self.format, common, tolerance), &mut shapes)?
             }
             None => {
                 let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
-                (WarpedResult::Bytes(result.bytes), result.warnings)
+                (WarpedResult::Bytes(result.bytes), (result.warnings, result.kerf))
             }
         };
         warnings.extend(lost);
@@ -591,7 +592,8 @@ impl FileArtwork for SvgArtwork {
             warnings,
             files,
             preview: preview.transpose()?,
-            partial: empty || is_damaged,
+            partial: empty || is_damaged || kerf.as_ref().is_some_and(KerfReport::is_partial),
+            kerf,
             page,
             filters: warped.filters,
             tolerance: Some(tolerance),
