@@ -279,3 +279,35 @@ def test_open_lines_around_something_are_named(run, tmp_path, name):
     said, entities = moved_by_kerf(run, tmp_path, UNDECIDED[name] + HOLE, code=code)
     assert ("open lines that enclose" in said) == (code == 1)
     assert [e.dxf.radius for e in entities if e.dxftype() == "CIRCLE"]
+
+
+@pytest.mark.parametrize("bend", ["polar --sweep 360", "bend --stretch fit --along circle:r=100"])
+def test_a_band_bent_into_a_ring_is_two_circles(run, tmp_path, bend):
+    band = "<rect width='400' height='60' fill='#58c'/><path d='M0,30H400' stroke='#fff' stroke-width='0.1' fill='none'/>"
+    square = "<path d='M190,40h20v10h-20z' fill='gold'/>"
+    (tmp_path / "in.svg").write_text(f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 60'>{band}{square}</svg>")
+    deformation, *options = bend.split()
+    run(deformation, "in.svg", *options, "--frame", "0,0,400,60", "--quiet", "-o", "out.dxf")
+    *circles, square = opened(tmp_path / "out.dxf")
+    assert [e.dxftype() for e in circles] == ["CIRCLE"] * 3 and is_closed(square)
+    outer, line, inner = sorted((e.dxf.radius for e in circles), reverse=True)
+    # The band is 60 px high, and its middle is 400 px long, or lies on the circle.
+    px = 25.4 / 96
+    middle = 100 * px if deformation == "bend" else outer - 30 * px
+    assert np.allclose([outer, line, inner], [middle + 30 * px, middle, middle - 30 * px], atol=1e-3)
+
+
+def test_beads_on_a_ring_have_equal_gaps_in_a_file(run, tmp_path):
+    beads = "<circle id='large' cx='10' cy='10' r='6'/><circle id='small' cx='40' cy='10' r='3'/>"
+    (tmp_path / "in.svg").write_text(drawing(beads))
+    ring = ["--along", "circle:r=40mm", "--glyphs", "rotate", "--copies", "fill", "--gap", "2mm"]
+    run("bend", "in.svg", *ring, "--fit", "none", "--quiet", "-o", "out.dxf")
+    entities = opened(tmp_path / "out.dxf")
+    centres = [(e.dxf.center.x, e.dxf.center.y, e.dxf.radius) for e in entities]
+    count = int(80 * math.pi // (12 + 6 + 2 * 2))
+    assert len(centres) == 2 * count
+    middle = np.mean([c[:2] for c in centres], axis=0)
+    turned = sorted((math.atan2(y - middle[1], x - middle[0]), r) for x, y, r in centres)
+    gaps = [40 * ((b[0] - a[0]) % math.tau) - a[1] - b[1] for a, b in zip(turned, turned[1:] + turned[:1])]
+    assert np.allclose([math.dist(c[:2], middle) for c in centres], 40, atol=1e-3)
+    assert np.allclose(gaps, (80 * math.pi - 18 * count) / (2 * count), atol=2e-3)

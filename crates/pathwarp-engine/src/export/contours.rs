@@ -1,7 +1,7 @@
 //! The lines that a machine follows: chained where their ends meet, and each of them once.
 
 use pathwarp::budget::{Budget, Exceeded};
-use pathwarp::kurbo::{Line, Point};
+use pathwarp::kurbo::{Line, Point, Rect};
 use pathwarp::outline::Subpath;
 use pathwarp::{Outline, Seg, distance};
 use std::collections::HashMap;
@@ -15,38 +15,26 @@ pub(super) struct Contour {
     pub(super) path: Subpath,
 }
 
-/// Coordinates by cells, so that what is near is found without looking at everything.
-struct Cells<const N: usize> {
+/// Places by cells as wide as what counts as near.
+struct Cells {
     near: f64,
-    cells: HashMap<[i64; N], Vec<usize>>,
+    cells: HashMap<[i64; 2], Vec<usize>>,
 }
 
-impl<const N: usize> Cells<N> {
+impl Cells {
     fn new(near: f64) -> Self {
         Self { near, cells: HashMap::new() }
     }
 
-    fn cell(&self, v: f64) -> i64 {
-        /// Width of a cell: few places are near to several.
-        const WIDTH: f64 = 8.0;
-        (v / (WIDTH * self.near)).floor() as i64
+    fn add(&mut self, p: Point, item: usize) {
+        self.cells.entry([p.x, p.y].map(|v| (v / self.near).floor() as i64)).or_default().push(item);
     }
 
-    fn add(&mut self, at: [f64; N], item: usize) {
-        self.cells.entry(at.map(|v| self.cell(v))).or_default().push(item);
-    }
-
-    /// What lies in the cells that are near to a place.
-    fn around(&self, at: [f64; N]) -> Vec<usize> {
-        let mut keys = vec![[0; N]];
-        for (k, v) in at.iter().enumerate() {
-            let [low, high] = [v - self.near, v + self.near].map(|v| self.cell(v));
-            keys = keys
-                .into_iter()
-                .flat_map(|key| (low..=high).map(move |c| std::array::from_fn(|i| if i == k { c } else { key[i] })))
-                .collect();
-        }
-        keys.iter().filter_map(|key| self.cells.get(key)).flatten().copied().collect()
+    /// What may be near to a place.
+    fn around(&self, p: Point) -> impl Iterator<Item = usize> {
+        let [x, y] = [p.x, p.y].map(|v| (v / self.near).floor() as i64);
+        let keys = (-1..=1).flat_map(move |i| (-1..=1).map(move |k| [x.saturating_add(i), y.saturating_add(k)]));
+        keys.filter_map(|key| self.cells.get(&key)).flatten().copied()
     }
 }
 
@@ -62,18 +50,19 @@ pub(super) fn same<K: PartialEq>(
     let mut out = vec![None; all.len()];
     for (i, c) in all.iter().enumerate().filter(|(_, c)| c.path.closed) {
         let b = c.path.bounding_box();
-        let at = [b.x0, b.y0, b.x1, b.y1];
-        for k in seen.around(at) {
+        let corners = |b: Rect| [b.origin(), Point::new(b.x1, b.y1)];
+        for k in seen.around(b.origin()) {
+            let [p, q] = corners(all[k].path.bounding_box());
             if among(all[k].of) == among(c.of)
-                && (all[k].path == c.path
-                    || distance::symmetric_within(&whole(&all[k]), &whole(c), budget)?.is_some_and(|d| d <= near))
+                && p.distance(b.origin()).max(q.distance(corners(b)[1])) <= 2.0 * near
+                && distance::symmetric_within(&whole(&all[k]), &whole(c), budget)?.is_some_and(|d| d <= near)
             {
                 out[i] = Some(k);
                 break;
             }
         }
         if out[i].is_none() {
-            seen.add(at, i);
+            seen.add(b.origin(), i);
         }
     }
     Ok(out)
@@ -82,10 +71,9 @@ pub(super) fn same<K: PartialEq>(
 /// Leaves out the segments of open lines that are drawn before, within `near`, also as parts of contours. Returns their number.
 pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, among: impl Fn(usize) -> K, near: f64) -> usize {
     let (mut seen, mut segs): (_, Vec<(usize, Seg)>) = (Cells::new(near), Vec::new());
-    let middle = |s: &Seg| -> [f64; 2] { <(f64, f64)>::from(s.eval(0.5)).into() };
     for c in all.iter().filter(|c| c.path.closed) {
         for s in &c.path.segs {
-            seen.add(middle(s), segs.len());
+            seen.add(s.eval(0.5), segs.len());
             segs.push((c.of, *s));
         }
     }
@@ -99,11 +87,11 @@ pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, among: impl 
         let mut runs: Vec<Vec<Seg>> = vec![Vec::new()];
         for s in c.path.segs {
             let is_known = |k: &usize| among(segs[*k].0) == among(c.of) && alike(&segs[*k].1, &s, near);
-            if seen.around(middle(&s)).iter().any(is_known) {
+            if seen.around(s.eval(0.5)).any(|k| is_known(&k)) {
                 left_out += 1;
                 runs.push(Vec::new());
             } else {
-                seen.add(middle(&s), segs.len());
+                seen.add(s.eval(0.5), segs.len());
                 segs.push((c.of, s));
                 runs.last_mut().into_iter().for_each(|run| run.push(s));
             }
@@ -129,25 +117,9 @@ type Links = HashMap<End, End>;
 
 /// Joins open lines whose ends meet within `near`: two at one place, and several in pairs, those of one kind (`among`) first and in the
 /// order in which they are drawn. Where an odd number meets, they stay apart.
-pub(super) fn chained<K: Eq + Hash>(all: Vec<Contour>, among: impl Fn(usize) -> K, near: f64) -> Vec<Contour> {
-    let (mut cells, mut places): (_, Vec<(Point, Vec<End>)>) = (Cells::new(near), Vec::new());
-    for (end, p) in ends(&all) {
-        let at = [p.x, p.y];
-        let known = cells.around(at).into_iter().find(|k| places[*k].0.distance(p) <= near);
-        let place = known.unwrap_or_else(|| {
-            cells.add(at, places.len());
-            places.push((p, Vec::new()));
-            places.len() - 1
-        });
-        places[place].1.push(end);
-    }
-    let last = |(i, at_end): End| {
-        let segs = &all[i].path.segs;
-        if at_end { segs[segs.len() - 1] } else { segs[0] }
-    };
-    let is_double = |a: End, b: End| a != b && alike(&last(a), &last(b), near);
+pub(super) fn chained<K: Eq + Hash>(all: &[Contour], among: impl Fn(usize) -> K, near: f64) -> Vec<Contour> {
     let mut links = Links::new();
-    for (_, ends) in places {
+    for ends in meetings(all, near) {
         let mut kinds: Vec<(K, Vec<End>)> = Vec::new();
         for end in ends {
             let kind = among(all[end.0].of);
@@ -156,16 +128,60 @@ pub(super) fn chained<K: Eq + Hash>(all: Vec<Contour>, among: impl Fn(usize) -> 
                 None => kinds.push((kind, vec![end])),
             }
         }
-        let alone: Vec<End> = kinds.into_iter().flat_map(|(_, ends)| paired(ends, is_double, &mut links)).collect();
-        paired(alone, is_double, &mut links);
+        let join = |ends| paired(all, ends, near, false, &mut links);
+        let alone: Vec<End> = kinds.into_iter().map(|k| k.1).flat_map(join).collect();
+        paired(all, alone, near, false, &mut links);
     }
-    joined(&all, &links).into_iter().map(|c| c.contour).collect()
+    joined(all, &links).into_iter().map(|c| c.contour).collect()
 }
 
-/// Joins ends at one place in pairs, unless an odd number of different lines ends there. Returns the ends of a line that is alone there.
-fn paired(ends: Vec<End>, is_double: impl Fn(End, End) -> bool, links: &mut Links) -> Vec<End> {
+/// Open lines as contours, to find what they may be meant to enclose: joined where ends are some millimetres apart, and closed by lines.
+pub(super) fn closed_roughly(open: &[Contour], near: f64) -> Vec<Chain> {
+    /// Ends farther apart than this, in mm, are not meant to meet.
+    const REACH: f64 = 2.0;
+    let mut links = Links::new();
+    for ends in meetings(open, near.max(REACH)) {
+        paired(open, ends, near, true, &mut links);
+    }
+    let mut out = joined(open, &links);
+    for c in &mut out {
+        let path = &mut c.contour.path;
+        if !path.closed {
+            c.gap = c.gap.max(path.end().distance(path.start));
+            path.segs.push(Seg::Line(Line::new(path.end(), path.start)));
+            path.closed = true;
+        }
+    }
+    out
+}
+
+/// The ends of open lines by the places where they are, within `near`.
+fn meetings(all: &[Contour], near: f64) -> impl Iterator<Item = Vec<End>> {
+    let (mut cells, mut places): (_, Vec<(Point, Vec<End>)>) = (Cells::new(near), Vec::new());
+    for (i, c) in all.iter().enumerate().filter(|(_, c)| !c.path.closed && !c.path.segs.is_empty()) {
+        for (end, p) in [((i, false), c.path.start), ((i, true), c.path.end())] {
+            let known = cells.around(p).find(|k| places[*k].0.distance(p) <= near);
+            let place = known.unwrap_or_else(|| {
+                cells.add(p, places.len());
+                places.push((p, Vec::new()));
+                places.len() - 1
+            });
+            places[place].1.push(end);
+        }
+    }
+    places.into_iter().map(|(_, ends)| ends)
+}
+
+/// Joins ends at one place in pairs, unless (without `forced`) an odd number of different lines ends there. Returns the ends of a line that
+/// is alone there.
+fn paired(all: &[Contour], ends: Vec<End>, near: f64, forced: bool, links: &mut Links) -> Vec<End> {
+    let last = |(i, at_end): End| {
+        let segs = &all[i].path.segs;
+        &segs[if at_end { segs.len() - 1 } else { 0 }]
+    };
+    let is_double = |a: End, b: End| a != b && alike(last(a), last(b), near);
     let different = (0..ends.len()).filter(|i| !ends[..*i].iter().any(|e| is_double(*e, ends[*i]))).count();
-    if different % 2 == 1 {
+    if different % 2 == 1 && !forced {
         return if different == 1 { ends } else { Vec::new() };
     }
     for (i, a) in ends.iter().enumerate() {
@@ -176,12 +192,6 @@ fn paired(ends: Vec<End>, is_double: impl Fn(End, End) -> bool, links: &mut Link
         }
     }
     Vec::new()
-}
-
-/// The ends of the open lines.
-fn ends(all: &[Contour]) -> impl Iterator<Item = (End, Point)> {
-    let open = all.iter().enumerate().filter(|(_, c)| !c.path.closed && !c.path.segs.is_empty());
-    open.flat_map(|(i, c)| [((i, false), c.path.start), ((i, true), c.path.end())])
 }
 
 /// Lines that follow each other.
@@ -249,45 +259,4 @@ fn begin_at(s: &mut Seg, p: Point) {
         Seg::Cubic(c) => (c.p0, c.p1) = (p, c.p1 + by),
         Seg::Arc(a) => a.p0 = p,
     }
-}
-
-/// Open lines as contours, to find what they may be meant to enclose: joined where the nearest end of each is the other, no farther away
-/// than a tenth of their lengths, and closed by lines.
-pub(super) fn closed_roughly(open: &[Contour]) -> Vec<Chain> {
-    /// Of the size of the shorter of two lines.
-    const GAP: f64 = 0.1;
-    let mut sorted: Vec<(End, Point)> = ends(open).collect();
-    sorted.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
-    let nearest = |k: usize| -> Option<usize> {
-        let p = sorted[k].1;
-        let mut best: Option<(f64, usize)> = None;
-        let mut look = |j: usize| {
-            let reach = best.map_or(GAP * open[sorted[k].0.0].path.diagonal(), |b| b.0);
-            let d = sorted[j].1.distance(p);
-            if d <= reach && best.is_none_or(|b| d < b.0) {
-                best = Some((d, j));
-            }
-            (sorted[j].1.x - p.x).abs() <= reach
-        };
-        let _ = (0..k).rev().all(&mut look);
-        let _ = (k + 1..sorted.len()).all(&mut look);
-        best.map(|b| b.1)
-    };
-    let all: Vec<Option<usize>> = (0..sorted.len()).map(nearest).collect();
-    let mut links = Links::new();
-    for (k, near) in all.iter().enumerate() {
-        if let Some(j) = near.filter(|j| all[*j] == Some(k)) {
-            links.insert(sorted[k].0, sorted[j].0);
-        }
-    }
-    let mut out = joined(open, &links);
-    for c in &mut out {
-        let path = &mut c.contour.path;
-        if !path.closed {
-            c.gap = c.gap.max(path.end().distance(path.start));
-            path.segs.push(Seg::Line(Line::new(path.end(), path.start)));
-            path.closed = true;
-        }
-    }
-    out
 }

@@ -98,9 +98,9 @@ fn followed(
     let among = |i: usize| if machine.kerf.is_some() { Err(machine.engraved[i]) } else { Ok(pen(i)) };
     let mut lines = lines;
     if machine.kerf.is_some() {
-        let (cut, engraved) = lines.into_iter().partition(|c| !machine.engraved[c.of]);
-        lines = contours::chained(cut, pen, near);
-        lines.extend::<Vec<Contour>>(engraved);
+        let (cut, engraved): (Vec<Contour>, Vec<Contour>) = lines.into_iter().partition(|c| !machine.engraved[c.of]);
+        lines = contours::chained(&cut, pen, near);
+        lines.extend(engraved);
     }
     let mut same = contours::same(&lines, among, near, doc.budget()).map_err(limit)?;
     if !machine.keep_duplicates {

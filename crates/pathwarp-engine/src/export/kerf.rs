@@ -103,7 +103,7 @@ pub(super) fn widen(
         }
     }
     let open: Vec<Contour> = all.iter().filter(|c| !c.path.closed && is_cut(c)).cloned().collect();
-    for chain in contours::closed_roughly(&open) {
+    for chain in contours::closed_roughly(&open, kerf.near) {
         let rough = Loop::new(&chain.contour);
         let is_around = || (0..all.len()).filter(counts).any(|i| rough.places(&loops[i])[0] > 0);
         if rough.area() > kerf.near.powi(2) && (chain.gap <= 2.0 * kerf.by || is_around()) {

@@ -220,7 +220,9 @@ impl SvgArtwork {
             _ => (Gradients::Fit, Filters::Affine),
         };
         let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
-        let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
+        let of_objects = built.placement.of_objects;
+        let letters =
+            LetterPlaces { places: built.placement.letters.clone(), of_objects, of: first, after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
         let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
         let warp = WarpOptions::new(refit)
@@ -506,7 +508,8 @@ impl Artwork for SvgArtwork {
             }
             (_, plain) => plain.unwrap_or_else(artwork),
         };
-        Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
+        let frame = if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame };
+        Ok(frame.with_objects(self.doc.objects(self.selection(which)).into()))
     }
 
     fn units_per_px(&self) -> [f64; 2] {
