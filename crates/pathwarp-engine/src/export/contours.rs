@@ -54,7 +54,7 @@ pub(super) fn same<K: PartialEq>(
         for k in seen.around(b.origin()) {
             let [p, q] = corners(all[k].path.bounding_box());
             if among(all[k].of) == among(c.of)
-                && p.distance(b.origin()).max(q.distance(corners(b)[1])) <= 2.0 * near
+                && [p - b.origin(), q - corners(b)[1]].iter().all(|by| by.x.abs().max(by.y.abs()) <= near)
                 && distance::symmetric_within(&whole(&all[k]), &whole(c), budget)?.is_some_and(|d| d <= near)
             {
                 out[i] = Some(k);
@@ -70,10 +70,12 @@ pub(super) fn same<K: PartialEq>(
 
 /// Leaves out the segments of open lines that are drawn before, within `near`, also as parts of contours. Returns their number.
 pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, among: impl Fn(usize) -> K, near: f64) -> usize {
+    /// A place of a segment, and the same of its reverse.
+    const OF_BOTH: [f64; 2] = [0.25, 0.75];
     let (mut seen, mut segs): (_, Vec<(usize, Seg)>) = (Cells::new(near), Vec::new());
     for c in all.iter().filter(|c| c.path.closed) {
         for s in &c.path.segs {
-            seen.add(s.eval(0.5), segs.len());
+            seen.add(s.eval(OF_BOTH[0]), segs.len());
             segs.push((c.of, *s));
         }
     }
@@ -87,11 +89,11 @@ pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, among: impl 
         let mut runs: Vec<Vec<Seg>> = vec![Vec::new()];
         for s in c.path.segs {
             let is_known = |k: &usize| among(segs[*k].0) == among(c.of) && alike(&segs[*k].1, &s, near);
-            if seen.around(s.eval(0.5)).any(|k| is_known(&k)) {
+            if OF_BOTH.iter().flat_map(|t| seen.around(s.eval(*t))).any(|k| is_known(&k)) {
                 left_out += 1;
                 runs.push(Vec::new());
             } else {
-                seen.add(s.eval(0.5), segs.len());
+                seen.add(s.eval(OF_BOTH[0]), segs.len());
                 segs.push((c.of, s));
                 runs.last_mut().into_iter().for_each(|run| run.push(s));
             }
@@ -172,6 +174,9 @@ fn meetings(all: &[Contour], near: f64) -> impl Iterator<Item = Vec<End>> {
     places.into_iter().map(|(_, ends)| ends)
 }
 
+/// Where more lines end, they are no contours.
+const MOST_ENDS: usize = 100;
+
 /// Joins ends at one place in pairs, unless (without `forced`) an odd number of different lines ends there. Returns the ends of a line that
 /// is alone there.
 fn paired(all: &[Contour], ends: Vec<End>, near: f64, forced: bool, links: &mut Links) -> Vec<End> {
@@ -179,6 +184,9 @@ fn paired(all: &[Contour], ends: Vec<End>, near: f64, forced: bool, links: &mut 
         let segs = &all[i].path.segs;
         &segs[if at_end { segs.len() - 1 } else { 0 }]
     };
+    if ends.len() > MOST_ENDS {
+        return Vec::new();
+    }
     let is_double = |a: End, b: End| a != b && alike(last(a), last(b), near);
     let different = (0..ends.len()).filter(|i| !ends[..*i].iter().any(|e| is_double(*e, ends[*i]))).count();
     if different % 2 == 1 && !forced {

@@ -116,9 +116,8 @@ fn followed(
         }
     }
     let Some(by) = machine.kerf else { return Ok((lines, None)) };
-    let contours = lines.len() as f64;
-    doc.budget().spend(cost::COMPARISON * contours * contours).map_err(limit)?;
-    let kerf = Kerf { by, near, refit: machine.refit };
+    let spend = |n: f64| doc.budget().spend(cost::COMPARISON * n).map_err(limit);
+    let kerf = Kerf { by, near, refit: machine.refit, spend: &spend };
     let cut = |c: &Contour| !machine.engraved[c.of];
     let name = |of: usize| doc.shapes()[plot.shapes[of].shape].id.clone();
     let (mut lines, report) = kerf::widen(lines, &same, cut, &kerf, name)?;

@@ -8,6 +8,7 @@ use pathwarp::kurbo::{BezPath, Join, Point, Rect, Shape as _};
 use pathwarp::outline::Subpath;
 use pathwarp::{Outline, refit};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// What became of the contours of a drawing that `--kerf` makes room around; each is named by its shape.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -78,6 +79,8 @@ pub(super) struct Kerf<'a> {
     /// Ends that are so near meet, and contours are the same.
     pub(super) near: f64,
     pub(super) refit: &'a refit::Options,
+    /// Charges so many comparisons.
+    pub(super) spend: &'a dyn Fn(f64) -> Result<(), pathwarp::Error>,
 }
 
 /// Moves closed contours by half the kerf to the outside of what they enclose; open lines stay. A contour is a hole if an odd number of
@@ -92,19 +95,12 @@ pub(super) fn widen(
     let mut report = KerfReport::default();
     let loops: Vec<Loop> = all.iter().map(Loop::new).collect();
     let counts = |i: &usize| all[*i].path.closed && is_cut(&all[*i]) && same[*i].is_none();
-    let mut depths = vec![0; all.len()];
-    for i in (0..all.len()).filter(counts) {
-        for k in (0..all.len()).filter(|k| *k != i && counts(k)) {
-            match loops[k].places(&loops[i]) {
-                [_, 0] => depths[i] += 1,
-                [0, _] => {}
-                _ => report.crossing.push(name(all[i].of)),
-            }
-        }
-    }
+    let depths =
+        depths(&loops, (0..all.len()).filter(counts).collect(), kerf, |i| report.crossing.push(name(all[i].of)))?;
     let open: Vec<Contour> = all.iter().filter(|c| !c.path.closed && is_cut(c)).cloned().collect();
     for chain in contours::closed_roughly(&open, kerf.near) {
         let rough = Loop::new(&chain.contour);
+        (kerf.spend)(all.len() as f64)?;
         let is_around = || (0..all.len()).filter(counts).any(|i| rough.places(&loops[i])[0] > 0);
         if rough.area() > kerf.near.powi(2) && (chain.gap <= 2.0 * kerf.by || is_around()) {
             report.undecided.extend(chain.members.iter().map(|k| name(open[*k].of)));
@@ -134,6 +130,34 @@ pub(super) fn widen(
         out.extend(to.into_iter().map(|path| Contour { of, path }));
     }
     Ok((out, report))
+}
+
+/// For each contour, the number of the others (`among`) around it; `crosses` is told of those that cross another.
+fn depths(
+    loops: &[Loop],
+    mut among: Vec<usize>,
+    kerf: &Kerf<'_>,
+    mut crosses: impl FnMut(usize),
+) -> Result<Vec<usize>, pathwarp::Error> {
+    let mut depths = vec![0; loops.len()];
+    let mut crossing = BTreeSet::new();
+    among.sort_by(|a, b| loops[*a].bounds.x0.total_cmp(&loops[*b].bounds.x0));
+    // Those that reach as far to the right as the next begins.
+    let mut beside: Vec<usize> = Vec::new();
+    for i in among {
+        beside.retain(|k| loops[*k].bounds.x1 >= loops[i].bounds.x0);
+        (kerf.spend)(beside.len() as f64)?;
+        for (inner, outer) in beside.iter().flat_map(|k| [(i, *k), (*k, i)]) {
+            match loops[outer].places(&loops[inner]) {
+                [_, 0] => depths[inner] += 1,
+                [0, _] => {}
+                _ => drop(crossing.insert(inner)),
+            }
+        }
+        beside.push(i);
+    }
+    crossing.into_iter().for_each(&mut crosses);
+    Ok(depths)
 }
 
 /// A contour, to be looked up.

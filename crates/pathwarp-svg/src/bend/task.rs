@@ -116,16 +116,15 @@ impl<'a> PartTask<'a> {
     /// Bends an outline whose contours have these tolerances.
     pub(super) fn bend(&self, outline: &Outline, contours: &[f64]) -> Result<BentPath, GeometryError> {
         if let Some(parts) = without_seams(outline, self.map) {
-            let own = parts.iter().filter_map(|(i, _)| contours.get(*i).copied()).collect();
+            let own: Vec<f64> = parts.iter().filter_map(|(i, _)| contours.get(*i).copied()).collect();
             let subpaths = parts.into_iter().map(|(_, s)| s).collect();
-            return self.bend_contours(&Outline { subpaths }, own, true);
+            return self.bend_contours(&Outline { subpaths }, &own, true);
         }
-        self.bend_contours(outline, contours.to_vec(), false)
+        self.bend_contours(outline, contours, false)
     }
 
     /// Bends an outline; `rings` tells that some of its contours go around as rings.
-    fn bend_contours(&self, outline: &Outline, contours: Vec<f64>, rings: bool) -> Result<BentPath, GeometryError> {
-        let contours = &contours[..];
+    fn bend_contours(&self, outline: &Outline, contours: &[f64], rings: bool) -> Result<BentPath, GeometryError> {
         let spans = self.options().refit.shared.spans(outline, contours);
         let options = self.refit(self.allowed()).with_spans(self.digits.allowed(&spans));
         if let Some(edit) = self.options().edit {
