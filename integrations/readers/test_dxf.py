@@ -193,3 +193,121 @@ def test_kerf_keeps_circular_arcs(run, tmp_path):
         # The corners of the plate lack a part of their squares; the ends of the slot are half circles.
         whole = straight + (np.pi - 4 if entity is plate else np.pi) * radius**2
         assert abs(area_with_bulges(entity) - whole) < 1e-6 * whole
+
+
+PLATE = "M10,10H50V40H10Z"
+HOLE = "<circle cx='30' cy='25' r='5'/>"
+LINES = "<path d='M10,10H50'/><path d='M50,40V10'/><path d='M50,40H10'/><path d='M10,40V10'/>"
+# A plate of 40 x 30 mm with a hole of 5 mm, drawn so that the plate is one contour only to those who look.
+PLATES = {
+    "twice": f"<path d='{PLATE}'/><path d='{PLATE}'/>{HOLE}",
+    "and back": f"<path d='{PLATE}'/><path d='M10,10V40H50V10Z'/>{HOLE}",
+    "by use": f"<path id='plate' d='{PLATE}'/><use href='#plate'/>{HOLE}",
+    "as subpaths": f"<path d='{PLATE}{PLATE}'/>{HOLE}",
+    "a hair apart": f"<path d='{PLATE}'/><path d='M10.001,10.001H49.999V39.999H10.001Z'/>{HOLE}",
+    "with a vertex more": f"<path d='{PLATE}'/><path d='M30,10H50V40H10V10Z'/>{HOLE}",
+    "as lines": LINES + HOLE,
+    "as lines, twice": LINES + LINES + HOLE,
+    "as lines, of which one is double": LINES + "<path d='M10,40V10'/>" + HOLE,
+    "as lines and whole": LINES + f"<path d='{PLATE}'/>{HOLE}",
+    "with a gap": "<path d='M10,10H50V40H10V10.0005'/>" + HOLE,
+    "with gaps at corners": "<path d='M10,10H49.996'/><path d='M50,10.004V40'/><path d='M50,40H10V10'/>" + HOLE,
+    "in another colour": f"<path d='{PLATE}'/><g stroke='blue'>{HOLE}</g>",
+    "in colours": f"<path d='M10,10H50V40' stroke='#0f0'/><path d='M10,10V40H50' stroke='blue'/>{HOLE}",
+    "in another layer": f"<g id='plates'><path d='{PLATE}'/></g><g id='holes'>{HOLE}<path d='M60,60h9'/></g>",
+    "filled": f"<path d='{PLATE}' fill='#ccc'/><g fill='#fff'>{HOLE}</g>",
+    "inside of a frame": f"<path d='M2,2H98V98H2Z'/><path d='M4,4H96V96H4Z'/><path d='{PLATE}'/>{HOLE}",
+}
+
+
+def moved_by_kerf(run, tmp_path, body, *args, code=0):
+    """What is said, and the entities of lines drawn with --kerf 0.4mm."""
+    (tmp_path / "in.svg").write_text(drawing(f"<g fill='none' stroke='red' stroke-width='0.1'>{body}</g>"))
+    said = run("convert", "in.svg", "--kerf", "0.4mm", "-o", "out.dxf", *args, code=code)
+    return said, opened(tmp_path / "out.dxf")
+
+
+@pytest.mark.parametrize("name", PLATES)
+def test_kerf_tells_in_from_out_however_a_plate_is_drawn(run, tmp_path, name):
+    said, entities = moved_by_kerf(run, tmp_path, PLATES[name])
+    circles = [e for e in entities if e.dxftype() == "CIRCLE"]
+    plates = [e for e in entities if e.dxftype() == "LWPOLYLINE" and area(np.array(e.get_points("xy"))) < 2000]
+    assert [round(e.dxf.radius, 4) for e in circles] == [4.8]
+    # The corners with gaps are where either line says, 0.004 mm apart.
+    assert len(plates) == 1 and plates[0].closed and len(plates[0]) in (4, 5, 6)
+    assert abs(area(np.array(plates[0].get_points("xy"))) - 40.4 * 30.4) < 0.004 * 70.8
+    assert "grew: " in said and "circle at" in said.split("shrank: ")[1]
+    assert ("drawn twice" in said) == (name in list(PLATES)[:6] or "twice" in name or "double" in name or "whole" in name)
+
+
+def test_what_is_drawn_twice_is_cut_once(run, tmp_path):
+    lines = f"<path d='{PLATE}'/><path d='{PLATE}'/>{LINES}<path d='M60,5V50'/><path d='M60,50V5'/>"
+    (tmp_path / "in.svg").write_text(drawing(f"<g fill='none' stroke='red' stroke-width='0.1'>{lines}</g>"))
+    assert "1 contour and 5 open lines" in run("convert", "in.svg", "-o", "out.dxf")
+    assert len(opened(tmp_path / "out.dxf")) == 2
+    run("convert", "in.svg", "--duplicates", "keep", "-o", "out.dxf")
+    assert len(opened(tmp_path / "out.dxf")) == 8
+    _, entities = moved_by_kerf(run, tmp_path, PLATES["twice"], "--duplicates", "keep")
+    assert [e.dxftype() for e in entities] == ["LWPOLYLINE"] * 2 + ["CIRCLE"]
+    assert entities[2].dxf.radius < 5
+
+
+@pytest.mark.parametrize("selector", ["#grid", ".engraved", "blue", "#00f", "Engraving"])
+def test_what_is_engraved_stays_and_does_not_count(run, tmp_path, selector):
+    label = "xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' inkscape:label='Engraving'"
+    frame = f"<path id='grid' class='engraved' {label} stroke='blue' d='M12,12H48V38H12Z'/>"
+    _, entities = moved_by_kerf(run, tmp_path, f"<path d='{PLATE}'/>{frame}{HOLE}", "--engrave", selector)
+    plate, frame, hole = entities
+    assert abs(area(np.array(frame.get_points("xy"))) - 36 * 26) < 1e-3
+    assert abs(hole.dxf.radius - 4.8) < SINGLE
+    assert abs(area(np.array(plate.get_points("xy"))) - 40.4 * 30.4) < 1e-3
+    run("convert", "in.svg", "--kerf", "0.4mm", "--engrave", "#nothing", "-o", "out.dxf", code=3)
+
+
+UNDECIDED = {
+    "wide gap": "<path d='M10,10H50V40H10V10.5'/>",
+    "gaps at corners": "<path d='M10.5,10H49'/><path d='M50,11V40'/><path d='M49,40H11'/><path d='M10,39V11'/>",
+    "bracket": "<path d='M40,10H10V40H40'/>",
+    "halves": "<path d='M10,10H50V40H10Z'/><path d='M10,10L50,40'/>",
+    "branches": LINES + "<path d='M10,10L50,40'/>",
+}
+
+
+@pytest.mark.parametrize("name", UNDECIDED)
+def test_open_lines_around_something_are_named(run, tmp_path, name):
+    code = 0 if name == "halves" else 1
+    said, entities = moved_by_kerf(run, tmp_path, UNDECIDED[name] + HOLE, code=code)
+    assert ("open lines that enclose" in said) == (code == 1)
+    assert [e.dxf.radius for e in entities if e.dxftype() == "CIRCLE"]
+
+
+@pytest.mark.parametrize("bend", ["polar --sweep 360", "bend --stretch fit --along circle:r=100"])
+def test_a_band_bent_into_a_ring_is_two_circles(run, tmp_path, bend):
+    band = "<rect width='400' height='60' fill='#58c'/><path d='M0,30H400' stroke='#fff' stroke-width='0.1' fill='none'/>"
+    square = "<path d='M190,40h20v10h-20z' fill='gold'/>"
+    (tmp_path / "in.svg").write_text(f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 60'>{band}{square}</svg>")
+    deformation, *options = bend.split()
+    run(deformation, "in.svg", *options, "--frame", "0,0,400,60", "--quiet", "-o", "out.dxf")
+    *circles, square = opened(tmp_path / "out.dxf")
+    assert [e.dxftype() for e in circles] == ["CIRCLE"] * 3 and is_closed(square)
+    outer, line, inner = sorted((e.dxf.radius for e in circles), reverse=True)
+    # The band is 60 px high, and its middle is 400 px long, or lies on the circle.
+    px = 25.4 / 96
+    middle = 100 * px if deformation == "bend" else outer - 30 * px
+    assert np.allclose([outer, line, inner], [middle + 30 * px, middle, middle - 30 * px], atol=1e-3)
+
+
+def test_beads_on_a_ring_have_equal_gaps_in_a_file(run, tmp_path):
+    beads = "<circle id='large' cx='10' cy='10' r='6'/><circle id='small' cx='40' cy='10' r='3'/>"
+    (tmp_path / "in.svg").write_text(drawing(beads))
+    ring = ["--along", "circle:r=40mm", "--glyphs", "rotate", "--copies", "fill", "--gap", "2mm"]
+    run("bend", "in.svg", *ring, "--fit", "none", "--quiet", "-o", "out.dxf")
+    entities = opened(tmp_path / "out.dxf")
+    centres = [(e.dxf.center.x, e.dxf.center.y, e.dxf.radius) for e in entities]
+    count = int(80 * math.pi // (12 + 6 + 2 * 2))
+    assert len(centres) == 2 * count
+    middle = np.mean([c[:2] for c in centres], axis=0)
+    turned = sorted((math.atan2(y - middle[1], x - middle[0]), r) for x, y, r in centres)
+    gaps = [40 * ((b[0] - a[0]) % math.tau) - a[1] - b[1] for a, b in zip(turned, turned[1:] + turned[:1])]
+    assert np.allclose([math.dist(c[:2], middle) for c in centres], 40, atol=1e-3)
+    assert np.allclose(gaps, (80 * math.pi - 18 * count) / (2 * count), atol=2e-3)

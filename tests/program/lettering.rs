@@ -209,8 +209,6 @@ fn letters_that_cannot_be_placed_cause_messages() {
         (out.status.code().unwrap(), String::from_utf8_lossy(&out.stderr).into_owned())
     };
     let grid = crate::support::sample("grid.svg").display().to_string();
-    let (code, said) = fault(&grid, &["--along", "0,0 50,9", "--glyphs", "rotate"]);
-    assert!(code == 2 && said.contains("pathwarp text"), "{code} {said}");
     let (code, said) = fault(&grid, &["--along", "0,0 50,9", "--frame", "baseline-ascent"]);
     assert!(code == 3 && said.contains("no lettering"), "{code} {said}");
     let (code, said) = fault(&input, &["--along", "0,0 50,9", "--skew", "--ribbon"]);

@@ -183,7 +183,8 @@ impl EditedArtwork {
     ) -> Result<(Vec<u8>, Vec<String>), Failure> {
         let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
         let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
-        let Exported { bytes, warnings } = self.finished(recipe, format)?;
+        let Exported { bytes, mut warnings, kerf } = self.finished(recipe, format)?;
+        warnings.extend(kerf.map(|k| k.note()));
         if format.of_picture(None).is_none() {
             return Ok((bytes, warnings));
         }

@@ -1,5 +1,6 @@
 //! The report of a file and of its shapes. The field names are the JSON's.
 
+use crate::export::KerfReport;
 use pathwarp::fold::Orientation;
 use pathwarp::kurbo::Point;
 use pathwarp::refit::Assurance;
@@ -35,6 +36,9 @@ pub struct FileReport {
     pub shapes: Vec<ReportedShape>,
     /// The shapes that were left out.
     pub skipped: Vec<SkippedShape>,
+    /// The contours that `--kerf` moved; omitted without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) kerf: Option<KerfReport>,
     /// Warnings about all of it.
     pub warnings: Vec<String>,
 }
@@ -53,6 +57,7 @@ impl FileReport {
             page: None,
             shapes: Vec::new(),
             skipped: Vec::new(),
+            kerf: None,
             warnings: Vec::new(),
         }
     }

@@ -3,6 +3,7 @@
 
 use crate::advice::{self, Flags};
 use crate::edits;
+use crate::export::KerfReport;
 use crate::failure::Failure;
 use crate::input::{
     Artwork, Baseline, FileArtwork, Input, Planned, WarpRequest, WarpedResult, Which, display, planned,
@@ -220,6 +221,7 @@ impl Session<'_> {
             page: warped.page.change.map(|[_, after]| shown(after)),
             shapes: warped.shapes,
             skipped: warped.skipped,
+            kerf: warped.kerf,
             warnings,
         };
         let partial = warped.partial || is_coarse || report.is_partial();
@@ -227,6 +229,7 @@ impl Session<'_> {
         let mut notes: Vec<String> = is_simplified.then(|| simplified(&report.shapes)).into_iter().collect();
         notes.extend(islands(&ready, &report.shapes).filter(|_| !options.quiet));
         notes.extend(united(&report.shapes).filter(|_| !options.quiet));
+        notes.extend(report.kerf.iter().filter(|_| !options.quiet).map(KerfReport::note));
         notes.extend(self.notes(flags, whole, &frames(options.frame, ready.steps(), starts, seen), &report.shapes));
         notes.extend(filters(&warped.filters).filter(|_| self.options.explain));
         Ok(Warped {

@@ -9,9 +9,10 @@ use crate::bend::task::placed_outlines;
 use crate::scene::areas::{self, stroked};
 use crate::scene::drawing::{Drawing, NamedPath, Shape, UnreadImages, named_path};
 use crate::scene::geometry::stretch;
+use crate::scene::lettering::PlacedLetter;
 use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::scene::plot::{self, Plot};
-use crate::scene::selected_lettering::{Lettering, lettering};
+use crate::scene::selected_lettering::{Lettering, lettering, objects};
 use crate::source::edit::Edits;
 use crate::source::elements::{ElementId, is_shape};
 use crate::source::number::{rectangle, single};
@@ -23,6 +24,7 @@ use crate::write::input::WriteInput;
 use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::{AffineMap, Map};
+use pathwarp::param::Letter;
 use pathwarp::{Error, Outline, refit};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -330,8 +332,13 @@ impl Document {
 
     /// The selected painted shapes, in painting order.
     pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
-        let selected = self.drawing.selected_parts(selection);
-        self.shapes().iter().zip(selected).filter(|(s, selected)| *selected && s.painted).map(|(s, _)| s)
+        self.shapes().iter().zip(self.are_selected(selection)).filter(|(s, is)| *is && s.painted).map(|(s, _)| s)
+    }
+
+    /// For each of [`Document::shapes`], whether it is selected.
+    #[must_use]
+    pub fn are_selected(&self, selection: &Selection) -> Vec<bool> {
+        self.drawing.selected_parts(selection)
     }
 
     /// Returns `true` if the selection holds a painted shape or a bitmap.
@@ -382,6 +389,19 @@ impl Document {
     #[must_use]
     pub fn lettering(&self, selection: &Selection) -> Lettering {
         lettering(&self.drawing, selection)
+    }
+
+    /// The objects among the selected painted shapes, from left to right, as letters without outlines: each selected element, or if that is
+    /// the whole drawing, each member of the outermost group that has several. Those whose boxes overlap are one.
+    #[must_use]
+    pub fn objects(&self, selection: &Selection) -> Vec<Letter> {
+        let letter = |o: PlacedLetter| Letter {
+            name: o.name,
+            origin: o.origin,
+            advance: o.advance,
+            outline: Outline::default(),
+        };
+        objects(&self.drawing, selection).into_iter().map(letter).collect()
     }
 
     /// For each shape of [`Document::selected`], the area that its stroke covers in root user space, to be filled by the nonzero rule,

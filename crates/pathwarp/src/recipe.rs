@@ -87,7 +87,8 @@ pub struct BuiltRecipe {
     pub steps: Vec<Built>,
     /// Copies of the artwork and letters placed one by one, by the first step.
     pub placement: Placement,
-    /// The steps after the first, composed: the map for letters that were placed.
+    /// The steps after the first, composed: the map for letters that were placed; for letters that it moved
+    /// [before](Placement::before) the map, all steps.
     pub after: Chain,
     /// For every step, the frame that its percentages refer to.
     pub frames: Vec<Frame>,
@@ -384,7 +385,8 @@ impl BuiltRecipe {
     fn push(&mut self, i: usize, step: Built, frame: &Frame) {
         if self.steps.is_empty() {
             self.placement.clone_from(&step.placement);
-        } else {
+        }
+        if !self.steps.is_empty() || step.placement.before {
             self.after.push(Arc::clone(&step.map));
         }
         self.map.push(Arc::clone(&step.map));

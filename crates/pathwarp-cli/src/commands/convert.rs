@@ -10,7 +10,7 @@ use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::decimal::trimmed;
 use pathwarp::kurbo::Point;
-use pathwarp_engine::export::{self, Exported};
+use pathwarp_engine::export::{self, Exported, KerfReport};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, Format};
 use pathwarp_engine::input;
@@ -33,7 +33,7 @@ pub(super) fn convert_command() -> Command {
             "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
              drawing, or .dxf with its outlines in mm; - or none writes to standard output",
         ))
-        .args(some_options(&["format", "dxf-curves", "kerf", "page-width", "page-height", "tolerance", "union", "quiet"]))
+        .args(some_options(&["format", "dxf-curves", "kerf", "engrave", "duplicates", "page-width", "page-height", "tolerance", "union", "quiet"]))
         .arg(
             Arg::new("split")
                 .long("split")
@@ -82,14 +82,16 @@ pub(crate) fn convert_file(
 fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOptions) -> Result<Status, Failure> {
     let doc = input::document(file, &options.reading)?;
     let read = input::read_options(file, &options.reading);
-    let Exported { bytes, warnings } = export::drawing(doc.decoded().into_owned(), format, &read, options, None)?;
+    let Exported { bytes, warnings, kerf } = export::drawing(doc.decoded().into_owned(), format, &read, options, None)?;
     let (unread, undrawn) = (doc.unread_images(), doc.undrawn());
-    let is_partial = !unread.is_empty() || !undrawn.is_empty();
+    let is_undecided = kerf.as_ref().is_some_and(KerfReport::is_partial);
+    let is_partial = is_undecided || !unread.is_empty() || !undrawn.is_empty();
     let lacking = advice::lacking(doc.missing_fonts(), &unread, &undrawn, &doc.notes()).into_iter();
     let warnings: Vec<String> = lacking.chain(warnings).collect();
     for warning in warnings.iter().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {warning}", input::display(file)));
     }
+    kerf.iter().filter(|_| !options.quiet).for_each(|k| terminal::note(&k.note()));
     output::write(target, &bytes)?;
     Ok(Status::partial_if(is_partial))
 }

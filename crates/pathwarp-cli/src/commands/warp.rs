@@ -139,7 +139,7 @@ pub(super) fn run_recipe(registry: &Registry, m: &ArgMatches, words: &[OsString]
 }
 
 /// The common options of which the help of edits tells: what is read and where the result goes.
-const SHARED: [&str; 27] = [
+const SHARED: [&str; 29] = [
     "out",
     "format",
     "out-dir",
@@ -155,6 +155,8 @@ const SHARED: [&str; 27] = [
     "structure",
     "dxf-curves",
     "kerf",
+    "engrave",
+    "duplicates",
     "page-width",
     "page-height",
     "frame",

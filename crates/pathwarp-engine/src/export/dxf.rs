@@ -1,7 +1,8 @@
 //! Drawings as DXF, in millimetres.
 
+use super::contours::{self, Contour};
 use super::exported::{Exported, counted};
-use super::kerf::{self, Cut};
+use super::kerf::{self, Kerf, KerfReport};
 use crate::failure::Failure;
 use crate::options::CommonOptions;
 use crate::units::{MM_PER_PX, units_per_px};
@@ -9,12 +10,16 @@ use pathwarp::budget::cost;
 use pathwarp::edit::united;
 use pathwarp::kurbo::Affine;
 use pathwarp::param::{Axis, Frame};
-use pathwarp::refit;
+use pathwarp::{Outline, refit};
 use pathwarp_dxf::{Curves, Shape};
 use pathwarp_svg::{Document, Plot, PlotShape, Selection};
+use std::str::FromStr as _;
 
 /// Strokes that are wider than this many mm are hardly meant as lines to cut.
 const WIDE_STROKE: f64 = 0.5;
+
+/// Ends of lines that are so near meet, and lines so near are the same, in mm.
+const MEETING: f64 = 0.01;
 
 /// The drawing as DXF. The lines follow curves within `tolerance` (user units), or within that of the options.
 pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f64>) -> Result<Exported, Failure> {
@@ -29,32 +34,32 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
     };
     let suited = options.tolerance.is_none();
     let tolerance = tolerance.map_or_else(default, Ok)?;
-    let cut = |s: &PlotShape| -> Result<Cut, Failure> {
-        let rule = s.even_odd.filter(|_| options.union);
+    let mm_per_unit = to_mm.determinant().abs().sqrt();
+    let engraved = engraved(doc, &plot, &options.engrave)?;
+    let unites = |i: usize| options.union || (options.kerf.is_some() && !engraved[i]);
+    let mut lines = Vec::new();
+    for (of, s) in plot.shapes.iter().enumerate() {
+        let rule = s.even_odd.filter(|_| unites(of));
         let united = rule.map(|even_odd| united(&s.outline, even_odd, tolerance)).transpose();
         let united = united.map_err(pathwarp::Error::from)?.flatten();
-        Ok(Cut { outline: united.as_ref().unwrap_or(&s.outline).transformed(to_mm), even_odd: s.even_odd })
-    };
-    let mut cuts: Vec<Cut> = plot.shapes.iter().map(cut).collect::<Result<_, _>>()?;
-    let mut warnings = lost_in_dxf(&plot);
-    let mm_per_unit = to_mm.determinant().abs().sqrt();
-    if let Some(kerf) = options.kerf {
-        let frame = Frame::new(doc.view_box()).with_units_per_px(units_per_px(doc));
-        let by = 0.5 * kerf.in_units(Axis::Diagonal, &frame) * mm_per_unit;
-        let contours = cuts.iter().map(|c| c.outline.subpaths.len() as f64).sum::<f64>();
-        let spent = doc.budget().spend(cost::COMPARISON * contours * contours);
-        spent.map_err(|e| pathwarp::Error::limit(doc.name(), "with --kerf, it takes", e))?;
-        let together = |i: usize| (&plot.shapes[i].layer, plot.shapes[i].color);
-        let refit = refit::Options::new(tolerance * mm_per_unit).with_suited(suited);
-        let fewer = kerf::widen(&mut cuts, together, by, &refit).map_err(pathwarp::Error::from)?;
-        if fewer > 0 {
-            let contours = counted(fewer, "contour", "contours");
-            warnings.push(format!("--kerf leaves {contours} fewer: narrow ones close, and those that meet unite"));
-        }
+        let outline = united.as_ref().unwrap_or(&s.outline).transformed(to_mm);
+        lines.extend(outline.subpaths.into_iter().map(|path| Contour { of, path }));
     }
+    let mut warnings = lost_in_dxf(&plot);
+    let frame = Frame::new(doc.view_box()).with_units_per_px(units_per_px(doc));
+    let refit = refit::Options::new(tolerance * mm_per_unit).with_suited(suited);
+    let machine = Machine {
+        kerf: options.kerf.map(|kerf| 0.5 * kerf.in_units(Axis::Diagonal, &frame) * mm_per_unit),
+        engraved: &engraved,
+        keep_duplicates: options.keep_duplicates,
+        refit: &refit,
+    };
+    let (lines, kerf) = followed(doc, &plot, lines, &machine, &mut warnings)?;
+    let mut cuts = vec![Outline::default(); plot.shapes.len()];
+    lines.into_iter().for_each(|c| cuts[c.of].subpaths.push(c.path));
     let shapes = plot.shapes.iter().zip(&cuts);
     let shapes: Vec<Shape<'_>> = shapes
-        .map(|(s, cut)| Shape { layer: s.layer.as_deref().unwrap_or_default(), color: s.color, outline: &cut.outline })
+        .map(|(s, outline)| Shape { layer: s.layer.as_deref().unwrap_or_default(), color: s.color, outline })
         .collect();
     let settings = pathwarp_dxf::Options {
         curves: if options.dxf_polylines { Curves::Polylines } else { Curves::Splines },
@@ -65,7 +70,79 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
     };
     let text = pathwarp_dxf::write(&shapes, &settings)
         .map_err(|e| pathwarp::Error::limit(doc.name(), "as polylines, it takes", e))?;
-    Ok(Exported { bytes: text.into_bytes(), warnings })
+    Ok(Exported { bytes: text.into_bytes(), warnings, kerf })
+}
+
+/// How a machine follows lines.
+struct Machine<'a> {
+    /// Half the width of its cut in mm, if lines make room for it.
+    kerf: Option<f64>,
+    /// For each shape, whether it is not cut.
+    engraved: &'a [bool],
+    keep_duplicates: bool,
+    refit: &'a refit::Options,
+}
+
+/// The lines in mm as a machine follows them: each once, and with room for the width of its cut.
+fn followed(
+    doc: &Document,
+    plot: &Plot,
+    lines: Vec<Contour>,
+    machine: &Machine<'_>,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Contour>, Option<KerfReport>), Failure> {
+    let near = machine.refit.tolerance.max(MEETING);
+    let limit = |e| pathwarp::Error::limit(doc.name(), "comparing what a machine follows takes", e);
+    let pen = |i: usize| (&plot.shapes[i].layer, plot.shapes[i].color);
+    // What is cut is compared with all that is cut.
+    let among = |i: usize| if machine.kerf.is_some() { Err(machine.engraved[i]) } else { Ok(pen(i)) };
+    let mut lines = lines;
+    if machine.kerf.is_some() {
+        let (cut, engraved): (Vec<Contour>, Vec<Contour>) = lines.into_iter().partition(|c| !machine.engraved[c.of]);
+        lines = contours::chained(&cut, pen, near);
+        lines.extend(engraved);
+    }
+    let mut same = contours::same(&lines, among, near, doc.budget()).map_err(limit)?;
+    if !machine.keep_duplicates {
+        let twice = same.iter().flatten().count();
+        let mut only = same.iter().map(Option::is_none);
+        lines.retain(|_| only.next().unwrap_or(true));
+        let segments = contours::leave_out_lines(&mut lines, among, near);
+        same = vec![None; lines.len()];
+        let several = [(twice, "contour", "contours"), (segments, "open line", "open lines")];
+        let said: Vec<String> = several.iter().filter(|s| s.0 > 0).map(|s| counted(s.0, s.1, s.2)).collect();
+        if !said.is_empty() {
+            warnings.push(format!("drawn twice, and cut once: {} (--duplicates keep)", said.join(" and ")));
+        }
+    }
+    let Some(by) = machine.kerf else { return Ok((lines, None)) };
+    let spend = |n: f64| doc.budget().spend(cost::COMPARISON * n).map_err(limit);
+    let kerf = Kerf { by, near, refit: machine.refit, spend: &spend };
+    let cut = |c: &Contour| !machine.engraved[c.of];
+    let name = |of: usize| doc.shapes()[plot.shapes[of].shape].id.clone();
+    let (mut lines, report) = kerf::widen(lines, &same, cut, &kerf, name)?;
+    lines.sort_by_key(|c| c.of);
+    warnings.extend(report.warnings());
+    Ok((lines, Some(report)))
+}
+
+/// For each shape, whether one of the selectors or colours says that it is not cut.
+fn engraved(doc: &Document, plot: &Plot, named: &[String]) -> Result<Vec<bool>, Failure> {
+    let mut out = vec![false; plot.shapes.len()];
+    for name in named {
+        let selection = Selection { select: vec![name.clone()], ..Selection::default() };
+        let color = svgtypes::Color::from_str(name).ok().map(|c| [c.red, c.green, c.blue]);
+        let checked = doc.check_selection(&selection);
+        let has_color = |s: &PlotShape| s.color.is_some() && s.color == color;
+        if checked.is_err() && plot.shapes.iter().any(has_color) {
+            plot.shapes.iter().zip(&mut out).for_each(|(s, out)| *out |= has_color(s));
+            continue;
+        }
+        checked?;
+        let selected = doc.are_selected(&selection);
+        plot.shapes.iter().zip(&mut out).for_each(|(s, out)| *out |= selected[s.shape]);
+    }
+    Ok(out)
 }
 
 /// Describes the content that outlines cannot show.

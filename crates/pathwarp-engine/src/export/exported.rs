@@ -1,16 +1,20 @@
 //! What an export gives.
 
+use super::kerf::KerfReport;
+
 /// A drawing in some format.
 pub struct Exported {
     /// The file.
     pub bytes: Vec<u8>,
     /// Messages about content that the format cannot express.
     pub warnings: Vec<String>,
+    /// What `--kerf` did.
+    pub kerf: Option<KerfReport>,
 }
 
 impl From<Vec<u8>> for Exported {
     fn from(bytes: Vec<u8>) -> Self {
-        Self { bytes, warnings: Vec::new() }
+        Self { bytes, warnings: Vec::new(), kerf: None }
     }
 }
 

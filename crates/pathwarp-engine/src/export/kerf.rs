@@ -1,104 +1,203 @@
 //! Room for the width of the cut: parts grow by half of it and their holes shrink, so that what is cut has the size drawn.
 
+use super::contours::{self, Contour};
+use super::exported::counted;
+use crate::readable::listed;
 use pathwarp::edit::{Offset, OpenPaths, Side, moved};
 use pathwarp::kurbo::{BezPath, Join, Point, Rect, Shape as _};
 use pathwarp::outline::Subpath;
-use pathwarp::{GeometryError, Outline, refit};
+use pathwarp::{Outline, refit};
+use serde::Serialize;
+use std::collections::BTreeSet;
 
-/// Rounding, as a share of a radius.
-const SLACK: f64 = 1e-6;
-
-/// An outline to cut.
-pub(super) struct Cut {
-    pub(super) outline: Outline,
-    /// The fill rule of an area; `None` for lines.
-    pub(super) even_odd: Option<bool>,
+/// What became of the contours of a drawing that `--kerf` makes room around; each is named by its shape.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct KerfReport {
+    /// Outer contours, which grew.
+    pub grew: Vec<String>,
+    /// Holes, which shrank.
+    pub shrank: Vec<String>,
+    /// Open lines that enclose something: they stay where they are.
+    pub undecided: Vec<String>,
+    /// Contours that cross another, which count as outer ones.
+    pub crossing: Vec<String>,
+    /// Contours that closed, or that met another of their shape.
+    pub lost: Vec<String>,
 }
 
-/// Moves closed contours by `by` to the outside of what they enclose; open lines stay. The areas of a fill follow its rule. Contours
-/// of lines alone are holes if an odd number of the others is around them; `among` says which lines belong together. Returns by how many
-/// there are fewer contours.
-pub(super) fn widen<K: PartialEq>(
-    cuts: &mut [Cut],
-    among: impl Fn(usize) -> K,
-    by: f64,
-    options: &refit::Options,
-) -> Result<usize, GeometryError> {
-    let loops: Vec<(usize, Loop)> =
-        cuts.iter().enumerate().filter(|(_, c)| c.even_odd.is_none()).flat_map(loops).collect();
-    let is_hole = |i: usize, s: &Subpath| {
-        let within = Within::new(s);
-        let around = |(k, l): &&(usize, Loop)| among(*k) == among(i) && l.is_around(&within);
-        loops.iter().filter(around).count() % 2 == 1
-    };
-    let mut fewer = 0;
-    for (i, cut) in cuts.iter_mut().enumerate() {
-        let (closed, open): (Vec<Subpath>, Vec<Subpath>) = cut.outline.subpaths.drain(..).partition(|s| s.closed);
-        let areas: Vec<(Outline, Side)> = match cut.even_odd {
-            Some(_) if closed.is_empty() => Vec::new(),
-            Some(_) => vec![(Outline { subpaths: closed }, Side::Outside)],
-            None => closed
-                .into_iter()
-                .map(|s| {
-                    let side = if is_hole(i, &s) { Side::Inside } else { Side::Outside };
-                    (Outline { subpaths: vec![s] }, side)
-                })
-                .collect(),
+/// Most names in a message; the report has them all.
+const NAMED: usize = 6;
+
+impl KerfReport {
+    /// What grew and what shrank, in a sentence.
+    pub fn note(&self) -> String {
+        let said = |names: &[String], done: &str| {
+            let contours = counted(names.len(), "contour", "contours");
+            if names.is_empty() { format!("no contour {done}") } else { format!("{contours} {done}: {}", named(names)) }
         };
-        for (area, side) in areas {
-            let even_odd = cut.even_odd == Some(true);
-            let offset = Offset { by, join: Join::Miter, side, even_odd, open: OpenPaths::Stay };
-            let to = moved(&area, &offset, options, &[])?.outline;
-            fewer += area.subpaths.len().saturating_sub(to.subpaths.len());
-            cut.outline.subpaths.extend(to.subpaths);
-        }
-        cut.outline.subpaths.extend(open);
+        format!("--kerf: {}; {}", said(&self.grew, "grew"), said(&self.shrank, "shrank"))
     }
-    Ok(fewer)
+
+    /// Whether something could not be decided.
+    pub fn is_partial(&self) -> bool {
+        !self.undecided.is_empty()
+    }
+
+    /// What a cutter should know.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        if !self.undecided.is_empty() {
+            out.push(format!(
+                "--kerf cannot tell in from out at open lines that enclose something, which stay: {}; close them, or name them with --engrave",
+                named(&self.undecided)
+            ));
+        }
+        if !self.crossing.is_empty() {
+            out.push(format!("contours that cross each other are no holes to --kerf: {}", named(&self.crossing)));
+        }
+        if !self.lost.is_empty() {
+            let contours = counted(self.lost.len(), "contour", "contours");
+            let names = named(&self.lost);
+            out.push(format!(
+                "--kerf leaves {contours} fewer, as narrow ones close and those that meet unite: {names}"
+            ));
+        }
+        out
+    }
 }
 
-/// A contour of lines, to be looked up.
+fn named(names: &[String]) -> String {
+    let mut different: Vec<&String> = names.iter().collect();
+    different.dedup();
+    listed(&different, NAMED)
+}
+
+/// How contours move.
+pub(super) struct Kerf<'a> {
+    /// Half the width of the cut.
+    pub(super) by: f64,
+    /// Ends that are so near meet, and contours are the same.
+    pub(super) near: f64,
+    pub(super) refit: &'a refit::Options,
+    /// Charges so many comparisons.
+    pub(super) spend: &'a dyn Fn(f64) -> Result<(), pathwarp::Error>,
+}
+
+/// Moves closed contours by half the kerf to the outside of what they enclose; open lines stay. A contour is a hole if an odd number of
+/// the others is around it, of which equal ones (`same`) count once.
+pub(super) fn widen(
+    all: Vec<Contour>,
+    same: &[Option<usize>],
+    is_cut: impl Fn(&Contour) -> bool,
+    kerf: &Kerf<'_>,
+    name: impl Fn(usize) -> String,
+) -> Result<(Vec<Contour>, KerfReport), pathwarp::Error> {
+    let mut report = KerfReport::default();
+    let loops: Vec<Loop> = all.iter().map(Loop::new).collect();
+    let counts = |i: &usize| all[*i].path.closed && is_cut(&all[*i]) && same[*i].is_none();
+    let depths =
+        depths(&loops, (0..all.len()).filter(counts).collect(), kerf, |i| report.crossing.push(name(all[i].of)))?;
+    let open: Vec<Contour> = all.iter().filter(|c| !c.path.closed && is_cut(c)).cloned().collect();
+    for chain in contours::closed_roughly(&open, kerf.near) {
+        let rough = Loop::new(&chain.contour);
+        (kerf.spend)(all.len() as f64)?;
+        let is_around = || (0..all.len()).filter(counts).any(|i| rough.places(&loops[i])[0] > 0);
+        if rough.area() > kerf.near.powi(2) && (chain.gap <= 2.0 * kerf.by || is_around()) {
+            report.undecided.extend(chain.members.iter().map(|k| name(open[*k].of)));
+        }
+    }
+    let mut out: Vec<Contour> = Vec::with_capacity(all.len());
+    let mut groups: Vec<(usize, usize, Vec<Subpath>)> = Vec::new();
+    for (i, c) in all.into_iter().enumerate() {
+        let depth = depths[same[i].unwrap_or(i)];
+        match groups.iter_mut().rev().take_while(|g| g.0 == c.of).find(|g| g.1 == depth) {
+            _ if !c.path.closed || !is_cut(&c) => out.push(c),
+            Some(group) => group.2.push(c.path),
+            None => groups.push((c.of, depth, vec![c.path])),
+        }
+    }
+    for (of, depth, subpaths) in groups {
+        let (side, moves) = match depth % 2 {
+            0 => (Side::Outside, &mut report.grew),
+            _ => (Side::Inside, &mut report.shrank),
+        };
+        let offset = Offset { by: kerf.by, join: Join::Miter, side, even_odd: false, open: OpenPaths::Stay };
+        let count = subpaths.len();
+        let mut to = moved(&Outline { subpaths }, &offset, kerf.refit, &[])?.outline.subpaths;
+        to.retain(|s| s.diagonal() > kerf.near);
+        moves.extend(to.iter().map(|_| name(of)));
+        report.lost.extend((to.len()..count).map(|_| name(of)));
+        out.extend(to.into_iter().map(|path| Contour { of, path }));
+    }
+    Ok((out, report))
+}
+
+/// For each contour, the number of the others (`among`) around it; `crosses` is told of those that cross another.
+fn depths(
+    loops: &[Loop],
+    mut among: Vec<usize>,
+    kerf: &Kerf<'_>,
+    mut crosses: impl FnMut(usize),
+) -> Result<Vec<usize>, pathwarp::Error> {
+    let mut depths = vec![0; loops.len()];
+    let mut crossing = BTreeSet::new();
+    among.sort_by(|a, b| loops[*a].bounds.x0.total_cmp(&loops[*b].bounds.x0));
+    // Those that reach as far to the right as the next begins.
+    let mut beside: Vec<usize> = Vec::new();
+    for i in among {
+        beside.retain(|k| loops[*k].bounds.x1 >= loops[i].bounds.x0);
+        (kerf.spend)(beside.len() as f64)?;
+        for (inner, outer) in beside.iter().flat_map(|k| [(i, *k), (*k, i)]) {
+            match loops[outer].places(&loops[inner]) {
+                [_, 0] => depths[inner] += 1,
+                [0, _] => {}
+                _ => drop(crossing.insert(inner)),
+            }
+        }
+        beside.push(i);
+    }
+    crossing.into_iter().for_each(&mut crosses);
+    Ok(depths)
+}
+
+/// A contour, to be looked up.
 struct Loop {
     path: BezPath,
     bounds: Rect,
-    start: Point,
-}
-
-impl Loop {
-    /// Returns `true` if a contour lies inside of this one and does not cross it.
-    fn is_around(&self, s: &Within) -> bool {
-        let reach = SLACK * (s.bounds.width() + s.bounds.height());
-        self.start != s.start
-            && self.bounds.inflate(reach, reach).contains_rect(s.bounds)
-            && s.points.iter().all(|p| self.path.winding(*p) != 0)
-    }
-}
-
-/// A contour that may lie inside of others.
-struct Within {
-    bounds: Rect,
-    start: Point,
+    /// Points a little inside of it.
     points: Vec<Point>,
 }
 
-impl Within {
-    fn new(s: &Subpath) -> Self {
-        /// Most segments looked at, and how far from edges that contours may share, against the contour's size.
+impl Loop {
+    fn new(c: &Contour) -> Self {
+        /// Most segments looked at, and where.
         const MOST: usize = 8;
-        const BESIDE: f64 = 1e-3;
-        let bounds = s.bounding_box();
-        let beside = |p: Point| p.lerp(bounds.center(), BESIDE);
-        let middles = s.segs.iter().step_by(s.segs.len().div_ceil(MOST).max(1)).map(|seg| seg.eval(0.5));
-        Self { bounds, start: s.start, points: middles.chain([s.start]).map(beside).collect() }
+        const AT: [f64; 3] = [0.2, 0.5, 0.8];
+        /// How far from edges that contours may share, and arcs as cubics, against the contour's size.
+        const BESIDE: f64 = 1e-4;
+        let size = c.path.diagonal();
+        let path = Outline { subpaths: vec![c.path.clone()] }.to_bez_path(BESIDE * size);
+        let inwards = BESIDE * size * path.area().signum();
+        let segs = c.path.segs.iter().step_by(c.path.segs.len().div_ceil(MOST).max(1));
+        let beside = |s: &pathwarp::Seg, t: f64| {
+            let along = s.deriv(t);
+            s.eval(t) + along.turn_90() * (inwards / along.hypot().max(f64::MIN_POSITIVE))
+        };
+        let points = segs.flat_map(|s| AT.map(|t| beside(s, t))).collect();
+        Self { path, bounds: c.path.bounding_box(), points }
     }
-}
 
-fn loops((i, cut): (usize, &Cut)) -> impl Iterator<Item = (usize, Loop)> {
-    /// Arcs as cubics, against the contour's size: enough to tell inside from outside.
-    const ROUGH: f64 = 1e-4;
-    let closed = cut.outline.subpaths.iter().filter(|s| s.closed);
-    closed.map(move |s| {
-        let path = Outline { subpaths: vec![s.clone()] }.to_bez_path(ROUGH * s.diagonal());
-        (i, Loop { path, bounds: s.bounding_box(), start: s.start })
-    })
+    /// How many points of another contour lie inside of this one, and how many outside.
+    fn places(&self, other: &Self) -> [usize; 2] {
+        if self.bounds.intersect(other.bounds).is_zero_area() {
+            return [0, other.points.len()];
+        }
+        let is_inside = |p: &&Point| self.bounds.contains(**p) && self.path.winding(**p) != 0;
+        let inside = other.points.iter().filter(is_inside).count();
+        [inside, other.points.len() - inside]
+    }
+
+    fn area(&self) -> f64 {
+        self.path.area().abs()
+    }
 }

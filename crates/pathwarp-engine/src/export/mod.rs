@@ -1,11 +1,13 @@
 //! Drawings in the formats besides SVG, and GIMP's paths in every format.
 
+mod contours;
 mod dxf;
 mod exported;
 mod kerf;
 mod pdf;
 
 pub use exported::Exported;
+pub use kerf::KerfReport;
 
 use crate::failure::Failure;
 use crate::format::Format;
@@ -43,6 +45,9 @@ pub fn drawing(
     options: &CommonOptions,
     tolerance: Option<f64>,
 ) -> Result<Exported, Failure> {
+    if options.kerf.is_none() && !options.engrave.is_empty() {
+        return Err(Failure::usage("--engrave says what is not cut; it goes with --kerf"));
+    }
     if options.kerf.is_some() && format != Format::Dxf {
         let advice = "in other formats, `pathwarp offset --by` moves outlines by half of it";
         return Err(Failure::usage(format!("--kerf is for a DXF; {advice}")));

@@ -32,5 +32,5 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, _: Option<f64>) -> 
         counted(coarser, "of these pictures has", "of these pictures have")
     );
     let warnings = [(pictures > 0).then_some(warning), (coarser > 0).then_some(less)];
-    Ok(Exported { bytes: written.bytes, warnings: warnings.into_iter().flatten().collect() })
+    Ok(Exported { bytes: written.bytes, warnings: warnings.into_iter().flatten().collect(), kerf: None })
 }

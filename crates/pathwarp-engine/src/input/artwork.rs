@@ -2,6 +2,7 @@
 
 use super::files::no_document;
 use crate::advice;
+use crate::export::KerfReport;
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
@@ -200,6 +201,8 @@ pub struct WarpedArtwork {
     pub(crate) files: Vec<PendingFile>,
     /// The picture of `--preview`.
     pub(crate) preview: Option<Vec<u8>>,
+    /// What `--kerf` did.
+    pub(crate) kerf: Option<KerfReport>,
     /// Something was left out besides the skipped shapes.
     pub(crate) partial: bool,
 }

@@ -4,7 +4,7 @@ use super::artwork::WarpedResult;
 use super::files::{display, split_reference};
 use super::gimp_file::GimpFile;
 use super::svg::SvgArtwork;
-use crate::export::{self, Exported};
+use crate::export::{self, Exported, KerfReport};
 use crate::failure::Failure;
 use crate::format::{Choice, Format};
 use crate::options::CommonOptions;
@@ -16,6 +16,9 @@ use pathwarp_gimp::{FileKind, GimpPath, Stroke, rewrite, to_svg};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
+
+/// Warnings, and what `--kerf` did.
+type Told = (Vec<String>, Option<KerfReport>);
 
 pub(super) use pathwarp_gimp::{HEAD, may_begin};
 
@@ -97,13 +100,13 @@ impl GimpPaths {
         guides: &[String],
         (format, options, tolerance): (Format, &CommonOptions, f64),
         shapes: &mut [ReportedShape],
-    ) -> Result<(WarpedResult, Vec<String>), Failure> {
+    ) -> Result<(WarpedResult, Told), Failure> {
         let mut paths = self.warped(svg)?;
         let Some(copy) = &options.into else {
             paths.retain(|p| !guides.contains(&p.name));
-            let Exported { bytes, warnings } =
+            let Exported { bytes, warnings, kerf } =
                 export::paths(self.file.canvas(), &paths, format, options, Some(tolerance))?;
-            return Ok((WarpedResult::Bytes(bytes), warnings));
+            return Ok((WarpedResult::Bytes(bytes), (warnings, kerf)));
         };
         for s in shapes {
             let strokes = paths.iter().filter(|p| p.name == s.shape.id).flat_map(|p| &p.strokes);
@@ -111,7 +114,7 @@ impl GimpPaths {
         }
         let all: Vec<(usize, Vec<Stroke>)> =
             self.chosen.iter().copied().zip(paths.into_iter().map(|p| p.strokes)).collect();
-        Ok((WarpedResult::File(copy_with_paths(&self.file.path, copy, &all)?), Vec::new()))
+        Ok((WarpedResult::File(copy_with_paths(&self.file.path, copy, &all)?), Told::default()))
     }
 }
 

@@ -191,6 +191,7 @@ impl FileArtwork for PictureArtwork {
             tolerance: None,
             files: Vec::new(),
             preview: None,
+            kerf: None,
             partial: undefined.is_some() || self.picture.early_end.is_some(),
         })
     }

@@ -6,6 +6,7 @@ use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use super::gimp::GimpPaths;
 use crate::bitmap::Bender;
+use crate::export::{self, KerfReport};
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
 use crate::options::{CommonOptions, FrameChoice};
@@ -13,7 +14,7 @@ use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{Fold, ReportedShape};
 use crate::units::units_per_px;
-use crate::{advice, export, meter};
+use crate::{advice, meter};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect, Size};
@@ -220,7 +221,9 @@ impl SvgArtwork {
             _ => (Gradients::Fit, Filters::Affine),
         };
         let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
-        let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
+        let of_objects = built.placement.of_objects;
+        let letters =
+            LetterPlaces { places: built.placement.letters.clone(), of_objects, of: first, after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
         let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
         let warp = WarpOptions::new(refit)
@@ -507,7 +510,8 @@ impl Artwork for SvgArtwork {
             }
             (_, plain) => plain.unwrap_or_else(artwork),
         };
-        Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
+        let frame = if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame };
+        Ok(frame.with_objects(self.doc.objects(self.selection(which)).into()))
     }
 
     fn units_per_px(&self) -> [f64; 2] {
@@ -595,14 +599,14 @@ impl FileArtwork for SvgArtwork {
         let preview = common.preview.as_deref();
         let shown = (warped.svg.as_str(), warped.back.unwrap_or_default());
         let preview = preview.map(|file| beside::preview(&self.doc, shown, built, &self.read, (file, common.quality)));
-        let (result, lost) = match &self.paths {
+        let (result, (lost, kerf)) = match &self.paths {
             Some(paths) => {
                 let guides = &self.selection.guides;
                 paths.written(&warped.svg, guides, (self.format, common, tolerance), &mut shapes)?
             }
             None => {
                 let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
-                (WarpedResult::Bytes(result.bytes), result.warnings)
+                (WarpedResult::Bytes(result.bytes), (result.warnings, result.kerf))
             }
         };
         warnings.extend(lost);
@@ -613,7 +617,8 @@ impl FileArtwork for SvgArtwork {
             warnings,
             files,
             preview: preview.transpose()?,
-            partial: empty || is_damaged,
+            partial: empty || is_damaged || kerf.as_ref().is_some_and(KerfReport::is_partial),
+            kerf,
             page,
             filters: warped.filters,
             tolerance: Some(tolerance),

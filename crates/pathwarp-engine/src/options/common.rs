@@ -107,6 +107,10 @@ pub struct CommonOptions {
     pub dxf_polylines: bool,
     /// Width of a cut, for which the contours of a DXF make room.
     pub kerf: Option<Length>,
+    /// What is not cut, and stays: selectors and colours.
+    pub engrave: Vec<String>,
+    /// Lines that are drawn several times stay so in a DXF.
+    pub keep_duplicates: bool,
     /// Quality of a JPEG, from 1 to 100.
     pub quality: Option<u8>,
     pub on_failure: OnFailure,

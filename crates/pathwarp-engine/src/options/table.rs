@@ -439,7 +439,7 @@ pub static OPTIONS: &[CommonOption] = &[
              each contour is one entity. Lines, arcs and circles are exact in both",
         )
     },
-    of_the_run(
+    stored(
         "kerf",
         OptionValue::Text {
             name: "D",
@@ -447,8 +447,28 @@ pub static OPTIONS: &[CommonOption] = &[
             set: |o, text| positive_length(text).map(|d| o.kerf = Some(d)),
         },
         "Width of the cut, such as 0.2mm: the outer contours of a DXF grow by half of it and holes shrink, so that parts have \
-         their size; open lines stay",
+         their size. Lines whose ends meet are one contour; other open lines stay",
     ),
+    stored(
+        "engrave",
+        OptionValue::List {
+            name: "SEL",
+            push: |o, text| {
+                o.engrave.push(text.to_owned());
+                Ok(())
+            },
+        },
+        "With --kerf, what is not cut, and stays: #id, .class, a layer, or a colour such as blue; may be given several times",
+    ),
+    CommonOption {
+        default: Some("once"),
+        ..stored(
+            "duplicates",
+            OptionValue::Choice(&[("once", |o| o.keep_duplicates = false), ("keep", |o| o.keep_duplicates = true)]),
+            "Lines and contours that a DXF would hold twice in the same place, layer and colour, with --kerf of whatever layer and colour: \
+             once, or as they are drawn",
+        )
+    },
     CommonOption {
         default: Some("92"),
         ..stored(

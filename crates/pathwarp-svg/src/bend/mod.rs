@@ -12,6 +12,7 @@ pub(crate) mod outcome;
 pub(crate) mod part;
 pub(crate) mod path;
 pub(crate) mod pictures;
+mod seam;
 pub(crate) mod shading;
 pub(crate) mod stroke;
 pub(crate) mod task;

@@ -386,6 +386,8 @@ pub struct LetterPlaces {
     /// Affine maps to the copies of each letter of [`Lettering::letters`](crate::Lettering::letters). If empty, letters are bent
     /// like everything else.
     pub places: Vec<Vec<Affine>>,
+    /// They are the places of [objects](crate::Document::objects).
+    pub of_objects: bool,
     /// The selection that contains these letters. `None` stands for that of the warp.
     pub of: Option<Selection>,
     /// Map applied to the placed letters: the remaining steps.
@@ -402,6 +404,7 @@ impl PartialEq for LetterPlaces {
     fn eq(&self, other: &Self) -> bool {
         let (a, b) = (self.after.steps(), other.after.steps());
         self.places == other.places
+            && self.of_objects == other.of_objects
             && self.of == other.of
             && a.len() == b.len()
             && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))

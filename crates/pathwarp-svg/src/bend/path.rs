@@ -83,7 +83,7 @@ pub fn warp_path(
     let spans = SharedEdges::held([(&outline, &contours[..])]).spans(&outline, &contours);
     let tolerance = digits.remaining(options.tolerance);
     let options = options.clone().with_tolerance(tolerance).with_spans(digits.allowed(&spans));
-    if let Some((image, report)) = with_arcs(map, &outline, &options)? {
+    if let Some((image, report)) = with_arcs(map, &outline, &options, false)? {
         let data = arcs_data(&image, digits.more(), |i| digits.decimals(contours[i]));
         return Ok(WarpedPath { data, path: image.to_bez_path(finest), report });
     }
@@ -104,13 +104,16 @@ const ROUND: f64 = 1e-10;
 /// Largest radius of an image, in lengths of its chord. Flatter ones are better written as curves.
 const MAX_RADIUS: f64 = 1e4;
 
-/// Bends an outline and keeps its arcs where their images are arcs, in root user space. Returns `None` if there are none.
+/// Bends an outline and keeps its arcs where their images are arcs, in root user space, and takes `lines` to arcs where they become such.
+/// Returns `None` if there are none.
 pub(super) fn with_arcs(
     map: &dyn Map,
     outline: &Outline,
     options: &refit::Options,
+    lines: bool,
 ) -> Result<Option<(Outline, PathReport)>, GeometryError> {
-    if !outline.segs().any(|s| matches!(s, Seg::Arc(_))) || !outline.segs().all(Seg::is_finite) {
+    let may_be = |s: &Seg| matches!(s, Seg::Arc(_)) || lines && matches!(s, Seg::Line(_));
+    if !outline.segs().any(may_be) || !outline.segs().all(Seg::is_finite) {
         return Ok(None);
     }
     let mut report = PathReport::default();
@@ -124,7 +127,9 @@ pub(super) fn with_arcs(
             let starts = outline.subpaths.iter().map(|s| s.start);
             map.prepare(&outline.segs().flat_map(on_circle).chain(starts).collect::<Vec<_>>(), &[]);
         }
-        let images = |s: &Subpath| s.segs.iter().map(|g| circle_of(g, map)).collect();
+        let images = |s: &Subpath| {
+            s.segs.iter().map(|g| Some(g).filter(|g| may_be(g)).and_then(|g| circle_of(g, map))).collect()
+        };
         let all: Vec<Vec<Option<EllipticArc>>> = outline.subpaths.iter().map(images).collect();
         if all.iter().flatten().all(Option::is_none) {
             return Ok(None);
@@ -156,14 +161,15 @@ fn on_circle(g: &Seg) -> Vec<Point> {
     (0..=SAMPLES).map(|i| arc.eval(f64::from(i) / f64::from(SAMPLES))).collect()
 }
 
-/// The image of a circular arc, if it is a circular arc, too.
+/// The image of a circular arc, or a line, if it is a circular arc.
 fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
-    let Seg::Arc(arc) = g else { return None };
-    let r = arc.a.hypot();
-    if (arc.b.hypot() - r).abs() > ROUND * r || arc.a.dot(arc.b).abs() > ROUND * r * r {
-        return None;
+    if let Seg::Arc(arc) = g {
+        let r = arc.a.hypot();
+        if (arc.b.hypot() - r).abs() > ROUND * r || arc.a.dot(arc.b).abs() > ROUND * r * r {
+            return None;
+        }
     }
-    let image = |i: u32| map.point(arc.eval(f64::from(i) / f64::from(SAMPLES)));
+    let image = |i: u32| map.point(g.eval(f64::from(i) / f64::from(SAMPLES)));
     let (first, last) = (image(0), image(SAMPLES));
     let center = center(first, image(SAMPLES / 3), image(2 * SAMPLES / 3))?;
     let radius = first.distance(center);

@@ -3,6 +3,7 @@
 use super::bends::Bend;
 use super::options::WarpOptions;
 use super::path::{self, Digits, ROUNDING, allowed, with_arcs};
+use super::seam::without_seams;
 use crate::scene::areas::reach;
 use crate::scene::drawing::Drawing;
 use crate::scene::geometry::stretch;
@@ -114,6 +115,16 @@ impl<'a> PartTask<'a> {
 
     /// Bends an outline whose contours have these tolerances.
     pub(super) fn bend(&self, outline: &Outline, contours: &[f64]) -> Result<BentPath, GeometryError> {
+        if let Some(parts) = without_seams(outline, self.map) {
+            let own: Vec<f64> = parts.iter().filter_map(|(i, _)| contours.get(*i).copied()).collect();
+            let subpaths = parts.into_iter().map(|(_, s)| s).collect();
+            return self.bend_contours(&Outline { subpaths }, &own, true);
+        }
+        self.bend_contours(outline, contours, false)
+    }
+
+    /// Bends an outline; `rings` tells that some of its contours go around as rings.
+    fn bend_contours(&self, outline: &Outline, contours: &[f64], rings: bool) -> Result<BentPath, GeometryError> {
         let spans = self.options().refit.shared.spans(outline, contours);
         let options = self.refit(self.allowed()).with_spans(self.digits.allowed(&spans));
         if let Some(edit) = self.options().edit {
@@ -124,7 +135,7 @@ impl<'a> PartTask<'a> {
                 return Ok(BentPath { path: self.to_local(path), data: None, report });
             }
         }
-        if let Some((image, report)) = with_arcs(self.map, outline, &options)? {
+        if let Some((image, report)) = with_arcs(self.map, outline, &options, rings)? {
             let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };
             let fine = ROUNDING * allowed(self.finest, self.rounding) / stretch(self.write).max(f64::MIN_POSITIVE);
             let data = arcs_data(&image, self.digits.more(), |i| {
@@ -274,7 +285,7 @@ pub(crate) fn pieces(drawing: &Drawing, options: &WarpOptions) -> Vec<Vec<Letter
         let places = places.get(l.letter).filter(|p| !p.is_empty())?.clone();
         Some(LetterPiece { range: l.range, places })
     };
-    letters_by_part(drawing, options.letters.of.as_ref().unwrap_or(&options.selection))
+    letters_by_part(drawing, options.letters.of.as_ref().unwrap_or(&options.selection), options.letters.of_objects)
         .into_iter()
         .map(|of_part| of_part.into_iter().filter_map(piece).collect())
         .collect()

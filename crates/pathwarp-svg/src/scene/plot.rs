@@ -5,7 +5,7 @@
 
 use super::areas::{clip_box, is_seen, overlap};
 use super::geometry::stretch;
-use super::model::{Group, Node, Part, Scene};
+use super::model::{Group, Node, Scene};
 use crate::source::elements::{ElementId, Namespace};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Line, Rect};
@@ -28,6 +28,8 @@ pub struct Plot {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PlotShape {
+    /// Its index in [`Document::shapes`](crate::Document::shapes).
+    pub shape: usize,
     /// The name of the layer; `None` outside of all layers. A layer is an Inkscape layer, or in a drawing without any, a named
     /// group of the outermost level that has several members.
     pub layer: Option<Arc<str>>,
@@ -89,7 +91,7 @@ impl Walk<'_> {
             match child {
                 Node::Group(g) => self.group(g, room),
                 Node::Text { content, .. } => self.group(content, room),
-                Node::Part(i) => self.part(&self.scene.parts[*i], room),
+                Node::Part(i) => self.part(*i, room),
                 Node::Image(_) => self.out.lost.bitmaps += 1,
             }
         }
@@ -112,7 +114,8 @@ impl Walk<'_> {
         rectangle(&only)
     }
 
-    fn part(&mut self, p: &Part, room: Option<Rect>) {
+    fn part(&mut self, i: usize, room: Option<Rect>) {
+        let p = &self.scene.parts[i];
         let outline = p.outline();
         let bounds = outline.bounding_box().filter(Rect::is_finite);
         let in_room = bounds.is_some_and(|b| room.is_none_or(|room| overlap(room, b).is_some()));
@@ -128,6 +131,7 @@ impl Walk<'_> {
         }
         let scale = if p.fixed_width { 1.0 } else { stretch(self.scene.to_px * p.frame) };
         self.out.shapes.push(PlotShape {
+            shape: i,
             layer: p.element().and_then(|e| self.layers.layer(self.source, e)),
             color: paint.and_then(color),
             outline: closed(outline, fill.is_some()),

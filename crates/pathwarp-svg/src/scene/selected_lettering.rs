@@ -7,6 +7,7 @@ use crate::source::select::Selection;
 use pathwarp::Outline;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{self, Frame};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Vertical extent of a frame around lettering. The left and right sides are the ends of the lines.
@@ -157,11 +158,72 @@ fn selected_lines(drawing: &Drawing, selected: &[bool]) -> Vec<TextLine> {
     lines.filter(|l| !l.letters.is_empty()).collect()
 }
 
-/// Lists the letters in every part.
-pub(crate) fn letters_by_part(drawing: &Drawing, selection: &Selection) -> Vec<Vec<LetterSubpaths>> {
+/// More members of one group are hardly meant as objects.
+const MOST_OBJECTS: usize = 10_000;
+
+/// Finds the objects among the painted and selected shapes, from left to right: each selected element, or if that is all of the drawing, each
+/// member of the outermost group that has several. Those whose boxes overlap are one.
+pub(crate) fn objects(drawing: &Drawing, selection: &Selection) -> Vec<PlacedLetter> {
+    let (source, shapes) = (&drawing.source, drawing.shapes());
+    let selected = drawing.selected_parts(selection);
+    let parts = drawing.scene().parts.iter().zip(shapes).zip(selected).enumerate();
+    let parts = parts.filter(|(_, ((_, s), selected))| *selected && s.painted);
+    // From the root to each part.
+    let paths: Vec<(usize, Vec<ElementId>)> = parts
+        .filter_map(|(i, ((p, _), _))| {
+            let mut path: Vec<ElementId> = source.ancestors(p.element()?).collect();
+            path.reverse();
+            Some((i, path))
+        })
+        .collect();
+    let elements = selection.resolve(source);
+    let is_whole = elements.first() == Some(&true);
+    let differs = |k: usize| paths.windows(2).any(|w| w[0].1.get(k) != w[1].1.get(k));
+    let longest = paths.iter().map(|p| p.1.len()).max().unwrap_or_default();
+    let level = (0..longest).find(|k| differs(*k)).unwrap_or(longest);
+    let mut found: BTreeMap<ElementId, (Rect, Vec<usize>)> = BTreeMap::new();
+    for (i, path) in &paths {
+        let Some(bounds) = shapes[*i].outline.bounding_box().filter(Rect::is_finite) else { continue };
+        let named = path.iter().find(|e| !is_whole && elements[**e]);
+        let of = named.copied().unwrap_or(path[level.min(path.len() - 1)]);
+        let (all, parts) = found.entry(of).or_insert((bounds, Vec::new()));
+        *all = all.union(bounds);
+        parts.push(*i);
+    }
+    let mut found: Vec<(Rect, Vec<usize>, ElementId)> =
+        found.into_iter().map(|(e, (b, parts))| (b, parts, e)).collect();
+    if found.len() > MOST_OBJECTS {
+        return Vec::new();
+    }
+    found.sort_by(|a, b| a.0.x0.total_cmp(&b.0.x0));
+    let mut apart: Vec<(Rect, Vec<usize>, ElementId)> = Vec::new();
+    for mut next in found {
+        while let Some(k) = apart.iter().rposition(|o| is_whole && o.0.overlaps(next.0)) {
+            let other = apart.remove(k);
+            next = (next.0.union(other.0), [other.1, next.1].concat(), other.2);
+        }
+        apart.push(next);
+    }
+    apart.sort_by(|a, b| a.0.x0.total_cmp(&b.0.x0));
+    let object = |(b, parts, element): (Rect, Vec<usize>, ElementId)| PlacedLetter {
+        name: source.display_name(element),
+        origin: (b.x0, 0.0).into(),
+        advance: b.width(),
+        subpaths: parts.into_iter().map(|i| (i, 0..shapes[i].outline.subpaths.len())).collect(),
+    };
+    apart.into_iter().map(object).collect()
+}
+
+/// Lists the letters, or the objects, in every part.
+pub(crate) fn letters_by_part(drawing: &Drawing, selection: &Selection, objects: bool) -> Vec<Vec<LetterSubpaths>> {
     let mut out = vec![Vec::new(); drawing.scene().parts.len()];
-    let lines = selected_lines(drawing, &drawing.selected_parts(selection));
-    for (letter, l) in lines.iter().flat_map(|l| &l.letters).enumerate() {
+    let letters: Vec<PlacedLetter> = if objects {
+        self::objects(drawing, selection)
+    } else {
+        let lines = selected_lines(drawing, &drawing.selected_parts(selection));
+        lines.into_iter().flat_map(|l| l.letters).collect()
+    };
+    for (letter, l) in letters.iter().enumerate() {
         for (i, range) in &l.subpaths {
             out[*i].push(LetterSubpaths { letter, range: range.clone() });
         }

@@ -410,6 +410,10 @@ pub struct Placement {
     /// For every letter of the frame, one affine map per copy of the artwork, which replaces the map for that letter. Empty:
     /// the map takes the letters as well.
     pub letters: Vec<Vec<Affine>>,
+    /// They are the places of the frame's [objects](crate::param::Frame::objects), rather than of its letters.
+    pub of_objects: bool,
+    /// They are places in the source plane, from which the map takes the letters.
+    pub before: bool,
 }
 
 /// A ray in the image plane where the map brings two edges of the artwork together. The inverse map tears apart artwork that

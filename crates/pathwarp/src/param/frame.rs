@@ -17,6 +17,8 @@ pub struct Frame {
     pub units_per_px: [f64; 2],
     /// The known letters of the artwork. Empty if there are none, or if their baseline is not horizontal.
     pub letters: Arc<[Letter]>,
+    /// The objects of the artwork as if they were letters, without outlines, from left to right. Empty if they are not known.
+    pub objects: Arc<[Letter]>,
     /// Points along the artwork, for deformations that ask for [letters](Self::letters): where distortion is visible. Empty if
     /// they are not known.
     pub ink: Arc<[Point]>,
@@ -33,6 +35,7 @@ impl Frame {
             baseline: None,
             units_per_px: [1.0; 2],
             letters: Arc::new([]),
+            objects: Arc::new([]),
             ink: Arc::new([]),
             page: None,
         }
@@ -41,6 +44,8 @@ impl Frame {
     setters! {
         /// Adds letters.
         with_letters(letters: Arc<[Letter]>) => letters: letters;
+        /// Adds objects.
+        with_objects(objects: Arc<[Letter]>) => objects: objects;
         /// Sets the user units per px along x and y.
         with_units_per_px(units_per_px: [f64; 2]) => units_per_px: units_per_px;
         /// Sets the page.

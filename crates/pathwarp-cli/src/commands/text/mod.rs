@@ -10,11 +10,12 @@ use crate::ending::Status;
 use crate::{mistakes, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
+use pathwarp_engine::export::{self, Exported};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, DRAWINGS};
 use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out, read_font};
 use pathwarp_engine::readable::listed;
-use pathwarp_engine::{Warper, export, input, output};
+use pathwarp_engine::{Warper, input, output};
 use pathwarp_svg::{FontFile, LetteringOptions, write_lettering, write_set_lines};
 use pathwarp_text::Font;
 use std::collections::BTreeSet;
@@ -78,13 +79,14 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let lacking: BTreeSet<char> = text.iter().chain(&below).flat_map(|t| t.missing.iter().copied()).collect();
     let lacking: Vec<char> = lacking.into_iter().collect();
     warnings.extend((!lacking.is_empty()).then(|| missing(&lacking, &names)));
-    if !m.get_flag("quiet") {
-        warnings.iter().for_each(|w| terminal::warning(w));
-    }
     let svg = if m.get_flag("unite") { welded(registry, svg, m)? } else { svg };
-    let result = export::drawing(svg, format, &read, &options, None)?;
-    output::write(target, &result.bytes)?;
-    Ok(Status::partial_if(!lacking.is_empty()))
+    let Exported { bytes, warnings: lost, kerf } = export::drawing(svg, format, &read, &options, None)?;
+    if !m.get_flag("quiet") {
+        warnings.iter().chain(&lost).for_each(|w| terminal::warning(w));
+        kerf.iter().for_each(|k| terminal::note(&k.note()));
+    }
+    output::write(target, &bytes)?;
+    Ok(Status::partial_if(!lacking.is_empty() || kerf.is_some_and(|k| k.is_partial())))
 }
 
 /// The lettering as one shape.
@@ -134,7 +136,16 @@ fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 fn args(registry: &Registry) -> Vec<Arg> {
     let mut all = text_and_font();
     all.extend(on_path::args(registry));
-    all.extend(some_options(&["format", "dxf-curves", "kerf", "page-width", "page-height", "tolerance"]));
+    all.extend(some_options(&[
+        "format",
+        "dxf-curves",
+        "kerf",
+        "engrave",
+        "duplicates",
+        "page-width",
+        "page-height",
+        "tolerance",
+    ]));
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
     all.extend(shaping().map(|a| a.help_heading(SHAPING)));
     all.extend(reading_args());

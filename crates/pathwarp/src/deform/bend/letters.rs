@@ -44,12 +44,12 @@ impl LetterSetting {
         }
     }
 
-    /// Returns the map of a letter whose anchor comes to distance `s`.
-    fn place(self, map: &BendMap, letter: &Letter, s: f64) -> Affine {
+    /// Returns the map that takes `x0` on the baseline to distance `s`.
+    fn place(self, map: &BendMap, x0: f64, s: f64) -> Affine {
         let (c, t) = map.stand(s);
         let (x, y) = self.axes(t);
         let (x, y) = (x * map.to_strip.up, y * map.to_strip.up);
-        let at = c.to_vec2() - x * self.anchor(letter) - y * map.to_strip.base;
+        let at = c.to_vec2() - x * x0 - y * map.to_strip.base;
         Affine::new([x.x, x.y, y.x, y.y, at.x, at.y])
     }
 
@@ -60,10 +60,10 @@ impl LetterSetting {
     /// Returns the distances along the skeleton of letters spread over it. The gaps of every line grow by the same amount, those
     /// between words by twice as much, until the line reaches from end to end of its share. A closed skeleton has one more gap
     /// between words.
-    fn spread(self, map: &BendMap, letters: &[Letter]) -> Vec<f64> {
+    fn spread(self, to_strip: &ToStrip, closed: bool, letters: &[Letter]) -> Vec<f64> {
         /// A gap wider than this share of its line's mean advance separates words.
         const BETWEEN_WORDS: f64 = 0.2;
-        let ToStrip { up, .. } = map.to_strip;
+        let up = to_strip.up;
         let mut out = vec![0.0; letters.len()];
         for line in lines(letters) {
             let end = |i: usize| letters[i].origin.x + letters[i].advance;
@@ -72,9 +72,9 @@ impl LetterSetting {
             let advances: f64 = line.iter().map(|i| letters[*i].advance).sum();
             let wide = BETWEEN_WORDS * advances / line.len() as f64;
             let weight = |gap: f64| if gap > wide { 2.0 } else { 1.0 };
-            let round = if map.closed { weight(f64::INFINITY) } else { 0.0 };
+            let round = if closed { weight(f64::INFINITY) } else { 0.0 };
             let weights = gaps.iter().map(|g| weight(*g)).sum::<f64>() + round;
-            let (from, to) = (map.to_strip.s(letters[first].origin.x), map.to_strip.s(end(last)));
+            let (from, to) = (to_strip.s(letters[first].origin.x), to_strip.s(end(last)));
             let spare = to - from - up * (end(last) - letters[first].origin.x);
             // A single letter stands in the middle.
             let (more, mut at) = if weights > 0.0 { (spare / weights, from) } else { (0.0, from + 0.5 * spare) };
@@ -121,15 +121,56 @@ pub(super) fn places(
     spread: bool,
 ) -> Vec<Vec<Affine>> {
     let at = if spread {
-        setting.spread(map, letters)
+        setting.spread(&map.to_strip, map.closed, letters)
     } else {
         letters.iter().map(|l| map.to_strip.s(setting.anchor(l))).collect()
     };
     let all = |(l, s): (&Letter, f64)| {
         let further = or_identity(copies).iter().map(|c| map.to_strip.k * c.translation().x);
-        further.map(|by| setting.place(map, l, s + by)).collect()
+        further.map(|by| setting.place(map, setting.anchor(l), s + by)).collect()
     };
     letters.iter().zip(at).map(all).collect()
+}
+
+/// Returns the translations, in the source plane, of letters whose spaces grow until they reach around a closed skeleton, as `whole` stretches
+/// the artwork.
+pub(super) fn apart(map: &BendMap, letters: &[Letter], whole: ToStrip) -> Vec<Vec<Affine>> {
+    let at = LetterSetting::Rotate.spread(&whole, true, letters);
+    let by =
+        |(l, s): (&Letter, f64)| vec![Affine::translate(((s - map.to_strip.s(l.middle().x)) / map.to_strip.k, 0.0))];
+    letters.iter().zip(at).map(by).collect()
+}
+
+/// Returns the map of every object in each of `count` copies of the row, with equal gaps between all of them; the first begins at
+/// `first`, or around a closed skeleton has its middle there. `None`: one copy, at the distances drawn.
+pub(super) fn row(
+    map: &BendMap,
+    setting: LetterSetting,
+    objects: &[Letter],
+    count: Option<usize>,
+    first: f64,
+) -> Vec<Vec<Affine>> {
+    let ToStrip { up, .. } = map.to_strip;
+    let place = |o: &Letter, s: f64| setting.place(map, o.middle().x, s);
+    let Some(count) = count else {
+        return objects.iter().map(|o| vec![place(o, map.to_strip.s(o.middle().x))]).collect();
+    };
+    let width: f64 = objects.iter().map(|o| up * o.advance).sum();
+    let all = (count * objects.len()) as f64;
+    let spare = map.length - count as f64 * width;
+    let (gap, mut at) = match objects.first() {
+        Some(o) if map.closed => (spare / all, first - 0.5 * up * o.advance),
+        _ if all > 1.0 => (spare / (all - 1.0), first),
+        _ => (0.0, first + 0.5 * spare),
+    };
+    let mut out = vec![Vec::with_capacity(count); objects.len()];
+    for _ in 0..count {
+        for (o, places) in objects.iter().zip(&mut out) {
+            places.push(place(o, at + 0.5 * up * o.advance));
+            at += up * o.advance + gap;
+        }
+    }
+    out
 }
 
 /// Warns of letters that are squeezed or mirrored, and of letters that collide.

@@ -58,7 +58,9 @@ parameters! {
         align: Align = new("align", Kind::Choice(Align::WORDS)).default("middle");
         /// Shift along the skeleton, user units or % of the artwork's width.
         offset: f64 = length("offset", Axis::X).default("0");
-        /// The least space between repeated artwork, user units or % of its width.
+        /// Set so many copies of the artwork side by side, or as many as fit (fill, as --stretch repeat), spread evenly.
+        param = new("copies", Kind::Text("N|fill"));
+        /// The least space between copies, user units or % of the artwork's width.
         gap: f64 = length("gap", Axis::X).default("0");
         /// The height of the artwork, from its bottom, that lies on the skeleton. Default for lettering: the lettering's baseline.
         param = length("baseline", Axis::Y).default("50%");
@@ -70,8 +72,11 @@ parameters! {
         param = new("handles", Kind::File);
         /// Take the skeleton's anchors as control points of a uniform B-spline of this degree; the curves between them are ignored.
         spline: Option<usize> = new("spline", Kind::Count).within(1.0, 3.0);
-        /// Letters: bend them, or set them one by one: turned, sheared with vertical verticals or horizontal horizontals, or just moved.
+        /// Letters, or without lettering the objects of a drawing: bend them, or set them one by one: turned, sheared with vertical verticals
+        /// or horizontal horizontals, or just moved.
         param = new("glyphs", Kind::Choice(&["bend", "rotate", "skew", "ribbon", "stair"])).default("bend");
+        /// Set objects one by one, of which a text is one, instead of letters.
+        param = flag("objects");
         /// The same as --glyphs skew.
         param = flag("skew");
         /// The same as --glyphs ribbon.
@@ -91,6 +96,10 @@ parameters! {
         let handles: Option<Handles> = s.file_if("handles")?.map(handles).transpose()?;
         let setting: Option<LetterSetting> = setting(s)?;
         let letters: Arc<[Letter]> = Arc::clone(&s.frame().letters);
+        let objects: Arc<[Letter]> = Arc::clone(&s.frame().objects);
+        let sets_objects: bool = s.flag("objects")?;
+        // Copies of the artwork: so many, or as many as fit.
+        let copies: Option<Option<usize>> = copies(s)?;
         // The frame was laid around the letters, and says nothing about their own heights.
         let around_letters: bool = s.frame().baseline.is_some();
         // Points of the artwork; empty if they are not known.
@@ -165,10 +174,18 @@ impl Bend {
         let middle = if closed && !self.is_as_drawn() { skeleton.extreme(self.reverse) } else { 0.5 * length };
         let Joined { pieces, corners, notes } = self.joined(skeleton)?;
 
-        let k = if matches!(self.stretch, Stretch::Keep | Stretch::Repeat) { 1.0 } else { length / rect.width() };
-        let repeats = match self.stretch {
-            Stretch::Repeat => Repeats::new(rect.width(), self.gap, length, closed)?,
-            _ => Repeats::ONE,
+        let spreads = self.spreads_letters(closed);
+        let k = match self.stretch {
+            Stretch::Scale | Stretch::Fit if !spreads => length / rect.width(),
+            _ => 1.0,
+        };
+        let placed = self.setting.is_some() && (self.sets_objects || self.letters.is_empty());
+        let copies = self.copies.or((self.stretch == Stretch::Repeat).then_some(None));
+        let gaps = if placed { self.objects.len().max(1) } else { 1 };
+        let width = if placed { self.objects.iter().map(|o| self.width * o.advance).sum() } else { rect.width() };
+        let repeats = match copies {
+            Some(count) => Repeats::new(count, (width, gaps as f64, self.gap), length, closed)?,
+            None => Repeats::ONE,
         };
         let (from, to) = match self.align {
             // Copies that reach from end to end begin at the start of the skeleton.
@@ -177,12 +194,9 @@ impl Bend {
             Align::End => (rect.x1, length),
             Align::Middle => (rect.center().x, middle),
         };
-        let to_strip = ToStrip {
-            k,
-            origin: to + self.offset - k * from,
-            up: self.width * if self.stretch == Stretch::Scale { k } else { 1.0 },
-            base: self.baseline,
-        };
+        let strip = |k: f64, up: f64| ToStrip { k, origin: to + self.offset - k * from, up, base: self.baseline };
+        let to_strip = strip(k, self.width * if self.stretch == Stretch::Scale { k } else { 1.0 });
+        let spreads = spreads.then(|| strip(length / rect.width(), 1.0));
         let pieces = pieces.into_iter().map(Arc::new).collect();
         let shift = repeats.spacing * (repeats.count - 1) as f64;
         let rect = Rect { x1: rect.x1 + shift, ..rect };
@@ -191,13 +205,31 @@ impl Bend {
 
         let mut built = Built::new(map.simplest());
         built.explanation.notes = notes;
-        explain(&mut built, &map, &corners, rect);
-        if self.stretch == Stretch::Repeat {
+        let spread = placed && (copies.is_some() || self.stretch == Stretch::Fit);
+        explain(&mut built, &map, &corners, if spread { Rect::ZERO } else { rect });
+        if copies.is_some() {
             built.note(format!("artwork repeated: {} times, one every {:.6}", repeats.count, repeats.spacing));
+            let most = Repeats::new(None, (width, gaps as f64, self.gap), length, closed)?.count;
+            if repeats.count > most {
+                built.warn(format!(
+                    "bend: only {most} copies fit with this gap between them; {} are nearer",
+                    repeats.count
+                ));
+            }
+        }
+        if copies.is_some() && !placed {
             built.placement.copies =
                 (0..repeats.count).map(|i| Affine::translate((repeats.spacing * i as f64, 0.0))).collect();
         }
-        self.explain_letters(&mut built, &map, rect);
+        if placed {
+            let count = spread.then_some(repeats.count);
+            let setting = self.setting.unwrap_or(LetterSetting::Rotate);
+            let first = if closed { middle } else { 0.0 } + self.offset;
+            built.placement.letters = letters::row(&map, setting, &self.objects, count, first);
+            built.placement.of_objects = true;
+        } else {
+            self.explain_letters(&mut built, &map, rect, spreads);
+        }
         built.overlay(Role::Cage, path.outline.to_bez_path(1e-4 * size));
         Ok(built)
     }
@@ -207,12 +239,20 @@ impl Bend {
         self.as_drawn || self.handles.is_some()
     }
 
+    /// Whether letters keep their widths on a whole ring, and the spaces between them grow.
+    fn spreads_letters(&self, closed: bool) -> bool {
+        let is_lettering = self.around_letters && !self.letters.is_empty();
+        closed && self.stretch == Stretch::Fit && self.setting.is_none() && is_lettering
+    }
+
     /// Refuses values that contradict each other.
     fn check_together(&self) -> Result<(), Error> {
-        if let Some(setting) = self.setting.filter(|_| self.letters.is_empty()) {
-            let problem = "needs letters on a level baseline: text, or outlines made by `pathwarp text`. Other outlines do not say \
-where a letter begins; `glyphs bend` bends them";
+        if let Some(setting) = self.setting.filter(|_| self.letters.is_empty() && self.objects.is_empty()) {
+            let problem = "needs letters on a level baseline, or objects: there are neither";
             return Err(Error::usage("glyphs", setting.name(), problem));
+        }
+        if self.copies.is_some() && matches!(self.stretch, Stretch::Scale | Stretch::Fit) {
+            return Err(Error::usage("copies", "N", "are spread evenly, and cannot be stretched as well"));
         }
         if self.stretch != Stretch::Keep && self.frame.width() <= 0.0 {
             let name = match self.stretch {
@@ -264,7 +304,7 @@ where a letter begins; `glyphs bend` bends them";
     }
 
     /// Places the letters, or warns where the artwork folds.
-    fn explain_letters(&self, built: &mut Built, map: &BendMap, rect: Rect) {
+    fn explain_letters(&self, built: &mut Built, map: &BendMap, rect: Rect, spreads: Option<ToStrip>) {
         let letters = &self.letters;
         let copies = &built.placement.copies;
         let warnings: Vec<String> = match self.setting {
@@ -275,6 +315,10 @@ where a letter begins; `glyphs bend` bends them";
                 warnings
             }
             None if self.around_letters && !letters.is_empty() => {
+                if let Some(whole) = spreads {
+                    built.placement.letters = letters::apart(map, letters, whole);
+                    built.placement.before = true;
+                }
                 map.fold(letters::points(letters, copies)).into_iter().collect()
             }
             None if self.ink.is_empty() => map.fold(map::edges(rect).map(|p| (p, None))).into_iter().collect(),
@@ -321,15 +365,17 @@ static INFO: Info = Info::new("bend", "bend artwork along a path")
     .guides(&["along"], 1)
     .about("The artwork follows a path, the skeleton: horizontals run along it, verticals stand on it. The skeleton may \
 have any number of lines, curves and arcs, open or closed. Nothing is stretched unless you ask: --stretch scale sizes the artwork \
-to the skeleton, fit stretches it lengthwise only. --stretch repeat sets copies of it side by side, as many as fit on the skeleton, \
-spread evenly.\n\nAn open skeleton is run left to right and a closed one clockwise, so that the artwork \
+to the skeleton, fit stretches it lengthwise only. --copies 12 sets so many copies of it side by side, --copies fill (or --stretch repeat) as many as \
+fit on the skeleton with --gap between them, spread evenly: a border closes on a ring.\n\nAn open skeleton is run left to right and a closed one clockwise, so that the artwork \
 stands on its upper or outer side, with its middle on the highest point of a closed one. --reverse runs a skeleton the other way: artwork on a closed \
 one then stands upright on its lowest point, inside. --as-drawn takes it as it was drawn, as is always done with spirals and \
 with open paths that go around more than once. Beyond the ends of an open one everything continues straight. --spline 3 makes a smooth skeleton of a \
 few points: it is pulled towards them and has no corners; an open one begins at the first and ends at the last.\n\n\
 Lettering (text, or made by `pathwarp text`) stands on the skeleton with its baseline. With --glyphs its letters are set one by \
 one instead of bent: rotate turns them, skew keeps their verticals vertical, ribbon keeps their horizontals horizontal, stair only moves them. \
-They keep their own size, times --width; --stretch fit spreads them out from end to end, scale sizes them. --spacing even measures distances at \
+They keep their own size, times --width; --stretch fit spreads them out from end to end, scale sizes them. Text around a whole ring is spread out by \
+--stretch fit even where it is bent. Without lettering, or with --objects, --glyphs sets the objects of a drawing: what is selected by --select, or else the members of its outermost \
+group of several, of which those that overlap are one. With --copies, gaps between all of them are equal. --spacing even measures distances at \
 half the height of the artwork instead of on the skeleton, so that letters neither crowd inside a bend nor drift apart outside it.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
 its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
 …]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
@@ -427,6 +473,18 @@ fn handles(file: &NamedText) -> Result<Handles, Error> {
     Err(crate::error::no_json(&file.name))
 }
 
+/// Reads how many copies are wanted, if several are.
+fn copies(s: &Settings<'_>) -> Result<Option<Option<usize>>, Error> {
+    match s.texts("copies").last() {
+        None => Ok(None),
+        Some(&"fill") => Ok(Some(None)),
+        Some(n) => match n.parse() {
+            Ok(count) if count > 0 => Ok(Some(Some(count))),
+            _ => Err(Error::usage("copies", *n, "is neither a number above zero nor `fill`")),
+        },
+    }
+}
+
 /// Reads how letters are set one by one, if they are.
 fn setting(s: &Settings<'_>) -> Result<Option<LetterSetting>, Error> {
     let mut given: Vec<&str> = if s.given("glyphs") { vec![s.choice("glyphs")?] } else { Vec::new() };
@@ -456,12 +514,17 @@ struct Repeats {
 impl Repeats {
     const ONE: Self = Self { count: 1, spacing: 0.0 };
 
-    /// Returns as many copies of `width` as fit on `length` with at least `gap` between them, spread evenly: on an open skeleton
-    /// from its start to its end, on a closed one all the way around.
-    fn new(width: f64, gap: f64, length: f64, closed: bool) -> Result<Self, Error> {
+    /// Returns `count` copies of `width` that have `gaps` gaps each, or as many as fit on `length` with at least `gap` in each, spread
+    /// evenly: on an open skeleton from its start to its end, on a closed one all the way around.
+    fn new(
+        count: Option<usize>,
+        (width, gaps, gap): (f64, f64, f64),
+        length: f64,
+        closed: bool,
+    ) -> Result<Self, Error> {
         /// More copies on one skeleton are probably a mistake in the unit.
         const MAX_COPIES: f64 = 10_000.0;
-        let period = width + gap;
+        let period = width + gaps * gap;
         if period <= 0.0 {
             return Err(Error::usage(
                 "gap",
@@ -471,6 +534,7 @@ impl Repeats {
         }
         // Rounding must not exclude a copy that just fits.
         let room = ((if closed { length } else { length + gap }) / period * (1.0 + 1e-9)).floor().max(1.0);
+        let room = count.map_or(room, |n| n as f64);
         if room > MAX_COPIES {
             let problem = format!("would take {room} copies of artwork {width:.6} wide; the limit is {MAX_COPIES}");
             return Err(Error::usage("stretch", "repeat", problem));

@@ -276,3 +276,108 @@ fn letters_stand_on_a_circle() {
         assert_eq!(m.as_coeffs()[..4], [1.0, 0.0, 0.0, 1.0]);
     }
 }
+
+fn objects(widths: &[f64]) -> Arc<[Letter]> {
+    let at = |i: usize| Point::new(30.0 * i as f64, 0.0);
+    let one =
+        |(i, w): (usize, &f64)| Letter { name: i.to_string(), origin: at(i), advance: *w, outline: Outline::default() };
+    widths.iter().enumerate().map(one).collect()
+}
+
+/// Around a circle of radius 50 about 50,50: the middles of turned objects are apart by half of both widths and a gap that is the same
+/// everywhere, also from the last to the first.
+#[test]
+fn copies_of_a_cycle_close_on_a_ring_with_equal_gaps() {
+    let (widths, length) = ([10.0, 4.0, 7.0], 100.0 * std::f64::consts::PI);
+    let frame = check::frame().with_objects(objects(&widths));
+    for (copies, count) in [("5", 5), ("fill", (length / (21.0 + 3.0 * 2.0)) as usize)] {
+        for glyphs in ["rotate", "stair"] {
+            let args = [("along", CIRCLE), ("glyphs", glyphs), ("copies", copies), ("gap", "2"), ("baseline", "0")];
+            let built = ENTRY.build_from(&Args::from_pairs(&args), &frame).unwrap();
+            let places = &built.placement.letters;
+            assert!(built.placement.of_objects && built.placement.copies.is_empty());
+            assert!(places.len() == 3 && places.iter().all(|p| p.len() == count));
+            let gap = (length - count as f64 * 21.0) / (3 * count) as f64;
+            let mut s = 0.0;
+            for k in 0..3 * count {
+                let (m, w) = (places[k % 3][k / 3], widths[k % 3]);
+                let middle = Point::new(30.0 * (k % 3) as f64 + 0.5 * w, 100.0);
+                let (sin, cos) = (s / 50.0_f64).sin_cos();
+                assert!((m * middle).distance(Point::new(50.0 + 50.0 * sin, 50.0 - 50.0 * cos)) < 1e-9, "{copies} {k}");
+                let turned = if glyphs == "rotate" { Vec2::new(cos, sin) } else { Vec2::new(1.0, 0.0) };
+                assert!((m * (middle + Vec2::new(1.0, 0.0)) - m * middle - turned).hypot() < 1e-9);
+                s += 0.5 * w + gap + 0.5 * widths[(k + 1) % 3];
+            }
+            assert!((s - length).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn objects_reach_from_end_to_end_of_an_open_skeleton() {
+    let frame = check::frame().with_objects(objects(&[10.0, 20.0]));
+    let built = |more: &[(&str, &str)]| {
+        let args = [&[("along", "M0,0H200"), ("glyphs", "rotate")], more].concat();
+        ENTRY.build_from(&Args::from_pairs(&args), &frame).unwrap()
+    };
+    let starts = |b: &Built| -> Vec<f64> {
+        let at = |i: usize| move |m: &Affine| (*m * Point::new(30.0 * i as f64, 0.0)).x;
+        (0..2).flat_map(|i| b.placement.letters[i].iter().map(at(i))).collect()
+    };
+    // Three times 30 wide in 200, with 5 gaps of 22.
+    let wanted = [0.0, 74.0, 148.0, 32.0, 106.0, 180.0];
+    assert!(starts(&built(&[("copies", "3")])).iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-9));
+    assert!(starts(&built(&[("stretch", "fit")])).iter().zip([0.0, 180.0]).all(|(a, b)| (a - b).abs() < 1e-9));
+    // As drawn, the middle of the frame on that of the skeleton.
+    assert!(starts(&built(&[])).iter().zip([50.0, 80.0]).all(|(a, b)| (a - b).abs() < 1e-9));
+    assert!(built(&[("copies", "3")]).explanation.warnings.is_empty());
+    let crowded = built(&[("copies", "7")]).explanation.warnings;
+    assert!(crowded.iter().any(|w| w.contains("only 6 copies fit")), "{crowded:?}");
+}
+
+#[test]
+fn senseless_copies_are_refused() {
+    let frame = check::frame().with_objects(objects(&[10.0]));
+    for (args, problem) in [
+        (&[("copies", "0")][..], "neither a number"),
+        (&[("copies", "many")], "neither a number"),
+        (&[("copies", "2"), ("stretch", "fit")], "cannot be stretched"),
+        (&[("copies", "10001"), ("glyphs", "rotate")], "the limit is 10000"),
+        (&[("copies", "fill"), ("gap", "-20"), ("glyphs", "rotate")], "would not advance"),
+    ] {
+        let args = [&[("along", CIRCLE)], args].concat();
+        let refused = ENTRY.build_from(&Args::from_pairs(&args), &frame).err().unwrap().to_string();
+        assert!(refused.contains(problem), "{refused}");
+    }
+    assert!(build(&[("along", CIRCLE), ("glyphs", "rotate")]).err().unwrap().to_string().contains("neither"));
+}
+
+/// Letters around a whole ring keep their widths, and the gaps between them grow alike, that from the last to the first by twice as much.
+#[test]
+fn text_around_a_ring_is_spread_and_not_widened() {
+    let letters: Vec<Letter> = (0..4)
+        .map(|i| Letter {
+            name: "I".into(),
+            origin: Point::new(12.0 * f64::from(i), 100.0),
+            advance: 10.0,
+            outline: Outline::from_points(
+                &[(0.0, 100.0), (10.0, 90.0)].map(|(x, y)| Point::new(x + 12.0 * f64::from(i), y)),
+                false,
+            ),
+        })
+        .collect();
+    let frame =
+        crate::param::Frame::new(Rect::new(0.0, 80.0, 46.0, 100.0)).on_baseline(100.0).with_letters(letters.into());
+    let built = ENTRY.build_from(&Args::from_pairs(&[("along", CIRCLE), ("stretch", "fit")]), &frame).unwrap();
+    assert!(built.placement.before && !built.placement.of_objects);
+    let place =
+        |i: usize, x: f64| built.map.point(built.placement.letters[i][0] * Point::new(12.0 * i as f64 + x, 100.0));
+    let angle = |p: Point| (p - Point::new(50.0, 50.0)).angle();
+    let along = |a: Point, b: Point| 50.0 * (angle(b) - angle(a)).rem_euclid(std::f64::consts::TAU);
+    let spare = 100.0 * std::f64::consts::PI - 46.0;
+    for i in 0..4 {
+        assert!((along(place(i, 0.0), place(i, 10.0)) - 10.0).abs() < 1e-9);
+        let gap = if i == 3 { 2.0 * spare / 5.0 } else { 2.0 + spare / 5.0 };
+        assert!((along(place(i, 10.0), place((i + 1) % 4, 0.0)) - gap).abs() < 1e-9, "{i}");
+    }
+}
