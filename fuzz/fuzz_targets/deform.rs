@@ -3,6 +3,7 @@
 
 #![no_main]
 
+use pathwarp::refit::Nodes;
 use arbitrary::{Arbitrary, Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use pathwarp::Outline;
@@ -40,7 +41,7 @@ struct Case {
 impl<'a> Arbitrary<'a> for Case {
     fn arbitrary(u: &mut Unstructured<'a>) -> Result<Self> {
         let tolerance = *u.choose(&[1.0, 0.1, 0.01, 1e-4])?;
-        let options = Options::new(tolerance).with_certify(u.arbitrary()?).with_merge(u.arbitrary()?);
+        let options = Options::new(tolerance).with_certify(u.arbitrary()?).with_nodes(if u.arbitrary()? { Nodes::Fewest } else { Nodes::Source });
         let frame = if u.ratio(3, 4)? {
             Rect::new(0.0, 0.0, 100.0, 100.0)
         } else {

@@ -5,6 +5,7 @@
 
 #![no_main]
 
+use pathwarp::refit::Nodes;
 use libfuzzer_sys::fuzz_target;
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
@@ -44,7 +45,7 @@ fn build(choice: u8, text: &str) {
     let recipe = Recipe { steps: vec![step] };
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
     if let Ok(built) = recipe.build(&REGISTRY, frame, &std::iter::once(&*PATH)) {
-        check_built(&PATH, &built, &Options::new(0.1).with_certify(choice & 32 != 0).with_merge(choice & 64 != 0));
+        check_built(&PATH, &built, &Options::new(0.1).with_certify(choice & 32 != 0).with_nodes(if choice & 64 != 0 { Nodes::Fewest } else { Nodes::Source }));
     }
 }
 

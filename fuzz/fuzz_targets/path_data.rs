@@ -4,6 +4,7 @@
 
 #![no_main]
 
+use pathwarp::refit::Nodes;
 use libfuzzer_sys::fuzz_target;
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
@@ -43,7 +44,7 @@ fn check(choice: u8, text: &str) {
     let size = frame.rect.size().to_vec2().hypot().max(1e-3);
     let options = Options::new(size * [1e-2, 1e-4][usize::from(choice & 1)])
         .with_certify(choice & 2 != 0)
-        .with_merge(choice & 4 != 0);
+        .with_nodes(if choice & 4 != 0 { Nodes::Fewest } else { Nodes::Source });
     let name = ["swirl", "wave", "warp", "lens"][usize::from(choice >> 3) % 4];
     check_map(&lossy, &AffineMap(Affine::new([0.0, 2.0, 1.0, 0.5, 3.0, 4.0])), &options);
     let registry = Registry::builtin();

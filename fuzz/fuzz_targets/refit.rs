@@ -8,7 +8,7 @@
 use libfuzzer_sys::fuzz_target;
 use pathwarp::kurbo::{Affine, CubicBez, Point};
 use pathwarp::map::BicubicNet;
-use pathwarp::refit::{Options, warp_path};
+use pathwarp::refit::{Nodes, Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 
 /// Reads a coordinate in 0..1000 from two bytes. Equal bytes give equal coordinates, so degenerate cases are easy to reach.
@@ -27,7 +27,7 @@ fuzz_target!(|bytes: &[u8]| {
     let net = std::array::from_fn(|r| std::array::from_fn(|s| point(rest, 4 + 4 * r + s)));
     let map = BicubicNet::new(&net, Affine::scale(0.001));
     let tolerance = [1.0, 0.1, 0.01, 0.001][usize::from(first % 4)];
-    let options = Options::new(tolerance).with_certify(first & 4 != 0).with_merge(first & 8 != 0);
+    let options = Options::new(tolerance).with_certify(first & 4 != 0).with_nodes(if first & 8 != 0 { Nodes::Fewest } else { Nodes::Source });
     let path = Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] };
     let Ok(warped) = warp_path(&path, &map, &options) else { return };
     assert!(warped.path.is_finite());

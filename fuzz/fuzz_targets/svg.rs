@@ -4,6 +4,7 @@
 
 #![no_main]
 
+use pathwarp::refit::Nodes;
 use libfuzzer_sys::fuzz_target;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Rect;
@@ -43,7 +44,7 @@ fn options(choice: u8, built: &BuiltRecipe, document: &Document) -> WarpOptions 
     let bender = Arc::new(Bender::new(Arc::new(built.map.clone()), None).with_limits(limits()));
     let size = document.view_box().size().to_vec2().hypot();
     let refit = refit::Options::new(1e-3 * size.clamp(1.0, 1e6))
-        .with_merge(choice & 8 != 0)
+        .with_nodes(if choice & 8 != 0 { Nodes::Fewest } else { Nodes::Source })
         .with_budget(document.budget().clone());
     let bit = |n: u8| choice & n != 0;
     WarpOptions::new(refit)

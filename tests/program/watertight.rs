@@ -5,6 +5,7 @@ use pathwarp::deform::Registry;
 use pathwarp::kurbo::{CubicBez, Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::{Args, Frame};
+use pathwarp::refit::Nodes;
 use pathwarp::{Outline, Seg, refit};
 use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions};
 use std::collections::HashMap;
@@ -43,7 +44,7 @@ fn stained_glass_has_no_gaps() {
     let shared = refit::SharedEdges::among(doc.shapes().iter().map(|s| &*s.outline));
     assert_ne!(shared, refit::SharedEdges::default());
     for merge in [false, true] {
-        let options = refit::Options::new(1e-3).with_merge(merge);
+        let options = refit::Options::new(1e-3).with_nodes(if merge { Nodes::Fewest } else { Nodes::Source });
         let warped = doc.warp(&map, &WarpOptions::new(options)).unwrap();
         let after = Document::read(warped.svg.as_bytes(), "out", &ReadOptions::default()).unwrap();
         // Every shared source edge gives one or more pieces, each found on both sides.
@@ -62,7 +63,7 @@ fn a_shared_edge_is_not_merged_with_what_follows_it() {
         let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 60 90'>{shapes}</svg>");
         let doc = Document::read(svg.as_bytes(), "t", &ReadOptions::default()).unwrap();
         let map = shaper(Rect::new(0.0, 0.0, 60.0, 90.0));
-        let options = refit::Options::new(0.2).with_merge(true);
+        let options = refit::Options::new(0.2).with_nodes(Nodes::Fewest);
         let out = doc.warp(&map, &WarpOptions::new(options)).unwrap().svg;
         let after = Document::read(out.as_bytes(), "out", &ReadOptions::default()).unwrap();
         after.shapes().iter().map(|s| edges(&s.outline)).collect::<Vec<_>>()
@@ -98,7 +99,7 @@ fn neighbours_under_different_transforms_write_their_edge_alike() {
         let doc = Document::read(svg.as_bytes(), "t", &ReadOptions::default()).unwrap();
         for step in 0..36 {
             let map: Arc<dyn Map> = Arc::new(Nearly(1e-13 * 1.6f64.powi(step)));
-            let options = refit::Options::new(0.02).with_merge(true);
+            let options = refit::Options::new(0.02).with_nodes(Nodes::Fewest);
             let out = doc.warp(&map, &WarpOptions::new(options)).unwrap().svg;
             let after = Document::read(out.as_bytes(), "out", &ReadOptions::default()).unwrap();
             let outlines: Vec<&Outline> = after.shapes().iter().map(|s| &*s.outline).collect();

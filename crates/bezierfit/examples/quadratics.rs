@@ -7,7 +7,7 @@
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
-use bezierfit::{Degree, Options, simplify};
+use bezierfit::{Degree, Nodes, Options, simplify};
 use kurbo::{BezPath, ParamCurve, ParamCurveNearest, PathSeg, Point};
 use std::time::Instant;
 
@@ -30,7 +30,7 @@ fn main() {
         let options = Options::new(tolerance).with_degree(Degree::Quadratic);
         let mut alone = 0;
         for (_, path) in &contours {
-            alone += counts(&simplify(path, &options.with_merge(false)).unwrap().path).0;
+            alone += counts(&simplify(path, &options.with_nodes(Nodes::Source)).unwrap().path).0;
         }
         let start = Instant::now();
         let merged: Vec<BezPath> = contours.iter().map(|(_, p)| simplify(p, &options).unwrap().path).collect();

@@ -157,7 +157,7 @@ impl<S: Source> StretchFitter<'_, S> {
             }
             let mut next = n;
             if total > n as f64 * FULL || placements >= PLACEMENTS {
-                if total <= n as f64 * REPAIRABLE && self.repair(&mut plan)? {
+                if !self.evenly && total <= n as f64 * REPAIRABLE && self.repair(&mut plan)? {
                     break;
                 }
                 next = (n + 1).max((total * HOPE).ceil() as usize);

@@ -141,6 +141,14 @@ pub struct ChordFrame {
     pub pull: f64,
 }
 
+/// The scale of a piece with chord `q`: the largest distance of some samples from its first point; `evenly`, from either end.
+#[inline(always)]
+pub(crate) fn size(q: Vec2, g: &Lanes, evenly: bool) -> f64 {
+    let far = |i: usize, p: Vec2| (Vec2::new(g.x[i], g.y[i]) - p).hypot2();
+    let size = larger(larger(q.hypot2(), far(3, Vec2::ZERO)), far(6, Vec2::ZERO));
+    if evenly { larger(larger(far(4, q), far(1, q)), size).sqrt() } else { size.sqrt() }
+}
+
 impl ChordFrame {
     /// From a chord, unit tangents at the ends, size, and Hermite's handles. A handle that vanishes there starts tiny and may grow. One
     /// that differs from it by the size counts like a residual of a twentieth of the tolerance.
@@ -377,15 +385,19 @@ pub(crate) fn gauss_newton(sums: &[f64; 5]) -> Option<([f64; 2], f64)> {
 }
 
 impl ChordFrame {
-    /// The state with the first handle `factor` times as long and the same area, if its handles are possible.
+    /// The state with the handle `scaled`, 0 or 1, `factor` times as long and the same area, if its handles are possible.
     #[inline(always)]
-    pub(crate) fn along_valley(&self, g: &Lanes, z: &FitState, factor: f64) -> Option<FitState> {
-        let (k0, k1, k2) = (self.q.cross(self.t0), self.t1.cross(self.q), 0.5 * self.t1.cross(self.t0));
-        let a = z.a * factor;
-        let b = (k0 * z.a + k1 * z.b - k2 * z.a * z.b - k0 * a) / (k1 - k2 * a);
-        if !(b > self.floor[1] && b < self.size) {
+    pub(crate) fn along_valley(&self, g: &Lanes, z: &FitState, (scaled, factor): (usize, f64)) -> Option<FitState> {
+        let k2 = 0.5 * self.t1.cross(self.t0);
+        let k = [self.q.cross(self.t0), self.t1.cross(self.q)];
+        let (mut new, other) = ([z.a, z.b], 1 - scaled);
+        new[scaled] *= factor;
+        new[other] =
+            (k[0] * z.a + k[1] * z.b - k2 * z.a * z.b - k[scaled] * new[scaled]) / (k[other] - k2 * new[scaled]);
+        if !(new[other] > self.floor[other] && new[other] < self.size) {
             return None;
         }
+        let [a, b] = new;
         let mut start = FitState { a, b, s: z.s };
         self.settle(g, a, b, &mut start.s);
         Some(start)
@@ -529,7 +541,7 @@ pub(crate) fn minimax(
     frame: &ChordFrame,
     g: [&Lanes; 2],
     start: [FitState; 2],
-    [wanted, tolerance]: [f64; 2],
+    ([wanted, tolerance], enough): ([f64; 2], f64),
 ) -> ([FitState; 2], f64) {
     let mut z = start;
     let mut best = (start, f64::INFINITY);
@@ -546,7 +558,7 @@ pub(crate) fn minimax(
         if !gains || error <= wanted || k == STEPS {
             break;
         }
-        let Some((step, level)) = levelled(&r) else { break };
+        let Some((step, level)) = levelled(&r, enough) else { break };
         if level > MINIMAX_HOPE * tolerance {
             break;
         }
@@ -574,7 +586,7 @@ const EXTREMES: [usize; 3] = [1, 11, 14];
 
 /// The step that makes the largest of the linearised residuals as small as possible, and that residual. `None` if the samples do not
 /// determine a step.
-fn levelled(r: &[Normals; 2]) -> Option<([f64; 2], f64)> {
+fn levelled(r: &[Normals; 2], enough: f64) -> Option<([f64; 2], f64)> {
     let row = |i: usize| -> [f64; 3] {
         let (h, j) = (&r[i / 8], i % 8);
         [h.n[j], h.na[j], h.nb[j]]
@@ -593,7 +605,7 @@ fn levelled(r: &[Normals; 2]) -> Option<([f64; 2], f64)> {
         }
         let most = (0..16).fold(0, |m, i| if residuals[i] > residuals[m] { i } else { m });
         // Rounding may leave the reference's own residuals a little above the level.
-        if residuals[most] <= LEVELLED * level || reference.contains(&most) {
+        if residuals[most] <= level * enough || reference.contains(&most) {
             break;
         }
         let new = row(most);
@@ -614,6 +626,12 @@ fn levelled(r: &[Normals; 2]) -> Option<([f64; 2], f64)> {
 
 /// Residuals that exceed the level by less than a thousandth are level: the step is only of first order.
 const LEVELLED: f64 = 1.001;
+
+/// The same for fits that are to be alike from either end.
+const LEVELLED_EVENLY: f64 = 1.0 + 1e-9;
+
+/// Handles that differ by less, as a share, are those of a symmetrical curve.
+const SAME_HANDLES: f64 = 1e-7;
 
 /// Three residuals levelled: λ and Σλᵢnᵢ.
 struct Level {
@@ -661,6 +679,9 @@ pub(crate) trait Fitting {
     /// Their foot points, interpolated.
     fn between(&self, s: &Lane) -> Lane;
 
+    /// Fits are to be the same from either end, so that even handles stay even.
+    fn evenly(&self) -> bool;
+
     /// The error of a fit that comes within the tolerance; above the tolerance if it must be rejected.
     fn judge(&mut self, fit: &Fit) -> Result<(f64, Self::Mark), NotFinite>;
 }
@@ -687,8 +708,9 @@ impl<M: Default> BestFit<M> {
     ) -> Result<(), NotFinite> {
         let (z, check) = (self.fit.z, on.checked()?);
         let other = FitState { s: on.between(&z.s), ..z };
+        let enough = if on.evenly() { LEVELLED_EVENLY } else { LEVELLED };
         let (frame, g) = on.samples();
-        let (z, error) = minimax(frame, [g, &check], [z, other], [wanted, tolerance]);
+        let (z, error) = minimax(frame, [g, &check], [z, other], ([wanted, tolerance], enough));
         if error < self.error {
             let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
             *self = Self::of(fit, on, tolerance)?;
@@ -720,15 +742,18 @@ pub(crate) fn improved<F: Fitting>(
         frame.settle(g, start.a, start.b, &mut start.s);
         best = BestFit::of(fitted(on, start, 0.0), on, tolerance)?;
     }
-    // Start again farther along the valley of equal area, from more even handles first, which more often succeeds.
-    let even = if best.fit.z.a < best.fit.z.b { RESTART_FACTOR } else { 1.0 / RESTART_FACTOR };
-    let near = best.error < RESTART_WITHIN * tolerance;
+    // Start again farther along the valley of equal area, from more even handles first, which more often succeeds. Of the two, the shorter
+    // one is scaled if fits are to be the same from either end, and none if they are even.
+    let FitState { a, b, .. } = best.fit.z;
+    let even = if a < b || on.evenly() { RESTART_FACTOR } else { 1.0 / RESTART_FACTOR };
+    let scaled = usize::from(on.evenly() && b < a);
+    let near = best.error < RESTART_WITHIN * tolerance && !(on.evenly() && (a - b).abs() <= SAME_HANDLES * a);
     for factor in [even, 1.0 / even] {
         if !near || best.error <= tolerance {
             break;
         }
         let (frame, g) = on.samples();
-        let Some(start) = frame.along_valley(g, &best.fit.z, factor) else { continue };
+        let Some(start) = frame.along_valley(g, &best.fit.z, (scaled, factor)) else { continue };
         let other = fitted(on, start, GOOD_ENOUGH);
         if other.reach < best.error {
             let other = BestFit::of(other, on, tolerance)?;
@@ -776,7 +801,7 @@ mod tests {
     fn the_step_is_the_best_uniform_approximation() {
         for seed in 0..200 {
             let r = rows(seed);
-            let (step, level) = levelled(&r).unwrap();
+            let (step, level) = levelled(&r, LEVELLED).unwrap();
             let mut least = 0.0f64;
             for i in 0..16 {
                 for j in 0..i {
@@ -801,6 +826,6 @@ mod tests {
         for half in &mut r {
             half.nb = half.na.map(|a| 2.0 * a);
         }
-        assert!(levelled(&r).is_none());
+        assert!(levelled(&r, LEVELLED).is_none());
     }
 }

@@ -128,7 +128,7 @@ pub(crate) fn fewest<S: Source + Clone>(
     report: &mut Report,
 ) -> Result<(), NotFinite> {
     let proof = run.segments.first().is_some_and(RunSegment::is_provable);
-    let settings = MergeSettings { tolerance, proof, marks: false, again: false };
+    let settings = MergeSettings { tolerance, proof, marks: false, again: false, evenly: false };
     let mut reaches = Reaches::new(run, own, settings, memory);
     let legs = reaches.fewest()?;
     let (mut own, legs) = refined(run, reaches.own, legs, settings, memory)?;

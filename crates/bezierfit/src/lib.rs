@@ -34,6 +34,7 @@ mod joined;
 mod judge;
 mod limits;
 mod merge;
+mod nodes;
 mod offset;
 mod options;
 mod part;
@@ -54,7 +55,7 @@ mod strips;
 mod stroke;
 
 pub use offset::Offset;
-pub use options::{Degree, Error, MAX_EVALUATIONS, Options, Pieces};
+pub use options::{Degree, Error, MAX_EVALUATIONS, Nodes, Options, Pieces};
 pub use path::{PathSource, Segment, fit, simplify};
 #[cfg(feature = "area")]
 pub use region::{difference, intersection, offset, union, union_even_odd};
@@ -71,6 +72,7 @@ pub mod parts {
     pub use crate::joined::cover_far;
     pub use crate::limits::{ACCEPTED, MERGE_GRID, SMOOTH_JOINT, STRAIGHT};
     pub use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, refined};
+    pub use crate::nodes::{NodeSettings, Side, is_structure, placed};
     pub use crate::path::append;
     pub use crate::run::{RunSegment, SegmentRun, per_segment, sample_lanes};
     pub use crate::sample::{CHECKED, FITTED, UNEVEN, fma, spaced};

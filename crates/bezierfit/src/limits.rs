@@ -266,6 +266,14 @@ pub(crate) const SHARP_TURN: f64 = 0.25;
 /// grows a little when the cubic is carried.
 pub(crate) const CARRY_BELOW: f64 = 0.7;
 
+// Placed nodes
+
+/// A node goes to an extreme if the curve turns by less than this up to there, as a sine (20°).
+pub(crate) const MOVED_TURN: f64 = 0.342;
+
+/// A direction that is off an axis by less than this is along it: rounding.
+pub(crate) const ON_AXIS: f64 = 1e-7;
+
 // Quadratics
 
 /// Samples for each piece of a quadratic spline, and twice as many for the shortest run.

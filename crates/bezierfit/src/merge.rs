@@ -59,7 +59,7 @@ pub struct ReachMemory {
 
 /// Everything known about single cubics between the grid places of a run.
 pub struct Reaches<'r, S, F> {
-    run: &'r SegmentRun<S>,
+    pub(crate) run: &'r SegmentRun<S>,
     /// The segments' own pieces.
     pub own: OwnPieces<F>,
     /// The tolerance of checks, smaller than that of proofs.
@@ -79,6 +79,8 @@ pub struct MergeSettings {
     pub marks: bool,
     /// They are certain to be used, so that their errors should be small.
     pub again: bool,
+    /// They are to be the same from either end.
+    pub evenly: bool,
 }
 
 impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
@@ -119,7 +121,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 
     /// The last grid place.
-    fn last(&self) -> usize {
+    pub(crate) fn last(&self) -> usize {
         self.run.last_place()
     }
 
@@ -194,7 +196,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
 
     fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch, NotFinite> {
         let ends = [self.end(k)?, self.end(m)?];
-        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], self.tolerance))
+        let settings = (self.tolerance, self.settings.evenly);
+        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], settings))
     }
 
     /// The entry of the cubic from `k` to `m`, if it was tried.
@@ -222,7 +225,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(memory.latest[k])
     }
 
-    fn error(&mut self, k: usize, m: usize) -> Result<f64, NotFinite> {
+    /// Error ÷ tolerance of the cubic from `k` to `m` at its samples.
+    pub(crate) fn error(&mut self, k: usize, m: usize) -> Result<f64, NotFinite> {
         let i = self.entry(k, m)?;
         Ok(self.memory.tried[i].error)
     }
@@ -362,12 +366,12 @@ impl<F: FitOwn> OwnPieces<F> {
     }
 
     /// Number of segments.
-    fn segments(&self) -> usize {
+    pub(crate) fn segments(&self) -> usize {
         self.known.len()
     }
 
     /// Number of pieces of all segments.
-    fn total(&mut self) -> Result<usize, NotFinite> {
+    pub(crate) fn total(&mut self) -> Result<usize, NotFinite> {
         (0..self.segments()).map(|i| self.count(i)).sum()
     }
 

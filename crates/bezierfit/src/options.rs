@@ -23,8 +23,8 @@ pub struct Options {
     /// within the tolerance, such as squares with sides of some ten tolerances, but neither stairs of pixels nor noise nor facets. Joints
     /// of other curves are smooth up to half a degree by default.
     pub corner: Option<f64>,
-    /// Let pieces run across smooth joints. On by default.
-    pub merge: bool,
+    /// Where nodes are. As few as the tolerance allows by default.
+    pub nodes: Nodes,
     /// What the pieces are. Cubics by default.
     pub degree: Degree,
     /// How many pieces there may be. As many as the tolerance needs by default.
@@ -51,6 +51,36 @@ pub enum Degree {
     Quadratic,
 }
 
+/// Where the nodes between pieces are, besides corners.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Nodes {
+    /// Where the source has its structure: at smooth horizontal and vertical extremes with handles along the axis, at ends of straight lines
+    /// and arcs. Such a node goes to the result's own extreme, with handles exactly along the axis, if the curve turns by less than 20° up
+    /// to there. Pieces between them are as few as the tolerance allows, and divided alike from either end.
+    Auto,
+    /// Where the fewest pieces need them.
+    Fewest,
+    /// At every smooth horizontal or vertical extreme of the result, with handles exactly along the axis; between them as for `Auto`.
+    Extremes,
+    /// Where the source has them: no piece crosses a joint.
+    #[default]
+    Source,
+}
+
+impl Nodes {
+    /// Returns `true` if pieces may cross smooth joints.
+    #[must_use]
+    pub fn merges(self) -> bool {
+        self != Self::Source
+    }
+
+    /// Returns `true` if some nodes are chosen for their place.
+    #[must_use]
+    pub fn are_placed(self) -> bool {
+        matches!(self, Self::Auto | Self::Extremes)
+    }
+}
+
 /// A number of pieces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pieces {
@@ -69,7 +99,7 @@ impl Options {
     pub fn new(tolerance: f64) -> Self {
         let (degree, pieces) = (Degree::Cubic, Pieces::Fewest);
         let (best, evaluations) = (false, MAX_EVALUATIONS);
-        Self { tolerance, prove: false, corner: None, merge: true, degree, pieces, best, evaluations }
+        Self { tolerance, prove: false, corner: None, nodes: Nodes::Fewest, degree, pieces, best, evaluations }
     }
 
     /// Sets [`Options::prove`].
@@ -84,10 +114,10 @@ impl Options {
         Self { corner: Some(corner), ..self }
     }
 
-    /// Sets [`Options::merge`].
+    /// Sets [`Options::nodes`].
     #[must_use]
-    pub fn with_merge(self, merge: bool) -> Self {
-        Self { merge, ..self }
+    pub fn with_nodes(self, nodes: Nodes) -> Self {
+        Self { nodes, ..self }
     }
 
     /// Sets [`Options::degree`].

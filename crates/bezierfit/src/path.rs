@@ -3,7 +3,8 @@
 use crate::joined::{Covered, JoinSettings, fewest, joined};
 use crate::limits::CUBICS_FIRST;
 use crate::merge::{OwnPieces, ReachMemory};
-use crate::options::{Degree, Error, Options, Pieces};
+use crate::nodes::{NodeSettings, Side, is_structure, placed};
+use crate::options::{Degree, Error, Nodes, Options, Pieces};
 use crate::part::{Part, parts};
 use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
@@ -80,9 +81,9 @@ fn merged_parts<S: Source>(
         fitter.counted = Some((calls, options.evaluations.saturating_sub(ONE_ROUND)));
         fitter.cover(&part.ends[0], &part.ends[1], &mut pieces, &mut report)?;
         let own = Covered { part: *part, pieces, report };
-        own.add(if options.merge { &fitter.joints } else { &[] }, &mut covered);
+        own.add(if options.nodes.merges() { &fitter.joints } else { &[] }, &mut covered);
     }
-    if options.merge {
+    if options.nodes.merges() {
         let Options { tolerance, prove, .. } = *options;
         let settings = JoinSettings { tolerance, corner: options.joint(), prove, finely: covered.len() > parts.len() };
         joined(&covered, settings, memory, &mut out, report)?;
@@ -106,7 +107,7 @@ fn splines<S: Source>(
     while let Some(first) = rest.first() {
         let smooth = |w: &[Part<'_, S>]| {
             let (u, v) = (w[0].ends[1].into, w[1].ends[0].away);
-            options.merge && u.cross(v).atan2(u.dot(v)).abs() <= options.joint()
+            options.nodes.merges() && u.cross(v).atan2(u.dot(v)).abs() <= options.joint()
         };
         let count = 1 + rest.windows(2).take_while(|w| smooth(w)).count();
         let ends = [first.ends[0], rest[count - 1].ends[1]];
@@ -120,7 +121,7 @@ fn splines<S: Source>(
 
 /// Replaces the segments of a path by few, within `options.tolerance`. Corners stay: see [`Options::corner`].
 ///
-/// With [`Degree::Quadratic`], cubics become quadratics; without [`Options::merge`], each on its own.
+/// With [`Degree::Quadratic`], cubics become quadratics; with [`Nodes::Source`](crate::Nodes), each on its own.
 ///
 /// # Errors
 /// The path has coordinates that are not finite, or the options make no sense.
@@ -153,12 +154,12 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
             return Err(NotFinite { t: 0.0, at });
         }
         let mut segments: Vec<Segment> = subpath.segments().map(Segment::new).collect();
-        if options.merge && segments.iter().any(Segment::has_length) {
+        if options.nodes.merges() && segments.iter().any(Segment::has_length) {
             segments.retain(Segment::has_length);
         }
         let parts = smooth_parts(segments, closed, options);
         let start = parts.first().and_then(|p| p.segments.first()).map_or(start, |s| s.seg.start());
-        let mut pieces = Vec::new();
+        let (mut pieces, whole) = (Vec::new(), parts.len());
         if options.degree == Degree::Quadratic {
             out.path.move_to(start);
         }
@@ -168,13 +169,15 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
             while !rest.is_empty() {
                 rest = &rest[match options.degree {
                     Degree::Quadratic => quadratics(rest, &options, &mut out)?,
-                    Degree::Cubic => smooth_run(rest, &options, &mut memory, &mut pieces, &mut out.report)?,
+                    Degree::Cubic => {
+                        smooth_run((rest, closed && whole == 1), &options, &mut memory, &mut pieces, &mut out.report)?
+                    }
                 }..];
             }
             out.report.widen(first, part.off);
         }
         match options.degree {
-            Degree::Cubic => append(&mut out.path, start, &pieces, closed),
+            Degree::Cubic => append(&mut out.path, pieces.first().map_or(start, Piece::start), &pieces, closed),
             Degree::Quadratic if closed => out.path.close_path(),
             Degree::Quadratic => {}
         }
@@ -185,13 +188,17 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
 /// The first segments as a run, as far as they join smoothly, and their number.
 fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
     let mut run = SegmentRun::new(true, segments.len().min(64));
-    let most = if options.merge { segments.len() } else { 1 };
+    let most = if options.nodes.merges() { segments.len() } else { 1 };
     let count = run.extend(&segments[..most], options.path_joint(), |segment| {
         let form = if options.prove { segment.quotient() } else { None };
         let ends = [segment.end(0.0)?, segment.end(1.0)?];
         let is_line = matches!(segment.seg, PathSeg::Line(_));
         Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends, is_line)))
     })?;
+    for i in 0..count {
+        let before = &segments[if i == 0 { segments.len() } else { i } - 1];
+        run.segments[i].kept = is_structure(&before.side(1.0), &segments[i].side(0.0));
+    }
     Ok((run, count))
 }
 
@@ -204,9 +211,10 @@ fn unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Re
     }
 }
 
-/// Appends the pieces of the first segments, as far as they join smoothly, and returns their number.
+/// Appends the pieces of the first segments, as far as they join smoothly, and returns their number. `closed`: after the last one comes
+/// the first again.
 pub(crate) fn smooth_run(
-    segments: &[Segment],
+    (segments, closed): (&[Segment], bool),
     options: &Options,
     memory: &mut ReachMemory,
     pieces: &mut Vec<Piece>,
@@ -214,6 +222,12 @@ pub(crate) fn smooth_run(
 ) -> Result<usize, NotFinite> {
     let (run, count) = smooth_start(segments, options)?;
     let mut itself = unchanged(segments);
+    if options.nodes.are_placed() && count > usize::from(options.nodes == Nodes::Auto) {
+        let closed = closed && count == segments.len() && run.closes(options.path_joint());
+        let Options { nodes, tolerance, .. } = *options;
+        placed(&run, NodeSettings { nodes, tolerance, closed, left: f64::INFINITY }, memory, pieces, report)?;
+        return Ok(count);
+    }
     if count < 2 {
         itself(0, pieces, report)?;
         return Ok(1);
@@ -364,6 +378,12 @@ impl Segment {
             PathSeg::Line(l) => Piece::Line(l),
             other => Piece::Cubic(other.to_cubic()),
         }
+    }
+
+    /// What tells at an end if that belongs to the structure of a drawing.
+    fn side(&self, t: f64) -> Side {
+        let [d1, d2] = self.derivatives(t);
+        Side { tangent: d1, bend: d2, is_line: matches!(self.seg, PathSeg::Line(_)) }
     }
 
     /// As kurbo's segment.

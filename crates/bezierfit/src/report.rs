@@ -21,6 +21,15 @@ impl Piece {
         nearest.distance_sq.sqrt()
     }
 
+    /// Its first point.
+    #[must_use]
+    pub fn start(&self) -> Point {
+        match self {
+            Self::Line(l) => l.p0,
+            Self::Cubic(c) => c.p0,
+        }
+    }
+
     /// The same piece in the other direction.
     #[must_use]
     pub fn reversed(self) -> Self {

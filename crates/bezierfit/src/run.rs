@@ -1,7 +1,7 @@
 //! Segments in a row as one curve, known by samples at even parameters of each, and one cubic for a stretch of it, fitted to sixteen of
 //! those samples.
 
-use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, fit, improved, settled};
+use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, fit, improved, settled, size};
 use crate::limits::{COARSE, EVEN_CURVATURE, LONG_EDGE, MERGE_GRID, OPAQUE_SAMPLES, PEAK_NEAR, RATIONAL_SAMPLES};
 use crate::report::{Assurance, Piece};
 use crate::sample::{ALL, Evenly, Lane, Lanes, UNIT, extreme, interleaved, larger, largest};
@@ -32,6 +32,8 @@ pub struct RunSegment<S> {
     kind: Kind,
     /// The curvature at both ends.
     curvature: [Curvature; 2],
+    /// It begins at a node that is the source's structure.
+    pub kept: bool,
 }
 
 /// A curvature and how far it may be off.
@@ -55,13 +57,18 @@ impl<S> RunSegment<S> {
     /// A segment without slow spots, with its ends, its form if proofs are wanted, and `true` if it is a line.
     pub fn new(source: S, form: Option<Quotient>, [from, to]: [BreakPoint; 2], is_line: bool) -> Self {
         let kind = if is_line { Kind::Straight } else { Kind::Curve };
-        Self { source, form, from, to, kind, curvature: [Curvature::default(); 2] }
+        Self { source, form, from, to, kind, curvature: [Curvature::default(); 2], kept: false }
     }
 
     /// The same, drawn as a line that is none any more.
     #[must_use]
     pub fn bent(self) -> Self {
         Self { kind: Kind::Bent, ..self }
+    }
+
+    /// Another source of the same kind.
+    pub(crate) fn over<T>(&self, source: T, form: Option<Quotient>, [from, to]: [BreakPoint; 2]) -> RunSegment<T> {
+        RunSegment { source, form, from, to, kind: self.kind, curvature: self.curvature, kept: self.kept }
     }
 
     /// Returns `true` if proofs are wanted and possible.
@@ -112,7 +119,16 @@ impl<S: Source> SegmentRun<S> {
 
     /// Samples a segment and appends it. Returns `false` if it does not move everywhere: a stretch without length has no direction
     /// to be merged along.
-    pub fn push(&mut self, mut segment: RunSegment<S>) -> Result<bool, NotFinite> {
+    pub fn push(&mut self, segment: RunSegment<S>) -> Result<bool, NotFinite> {
+        self.push_sampled(segment, None)
+    }
+
+    /// As [`push`](Self::push), with its samples if they are known.
+    pub(crate) fn push_sampled(
+        &mut self,
+        mut segment: RunSegment<S>,
+        samples: Option<[&[f64]; 2]>,
+    ) -> Result<bool, NotFinite> {
         let n = self.per_segment;
         if self.x.is_empty() {
             self.x.push(segment.from.p.x);
@@ -120,10 +136,15 @@ impl<S: Source> SegmentRun<S> {
             self.length.push(0.0);
         }
         let start = self.x.len() - 1;
-        for t in sample_lanes(n) {
-            let g = images(&segment.source, &t)?;
-            self.x.extend(g.x);
-            self.y.extend(g.y);
+        if let Some([x, y]) = samples {
+            self.x.extend(x);
+            self.y.extend(y);
+        } else {
+            for t in sample_lanes(n) {
+                let g = images(&segment.source, &t)?;
+                self.x.extend(g.x);
+                self.y.extend(g.y);
+            }
         }
         let mut moves = true;
         for k in start..start + n {
@@ -145,6 +166,18 @@ impl<S: Source> SegmentRun<S> {
         segment.curvature = [first, Curvature { value: -last.value, ..last }];
         self.segments.push(segment);
         Ok(true)
+    }
+
+    /// The samples of segment `i` but for its first.
+    pub(crate) fn samples_of(&self, i: usize) -> [&[f64]; 2] {
+        let range = i * self.per_segment + 1..=(i + 1) * self.per_segment;
+        [&self.x[range.clone()], &self.y[range]]
+    }
+
+    /// Returns `true` if the run ends where it begins, and pieces may run on there.
+    pub fn closes(&self, corner: f64) -> bool {
+        let ends = [self.segments.last(), self.segments.first()];
+        matches!(ends, [Some(last), Some(first)] if last.to.p == first.from.p && !last.parts(first, corner))
     }
 
     /// Appends the first of `items` as long as `segment` makes a segment of them and they join with turns of at most `corner` radians.
@@ -358,6 +391,8 @@ pub(crate) struct Trial {
 /// A stretch of a run with its sixteen samples, relative to its first point.
 pub(crate) struct Stretch {
     pub(crate) tolerance: f64,
+    /// See [`Fitting::evenly`].
+    evenly: bool,
     ends: [BreakPoint; 2],
     samples: [usize; 2],
     frame: ChordFrame,
@@ -372,7 +407,7 @@ impl Stretch {
         run: &SegmentRun<impl Source>,
         ends: [BreakPoint; 2],
         samples: [usize; 2],
-        tolerance: f64,
+        (tolerance, evenly): (f64, bool),
     ) -> Self {
         let [from, to] = ends;
         let ([first, last], length) = (samples, to.t - from.t);
@@ -403,11 +438,10 @@ impl Stretch {
         let g = Lanes { x: picked(&x, &FITTED_AT), y: picked(&y, &FITTED_AT) };
         let check = Lanes { x: picked(&x, &CHECKED_AT), y: picked(&y, &CHECKED_AT) };
         let q = to.p - from.p;
-        let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
-        let size = larger(larger(q.hypot2(), far(3)), far(6)).sqrt();
+        let size = size(q, &g, evenly);
         let third = length * (1.0 / 3.0);
         let frame = ChordFrame::new(q, [from.away, to.into], size, [third; 2], tolerance);
-        Self { tolerance, ends, samples, frame, g, check, shares }
+        Self { tolerance, evenly, ends, samples, frame, g, check, shares }
     }
 
     /// Fits a cubic, by least squares first and in further ways as long as the error is above the tolerance.
@@ -456,6 +490,10 @@ impl Fitting for Stretch {
 
     fn checked(&mut self) -> Result<Lanes, NotFinite> {
         Ok(self.check)
+    }
+
+    fn evenly(&self) -> bool {
+        self.evenly
     }
 
     /// Foot points of the checked samples between those of the fitted ones.

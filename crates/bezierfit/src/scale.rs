@@ -300,7 +300,7 @@ impl SmoothPart {
         let options = Options::new(tolerance - self.off);
         let (mut pieces, mut report, mut rest) = (Vec::new(), Report::default(), &self.segments[..]);
         while !rest.is_empty() {
-            match smooth_run(rest, &options, &mut ReachMemory::default(), &mut pieces, &mut report) {
+            match smooth_run((rest, false), &options, &mut ReachMemory::default(), &mut pieces, &mut report) {
                 Ok(count) => rest = &rest[count..],
                 Err(_) => return usize::MAX,
             }
@@ -335,7 +335,7 @@ pub(crate) fn smooth_parts(segments: Vec<Segment>, closed: bool, options: &Optio
         let turn = turn(&segments[i], &segments[(i + 1) % n]);
         turn > smooth && options.corner.is_none_or(|corner| turn <= corner)
     };
-    if !options.merge || n < 2 || !(0..last).any(kinked) {
+    if !options.nodes.merges() || n < 2 || !(0..last).any(kinked) {
         return vec![SmoothPart::of(segments)];
     }
     let flat = Flat::new(&segments, closed, options.tolerance);

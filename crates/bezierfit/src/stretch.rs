@@ -1,6 +1,6 @@
 //! One piece for one stretch of a curve: its samples, a line if they are on one, the Hermite cubic if that fits, or the best cubic found.
 
-use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, improved};
+use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, improved, size};
 use crate::limits::{
     CUSP_SPEED, EVALUATIONS_PER_PIECE, FUTILE_EVALUATIONS, MAX_PLANNED, PACE_EIGHT, PACE_SIXTEEN, SLOW_SPEED,
     SMALL_ERROR, STRAIGHT,
@@ -57,6 +57,8 @@ pub struct StretchFitter<'a, S> {
     most_attempts: usize,
     /// Where evaluations are counted one by one, and the number at which the work ends.
     pub(crate) counted: Option<(&'a Cell<usize>, usize)>,
+    /// Break points are to be the same from either end.
+    pub evenly: bool,
     /// The last ends of the pieces found so far, where one was not enough.
     pub(crate) joints: Vec<BreakPoint>,
 }
@@ -83,6 +85,7 @@ impl<'a, S: Source> StretchFitter<'a, S> {
             sampled: false,
             most_attempts,
             counted: None,
+            evenly: false,
             joints: Vec::new(),
         }
     }
@@ -116,8 +119,7 @@ impl<S: Source> StretchFitter<'_, S> {
         let tol = self.tolerance;
         self.sample(from, h, &FITTED, g)?;
         let q = to.p - from.p;
-        let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
-        let size = larger(larger(q.hypot2(), far(3)), far(6)).sqrt();
+        let size = size(q, g, self.evenly);
         // A vanishing Hermite handle starts tiny and may grow.
         let third = h * (1.0 / 3.0);
         let home = [from.speed * third, to.speed * third];
@@ -223,6 +225,10 @@ impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
 
     fn between(&self, s: &Lane) -> Lane {
         between(s)
+    }
+
+    fn evenly(&self) -> bool {
+        self.fitter.evenly
     }
 
     #[inline(always)]

@@ -10,7 +10,7 @@
 use pathwarp::Outline;
 use pathwarp::deform::{Style, Warp};
 use pathwarp::map::Map;
-use pathwarp::refit::{KnownShapes, Options};
+use pathwarp::refit::{KnownShapes, Nodes, Options};
 use pathwarp_oracle::{Bicubic, Rational};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -58,7 +58,7 @@ fn main() {
                 continue;
             }
             let off = Options::new(tolerance);
-            let merge = off.clone().with_merge(true);
+            let merge = off.clone().with_nodes(Nodes::Fewest);
             let certify = merge.clone().with_certify(true);
             let columns = [("off", &off), ("merged", &merge), ("certify", &certify)];
             let mut times: [Vec<f64>; 3] = Default::default();

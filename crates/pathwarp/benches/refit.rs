@@ -9,7 +9,7 @@
 
 use kurbo::{CurveFitSample, ParamCurveFit, Point, Vec2, fit_to_bezpath, fit_to_bezpath_opt};
 use pathwarp::map::Map;
-use pathwarp::refit::{Options, warp_path};
+use pathwarp::refit::{Nodes, Options, warp_path};
 use pathwarp::{Outline, Seg};
 use pathwarp_oracle::{BOX, Bicubic, Rational};
 use std::hint::black_box;
@@ -145,7 +145,7 @@ impl BenchRow {
             }
             (counts[0], counts[1], counts[3]) = (k0, k1, k3);
         }
-        counts[2] = ours(&plain.clone().with_merge(true));
+        counts[2] = ours(&plain.clone().with_nodes(Nodes::Fewest));
         let mut opt = f64::NAN;
         if env("OPT", 1) == 1 {
             (opt, counts[4]) = timed(n, || theirs(&|i| fit_to_bezpath_opt(i, tolerance)));

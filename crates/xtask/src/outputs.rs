@@ -86,7 +86,7 @@ const WARPS: [&str; 8] = [
     "projective FILE --target '0%,100% 100%,90% 80%,0% 15%,5%' --fit grow",
     "bend FILE --along 'M0,100 Q150,20 300,100' --fit page --structure flatten",
     "envelope FILE --bottom 'M0,100 H400' --top 'M0,40 Q200,-60 400,40' --keep verticals --certify",
-    "wave FILE --tolerance 0.05 --merge off + affine --rotate 10",
+    "wave FILE --tolerance 0.05 --nodes source + affine --rotate 10",
     "swirl FILE --patterns instantiate --strokes auto --text skip",
     "warp FILE --style arc --bend 60% --gradients keep --images keep --precision 3",
 ];

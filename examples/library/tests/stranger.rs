@@ -3,7 +3,7 @@
 use pathwarp::kurbo::{Affine, BezPath, Circle, Ellipse, ParamCurve, Point, Rect, RoundedRect, Shape, Vec2};
 use pathwarp::map::{AffineMap, Chain, Map, NewtonInverse, from_fn, from_fn_with};
 use pathwarp::outline::Seg;
-use pathwarp::refit::{self, KnownShapes, Options};
+use pathwarp::refit::{self, KnownShapes, Nodes, Options};
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_svg::{Document, ReadOptions, WarpOptions};
 use std::sync::Arc;
@@ -99,7 +99,7 @@ fn impossible_tolerances_are_errors_of_their_own() {
     let document = Document::read(svg.as_bytes(), "a.svg", &ReadOptions::default()).unwrap();
     for t in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let same = |e: &Error| matches!(e, Error::Tolerance(v) if v.to_bits() == t.to_bits());
-        for options in [Options::new(t), Options::new(t).with_merge(true), Options::new(t).with_suited(true)] {
+        for options in [Options::new(t), Options::new(t).with_nodes(Nodes::Fewest), Options::new(t).with_suited(true)] {
             let errors: [Result<(), GeometryError>; 3] = [
                 refit::warp_path(&line, &map, &options).map(drop),
                 KnownShapes::default().warp_path(&line, &map, &options).map(drop),

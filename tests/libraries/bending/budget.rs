@@ -6,7 +6,7 @@ use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::{AffineMap, Map};
 use pathwarp::param::{Args, Frame};
 use pathwarp::recipe::{Recipe, Step};
-use pathwarp::refit::{Options, warp_path};
+use pathwarp::refit::{Nodes, Options, warp_path};
 use pathwarp::{Error, GeometryError, Outline};
 use std::sync::Arc;
 
@@ -148,7 +148,7 @@ fn a_missed_tolerance_is_always_reported() {
         "M1e16 1e16h30v40q9 3 4 4z",
     ] {
         for certify in [false, true] {
-            let options = Options::new(0.01).with_certify(certify).with_merge(true);
+            let options = Options::new(0.01).with_certify(certify).with_nodes(Nodes::Fewest);
             let Ok(w) = warp_path(&Outline::from_svg(data).unwrap(), &*swirl, &options) else { continue };
             assert!(w.report.max_error <= 0.01 || !w.report.over_budget.is_empty(), "{data}: {:?}", w.report);
             missed += usize::from(w.report.max_error > 0.01);
@@ -175,7 +175,8 @@ fn coordinates_without_resolution_are_reported() {
     ];
     for (data, map) in cases {
         let outline = Outline::from_svg_lossy(data);
-        for options in [Options::new(0.01), Options::new(0.01).with_certify(true), Options::new(0.01).with_merge(true)]
+        for options in
+            [Options::new(0.01), Options::new(0.01).with_certify(true), Options::new(0.01).with_nodes(Nodes::Fewest)]
         {
             let Ok(warped) = warp_path(&outline, map, &options) else { panic!("{data}") };
             let r = &warped.report;

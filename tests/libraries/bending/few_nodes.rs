@@ -5,7 +5,7 @@ use pathwarp::deform::{Registry, Swirl};
 use pathwarp::kurbo::{CubicBez, Point, Rect, Vec2};
 use pathwarp::map::{Class, Map};
 use pathwarp::param::{Args, Frame};
-use pathwarp::refit::{Options, PathReport, warp_path};
+use pathwarp::refit::{Nodes, Options, PathReport, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ fn arcs() -> Outline {
 }
 
 fn warped(outline: &Outline, map: &dyn Map, tolerance: f64) -> Option<PathReport> {
-    let report = warp_path(outline, map, &Options::new(tolerance).with_merge(true)).ok()?.report;
+    let report = warp_path(outline, map, &Options::new(tolerance).with_nodes(Nodes::Fewest)).ok()?.report;
     assert!(report.max_error <= tolerance, "{report:?}");
     Some(report)
 }
@@ -68,7 +68,9 @@ fn few_pieces_across_creases_are_within_the_tolerance() {
     for (name, map) in maps() {
         let tolerance = 0.02;
         let outline = circle(40);
-        let Ok(warped) = warp_path(&outline, &map, &Options::new(tolerance).with_merge(true)) else { continue };
+        let Ok(warped) = warp_path(&outline, &map, &Options::new(tolerance).with_nodes(Nodes::Fewest)) else {
+            continue;
+        };
         let error = pathwarp_oracle::distance(&outline, &*map, &warped.path, 400, tolerance);
         assert!(error <= 1.0001 * tolerance, "{name}: {} of the tolerance", error / tolerance);
     }
@@ -196,6 +198,6 @@ fn what_is_only_moved_keeps_its_nodes_unless_they_are_far_too_many() {
     let flattened = warped(&polygon(chords(away, 20.0, 1500)), &swirl, 0.02).unwrap();
     assert!(flattened.segments_out <= 8, "{flattened:?}");
     let round = Outline::from_svg("M500 500C503 500 506 501 509 503C512 505 514 508 515 512L500 520Z").unwrap();
-    let kept = warp_path(&round, &swirl, &Options::new(0.02).with_merge(true)).unwrap();
+    let kept = warp_path(&round, &swirl, &Options::new(0.02).with_nodes(Nodes::Fewest)).unwrap();
     assert_eq!(kept.path.to_svg(), round.to_bez_path(1e-9).to_svg());
 }

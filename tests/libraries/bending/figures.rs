@@ -6,7 +6,7 @@
 use pathwarp::kurbo::{CubicBez, Point};
 use pathwarp::map::{Class, Enclosure, Formula, Jet, Map, Real};
 use pathwarp::outline::EllipticArc;
-use pathwarp::refit::{Options, warp_path};
+use pathwarp::refit::{Nodes, Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use pathwarp_oracle::{Bicubic, Rational};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -178,7 +178,7 @@ fn proven_pieces_and_work_stay_at_their_figures() {
 
 #[test]
 fn merged_pieces_and_work_stay_at_their_figures() {
-    let found = figures(&runs(), |t| Options::new(t).with_merge(true));
+    let found = figures(&runs(), |t| Options::new(t).with_nodes(Nodes::Fewest));
     stay_at("merged", found, [[251, 3652], [405, 5967], [628, 9783], [885, 12745]]);
 }
 
@@ -194,7 +194,7 @@ fn the_sample_stays_within_the_tolerance() {
                 assert!(e <= 1.0001 * reported.max(tolerance), "{tolerance}: {e} > {reported} for {seg:?}");
             }
             for outline in runs() {
-                let w = warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_merge(true)).unwrap();
+                let w = warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_nodes(Nodes::Fewest)).unwrap();
                 let e = pathwarp_oracle::distance(&outline, map.as_ref(), &w.path, 400, tolerance);
                 assert!(e <= 1.0001 * tolerance, "{tolerance}: merged {} for {outline:?}", e / tolerance);
             }

@@ -5,7 +5,7 @@ use pathwarp::deform::{Ffd, Mesh, Registry};
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::{Chain, Map, inverse_over};
 use pathwarp::param::{Args, Frame};
-use pathwarp::refit::{Assurance, Options, RefittedPath, warp_path};
+use pathwarp::refit::{Assurance, Nodes, Options, RefittedPath, warp_path};
 use pathwarp::{Outline, check};
 use pathwarp_oracle::curves::Curved as _;
 use pathwarp_oracle::{Random, Run, far};
@@ -50,7 +50,11 @@ struct Found {
 impl Found {
     fn look(&mut self, what: &str, d: &str, map: &dyn Map, merge: bool, samples: usize) {
         let outline = Outline::from_svg(d).unwrap();
-        let Ok(warped) = warp_path(&outline, map, &Options::new(TOLERANCE).with_merge(merge)) else {
+        let Ok(warped) = warp_path(
+            &outline,
+            map,
+            &Options::new(TOLERANCE).with_nodes(if merge { Nodes::Fewest } else { Nodes::Source }),
+        ) else {
             self.refused += 1;
             return;
         };

@@ -2,7 +2,7 @@
 
 use pathwarp::kurbo::{CubicBez, ParamCurveNearest, PathEl, Point, Vec2};
 use pathwarp::map::{Crease, Creases, Formula, Jet, Level, Map, Real};
-use pathwarp::refit::{Options, RefittedPath, warp_path};
+use pathwarp::refit::{Nodes, Options, RefittedPath, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use pathwarp_oracle::{Fold, Ripple};
 use std::sync::Arc;
@@ -83,7 +83,7 @@ fn a_tear_between_merged_segments_is_bridged_by_a_line() {
 fn a_tear_that_is_touched_in_a_node_is_not_crossed() {
     for d in ["M600 300L500 310L600 340", "M600 280C560 280 500 290 500 310S560 340 600 340"] {
         let outline = Outline::from_svg(d).unwrap();
-        let touching = warp_path(&outline, &Step(40.0), &Options::new(0.1).with_merge(true)).unwrap();
+        let touching = warp_path(&outline, &Step(40.0), &Options::new(0.1).with_nodes(Nodes::Fewest)).unwrap();
         let [beyond, node] = [0.0, 40.0].map(|side| Side(side).point(Point::new(500.0, 310.0)));
         let near = |p: Point| touching.path.segments().any(|s| s.nearest(p, 1e-9).distance_sq < 0.011);
         assert!(near(node) && !near(beyond), "{:?}", touching.path);
@@ -159,7 +159,7 @@ fn handles_of_nearly_straight_pieces_stay_even() {
 fn merging_keeps_corners_that_the_tolerance_would_hide() {
     // Two arcs that meet at 2°: their ends are within the tolerance of a smooth curve.
     let outline = Outline::from_svg("M100 500C200 480 300 470 400 470C500 473.5 600 487 700 510").unwrap();
-    let options = Options::new(1.0).with_merge(true);
+    let options = Options::new(1.0).with_nodes(Nodes::Fewest);
     let w = warp_path(&outline, &pathwarp_oracle::Bicubic::mild(), &options).unwrap();
     assert_eq!(w.report.segments_out, 2);
     assert!(pathwarp_oracle::largest_turn(&pathwarp_oracle::cubics(&w.path)) > 1.0);

@@ -4,7 +4,7 @@
 use super::random::maps::{self, Waves, map};
 use pathwarp::kurbo::{CubicBez, ParamCurve, Point, Vec2};
 use pathwarp::map::Map;
-use pathwarp::refit::{Options, warp_path};
+use pathwarp::refit::{Nodes, Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -81,7 +81,7 @@ fn waves() -> impl Strategy<Value = Waves> {
 fn holds(segs: &[Seg], map: &dyn Map, tolerance: f64, certify: bool) -> Result<(), TestCaseError> {
     let path = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs: segs.to_vec(), closed: false }] };
     let off = Options::new(tolerance).with_certify(certify);
-    let w = warp_path(&path, map, &off.clone().with_merge(true)).unwrap();
+    let w = warp_path(&path, map, &off.clone().with_nodes(Nodes::Fewest)).unwrap();
     let separate = warp_path(&path, map, &off).unwrap();
     prop_assert!(w.report.segments_out <= separate.report.segments_out);
     if w.report.over_budget.is_empty() {

@@ -2,7 +2,7 @@
 
 use pathwarp::kurbo::{CubicBez, Point};
 use pathwarp::map::{Formula, Map, Real};
-use pathwarp::refit::{Assurance, Options, warp_path};
+use pathwarp::refit::{Assurance, Nodes, Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use pathwarp_oracle::{Bicubic, Fold, Rational, Ripple};
 
@@ -81,7 +81,7 @@ fn merged_corpus_has_no_violation() {
         for tolerance in [1.0, 0.1, 0.01, 0.001] {
             let (mut segs, mut n, mut worst) = (0, 0, 0.0f64);
             for sub in outlines.iter().step_by(every).flat_map(|o| &o.subpaths).filter(|s| !s.segs.is_empty()) {
-                let o = Options::new(tolerance).with_merge(true);
+                let o = Options::new(tolerance).with_nodes(Nodes::Fewest);
                 let w = warp_path(&Outline { subpaths: vec![sub.clone()] }, map.as_ref(), &o).unwrap();
                 (segs, n) = (segs + sub.segs.len(), n + w.report.segments_out);
                 let e = pathwarp_oracle::distance(&sub.segs, map.as_ref(), &w.path, 400, tolerance) / tolerance;
@@ -120,7 +120,14 @@ fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
         for tolerance in [1.0, 0.01] {
             for (sub, corners) in [(&circle, 0), (&square.subpaths[0], 4)] {
                 let outline = Outline { subpaths: vec![sub.clone()] };
-                let w = |merge| warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_merge(merge)).unwrap();
+                let w = |merge| {
+                    warp_path(
+                        &outline,
+                        map.as_ref(),
+                        &Options::new(tolerance).with_nodes(if merge { Nodes::Fewest } else { Nodes::Source }),
+                    )
+                    .unwrap()
+                };
                 let (plain, merged) = (w(false), w(true));
                 assert!(merged.report.segments_out <= plain.report.segments_out);
                 assert!(corners > 0 || merged.report.segments_out * 10 <= 6 * plain.report.segments_out, "{name}");
@@ -154,7 +161,7 @@ fn errors_beside_a_joint_at_which_the_cubic_turns_are_seen() {
     let [mild, _, rational] = maps();
     for (shape, (name, map), tolerance) in [(bookmark, &mild, 1.0), (card, &mild, 1.0), (hook, &rational, 0.1)] {
         let outline = Outline::from_svg(shape).unwrap();
-        let merged = warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_merge(true)).unwrap();
+        let merged = warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_nodes(Nodes::Fewest)).unwrap();
         let e = pathwarp_oracle::distance(&outline, map.as_ref(), &merged.path, 400, tolerance) / tolerance;
         assert!(e <= 1.0001, "{name}: {e}");
     }
@@ -171,7 +178,9 @@ fn merged_pieces_are_proven_too() {
     for (name, map) in &maps() {
         for tolerance in [1.0, 0.1, 0.01] {
             let w = |merge| {
-                let o = Options::new(tolerance).with_merge(merge).with_certify(true);
+                let o = Options::new(tolerance)
+                    .with_nodes(if merge { Nodes::Fewest } else { Nodes::Source })
+                    .with_certify(true);
                 warp_path(&outline, map.as_ref(), &o).unwrap()
             };
             let (plain, merged) = (w(false), w(true));
@@ -191,7 +200,7 @@ fn merged_pieces_are_proven_too() {
 fn any_number_of_threads_gives_the_same_bytes() {
     use std::sync::atomic::{AtomicUsize, Ordering};
     let paths: Vec<Outline> = pathwarp_oracle::corpus().0.into_iter().take(24).collect();
-    for options in [Options::new(0.1).with_merge(true), Options::new(0.01).with_certify(true)] {
+    for options in [Options::new(0.1).with_nodes(Nodes::Fewest), Options::new(0.01).with_certify(true)] {
         for (name, map) in &maps() {
             let refit = |o: &Outline| {
                 let w = warp_path(o, map.as_ref(), &options).unwrap();

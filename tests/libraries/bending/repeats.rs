@@ -3,7 +3,7 @@
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Class, Jet, Map};
-use pathwarp::refit::{KnownShapes, Options, RefittedPath, warp_path};
+use pathwarp::refit::{KnownShapes, Nodes, Options, RefittedPath, warp_path};
 use pathwarp_oracle::{Bicubic, Rational, Ripple};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -49,7 +49,7 @@ fn assert_within(line: &Outline, w: &RefittedPath, map: &dyn Map, tolerance: f64
 fn letters_stay_within_the_tolerance() {
     for map in &maps() {
         for tolerance in [1.0, 0.3, 0.1, 0.02] {
-            let options = Options::new(tolerance).with_merge(true);
+            let options = Options::new(tolerance).with_nodes(Nodes::Fewest);
             let lines = lines(40);
             let known = KnownShapes::among(&lines, map.as_ref(), &options);
             for line in lines.iter().skip(4).step_by(17) {
@@ -81,7 +81,7 @@ impl Map for Counted<'_> {
 /// Compares letters refitted with known shapes to letters refitted one by one, in work and in pieces.
 #[test]
 fn letters_that_come_again_take_little_work_and_no_more_pieces() {
-    let options = Options::new(0.3).with_merge(true);
+    let options = Options::new(0.3).with_nodes(Nodes::Fewest);
     // The strong map changes from letter to letter.
     for (map, less) in [(Bicubic::mild(), 3.0), (Bicubic::strong(), 1.5)] {
         let lines = lines(40);
@@ -92,7 +92,7 @@ fn letters_that_come_again_take_little_work_and_no_more_pieces() {
             alone += warp_path(&letter, &counted, &options).unwrap().report.segments_out;
         }
         let work_alone = counted.1.swap(0, Ordering::Relaxed);
-        let unmerged = options.clone().with_merge(false);
+        let unmerged = options.clone().with_nodes(Nodes::Source);
         for line in &lines {
             let _ = warp_path(line, &counted, &unmerged).unwrap();
         }
@@ -113,7 +113,7 @@ fn letters_that_come_again_take_little_work_and_no_more_pieces() {
 /// The known shapes depend neither on the caller nor on the order.
 #[test]
 fn knowledge_is_the_same_every_time() {
-    let (map, options, lines) = (Bicubic::strong(), Options::new(0.1).with_merge(true), lines(40));
+    let (map, options, lines) = (Bicubic::strong(), Options::new(0.1).with_nodes(Nodes::Fewest), lines(40));
     let known = KnownShapes::among(&lines, &map, &options);
     assert_ne!(known, KnownShapes::default());
     assert_eq!(known, KnownShapes::among(&lines, &map, &options));

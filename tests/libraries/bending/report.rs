@@ -3,7 +3,7 @@
 use pathwarp::budget::{Budget, Limit, Limits};
 use pathwarp::kurbo::{Affine, ParamCurve, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Formula, Homography, Jet, Map, Real};
-use pathwarp::refit::{Assurance, Options, RESOLUTION, warp_path};
+use pathwarp::refit::{Assurance, Nodes, Options, RESOLUTION, warp_path};
 use pathwarp::{GeometryError, Outline, Seg};
 use pathwarp_oracle::curves::Curved as _;
 use pathwarp_oracle::{Bicubic, Run, distance, far};
@@ -83,7 +83,11 @@ fn misfits_are_reported_with_their_place() {
         let seg = *outline.segs().next().unwrap();
         for tolerance in [1.0, 0.01] {
             for (certify, merge) in [(false, false), (true, false), (false, true)] {
-                let o = Options::new(tolerance).with_certify(certify).with_merge(merge);
+                let o = Options::new(tolerance).with_certify(certify).with_nodes(if merge {
+                    Nodes::Fewest
+                } else {
+                    Nodes::Source
+                });
                 let w = warp_path(&outline, &Torn, &o).unwrap();
                 let r = &w.report;
                 assert!(!r.over_budget.is_empty(), "{d} {tolerance}");
@@ -118,7 +122,10 @@ fn the_budget_ends() {
     let outline = Outline::from_svg("M100 500C300 300 600 700 900 500").unwrap();
     for (certify, merge) in [(false, false), (true, true)] {
         let budget = Arc::new(Budget::new(Limits::default().with(Limit::Work, 5e6)));
-        let options = Options::new(0.01).with_certify(certify).with_merge(merge).with_budget(budget);
+        let options = Options::new(0.01)
+            .with_certify(certify)
+            .with_nodes(if merge { Nodes::Fewest } else { Nodes::Source })
+            .with_budget(budget);
         let w = match warp_path(&outline, &Noise, &options) {
             Ok(w) => w,
             Err(e) => {
@@ -184,7 +191,11 @@ impl Formula for Root {
 fn an_endless_derivative_at_an_end_is_an_error() {
     for d in ["M0 0L80 30", "M80 30L0 0", "M0 0C20 40 60 20 90 10"] {
         for merge in [false, true] {
-            let refused = warp_path(&Outline::from_svg(d).unwrap(), &Root, &Options::new(0.01).with_merge(merge));
+            let refused = warp_path(
+                &Outline::from_svg(d).unwrap(),
+                &Root,
+                &Options::new(0.01).with_nodes(if merge { Nodes::Fewest } else { Nodes::Source }),
+            );
             assert!(
                 matches!(refused, Err(pathwarp::GeometryError::Infinity { at, .. }) if at == Point::ORIGIN),
                 "{d}: {refused:?}"

@@ -4,6 +4,7 @@
 use pathwarp::kurbo::Affine;
 use pathwarp::map::{Formula, Map, Real};
 use pathwarp::refit;
+use pathwarp::refit::Nodes;
 use pathwarp_oracle::drawings::{Bend, Hidden, options, read};
 use pathwarp_oracle::painted;
 use pathwarp_svg::usvg_tree::parse_tree;
@@ -56,7 +57,7 @@ fn bent(svg: &str, map: &dyn Map, options: &WarpOptions) -> Bent {
 }
 
 fn tolerance(t: f64) -> WarpOptions {
-    WarpOptions::new(refit::Options::new(t).with_merge(true))
+    WarpOptions::new(refit::Options::new(t).with_nodes(Nodes::Fewest))
 }
 
 fn is_stroke(svg: &str) -> bool {

@@ -1,7 +1,7 @@
 //! Long curves: as many pieces as they need, found in work that is proportional to them, and no more than a greedy search takes.
 
 use super::common::{Drawn, distance, wave};
-use bezierfit::{Degree, Error, Options, Pieces, Source, fit, simplify};
+use bezierfit::{Degree, Error, Nodes, Options, Pieces, Source, fit, simplify};
 use kurbo::{BezPath, ParamCurve, Point, Vec2};
 use pathwarp_oracle::curves::Curved as _;
 use pathwarp_oracle::{Run, apart};
@@ -102,7 +102,10 @@ fn what_cannot_be_fitted_is_an_error_with_the_true_distance() {
     for (jump, merge) in [(50.0, true), (0.5, true), (50.0, false), (-3e4, true)] {
         let torn =
             |t: f64| (Point::new(100.0 * t, if t < 0.4567 { 0.0 } else { jump } + 5.0 * t), Vec2::new(100.0, 5.0));
-        let (torn, options) = (Drawn::new(torn, Vec::new()), Options::new(0.01).with_merge(merge));
+        let (torn, options) = (
+            Drawn::new(torn, Vec::new()),
+            Options::new(0.01).with_nodes(if merge { Nodes::Fewest } else { Nodes::Source }),
+        );
         let Err(Error::NotMet { at, error }) = fit(&torn, &options) else { panic!() };
         assert!((at.x - 45.67).abs() < 1.0, "{at}");
         let best = fit(&torn, &options.with_best(true)).unwrap();
@@ -139,7 +142,7 @@ fn greedy(source: &Drawn<'_>, tolerance: f64) -> usize {
             let (p, d) = source.eval(from + (to - from) * t);
             (p, d * (to - from))
         };
-        let options = Options::new(tolerance).with_merge(false).with_evaluations(0).with_best(true);
+        let options = Options::new(tolerance).with_nodes(Nodes::Source).with_evaluations(0).with_best(true);
         fit(&Drawn::new(part, Vec::new()), &options).unwrap().report.unresolved.is_empty()
     };
     let (mut from, mut pieces, mut step) = (0.0, 0, 0.1);

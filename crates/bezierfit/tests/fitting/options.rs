@@ -1,7 +1,7 @@
 //! What options and sources promise, measured on the output itself.
 
 use super::common::{Drawn, distance, off, polygon, wave};
-use bezierfit::{Assurance, Degree, Error, Options, PathSource, Pieces, Segment, Source, fit, simplify};
+use bezierfit::{Assurance, Degree, Error, Nodes, Options, PathSource, Pieces, Segment, Source, fit, simplify};
 use kurbo::{BezPath, CubicBez, Line, ParamCurve, ParamCurveDeriv, PathEl, PathSeg, Point, QuadBez, Vec2};
 use pathwarp_oracle::Random;
 
@@ -93,10 +93,16 @@ fn pieces_run_across_smooth_joints_only_if_they_may() {
         };
         Drawn::new(at, (1..n).map(|i| i as f64 / n as f64).collect())
     };
-    let count = |n, merge| fit(&circle(n), &Options::new(0.1).with_merge(merge)).unwrap().path.segments().count();
+    let count = |n, merge| {
+        fit(&circle(n), &Options::new(0.1).with_nodes(if merge { Nodes::Fewest } else { Nodes::Source }))
+            .unwrap()
+            .path
+            .segments()
+            .count()
+    };
     assert_eq!((count(16, true), count(16, false)), (4, 16));
     let path = BezPath::from_svg("M0 0C10 0 20 1 30 3C40 5 50 8 60 12").unwrap();
-    assert_eq!(simplify(&path, &Options::new(0.1).with_merge(false)).unwrap().path, path);
+    assert_eq!(simplify(&path, &Options::new(0.1).with_nodes(Nodes::Source)).unwrap().path, path);
     assert_eq!(simplify(&path, &Options::new(0.1)).unwrap().path.segments().count(), 1);
 }
 

@@ -35,7 +35,7 @@ const SHOWN: [&str; 12] = [
     "filters",
     "patterns",
     "images",
-    "merge",
+    "nodes",
     "on-error",
     "tolerance",
     "frame",

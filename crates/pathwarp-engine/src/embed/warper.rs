@@ -26,7 +26,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Options of a warp that a path without a drawing can have.
-const PATH_OPTIONS: [&str; 6] = ["frame", "tolerance", "certify", "merge", "precision", "limit"];
+const PATH_OPTIONS: [&str; 6] = ["frame", "tolerance", "certify", "nodes", "precision", "limit"];
 
 /// What lacks where there is no box.
 const NEEDS_FRAME: &str = "which percentages and defaults refer to: give it (--frame X,Y,W,H)";
@@ -283,7 +283,7 @@ impl Warper {
             let edit = edits.first().map(|e| planned(e, &options, (bounds, &frame), true)).transpose()?;
             let tolerance = edit.as_ref().map_or(tolerance, |planned| share * planned.tolerance);
             let built = self.build(&options, &frame, outline, &budget)?;
-            let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
+            let refit = refit::Options::new(tolerance).with_certify(options.certify).with_nodes(options.nodes);
             let refit = refit.with_suited(edit.as_ref().map_or(options.tolerance.is_none(), |planned| planned.suited));
             let copies = &built.placement.copies;
             let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };

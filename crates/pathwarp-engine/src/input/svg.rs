@@ -21,6 +21,7 @@ use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::{AffineMap, Map};
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
+use pathwarp::refit::Nodes;
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
     Document, Edit, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
@@ -127,7 +128,8 @@ impl SvgArtwork {
         let draft = |k: usize, built: &BuiltRecipe| {
             let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
             options.filters = Filters::Affine;
-            options.refit = options.refit.with_merge(request.edit.is_some());
+            let nodes = if request.edit.is_some() { options.refit.nodes } else { Nodes::Source };
+            options.refit = options.refit.with_nodes(nodes);
             if let Images::Warp(_) = options.images {
                 let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
                 options.images = Images::Warp(Arc::new(bender.with_budget(self.doc.budget().clone())));
@@ -224,7 +226,7 @@ impl SvgArtwork {
         let of_objects = built.placement.of_objects;
         let letters =
             LetterPlaces { places: built.placement.letters.clone(), of_objects, of: first, after: built.after.clone() };
-        let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
+        let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_nodes(options.nodes);
         let refit = refit.with_budget(self.doc.budget().clone()).with_suited(request.suited);
         let warp = WarpOptions::new(refit)
             .with_precision(options.precision)

@@ -6,7 +6,7 @@ use pathwarp::budget::{Limit, Limits};
 use pathwarp::kurbo::{Point, Rect, Size};
 use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit};
 use pathwarp::recipe::Step;
-use pathwarp::refit::RESOLUTION;
+use pathwarp::refit::{Nodes, RESOLUTION};
 use pathwarp_raster::Picture;
 use pathwarp_svg::{
     Clones, Filters, GenericFamilies, Gradients, LetteringFrame, OnError, PageFit, Patterns, ReadOptions, Strokes,
@@ -76,7 +76,7 @@ pub struct CommonOptions {
     pub salvage: bool,
     pub tolerance: Option<Length>,
     pub certify: bool,
-    pub merge: bool,
+    pub nodes: Nodes,
     pub frame: FrameChoice,
     pub select: Vec<String>,
     pub exclude: Vec<String>,

@@ -22,7 +22,7 @@ impl Given {
 
     /// Adds the value of an option named in a recipe. Of several values for an option that does not repeat, the last wins.
     pub(crate) fn push(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let option = OPTIONS.iter().find(|o| o.name == name).ok_or_else(|| unknown(name))?;
+        let option = OPTIONS.iter().find(|o| o.name == name || o.alias == Some(name)).ok_or_else(|| unknown(name))?;
         if !option.stored {
             return Err(format!(
                 "{name} is not for recipes, which describe the deformation only; give it on the command line"
@@ -33,7 +33,7 @@ impl Given {
 
     /// Adds the value of any option. Of several values for an option that does not repeat, the last wins.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let option = OPTIONS.iter().find(|o| o.name == name).ok_or_else(|| unknown(name))?;
+        let option = OPTIONS.iter().find(|o| o.name == name || o.alias == Some(name)).ok_or_else(|| unknown(name))?;
         option.check(value).map_err(|e| format!("{name}: {e}"))?;
         match self.values.iter_mut().find(|(o, _)| o.name == option.name) {
             Some((_, values)) if option.repeats() => values.push(value.into()),
@@ -190,6 +190,7 @@ fn unknown(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pathwarp::refit::Nodes;
 
     #[test]
     fn the_default_of_every_choice_is_one_of_its_words() {
@@ -200,7 +201,7 @@ mod tests {
             }
         }
         let d = defaults();
-        assert!(d.merge && d.warp_images, "{d:?}");
+        assert!(d.nodes == Nodes::Fewest && d.warp_images, "{d:?}");
     }
 
     #[test]
@@ -223,8 +224,8 @@ mod tests {
         line.push("select", "b").unwrap();
         let o = recipe.overridden_by(&line).read().unwrap();
         assert_eq!(
-            (o.tolerance.map(|l| l.value), o.select, o.merge),
-            (Some(3.0), vec!["a".to_owned(), "b".to_owned()], false)
+            (o.tolerance.map(|l| l.value), o.select, o.nodes),
+            (Some(3.0), vec!["a".to_owned(), "b".to_owned()], Nodes::Source)
         );
         assert_eq!(recipe.read().unwrap().tolerance.map(|l| l.value), Some(2.0));
         assert!(recipe.joined(&line).is_err(), "--tolerance in both parts of a chain");

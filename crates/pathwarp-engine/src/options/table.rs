@@ -5,6 +5,7 @@ use super::common::{
     simplifying,
 };
 use crate::format::Format;
+use pathwarp::refit::Nodes;
 use pathwarp_svg::{Clones, Filters, Gradients, PageFit, Patterns, Strokes, Structure, TextMode};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -164,11 +165,20 @@ pub static OPTIONS: &[CommonOption] = &[
         "Prove the distance where the deformation allows it, instead of measuring it",
     ),
     CommonOption {
-        default: Some("on"),
+        default: Some("fewest"),
+        alias: Some("merge"),
         ..stored(
-            "merge",
-            OptionValue::Choice(&[("on", |o| o.merge = true), ("off", |o| o.merge = false)]),
-            "Join pieces across smooth joints where that saves nodes; off keeps every node of the source",
+            "nodes",
+            OptionValue::Choice(&[
+                ("auto", |o| o.nodes = Nodes::Auto),
+                ("fewest", |o| o.nodes = Nodes::Fewest),
+                ("extremes", |o| o.nodes = Nodes::Extremes),
+                ("source", |o| o.nodes = Nodes::Source),
+                ("on", |o| o.nodes = Nodes::Fewest),
+                ("off", |o| o.nodes = Nodes::Source),
+            ]),
+            "Where curves have nodes: fewest where that saves most, auto where the artwork has them at extremes and at ends of lines and arcs, \
+             extremes at all horizontal and vertical extremes of the result, source (as --merge off) where the artwork has them",
         )
     },
     CommonOption {

@@ -67,7 +67,7 @@ def warp_path(d: Any, deformation: Steps, /, **values: Any) -> WarpedPath:
     `d` is SVG path data, a path of svgpathtools, an element with an attribute `d`, or points, which become a polyline.
 
     `values` are parameters of the deformation, if that is given by its name, and the options `tolerance`, `frame`, `certify`,
-    `merge`, `precision` and `limit`: `warp_path("M0,0 H100", "arc", bend=0.4, tolerance=0.01)`.
+    `nodes`, `precision` and `limit`: `warp_path("M0,0 H100", "arc", bend=0.4, tolerance=0.01)`.
     """
     chosen, given = _divided(deformation, values)
     return chosen.warp_path(d, **given)

@@ -205,7 +205,7 @@ class Deformation:
 
         `d` is SVG path data, a path of svgpathtools, an element with an attribute `d`, or points, which become a polyline.
 
-        Options: `tolerance` (the largest distance from the exact result), `frame`, `certify`, `merge`, `precision`, `limit`.
+        Options: `tolerance` (the largest distance from the exact result), `frame`, `certify`, `nodes`, `precision`, `limit`.
         """
         data, report = self._with(options).warp_path(_inputs.path(d))
         warped = WarpedPath(data)

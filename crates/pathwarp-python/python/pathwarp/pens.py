@@ -35,7 +35,7 @@ Point = Tuple[float, float]
 class WarpPen(BasePen):  # type: ignore[misc]
     """Bends what is drawn with it, and draws that with another pen: lines and cubic curves, or quadratic ones.
 
-    `quadratic` says which; by default they are quadratic if `out` is a TTGlyphPen. `flip=False` leaves y as it is. Options are those of a path: `tolerance`, `frame`, `certify`, `merge`, `limit`.
+    `quadratic` says which; by default they are quadratic if `out` is a TTGlyphPen. `flip=False` leaves y as it is. Options are those of a path: `tolerance`, `frame`, `certify`, `nodes`, `limit`.
     """
 
     skipMissingComponents = False

@@ -162,7 +162,7 @@ fn shared<'a>(
     let contours = task::of_parts(drawing, &bend, of, k);
     let refit = &bend.options.refit;
     let simplifies = matches!(bend.options.edit, Some(Edit::Simplify { .. }));
-    if (refit.merge || refit.suited || simplifies) && !bend.is_identity() {
+    if (refit.nodes.merges() || refit.suited || simplifies) && !bend.is_identity() {
         let outline = |i: usize| {
             let (whole, own) = (&drawing.shapes()[i].outline, &contours[i]);
             task::placed_outline(whole, own, &bend.options, &pieces[i])

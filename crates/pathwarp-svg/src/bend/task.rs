@@ -12,7 +12,7 @@ use crate::scene::selected_lettering::{LetterSubpaths, letters_by_part};
 use crate::source::number::arcs_data;
 use pathwarp::kurbo::{Affine, BezPath, Rect};
 use pathwarp::map::Map;
-use pathwarp::refit::{self, KnownShapes, PathReport, RESOLUTION, RefittedPath, suited};
+use pathwarp::refit::{self, KnownShapes, Nodes, PathReport, RESOLUTION, RefittedPath, suited};
 use pathwarp::{GeometryError, Outline};
 use std::ops::Range;
 use std::sync::Arc;
@@ -160,7 +160,7 @@ impl<'a> PartTask<'a> {
 
     /// Bends the part's outline just to measure it, without merging, which would take most of the time.
     pub(super) fn draft(&self) -> Result<BentPath, GeometryError> {
-        let options = self.refit(allowed(self.finest, self.rounding)).with_merge(false).with_certify(false);
+        let options = self.refit(allowed(self.finest, self.rounding)).with_nodes(Nodes::Source).with_certify(false);
         let warped = self.context.known.warp_path(&self.outline, self.map, &options)?;
         Ok(BentPath { path: self.to_local(warped.path), data: None, report: warped.report })
     }

@@ -12,11 +12,11 @@ use super::source::SourceCurve;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use bezierfit::parts::{
-    ACCEPTED, FitOwn, Leg, MERGE_GRID, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, RunSegment,
-    SMOOTH_JOINT, STRAIGHT, STRAIGHT_TURN, SegmentRun, per_segment, refined, sample_lanes,
+    ACCEPTED, FitOwn, Leg, MERGE_GRID, MergeSettings, NodeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches,
+    RunSegment, SMOOTH_JOINT, STRAIGHT, STRAIGHT_TURN, SegmentRun, Side, per_segment, placed, refined, sample_lanes,
 };
-use bezierfit::{Assurance, NotFinite, Piece, Quotient, Report, Source};
-use kurbo::Vec2;
+use bezierfit::{Assurance, Nodes, NotFinite, Piece, Quotient, Report, Source};
+use kurbo::{Point, Vec2};
 use std::sync::Arc;
 
 /// Work of a trial with its share of the checks, in evaluations of the map. The samples themselves are fewer.
@@ -50,6 +50,8 @@ impl MergeMemory {
 pub(super) struct Merger<'a> {
     fitter: &'a SegmentFitter<'a>,
     parts: &'a [Part],
+    /// They are a closed subpath without corners.
+    ring: bool,
     pieces: Vec<Piece>,
     report: Report,
     memory: &'a mut MergeMemory,
@@ -69,6 +71,31 @@ fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2]) -> bool {
     dot > 0.0 && cross <= 1.03 * SMOOTH_JOINT.tan() * dot
         || !clear(into, jets[0], before)
         || !clear(away, jets[1], after)
+}
+
+/// Returns `true` if a smooth joint of the source belongs to its structure.
+fn is_structure(before: &Seg, after: &Seg) -> bool {
+    let side = |seg: &Seg, t: f64| {
+        let cubic = |p: [Point; 4]| if t == 0.0 { p[2] - p[0] } else { p[1] - p[3] };
+        let bend = match seg {
+            Seg::Line(_) => Vec2::ZERO,
+            Seg::Quad(q) => q.p0.to_vec2() - q.p1.to_vec2() * 2.0 + q.p2.to_vec2(),
+            Seg::Cubic(c) => cubic([c.p0, c.p1, c.p2, c.p3]),
+            Seg::Arc(a) => a.center - a.eval(t),
+        };
+        Side { tangent: seg.deriv(t), bend, is_line: matches!(seg, Seg::Line(_)) }
+    };
+    let ends_arc = match (before, after) {
+        (Seg::Arc(a), Seg::Arc(b)) => a.center.distance(b.center) > 1e-6 * (a.a.hypot() + a.b.hypot()),
+        (a, b) => matches!(a, Seg::Arc(_)) != matches!(b, Seg::Arc(_)),
+    };
+    ends_arc || bezierfit::parts::is_structure(&side(before, 1.0), &side(after, 0.0))
+}
+
+/// Returns `true` if the images of two consecutive parts may join smoothly.
+pub(super) fn joins(before: &Part, after: &Part) -> bool {
+    let torn = before.bridge(1).is_some() || after.bridge(0).is_some();
+    !torn && may_be_smooth([&before.seg, &after.seg], [&before.jets[1], &after.jets[0]])
 }
 
 /// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
@@ -94,24 +121,24 @@ pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
 }
 
 impl<'a> Merger<'a> {
-    pub(super) fn new(fitter: &'a SegmentFitter<'a>, parts: &'a [Part], memory: &'a mut MergeMemory) -> Self {
+    pub(super) fn new(
+        fitter: &'a SegmentFitter<'a>,
+        (parts, ring): (&'a [Part], bool),
+        memory: &'a mut MergeMemory,
+    ) -> Self {
         memory.reach.last_reach = 0;
-        Self { fitter, parts, pieces: Vec::with_capacity(parts.len()), report: Report::default(), memory }
+        Self { fitter, parts, ring, pieces: Vec::with_capacity(parts.len()), report: Report::default(), memory }
     }
 
     /// The pieces of all segments, merged where that saves some.
     pub(super) fn merged(mut self) -> Result<(Vec<Piece>, Report), NotFinite> {
-        let smooth = |w: &[Part]| {
-            let [before, after] = w else { return false };
-            let torn = before.bridge(1).is_some() || after.bridge(0).is_some();
-            !torn && may_be_smooth([&before.seg, &after.seg], [&before.jets[1], &after.jets[0]])
-        };
+        let extremes = self.fitter.options.nodes == Nodes::Extremes;
         let mut i = 0;
         while i < self.parts.len() {
-            let end = i + 1 + self.parts[i..].windows(2).take_while(|w| smooth(w)).count();
+            let end = i + 1 + self.parts[i..].windows(2).take_while(|w| joins(&w[0], &w[1])).count();
             self.pieces.extend(self.parts[i].bridge(0));
             while i < end {
-                i += if i + 1 < end { self.joined(i, end)? } else { self.single(i)? };
+                i += if i + 1 < end || extremes { self.joined(i, end)? } else { self.single(i)? };
             }
             self.pieces.extend(self.parts[end - 1].bridge(1));
         }
@@ -131,6 +158,9 @@ impl<'a> Merger<'a> {
             return self.single(start);
         }
         let (parts, tolerance) = (&self.parts[start..end], self.fitter.options.tolerance);
+        if self.fitter.options.nodes.are_placed() {
+            return self.placed(start, end);
+        }
         let shape = (parts.len() <= MAX_SHAPE).then(|| self.memory.repeats.shape(parts, tolerance));
         if let Some(shape) = shape
             && let Some(segments) = self.carried(shape, start, end)?
@@ -143,6 +173,26 @@ impl<'a> Merger<'a> {
         }
         self.merge(&run, start, shape)?;
         Ok(run.segments.len())
+    }
+
+    /// As [`joined`](Self::joined), with nodes where the options want them.
+    fn placed(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
+        let options = self.fitter.options;
+        let mut run = self.run(start, end)?;
+        let count = run.segments.len();
+        if count < 1 + usize::from(options.nodes == Nodes::Auto) {
+            return self.single(start);
+        }
+        for (i, segment) in run.segments.iter_mut().enumerate() {
+            let before = (start + i).checked_sub(1).unwrap_or(self.parts.len() - 1);
+            segment.kept = is_structure(&self.parts[before].seg, &self.parts[start + i].seg);
+        }
+        let closed = self.ring && count == self.parts.len() && run.closes(SMOOTH_JOINT);
+        let left = options.budget.left() / self.fitter.work;
+        let settings = NodeSettings { nodes: options.nodes, tolerance: options.tolerance, closed, left };
+        let tried = placed(&run, settings, &mut self.memory.reach, &mut self.pieces, &mut self.report)?;
+        self.fitter.spend(TRIAL_WORK * tried as f64);
+        Ok(count)
     }
 
     fn site(&self, start: usize, end: usize) -> Site<'a> {
@@ -238,7 +288,7 @@ impl<'a> Merger<'a> {
         let MergeMemory { repeats, reach } = &mut *self.memory;
         let marks = site.carries() && shape.is_some();
         let again = shape.is_some_and(|(shape, _)| repeats.comes_again(shape));
-        let settings = MergeSettings { tolerance: options.tolerance, proof, marks, again };
+        let settings = MergeSettings { tolerance: options.tolerance, proof, marks, again, evenly: false };
         let mut reaches = Reaches::new(run, own, settings, reach);
         let ways = shape.map_or(&[][..], |(shape, _)| repeats.ways(shape));
         let legs = match repeated(ways.iter().filter(|w| w.segments == segments), &mut reaches)? {

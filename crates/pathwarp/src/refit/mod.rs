@@ -21,7 +21,7 @@ mod segment;
 mod shared;
 mod source;
 
-pub use bezierfit::Assurance;
+pub use bezierfit::{Assurance, Nodes};
 pub use borders::{Borders, simplified};
 pub(crate) use limits::ARCS;
 pub use options::{Options, suited};
@@ -38,7 +38,8 @@ use std::sync::Arc;
 
 /// Returns the image of `outline` under `map`, within `options.tolerance`, or what the options say of its parts.
 ///
-/// Subpaths keep their order, direction and closedness. Unless pieces are merged, source nodes remain nodes. Smooth joints
+/// Subpaths keep their order, direction and closedness. With [`Nodes::Source`], source nodes remain nodes; a closed smooth subpath
+/// with nodes of another place begins at the one nearest to its start. Smooth joints
 /// remain smooth. Affine maps move control points, and arcs become cubics within the tolerance; under projective maps lines
 /// remain lines.
 ///
@@ -85,7 +86,7 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
 /// It saves time alone: every path keeps its tolerance, and has the same image whatever the number of threads.
 ///
 /// ```
-/// use pathwarp::{Outline, map::Formula, map::Real, refit::{KnownShapes, Options}};
+/// use pathwarp::{Outline, map::Formula, map::Real, refit::{KnownShapes, Nodes, Options}};
 ///
 /// struct Square;
 /// impl Formula for Square {
@@ -93,7 +94,7 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
 /// }
 /// let ring = |x: f64| Outline::from_svg(&format!("M{x} 0A5 5 0 0 1 {} 0A5 5 0 0 1 {x} 0Z", x + 10.0)).unwrap();
 /// let drawing: Vec<Outline> = (0..400).map(|i| ring(f64::from(i) / 10.0)).collect();
-/// let options = Options::new(0.1).with_merge(true);
+/// let options = Options::new(0.1).with_nodes(Nodes::Fewest);
 /// let known = KnownShapes::among(&drawing, &Square, &options);
 /// assert!(known.warp_path(&drawing[7], &Square, &options).unwrap().report.max_error <= 0.1);
 /// ```
@@ -109,7 +110,7 @@ impl KnownShapes {
         const SHARE: usize = 32;
         /// Fewer segments are not worth it: a line of text.
         const LEAST: usize = 400;
-        if !options.merge || map.prefers_batches() || matches!(map.class(), Class::Affine(_)) {
+        if options.nodes != Nodes::Fewest || map.prefers_batches() || matches!(map.class(), Class::Affine(_)) {
             return Self::default();
         }
         let sized: Vec<(usize, &Outline)> = outlines.into_iter().map(|o| (o.segs().count(), o)).collect();

@@ -5,14 +5,15 @@ use super::shared::{SharedEdges, Span};
 use crate::budget::Budget;
 use crate::error::GeometryError;
 use crate::outline::Subpath;
+use bezierfit::Nodes;
 use std::sync::Arc;
 
 /// Options of [`warp_path`](super::warp_path).
 ///
 /// ```
-/// use pathwarp::refit::Options;
+/// use pathwarp::refit::{Nodes, Options};
 ///
-/// let options = Options::new(0.01).with_certify(true).with_merge(true);
+/// let options = Options::new(0.01).with_certify(true).with_nodes(Nodes::Auto);
 /// assert_eq!(options.tolerance, 0.01);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -22,9 +23,8 @@ pub struct Options {
     pub tolerance: f64,
     /// Prove the error bound where the map allows it, instead of estimating it by dense sampling.
     pub certify: bool,
-    /// Merge consecutive pieces across smooth joints where that saves nodes. Joints that turn by up to half a degree are smooth, since
-    /// drawings round their coordinates.
-    pub merge: bool,
+    /// Where nodes are. Joints that turn by up to half a degree are smooth, since drawings round their coordinates.
+    pub nodes: Nodes,
     /// Edges that become the same in all outlines that share them, so that neighbouring shapes stay watertight.
     pub shared: Arc<SharedEdges>,
     /// Borders that [`simplified`](super::simplified) gives the same curves in all outlines that share them.
@@ -38,13 +38,13 @@ pub struct Options {
 }
 
 impl Options {
-    /// Checked by dense sampling against `tolerance`; no merging.
+    /// Checked by dense sampling against `tolerance`; nodes where the source has them.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
             certify: false,
-            merge: false,
+            nodes: Nodes::Source,
             shared: Arc::default(),
             borders: Arc::default(),
             suited: false,
@@ -74,8 +74,8 @@ impl Options {
         with_tolerance(tolerance: f64) => tolerance: tolerance;
         /// Sets [`Options::certify`].
         with_certify(certify: bool) => certify: certify;
-        /// Sets [`Options::merge`].
-        with_merge(merge: bool) => merge: merge;
+        /// Sets [`Options::nodes`].
+        with_nodes(nodes: Nodes) => nodes: nodes;
         /// Sets [`Options::shared`].
         with_shared(shared: Arc<SharedEdges>) => shared: shared;
         /// Sets [`Options::borders`].

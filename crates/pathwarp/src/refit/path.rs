@@ -152,8 +152,12 @@ pub(super) fn subpath(
             let fitter = SegmentFitter { map, projective, degree, creases, work, options, overview };
             let first = from == 0 && all.is_empty();
             let nodes = if first { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
-            let refit =
-                if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) };
+            let ring = sub.closed && segs.len() == sub.segs.len();
+            let refit = if options.nodes.merges() {
+                merged(&fitter, (segs, ring), nodes, memory)
+            } else {
+                unmerged(&fitter, segs, nodes)
+            };
             let (pieces, found) = refit?;
             let mut report = PathReport::default();
             report.add_pieces(found);
@@ -184,7 +188,7 @@ pub(super) fn subpath(
     }
     // Segments beyond the limit were not fitted.
     options.budget.spend(0.0).map_err(GeometryError::Limit)?;
-    out.subpath(start.p, &pieces, sub.closed);
+    out.subpath(pieces.first().map_or(start.p, Piece::start), &pieces, sub.closed);
     Ok(())
 }
 
@@ -205,7 +209,7 @@ pub(super) fn announce_short(outline: &Outline, map: &dyn Map, creases: &Creases
 /// Announces what the refit of these runs of segments is going to ask, to a map that prefers batches.
 fn announce(runs: &[&[Seg]], map: &dyn Map, creases: &Creases, options: &Options) {
     announce_segments(runs.iter().copied().flatten(), map, options);
-    if options.merge && creases.items().iter().all(|c| c.kind == CreaseKind::Edge) {
+    if options.nodes.merges() && creases.items().iter().all(|c| c.kind == CreaseKind::Edge) {
         merge::announce(runs, map, options);
     }
 }
@@ -224,7 +228,13 @@ fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> R
 }
 
 /// Refits segments, with fewer pieces across smooth joints. Chains of shared segments are refitted on their own, in one direction.
-fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory: &mut MergeMemory) -> Refitted {
+/// `ring`: they are a whole closed subpath.
+fn merged(
+    fitter: &SegmentFitter<'_>,
+    (segs, ring): (&[Seg], bool),
+    mut nodes: Nodes<'_>,
+    memory: &mut MergeMemory,
+) -> Refitted {
     let (mut parts, mut chains) = (Vec::with_capacity(segs.len()), Vec::new());
     let shared = &fitter.options.shared;
     for chain in segs.chunk_by(|a, b| shared.goes_on(a, b)) {
@@ -239,18 +249,20 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
         let (before, after) = parts.split_at_mut(i);
         Part::join(&mut before[i - 1], &mut after[0]);
     }
-    let (mut pieces, mut report, mut from) = (Vec::with_capacity(parts.len()), Report::default(), 0);
+    let whole = parts.len();
+    let (mut pieces, mut report, mut from) = (Vec::with_capacity(whole), Report::default(), 0);
     for (to, turned) in chains {
         let own = &mut parts[from..to];
         let (mut more, mut found) = match turned {
-            None => merged_parts(fitter, own, memory)?,
+            None if ring && own.len() == whole && fitter.options.nodes.are_placed() => ringed(fitter, own, memory)?,
+            None => merged_parts(fitter, (own, false), memory)?,
             Some(turned) => {
                 if turned {
                     own.reverse();
                     own.iter_mut().for_each(Part::reverse);
                 }
                 // What other paths have may be known here, and not on the other side.
-                merged_parts(fitter, own, &mut MergeMemory::default())?
+                merged_parts(fitter, (own, false), &mut MergeMemory::default())?
             }
         };
         if turned == Some(true) {
@@ -268,8 +280,24 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory
     Ok((pieces, report))
 }
 
-fn merged_parts(fitter: &SegmentFitter<'_>, parts: &[Part], memory: &mut MergeMemory) -> Refitted {
-    let found = Merger::new(fitter, parts, memory).merged().map_err(lost)?;
+/// Merges the parts of a closed subpath from its first corner on, so that its start need not be a node; it begins at the node nearest to that.
+fn ringed(fitter: &SegmentFitter<'_>, parts: &mut [Part], memory: &mut MergeMemory) -> Refitted {
+    let start = parts[0].jets[0].p;
+    let before = |i: usize| if i == 0 { parts.len() } else { i } - 1;
+    let corner = (0..parts.len()).find(|&i| !merge::joins(&parts[before(i)], &parts[i]));
+    parts.rotate_left(corner.unwrap_or(0));
+    let (mut pieces, mut report) = merged_parts(fitter, (parts, corner.is_none()), memory)?;
+    let far = |i: &usize| pieces[*i].start().distance_squared(start);
+    let nearest = (0..pieces.len()).min_by(|i, j| far(i).total_cmp(&far(j))).unwrap_or(0);
+    pieces.rotate_left(nearest);
+    if report.pieces.len() == pieces.len() {
+        report.pieces.rotate_left(nearest);
+    }
+    Ok((pieces, report))
+}
+
+fn merged_parts(fitter: &SegmentFitter<'_>, (parts, ring): (&[Part], bool), memory: &mut MergeMemory) -> Refitted {
+    let found = Merger::new(fitter, (parts, ring), memory).merged().map_err(lost)?;
     // What a map moves as it is keeps its control points, unless it has many more than it needs: flattened curves, outlines of dashes.
     if !parts.is_empty() && parts.len() <= MANY_NODES * found.0.len() && parts.iter().all(Part::is_affine) {
         let (mut pieces, mut report) = (Vec::with_capacity(parts.len()), Report::default());
@@ -290,7 +318,7 @@ fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<(usize, &'s [Seg])> {
     let mut out = Vec::new();
     let mut rest = segs;
     while rest.len() > CHUNK {
-        let more = if options.merge { rest[CHUNK - 1..].windows(2).position(is_corner) } else { Some(0) };
+        let more = if options.nodes.merges() { rest[CHUNK - 1..].windows(2).position(is_corner) } else { Some(0) };
         let (chunk, after) = rest.split_at(more.map_or(rest.len(), |n| CHUNK + n));
         out.push((segs.len() - rest.len(), chunk));
         rest = after;

@@ -8,6 +8,7 @@ use super::source;
 use super::source::SourceCurve;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
+use bezierfit::Nodes;
 use bezierfit::parts::{SMOOTH_JOINT, StretchFitter, cover_far};
 use bezierfit::{NotFinite, Piece, Report};
 use kurbo::{CubicBez, Line, Point};
@@ -101,7 +102,8 @@ impl SegmentFitter<'_> {
         let left = self.options.budget.left() / self.work;
         let (tolerance, prove) = (self.options.tolerance, (self.options.certify, blur));
         let mut fitter = StretchFitter::new(source, &slow, tolerance, prove, left);
-        let covered = if self.options.merge {
+        fitter.evenly = self.options.nodes.are_placed();
+        let covered = if self.options.nodes == Nodes::Fewest {
             cover_far(&mut fitter, [&from, &to], SMOOTH_JOINT, pieces, report)
         } else {
             fitter.cover(&from, &to, pieces, report)

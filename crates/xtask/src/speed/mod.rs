@@ -212,12 +212,12 @@ fn drawings(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     let n = b.drawings.len();
     let (usvg, default) = (|f: &Path| b.resolve(f), |f: &Path| b.warp(f));
     row(out, &format!("{n} drawings, default ÷ usvg"), &b.compare(default, usvg)?);
-    for options in [["--merge", "off"], ["--text", "skip"]] {
+    for options in [["--nodes", "source"], ["--text", "skip"]] {
         let what = format!("{n} drawings, `{}` ÷ usvg", options.join(" "));
         row(out, &what, &b.compare(|f| b.warp(f).with(&options), usvg)?);
     }
-    let unmerged = |f: &Path| b.warp(f).with(&["--merge", "off"]);
-    row(out, &format!("{n} drawings, default ÷ `--merge off`"), &b.compare(default, unmerged)?);
+    let unmerged = |f: &Path| b.warp(f).with(&["--nodes", "source"]);
+    row(out, &format!("{n} drawings, default ÷ `--nodes source`"), &b.compare(default, unmerged)?);
     let certified = |f: &Path| b.warp(f).with(&["--certify"]);
     row(out, &format!("{n} drawings, `--certify` ÷ default"), &b.compare(certified, default)?);
     Ok(())
@@ -239,9 +239,9 @@ fn segments(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
         let (default, usvg) = (b.warp(&file), b.resolve(&file));
         let what = format!("{n} smooth segments {kind}");
         row(out, &format!("{what}, default ÷ usvg"), &ratio(b.pair(&default, &usvg)?));
-        let unmerged = default.with(&["--merge", "off"]);
-        row(out, &format!("{what}, `--merge off` ÷ usvg"), &ratio(b.pair(&unmerged, &usvg)?));
-        row(out, &format!("{what}, default ÷ `--merge off`"), &ratio(b.pair(&default, &unmerged)?));
+        let unmerged = default.with(&["--nodes", "source"]);
+        row(out, &format!("{what}, `--nodes source` ÷ usvg"), &ratio(b.pair(&unmerged, &usvg)?));
+        row(out, &format!("{what}, default ÷ `--nodes source`"), &ratio(b.pair(&default, &unmerged)?));
         row(out, &format!("{what}, `--certify` ÷ default"), &ratio(b.pair(&default.with(&["--certify"]), &default)?));
     }
     Ok(())
@@ -252,7 +252,11 @@ fn text(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     let (default, usvg) = (b.warp(&file), b.resolve(&file));
     let what = format!("{PARAGRAPHS} paragraphs of {} letters", generated::LETTERS);
     row(out, &format!("{what}, default ÷ usvg"), &ratio(b.pair(&default, &usvg)?));
-    row(out, &format!("{what}, `--merge off` ÷ usvg"), &ratio(b.pair(&default.with(&["--merge", "off"]), &usvg)?));
+    row(
+        out,
+        &format!("{what}, `--nodes source` ÷ usvg"),
+        &ratio(b.pair(&default.with(&["--nodes", "source"]), &usvg)?),
+    );
     row(out, &format!("{what}, `--text skip` ÷ usvg"), &ratio(b.pair(&default.with(&["--text", "skip"]), &usvg)?));
     Ok(())
 }

@@ -346,7 +346,7 @@ fn line(
     let artwork = &mut PlainArtwork { outlines, frame, budget: Arc::clone(&budget) };
     let built = session.ready(artwork, None)?.built.whole;
 
-    let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
+    let refit = refit::Options::new(tolerance).with_certify(options.certify).with_nodes(options.nodes);
     let refit = refit.with_budget(budget);
     let (copies, places) = (&built.placement.copies, &built.placement.letters);
     let set = |i: usize, letter: &Letter| {

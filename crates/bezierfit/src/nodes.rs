@@ -1,0 +1,407 @@
+//! Nodes where a type designer puts them: at the structure of a drawing and at extremes, with handles along the axes, and between them as
+//! few pieces as the tolerance allows, divided alike from either end.
+
+use crate::limits::{FULL, HOPE, MAX_PLANNED, MOVED_TURN, ON_AXIS, PLACEMENTS, SMOOTH_JOINT};
+use crate::merge::FitOwn;
+use crate::merge::{Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches};
+use crate::options::Nodes;
+use crate::part::Part;
+use crate::report::{Piece, Report};
+use crate::run::{RunSegment, SegmentRun};
+use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
+use crate::stretch::StretchFitter;
+use kurbo::{Point, Vec2};
+
+/// A side of a joint, as far as it tells if the joint belongs to the structure of a drawing.
+#[derive(Debug, Clone, Copy)]
+pub struct Side {
+    /// The direction at the joint.
+    pub tangent: Vec2,
+    /// The second derivative there, or any vector to the side to which the curve bends.
+    pub bend: Vec2,
+    /// It is a straight line.
+    pub is_line: bool,
+}
+
+/// Returns `true` if a smooth joint belongs to the structure of a drawing: a straight line ends there, or it is a horizontal or vertical
+/// extreme with handles along the axis.
+#[must_use]
+pub fn is_structure(before: &Side, after: &Side) -> bool {
+    let along = |s: &Side| s.tangent.x.abs().min(s.tangent.y.abs()) <= SMOOTH_JOINT * s.tangent.hypot();
+    let side = |s: &Side| s.tangent.cross(s.bend);
+    before.is_line != after.is_line || (along(before) && along(after) && side(before) * side(after) > 0.0)
+}
+
+/// What is wanted of a run's pieces.
+#[derive(Debug, Clone, Copy)]
+pub struct NodeSettings {
+    /// [`Nodes::Auto`] or [`Nodes::Extremes`].
+    pub nodes: Nodes,
+    /// Largest allowed distance.
+    pub tolerance: f64,
+    /// The end of the run joins its start smoothly.
+    pub closed: bool,
+    /// Evaluations that are left.
+    pub left: f64,
+}
+
+/// A place on a run: a segment, its parameter there, and the direction of the handles if it is not the curve's own.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    segment: usize,
+    t: f64,
+    axis: Option<Vec2>,
+}
+
+impl Place {
+    fn key(&self) -> f64 {
+        self.segment as f64 + self.t
+    }
+}
+
+/// Appends the pieces of a run, with nodes where they are wanted. Those of a closed run begin at the first of them. Returns the number of
+/// cubics that were tried.
+///
+/// # Errors
+/// A segment is not finite.
+pub fn placed<S: Source>(
+    run: &SegmentRun<S>,
+    settings: NodeSettings,
+    memory: &mut ReachMemory,
+    pieces: &mut Vec<Piece>,
+    report: &mut Report,
+) -> Result<usize, NotFinite> {
+    let places = Places { run, closed: settings.closed };
+    let mut kept = match settings.nodes {
+        Nodes::Auto => places.structure()?,
+        _ => places.extremes()?,
+    };
+    if settings.closed && kept.is_empty() {
+        kept = places.outermost()?;
+    }
+    kept.sort_by(|a, b| a.key().total_cmp(&b.key()));
+    kept.dedup_by(|b, a| b.key() - a.key() < SAME_PLACE);
+    let mut ends = kept;
+    if !settings.closed || ends.is_empty() {
+        ends.insert(0, Place { segment: 0, t: 0.0, axis: None });
+        ends.push(Place { segment: run.segments.len(), t: 0.0, axis: None });
+    } else {
+        ends.push(Place { segment: ends[0].segment + run.segments.len(), ..ends[0] });
+    }
+    let mut tried = 0;
+    for w in ends.windows(2) {
+        let stretch = places.between(w[0], w[1])?;
+        tried += evenly(&stretch, settings, memory, pieces, report)?;
+    }
+    Ok(tried)
+}
+
+/// Places on a run that are closer, in segments, are one.
+const SAME_PLACE: f64 = 1e-7;
+
+struct Places<'r, S> {
+    run: &'r SegmentRun<S>,
+    closed: bool,
+}
+
+/// One of a point's coordinates: 0 or 1.
+type Coordinate = usize;
+
+fn coordinate(v: Vec2, c: Coordinate) -> f64 {
+    if c == 0 { v.x } else { v.y }
+}
+
+impl<'r, S: Source> Places<'r, S> {
+    /// Number of samples' intervals.
+    fn intervals(&self) -> usize {
+        self.run.segments.len() * self.run.per_segment
+    }
+
+    /// The sign in which a coordinate changes over an interval between samples, which may be one beyond the ends of a closed run. Zero if
+    /// it hardly does.
+    fn change(&self, c: Coordinate, k: isize) -> f64 {
+        let k = k.rem_euclid(self.intervals() as isize) as usize;
+        let v = if c == 0 { &self.run.x } else { &self.run.y };
+        let (d, step) = (v[k + 1] - v[k], self.run.length[k + 1] - self.run.length[k]);
+        if d.abs() <= ON_AXIS * step { 0.0 } else { d / step }
+    }
+
+    /// All smooth extremes.
+    fn extremes(&self) -> Result<Vec<Place>, NotFinite> {
+        let (n, count) = (self.run.per_segment as isize, self.intervals() as isize);
+        let tangent = |s: Option<&RunSegment<S>>, c| s.map_or(0.0, |s| coordinate(s.from.away, c));
+        let end = |c| self.run.segments.last().map_or(0.0, |s| coordinate(s.to.into, c));
+        let mut out = Vec::new();
+        for c in 0..2 {
+            // How the coordinate changes at joints and between samples, each with its last sample.
+            let joint = |k: isize| (k % n == 0).then(|| (k, tangent(self.run.segments.get((k / n) as usize), c)));
+            let around = (0..count).flat_map(|k| joint(k).into_iter().chain([(k + 1, self.change(c, k))]));
+            let mut all: Vec<(isize, f64)> = around.chain((!self.closed).then(|| (count, end(c)))).collect();
+            all.retain(|(_, change)| change.abs() > ON_AXIS);
+            if let (true, Some(&(k, change))) = (self.closed, all.last()) {
+                all.insert(0, (k - count, change));
+            }
+            for w in all.windows(2).filter(|w| w[0].1 * w[1].1 < 0.0) {
+                out.extend(self.extreme(c, [w[0].0 - 1, w[1].0], w[1].1)?);
+            }
+        }
+        Ok(out)
+    }
+
+    /// The extremes that are the outermost of their coordinate.
+    fn outermost(&self) -> Result<Vec<Place>, NotFinite> {
+        let all = self.extremes()?;
+        let at: Vec<Point> = all.iter().map(|p| self.run.segments[p.segment].source.eval(p.t).0).collect();
+        let bounds = at.iter().fold(None, |b: Option<kurbo::Rect>, p| {
+            Some(b.map_or(kurbo::Rect::from_points(*p, *p), |b| b.union_pt(*p)))
+        });
+        let Some(b) = bounds else { return Ok(all) };
+        let near = 1e-9 * (b.width() + b.height());
+        let outer = |p: &Point| [p.x - b.x0, b.x1 - p.x, p.y - b.y0, b.y1 - p.y].into_iter().any(|d| d <= near);
+        Ok(all.into_iter().zip(&at).filter(|(_, p)| outer(p)).map(|(place, _)| place).collect())
+    }
+
+    /// The nodes of the source that are its structure, where they belong in the result.
+    fn structure(&self) -> Result<Vec<Place>, NotFinite> {
+        let mut out = Vec::new();
+        for (j, segment) in self.run.segments.iter().enumerate() {
+            if !segment.kept || (j == 0 && !self.closed) {
+                continue;
+            }
+            let t = segment.from.away;
+            let c = usize::from(t.y.abs() < t.x.abs());
+            let here = Place { segment: j, t: 0.0, axis: None };
+            let off = coordinate(t, c);
+            out.push(if off.abs() <= ON_AXIS {
+                Place { axis: Some(along(t, c)), ..here }
+            } else if off.abs() <= MOVED_TURN {
+                self.near(j, c, off)?.unwrap_or(here)
+            } else {
+                here
+            });
+        }
+        Ok(out)
+    }
+
+    /// The nearest extreme up to which the curve turns by little from joint `j`, where it is off the axis by `off`, and up to the next
+    /// node that is kept.
+    fn near(&self, j: usize, c: Coordinate, off: f64) -> Result<Option<Place>, NotFinite> {
+        let (n, count) = (self.run.per_segment as isize, self.intervals() as isize);
+        let start = j as isize * n;
+        let is_kept = |k: isize| k % n == 0 && self.run.segments[(k / n).rem_euclid(count / n) as usize].kept;
+        let mut ahead = [true; 2];
+        let joint = self.run.segments[j].from.p;
+        let from_joint = |p: &Place| self.run.segments[p.segment].source.eval(p.t).0.distance(joint);
+        for far in 0..count {
+            let mut found: Option<Place> = None;
+            for (side, k) in [start + far, start - 1 - far].into_iter().enumerate() {
+                if !ahead[side] {
+                    continue;
+                }
+                let inside = self.closed || (0..count).contains(&k);
+                let passed = far > 0 && is_kept(if side == 0 { k } else { k + 1 });
+                let d = if inside && !passed { self.change(c, k) } else { f64::INFINITY };
+                if d * off < 0.0 && d.abs() <= MOVED_TURN {
+                    // Between the middles of this interval and of the one before.
+                    let bracket = if side == 0 { [(k - 1).max(start), k + 1] } else { [k, (k + 2).min(start)] };
+                    let other = self.extreme(c, bracket, if side == 0 { d } else { off })?;
+                    found = found.into_iter().chain(other).min_by(|p, q| from_joint(p).total_cmp(&from_joint(q)));
+                }
+                ahead[side] = d.abs() <= MOVED_TURN;
+            }
+            if found.is_some() {
+                return Ok(found);
+            }
+            if ahead == [false; 2] {
+                break;
+            }
+        }
+        Ok(None)
+    }
+
+    /// The extreme of a coordinate between two samples, after which it changes with the sign of `after`. `None` if the derivatives show
+    /// none.
+    fn extreme(&self, c: Coordinate, [from, to]: [isize; 2], after: f64) -> Result<Option<Place>, NotFinite> {
+        let (n, count) = (self.run.per_segment as isize, self.run.segments.len() as isize);
+        let from = if self.closed { from } else { from.max(0) };
+        for k in from..to {
+            let index = k.div_euclid(n).rem_euclid(count) as usize;
+            let (segment, part) = (&self.run.segments[index], k.rem_euclid(n));
+            if part == 0 && (self.closed || index > 0) && k > from {
+                let before = &self.run.segments[(index + count as usize - 1) % count as usize];
+                let [u, v] = [before.to.into, segment.from.away];
+                let [a, b] = [coordinate(u, c) * after, coordinate(v, c) * after];
+                if a < 0.0 && b > 0.0 || a.abs().min(b.abs()) <= ON_AXIS * after.abs() {
+                    return Ok(Some(Place { segment: index, t: 0.0, axis: Some(along(u + v, c)) }));
+                }
+            }
+            let share = |k: isize| k as f64 / n as f64;
+            if let Some((t, d)) = root(&segment.source, (c, after), [share(part), share(part + 1)])? {
+                let place = Place { segment: index, t, axis: Some(along(d, c)) };
+                let beyond =
+                    if t < SAME_PLACE { index == 0 } else { t > 1.0 - SAME_PLACE && index + 1 == count as usize };
+                return Ok(match t {
+                    _ if beyond && !self.closed => None,
+                    _ if t < SAME_PLACE => Some(Place { t: 0.0, ..place }),
+                    _ if t > 1.0 - SAME_PLACE => Some(Place { segment: (index + 1) % count as usize, t: 0.0, ..place }),
+                    _ => Some(place),
+                });
+            }
+        }
+        Ok(None)
+    }
+
+    /// The stretch between two places as a run of its own; a segment beyond the last is the first again.
+    fn between(&self, from: Place, to: Place) -> Result<SegmentRun<Part<'r, S>>, NotFinite> {
+        let (run, count) = (self.run, self.run.segments.len());
+        let mut out = SegmentRun::new(true, to.segment + 1 - from.segment);
+        (out.per_segment, out.grid) = (run.per_segment, run.per_segment / 2);
+        let last = if to.t > 0.0 { to.segment } else { to.segment - 1 };
+        for i in from.segment..=last {
+            let segment = &run.segments[i % count];
+            let end = |t: f64| match t {
+                0.0 => Ok(segment.from),
+                1.0 => Ok(segment.to),
+                _ => segment.source.end(t),
+            };
+            let first = if i == from.segment { from } else { Place { t: 0.0, axis: None, ..from } };
+            let second = if i == to.segment { to } else { Place { t: 1.0, axis: to.axis.filter(|_| i == last), ..to } };
+            let held = |p: Place| end(p.t).map(|e| p.axis.map_or(e, |a| BreakPoint { into: a, away: a, ..e }));
+            let part = Part::between(&segment.source, [held(first)?, held(second)?]);
+            let form = if segment.form.is_some() { part.quotient().and_then(Quotient::provable) } else { None };
+            let whole = first.t == 0.0 && second.t == 1.0;
+            let samples = whole.then(|| run.samples_of(i % count));
+            out.push_sampled(segment.over(part, form, part.ends), samples)?;
+        }
+        Ok(out)
+    }
+}
+
+/// The direction along the axis on which coordinate `c` does not change.
+fn along(v: Vec2, c: Coordinate) -> Vec2 {
+    if c == 0 { Vec2::new(0.0, 1.0f64.copysign(v.y)) } else { Vec2::new(1.0f64.copysign(v.x), 0.0) }
+}
+
+/// The parameter between two at which the derivative of a coordinate changes its sign to that of `after`, with the derivative, by the
+/// method of Illinois.
+fn root<S: Source>(
+    source: &S,
+    (c, after): (Coordinate, f64),
+    [mut a, mut b]: [f64; 2],
+) -> Result<Option<(f64, Vec2)>, NotFinite> {
+    let at = |t: f64| {
+        let (p, d) = source.eval(t);
+        if d.is_finite() { Ok((coordinate(d, c) / d.hypot(), d)) } else { Err(NotFinite { t, at: p }) }
+    };
+    let ((mut fa, da), (mut fb, db)) = (at(a)?, at(b)?);
+    if fa.abs() <= ON_AXIS * 1e-3 || fb.abs() <= ON_AXIS * 1e-3 {
+        let first = fa.abs() < fb.abs();
+        return Ok(Some(if first { (a, da) } else { (b, db) }));
+    }
+    if !(fa * fb < 0.0 && fb * after > 0.0) {
+        return Ok(None);
+    }
+    for _ in 0..60 {
+        let t = (a * fb - b * fa) / (fb - fa);
+        let (f, d) = at(t)?;
+        if f.abs() < 1e-12 || (b - a).abs() < 1e-13 {
+            return Ok(Some((t, d)));
+        }
+        if f * fb < 0.0 {
+            (a, fa) = (b, fb);
+        } else {
+            fa *= 0.5;
+        }
+        (b, fb) = (t, f);
+    }
+    Ok(Some((b, at(b)?.1)))
+}
+
+/// Errors ÷ tolerance above this, of a stretch that takes four pieces, tell no number of pieces.
+const MOST_TOLD: f64 = 4096.0;
+
+/// Appends the pieces of a stretch, alike from either end.
+fn evenly<S: Source>(
+    run: &SegmentRun<S>,
+    settings: NodeSettings,
+    memory: &mut ReachMemory,
+    pieces: &mut Vec<Piece>,
+    report: &mut Report,
+) -> Result<usize, NotFinite> {
+    let NodeSettings { tolerance, left, .. } = settings;
+    let slow = SlowSpots::default();
+    let proof = run.segments.first().is_some_and(RunSegment::is_provable);
+    let own = OwnPieces::new(run.segments.len(), |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+        let segment = &run.segments[i];
+        let mut fitter = StretchFitter::new(&segment.source, &slow, tolerance, (proof, 0.0), left);
+        fitter.evenly = true;
+        fitter.cover(&segment.from, &segment.to, pieces, report)
+    });
+    memory.last_reach = 0;
+    let settings = MergeSettings { tolerance, proof, marks: false, again: false, evenly: true };
+    let mut reaches = Reaches::new(run, own, settings, memory);
+    let legs = if run.segments.len() > 1 { reaches.even()? } else { None };
+    let tried = reaches.tried();
+    let mut own = reaches.own;
+    own.append(legs, run.assurance(tolerance), pieces, report)?;
+    Ok(tried)
+}
+
+impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
+    /// A way of few pieces of about equal difficulty, the same from either end. `None` if the segments have fewer.
+    fn even(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
+        let last = self.last();
+        let (mut n, mut placements) = (1, 0);
+        let mut ends = vec![0, last];
+        loop {
+            if n > self.own.segments() && n > self.own.total()? {
+                return Ok(None);
+            }
+            let (mut fits, mut sums) = (true, vec![0.0]);
+            for (i, w) in ends.windows(2).enumerate() {
+                let error = self.error(w[0], w[1])?.clamp(1e-4, MOST_TOLD);
+                sums.push(sums[i] + error.powf(1.0 / 6.0));
+                fits &= error <= 1.0;
+            }
+            if fits {
+                let legs: Vec<Leg> = ends.windows(2).map(|w| Leg { from: w[0], to: w[1], merged: true }).collect();
+                if let Some(found) = self.pieces_of(&legs)? {
+                    return Ok(Some(found));
+                }
+            }
+            placements += 1;
+            let mut next = n;
+            if sums[n] > n as f64 * FULL || placements >= PLACEMENTS {
+                next = (n + 1).max((sums[n] * HOPE).ceil() as usize);
+                placements = 0;
+            }
+            // What is far longer has its pieces one after the other.
+            let moved = if next > 2 * MAX_PLANNED { None } else { self.quantiles(&ends, &sums, next) };
+            let Some(moved) = moved else {
+                return if self.own.total()? <= next { Ok(None) } else { self.fewest() };
+            };
+            (ends, n) = (moved, next);
+        }
+    }
+
+    /// The places that divide the difficulty, whose sums up to some places are given, into equal parts. `None` if two of them are one.
+    fn quantiles(&self, ends: &[usize], sums: &[f64], parts: usize) -> Option<Vec<usize>> {
+        let (n, last) = (ends.len() - 1, self.last());
+        let (run, total) = (self.run, sums[n]);
+        let whole = run.place(last);
+        let mut out = vec![0];
+        for i in 1..parts {
+            let wanted = total * i as f64 / parts as f64;
+            let at = (1..n).find(|k| sums[*k] >= wanted).unwrap_or(n);
+            let [a, b] = [ends[at - 1], ends[at]].map(|k| run.place(k));
+            let length = a + (b - a) * (wanted - sums[at - 1]) / (sums[at] - sums[at - 1]);
+            // The nearest place; of two that are as near, that closer to the middle, from whichever end.
+            let k = run.place_before(length, [out[i - 1], last - 1]);
+            let (down, up) = (length - run.place(k), run.place(k + 1) - length);
+            let towards = if 2.0 * length < whole { 1.0 } else { -1.0 };
+            out.push(if down - up > -1e-6 * towards * whole / last as f64 { k + 1 } else { k });
+        }
+        out.push(last);
+        out.windows(2).all(|w| w[0] < w[1]).then_some(out)
+    }
+}
