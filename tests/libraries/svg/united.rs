@@ -11,11 +11,11 @@ use pathwarp_svg::{Edit, Structure, WarpOptions, WarpedDocument};
 const TOLERANCE: f64 = 0.01;
 
 fn united(svg: &str, by_fill: bool) -> WarpedDocument {
-    united_by(svg, WarpOptions::new(refit::Options::new(TOLERANCE)).editing(Edit::Unite { by_fill }))
+    united_by(svg, &WarpOptions::new(refit::Options::new(TOLERANCE)).editing(Edit::Unite { by_fill }))
 }
 
-fn united_by(svg: &str, options: WarpOptions) -> WarpedDocument {
-    read(svg).warp(&AffineMap(Affine::IDENTITY), &options).unwrap()
+fn united_by(svg: &str, options: &WarpOptions) -> WarpedDocument {
+    read(svg).warp(&AffineMap(Affine::IDENTITY), options).unwrap()
 }
 
 /// The outline of each shape that has a fill, with its rule.
@@ -69,7 +69,7 @@ fn one_outline_covers_what_all_shapes_cover() {
         }
         let flat = united_by(
             &source,
-            WarpOptions::new(refit::Options::new(TOLERANCE))
+            &WarpOptions::new(refit::Options::new(TOLERANCE))
                 .with_structure(Structure::Flatten)
                 .editing(Edit::Unite { by_fill: false }),
         );

@@ -248,9 +248,8 @@ impl WarpOptions {
             Edit::Outline => options.with_strokes(Strokes::Outline).with_gradients(Gradients::Fit),
             // Nothing of the artwork changes.
             Edit::Contour(_) => options.with_overhang(true),
-            Edit::Unite { .. } => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit),
             Edit::Offset(_) => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit).with_overhang(true),
-            Edit::Resolve => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit),
+            Edit::Unite { .. } | Edit::Resolve => options.with_strokes(Strokes::Keep).with_gradients(Gradients::Fit),
         }
     }
 

@@ -55,7 +55,7 @@ impl Seen<'_> {
                 Node::Group(g) => self.add_group(g, ink, out)?,
                 Node::Text { content, .. } => self.add_group(content, ink, out)?,
                 Node::Image(i) if ink == Ink::Light || ink == Ink::Paint && self.bitmaps[*i] => {
-                    out.push(self.picture(*i)?)
+                    out.push(self.picture(*i)?);
                 }
                 Node::Image(_) => {}
                 Node::Part(i) if ink == Ink::Light && is_black(&self.drawing.scene().parts[*i]) => {

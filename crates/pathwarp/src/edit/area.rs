@@ -160,7 +160,7 @@ impl Area {
 
 /// Whether two segments are nearer than `width`, or a little more.
 fn are_near(a: &PathSeg, b: &PathSeg, width: f64) -> bool {
-    let [around, other] = [a, b].map(|s| s.bounding_box());
+    let [around, other] = [a, b].map(kurbo::Shape::bounding_box);
     let [m, n] = [around, other].map(|b| b.size().max_side());
     let room = around.inflate(width, width);
     if room.x0 > other.x1 || other.x0 > room.x1 || room.y0 > other.y1 || other.y0 > room.y1 {
@@ -181,9 +181,9 @@ fn outer(outline: &Outline, fine: f64) -> impl Iterator<Item = &Subpath> {
 }
 
 /// The outlines of an area, without those that lie inside of another. Arcs become cubics within `fine`.
-pub(super) fn outermost(outline: Outline, fine: f64) -> Outline {
+pub(super) fn outermost(outline: &Outline, fine: f64) -> Outline {
     let islands: Vec<(&Subpath, Rect, BezPath)> =
-        outer(&outline, fine).map(|s| (s, s.bounding_box(), path(s, fine))).collect();
+        outer(outline, fine).map(|s| (s, s.bounding_box(), path(s, fine))).collect();
     let is_inside = |(s, b, _): &(&Subpath, Rect, BezPath)| {
         islands.iter().any(|(_, around, path)| around != b && around.union(*b) == *around && path.contains(s.start))
     };

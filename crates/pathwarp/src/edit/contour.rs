@@ -52,7 +52,7 @@ pub fn around(area: &Area, contour: &Contour, options: &Options) -> Result<Aroun
     let Moved { mut outline, path } = moved(area.outline(), &offset, options, &[])?;
     let (mut report, fine) = (path.report, ARCS * options.tolerance);
     if !contour.holes {
-        outline = outermost(outline, fine);
+        outline = outermost(&outline, fine);
     }
     let mut area = Area::of(&outline, false, options.tolerance)?;
     if contour.join && area.counts()[0] > 1 {
@@ -61,7 +61,7 @@ pub fn around(area: &Area, contour: &Contour, options: &Options) -> Result<Aroun
         area = Area::union([&area, &necks], options.tolerance)?;
         outline = area.with_arcs_of(&outline, options.tolerance);
         if !contour.holes {
-            outline = outermost(outline, fine);
+            outline = outermost(&outline, fine);
         }
     }
     let islands = area.counts()[0];
