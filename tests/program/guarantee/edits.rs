@@ -65,7 +65,7 @@ fn a_circle_of_forty_cubics_gets_four() {
 #[test]
 fn paths_of_drawings_get_fewer_nodes_within_the_distance() {
     let (mut fewer, mut r) = (0, Random::new(17));
-    for _ in 0..14 {
+    for _ in 0..60 {
         let (kind, d) = drawn(&mut r);
         if kind != "of drawings" {
             continue;

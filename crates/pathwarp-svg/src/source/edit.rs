@@ -183,12 +183,8 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
     declare_data(source, e, &mut c);
     let text = &source.text;
     let el = &source.elements[e];
-    if !c.before.is_empty() {
-        out.push((el.range.start, el.range.start, c.before));
-    }
-    if !c.after.is_empty() {
-        out.push((el.range.end, el.range.end, c.after));
-    }
+    let beside = [(el.range.start, c.before), (el.range.end, c.after)].into_iter().filter(|(_, new)| !new.is_empty());
+    out.extend(beside.map(|(at, new)| (at, at, new)));
     if let Some(new) = c.replaced {
         // What is removed leaves no empty line.
         let indented = text[..el.range.start].trim_end_matches([' ', '\t']);

@@ -24,7 +24,7 @@ const PLACES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 /// // One turns to the left, one to the right.
 /// let (a, b) = (area("M0,0H60V60H0Z")?, area("M40,40V100H100V40Z")?);
 /// assert_eq!(Area::union([&a, &b], 0.01)?.outline().segs().count(), 8);
-/// assert_eq!(a.intersection(&b, 0.01)?.outline().bounding_box().unwrap().area(), 400.0);
+/// assert!((a.intersection(&b, 0.01)?.outline().bounding_box().unwrap().area() - 400.0).abs() < 1e-9);
 /// # Ok::<(), pathwarp::GeometryError>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
