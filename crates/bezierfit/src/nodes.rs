@@ -8,7 +8,7 @@ use crate::options::Nodes;
 use crate::part::Part;
 use crate::report::{Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
-use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source};
+use crate::source::{BreakPoint, NotFinite, Quotient, Source};
 use crate::stretch::StretchFitter;
 use kurbo::{Point, Vec2};
 
@@ -83,8 +83,9 @@ pub fn placed<S: Source>(
     kept.dedup_by(|b, a| b.key() - a.key() < SAME_PLACE);
     let mut ends = kept;
     if !settings.closed || ends.is_empty() {
-        ends.insert(0, Place { segment: 0, t: 0.0, axis: None });
-        ends.push(Place { segment: run.segments.len(), t: 0.0, axis: None });
+        let [first, last] = [run.segments.first(), run.segments.last()];
+        ends.insert(0, Place { segment: 0, t: 0.0, axis: first.and_then(|s| axis_of(s.from.away)) });
+        ends.push(Place { segment: run.segments.len(), t: 0.0, axis: last.and_then(|s| axis_of(s.to.into)) });
     } else {
         ends.push(Place { segment: ends[0].segment + run.segments.len(), ..ends[0] });
     }
@@ -271,7 +272,9 @@ impl<'r, S: Source> Places<'r, S> {
             let form = if segment.form.is_some() { part.quotient().and_then(Quotient::provable) } else { None };
             let whole = first.t == 0.0 && second.t == 1.0;
             let samples = whole.then(|| run.samples_of(i % count));
-            out.push_sampled(segment.over(part, form, part.ends), samples)?;
+            let mut over = segment.over(part, form, part.ends);
+            over.slow = over.slow.map(|t| (t - first.t) / (second.t - first.t));
+            out.push_sampled(over, samples)?;
         }
         Ok(out)
     }
@@ -280,6 +283,11 @@ impl<'r, S: Source> Places<'r, S> {
 /// The direction along the axis on which coordinate `c` does not change.
 fn along(v: Vec2, c: Coordinate) -> Vec2 {
     if c == 0 { Vec2::new(0.0, 1.0f64.copysign(v.y)) } else { Vec2::new(1.0f64.copysign(v.x), 0.0) }
+}
+
+/// The direction of the axis along which a unit vector is but for rounding.
+fn axis_of(v: Vec2) -> Option<Vec2> {
+    (0..2).find(|c| coordinate(v, *c).abs() <= ON_AXIS).map(|c| along(v, c))
 }
 
 /// The parameter between two at which the derivative of a coordinate changes its sign to that of `after`, with the derivative, by the
@@ -294,9 +302,21 @@ fn root<S: Source>(
         if d.is_finite() { Ok((coordinate(d, c) / d.hypot(), d)) } else { Err(NotFinite { t, at: p }) }
     };
     let ((mut fa, da), (mut fb, db)) = (at(a)?, at(b)?);
-    if fa.abs() <= ON_AXIS * 1e-3 || fb.abs() <= ON_AXIS * 1e-3 {
-        let first = fa.abs() < fb.abs();
-        return Ok(Some(if first { (a, da) } else { (b, db) }));
+    // An end may be an extreme to the other side, with the wanted one close by.
+    let inside = 1e-3 * (b - a);
+    if fa.abs() <= ON_AXIS * 1e-3 {
+        let f = at(a + inside)?.0;
+        if f * after > 0.0 {
+            return Ok(Some((a, da)));
+        }
+        (a, fa) = (a + inside, f);
+    }
+    if fb.abs() <= ON_AXIS * 1e-3 {
+        let f = at(b - inside)?.0;
+        if f * after < 0.0 {
+            return Ok(Some((b, db)));
+        }
+        (b, fb) = (b - inside, f);
     }
     if !(fa * fb < 0.0 && fb * after > 0.0) {
         return Ok(None);
@@ -304,7 +324,7 @@ fn root<S: Source>(
     for _ in 0..60 {
         let t = (a * fb - b * fa) / (fb - fa);
         let (f, d) = at(t)?;
-        if f.abs() < 1e-12 || (b - a).abs() < 1e-13 {
+        if f.abs() < 1e-12 {
             return Ok(Some((t, d)));
         }
         if f * fb < 0.0 {
@@ -314,7 +334,9 @@ fn root<S: Source>(
         }
         (b, fb) = (t, f);
     }
-    Ok(Some((b, at(b)?.1)))
+    // At a cusp, the direction jumps.
+    let (f, d) = at(b)?;
+    Ok((f.abs() <= ON_AXIS).then_some((b, d)))
 }
 
 /// Errors ÷ tolerance above this, of a stretch that takes four pieces, tell no number of pieces.
@@ -329,11 +351,10 @@ fn evenly<S: Source>(
     report: &mut Report,
 ) -> Result<usize, NotFinite> {
     let NodeSettings { tolerance, left, .. } = settings;
-    let slow = SlowSpots::default();
     let proof = run.segments.first().is_some_and(RunSegment::is_provable);
     let own = OwnPieces::new(run.segments.len(), |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
         let segment = &run.segments[i];
-        let mut fitter = StretchFitter::new(&segment.source, &slow, tolerance, (proof, 0.0), left);
+        let mut fitter = StretchFitter::new(&segment.source, &segment.slow, tolerance, (proof, 0.0), left);
         fitter.evenly = true;
         fitter.cover(&segment.from, &segment.to, pieces, report)
     });

@@ -5,7 +5,7 @@ use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, fit, imp
 use crate::limits::{COARSE, EVEN_CURVATURE, LONG_EDGE, MERGE_GRID, OPAQUE_SAMPLES, PEAK_NEAR, RATIONAL_SAMPLES};
 use crate::report::{Assurance, Piece};
 use crate::sample::{ALL, Evenly, Lane, Lanes, UNIT, extreme, interleaved, larger, largest};
-use crate::source::{BreakPoint, NotFinite, Quotient, Source, images};
+use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images};
 use crate::stretch::{STRAIGHT_TURN, straight};
 use kurbo::{CubicBez, Line, Point, Vec2};
 
@@ -34,6 +34,8 @@ pub struct RunSegment<S> {
     curvature: [Curvature; 2],
     /// It begins at a node that is the source's structure.
     pub kept: bool,
+    /// Those of a segment that is a run of its own; any other has none.
+    pub slow: SlowSpots,
 }
 
 /// A curvature and how far it may be off.
@@ -57,7 +59,8 @@ impl<S> RunSegment<S> {
     /// A segment without slow spots, with its ends, its form if proofs are wanted, and `true` if it is a line.
     pub fn new(source: S, form: Option<Quotient>, [from, to]: [BreakPoint; 2], is_line: bool) -> Self {
         let kind = if is_line { Kind::Straight } else { Kind::Curve };
-        Self { source, form, from, to, kind, curvature: [Curvature::default(); 2], kept: false }
+        let (curvature, slow) = ([Curvature::default(); 2], SlowSpots::default());
+        Self { source, form, from, to, kind, curvature, kept: false, slow }
     }
 
     /// The same, drawn as a line that is none any more.
@@ -68,7 +71,8 @@ impl<S> RunSegment<S> {
 
     /// Another source of the same kind.
     pub(crate) fn over<T>(&self, source: T, form: Option<Quotient>, [from, to]: [BreakPoint; 2]) -> RunSegment<T> {
-        RunSegment { source, form, from, to, kind: self.kind, curvature: self.curvature, kept: self.kept }
+        let Self { kind, curvature, kept, slow, .. } = *self;
+        RunSegment { source, form, from, to, kind, curvature, kept, slow }
     }
 
     /// Returns `true` if proofs are wanted and possible.

@@ -179,6 +179,10 @@ impl<'a> Merger<'a> {
     fn placed(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
         let options = self.fitter.options;
         let mut run = self.run(start, end)?;
+        if run.segments.is_empty() && options.nodes == Nodes::Extremes {
+            let parts: &'a [Part] = self.parts;
+            run.extend(&parts[start..=start], SMOOTH_JOINT, |part| Ok(self.run_segment(part, true)))?;
+        }
         let count = run.segments.len();
         if count < 1 + usize::from(options.nodes == Nodes::Auto) {
             return self.single(start);
@@ -238,17 +242,21 @@ impl<'a> Merger<'a> {
     fn run(&self, start: usize, end: usize) -> Result<SegmentRun<SourceCurve<'a>>, NotFinite> {
         let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
         let parts: &'a [Part] = self.parts;
-        run.extend(&parts[start..end], SMOOTH_JOINT, |part| Ok(self.run_segment(part)))?;
+        run.extend(&parts[start..end], SMOOTH_JOINT, |part| Ok(self.run_segment(part, false)))?;
         Ok(run)
     }
 
-    /// A segment of a run. `None` if it cannot be in one, having no length or slow spots.
-    fn run_segment(&self, part: &'a Part) -> Option<RunSegment<SourceCurve<'a>>> {
+    /// A segment of a run. `None` if it cannot be in one, having no length, or slow spots and not being `alone`.
+    fn run_segment(&self, part: &'a Part, alone: bool) -> Option<RunSegment<SourceCurve<'a>>> {
         let options = self.fitter.options;
         let source = part.source(self.fitter, &part.seg);
         let form = if options.certify { source.quotient().and_then(Quotient::provable) } else { None };
-        if source.size() == 0.0 || !source::slow_spots(&part.seg).all().is_empty() {
+        let mut slow = source::slow_spots(&part.seg);
+        if source.size() == 0.0 || !(alone || slow.all().is_empty()) {
             return None;
+        }
+        if source.is_rational() {
+            slow = slow.map(|t| source.param(t));
         }
         let samples = per_segment(self.fitter.degree.is_some());
         let hides = |between: [f64; 2], samples: usize| {
@@ -270,7 +278,8 @@ impl<'a> Merger<'a> {
         };
         let is_line = matches!(part.seg, Seg::Line(_));
         let bent = is_line && !is_straight();
-        let segment = RunSegment::new(source, form, ends, is_line);
+        let mut segment = RunSegment::new(source, form, ends, is_line);
+        segment.slow = slow;
         Some(if bent { segment.bent() } else { segment })
     }
 
