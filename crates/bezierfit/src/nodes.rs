@@ -130,20 +130,36 @@ impl<'r, S: Source> Places<'r, S> {
     /// All smooth extremes.
     fn extremes(&self) -> Result<Vec<Place>, NotFinite> {
         let (n, count) = (self.run.per_segment as isize, self.intervals() as isize);
-        let tangent = |s: Option<&RunSegment<S>>, c| s.map_or(0.0, |s| coordinate(s.from.away, c));
-        let end = |c| self.run.segments.last().map_or(0.0, |s| coordinate(s.to.into, c));
+        let segment = |j: isize| &self.run.segments[j.rem_euclid(count / n) as usize];
         let mut out = Vec::new();
         for c in 0..2 {
-            // How the coordinate changes at joints and between samples, each with its last sample.
-            let joint = |k: isize| (k % n == 0).then(|| (k, tangent(self.run.segments.get((k / n) as usize), c)));
-            let around = (0..count).flat_map(|k| joint(k).into_iter().chain([(k + 1, self.change(c, k))]));
-            let mut all: Vec<(isize, f64)> = around.chain((!self.closed).then(|| (count, end(c)))).collect();
-            all.retain(|(_, change)| change.abs() > ON_AXIS);
-            if let (true, Some(&(k, change))) = (self.closed, all.last()) {
-                all.insert(0, (k - count, change));
+            // How the coordinate changes at joints and between samples, with the samples around: at a joint along the axis, on either
+            // side of it.
+            let beside = |j: isize, t: f64| coordinate(segment(j).source.eval(t).1.normalize(), c);
+            let mut all: Vec<(isize, isize, f64)> = Vec::new();
+            for k in 0..count {
+                if k % n == 0 {
+                    let (j, inside) = (k / n, INSIDE / n as f64);
+                    let off = coordinate(segment(j).from.away, c);
+                    if off.abs() > ON_AXIS {
+                        all.push((k, k, off));
+                    } else {
+                        all.extend((self.closed || j > 0).then(|| (k, k, beside(j - 1, 1.0 - inside))));
+                        all.push((k, k, beside(j, inside)));
+                    }
+                }
+                all.push((k, k + 1, self.change(c, k)));
             }
-            for w in all.windows(2).filter(|w| w[0].1 * w[1].1 < 0.0) {
-                out.extend(self.extreme(c, [w[0].0 - 1, w[1].0], w[1].1)?);
+            if !self.closed {
+                all.push((count, count, coordinate(segment(-1).to.into, c)));
+            }
+            all.retain(|(.., change)| change.abs() > ON_AXIS);
+            if let (true, Some(&(from, to, change))) = (self.closed, all.last()) {
+                all.insert(0, (from - count, to - count, change));
+            }
+            for w in all.windows(2).filter(|w| w[0].2 * w[1].2 < 0.0) {
+                let (from, to) = (w[0].0, w[1].1);
+                out.extend(self.extreme(c, [from.min(to - 1), to], w[1].2)?);
             }
         }
         Ok(out)
@@ -285,6 +301,9 @@ fn along(v: Vec2, c: Coordinate) -> Vec2 {
     if c == 0 { Vec2::new(0.0, 1.0f64.copysign(v.y)) } else { Vec2::new(1.0f64.copysign(v.x), 0.0) }
 }
 
+/// Share of the interval between two samples at which the direction beside a joint is looked at.
+const INSIDE: f64 = 1e-3;
+
 /// The direction of the axis along which a unit vector is but for rounding.
 fn axis_of(v: Vec2) -> Option<Vec2> {
     (0..2).find(|c| coordinate(v, *c).abs() <= ON_AXIS).map(|c| along(v, c))
@@ -303,7 +322,7 @@ fn root<S: Source>(
     };
     let ((mut fa, da), (mut fb, db)) = (at(a)?, at(b)?);
     // An end may be an extreme to the other side, with the wanted one close by.
-    let inside = 1e-3 * (b - a);
+    let inside = INSIDE * (b - a);
     if fa.abs() <= ON_AXIS * 1e-3 {
         let f = at(a + inside)?.0;
         if f * after > 0.0 {
