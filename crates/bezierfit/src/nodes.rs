@@ -151,7 +151,9 @@ impl<'r, S: Source> Places<'r, S> {
                 all.push((k, k + 1, self.change(c, k)));
             }
             if !self.closed {
-                all.push((count, count, coordinate(segment(-1).to.into, c)));
+                let off = coordinate(segment(-1).to.into, c);
+                let on_axis = off.abs() <= ON_AXIS;
+                all.push((count, count, if on_axis { beside(-1, 1.0 - INSIDE / n as f64) } else { off }));
             }
             all.retain(|(.., change)| change.abs() > ON_AXIS);
             if let (true, Some(&(from, to, change))) = (self.closed, all.last()) {
