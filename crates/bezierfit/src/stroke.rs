@@ -554,6 +554,7 @@ pub(crate) struct Kept {
     from: f64,
     to: f64,
     /// It leads by way of an inner corner, nearer to the path than the distance.
+    #[cfg_attr(not(feature = "area"), expect(dead_code, reason = "areas alone ask"))]
     pub(crate) is_link: bool,
 }
 
