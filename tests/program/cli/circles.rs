@@ -217,6 +217,13 @@ fn text_on_open_paths_takes_the_options_of_bend() {
     let both = on(&["circle:r=60mm", "--below", "HH", "--stretch", "fit"]);
     let (above, below) = (range(&both[0], |p| p.1), range(&both[1], |p| p.1));
     assert!(above.0 > 180.0 && above.0 < 195.0 && below.0 > 0.0 && below.0 < 17.0, "{above:?} {below:?}");
+    // Around a whole ring, letters keep their widths and stand on it.
+    for letter in &on(&["circle:r=60mm", "--stretch", "fit"])[0] {
+        let letter = std::slice::from_ref(letter);
+        let (radii, (from, to)) = (range(letter, |p| p.0), range(letter, |p| p.1));
+        assert!((radii.0 - 60.0).abs() < 0.02 && (radii.1 - 67.14).abs() < 0.02, "{radii:?}");
+        assert!(to - from < 8.0, "{from} {to}");
+    }
     let there = |offset: &str| range(&on(&["circle:r=60mm", "--offset", offset])[0], |p| p.1).0;
     assert!((there("10mm") - there("0") - (10.0_f64 / 60.0).to_degrees()).abs() < 0.01);
 }

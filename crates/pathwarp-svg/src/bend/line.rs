@@ -6,6 +6,7 @@ use super::outcome::{ShapeReport, WarpedDocument};
 use super::path::warp_path;
 use super::visible::Seen;
 use crate::scene::drawing::Drawing;
+use pathwarp::decimal::trimmed;
 use pathwarp::edit::{Contour, around};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::AffineMap;
@@ -50,7 +51,7 @@ pub(super) fn drawn(
     };
     let (around, data) = line(contour.by).map_err(Error::Geometry)?;
     let Some(bounds) = bounds(&around.outline) else {
-        let by = -contour.by;
+        let by = trimmed(-contour.by, 3);
         return Err(Error::input(
             &drawing.name,
             format!("nothing is left {by} units inside of the edge; the artwork is narrower"),

@@ -10,7 +10,7 @@ use clap::{Arg, ArgAction, ArgMatches};
 use pathwarp::budget::Budget;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Affine, Point, Rect, Shape as _, Vec2};
-use pathwarp::map::AffineMap;
+use pathwarp::map::{AffineMap, Map};
 use pathwarp::outline::EllipticArc;
 use pathwarp::param::{Args, Frame, Kind, Letter, NamedPath, Param, Settings};
 use pathwarp::recipe::{Recipe, Step};
@@ -349,16 +349,18 @@ fn line(
     let refit = refit::Options::new(tolerance).with_certify(options.certify).with_nodes(options.nodes);
     let refit = refit.with_budget(budget);
     let (copies, places) = (&built.placement.copies, &built.placement.letters);
+    let unmoved = AffineMap(Affine::IDENTITY);
     let set = |i: usize, letter: &Letter| {
         let diagonal = letter.outline.bounding_box().map_or(0.0, |b| b.size().to_vec2().hypot());
         let held = if options.tolerance.is_none() { refit::suited(tolerance, diagonal) } else { tolerance };
         let refit = refit.clone().with_tolerance(held);
-        let repeated = if copies.is_empty() { letter.outline.clone() } else { letter.outline.repeated(copies) };
-        let Some(placed) = places.get(i) else {
-            return pathwarp_svg::warp_path(&repeated, &built.map, &refit, options.precision);
+        let (placed, map): (_, &dyn Map) = match places.get(i) {
+            Some(places) if !built.placement.before => (letter.outline.repeated(places), &unmoved),
+            Some(places) => (letter.outline.repeated(places), &*built.map),
+            None if copies.is_empty() => (letter.outline.clone(), &*built.map),
+            None => (letter.outline.repeated(copies), &*built.map),
         };
-        let placed = letter.outline.repeated(placed);
-        pathwarp_svg::warp_path(&placed, &AffineMap(Affine::IDENTITY), &refit, options.precision)
+        pathwarp_svg::warp_path(&placed, map, &refit, options.precision)
     };
     let set = letters.iter().enumerate().map(|(i, l)| Ok((l.name.clone(), set(i, l)?)));
     let letters = set.collect::<Result<_, GeometryError>>().map_err(pathwarp::Error::from)?;
