@@ -130,7 +130,6 @@ fn a_circle_keeps_its_extremes_and_its_symmetry() {
 }
 
 #[test]
-#[ignore = "2 of 4,800 are not symmetrical yet"]
 fn symmetrical_drawings_stay_symmetrical_node_by_node() {
     let (mut random, tolerance) = (Random::new(63), 0.02);
     let (mut failed, all) = (Vec::new(), 300);

@@ -356,9 +356,9 @@ fn line(
         let refit = refit.clone().with_tolerance(held);
         let (placed, map): (_, &dyn Map) = match places.get(i) {
             Some(places) if !built.placement.before => (letter.outline.repeated(places), &unmoved),
-            Some(places) => (letter.outline.repeated(places), &*built.map),
-            None if copies.is_empty() => (letter.outline.clone(), &*built.map),
-            None => (letter.outline.repeated(copies), &*built.map),
+            Some(places) => (letter.outline.repeated(places), &built.map),
+            None if copies.is_empty() => (letter.outline.clone(), &built.map),
+            None => (letter.outline.repeated(copies), &built.map),
         };
         pathwarp_svg::warp_path(&placed, map, &refit, options.precision)
     };
