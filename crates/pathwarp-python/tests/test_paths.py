@@ -27,7 +27,7 @@ SHORT = [
 
 @pytest.mark.parametrize("d", PATHS)
 @pytest.mark.parametrize("words,values,name", SHORT, ids=[s[2] for s in SHORT])
-@pytest.mark.parametrize("options", [{}, {"tolerance": 0.5, "merge": "off"}, {"certify": True, "precision": 3}], ids=str)
+@pytest.mark.parametrize("options", [{}, {"tolerance": 0.5, "nodes": "source"}, {"certify": True, "precision": 3}], ids=str)
 def test_a_path_is_the_command_lines(cli, d, words, values, name, options):
     # Without fill, so that open paths stay as they are. The tolerance of a drawing is a share of what is painted, stroke included; a
     # path alone has none, so this one is as thin.

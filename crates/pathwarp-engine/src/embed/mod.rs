@@ -84,7 +84,7 @@ pub(super) fn check_option(name: &str) -> Result<(), String> {
     if OF_THE_PROGRAM.contains(&name) {
         return Err(format!("{name} is an option of the program: in memory, results are returned"));
     }
-    if !OPTIONS.iter().any(|o| o.name == name) {
+    if !OPTIONS.iter().any(|o| o.name == name || o.alias == Some(name)) {
         return Err(advice::unknown("option", name, option_names().map(|(name, _)| name)));
     }
     Ok(())
