@@ -15,6 +15,7 @@ use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp_engine::{PointMap, Warper};
+use pathwarp_oracle::curves::Curve;
 use pathwarp_oracle::{Random, Run, apart, curves, kink};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -128,8 +129,9 @@ fn measured(d: &str, maps: &Maps) -> Option<Found> {
     }
     let done = done(&warper, &text, d)?;
     // Areas: an open subpath is closed by a straight line in the source.
-    let (source, written) = (curves::closed(curves::read(d)), curves::closed(contours::paths(&done.svg)));
     let image = |ps: &[Point], out: &mut [Point]| done.map.points(ps, out);
+    let source = without_slits(curves::closed(curves::read(d)), &image);
+    let written = curves::closed(contours::paths(&done.svg));
     let mut found = Found { ratio: 0.0, turn: 0.0, near: Point::ORIGIN };
     if source.is_empty() || source.len() != written.len() {
         return None;
@@ -160,6 +162,30 @@ fn measured(d: &str, maps: &Maps) -> Option<Found> {
         }
     }
     Some(found)
+}
+
+/// Contours without the curves that enclose nothing: those whose image is a point, and pairs with one image, there and back, as the sides of
+/// a band that becomes a ring.
+fn without_slits(contours: Vec<Vec<Curve>>, image: &dyn Fn(&[Point], &mut [Point])) -> Vec<Vec<Curve>> {
+    const AT: [f64; 5] = [0.0, 0.23, 0.5, 0.77, 1.0];
+    let images = |c: &Curve| {
+        let mut out = [Point::ORIGIN; AT.len()];
+        image(&AT.map(|t| c.at(t)), &mut out);
+        out
+    };
+    let same = |a: &Point, b: &Point| a.distance(*b) <= 1e-9 * (1.0 + a.to_vec2().hypot());
+    let kept = |contour: Vec<Curve>| {
+        let all: Vec<_> = contour.iter().map(&images).collect();
+        // What is drawn there and back in the source stays.
+        let is_drawn = |a: usize, b: usize| contour[a].at(0.5) == contour[b].at(0.5);
+        let is_back = |a: usize, b: usize| {
+            a != b && !is_drawn(a, b) && all[a].iter().zip(all[b].iter().rev()).all(|(p, q)| same(p, q))
+        };
+        let encloses =
+            |a: usize| !all[a].iter().all(|p| same(p, &all[a][0])) && !(0..contour.len()).any(|b| is_back(a, b));
+        (0..contour.len()).filter(|a| encloses(*a)).map(|a| contour[a]).collect::<Vec<Curve>>()
+    };
+    contours.into_iter().map(kept).filter(|c| !c.is_empty()).collect()
 }
 
 /// Most of a tolerance that counts as kept: sampling exactly to the last digit is not possible.
