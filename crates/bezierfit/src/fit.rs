@@ -627,7 +627,7 @@ fn levelled(r: &[Normals; 2], enough: f64) -> Option<([f64; 2], f64)> {
 /// Residuals that exceed the level by less than a thousandth are level: the step is only of first order.
 const LEVELLED: f64 = 1.001;
 
-/// The same for fits that are to be alike from either end.
+/// As a factor, excess over the level that counts as level in fits that are to be alike from either end.
 const LEVELLED_EVENLY: f64 = 1.0 + 1e-9;
 
 /// Handles that differ by less, as a share, are those of a symmetrical curve.

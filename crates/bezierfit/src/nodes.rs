@@ -2,8 +2,7 @@
 //! few pieces as the tolerance allows, divided alike from either end.
 
 use crate::limits::{FULL, HOPE, MAX_PLANNED, MOVED_TURN, ON_AXIS, PLACEMENTS, SMOOTH_JOINT};
-use crate::merge::FitOwn;
-use crate::merge::{Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches};
+use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches};
 use crate::options::Nodes;
 use crate::part::Part;
 use crate::report::{Piece, Report};
@@ -32,7 +31,7 @@ pub fn is_structure(before: &Side, after: &Side) -> bool {
     before.is_line != after.is_line || (along(before) && along(after) && side(before) * side(after) > 0.0)
 }
 
-/// What is wanted of a run's pieces.
+/// Where the pieces of a run have their nodes, and how near to it they are.
 #[derive(Debug, Clone, Copy)]
 pub struct NodeSettings {
     /// [`Nodes::Auto`] or [`Nodes::Extremes`].
@@ -417,7 +416,7 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
                 next = (n + 1).max((sums[n] * HOPE).ceil() as usize);
                 placements = 0;
             }
-            // What is far longer has its pieces one after the other.
+            // A stretch that takes many more pieces than are planned at once is covered from its start, piece by piece.
             let moved = if next > 2 * MAX_PLANNED { None } else { self.quantiles(&ends, &sums, next) };
             let Some(moved) = moved else {
                 return if self.own.total()? <= next { Ok(None) } else { self.fewest() };

@@ -380,7 +380,7 @@ impl Segment {
         }
     }
 
-    /// What tells at an end if that belongs to the structure of a drawing.
+    /// The side of a joint that this segment is at its start or its end.
     fn side(&self, t: f64) -> Side {
         let [d1, d2] = self.derivatives(t);
         Side { tangent: d1, bend: d2, is_line: matches!(self.seg, PathSeg::Line(_)) }

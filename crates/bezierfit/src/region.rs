@@ -63,7 +63,7 @@ pub fn union_even_odd(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> 
 /// The area that lies in both of two areas, each covered under the nonzero rule.
 ///
 /// # Errors
-/// As [`union`].
+/// A path has coordinates that are not finite, or it is not found how its edges cross.
 pub fn intersection(a: &BezPath, b: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
     covered(a, b, tolerance, |w| w.shape_a != 0 && w.shape_b != 0)
 }
@@ -71,7 +71,7 @@ pub fn intersection(a: &BezPath, b: &BezPath, tolerance: f64) -> Result<BezPath,
 /// The area that lies in the first of two areas and not in the second.
 ///
 /// # Errors
-/// As [`union`].
+/// A path has coordinates that are not finite, or it is not found how its edges cross.
 pub fn difference(a: &BezPath, b: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
     covered(a, b, tolerance, |w| w.shape_a != 0 && w.shape_b == 0)
 }
@@ -278,7 +278,7 @@ fn covered(
     Ok(simplify(&without_dust(&out, fine), &Options::new(fine).with_corner(SMOOTH_JOINT))?.path)
 }
 
-/// Whether the middles of all segments lie on edges, within a tolerance.
+/// Returns `true` if the middles of all segments of a result lie on edges of its sources, within a tolerance.
 fn along_edges(path: &BezPath, edges: &[PathSeg], tolerance: f64) -> bool {
     let edges: Vec<_> = edges.iter().map(|e| (e.bounding_box().inflate(tolerance, tolerance), e)).collect();
     let is_near = |p: Point| {

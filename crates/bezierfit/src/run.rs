@@ -34,7 +34,7 @@ pub struct RunSegment<S> {
     curvature: [Curvature; 2],
     /// It begins at a node that is the source's structure.
     pub kept: bool,
-    /// Those of a segment that is a run of its own; any other has none.
+    /// Slow spots of a segment that is a run of its own; any other segment has none.
     pub slow: SlowSpots,
 }
 
@@ -127,7 +127,7 @@ impl<S: Source> SegmentRun<S> {
         self.push_sampled(segment, None)
     }
 
-    /// As [`push`](Self::push), with its samples if they are known.
+    /// Appends a segment as [`push`](Self::push) does, without evaluating it again if its samples are known.
     pub(crate) fn push_sampled(
         &mut self,
         mut segment: RunSegment<S>,

@@ -70,6 +70,10 @@ pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
     })
 }
 
+/// The common options of commands that write a drawing without bending it.
+pub(crate) const OF_OUTPUT: [&str; 8] =
+    ["format", "dxf-curves", "kerf", "engrave", "duplicates", "page-width", "page-height", "tolerance"];
+
 /// The common options of these names, for a command that has only some of them.
 pub(crate) fn some_options(names: &[&str]) -> impl Iterator<Item = Arg> {
     OPTIONS.iter().filter(|o| names.contains(&o.name)).map(arg)

@@ -2,7 +2,7 @@
 //! `unwarp` restores the source of a drawing that was written with `--embed-recipe`.
 
 use crate::arguments;
-use crate::arguments::{reading_args, some_options};
+use crate::arguments::{OF_OUTPUT, reading_args, some_options};
 use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
 use crate::commands::gimp_paths;
 use crate::ending::Status;
@@ -33,7 +33,7 @@ pub(super) fn convert_command() -> Command {
             "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
              drawing, or .dxf with its outlines in mm; - or none writes to standard output",
         ))
-        .args(some_options(&["format", "dxf-curves", "kerf", "engrave", "duplicates", "page-width", "page-height", "tolerance", "union", "quiet"]))
+        .args(some_options(&[&OF_OUTPUT[..], &["union", "quiet"]].concat()))
         .arg(
             Arg::new("split")
                 .long("split")

@@ -30,7 +30,7 @@ impl Cells {
         self.cells.entry([p.x, p.y].map(|v| (v / self.near).floor() as i64)).or_default().push(item);
     }
 
-    /// What may be near to a place.
+    /// The items in the cell of a place and in the eight around it, which all that are near are among.
     fn around(&self, p: Point) -> impl Iterator<Item = usize> {
         let [x, y] = [p.x, p.y].map(|v| (v / self.near).floor() as i64);
         let keys = (-1..=1).flat_map(move |i| (-1..=1).map(move |k| [x.saturating_add(i), y.saturating_add(k)]));
@@ -104,7 +104,7 @@ pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, among: impl 
     left_out
 }
 
-/// Whether two segments are the same within about `near`, in either direction.
+/// Returns `true` if two segments are the same within about `near`, in either direction.
 fn alike(a: &Seg, b: &Seg, near: f64) -> bool {
     const AT: [f64; 5] = [0.5, 0.0, 1.0, 0.25, 0.75];
     let same = |b: &dyn Fn(f64) -> Point| AT.iter().all(|t| a.eval(*t).distance(b(*t)) <= near);

@@ -94,7 +94,7 @@ fn followed(
     let near = machine.refit.tolerance.max(MEETING);
     let limit = |e| pathwarp::Error::limit(doc.name(), "comparing what a machine follows takes", e);
     let pen = |i: usize| (&plot.shapes[i].layer, plot.shapes[i].color);
-    // What is cut is compared with all that is cut.
+    // With a kerf, lines are compared whatever their layers and colours, cut ones and engraved ones apart.
     let among = |i: usize| if machine.kerf.is_some() { Err(machine.engraved[i]) } else { Ok(pen(i)) };
     let mut lines = lines;
     if machine.kerf.is_some() {

@@ -4,7 +4,7 @@ mod on_path;
 mod style;
 
 use crate::arguments;
-use crate::arguments::{reading_args, some_options};
+use crate::arguments::{OF_OUTPUT, reading_args, some_options};
 use crate::commands::args::{choice, out_arg, switch, target};
 use crate::ending::Status;
 use crate::{mistakes, terminal};
@@ -136,16 +136,7 @@ fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 fn args(registry: &Registry) -> Vec<Arg> {
     let mut all = text_and_font();
     all.extend(on_path::args(registry));
-    all.extend(some_options(&[
-        "format",
-        "dxf-curves",
-        "kerf",
-        "engrave",
-        "duplicates",
-        "page-width",
-        "page-height",
-        "tolerance",
-    ]));
+    all.extend(some_options(&OF_OUTPUT));
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
     all.extend(shaping().map(|a| a.help_heading(SHAPING)));
     all.extend(reading_args());
