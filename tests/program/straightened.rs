@@ -6,23 +6,50 @@ use resvg::tiny_skia::ColorU8;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::sync::LazyLock;
 
 const JPEG: PictureFormat = PictureFormat::Jpeg { quality: 95 };
 
 /// Squares across and down the board.
 const BOARD: (u8, u8) = (8, 6);
 
-/// The homography (u, v) ↦ (X/W, Y/W) that the camera of the test has: the board lies on the unit square, v down.
-const CAMERA: [[f64; 3]; 3] = [[520.0, -60.0, 130.0], [60.0, 360.0, 70.0], [0.25, 0.15, 1.0]];
+/// The homography (u, v) ↦ (X/W, Y/W) by which a camera sees a board of these sides, which lies on the unit square, v down.
+///
+/// Its focal length is in pixels; it points at the middle of a picture of this size, and the board is turned about three axes.
+fn camera(
+    sides: (f64, f64),
+    focal: f64,
+    picture: (f64, f64),
+    [tilt, turn, roll]: [f64; 3],
+    distance: f64,
+) -> [[f64; 3]; 3] {
+    let about = |[x, y, z]: [f64; 3]| {
+        let (x, y) = (x * roll.cos() - y * roll.sin(), x * roll.sin() + y * roll.cos());
+        let (x, z) = (x * turn.cos() - z * turn.sin(), x * turn.sin() + z * turn.cos());
+        let (y, z) = (y * tilt.cos() - z * tilt.sin(), y * tilt.sin() + z * tilt.cos());
+        [x, y, z]
+    };
+    let [across, down] = [about([sides.0, 0.0, 0.0]), about([0.0, sides.1, 0.0])];
+    let corner = [0, 1, 2].map(|i| f64::from(u8::from(i == 2)) * distance - 0.5 * (across[i] + down[i]));
+    let columns =
+        [across, down, corner].map(|[x, y, z]| [focal * x + 0.5 * picture.0 * z, focal * y + 0.5 * picture.1 * z, z]);
+    [0, 1, 2].map(|row| columns.map(|column| column[row]))
+}
 
-fn seen(u: f64, v: f64) -> (f64, f64) {
-    let [x, y, w] = CAMERA.map(|row| row[0] * u + row[1] * v + row[2]);
-    (x / w, y / w)
+/// The camera that sees the board.
+static CAMERA: LazyLock<[[f64; 3]; 3]> =
+    LazyLock::new(|| camera((f64::from(BOARD.0), f64::from(BOARD.1)), 900.0, (640.0, 480.0), [0.6, -0.35, 0.05], 17.0));
+
+fn corners_seen(camera: &[[f64; 3]; 3]) -> [(f64, f64); 4] {
+    [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)].map(|(u, v)| {
+        let [x, y, w] = camera.map(|row| row[0] * u + row[1] * v + row[2]);
+        (x / w, y / w)
+    })
 }
 
 /// The place on the board that a pixel shows, by the adjugate of the camera's matrix.
 fn on_board(x: f64, y: f64) -> (f64, f64) {
-    let [[a, b, c], [d, e, f], [g, h, i]] = CAMERA;
+    let [[a, b, c], [d, e, f], [g, h, i]] = *CAMERA;
     let adjugate = [
         [e * i - f * h, c * h - b * i, b * f - c * e],
         [f * g - d * i, a * i - c * g, c * d - a * f],
@@ -57,7 +84,7 @@ fn board() -> Pixmap {
 
 /// The corners of the board in the photograph, from its lower left over the right.
 fn corners() -> [(f64, f64); 4] {
-    [seen(0.0, 1.0), seen(1.0, 1.0), seen(1.0, 0.0), seen(0.0, 0.0)]
+    corners_seen(&CAMERA)
 }
 
 fn run(folder: &Path, args: &[&str]) -> (i32, String) {
@@ -92,14 +119,18 @@ fn a_board_comes_out_square_by_square() {
         (p.0 - q.0).hypot(p.1 - q.1)
     };
     let mean = |a: f64, b: f64| (0.5 * (a + b)).round() as u32;
-    let natural = (mean(length(0, 1), length(2, 3)), mean(length(1, 2), length(3, 0)));
+    // The board is seen at an angle: its true height needs more pixels than its sides have, and no detail of its width is lost.
+    let width = mean(length(0, 1), length(2, 3));
+    let natural = (width, (f64::from(width) * 0.75).round() as u32);
+    assert!(natural.1 > mean(length(1, 2), length(3, 0)) + 20);
     for way in ways {
         for (wanted, expected) in
             [(None, natural), (Some("800x600"), (800, 600)), (Some("200"), (200, 200 * natural.1 / natural.0))]
         {
             let mut args = [way, &["--crop", "-o", "out.png"]].concat();
             args.extend(wanted.iter().flat_map(|size| ["--size", *size]));
-            assert_eq!(run(dir, &args), (0, String::new()), "{args:?}");
+            let (code, said) = run(dir, &args);
+            assert!(code == 0 && said.contains("1.33 : 1") && said.lines().count() == 1, "{args:?}: {said}");
             let out = read(dir.join("out.png")).pixmap;
             assert!((out.height() as i32 - expected.1 as i32).abs() <= 1 && out.width() == expected.0, "{args:?}");
             for (column, row) in (0..BOARD.1).flat_map(|row| (0..BOARD.0).map(move |column| (column, row))) {
@@ -116,6 +147,74 @@ fn a_board_comes_out_square_by_square() {
             assert_eq!(table.count(), 0, "{args:?}");
         }
     }
+}
+
+/// Cameras with all kinds of lenses see sheets from all around; the truth is the camera's.
+#[test]
+fn photographs_tell_the_proportions_of_what_lies_in_them() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let picture: (f64, f64) = (1500.0, 1125.0);
+    let photo = painted(1500, 1125, |_, _| [120, 140, 160]);
+    fs::write(dir.join("photo.png"), Picture::from(photo).write(PictureFormat::Png).unwrap()).unwrap();
+    let diagonal = picture.0.hypot(picture.1);
+    let crop = |camera: &[[f64; 3]; 3], options: &[&str]| {
+        let quad = corners_seen(camera).map(|(x, y)| format!("{x:.1},{y:.1}")).join(" ");
+        let args =
+            ["projective", "photo.png", "--target", &quad, "--target-as-drawn", "--inverse", "--crop", "-o", "out.png"];
+        let (code, said) = run(dir, &[&args[..], options].concat());
+        assert_eq!(code, 0, "{said}");
+        (f64::from(size(dir.join("out.png")).0) / f64::from(size(dir.join("out.png")).1), said)
+    };
+    let mut told = 0;
+    for (i, lens) in [0.6, 0.75, 0.9, 1.2, 1.6, 2.2].into_iter().enumerate() {
+        let sides = [(2.1, 2.97), (2.97, 2.1), (2.0, 2.0), (1.0, 2.4)][i % 4];
+        let turns = [0.75 - 0.07 * i as f64, 0.35 + 0.11 * i as f64 * (-1f64).powi(i as i32), 0.2 * i as f64 - 0.5];
+        let camera = camera(sides, lens * diagonal, picture, turns, 6.0 * lens);
+        let (ratio, said) = crop(&camera, &[]);
+        let near = |a: f64, b: f64, by: f64| (a / b - 1.0).abs() < by;
+        if said.contains("focal length") {
+            told += 1;
+            assert!(near(ratio, sides.0 / sides.1, 0.01), "{lens}, {turns:?}: {ratio}, {said}");
+            let mm = said.split("focal length of ").nth(1).and_then(|t| t.split(' ').next()).unwrap();
+            assert!(near(mm.parse().unwrap(), 43.27 * lens, 0.05), "{lens}: {said}");
+        }
+        // A sheet is upright or lies as it does in space, however it is foreshortened.
+        let upright = sides.0 < sides.1;
+        if !near(sides.0, sides.1, 0.01) {
+            for sheet in ["a4", "210:297", "297:210"] {
+                let expected = if upright { 210.0 / 297.0 } else { 297.0 / 210.0 };
+                let (ratio, said) = crop(&camera, &["--ratio", sheet]);
+                assert!(near(ratio, expected, 0.003) && said.is_empty(), "{lens}, {sheet}: {ratio} {said}");
+            }
+        }
+    }
+    // In the second and the last, a pixel at one corner moves the ratio by more than 3 %.
+    assert_eq!(told, 4);
+    // A sheet seen from straight in front does not tell the lens, and needs not to.
+    let front = camera((2.1, 2.97), diagonal, picture, [0.0, 0.0, 0.3], 6.0);
+    let (ratio, said) = crop(&front, &[]);
+    assert!((ratio / (2.1 / 2.97) - 1.0).abs() < 0.005 && said.is_empty(), "{ratio} {said}");
+    // Corners that no camera sees a rectangle in keep the mean of their sides.
+    let drawn = [
+        "projective",
+        "photo.png",
+        "--target",
+        "150,475 640,520 685,160 235,95",
+        "--inverse",
+        "--crop",
+        "-o",
+        "out.png",
+    ];
+    assert_eq!(run(dir, &drawn), (0, String::new()));
+    let (_, said) = run(dir, &[&drawn[..], &["--ratio", "letter", "--size", "300x200"]].concat());
+    assert!(said.contains("--ratio") && said.contains("--size"), "{said}");
+    assert_eq!(run(dir, &[&drawn[..], &["--ratio", "letter", "--size", "440"]].concat()).0, 0);
+    assert_eq!(size(dir.join("out.png")), (440, 340));
+    for (wrong, code) in [("0:3", 2), ("wide", 2), ("1:-2", 2), ("nan:1", 2), ("inf:1", 2)] {
+        assert_eq!(run(dir, &[&drawn[..], &["--ratio", wrong]].concat()).0, code, "{wrong}");
+    }
+    assert_eq!(run(dir, &["swirl", "photo.png", "--ratio", "a4", "-o", "out.png"]).0, 2);
 }
 
 /// What the map does with the rest of the photograph, beyond the horizon, is no matter.

@@ -1,6 +1,7 @@
 //! The report of a file and of its shapes. The field names are the JSON's.
 
 use crate::export::KerfReport;
+use crate::input::Proportions;
 use pathwarp::fold::Orientation;
 use pathwarp::kurbo::Point;
 use pathwarp::refit::Assurance;
@@ -39,6 +40,9 @@ pub struct FileReport {
     /// The contours that `--kerf` moved; omitted without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) kerf: Option<KerfReport>,
+    /// The proportions that `--crop` found in a photograph; omitted where it tells none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) proportions: Option<Proportions>,
     /// Warnings about all of it.
     pub warnings: Vec<String>,
 }
@@ -58,6 +62,7 @@ impl FileReport {
             shapes: Vec::new(),
             skipped: Vec::new(),
             kerf: None,
+            proportions: None,
             warnings: Vec::new(),
         }
     }

@@ -6,7 +6,7 @@ use crate::edits;
 use crate::export::KerfReport;
 use crate::failure::Failure;
 use crate::input::{
-    Artwork, Baseline, FileArtwork, Input, Planned, WarpRequest, WarpedResult, Which, display, planned,
+    Artwork, Baseline, FileArtwork, Input, Planned, Proportions, WarpRequest, WarpedResult, Which, display, planned,
 };
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
@@ -222,6 +222,7 @@ impl Session<'_> {
             shapes: warped.shapes,
             skipped: warped.skipped,
             kerf: warped.kerf,
+            proportions: warped.proportions,
             warnings,
         };
         let partial = warped.partial || is_coarse || report.is_partial();
@@ -230,6 +231,7 @@ impl Session<'_> {
         notes.extend(islands(&ready, &report.shapes).filter(|_| !options.quiet));
         notes.extend(united(&report.shapes).filter(|_| !options.quiet));
         notes.extend(report.kerf.iter().filter(|_| !options.quiet).map(KerfReport::note));
+        notes.extend(report.proportions.iter().filter(|_| !options.quiet).map(Proportions::note));
         notes.extend(self.notes(flags, whole, &frames(options.frame, ready.steps(), starts, seen), &report.shapes));
         notes.extend(filters(&warped.filters).filter(|_| self.options.explain));
         Ok(Warped {

@@ -1,6 +1,7 @@
 //! [`Artwork`]: what the pipeline asks of every kind of input.
 
 use super::files::no_document;
+use super::proportions::Proportions;
 use crate::advice;
 use crate::export::KerfReport;
 use crate::failure::Failure;
@@ -203,6 +204,8 @@ pub struct WarpedArtwork {
     pub(crate) preview: Option<Vec<u8>>,
     /// What `--kerf` did.
     pub(crate) kerf: Option<KerfReport>,
+    /// The proportions that `--crop` found in a photograph.
+    pub(crate) proportions: Option<Proportions>,
     /// Something was left out besides the skipped shapes.
     pub(crate) partial: bool,
 }

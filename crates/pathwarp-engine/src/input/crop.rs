@@ -1,8 +1,9 @@
 //! What `--crop` keeps of a photograph: the image of the frame, at the size that the frame has in the photograph.
 
+use super::proportions::Proportions;
 use crate::failure::Failure;
 use pathwarp::Outline;
-use pathwarp::deform::{Built, Role};
+use pathwarp::deform::{Built, Projective, Role};
 use pathwarp::kurbo::{BezPath, PathEl, Point, Rect, Shape as _};
 use pathwarp::map::Map;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
@@ -21,7 +22,32 @@ pub(super) struct Crop {
 pub(super) struct Source {
     pub(super) outline: Outline,
     /// Its mean width and height along its sides.
-    pub(super) size: (f64, f64),
+    size: (f64, f64),
+    /// Its corners from the lower left over the lower right, if it is seen as a camera sees a rectangle.
+    corners: Option<[Point; 4]>,
+}
+
+impl Source {
+    /// The proportions of the frame in space, where its corners and the middle of the picture tell them for certain.
+    pub(super) fn proportions(&self, picture: Rect) -> Option<Proportions> {
+        let corners = self.corners?;
+        Proportions::seen(corners, picture).filter(|p| p.is_sound(corners, picture))
+    }
+
+    /// The size in pixels at this ratio of width to height, without loss of detail; of the mean sides, if there is none.
+    pub(super) fn size_at(&self, ratio: Option<f64>) -> (f64, f64) {
+        let (width, height) = self.size;
+        let Some(ratio) = ratio else { return self.size };
+        let width = width.max(height * ratio);
+        (width, width / ratio)
+    }
+
+    /// A ratio of sides as width to height: upright or lying, as the frame is in space, or else in the photograph.
+    pub(super) fn oriented(&self, sides: f64, picture: Rect) -> f64 {
+        let seen = self.corners.and_then(|corners| Proportions::seen(corners, picture));
+        let seen = seen.map_or(self.size.0 / self.size.1, |p| p.ratio);
+        if (seen > 1.0) == (sides > 1.0) { sides } else { 1.0 / sides }
+    }
 }
 
 impl Crop {
@@ -55,8 +81,20 @@ impl Crop {
         let mean = |a: usize, b: usize| 0.5 * (length(a) + length(b));
         let size = (mean(0, 2), mean(1, 3));
         let is_known = self.is_straight && size.0.is_finite() && size.1.is_finite();
-        is_known.then(|| Source { outline: Outline::from_points(&points, true), size })
+        is_known.then(|| {
+            let corners = perspective(self.bounds, &points);
+            Source { outline: Outline::from_points(&points, true), size, corners }
+        })
     }
+}
+
+/// The corners among points along the sides of the image of `bounds`, if a projective map takes the box there.
+fn perspective(bounds: Rect, points: &[Point]) -> Option<[Point; 4]> {
+    /// The largest distance in pixels that counts as none.
+    const SAME: f64 = 0.05;
+    let quad = [0, 1, 2, 3].map(|side| points[side * SAMPLES]);
+    let map = Projective::new(corners(bounds), quad).build().ok()?.map;
+    ring(corners(bounds)).zip(points).all(|(p, q)| map.point(p).distance(*q) < SAME).then_some(quad)
 }
 
 /// The corners of a box, in the order of anchors: from its bottom left over the right.

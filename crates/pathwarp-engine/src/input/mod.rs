@@ -8,6 +8,7 @@ mod files;
 mod gimp;
 mod gimp_file;
 mod picture;
+mod proportions;
 mod svg;
 
 pub use artwork::{Artwork, Baseline, FileArtwork, PlainArtwork, WarpRequest, WarpedResult, Which, hatching};
@@ -20,6 +21,7 @@ pub use files::{
 pub use gimp::file_name;
 pub use gimp::{outline, svg_name};
 pub use gimp_file::GimpFile;
+pub(crate) use proportions::Proportions;
 pub use svg::SvgArtwork;
 
 use crate::failure::Failure;

@@ -1,8 +1,9 @@
 //! Photographs (PNG, JPEG, WebP) as artwork: warped pixel by pixel, by the same maps as a drawing.
 
 use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
-use super::crop::Crop;
+use super::crop::{Crop, Source};
 use super::files::{display, no_document};
+use super::proportions::Proportions;
 use crate::advice;
 use crate::bitmap::{self, Pixel, ROUNDING, inverse};
 use crate::failure::Failure;
@@ -87,7 +88,33 @@ impl PictureArtwork {
         };
         Ok((page, undefined))
     }
+
+    /// The size of a straightened frame: at `--ratio`, in true proportions where they are sound, or by its mean sides.
+    fn natural_size(&self, frame: Option<&Source>, options: &CommonOptions) -> Result<Natural, Failure> {
+        let area = self.area();
+        let Some(frame) = frame else {
+            return match options.ratio {
+                Some(_) => Err(Failure::usage(
+                    "--ratio is for a frame that is straightened to an upright rectangle; with --crop, --size sets the size of others",
+                )),
+                None => Ok((None, None)),
+            };
+        };
+        if let Some(sides) = options.ratio {
+            if matches!(options.image_size, Some((_, Some(_)))) {
+                return Err(Failure::usage(
+                    "--ratio and --size WxH both set the proportions; give --size a width alone",
+                ));
+            }
+            return Ok((Some(frame.size_at(Some(frame.oriented(sides, area)))), None));
+        }
+        let seen = frame.proportions(area);
+        Ok((Some(frame.size_at(seen.map(|p| p.ratio))), seen))
+    }
 }
+
+/// The size of a straightened frame in pixels, and what the photograph tells of its proportions.
+type Natural = (Option<(f64, f64)>, Option<Proportions>);
 
 fn undefined_at(p: Point) -> String {
     format!("the map is undefined on part of the picture, such as at {:.4},{:.4}", p.x, p.y)
@@ -156,7 +183,8 @@ impl FileArtwork for PictureArtwork {
         let orientation = fold::orientation(source.as_ref().map_or(&self.outline, |s| &s.outline), true, &*map);
         warnings
             .extend(orientation.folded_against(&orientation).map(|at| artwork::fold_warning("the picture", &[], at)));
-        let (visible, size) = size(bounds, source.map(|s| s.size), options.image_size)?;
+        let (natural, proportions) = self.natural_size(source.as_ref(), options)?;
+        let (visible, size) = size(bounds, natural, options.image_size)?;
         let smaller = "give a smaller --size, or ";
         let too_much = |e| Failure::Limited(too_much("warping it to a picture", size, &e, smaller), e, 4);
         bitmap::count_picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
@@ -192,6 +220,7 @@ impl FileArtwork for PictureArtwork {
             files: Vec::new(),
             preview: None,
             kerf: None,
+            proportions,
             partial: undefined.is_some() || self.picture.early_end.is_some(),
         })
     }

@@ -66,6 +66,7 @@ impl SvgArtwork {
         let (name, read) = (display(input), read_options(input, &options.reading));
         let of_pictures = [
             (options.crop, "crop", "--fit page fits the page of a drawing"),
+            (options.ratio.is_some(), "ratio", "--page-width and --page-height give the page of a drawing its size"),
             (options.image_size.is_some(), "size", "--page-width gives the page of a drawing its size"),
         ];
         if let Some((_, option, instead)) = of_pictures.into_iter().find(|(given, ..)| *given) {
@@ -621,6 +622,7 @@ impl FileArtwork for SvgArtwork {
             preview: preview.transpose()?,
             partial: empty || is_damaged || kerf.as_ref().is_some_and(KerfReport::is_partial),
             kerf,
+            proportions: None,
             page,
             filters: warped.filters,
             tolerance: Some(tolerance),

@@ -99,6 +99,8 @@ pub struct CommonOptions {
     pub image_dpi: Option<f64>,
     /// Cut a warped picture to the image of the frame.
     pub crop: bool,
+    /// Longer or shorter side to the other of what is cut out, as typed.
+    pub ratio: Option<f64>,
     /// Keep the place in the metadata of a picture.
     pub keep_location: bool,
     /// Width, and height if given, of a warped picture in pixels.
@@ -305,6 +307,19 @@ pub(super) fn growing(text: &str) -> Result<Option<Step>, String> {
 pub(super) fn side_of_page(text: &str) -> Result<Length, String> {
     let length = positive_length(text)?;
     if length.unit == LengthUnit::Percent { Err(format!("`{text}` is no length, such as 80mm")) } else { Ok(length) }
+}
+
+/// Parses proportions: `W:H`, or the name of a sheet.
+pub(super) fn ratio(text: &str) -> Result<f64, String> {
+    let sides = match text {
+        "square" => Some((1.0, 1.0)),
+        "letter" => Some((8.5, 11.0)),
+        "a4" | "A4" => Some((210.0, 297.0)),
+        _ => text.split_once(':').and_then(|(w, h)| w.trim().parse().ok().zip(h.trim().parse::<f64>().ok())),
+    };
+    let ratio = sides.map(|(w, h)| if w > 0.0 && h > 0.0 { w / h } else { f64::NAN });
+    let ratio = ratio.filter(|r: &f64| (1e-3..=1e3).contains(r));
+    ratio.ok_or_else(|| format!("`{text}` is neither a ratio of sides such as 210:297 nor a4, letter or square"))
 }
 
 /// Parses a size in pixels, `W` or `WxH`.

@@ -1,8 +1,8 @@
 //! The table of common options: each is declared here, and nowhere else.
 
 use super::common::{
-    CommonOptions, OnFailure, family_name, frame, growing, image_size, limit, positive, positive_length, side_of_page,
-    simplifying,
+    CommonOptions, OnFailure, family_name, frame, growing, image_size, limit, positive, positive_length, ratio,
+    side_of_page, simplifying,
 };
 use crate::format::Format;
 use pathwarp::refit::Nodes;
@@ -418,10 +418,19 @@ pub static OPTIONS: &[CommonOption] = &[
             "crop",
             OptionValue::Switch(|o| o.crop = true),
             "Cut a warped PNG, JPEG or WebP to the image of the frame: of the corners given to a perspective, of what a cage around part of \
-             a photograph holds (--inverse), or else of the whole picture. If that is upright, it gets as many pixels as the frame's \
-             sides have in the photograph. Without it, --fit page (as auto) shows all of the warped picture, none keeps the photograph's edges",
+             a photograph holds (--inverse), or else of the whole picture. If that is upright, it gets the frame's true proportions, where \
+             the photograph tells them, and as many pixels as its sides have there. Without it, --fit page (as auto) shows all of the warped picture, none keeps the photograph's edges",
         )
     },
+    stored(
+        "ratio",
+        OptionValue::Text {
+            name: "W:H",
+            minus: LeadingMinus::No,
+            set: |o, text| ratio(text).map(|r| o.ratio = Some(r)),
+        },
+        "Proportions of what --crop cuts out: 210:297, a4, letter or square; the longer side is the one that is longer in the photograph",
+    ),
     CommonOption {
         alias: Some("size"),
         default: Some("the size of the warped picture"),
