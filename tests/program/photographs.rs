@@ -232,9 +232,9 @@ fn bent_photographs_stay_jpegs_of_like_quality() {
             let (mean, over) = (difference.mean_abs, difference.share_over(64));
             println!("{quality} {attributes}, {structure}: mean {mean:.2}, over 64: {over:.5}");
             assert!(mean < 2.5 && over < 0.001, "{quality} {attributes} {structure}: {mean} {over}");
-            // Nothing of the filled pixels shows beyond the edge: with another background, only that differs.
-            let flat = photograph(&svg.replace("#fec", "#fff"), 800);
-            assert!(compare(&a, &flat).unwrap().mean_abs > 10.0, "{attributes}");
+            // The comparison can fail: without the outline, colours go on beyond the edge.
+            let unclipped = photograph(&svg.replace("clip-path", "data-clip"), 800);
+            assert!(compare(&unclipped, &b).unwrap().share_over(64) > 0.01, "{attributes}");
         }
     }
     // Grey stays grey, and a PNG stays one without loss.
