@@ -1,5 +1,6 @@
 //! `pathwarp text WORDS -o OUT.svg`: sets text as outlines, which any deformation takes as its input.
 
+mod in_shape;
 mod on_path;
 mod style;
 
@@ -107,10 +108,15 @@ impl Setting<'_> {
         let (text, below) = (text?, below?);
         let lettering = self.page(fill, target)?;
         let (svg, mut warnings) = match &text {
-            Some(text) if !on_path::is_asked_for(m) => (write_lettering(text, &lettering)?, Vec::new()),
-            _ => {
-                let on_path = on_path::set(registry, m, [text.as_ref(), below.as_ref()], &self.em, options)?;
-                (write_set_lines(&on_path.lines, &lettering)?, on_path.warnings)
+            Some(text) if !on_path::is_asked_for(m) && !in_shape::is_asked_for(m) => {
+                (write_lettering(text, &lettering)?, Vec::new())
+            }
+            text => {
+                let set = match text {
+                    Some(text) if in_shape::is_asked_for(m) => in_shape::set(registry, m, text, &self.em, options)?,
+                    _ => on_path::set(registry, m, [text.as_ref(), below.as_ref()], &self.em, options)?,
+                };
+                (write_set_lines(&set.lines, &lettering)?, set.warnings)
             }
         };
         let lacking: BTreeSet<char> = text.iter().chain(&below).flat_map(|t| t.missing.iter().copied()).collect();
@@ -170,6 +176,7 @@ Examples:
   pathwarp text Welcome -o word.svg
   pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg
   pathwarp text LOVE MUSIC --align fill --gap 6% -o poster.svg
+  pathwarp text LOVE MUSIC --in heart -o heart.svg
   pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
   pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
   pathwarp text Welcome --size 40mm --unite -o sign.dxf
@@ -186,6 +193,7 @@ fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 /// All options, in the order of help.
 fn args(registry: &Registry) -> Vec<Arg> {
     let mut all = text_and_font();
+    all.push(in_shape::arg());
     all.extend(on_path::args(registry));
     all.extend(some_options(&OF_OUTPUT));
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
