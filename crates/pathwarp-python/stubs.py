@@ -27,20 +27,23 @@ from ._deformation import Deformation, Frame
 Number = Union[float, str]
 Point = Union[str, Tuple[Number, Number], complex]
 File = Union[str, "os.PathLike[str]"]
-# Path data, FILE#NAME, points, or a path of svgpathtools.
-PathLike = Any
 '''
+PATHS = """# Path data, FILE#NAME, points, the name of a shape, or a path of svgpathtools.
+PathLike = Union[Shape, Any]
+"""
+
+
+def literal(words):
+    return "Literal[" + ", ".join(f'"{w}"' for w in words) + "]"
 
 
 def type_of(p):
-    if p.kind == "choice":
-        one = "Literal[" + ", ".join(f'"{c}"' for c in p.choices) + "]"
-    else:
-        one = TYPES[p.kind]
+    one = literal(p.choices) if p.kind == "choice" else TYPES[p.kind]
     return f"Union[{one}, Sequence[{one}]]" if p.repeat else one
 
 
-print(HEAD)
+shapes = next(p.choices for info in deformations().values() for p in info.parameters if p.kind == "path")
+print(f"{HEAD}Shape = {literal(shapes)}\n{PATHS}")
 for info in deformations().values():
     for preset in (None, *info.presets):
         own = [p for p in info.parameters if not (preset and p.name == info.preset_parameter)]

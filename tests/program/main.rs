@@ -14,6 +14,7 @@
 mod architecture;
 mod c_header;
 mod cli;
+mod data;
 mod editor;
 mod envelope;
 mod filters;

@@ -85,7 +85,7 @@ fn photoshop_files_bend_as_their_layers() {
     assert!(err.contains("broken.psd") && err.contains("byte"), "{err}");
 }
 
-/// A sheet has a cell for the artwork and one per style, is reproducible, and is written completely or not at all.
+/// A sheet has a cell for the artwork and one per style or shape, is reproducible, and is written completely or not at all.
 #[test]
 fn the_gallery_shows_every_style() {
     let dir = tempfile::tempdir().unwrap();
@@ -99,7 +99,7 @@ fn the_gallery_shows_every_style() {
         &["gallery", "samples/icon.svg", "--all", "--columns", "8", "--cell", "80x70", "-o", &at("all.svg")],
     );
     let all = fs::read_to_string(at("all.svg")).unwrap();
-    assert_eq!(all.matches("<g id=\"cell-").count(), 56);
+    assert_eq!(all.matches("<g id=\"cell-").count(), 80);
     assert!(all.contains("width=\"784\""), "{}", &all[..200]);
     for bad in [&["--bend", "300%"][..], &["--cell", "5x5"], &["--columns", "0"], &["--bend", "much"]] {
         let never = at("never.svg");

@@ -137,7 +137,7 @@ fn text_is_read_from_arguments_files_and_standard_input() {
         assert_eq!((out.status.code(), &out.stdout), (Some(0), &expected), "{args:?}");
     }
     let out = dir.path().join("out.svg");
-    expect_code(0, &["text", r"one & <two>\nthree", "-o", &out.display().to_string()]);
+    expect_code(0, &["text", r"one & <two>\nthree", "--margin", "0", "-o", &out.display().to_string()]);
     assert_eq!(fs::read(out).unwrap(), expected);
 }
 
@@ -221,6 +221,38 @@ fn text_into_warp() {
     assert!(bounds(bent.as_bytes()).height() > 1.3 * bounds(&plain).height());
 }
 
+/// The page of a drawing, by its `viewBox`.
+fn page(drawing: &str) -> Rect {
+    let n = &numbers(drawing, "viewBox")[0];
+    Rect::from_origin_size((n[0], n[1]), (n[2], n[3]))
+}
+
+/// A file to look at has a margin of 6 % of the size; on paper, for machines and in pipes the page is as large as the text.
+#[test]
+fn drawings_have_a_margin() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out.svg").display().to_string();
+    let file = |options: &str| {
+        let line = format!("text LOVE MUSIC {options} -o {out}");
+        let (_, said) = expect_code(0, &words(&line).iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(said, "");
+        fs::read_to_string(&out).unwrap()
+    };
+    let bare = page(&svg("text LOVE MUSIC --size 100"));
+    assert_eq!(bare, page(&file("--size 100 --margin 0")));
+    assert_eq!(bare.inflate(6.0, 6.0), page(&file("--size 100")));
+    assert_eq!(bare.inflate(3.0, 3.0), page(&file("--size 100 --margin 3")));
+    assert_eq!(page(&svg("text LOVE MUSIC --size 100mm")), page(&file("--size 100mm").replace("mm", "")));
+    // Blocks that fill have the same room on all sides.
+    let block = file("--size 100 --align fill --gap 4");
+    near_rect(page(&block), bounds(block.as_bytes()).inflate(6.0, 6.0));
+}
+
+#[track_caller]
+fn near_rect(a: Rect, b: Rect) {
+    near(&[a.x0, a.y0, a.x1, a.y1], &[b.x0, b.y0, b.x1, b.y1]);
+}
+
 #[test]
 fn characters_no_font_has_are_named() {
     let dir = tempfile::tempdir().unwrap();
@@ -229,6 +261,15 @@ fn characters_no_font_has_are_named() {
     assert!(said.contains("日 (U+65E5)") && said.contains("本 (U+672C)") && said.contains("--font"), "{said}");
     // They are drawn with the font's glyph for missing characters.
     assert_eq!(fs::read_to_string(&out).unwrap().matches("<path").count(), 4);
+}
+
+/// Fira Sans Extra Condensed Black, 1000 units to the em (tables OS/2 and hmtx): capitals 696 high, H 548 wide.
+#[test]
+fn the_display_face_has_the_letters_of_europe() {
+    let drawing = svg("text 'HÉĲő Ωώλ ЖёґЂ Ử€' --font display --size 100 --no-system-fonts");
+    near(&numbers(&drawing, "data-cap-height")[0], &[69.6]);
+    near(&numbers(&drawing, "data-glyph")[0][2..], &[54.8]);
+    assert_eq!(numbers(&drawing, "data-glyph").len(), 13);
 }
 
 #[test]
@@ -289,6 +330,8 @@ fn weights_and_axes_are_set() {
 fn every_command_of_the_guide_runs() {
     let page = fs::read_to_string(root().join("docs/lettering.md")).unwrap();
     let commands: Vec<&str> = page.lines().filter_map(|l| l.strip_prefix("pathwarp ")).collect();
+    // Tables have tests of their own.
+    let commands: Vec<&str> = commands.into_iter().filter(|c| !c.contains("--data")).collect();
     assert!(commands.len() >= 7, "{commands:?}");
     for command in commands {
         let mut stages = stages(&command.replace("| pathwarp", "|"));

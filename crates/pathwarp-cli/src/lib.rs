@@ -15,6 +15,7 @@
 
 mod arguments;
 mod commands;
+mod data;
 mod ending;
 mod inkscape;
 mod interruption;

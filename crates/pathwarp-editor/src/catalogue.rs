@@ -33,6 +33,7 @@ fn is_preset(info: &Info, word: &str) -> bool {
 }
 
 fn deformation(info: &Info) -> Value {
+    let words: Vec<&str> = info.params.iter().filter(|p| p.kind != Kind::Path).map(|p| p.name).collect();
     // A page writes no files but the result.
     let params = info.params.iter().filter(|p| p.kind != Kind::Save);
     json!({
@@ -45,7 +46,7 @@ fn deformation(info: &Info) -> Value {
         "knownAs": [],
         "params": params.map(|p| param(info, p)).collect::<Value>(),
         "variants": info.by_hand.variants.iter().map(|v| json!({ "label": v.label, "param": v.param })).collect::<Value>(),
-        "gallery": info.gallery.map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
+        "gallery": info.gallery.filter(|g| words.contains(&g.presets)).map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
     })
 }
 

@@ -1,7 +1,8 @@
 //! Words of other programs and plain words, and what to use here: the table `coming_from.txt`.
 
 use crate::catalogue::Catalogue;
-use pathwarp::param::Kind;
+use pathwarp::deform::Info;
+use pathwarp::param::{Kind, Param};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
@@ -84,9 +85,19 @@ fn found(word: &str) -> Vec<ForeignWord> {
 /// The styles and presets called `word`, with their command lines.
 fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let name = plain(word).replace(' ', "-");
-    let params = catalogue.infos().into_iter().flat_map(|info| info.params.iter().map(move |p| (info.name, p)));
-    let has = params.filter(|(_, p)| matches!(p.kind, Kind::NameOrFile(names) if names.contains(&name.as_str())));
-    let lines = has.map(|(d, p)| format!("a {0} of {d}: pathwarp {d} IN.svg --{0} {name} -o OUT.svg", p.name));
+    let params = catalogue.infos().into_iter().flat_map(|info| info.params.iter().map(move |p| (info, p)));
+    let is_preset = |info: &Info, p: &Param| info.gallery.is_some_and(|g| g.presets == p.name);
+    let is_word = |(info, p): &(&Info, &Param)| matches!(p.kind, Kind::NameOrFile(_)) || is_preset(info, p);
+    let has = params.filter(is_word).filter(|(_, p)| p.names().contains(&name.as_str()));
+    let mut has: Vec<_> = has.collect();
+    has.sort_by_key(|(_, p)| p.kind == Kind::Path);
+    let lines = has.into_iter().map(|(info, p)| {
+        let line = format!("pathwarp {} IN.svg --{} {name} -o OUT.svg", info.name, p.name);
+        match p.kind {
+            Kind::Path => format!("a shape: pathwarp text WORDS --in {name} -o OUT.svg; or {line}"),
+            _ => format!("a {} of {}: {line}", p.name, info.name),
+        }
+    });
     let lines: Vec<String> = lines.collect();
     (!lines.is_empty()).then(|| format!("{word} is {}", lines.join("; or ")))
 }

@@ -46,7 +46,7 @@ pub fn set_plainly(
     let own = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
     let fonts: Vec<Font<'_>> = own.into_iter().chain([bundled()?]).collect();
     let text = laid_out(words, &fonts, style, &reading.limits.for_input(words.len()))?;
-    let options = LetteringOptions { fill: None, margin: 0.0, unit: Some(LengthUnit::Mm) };
+    let options = LetteringOptions { unit: Some(LengthUnit::Mm), ..LetteringOptions::default() };
     Ok((write_lettering(&text, &options)?, text.missing))
 }
 

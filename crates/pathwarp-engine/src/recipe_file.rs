@@ -20,6 +20,7 @@ use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::input::{split_reference, unreadable};
 use crate::options::Given;
+use crate::references;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 use serde::{Deserialize, Serialize};
@@ -165,11 +166,11 @@ fn texts(value: &Value) -> Option<Vec<String>> {
 }
 
 /// Returns `true` if a value names a file, so that its meaning depends on the folder.
-fn names_file(param: &Param, value: &str) -> bool {
+fn names_file(param: &Param, value: &str, folder: &Path) -> bool {
     match param.kind {
         Kind::File | Kind::Save => true,
         Kind::NameOrFile(_) => param.reads_file(value),
-        Kind::Path => !value.starts_with('#') && !pathwarp::param::is_inline(value),
+        Kind::Path => references::names_file(value, folder),
         _ => false,
     }
 }
@@ -177,7 +178,7 @@ fn names_file(param: &Param, value: &str) -> bool {
 /// A value with its path relative to the current folder. A path must lead to a regular file, and be relative unless the user
 /// allows others.
 fn from_folder(param: &Param, value: String, folder: &Folder<'_>) -> Result<String, String> {
-    if !names_file(param, &value) {
+    if !names_file(param, &value, folder.path) {
         return Ok(value);
     }
     let path = Path::new(&value);
@@ -223,7 +224,7 @@ pub fn write(catalogue: &dyn Catalogue, recipe: &Recipe, given: &Given, folder: 
                 continue;
             }
             let placed = values.iter().map(|v| match param {
-                Some(p) if (!same_place || Path::new(v).is_absolute()) && names_file(p, v) => {
+                Some(p) if (!same_place || Path::new(v).is_absolute()) && names_file(p, v, &here) => {
                     relative(&here.join(v), &here.join(folder))
                 }
                 _ => v.clone(),

@@ -1,12 +1,13 @@
 //! Path references, `FILE#NAME`, `FILE` and `#NAME`: looked up in files and in the input document.
 
+use crate::advice;
 use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::input::{described, outline, read_data_file, split_reference, unreadable};
 use crate::options::Reading;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Affine, Point};
-use pathwarp::param::{Kind, is_inline};
+use pathwarp::param::{Kind, is_inline, is_shape, shape_names};
 use pathwarp::recipe::Recipe;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::Document;
@@ -15,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// Looks up every file that a recipe refers to. References to the input document, `#NAME`, stay open.
 pub fn resolve_files(catalogue: &dyn Catalogue, recipe: &mut Recipe, reading: &Reading) -> Result<(), Failure> {
     let outside =
-        |reference: &str| if reference.starts_with('#') { Ok(None) } else { in_file(reference, reading).map(Some) };
+        |reference: &str| names_file(reference, HERE.as_ref()).then(|| Ok(found(reference, reading)?.0)).transpose();
     for step in &mut recipe.steps {
         let Some(info) = catalogue.info(&step.deformation) else { continue };
         let paths = step.args.resolve_paths(info.params, outside);
@@ -38,7 +39,10 @@ pub(crate) fn resolve_names(
         let Some(e) = registry.get(&step.deformation) else { continue };
         step.args.resolve_paths(e.info().params, |reference| {
             let name = reference.strip_prefix('#').unwrap_or(reference);
-            let outline = in_input(name)?;
+            let outline = match in_input(name) {
+                Err(_) if is_shape(reference) => return Ok(None),
+                found => found?,
+            };
             guides.push(name.to_owned());
             Ok(Some(outline))
         })?;
@@ -53,7 +57,7 @@ pub fn files_read(catalogue: &dyn Catalogue, recipe: &Recipe) -> Vec<PathBuf> {
         for p in catalogue.info(&step.deformation).map_or(&[][..], |i| i.params) {
             for value in step.args.get(p.name) {
                 match p.kind {
-                    Kind::Path if !value.starts_with('#') && !is_inline(value) => files.push(split_reference(value).0),
+                    Kind::Path if names_file(value, HERE.as_ref()) => files.push(split_reference(value).0),
                     _ if p.reads_file(value) => files.push(value.into()),
                     _ => {}
                 }
@@ -75,10 +79,14 @@ pub fn files_written<'a>(
     })
 }
 
-/// Looks up `FILE#NAME` or `FILE`, in user units of the file.
-fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
-    Ok(found(reference, reading)?.0)
+/// Returns `true` if a path reference that is read in `folder` names a file, and not a shape, a path of the input or the path itself.
+pub fn names_file(reference: &str, folder: &Path) -> bool {
+    let is_name = reference.starts_with('#') || is_inline(reference);
+    !is_name && (!is_shape(reference) || folder.join(split_reference(reference).0).is_file())
 }
+
+/// The current folder.
+pub const HERE: &str = "";
 
 /// Looks up `FILE#NAME` or `FILE`, in px.
 pub fn in_px(reference: &str, reading: &Reading) -> Result<Outline, Error> {
@@ -94,11 +102,16 @@ fn found(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error>
     }
     let shown = file.display();
     let bytes = std::fs::read(&file).map_err(|e| {
-        let problem = format!(
-            "{}; a path reference is FILE#NAME, #NAME, path data, \
-                       points, circle:r=R, arc:r=R,from=A,to=B or spiral:turns=N,inner=R,outer=R",
-            unreadable(&file, &e)
-        );
+        let word = reference.split(',').next().unwrap_or_default();
+        let meant = advice::likely(&word.to_lowercase(), shape_names().iter().copied());
+        let problem = match meant.filter(|_| !word.contains(['#', '.', ':', '/', '\\'])) {
+            Some(meant) => format!("there is neither a file nor a shape of this name; did you mean {meant}?"),
+            None => format!(
+                "{}; a path reference is FILE#NAME, #NAME, path data, points, a shape such as heart, circle:r=R, \
+                 arc:r=R,from=A,to=B or spiral:turns=N,inner=R,outer=R",
+                unreadable(&file, &e)
+            ),
+        };
         Error::input(shown.to_string(), problem)
     })?;
     if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {

@@ -36,19 +36,15 @@ fn deformation(registry: &Registry, info: &Info) -> Value {
     json!({
         "name": info.name, "title": info.title, "group": info.group, "about": info.about, "source": info.source,
         "parameters": params, "presets": presets, "examples": examples,
-        "preset_parameter": info.gallery.map(|g| g.presets),
+        "preset_parameter": info.gallery.filter(|_| !presets.is_empty()).map(|g| g.presets),
     })
 }
 
 fn param(p: &Param) -> Value {
     let kind = if p.kind == Kind::Save { Kind::File } else { p.kind };
-    let choices: &[&str] = match kind {
-        Kind::Choice(words) | Kind::NameOrFile(words) => words,
-        _ => &[],
-    };
     let limit = |v: f64| v.is_finite().then_some(v);
     json!({
-        "name": p.name, "kind": kind.name(), "notation": p.value_name(), "choices": choices, "default": p.default,
+        "name": p.name, "kind": kind.name(), "notation": p.value_name(), "choices": p.names(), "default": p.default,
         "needed": p.needed, "repeat": p.repeat, "help": p.help,
         "range": [limit(p.range.0), limit(p.range.1)], "slider": [p.ui.0, p.ui.1],
     })

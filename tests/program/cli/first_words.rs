@@ -61,7 +61,7 @@ fn words_of_other_programs_name_the_command() {
             // Not the letters -r and -o.
             ("affine a.svg -rotate=5", 2, "use --rotate"),
             ("warp a.svg -b 40%", 2, "--help lists the options"),
-            ("bend a.svg --along circle", 2, "write circle:r=60mm"),
+            ("bend a.svg --along circle,60mm", 2, "write circle,ratio=1.2 or circle,width=80mm"),
             ("bend a.svg --along circle:60mm", 2, "write circle:r=60mm"),
             ("text A --on arc", 2, "write arc:r=60mm,from=180,to=360"),
             ("help zzzz", 2, "`pathwarp list` shows all"),

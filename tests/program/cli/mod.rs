@@ -20,6 +20,7 @@ mod parts;
 mod readme;
 mod report;
 mod selection;
+mod shapes;
 mod streams;
 mod united;
 mod units;

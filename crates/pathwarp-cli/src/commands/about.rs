@@ -235,7 +235,8 @@ pub(super) fn completions_command() -> Command {
 pub(super) fn completions(registry: &Registry, mut whole: Command, m: &ArgMatches) -> Result<Status, Failure> {
     for info in registry.infos() {
         for p in info.params {
-            if let Kind::NameOrFile(names) | Kind::Choice(names) = p.kind {
+            let names = p.names();
+            if !names.is_empty() {
                 whole = whole.mut_subcommand(info.name, |c| c.mut_arg(p.name, |a| a.value_parser(names.to_vec())));
             }
         }

@@ -24,6 +24,7 @@ use crate::{mistakes, watch};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command};
 use pathwarp::deform::Registry;
+use pathwarp::param::shape_names;
 use pathwarp_engine::catalogue::Catalogue as _;
 use pathwarp_engine::edits;
 use pathwarp_engine::failure::Failure;
@@ -40,6 +41,8 @@ const AFTER: &str = "Path references (PATHREF), for every option that takes a pa
   FILE            the only path in the file, or a JSON file of points [[x,y],…]
   #NAME           a path of the input document; it becomes a guide: not part of the artwork, but kept in the file
   'M 0,0 C …'     SVG path data
+  heart           a shape about the middle of the frame and as wide; heart,ratio=1.2 sets width to height, heart,width=80mm the width:
+SHAPES
   circle:r=60mm   a circle about the middle of the frame, or about cx=X,cy=Y
   arc:r=60mm,from=180,to=360   an arc of it; angles clockwise from the right, so this is the upper half
   spiral:turns=3,inner=20mm,outer=80mm   outwards from the left, clockwise; also from=ANGLE, ccw, cx=X, cy=Y
@@ -73,13 +76,14 @@ fn build_for(registry: &Registry, word: Option<&OsString>) -> Command {
 }
 
 fn root() -> Command {
+    let lines: Vec<String> = shape_names().chunks(8).map(|names| format!("{:18}{}", "", names.join(" "))).collect();
     Command::new("pathwarp")
         .version(env!("CARGO_PKG_VERSION"))
         .about(ABOUT)
         .after_help(
             "Paths in options, chains, exit codes: pathwarp --help. A word of another program: pathwarp help WORD",
         )
-        .after_long_help(AFTER)
+        .after_long_help(AFTER.replace("SHAPES", &lines.join("\n")))
         .subcommand_required(true)
         .arg_required_else_help(true)
         .infer_subcommands(false)

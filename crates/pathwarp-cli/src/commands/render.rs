@@ -7,7 +7,7 @@ use crate::ending::Status;
 use crate::terminal;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
-use pathwarp::param::{Args, Axis, Frame, Kind};
+use pathwarp::param::{Args, Axis, Frame, Param};
 use pathwarp::refit;
 use pathwarp_engine::bitmap::{Background, background, encode};
 use pathwarp_engine::failure::Failure;
@@ -104,7 +104,9 @@ const ALL: &str = "all";
 
 /// The deformations with presets.
 fn sets(registry: &Registry) -> impl Iterator<Item = (&dyn Deformation, Gallery)> {
-    registry.entries().iter().filter_map(|e| Some((&**e, e.info().gallery?)))
+    // Those that bend by an amount come first.
+    let all = || registry.entries().iter().filter_map(|e| Some((&**e, e.info().gallery?)));
+    all().filter(|(_, g)| g.bend.is_some()).chain(all().filter(|(_, g)| g.bend.is_none()))
 }
 
 pub(super) fn gallery_command(registry: &Registry) -> Command {
@@ -265,8 +267,7 @@ struct Preset<'a> {
 
 /// The presets of a deformation.
 fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: &str) -> Vec<Preset<'a>> {
-    let names = entry.info().params.iter().find(|p| p.name == gallery.presets).map(|p| p.kind);
-    let Some(Kind::NameOrFile(names)) = names else { return Vec::new() };
+    let names = entry.info().params.iter().find(|p| p.name == gallery.presets).map_or(&[][..], Param::names);
     let preset = |&name: &&'static str| {
         let mut args = Args::from_pairs(&[(gallery.presets, name)]);
         for (param, value) in [(gallery.bend, bend), (gallery.axis, axis)] {

@@ -3,11 +3,12 @@
 use super::names::{CHAIN, FILE, NONE, PERCENT, UNIT, UNITS};
 use super::stage::{Call, Outcome, Stage};
 use pathwarp::deform::Info;
-use pathwarp::param::{Kind, Param, is_inline};
+use pathwarp::param::{Kind, Param};
 use pathwarp_engine::advice;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::input::split_reference;
 use pathwarp_engine::options::{CommonOption, OPTIONS};
+use pathwarp_engine::references::{self, HERE};
 use pathwarp_engine::steps::INVERSE;
 use pathwarp_svg::objects::Object;
 
@@ -54,7 +55,7 @@ fn step_allowed(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
         }
         let is_file = || split_reference(value).0.is_file();
         let reads =
-            |p: &Param| p.reads_file(value) || p.kind == Kind::Path && !value.starts_with('#') && !is_inline(value);
+            |p: &Param| p.reads_file(value) || p.kind == Kind::Path && references::names_file(value, HERE.as_ref());
         if param.is_some_and(reads) && !is_file() {
             return Err(Failure::usage(format!("--{option}: there is no file `{value}`")));
         }
@@ -152,7 +153,8 @@ fn is_same(default: &str, value: &str) -> bool {
 
 /// A path reference as typed into a dialog: a name alone is a path of the drawing.
 fn reference(text: &str) -> String {
-    let is_name = !text.contains('#') && !is_inline(text) && !std::path::Path::new(text).is_file();
+    let is_name =
+        !text.contains('#') && references::names_file(text, HERE.as_ref()) && !std::path::Path::new(text).is_file();
     if is_name { format!("#{text}") } else { text.to_owned() }
 }
 

@@ -333,7 +333,12 @@ impl Folders {
         let own_target = options.out_dir.is_some() || pattern(&options.out);
         let targets = jobs.iter().filter(|_| own_target).flat_map(|j| &j.target);
         let previews = jobs.iter().filter(|_| pattern(&options.preview)).flat_map(|j| &j.preview);
-        let folders: HashSet<&Path> = targets.chain(previews).filter_map(|file| file.parent()).collect();
+        Self::of(targets.chain(previews).map(PathBuf::as_path))
+    }
+
+    /// Creates the folders of files.
+    pub(crate) fn of<'a>(files: impl IntoIterator<Item = &'a Path>) -> Result<Self, Failure> {
+        let folders: HashSet<&Path> = files.into_iter().filter_map(Path::parent).collect();
         let mut made = Self { made: Vec::new() };
         for folder in folders {
             made.create_one(folder)?;

@@ -8,8 +8,9 @@ from ._deformation import Deformation, Frame
 Number = Union[float, str]
 Point = Union[str, Tuple[Number, Number], complex]
 File = Union[str, "os.PathLike[str]"]
-# Path data, FILE#NAME, points, or a path of svgpathtools.
-PathLike = Any
+Shape = Literal["ribbon", "leaf", "hexagon", "diamond", "pill", "drop", "triangle", "pentagon", "house", "bottle", "cloud", "arrow", "heart", "shield", "star", "circle", "egg", "banner", "semicircle", "crescent", "badge", "bubble", "pick", "flag"]
+# Path data, FILE#NAME, points, the name of a shape, or a path of svgpathtools.
+PathLike = Union[Shape, Any]
 
 def shaper(
     *,

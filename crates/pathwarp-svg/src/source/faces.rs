@@ -5,6 +5,9 @@ use usvg::fontdb::{self, Database, Family, ID, Source};
 
 pub(super) static BUNDLED: &[u8] = include_bytes!("../../fonts/NotoSans-Regular.subset.ttf");
 pub(super) const BUNDLED_FAMILY: &str = "Noto Sans";
+/// A heavy condensed face for lettering, Fira Sans Extra Condensed Black, and the family that it is found by.
+pub(super) static DISPLAY: &[u8] = include_bytes!("../../fonts/FiraSansExtraCondensed-Black.subset.ttf");
+pub(super) const DISPLAY_FAMILY: &str = "display";
 
 /// Families for CSS's generic family names. `None` selects a common family of that kind.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Fonts for text: installed ones on request, given files, and a bundled fallback.
 
-use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of_interface};
+use super::faces::{BUNDLED, BUNDLED_FAMILY, DISPLAY, DISPLAY_FAMILY, GenericFamilies, Look, asked_for, of_interface};
 use super::images::{self, Missing, Rejected};
 use super::read::ReadOptions;
 use pathwarp::Error;
@@ -29,6 +29,7 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
             db.load_system_fonts();
         }
         db.load_font_data(BUNDLED.to_vec());
+        load_unnamed(&mut db, &(Arc::new(DISPLAY) as Bytes), DISPLAY_FAMILY.to_owned());
         Arc::new(db)
     };
     let base = if system { SYSTEM.get_or_init(|| load(true)) } else { BARE.get_or_init(|| load(false)) };
@@ -361,7 +362,7 @@ fn similar(family: &str, db: &Database) -> String {
         names.into_iter().map(|n| (likeness(n), n)).filter(|(l, _)| *l >= ALIKE).collect();
     names.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.len().cmp(&b.1.len())).then(a.1.cmp(b.1)));
     if names.is_empty() {
-        return "the bundled family is Noto Sans".into();
+        return format!("the bundled families are {BUNDLED_FAMILY} and {DISPLAY_FAMILY}");
     }
     let names: Vec<&str> = names.iter().take(MAX_SUGGESTIONS).map(|(_, n)| *n).collect();
     format!("similar families: {}", names.join(", "))

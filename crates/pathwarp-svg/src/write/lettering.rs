@@ -17,6 +17,8 @@ pub struct LetteringOptions {
     pub fill: Option<String>,
     /// Margin around ink and lines, in user units, at least 0.
     pub margin: f64,
+    /// The page is around the ink alone, unless there is none.
+    pub around_ink: bool,
     /// The unit of the lettering's coordinates, which becomes that of the page: `Mm`, `Cm`, `In`, `Pt` or `Pc`; anything else
     /// is px.
     pub unit: Option<LengthUnit>,
@@ -59,7 +61,8 @@ const DIGITS: i32 = 10;
 /// # Errors
 /// Returns [`Error::Usage`] if the fill is not a colour, or the margin is negative or not finite.
 pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> Result<String, Error> {
-    let mut sheet = Sheet::new(lettering.page(), &lettering.text, options)?;
+    let page = lettering.ink().filter(|_| options.around_ink).unwrap_or_else(|| lettering.page());
+    let mut sheet = Sheet::new(page, &lettering.text, options)?;
     let decimals = sheet.decimals;
     let heights = |scale: f64| {
         let number = |v: f64| {

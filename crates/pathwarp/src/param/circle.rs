@@ -35,8 +35,9 @@ pub(crate) fn is_spiral(text: &str) -> bool {
 
 /// The word before the colon, and the values after it.
 fn split(text: &str) -> Option<(&str, &str)> {
-    let split = text.trim().split_once(':').unwrap_or((text.trim(), ""));
-    Some(split).filter(|(word, _)| matches!(*word, "circle" | "arc" | "spiral"))
+    // A circle without a colon is the shape of that name.
+    let split = text.trim().split_once(':').or_else(|| Some((text.trim(), "")).filter(|(word, _)| *word != "circle"));
+    split.filter(|(word, _)| matches!(*word, "circle" | "arc" | "spiral"))
 }
 
 /// A complete reference that begins with this word.

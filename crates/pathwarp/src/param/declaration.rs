@@ -28,7 +28,7 @@ pub enum Kind {
     Count,
     /// A point `x,y`. Each coordinate is a length; percentages count from the left and top of the frame.
     Point,
-    /// A path reference: `FILE#NAME`, `FILE`, `#NAME`, `M …` or `x,y x,y …`.
+    /// A path reference: `FILE#NAME`, `FILE`, `#NAME`, `M …`, `x,y x,y …`, or a shape such as `heart`.
     Path,
     /// One of these words.
     Choice(&'static [&'static str]),
@@ -173,6 +173,16 @@ impl Param {
             Kind::Text(notation) => notation.into(),
             Kind::NameOrFile(_) => "NAME|FILE".into(),
             Kind::File | Kind::Save => "FILE".into(),
+        }
+    }
+
+    /// Names that the value may have; there may be others.
+    #[must_use]
+    pub fn names(&self) -> &'static [&'static str] {
+        match self.kind {
+            Kind::Choice(names) | Kind::NameOrFile(names) => names,
+            Kind::Path => super::shape_names(),
+            _ => &[],
         }
     }
 

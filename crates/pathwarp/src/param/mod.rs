@@ -28,6 +28,7 @@ mod declaration;
 mod frame;
 mod letter;
 mod settings;
+mod shape;
 mod typed;
 mod value;
 
@@ -41,6 +42,7 @@ pub use frame::Frame;
 pub use letter::Letter;
 pub(crate) use letter::word_space;
 pub use settings::Settings;
+pub use shape::{is_shape, shape_names};
 pub(crate) use typed::{Choice, Value, choice, parameters};
 pub use value::{Length, LengthError, LengthUnit};
 

@@ -1,7 +1,7 @@
 //! Typed and range-checked access to the values of parameters.
 
 use super::value::{self, ValueError};
-use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, circle, is_path_data};
+use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, circle, is_path_data, shape};
 use crate::error::{Error, GeometryError};
 use crate::outline::Outline;
 use kurbo::{Point, Rect};
@@ -249,6 +249,8 @@ impl<'a> Settings<'a> {
         }
         let outline = if let Some(circle) = circle::circle(text, self.frame) {
             circle.map_err(|e| Error::usage(name, text, e))?
+        } else if let Some(shape) = shape::shape(text, self.frame) {
+            shape.map_err(|e| Error::usage(name, text, e))?
         } else if is_path_data(text) {
             Outline::from_svg(text).map_err(|e| Error::usage(name, text, format!("is not valid path data: {e}")))?
         } else {

@@ -83,12 +83,16 @@ impl Figures {
 fn text(root: &Path) -> Result<String, ChoreError> {
     let mut out = String::from(
         "# A word in a shape\n\n<!-- Written by `cargo xtask docs`; edit crates/xtask/src/docs/shapes.rs. -->\n\n\
-```sh\npathwarp text OPEN | pathwarp envelope - --envelope 'samples/shapes.svg#leaf' -o leaf.svg\n```\n\n\
-Any closed path is a shape: path data, or an object of a drawing. A shape with four corners of its own, such as a flag or a banner, bends \
+```sh\npathwarp text OPEN --in leaf -o leaf.svg\n```\n\n\
+The 24 shapes below have names, which work wherever a path is named: `envelope logo.svg --envelope heart`. Such a shape has the middle of \
+the artwork, and its width; `heart,ratio=1.2` sets width to height, `heart,width=80mm` the width. A file or a path of the drawing that has \
+the name wins over it. `samples/shapes.svg` draws them all.\n\n\
+Any other closed path is a shape, too: path data, or an object of a drawing, `FILE#NAME`. `text … --in SHAPE` sets words in it, with the \
+options of `text`; `text … | pathwarp envelope - --envelope SHAPE` is the same with the options of `envelope`. A shape with four corners of its own, such as a flag or a banner, bends \
 the word between its four sides. Every other shape is filled as letterers do it: in columns, so that stems stay upright, between the lower \
 and the upper outline. The letters end where the shape is still a quarter of its greatest height (`--ends`), and `--padding 3` keeps them \
 off the outline. `--explain` says what was chosen; `--keep verticals` or `--keep nothing` overrules it.\n\n\
-`text LOVE MUSIC --align fill --gap 6%` sizes every line to the width of the block. Artwork without letters takes whatever distorts it \
+`text LOVE MUSIC --in heart` sizes every line to the width of the block (`--align fill --gap 6%`). Artwork without letters takes whatever distorts it \
 less, and goes from end to end.\n",
     );
     let titles = ["One word", "Two lines", "A logo"];

@@ -112,8 +112,11 @@ impl Tree {
 
 /// How the names of files with licences and copyright notices start.
 const NAMES: [&str; 6] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"];
-/// The licence of the bundled font.
-const FONT: &str = "crates/pathwarp-svg/fonts/OFL.txt";
+/// The bundled fonts with their licences.
+const FONTS: [(&str, &str); 2] = [
+    ("Noto Sans, the fallback font", "crates/pathwarp-svg/fonts/OFL-Noto.txt"),
+    ("Fira Sans Extra Condensed Black, the font `display`", "crates/pathwarp-svg/fonts/OFL-Fira.txt"),
+];
 const RULE: &str = "------------------------------------------------------------------------";
 
 /// The licences and copyright notices of the program and of everything linked into it.
@@ -123,7 +126,9 @@ pub(super) fn licences_text(root: &Path) -> Result<String, ChoreError> {
     for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
         let _ = writeln!(out, "{RULE}\n{}", read(&root.join(file))?);
     }
-    let _ = writeln!(out, "{RULE}\nNoto Sans, the fallback font inside the program:\n\n{}", read(&root.join(FONT))?);
+    for (font, licence) in FONTS {
+        let _ = writeln!(out, "{RULE}\n{font} inside the program:\n\n{}", read(&root.join(licence))?);
+    }
     out += "These crates are linked into the program:\n\n";
     // Each text, with the crates that include it.
     let mut texts: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();

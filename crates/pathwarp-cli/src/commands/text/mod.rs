@@ -1,5 +1,6 @@
 //! `pathwarp text WORDS -o OUT.svg`: sets text as outlines, which any deformation takes as its input.
 
+mod in_shape;
 mod on_path;
 mod style;
 
@@ -7,17 +8,18 @@ use crate::arguments;
 use crate::arguments::{OF_OUTPUT, reading_args, some_options};
 use crate::commands::args::{choice, out_arg, switch, target};
 use crate::ending::Status;
-use crate::{mistakes, terminal};
+use crate::{data, mistakes, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
 use pathwarp_engine::export::{self, Exported};
 use pathwarp_engine::failure::Failure;
-use pathwarp_engine::format::{Choice, DRAWINGS};
+use pathwarp_engine::format::{Choice, DRAWINGS, Format};
 use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out, read_font};
+use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::readable::listed;
 use pathwarp_engine::{Warper, input, output};
-use pathwarp_svg::{FontFile, LetteringOptions, write_lettering, write_set_lines};
-use pathwarp_text::Font;
+use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, write_lettering, write_set_lines};
+use pathwarp_text::{Align, Font, TextStyle};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -30,11 +32,12 @@ pub(super) fn text_command(registry: &Registry) -> Command {
         .after_help(AFTER)
 }
 
-/// Sets the text and writes the drawing.
+/// Sets the text, or that of each row of a table, and writes the drawings.
 pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
-    let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
-    let target = target(m, read.chain(names.iter().map(Path::new)))?;
+    let file = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
+    let reads: Vec<&Path> = file.chain(names.iter().copied().map(Path::new)).collect();
+    let target = target(m, &reads)?;
     let options = arguments::given(m).read()?;
     let format = Choice { what: "lettering is", among: DRAWINGS }.format(target, options.format)?;
     let texts = both_texts(m)?;
@@ -53,40 +56,93 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let first = names.first().copied().unwrap_or("the bundled font");
     style::check_style(&chosen[0], first, &Wanted { weight, italic, synthesize }, &read)?;
     let wanted = Wanted { weight, italic, synthesize };
-    if let Some(has) = wanted.other_weight(&chosen[0]).filter(|_| !m.get_flag("quiet")) {
+    let mut said = Vec::new();
+    if let Some(has) = wanted.other_weight(&chosen[0]) {
         let asked = m.get_one::<String>("weight").map_or("", String::as_str);
-        terminal::warning(&format!("--weight {asked}: {first} has no such weight; {has:.0} is used"));
+        said.push(format!("--weight {asked}: {first} has no such weight; {has:.0} is used"));
     }
-    let chosen = style::with_variations(chosen, &style::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
-
-    let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
-    let set = |text: &String| laid_out(text, &chosen, &style, &limits);
-    let [text, below] = texts.map(|t| t.as_ref().map(set).transpose());
-    let (text, below) = (text?, below?);
-    let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
-    let margin = em.length(m, "margin")?.unwrap_or(0.0);
-    let lettering = LetteringOptions { fill, margin, unit: em.unit };
+    let fonts = style::with_variations(chosen, &style::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
     let lines: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
-    let mut warnings: Vec<String> = mistakes::unit_as_text(words, &lines).into_iter().collect();
-    let svg = match &text {
-        Some(text) if !on_path::is_asked_for(m) => write_lettering(text, &lettering)?,
-        _ => {
-            let on_path = on_path::set(registry, m, [text.as_ref(), below.as_ref()], &em, &options)?;
-            warnings.extend(on_path.warnings);
-            write_set_lines(&on_path.lines, &lettering)?
-        }
-    };
-    let lacking: BTreeSet<char> = text.iter().chain(&below).flat_map(|t| t.missing.iter().copied()).collect();
-    let lacking: Vec<char> = lacking.into_iter().collect();
-    warnings.extend((!lacking.is_empty()).then(|| missing(&lacking, &names)));
-    let svg = if m.get_flag("unite") { welded(registry, svg, m)? } else { svg };
-    let Exported { bytes, warnings: lost, kerf } = export::drawing(svg, format, &read, &options, None)?;
+    said.extend(mistakes::unit_as_text(words, &lines));
     if !m.get_flag("quiet") {
-        warnings.iter().chain(&lost).for_each(|w| terminal::warning(w));
-        kerf.iter().for_each(|k| terminal::note(&k.note()));
+        said.iter().for_each(|w| terminal::warning(w));
     }
-    output::write(target, &bytes)?;
-    Ok(Status::partial_if(!lacking.is_empty() || kerf.is_some_and(|k| k.is_partial())))
+    let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
+    let setting = Setting { registry, m, options, read, format, em, style, fonts, names };
+    if !data::is_given(m) {
+        return setting.write(texts, fill, target);
+    }
+    let named = texts.iter().chain([&fill]).flatten().map(String::as_str).collect();
+    let work = data::Work { texts: named, reads, out: target.unwrap_or(Path::new("-")) };
+    data::for_each_row(registry, m, &work, |row, target| {
+        let texts = texts.each_ref().map(|t| t.as_ref().map(|t| row.filled_lines(t)));
+        setting.write(texts, fill.as_ref().map(|f| row.filled(f)), Some(target))
+    })
+}
+
+/// Fonts and style, with which texts are set.
+struct Setting<'a> {
+    registry: &'a Registry,
+    m: &'a ArgMatches,
+    options: CommonOptions,
+    read: ReadOptions,
+    format: Format,
+    em: Em,
+    style: TextStyle,
+    fonts: Vec<Font<'a>>,
+    names: Vec<&'a str>,
+}
+
+impl Setting<'_> {
+    /// Sets a text, and one below it, and writes the drawing.
+    fn write(
+        &self,
+        texts: [Option<String>; 2],
+        fill: Option<String>,
+        target: Option<&Path>,
+    ) -> Result<Status, Failure> {
+        let Self { registry, m, options, .. } = self;
+        let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
+        let set = |text: &String| laid_out(text, &self.fonts, &self.style, &limits);
+        let [text, below] = texts.map(|t| t.as_ref().map(set).transpose());
+        let (text, below) = (text?, below?);
+        let lettering = self.page(fill, target)?;
+        let (svg, mut warnings) = match &text {
+            Some(text) if !on_path::is_asked_for(m) && !in_shape::is_asked_for(m) => {
+                (write_lettering(text, &lettering)?, Vec::new())
+            }
+            text => {
+                let set = match text {
+                    Some(text) if in_shape::is_asked_for(m) => in_shape::set(registry, m, text, &self.em, options)?,
+                    _ => on_path::set(registry, m, [text.as_ref(), below.as_ref()], &self.em, options)?,
+                };
+                (write_set_lines(&set.lines, &lettering)?, set.warnings)
+            }
+        };
+        let lacking: BTreeSet<char> = text.iter().chain(&below).flat_map(|t| t.missing.iter().copied()).collect();
+        let lacking: Vec<char> = lacking.into_iter().collect();
+        warnings.extend((!lacking.is_empty()).then(|| missing(&lacking, &self.names)));
+        let svg = if m.get_flag("unite") { welded(registry, svg, m)? } else { svg };
+        let Exported { bytes, warnings: lost, kerf } = export::drawing(svg, self.format, &self.read, options, None)?;
+        if !m.get_flag("quiet") {
+            warnings.iter().chain(&lost).for_each(|w| terminal::warning(w));
+            kerf.iter().for_each(|k| terminal::note(&k.note()));
+        }
+        output::write(target, &bytes)?;
+        Ok(Status::partial_if(!lacking.is_empty() || kerf.is_some_and(|k| k.is_partial())))
+    }
+
+    /// The colour, and the page with its margin. A drawing to look at has one unless the user says otherwise; what has a size on
+    /// paper, goes to a machine or into another command has none.
+    fn page(&self, fill: Option<String>, target: Option<&Path>) -> Result<LetteringOptions, Failure> {
+        const MARGIN: f64 = 0.06;
+        let is_shown =
+            target.is_some_and(|t| !output::is_device(t)) && self.format != Format::Dxf && self.em.unit.is_none();
+        let usual = if is_shown { MARGIN * self.em.size } else { 0.0 };
+        let margin = self.em.length(self.m, "margin")?.unwrap_or(usual);
+        let around_ink = self.style.align == Align::Fill && margin > 0.0;
+        Ok(LetteringOptions { fill, margin, around_ink, unit: self.em.unit })
+    }
 }
 
 /// The lettering as one shape.
@@ -112,7 +168,7 @@ fn missing(chars: &[char], names: &[&str]) -> String {
 const SPACING: &str = "Spacing and lines";
 const SHAPING: &str = "Shaping";
 
-const AFTER: &str = "The outlines are the font's own curves. The page holds the ink and the lines; --margin adds room around them. \
+const AFTER: &str = "The outlines are the font's own curves. The page holds the ink and the lines, and the margin around them. \
 Every line is a group with data-baseline, every letter a path with data-glyph (position and advance). A character that no \
 font has is drawn as the first font draws missing characters; a warning names it, and the exit code is 1.
 
@@ -120,9 +176,11 @@ Examples:
   pathwarp text Welcome -o word.svg
   pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg
   pathwarp text LOVE MUSIC --align fill --gap 6% -o poster.svg
+  pathwarp text LOVE MUSIC --in heart -o heart.svg
   pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
   pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
   pathwarp text Welcome --size 40mm --unite -o sign.dxf
+  pathwarp text '{name}' --data samples/names.csv --font display -o 'out/{name}.svg'
   pathwarp text 'HARBOUR COFFEE' --below 'SINCE 1887' --on circle:r=60mm -o badge.svg
   pathwarp text 'Round and round' --on spiral:turns=2,inner=9mm,outer=40mm --size 8mm -o out.svg
   pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' -o arc.svg";
@@ -135,6 +193,7 @@ fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 /// All options, in the order of help.
 fn args(registry: &Registry) -> Vec<Arg> {
     let mut all = text_and_font();
+    all.push(in_shape::arg());
     all.extend(on_path::args(registry));
     all.extend(some_options(&OF_OUTPUT));
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
@@ -162,8 +221,8 @@ fn text_and_font() -> Vec<Arg> {
         value(
             "font",
             "FILE|FAMILY",
-            "A font file (FILE#2 is the third font of a collection) or an installed family; further fonts supply the \
-             characters that the ones before lack [default: the bundled Noto Sans]",
+            "A font file (FILE#2 is the third font of a collection), an installed family, or display, a bundled heavy condensed face; \
+             further fonts supply the characters that the ones before lack [default: the bundled Noto Sans]",
         )
         .action(ArgAction::Append),
         value("size", "LENGTH", "Size of the em; with a unit such as 20mm, the page has that unit too [default: 72]"),
@@ -182,7 +241,13 @@ fn text_and_font() -> Vec<Arg> {
             .action(ArgAction::Append),
         value("fill", "COLOUR", "Colour, as in CSS [default: black]"),
         switch("unite", "Make one shape of letters that overlap or join, for cutters, as `pathwarp unite` does"),
-        value("margin", "LENGTH", "Margin around the text; percentages refer to the size [default: 0]"),
+        value(
+            "margin",
+            "LENGTH",
+            "Margin around the text; percentages refer to the size [default: 6%; 0 on standard output, in DXF, and with a --size in mm or another \
+             unit]",
+        ),
+        data::arg(),
     ]
 }
 
@@ -244,12 +309,8 @@ fn words(m: &ArgMatches) -> Result<String, Failure> {
         (None, []) => return Err(Failure::usage("text: give WORDS, or --file FILE; - reads standard input")),
         (None, words) => return Ok(words.iter().map(|w| unescaped(w)).collect::<Vec<_>>().join("\n")),
     };
-    let name = input::display(&file);
-    let text = String::from_utf8(input::bytes(&file)?)
-        .map_err(|e| Failure::Input(format!("{name}: is not UTF-8 text (byte {})", e.utf8_error().valid_up_to())))?;
-    // Drop a byte order mark, and the newline at the end of the file.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let text = text.strip_suffix('\n').unwrap_or(text);
+    let text = data::decoded(&input::bytes(&file)?, &input::display(&file))?;
+    let text = text.strip_suffix('\n').unwrap_or(&text);
     Ok(text.strip_suffix('\r').unwrap_or(text).to_owned())
 }
 

@@ -14,15 +14,15 @@ use pathwarp::map::{AffineMap, Map};
 use pathwarp::outline::EllipticArc;
 use pathwarp::param::{Args, Frame, Kind, Letter, NamedPath, Param, Settings};
 use pathwarp::recipe::{Recipe, Step};
-use pathwarp::{GeometryError, Outline, Seg, Subpath, refit};
+use pathwarp::{Error, GeometryError, Outline, Seg, Subpath, refit};
 use pathwarp_engine::advice::Flags;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::input::{self, PlainArtwork};
 use pathwarp_engine::options::{CommonOptions, Given};
-use pathwarp_engine::references;
+use pathwarp_engine::references::{self, HERE};
 use pathwarp_engine::session::Session;
 use pathwarp_svg::SetLine;
-use pathwarp_text::OutlinedText;
+use pathwarp_text::{Cluster, OutlinedText};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ use std::sync::Arc;
 const BEND: &str = "bend";
 const OF_BEND: [&str; 5] = ["glyphs", "stretch", "spacing", "offset", "reverse"];
 
-const HEADING: &str = "On a path";
+const HEADING: &str = "On a path or in a shape";
 const ON: &str = "on";
 const AT: &str = "at";
 const PARAMS: &[Param] = &[Param::path(ON, ""), Param::new(AT, Kind::Angle, "")];
@@ -39,23 +39,25 @@ const PARAMS: &[Param] = &[Param::path(ON, ""), Param::new(AT, Kind::Angle, "")]
 const TOP: f64 = 270.0;
 const BOTTOM: f64 = 90.0;
 
+/// An option of this kind whose value is text.
+pub(super) fn text_arg(name: &'static str, value: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help_heading(HEADING)
+}
+
 pub(super) fn args(registry: &Registry) -> Vec<Arg> {
-    let text = |name: &'static str, value: &'static str| {
-        Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help_heading(HEADING)
-    };
     let mut all = vec![
-        text(ON, "PATHREF").help(
+        text_arg(ON, "PATHREF").help(
             "Set the text on this path, such as circle:r=60mm, arc:r=60mm,from=180,to=360, spiral:turns=3,inner=20mm,outer=80mm or \
              FILE#NAME: its baseline lies on the path, at the top of a closed one. The middle of a circle is at 0,0",
         ),
-        text("below", "WORDS").requires(ON).help(
+        text_arg("below", "WORDS").requires(ON).help(
             "A line on the lower side of the path, in one ring with the other: the height of its capitals lies on the path, its \
              middle at the bottom of a closed one",
         ),
         Arg::new("inside").long("inside").action(ArgAction::SetTrue).requires(ON).help_heading(HEADING).help(
             "Set the lines within the path: the height of capitals lies on it above, the baseline below",
         ),
-        text(AT, "ANGLE").requires(ON).action(ArgAction::Append).help(
+        text_arg(AT, "ANGLE").requires(ON).action(ArgAction::Append).help(
             "Middle of the line on a circle or an arc, clockwise from the right, as in arc: [default: 270, the top]; --below is \
              opposite, or where a second --at says",
         ),
@@ -71,8 +73,8 @@ pub(super) fn is_asked_for(m: &ArgMatches) -> bool {
     m.contains_id(ON)
 }
 
-/// The lines on the path, and warnings.
-pub(super) struct OnPath {
+/// Lines in their last place, and warnings.
+pub(super) struct SetLines {
     pub(super) lines: Vec<SetLine>,
     pub(super) warnings: Vec<String>,
 }
@@ -84,7 +86,7 @@ pub(super) fn set(
     [above, below]: [Option<&OutlinedText>; 2],
     em: &Em,
     options: &CommonOptions,
-) -> Result<OnPath, Failure> {
+) -> Result<SetLines, Failure> {
     let texts: Vec<(bool, &OutlinedText)> =
         above.map(|t| (false, t)).into_iter().chain(below.map(|t| (true, t))).collect();
     let frames: Vec<Frame> = texts.iter().map(|(_, t)| frame(t, em)).collect();
@@ -97,7 +99,7 @@ pub(super) fn set(
     let first = at.first().copied();
     let second = at.get(1).copied().or(first.map(|a| a + 180.0));
     let middles = if above.is_some() { [first, second] } else { [first, None] };
-    let mut out = OnPath { lines: Vec::new(), warnings: Vec::new() };
+    let mut out = SetLines { lines: Vec::new(), warnings: Vec::new() };
     if let ([a, b], false) = (&frames[..], stretches) {
         let middles = [middles[0].unwrap_or(TOP), middles[1].unwrap_or(BOTTOM)];
         out.warnings.extend(curve.crowded(middles, [a.rect.width(), b.rect.width()]));
@@ -281,14 +283,7 @@ fn path_and_middles(
 ) -> Result<(NamedPath, Vec<f64>), Failure> {
     let mut args = Args::new();
     args.push(ON, m.get_one::<String>(ON).map_or("", String::as_str));
-    let [x, y] = em.units_per_px();
-    let to_page = Affine::scale_non_uniform(x, y);
-    let find = |reference: &str| match reference.strip_prefix('#') {
-        Some(name) => Err(input::no_document(name)),
-        // The text has its size on paper, and so has the path, whatever the units of its file are.
-        None => references::in_px(reference, &options.reading).map(|path| Some(path.transformed(to_page))),
-    };
-    args.resolve_paths(PARAMS, find).map_err(Failure::of_recipe)?;
+    args.resolve_paths(PARAMS, |reference| on_page(reference, em, options)).map_err(Failure::of_recipe)?;
     let frame = Frame::new(Rect::from_center_size(Point::ORIGIN, (width, width)));
     let frame = frame.with_units_per_px(em.units_per_px());
     let settings = Settings::new(PARAMS, &args, &frame).map_err(Failure::of_recipe)?;
@@ -302,22 +297,35 @@ fn path_and_middles(
     Ok((path, angles))
 }
 
+/// The path of a file that a reference names. The text has its size on paper, and so has the path, whatever the units of its file are.
+pub(super) fn on_page(reference: &str, em: &Em, options: &CommonOptions) -> Result<Option<Outline>, Error> {
+    let [x, y] = em.units_per_px();
+    match reference.strip_prefix('#') {
+        Some(name) => Err(input::no_document(name)),
+        None if !references::names_file(reference, HERE.as_ref()) => Ok(None),
+        None => Ok(Some(references::in_px(reference, &options.reading)?.transformed(Affine::scale_non_uniform(x, y)))),
+    }
+}
+
 /// The box from the lowest baseline to the highest ascent, with the letters.
 fn frame(text: &OutlinedText, em: &Em) -> Frame {
     let (top, bottom) = (text.lines.first(), text.lines.last());
     let y = bottom.map_or(0.0, |l| l.start.y);
     let lines = text.line_box();
     let rect = Rect::new(lines.x0, top.map_or(0.0, |l| l.start.y) - text.metrics.ascent, lines.x1, y);
+    Frame::new(rect).on_baseline(y).with_letters(as_letters(text)).with_units_per_px(em.units_per_px())
+}
+
+/// The letters of a text as deformations know them.
+pub(super) fn as_letters(text: &OutlinedText) -> Arc<[Letter]> {
     let letters = text.lines.iter().flat_map(|l| &l.clusters).filter(|c| !c.outline.is_empty());
-    let letters: Vec<Letter> = letters
-        .map(|c| Letter {
-            name: c.text.clone(),
-            origin: c.origin,
-            advance: c.advance,
-            outline: Outline::from(&c.outline),
-        })
-        .collect();
-    Frame::new(rect).on_baseline(y).with_letters(letters.into()).with_units_per_px(em.units_per_px())
+    let letter = |c: &Cluster| Letter {
+        name: c.text.clone(),
+        origin: c.origin,
+        advance: c.advance,
+        outline: Outline::from(&c.outline),
+    };
+    letters.map(letter).collect()
 }
 
 /// The y of the top of capitals in the first line.
@@ -334,13 +342,25 @@ fn line(
     path: &Outline,
     options: &CommonOptions,
 ) -> Result<(SetLine, Vec<String>), Failure> {
-    let letters = Arc::clone(&frame.letters);
-    let tolerance = options.tolerance_for(text.ink(), &frame)?;
-    let budget = Arc::new(Budget::new(options.reading.limits));
     let params = registry.get(BEND).map_or(&[][..], |e| e.info().params);
     args.push("along", ON);
     args.resolve_paths(params, |_| Ok(Some(path.clone()))).map_err(Failure::of_recipe)?;
-    let recipe = Recipe { steps: vec![Step::new(BEND, args)] };
+    bent(registry, BEND, text, frame, args, options)
+}
+
+/// Bends a text by a deformation.
+pub(super) fn bent(
+    registry: &Registry,
+    deformation: &str,
+    text: &OutlinedText,
+    frame: Frame,
+    args: Args,
+    options: &CommonOptions,
+) -> Result<(SetLine, Vec<String>), Failure> {
+    let letters = Arc::clone(&frame.letters);
+    let tolerance = options.tolerance_for(text.ink(), &frame)?;
+    let budget = Arc::new(Budget::new(options.reading.limits));
+    let recipe = Recipe { steps: vec![Step::new(deformation, args)] };
     let session = Session { registry, recipe: &recipe, options, given: &Given::default() };
     let outlines = letters.iter().map(|l| &l.outline).collect();
     let artwork = &mut PlainArtwork { outlines, frame, budget: Arc::clone(&budget) };
@@ -363,10 +383,10 @@ fn line(
         pathwarp_svg::warp_path(&placed, map, &refit, options.precision)
     };
     let set = letters.iter().enumerate().map(|(i, l)| Ok((l.name.clone(), set(i, l)?)));
-    let letters = set.collect::<Result<_, GeometryError>>().map_err(pathwarp::Error::from)?;
+    let letters = set.collect::<Result<_, GeometryError>>().map_err(Error::from)?;
     let flags = Flags::of(registry);
     // Heights and widths go with the size of the text here.
-    let own = |w: &String| flags.in_text(w).replacen("bend: ", "", 1).replace("--width", "--size");
+    let own = |w: &String| flags.in_text(w).replacen(&format!("{deformation}: "), "", 1).replace("--width", "--size");
     let warnings = built.steps.iter().flat_map(|s| &s.explanation.warnings).map(own);
     Ok((SetLine { text: text.text.clone(), letters }, warnings.collect()))
 }

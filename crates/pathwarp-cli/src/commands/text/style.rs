@@ -53,12 +53,15 @@ pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
     for list in m.get_many::<String>("features").into_iter().flatten() {
         all.extend(features(list).map_err(|e| Failure::usage(format!("--features: {e}")))?);
     }
+    /// Distance between lines in a shape, as a share of the size.
+    const GAP: f64 = 0.06;
+    let gap = (m.contains_id("in") && !m.contains_id("line-height")).then_some(GAP * em.size);
     Ok(TextStyle {
         size: em.size,
         letter_spacing: em.length(m, "letter-spacing")?.unwrap_or(0.0),
         word_spacing: em.length(m, "word-spacing")?.unwrap_or(0.0),
         line_height: em.length(m, "line-height")?,
-        gap: em.length(m, "gap")?,
+        gap: em.length(m, "gap")?.or(gap),
         align: match word("align") {
             Some("left") => Align::Left,
             Some("center") => Align::Center,
@@ -66,6 +69,7 @@ pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
             Some("justify") => Align::Justify,
             Some("fill") => Align::Fill,
             None if m.contains_id("on") => Align::Center,
+            None if m.contains_id("in") => Align::Fill,
             _ => Align::Start,
         },
         direction: match word("direction") {

@@ -10,7 +10,7 @@ mod fit;
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Variant};
+use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Pairs, Variant};
 use crate::error::{Error, show};
 use crate::map::{Coons, Jet, Map, Pace, Side, Sides};
 use crate::outline::{Outline, Seg, Subpath};
@@ -44,7 +44,7 @@ parameters! {
     /// ```
     #[derive(Debug, Clone, PartialEq)]
     pub struct Envelope(s) {
-        /// The closed path to put the artwork into.
+        /// The closed path to put the artwork into, or a shape such as heart, or heart,ratio=1.2 (width to height).
         shape: Option<NamedPath> = path("envelope");
         /// Instead of --envelope, the bottom side, an open curve.
         param = path("bottom");
@@ -264,6 +264,7 @@ where both span the same width; --keep horizontals does the same in rows. --keep
 a projective map. --keep nothing bends artwork between four sides, whatever the shape.")
     .source("S. A. Coons, Surfaces for Computer-Aided Design of Space Forms, MIT 1967; Markku Koppinen, A plane transformation from 16 control points, equation (7)")
     .params(Envelope::PARAMS)
+    .gallery(Gallery { set: "shapes", title: "shapes", presets: "envelope", bend: None, axis: None })
     .demo(&[("envelope", "M8,78 Q30,96 50,84 T95,85 C85,60 105,40 90,15 L70,6 C50,-5 30,30 5,10 C15,40 0,60 8,78 Z"), ("corners", "1,3,4,6")])
     .examples(&[
         Example {
@@ -284,7 +285,7 @@ a projective map. --keep nothing bends artwork between four sides, whatever the 
         },
         Example {
             what: "A word in a leaf: its stems stay upright",
-            command: "envelope samples/headline.svg --envelope samples/shapes.svg#leaf -o out.svg",
+            command: "envelope samples/headline.svg --envelope leaf --fit page -o out.svg",
         },
     ])
     .laws(&[

@@ -1,0 +1,44 @@
+//! `--in`: the lines put into a shape by the deformation `envelope`.
+
+use super::on_path::{self, SetLines, as_letters, bent, text_arg};
+use super::style::Em;
+use clap::{Arg, ArgMatches};
+use pathwarp::deform::Registry;
+use pathwarp::param::{Args, Frame};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::options::CommonOptions;
+use pathwarp_text::OutlinedText;
+
+/// The deformation, and its parameter that is the shape.
+const ENVELOPE: &str = "envelope";
+const IN: &str = "in";
+
+pub(super) fn arg() -> Arg {
+    text_arg(IN, "PATHREF").conflicts_with("on").help(
+        "Put the text into this shape, as `pathwarp envelope` does: heart, shield, star, circle or another name, heart,ratio=1.2 (width to \
+         height), heart,width=80mm, FILE#NAME or path data; lines are sized to fill it (--align fill --gap 6%)",
+    )
+}
+
+/// Returns `true` if the text is put into a shape.
+pub(super) fn is_asked_for(m: &ArgMatches) -> bool {
+    m.contains_id(IN)
+}
+
+/// Puts a text into the shape that `--in` names.
+pub(super) fn set(
+    registry: &Registry,
+    m: &ArgMatches,
+    text: &OutlinedText,
+    em: &Em,
+    options: &CommonOptions,
+) -> Result<SetLines, Failure> {
+    let reference = m.get_one::<String>(IN).map_or("", String::as_str);
+    let mut args = Args::new();
+    args.push(ENVELOPE, reference);
+    let params = registry.get(ENVELOPE).map_or(&[][..], |e| e.info().params);
+    args.resolve_paths(params, |r| on_path::on_page(r, em, options)).map_err(Failure::of_recipe)?;
+    let frame = Frame::new(text.ink().unwrap_or_default()).with_units_per_px(em.units_per_px());
+    let (line, warnings) = bent(registry, ENVELOPE, text, frame.with_letters(as_letters(text)), args, options)?;
+    Ok(SetLines { lines: vec![line], warnings })
+}
