@@ -1,8 +1,11 @@
 //! PNG and JPEG files through the program: the same maps as for drawings.
 
 use crate::support::{pathwarp, pathwarp_in, sample};
-use pathwarp_raster::{Picture, PictureFormat, Pixmap, Size, compare, decode_png, render};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use pathwarp_raster::{Picture, PictureFormat, Pixmap, Size, compare, decode_png, header_size, render};
 use pathwarp_svg::usvg_tree;
+use resvg::tiny_skia::ColorU8;
 use std::fs;
 
 /// Renders a drawing as a photograph.
@@ -157,4 +160,93 @@ fn a_picture_in_a_drawing_bends_with_it() {
         assert_eq!(run("picture.svg", "coarse.svg", &["--image-dpi", "24"]).0, 0);
         assert!(fs::metadata(dir.path().join("coarse.svg")).unwrap().len() < fine / 4, "{name}");
     }
+}
+
+/// A photograph with as much detail as real ones: smooth colours, edges, and some grain.
+fn landscape(width: u32, height: u32) -> Picture {
+    let mut pixmap = photograph(DRAWING, width);
+    assert_eq!(pixmap.height(), height);
+    let mut seed = 7_u32;
+    for (i, p) in pixmap.pixels_mut().iter_mut().enumerate() {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let (x, y) = ((i as u32 % width) as f64, (i as u32 / width) as f64);
+        let light = 30.0 * (x / 37.0).sin() * (y / 53.0).cos() + f64::from(seed >> 24) / 16.0 - 8.0;
+        let c = |v: u8| (0.8 * f64::from(v) + light + 20.0).clamp(0.0, 255.0) as u8;
+        *p = ColorU8::from_rgba(c(p.red()), c(p.green()), c(p.blue()), 255).premultiply();
+    }
+    pixmap.into()
+}
+
+/// The pictures that a drawing embeds as JPEG.
+fn embedded(svg: &str) -> Vec<Vec<u8>> {
+    let texts = svg.split("data:image/jpeg;base64,").skip(1).map(|t| t.split(['"', '\'']).next().unwrap());
+    texts.map(|t| STANDARD.decode(t).unwrap()).collect()
+}
+
+#[test]
+fn bent_photographs_stay_jpegs_of_like_quality() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let (size, photo) = ((400, 240), landscape(400, 240));
+    let bent = |svg: &str, more: &[&str]| {
+        fs::write(dir.join("in.svg"), svg).unwrap();
+        let args = ["warp", "in.svg", "--style", "flag", "--bend", "50%", "--fit", "none", "-o", "out.svg"];
+        let output = pathwarp_in(dir, &[&args[..], more].concat(), b"");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        (fs::read_to_string(dir.join("out.svg")).unwrap(), said)
+    };
+    let drawing = |file: &[u8], media_type: &str, attributes: &str| {
+        let data = STANDARD.encode(file);
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 300' width='400' height='300'>\
+             <clipPath id='c'><circle cx='210' cy='150' r='90'/></clipPath>\
+             <filter id='f' x='-.5' y='-.5' width='2' height='2'><feDropShadow dx='9' dy='9' stdDeviation='0'/></filter>\
+             <rect width='400' height='300' fill='#025'/>\
+             <image x='100' y='90' width='200' height='120' {attributes} href='data:{media_type};base64,{data}'/></svg>"
+        )
+    };
+    let lossless = photo.write(PictureFormat::Png).unwrap();
+    for (quality, attributes) in [
+        (60, ""),
+        (75, "clip-path='url(#c)'"),
+        (90, "filter='url(#f)'"),
+        (95, "transform='rotate(20 200 150) scale(.9)'"),
+    ] {
+        let file = photo.write(PictureFormat::Jpeg { quality }).unwrap();
+        for structure in ["auto", "flatten"] {
+            let (svg, _) = bent(&drawing(&file, "image/jpeg", attributes), &["--structure", structure]);
+            let found = embedded(&svg);
+            assert_eq!(found.len(), 1, "{attributes}");
+            // The outline covers this share of the picture's box: pixels beyond it show nothing.
+            let (w, h) = header_size(&found[0]).unwrap();
+            let per_pixel = |bytes: usize, (w, h): (u32, u32)| bytes as f64 / (f64::from(w) * f64::from(h));
+            let growth = per_pixel(found[0].len(), (w, h)) / per_pixel(file.len(), size);
+            println!("{quality} {attributes}: {w} x {h}, {growth:.2} times the bytes of a pixel");
+            assert!(growth < 1.5, "{quality}, {attributes}: {growth}");
+            // It looks like the same drawing with the photograph without loss, edges included.
+            let (exact, _) = bent(&drawing(&lossless, "image/png", attributes), &["--structure", structure]);
+            assert!(embedded(&exact).is_empty() && exact.contains("data:image/png"));
+            let (a, b) = (photograph(&svg, 400), photograph(&exact, 400));
+            let difference = compare(&a, &b).unwrap();
+            let (mean, over) = (difference.mean_abs, difference.share_over(64));
+            println!("{quality} {attributes}, {structure}: mean {mean:.2}, over 64: {over:.5}");
+            assert!(mean < 2.5 && over < 0.001, "{quality} {attributes} {structure}: {mean} {over}");
+            // The comparison can fail: without the outline, colours go on beyond the edge.
+            let unclipped = photograph(&svg.replace("clip-path", "data-clip"), 400);
+            assert!(compare(&unclipped, &b).unwrap().share_over(64) > 0.01, "{attributes}");
+        }
+    }
+    // Grey stays grey, and a PNG stays one without loss.
+    let mut grey = landscape(400, 240).pixmap;
+    grey.pixels_mut().iter_mut().for_each(|p| *p = ColorU8::from_rgba(p.red(), p.red(), p.red(), 255).premultiply());
+    let colored = Picture::from(grey).write(PictureFormat::Jpeg { quality: 80 }).unwrap();
+    let (svg, said) = bent(&drawing(&colored, "image/jpeg", ""), &[]);
+    let found = Picture::read(&embedded(&svg)[0]).unwrap().pixmap;
+    assert!(found.pixels().iter().all(|p| p.red().abs_diff(p.blue()) <= 2), "{said}");
+    // A photograph in CMYK becomes RGB, which is said.
+    let inks = include_bytes!("../libraries/raster/pictures/cmyk.jpg");
+    let (svg, said) = bent(&drawing(inks, "image/jpeg", ""), &[]);
+    assert!(said.contains("CMYK") && embedded(&svg).len() == 1, "{said}");
+    assert!(!bent(&drawing(&colored, "image/jpeg", ""), &[]).1.contains("CMYK"));
 }

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::{advice, meter};
+use crate::{advice, edges, meter};
 use pathwarp::budget::{Budget, Exceeded, Limit, Limits, cost};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::Cost;
@@ -12,6 +12,7 @@ use pathwarp_raster::{
     encode_smooth_png, enlarged, extent, header_size, shown, warp_image,
 };
 use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
+use std::borrow::Cow;
 use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
 
@@ -131,11 +132,11 @@ impl ImageWarper for Bender {
         let size = (size.0 as u32, size.1 as u32);
         let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area), &self.budget);
         let (source, placed) = if factor == 1.0 && is_whole {
-            (picture.pixmap, r.placed)
+            (Cow::Borrowed(&picture.pixmap), r.placed)
         } else {
             let larger = enlarged(&picture.pixmap, part, factor as u32, r.pixelated, &self.budget.limits());
             let in_part = Affine::translate(area.origin().to_vec2()) * Affine::scale(1.0 / factor);
-            (larger.map_err(|e| e.to_string())?, r.placed * in_part)
+            (Cow::Owned(larger.map_err(|e| e.to_string())?), r.placed * in_part)
         };
         let warp = ImageWarp {
             source: &source,
@@ -145,12 +146,22 @@ impl ImageWarper for Bender {
             shown: r.after.inverse() * shown(e.bounds, size),
             size,
         };
-        let pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
+        let mut pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
         self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
-        let png = Picture { profile: picture.profile, ..pixmap.into() }
-            .write(PictureFormat::Png)
-            .map_err(|e| e.to_string())?;
-        Ok(BentImage { png, area: e.bounds })
+        if r.clipped {
+            // The clip path has the picture's edge, where pixels are partly transparent.
+            let whole: Vec<bool> = pixmap.pixels().iter().map(|p| p.alpha() == u8::MAX).collect();
+            edges::continue_colors(&mut pixmap, |i| whole[i]);
+        }
+        let bent = picture.remade(pixmap, false);
+        let lost = if Picture::is_of_inks(r.data) {
+            Some("pictures in CMYK become RGB")
+        } else {
+            (picture.profile.is_some() && bent.profile.is_none())
+                .then_some("pictures lose a colour profile that is not one for RGB")
+        };
+        let like = if r.clipped { r.data } else { &[] };
+        Ok(BentImage { file: bent.write_like(like).map_err(|e| e.to_string())?, area: e.bounds, lost })
     }
 }
 
@@ -194,7 +205,7 @@ impl GradientPainter for Bender {
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
         let pixels = f64::from(pixmap.width()) * f64::from(pixmap.height());
         count_pixels(&self.budget, Pixel::Shaded, pixels).map_err(too_much)?;
-        Ok(BentImage { png: encode_smooth_png(&pixmap).map_err(|e| e.to_string())?, area })
+        Ok(BentImage::new(encode_smooth_png(&pixmap).map_err(|e| e.to_string())?, area))
     }
 }
 

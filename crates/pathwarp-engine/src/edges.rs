@@ -1,7 +1,7 @@
 //! Where pictures are opaque, and what lies beyond the edge of a drawing.
 
 use crate::bitmap::{Bender, Pixel, count_picture, count_pixels, too_much};
-use pathwarp_raster::{Picture, RenderOptions, Size, encode_png, header_size};
+use pathwarp_raster::{Picture, Pixmap, RenderOptions, Size, encode_png, header_size};
 use pathwarp_svg::{EdgePainter, Opacity, PictureError, ReadOptions};
 
 /// Pixels of a bleed in a px, without a resolution of its own: 300 in an inch. And the most there are.
@@ -39,27 +39,37 @@ impl EdgePainter for Bender {
                 .iter()
                 .all(|p| opaque(p.0, p.1))
         };
-        let nearest = nearest(width, height, inside);
-        let old: Vec<_> = drawn.pixels().to_vec();
-        for (to, from) in drawn.data_mut().as_chunks_mut::<4>().0.iter_mut().zip(nearest) {
-            if let Some(from) = from {
-                let c = old[from].demultiply();
-                *to = [c.red(), c.green(), c.blue(), 255];
-            }
-        }
+        let inside: Vec<bool> = (0..width * height).map(inside).collect();
+        continue_colors(&mut drawn, |i| inside[i]);
         Ok(encode_png(&drawn).map_err(|e| e.to_string())?)
     }
 }
 
+/// Gives all pixels the colour of the nearest that counts; those that count are opaque.
+pub(crate) fn continue_colors(picture: &mut Pixmap, counts: impl Fn(usize) -> bool) {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let nearest = nearest(width, height, counts);
+    let pixels = picture.pixels_mut();
+    // Pixels that count are their own nearest, so none of their colours is written before it is read.
+    for (i, from) in nearest.into_iter().enumerate().filter(|(_, from)| *from != NONE) {
+        pixels[i] = pixels[from as usize];
+    }
+}
+
+/// No pixel.
+const NONE: u32 = u32::MAX;
+
 /// For each pixel of a picture the nearest that counts: two passes with the distances to those of the neighbours (P.-E. Danielsson, Euclidean
 /// Distance Mapping, 1980), exact but for a fraction of a pixel.
-fn nearest(width: usize, height: usize, counts: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
-    let mut found: Vec<Option<usize>> = (0..width * height).map(|i| counts(i).then_some(i)).collect();
-    let far = |i: usize, from: Option<usize>| {
-        from.map_or(usize::MAX, |from| {
-            let [dx, dy] = [(i % width).abs_diff(from % width), (i / width).abs_diff(from / width)];
-            dx * dx + dy * dy
-        })
+fn nearest(width: usize, height: usize, counts: impl Fn(usize) -> bool) -> Vec<u32> {
+    let mut found: Vec<u32> = (0..width * height).map(|i| if counts(i) { i as u32 } else { NONE }).collect();
+    let far = |i: usize, from: u32| {
+        if from == NONE {
+            return usize::MAX;
+        }
+        let from = from as usize;
+        let [dx, dy] = [(i % width).abs_diff(from % width), (i / width).abs_diff(from / width)];
+        dx * dx + dy * dy
     };
     let mut take = |i: usize, neighbor: usize| {
         if far(i, found[neighbor]) < far(i, found[i]) {
@@ -96,7 +106,7 @@ mod tests {
         for (i, from) in nearest(width, height, counts).into_iter().enumerate() {
             let least =
                 (0..width * height).filter(|j| counts(*j)).map(|j| distance(i, j)).fold(f64::INFINITY, f64::min);
-            assert!(distance(i, from.unwrap()) < least + 0.3, "{i}");
+            assert!(distance(i, from as usize) < least + 0.3, "{i}");
         }
     }
 }

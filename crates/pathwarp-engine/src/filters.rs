@@ -66,7 +66,7 @@ impl Bender {
             else {
                 return Ok(None);
             };
-            Ok(Some(BentImage { png: encode_smooth_png(&picture).map_err(reason)?, area }))
+            Ok(Some(BentImage::new(encode_smooth_png(&picture).map_err(reason)?, area)))
         };
         let pictures = (r.layers)().into_iter().map(picture).collect::<Result<_, PictureError>>()?;
         budget.exceeded().map_or(Ok(Some(pictures)), |e| Err(too_much(e)))

@@ -1,8 +1,11 @@
 //! Writes bitmaps as PNG, JPEG and WebP.
 
+use super::jpeg;
 use crate::error::Error;
 use image_webp::WebPEncoder;
-use jpeg_encoder::{ImageBuffer, JpegColorType, SamplingFactor, rgb_to_ycbcr};
+use jpeg_encoder::{
+    ChromaSubsamplingMethod, ImageBuffer, JpegColorType, QuantizationTableType, SamplingFactor, rgb_to_ycbcr,
+};
 use png::{BitDepth, ColorType, Compression, Filter, Info};
 use std::fmt::Display;
 use tiny_skia::Pixmap;
@@ -37,7 +40,14 @@ pub(super) fn encode(
 ) -> Result<Vec<u8>, Error> {
     match format {
         PictureFormat::Png => encode_png(pixmap, profile, exif),
-        PictureFormat::Jpeg { quality } => encode_jpeg(pixmap, profile, exif, quality),
+        PictureFormat::Jpeg { quality } => {
+            // Don't subsample colours, so that red on white has no fringes.
+            let sampling = SamplingFactor::F_1_1;
+            encode_jpeg(pixmap, profile, exif, JpegColorType::Ycbcr, |encoder| {
+                encoder.set_quality(quality.clamp(1, 100));
+                encoder.set_sampling_factor(sampling);
+            })
+        }
         PictureFormat::WebP => encode_webp(pixmap, profile, exif),
     }
 }
@@ -69,14 +79,34 @@ fn encode_webp(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>) -> 
     Ok(out)
 }
 
-fn encode_jpeg(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>, quality: u8) -> Result<Vec<u8>, Error> {
+/// Encodes a picture as another JPEG is compressed: as coarse, and in as many colours.
+pub(super) fn encode_like(like: &jpeg::Compression, pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error> {
+    let is_grey = like.components == 1;
+    let color = if is_grey { JpegColorType::Luma } else { JpegColorType::Ycbcr };
+    encode_jpeg(pixmap, profile, None, color, |encoder| {
+        // The encoder writes values of 8 bits.
+        let [luma, chroma] = like.tables.map(|t| QuantizationTableType::Custom(Box::new(t.map(|v| v.clamp(1, 255)))));
+        encoder.set_quantization_tables(luma, chroma);
+        let (across, down) = if is_grey { (1, 1) } else { like.sampling };
+        encoder.set_sampling_factor(SamplingFactor::from_factors(across, down).unwrap_or(SamplingFactor::F_1_1));
+        encoder.set_chroma_subsampling_method(ChromaSubsamplingMethod::Average);
+        encoder.set_optimized_huffman_tables(true);
+    })
+}
+
+fn encode_jpeg(
+    pixmap: &Pixmap,
+    profile: Option<&[u8]>,
+    exif: Option<&[u8]>,
+    color: JpegColorType,
+    set: impl Fn(&mut jpeg_encoder::Encoder<&mut Vec<u8>>),
+) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
-    let mut encoder = jpeg_encoder::Encoder::new(&mut out, quality.clamp(1, 100));
-    // Don't subsample colours, so that red on white has no fringes.
-    encoder.set_sampling_factor(SamplingFactor::F_1_1);
+    let mut encoder = jpeg_encoder::Encoder::new(&mut out, PictureFormat::QUALITY);
+    set(&mut encoder);
     exif.map_or(Ok(()), |exif| encoder.add_exif_metadata(exif)).map_err(unencodable)?;
     encoder.add_icc_profile(profile.unwrap_or_default()).map_err(unencodable)?;
-    encoder.encode_image(OnWhite::new(pixmap)?).map_err(unencodable)?;
+    encoder.encode_image(OnWhite::new(pixmap, color)?).map_err(unencodable)?;
     Ok(out)
 }
 
@@ -84,21 +114,22 @@ fn encode_jpeg(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>, qua
 struct OnWhite<'a> {
     pixmap: &'a Pixmap,
     size: [u16; 2],
+    color: JpegColorType,
 }
 
 impl<'a> OnWhite<'a> {
-    fn new(pixmap: &'a Pixmap) -> Result<Self, Error> {
+    fn new(pixmap: &'a Pixmap, color: JpegColorType) -> Result<Self, Error> {
         let side = |n: u32| {
             let wrong = |_| unencodable(format!("a JPEG has at most {} pixels on a side, not {n}", u16::MAX));
             u16::try_from(n).map_err(wrong)
         };
-        Ok(Self { pixmap, size: [side(pixmap.width())?, side(pixmap.height())?] })
+        Ok(Self { pixmap, size: [side(pixmap.width())?, side(pixmap.height())?], color })
     }
 }
 
 impl ImageBuffer for OnWhite<'_> {
     fn get_jpeg_color_type(&self) -> JpegColorType {
-        JpegColorType::Ycbcr
+        self.color
     }
 
     fn width(&self) -> u16 {
@@ -115,8 +146,10 @@ impl ImageBuffer for OnWhite<'_> {
             let white = u8::MAX - p.alpha();
             let (y, cb, cr) = rgb_to_ycbcr(p.red() + white, p.green() + white, p.blue() + white);
             luma.push(y);
-            blue.push(cb);
-            red.push(cr);
+            if self.color == JpegColorType::Ycbcr {
+                blue.push(cb);
+                red.push(cr);
+            }
         }
     }
 }

@@ -64,6 +64,85 @@ fn wrong(why: DecodeErrors) -> Error {
     }
 }
 
+/// How a JPEG is compressed: its quantization tables for brightness and colour, row by row, and how colours are sampled.
+pub(super) struct Compression {
+    pub(super) tables: [[u16; 64]; 2],
+    /// Pixels across and down that share a colour.
+    pub(super) sampling: (u8, u8),
+    /// 1 for grey, 3 for colours, 4 for inks.
+    pub(super) components: usize,
+}
+
+impl Compression {
+    /// Reads it from the segments before the first scan (ISO 10918-1, B.2); `None` for other files.
+    pub(super) fn of(bytes: &[u8]) -> Option<Self> {
+        let (mut tables, mut frame) = ([None; 4], None);
+        for (marker, content) in segments(bytes) {
+            match marker {
+                0xdb => read_tables(content, &mut tables)?,
+                0xc0..=0xc2 => frame = Some(content),
+                0xda => break,
+                _ => {}
+            }
+        }
+        let components: Vec<&[u8]> = frame?.get(6..)?.chunks_exact(3).collect();
+        let table = |component: usize| tables[usize::from(components.get(component)?[2] & 3)];
+        let factors = |component: &[u8]| (component[1] >> 4, component[1] & 15);
+        let luma = factors(components.first()?);
+        let chroma = components.get(1).map_or(luma, |c| factors(c));
+        let share = |luma: u8, chroma: u8| luma.checked_div(chroma).unwrap_or(1).clamp(1, 2);
+        let tables = [table(0)?, table(1).or(table(0))?];
+        Some(Self {
+            tables,
+            sampling: (share(luma.0, chroma.0), share(luma.1, chroma.1)),
+            components: components.len(),
+        })
+    }
+}
+
+/// The marked segments of a JPEG with their content, up to the first scan.
+fn segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
+    let mut rest = bytes.strip_prefix(b"\xff\xd8").unwrap_or_default();
+    std::iter::from_fn(move || {
+        while rest.starts_with(b"\xff\xff") {
+            rest = &rest[1..];
+        }
+        let &[0xff, marker, high, low, ..] = rest else { return None };
+        let end = 2 + usize::from(u16::from_be_bytes([high, low]));
+        let content = rest.get(4..end)?;
+        rest = &rest[end..];
+        Some((marker, content))
+    })
+}
+
+/// Reads the tables of a DQT segment, whose values go in zigzag order.
+fn read_tables(mut content: &[u8], tables: &mut [Option<[u16; 64]>; 4]) -> Option<()> {
+    while let Some((&head, rest)) = content.split_first() {
+        let wide = head >> 4 != 0;
+        let values = rest.get(..if wide { 128 } else { 64 })?;
+        let value =
+            |k: usize| if wide { u16::from_be_bytes([values[2 * k], values[2 * k + 1]]) } else { values[k].into() };
+        let mut table = [0; 64];
+        zigzag().zip(0..).for_each(|(at, k)| table[at] = value(k));
+        tables[usize::from(head & 3)] = Some(table);
+        content = &rest[values.len()..];
+    }
+    Some(())
+}
+
+/// The places of a block of 8 × 8, row by row, in the order in which they are stored: along diagonals, up and down in turn.
+fn zigzag() -> impl Iterator<Item = usize> {
+    (0..15).flat_map(|sum: usize| {
+        let rows = sum.saturating_sub(7)..=sum.min(7);
+        let upwards = sum.is_multiple_of(2);
+        let (first, last) = (*rows.start(), *rows.end());
+        rows.map(move |row| {
+            let row = if upwards { last - (row - first) } else { row };
+            row * 8 + sum - row
+        })
+    })
+}
+
 /// How the lines of a JPEG are stored.
 #[derive(Default)]
 struct Layout {

@@ -13,6 +13,7 @@ mod webp;
 use crate::error::Error;
 use crate::picture::bitmap::Kind;
 use crate::picture::decode::Decoded;
+use crate::picture::jpeg::Compression;
 use pathwarp::budget::Limits;
 use tiny_skia::Pixmap;
 
@@ -91,20 +92,21 @@ impl Picture {
         Self::sniff(bytes) && decode::is_turned(bytes, limits)
     }
 
+    /// Whether the bytes are a JPEG whose colours are inks (CMYK), which become RGB.
+    #[must_use]
+    pub fn is_of_inks(bytes: &[u8]) -> bool {
+        Compression::of(bytes).is_some_and(|c| c.components == 4)
+    }
+
     /// An image of a drawing with its pixels turned as browsers show it: a JPEG or PNG whose EXIF metadata ask for it. `None` for others,
     /// and for what cannot be read within the limits.
     #[must_use]
     pub fn turned(bytes: &[u8], limits: &Limits) -> Option<Vec<u8>> {
-        let format = match Kind::of(bytes)? {
-            Kind::Jpeg => PictureFormat::Jpeg { quality: PictureFormat::QUALITY },
-            Kind::Png => PictureFormat::Png,
-            Kind::WebP | Kind::Gif => return None,
-        };
-        if !Self::is_turned(bytes, limits) {
+        let may_be = matches!(Kind::of(bytes)?, Kind::Jpeg | Kind::Png);
+        if !may_be || !Self::is_turned(bytes, limits) {
             return None;
         }
-        let picture = Self::read_within(bytes, limits).ok()?;
-        Self { exif: None, ..picture }.write(format).ok()
+        Self::read_within(bytes, limits).ok()?.write_like(bytes).ok()
     }
 
     fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
@@ -126,6 +128,18 @@ impl Picture {
         // ICC.1:2022, 7.2: the colour space, and a signature.
         let is_other = |p: &[u8]| p.get(36..40) == Some(b"acsp") && p.get(16..20) != Some(b"RGB ");
         self.profile.as_deref().filter(|p| !p.is_empty() && !is_other(p))
+    }
+
+    /// Encodes the picture as an image of a drawing whose pixels come from `source`: as a JPEG if that is one, as coarse in brightness and
+    /// colours, on white where it is transparent; else as a PNG. It has no EXIF metadata.
+    ///
+    /// # Errors
+    /// [`Error::Encode`], for instance for a JPEG with a side of more than 65535 pixels.
+    pub fn write_like(&self, source: &[u8]) -> Result<Vec<u8>, Error> {
+        match Compression::of(source) {
+            Some(like) => encode::encode_like(&like, &self.pixmap, self.profile_of_pixels()),
+            None => encode::encode(&self.pixmap, self.profile_of_pixels(), None, PictureFormat::Png),
+        }
     }
 
     /// Encodes the picture.
@@ -175,6 +189,34 @@ mod tests {
         let at = |x| back.pixmap.pixel(x, 4).unwrap();
         assert!(at(2).red() > 240 && at(2).green() < 20 && at(13).green() > 240);
         assert_eq!(back.profile, half_red().profile);
+    }
+
+    /// The tables and samplings come through encoders of their own, in the order in which a file has them.
+    #[test]
+    fn another_jpeg_is_as_coarse() {
+        let photo = half_red();
+        let samples: Vec<u8> = photo.pixmap.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect();
+        let table = |of: u16| Box::new(std::array::from_fn(|i| 2 + of * i as u16));
+        for (across, down) in [(1, 1), (2, 1), (1, 2), (2, 2)] {
+            let mut source = Vec::new();
+            let mut encoder = jpeg_encoder::Encoder::new(&mut source, 90);
+            let custom = [table(1), table(3)].map(jpeg_encoder::QuantizationTableType::Custom);
+            encoder.set_quantization_tables(custom[0].clone(), custom[1].clone());
+            encoder.set_sampling_factor(jpeg_encoder::SamplingFactor::from_factors(across, down).unwrap());
+            encoder.encode(&samples, 16, 8, jpeg_encoder::ColorType::Rgb).unwrap();
+            let like = Compression::of(&photo.write_like(&source).unwrap()).unwrap();
+            assert_eq!((like.tables, like.sampling, like.components), ([*table(1), *table(3)], (across, down), 3));
+        }
+        let mut grey = Vec::new();
+        let luma: Vec<u8> = samples.iter().step_by(3).copied().collect();
+        jpeg_encoder::Encoder::new(&mut grey, 50).encode(&luma, 16, 8, jpeg_encoder::ColorType::Luma).unwrap();
+        let like = photo.write_like(&grey).unwrap();
+        assert_eq!(Compression::of(&like).unwrap().components, 1);
+        assert_eq!(Compression::of(&like).unwrap().tables, Compression::of(&grey).unwrap().tables);
+        // Files that end early or have no tables are written as PNG.
+        for end in [0, 3, 30, 200] {
+            assert!(photo.write_like(&grey[..end]).unwrap().starts_with(PNG_SIGNATURE), "{end}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::options::{Edit, OnError, has_lines_that_stay};
 use super::outcome::{PartOutcome, Skipped, Warning, WarpedDocument, WarpedPart};
 use super::part;
 use super::path::ROUNDING;
+use super::pictures::BentImage;
 use super::shading::Shading;
 use super::task::{self, LetterPiece, PartContext, PartTask};
 use super::united::{self, United};
@@ -93,7 +94,13 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     united.report(drawing, &reports, out);
     let line = line::drawn(drawing, bends, &of, out)?;
     let bend = |b: &Bitmap| fits::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
-    let images = scene.bitmaps.iter().map(bend).collect();
+    let images: Vec<_> = scene.bitmaps.iter().map(bend).collect();
+    for (b, image) in scene.bitmaps.iter().zip(&images) {
+        if let EmbeddedImage::Bent { image: BentImage { lost: Some(text), .. }, .. } = image {
+            let name = b.owner.map_or_else(|| "an image".to_owned(), |e| drawing.source.display_name(e));
+            out.warnings.push(Warning::Note { text, names: vec![name] });
+        }
+    }
     Ok(BentDrawing { outcomes, images, slots, of, filters: BTreeMap::new(), united, line })
 }
 

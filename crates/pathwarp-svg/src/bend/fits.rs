@@ -1,15 +1,17 @@
 //! The best affine fit of a map, for paints, filtered groups, and bitmaps and patterns that are not bent.
 
 use super::bends::{Bend, Bends};
-use super::options::{Patterns, Strokes};
-use super::pictures::{BentImage, ImageRequest, Images};
+use super::options::{Patterns, Strokes, WarpOptions};
+use super::path::decimals;
+use super::pictures::{BentImage, ImageRequest, Images, is_jpeg};
 use crate::scene::drawing::Drawing;
-use crate::scene::geometry::is_invertible;
+use crate::scene::geometry::{is_invertible, stretch};
 use crate::scene::model::{Bitmap, PartRole, Scene, Slot};
 use crate::scene::resolve::{Painted, Tiling};
-use pathwarp::Error;
+use crate::source::number::path_data;
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::Map;
+use pathwarp::{Error, Outline, refit};
 use usvg::ImageRendering;
 
 /// An affine approximation of a map over a box.
@@ -209,7 +211,11 @@ pub(crate) enum EmbeddedImage {
     /// Placed approximately, with the reason.
     Approximate(String),
     /// Bent, in the user space outside its placing transform.
-    Bent(BentImage),
+    Bent {
+        image: BentImage,
+        /// Path data of the outline that clips an image without transparency.
+        clip: Option<String>,
+    },
 }
 
 /// An affine fit with a relative residual below this is exact.
@@ -237,11 +243,24 @@ pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option
     };
     let after = (write * b.placing.inverse()).inverse();
     let pixelated = matches!(b.image.rendering_mode(), ImageRendering::Pixelated | ImageRendering::CrispEdges);
-    let request = ImageRequest { data, placed: b.frame, crop: b.crop, pixelated, map: *map, after, to_px: scene.to_px };
+    let clip = if is_jpeg(data) { visible_outline(b, area, after, (*map, options)) } else { None };
+    let clipped = clip.is_some();
+    let (placed, crop, to_px) = (b.frame, b.crop, scene.to_px);
+    let request = ImageRequest { data, placed, crop, clipped, pixelated, map: *map, after, to_px };
     match warper.warp(&request) {
-        Ok(bent) => EmbeddedImage::Bent(bent),
+        Ok(image) => EmbeddedImage::Bent { clip: clip.filter(|_| image.is_jpeg()), image },
         Err(why) => approximate(&why.to_string()),
     }
+}
+
+/// The bent outline of the visible part of a bitmap, as path data in the user space that `after` leads to; `None` if it cannot be bent.
+fn visible_outline(b: &Bitmap, area: Rect, after: Affine, (map, options): (&dyn Map, &WarpOptions)) -> Option<String> {
+    let shown = b.crop.map_or(area, |c| c.inflate(1.0, 1.0).intersect(area));
+    let corners = [(shown.x0, shown.y0), (shown.x1, shown.y0), (shown.x1, shown.y1), (shown.x0, shown.y1)];
+    let outline = Outline::from_points(&corners.map(|c| b.frame * Point::from(c)), true);
+    let path = refit::warp_path(&outline, map, &options.refit).ok()?.path;
+    let digits = decimals(stretch(after.inverse()), options.refit.tolerance, options.precision);
+    Some(path_data(&(after * path), digits))
 }
 
 /// Lays out pattern tiles as geometry if they are to be warped one by one. Returns `None` if nothing changes.

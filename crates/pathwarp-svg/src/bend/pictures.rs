@@ -10,10 +10,30 @@ use std::sync::Arc;
 /// A bent bitmap, or a picture of a bent gradient.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BentImage {
-    /// Content of a PNG file.
-    pub png: Vec<u8>,
+    /// Content of a PNG or JPEG file.
+    pub file: Vec<u8>,
     /// Position in the requested user space.
     pub area: Rect,
+    /// What the picture has lost, in a sentence.
+    pub lost: Option<&'static str>,
+}
+
+impl BentImage {
+    /// A picture that has lost nothing.
+    #[must_use]
+    pub fn new(file: Vec<u8>, area: Rect) -> Self {
+        Self { file, area, lost: None }
+    }
+
+    /// Whether it is a JPEG, which covers all of its area with colours.
+    pub(crate) fn is_jpeg(&self) -> bool {
+        is_jpeg(&self.file)
+    }
+}
+
+/// Whether a file starts as a JPEG does.
+pub(crate) fn is_jpeg(file: &[u8]) -> bool {
+    file.starts_with(b"\xff\xd8\xff")
 }
 
 /// The reason why a bitmap or gradient cannot be bent.
@@ -58,6 +78,8 @@ pub struct ImageRequest<'a> {
     pub placed: Affine,
     /// The visible pixels, if not all are visible. The drawing clips the result to them, so the others need not be bent.
     pub crop: Option<Rect>,
+    /// Whether the drawing clips the result to the outline of its visible pixels, so that a JPEG will do.
+    pub clipped: bool,
     /// Whether pixels are shown as squares, however large.
     pub pixelated: bool,
     /// The map of root user space.

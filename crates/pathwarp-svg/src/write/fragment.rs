@@ -83,7 +83,7 @@ impl<'a> Writer<'a> {
         match n {
             Node::Group(g) => self.group(g, ""),
             Node::Part(i) => self.part(*i),
-            Node::Image(i) => image(&self.input, &self.markup, self.skipped, *i),
+            Node::Image(i) => self.image(*i),
             Node::Text { element, content, .. } => {
                 let place = self.place.map(|p| p.of_text(self.input.source, *element));
                 let around = std::mem::replace(&mut self.place, place);
@@ -663,6 +663,46 @@ impl<'a> Writer<'a> {
         svg.around(&format!("<defs>{}</defs>{content}", self.defs.text))
     }
 
+    /// Writes bitmap `i`, bent or not.
+    fn image(&mut self, i: usize) -> String {
+        let input = self.input;
+        let bitmap = &input.scene.bitmaps[i];
+        if !bitmap.image.is_visible() || bitmap.is_unread() {
+            return String::new();
+        }
+        match &input.images[i] {
+            EmbeddedImage::Placed => placed(&self.markup, &bitmap.image),
+            EmbeddedImage::Approximate(why) => {
+                let id = bitmap.owner.map_or_else(|| "an image".into(), |e| input.source.display_name(e));
+                self.skipped.push(Skipped { id, why: why.clone() });
+                placed(&self.markup, &bitmap.image)
+            }
+            // Back to the group's coordinates, the bitmap's pixels. The placing has no rotation.
+            EmbeddedImage::Bent { image, clip } => self.clipped(image, clip.as_deref(), bitmap.placing.inverse()),
+        }
+    }
+
+    /// Writes a bent bitmap, and the outline that clips it as a definition.
+    pub(super) fn clipped(&mut self, image: &BentImage, clip: Option<&str>, to: Affine) -> String {
+        let Some(data) = clip else { return bent(&self.markup, image, to) };
+        let id = self.outline(data, to);
+        let clip = self.markup.attributes(&vec![("clip-path", format!("url(#{id})"))]);
+        let text = bent(&self.markup, image, to);
+        self.markup.element("g").raw(&clip).around(&text)
+    }
+
+    /// Writes an outline in user space as a clip path, and returns its id.
+    pub(super) fn outline(&mut self, data: &str, to: Affine) -> String {
+        let id = self.defs.new_id("outline");
+        let mut path = self.markup.element("path").with("d", data);
+        if to != Affine::IDENTITY {
+            path = path.with("transform", &matrix(to));
+        }
+        let clip = self.markup.element("clipPath").with("id", &id).around(&path.empty());
+        self.defs.push(&clip);
+        id
+    }
+
     /// Writes the content of an `feImage` as a definition; returns the link to it.
     fn picture(&mut self, root: &usvg::Group) -> String {
         let Some(picture) = self.input.scene.pictures.get(&(std::ptr::from_ref(root) as usize)) else {
@@ -683,24 +723,8 @@ pub(super) fn bent(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String 
     tag.raw(&format!(" {}=\"{}\"", markup.link(), bent_url(bent))).empty()
 }
 
-/// Writes bitmap `i`, bent or not.
-pub(super) fn image(input: &WriteInput<'_>, markup: &Markup<'_>, skipped: &mut Vec<Skipped>, i: usize) -> String {
-    let bitmap = &input.scene.bitmaps[i];
-    let image = &bitmap.image;
-    if !image.is_visible() || bitmap.is_unread() {
-        return String::new();
-    }
-    match &input.images[i] {
-        EmbeddedImage::Placed => {}
-        EmbeddedImage::Approximate(why) => {
-            let id = bitmap.owner.map_or_else(|| "an image".into(), |e| input.source.display_name(e));
-            skipped.push(Skipped { id, why: why.clone() });
-        }
-        EmbeddedImage::Bent(image) => {
-            // Back to the group's coordinates, the bitmap's pixels. The placing has no rotation.
-            return bent(markup, image, bitmap.placing.inverse());
-        }
-    }
+/// Writes a bitmap that is not bent.
+fn placed(markup: &Markup<'_>, image: &usvg::Image) -> String {
     let url = match image.kind() {
         ImageKind::JPEG(d) => data_url("image/jpeg", d),
         ImageKind::PNG(d) => data_url("image/png", d),

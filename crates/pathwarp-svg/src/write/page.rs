@@ -122,7 +122,7 @@ fn moved(input: &WriteInput<'_>) -> bool {
         || input.line.is_some()
         || input.outcomes.iter().any(|o| o.warped().is_some())
         || input.slots.iter().any(|s| s.fit != Affine::IDENTITY)
-        || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent(_)))
+        || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent { .. }))
 }
 
 /// Returns new attributes of the root for a [`change`] of the page.
@@ -268,7 +268,7 @@ fn image_boxes(input: &WriteInput<'_>, i: usize) -> Option<(Rect, Rect)> {
     let own = Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into());
     let frame = input.written(b.slot, b.frame);
     let after = match &input.images[i] {
-        EmbeddedImage::Bent(bent) => (frame * b.placing.inverse()).transform_rect_bbox(bent.area),
+        EmbeddedImage::Bent { image, .. } => (frame * b.placing.inverse()).transform_rect_bbox(image.area),
         _ => frame.transform_rect_bbox(own),
     };
     b.image.is_visible().then(|| (b.frame.transform_rect_bbox(own), after))
@@ -330,7 +330,7 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         Node::Image(i) => {
             let (before, after) = image_boxes(input, *i)?;
             let Some(page) = m.page else { return Some(after) };
-            let is_bent = matches!(input.images[*i], EmbeddedImage::Bent(_));
+            let is_bent = matches!(input.images[*i], EmbeddedImage::Bent { .. });
             let b = &scene.bitmaps[*i];
             let bend = input.bends.of(b.owner).map(|k| &input.bends.each[k]).filter(|_| is_bent);
             let fit = input.written(b.slot, b.frame) * b.frame.inverse();

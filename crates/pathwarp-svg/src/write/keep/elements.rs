@@ -207,17 +207,33 @@ pub(super) fn bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
     let e = g.source.or(bitmap.owner).filter(|&e| k.tag(e) == "image");
     let why = match (&k.input.images[i], e) {
         (EmbeddedImage::Placed, _) => return,
-        (EmbeddedImage::Bent(bent), Some(e)) => {
-            for (name, value) in bent_attributes(bent, Affine::IDENTITY) {
-                k.edits.set_attr(e, name, value);
+        (EmbeddedImage::Bent { image, clip }, Some(e)) => {
+            // A clip path and filters of its own work on what the outline clips.
+            let has = |name: &str| k.source.property(e, name).is_some_and(|v| v.trim() != "none");
+            if clip.is_some() && (has("clip-path") || has("filter")) {
+                let content = k.writer.clipped(image, clip.as_deref(), Affine::IDENTITY);
+                for name in ["href", "preserveAspectRatio"] {
+                    k.edits.remove_attr(e, name);
+                }
+                k.make_group(e, content);
+            } else {
+                for (name, value) in bent_attributes(image, Affine::IDENTITY) {
+                    k.edits.set_attr(e, name, value);
+                }
+                k.edits.set_attr(e, "href", bent_url(image));
+                if let Some(data) = clip {
+                    let id = k.writer.outline(data, Affine::IDENTITY);
+                    k.edits.set_property(e, "clip-path", format!("url(#{id})"));
+                }
             }
-            k.edits.set_attr(e, "href", bent_url(bent));
             let text = &k.source.text;
             // Inkscape's path to the file that the image was linked to.
             k.edits.remove_attrs(e, |a| a.namespace == Namespace::Sodipodi && a.name(text) == "absref");
             return;
         }
-        (EmbeddedImage::Bent(_), None) => "its element was not found; it is placed by the best affine fit".to_owned(),
+        (EmbeddedImage::Bent { .. }, None) => {
+            "its element was not found; it is placed by the best affine fit".to_owned()
+        }
         (EmbeddedImage::Approximate(why), _) => why.clone(),
     };
     let id = e.map_or_else(|| "an image".to_owned(), |e| k.source.display_name(e));

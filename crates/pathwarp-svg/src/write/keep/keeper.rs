@@ -50,7 +50,7 @@ impl<'a, 'w> Keeper<'a, 'w> {
             Node::Image(i) => {
                 let slot = self.input.scene.bitmaps[*i].slot;
                 let moved = slot.is_some_and(|s| self.input.slots[s].fit != Affine::IDENTITY);
-                moved || matches!(self.input.images[*i], EmbeddedImage::Bent(_))
+                moved || matches!(self.input.images[*i], EmbeddedImage::Bent { .. })
             }
         }
     }
@@ -140,7 +140,7 @@ impl Warped {
         let parts = scene.parts.iter().zip(input.outcomes);
         let parts = parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element());
         let bitmaps = scene.bitmaps.iter().zip(input.images);
-        let bitmaps = bitmaps.filter(|b| matches!(b.1, EmbeddedImage::Bent(_))).filter_map(|b| b.0.owner);
+        let bitmaps = bitmaps.filter(|b| matches!(b.1, EmbeddedImage::Bent { .. })).filter_map(|b| b.0.owner);
         for e in parts.chain(bitmaps) {
             out.own[e] = true;
             for a in source.ancestors(e) {
