@@ -108,3 +108,21 @@ fn the_gallery_shows_every_style() {
         assert!(!dir.path().join("never.svg").exists());
     }
 }
+
+/// Words stand in every family that has all their letters, each under its name.
+#[test]
+fn words_in_every_font() {
+    let font = "crates/pathwarp-text/tests/fonts/hebrew.ttf";
+    let labels = |words: &str| {
+        let args = ["gallery", "--fonts", words, "--no-system-fonts", "--font-file", font];
+        let (sheet, said) = expect_code(0, &args);
+        assert_eq!(said, "");
+        let titles = sheet.split("<title>").skip(1).map(|t| t.split('<').next().unwrap().to_owned());
+        titles.collect::<Vec<String>>()
+    };
+    assert_eq!(labels("Old Bakery"), ["Noto Sans", "display"]);
+    assert_eq!(labels("שלום").len(), 1);
+    assert!(expect_code(2, &["gallery", "--fonts", "日本", "--no-system-fonts"]).1.contains("no installed family has"));
+    expect_code(2, &["gallery", "--fonts", "a", "samples/logo.svg"]);
+    expect_code(2, &["gallery"]);
+}

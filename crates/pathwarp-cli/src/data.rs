@@ -60,32 +60,23 @@ impl Row<'_> {
     }
 }
 
-/// What a command makes of each row.
-pub(crate) struct Work<'a> {
-    /// The texts that may contain `{column}`.
-    pub(crate) texts: Vec<&'a str>,
-    /// The files that the command reads.
-    pub(crate) reads: Vec<&'a Path>,
-    /// The name of the output; of a row, with its cells.
-    pub(crate) out: &'a Path,
-}
-
-/// Carries out a command for each row of the table that `--data` names. All rows and names are checked before the first; one that
-/// fails is reported, and the others go on.
+/// Carries out a command for each row of the table that `--data` names. All rows, which may stand in `texts` and in the name of the output,
+/// are checked before the first; one that fails is reported, and the others go on. `reads` are other files that the command reads.
 pub(crate) fn for_each_row(
     registry: &Registry,
     m: &ArgMatches,
-    work: &Work<'_>,
+    texts: &[&str],
+    reads: &[&Path],
     one: impl Fn(&Row<'_>, &Path) -> Result<Status, Failure>,
 ) -> Result<Status, Failure> {
-    let file = m.get_one::<PathBuf>(DATA).map_or(Path::new("-"), PathBuf::as_path);
+    let [file, out] = [DATA, "out"].map(|name| m.get_one::<PathBuf>(name).map_or(Path::new("-"), PathBuf::as_path));
     let name = input::display(file);
     let table =
         Table::read(&decoded(&input::bytes(file)?, &name)?).map_err(|e| Failure::Input(format!("{name}{e}")))?;
-    table.check_columns(work).map_err(|e| Failure::usage(format!("{name} {e}")))?;
-    let targets = table.targets(work.out).map_err(|e| Failure::Input(format!("{name}: {e}")))?;
+    table.check_columns(texts, out).map_err(|e| Failure::usage(format!("{name} {e}")))?;
+    let targets = table.targets(out).map_err(|e| Failure::Input(format!("{name}: {e}")))?;
     let mut files = Files::default();
-    work.reads.iter().chain([&file]).for_each(|f| files.read(f));
+    reads.iter().chain([&file]).for_each(|f| files.read(f));
     targets.iter().try_for_each(|t| files.write(t, ""))?;
     let _empty_ones_removed_at_the_end = Folders::of(targets.iter().map(PathBuf::as_path))?;
     let (mut failures, mut partial) = (Vec::new(), false);
@@ -160,9 +151,8 @@ impl Table {
     }
 
     /// Checks that every column that is asked for is there, and there once.
-    fn check_columns(&self, work: &Work<'_>) -> Result<(), String> {
-        let out = work.out.to_string_lossy();
-        for wanted in work.texts.iter().copied().chain([&*out]).flat_map(columns) {
+    fn check_columns(&self, texts: &[&str], out: &Path) -> Result<(), String> {
+        for wanted in texts.iter().copied().chain([&*out.to_string_lossy()]).flat_map(columns) {
             match self.names.iter().filter(|name| same(name, wanted)).count() {
                 0 => return Err(format!("has no column {wanted}; it has {}", listed(&self.names, SHOWN))),
                 1 => {}

@@ -1550,6 +1550,15 @@
     simplify: "smooth clean up fewer nodes traced",
     offset: "outset outline grow bolder thicker inset shrink thinner"
   };
+  var WANTED = [
+    ["Arch", "warp/arc warp/arch warp/arc-upper warp/arc-lower wordart/arch-up wordart/arch-down wordart/arch-up-pour wordart/arch-down-pour wordart/can-up wordart/can-down wordart/curve-up wordart/curve-down"],
+    ["Wave", "warp/flag warp/wave wave wordart/wave1 wordart/wave2 wordart/double-wave1 wordart/wave4 warp/rise"],
+    ["Bulge", "warp/bulge warp/inflate warp/fisheye warp/squeeze bulge lens wordart/inflate wordart/deflate wordart/inflate-top wordart/inflate-bottom wordart/deflate-top wordart/deflate-bottom wordart/deflate-inflate wordart/deflate-inflate-deflate"],
+    ["Into a shape", "envelope shaper warp/fish warp/shell-lower warp/shell-upper wordart/triangle wordart/triangle-inverted wordart/chevron wordart/chevron-inverted wordart/stop"],
+    ["Around", "polar anamorph wordart/circle wordart/circle-pour wordart/button wordart/button-pour wordart/ring-inside wordart/ring-outside"],
+    ["Perspective", "projective bilinear affine similitude wordart/fade-up wordart/fade-down wordart/fade-right wordart/fade-left wordart/slant-up wordart/slant-down wordart/cascade-up wordart/cascade-down"],
+    ["Along a path", "bend"]
+  ];
   var Gallery = class {
     constructor(app2) {
       this.app = app2;
@@ -1593,15 +1602,23 @@
       this.queue = [];
       const all = this.app.catalogue.filter((d) => !d.first);
       const first = this.app.catalogue.filter((d) => d.first);
-      const byHand = all.filter((d) => isDragged(d) && !d.gallery);
-      const effects = all.filter((d) => !isDragged(d) && !d.gallery);
-      const styles = all.filter((d) => d.gallery);
+      const byHand = all.filter((d) => isDragged(d) && !d.gallery).flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))]);
+      const presets = all.filter((d) => d.gallery).flatMap((d) => this.presets(d));
+      const effects = all.filter((d) => !isDragged(d) && !d.gallery).map((d) => this.whole(d));
+      const rest = /* @__PURE__ */ new Set([...byHand, ...presets, ...effects]);
+      const wanted = WANTED.map(([title, names]) => {
+        const cards = names.split(" ").flatMap((name) => [...rest].filter((c) => [c.deformation, ...Object.values(c.args).flat()].join("/") === name));
+        cards.forEach((c) => rest.delete(c));
+        return this.section(title, cards);
+      });
+      const left = (title, cards) => this.section(title, cards.filter((c) => rest.has(c)));
       this.box.replaceChildren(
         this.none,
         this.own,
-        this.section("Bend by hand", byHand.flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))])),
-        ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery.title), this.presets(d))),
-        this.section("Effects", effects.map((d) => this.whole(d))),
+        ...wanted,
+        left("By hand", byHand),
+        left("More styles", presets),
+        left("Effects", effects),
         this.section("Before bending", first.map((d) => this.whole(d)))
       );
       this.mark();

@@ -48,7 +48,10 @@ impl ForeignWord {
     /// The command line on a drawing of the reader's.
     fn line(&self) -> Option<String> {
         let words = self.command?.split(' ').enumerate();
-        let own = words.map(|(i, w)| if i == 1 && w.starts_with("samples/") { "IN.svg" } else { w });
+        let own = words.map(|(i, w)| match w.strip_prefix("samples/").and_then(|file| file.rsplit('.').next()) {
+            Some(extension) if i == 1 => format!("IN.{extension}"),
+            _ => w.to_owned(),
+        });
         Some(format!("pathwarp {}", own.collect::<Vec<_>>().join(" ").replace(" -o out.", " -o OUT.")))
     }
 }

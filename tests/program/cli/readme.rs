@@ -57,6 +57,53 @@ fn every_block_of_commands_runs() {
     assert!(run >= 50, "{run} blocks");
 }
 
+/// The page of what does nearly the same has its commands in tables.
+#[test]
+fn every_command_of_the_comparison_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let page = fs::read_to_string(root().join("docs/which.md")).unwrap();
+    let commands: Vec<&str> = page.split('`').filter(|code| code.contains(" -o out.svg")).collect();
+    assert!(commands.len() > 25);
+    for command in commands {
+        let said = paste(dir.path(), command);
+        assert!(is_quiet(&said), "{command}: {said}");
+    }
+}
+
+#[test]
+fn help_knows_words_of_the_trade() {
+    for word in [
+        "tumbler",
+        "weld",
+        "unite",
+        "die line",
+        "rainbow text",
+        "circular text",
+        "isometric",
+        "T-shirt",
+        "mug",
+        "sticker",
+        "comic",
+        "speech bubble",
+        "dewarp",
+        "book page",
+        "tile",
+        "wrap",
+        "warp text",
+        "curve text",
+        "arch",
+        "roughen",
+        "halftone",
+    ] {
+        let (said, _) = expect_code(0, &["help", word]);
+        let has_none = ["roughen", "halftone"].contains(&word);
+        let needed = if has_none { "Not there: pathwarp " } else { "pathwarp " };
+        assert!(said.contains(needed) && (!has_none || said.contains("Illustrator")), "{word}: {said}");
+    }
+    assert!(expect_code(0, &["help", "arch"]).0.contains("docs/which.md"));
+    assert!(expect_code(0, &["help", "dewarp"]).0.contains("pathwarp shaper IN.jpg --shaper "));
+}
+
 /// The page of other programs' words promises a picture for each, without a warning.
 #[test]
 fn every_command_for_a_word_of_another_program_runs() {

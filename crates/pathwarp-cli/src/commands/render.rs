@@ -1,4 +1,4 @@
-//! Pictures: `render` draws an SVG file, `gallery` artwork under every preset of a set on one sheet.
+//! Pictures: `render` draws an SVG file, `gallery` artwork under every preset of a set, or words in every font, on one sheet.
 
 use crate::arguments;
 use crate::arguments::{reading_args, some_options};
@@ -12,14 +12,18 @@ use pathwarp::refit;
 use pathwarp_engine::bitmap::{Background, background, encode};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, Format, PICTURES};
+use pathwarp_engine::lettering::{REGULAR, find_font, laid_out, read_font};
+use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::report::SkippedShape;
 use pathwarp_engine::{advice, export, input, output};
 use pathwarp_raster::{Picture, RenderOptions, Size};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
-use pathwarp_svg::{Document, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument, usvg_tree};
+use pathwarp_svg::{Document, LetteringOptions, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument};
+use pathwarp_svg::{families, usvg_tree, write_lettering};
+use pathwarp_text::TextStyle;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub(super) fn render_command() -> Command {
     let pixels = |name: &'static str, help: &'static str| {
@@ -102,6 +106,8 @@ const TOLERANCE: f64 = 2e-4;
 /// The word for all sets together.
 const ALL: &str = "all";
 
+const FONTS: &str = "fonts";
+
 /// The deformations with presets.
 fn sets(registry: &Registry) -> impl Iterator<Item = (&dyn Deformation, Gallery)> {
     // Those that bend by an amount come first.
@@ -112,8 +118,8 @@ fn sets(registry: &Registry) -> impl Iterator<Item = (&dyn Deformation, Gallery)
 pub(super) fn gallery_command(registry: &Registry) -> Command {
     let sets: Vec<&str> = sets(registry).map(|(_, g)| g.set).chain([ALL]).collect();
     Command::new("gallery")
-        .about("Draw artwork under every preset of a set on one sheet")
-        .arg(file_arg("INPUT", "An SVG file; - is standard input"))
+        .about("Draw artwork under every preset of a set, or words in every font, on one sheet")
+        .arg(file_arg("INPUT", "An SVG file; - is standard input").required(false).required_unless_present(FONTS))
         .arg(out_arg(
             "SHEET.svg|SHEET.png",
             "Write the sheet to this file: .svg, .svgz, .pdf, .png, .jpg or .webp; - or none writes SVG to standard output",
@@ -123,6 +129,13 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
             choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]),
         )
         .arg(Arg::new(ALL).long(ALL).action(ArgAction::SetTrue).conflicts_with("set").help("The same as --set all"))
+        .arg(
+            Arg::new(FONTS)
+                .long(FONTS)
+                .value_name("WORDS")
+                .conflicts_with_all(["INPUT", "set", ALL])
+                .help("Draw these words in every installed family that has their letters, and in the bundled ones"),
+        )
         .arg(
             Arg::new("bend")
                 .long("bend")
@@ -166,6 +179,7 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
              pathwarp gallery samples/logo.svg -o sheet.svg\n  \
              pathwarp gallery samples/lettering.svg --set wordart --columns 5 -o sheet.png\n  \
              pathwarp gallery samples/badge.svg --bend -30% --axis vertical -o sheet.svg\n  \
+             pathwarp gallery --fonts 'Old Bakery' -o fonts.png\n  \
              pathwarp gallery samples/logo.svg --page-width 210mm --page-height 297mm -o sheet.pdf",
         )
 }
@@ -178,8 +192,8 @@ fn cell(text: &str) -> Result<(f64, f64), String> {
 }
 
 pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
-    let file = given_file(m, "INPUT")?;
-    let target = target(m, [file])?;
+    let (file, fonts) = (m.get_one::<PathBuf>("INPUT").map(PathBuf::as_path), m.get_one::<String>(FONTS));
+    let target = target(m, file)?;
     let options = arguments::given(m).read()?;
     let format = Choice { what: "a sheet is", among: SHEETS }.format(target, options.format)?;
     if format.of_picture(None).is_some() && (options.page_width.is_some() || options.page_height.is_some()) {
@@ -187,6 +201,66 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
             "--page-width and --page-height are for sheets as .svg or .pdf; --scale enlarges a picture",
         ));
     }
+    let file = file.unwrap_or(Path::new("-"));
+    let Content { cells, title, left_out } = match fonts {
+        Some(words) => in_fonts(words, &options)?,
+        None => under_presets(registry, m, file, &options)?,
+    };
+    let layout = SheetOptions {
+        columns: m.get_one::<u32>("columns").map_or(4, |n| *n as usize),
+        cell: m.get_one::<(f64, f64)>("cell").copied().unwrap_or((260.0, 190.0)),
+        title,
+    };
+    let svg = sheet(&cells, &layout, &input::read_options(file, &options.reading))?;
+    let plain = ReadOptions::default().with_turned(Some(Picture::turned)).with_limits(options.reading.limits);
+    let bytes = if format.of_picture(None).is_some() {
+        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &plain)?;
+        let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
+        let limits = options.reading.limits.for_input(svg.len());
+        let drawn = RenderOptions { size, background: None }.render_within(&tree, &limits)?;
+        encode(drawn, format, options.quality)?
+    } else {
+        export::drawing(svg, format, &plain, &options, None)?.bytes
+    };
+    left_out.iter().for_each(|reason| terminal::warning(reason));
+    output::write(target, &bytes)?;
+    Ok(Status::partial_if(!left_out.is_empty()))
+}
+
+/// What is on a sheet.
+struct Content {
+    cells: Vec<Cell>,
+    title: String,
+    left_out: Vec<String>,
+}
+
+/// Words in every installed family that has all their letters.
+fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
+    let (read, limits) = (options.reading.read_options(), options.reading.limits.for_input(words.len()));
+    let families = families(&read);
+    let set = |family: &String| -> Result<_, Failure> {
+        let file = find_font(family, REGULAR, false, &read)?;
+        let text = laid_out(words, &[read_font(family, &file)?], &TextStyle::default(), &limits)?;
+        let svg = write_lettering(&text, &LetteringOptions::default())?;
+        Ok((Cell { svg, label: family.clone() }, text.missing.is_empty()))
+    };
+    // What an installed font is good for is not known before it is used.
+    let set: Vec<_> = families.par_iter().map(set).filter_map(Result::ok).collect();
+    let cells: Vec<Cell> = set.into_iter().filter(|(_, has_all)| *has_all).map(|(cell, _)| cell).collect();
+    if cells.is_empty() {
+        return Err(Failure::usage(format!("--{FONTS}: no installed family has all letters of “{words}”")));
+    }
+    let (shown, all) = (cells.len(), families.len());
+    Ok(Content { cells, title: format!("{words}: {shown} of {all} families have its letters"), left_out: Vec::new() })
+}
+
+/// A drawing under every preset of a set.
+fn under_presets(
+    registry: &Registry,
+    m: &ArgMatches,
+    file: &Path,
+    options: &CommonOptions,
+) -> Result<Content, Failure> {
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));
@@ -211,26 +285,8 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
         let svg = doc.decoded().into_owned();
         cells.insert(0, Cell { svg, label: "as it is".into() });
     }
-    let layout = SheetOptions {
-        columns: m.get_one::<u32>("columns").map_or(4, |n| *n as usize),
-        cell: m.get_one::<(f64, f64)>("cell").copied().unwrap_or((260.0, 190.0)),
-        title: title(file, &sets, bend, axis),
-    };
-    let svg = sheet(&cells, &layout, &input::read_options(file, &options.reading))?;
-    let plain = ReadOptions::default().with_turned(Some(Picture::turned)).with_limits(options.reading.limits);
-    let bytes = if format.of_picture(None).is_some() {
-        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &plain)?;
-        let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
-        let drawn = RenderOptions { size, background: None }.render_within(&tree, &doc.budget().limits())?;
-        encode(drawn, format, options.quality)?
-    } else {
-        export::drawing(svg, format, &plain, &options, None)?.bytes
-    };
-    for reason in &skipped {
-        terminal::warning(&format!("{}: {reason}", input::display(file)));
-    }
-    output::write(target, &bytes)?;
-    Ok(Status::partial_if(!skipped.is_empty()))
+    let left_out = skipped.iter().map(|reason| format!("{}: {reason}", input::display(file))).collect();
+    Ok(Content { cells, title: title(file, &sets, bend, axis), left_out })
 }
 
 /// Lists what is not warped, or is left out, in some cell: the first ones, and how many more there are.

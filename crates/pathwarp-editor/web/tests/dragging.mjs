@@ -39,19 +39,19 @@ export const corner_of_a_perspective = () => follows("Perspective", (all) => all
 export const one_of_four_corners = () => follows("Four corners", (all) => all.find((k) => k === "target/0.0/1"));
 export const eye_of_an_anamorphosis = () => follows("Anamorphosis", (all) => all.find((k) => k === "eye"));
 export const side_of_an_envelope = () => follows("Envelope", (all) => all.find((k) => k.startsWith("top") && k.endsWith("/in")));
-export const adjust_value_of_a_text_shape = () => follows("Wave 1", (all) => all.find((k) => k === "adj/0"), [0, -20], "Text shapes");
-export const angle_of_an_adjust_value = () => follows("Arch up pour", (all) => all.find((k) => k === "adj/0"), [0, -14], "Text shapes");
+export const adjust_value_of_a_text_shape = () => follows("Wave 1", (all) => all.find((k) => k === "adj/0"), [0, -20]);
+export const angle_of_an_adjust_value = () => follows("Arch up pour", (all) => all.find((k) => k === "adj/0"), [0, -14]);
 // Along the circle that a dial moves on.
-export const dial_of_a_ring = () => follows("Ring", (all) => all.find((k) => k === "sweep"), [-26, 15], "Effects");
-export const dial_of_a_transform = () => follows("Transform", (all) => all.find((k) => k === "rotate"), [0, 30], "Effects");
-export const height_of_a_wave = () => follows("Wave (effect)", (all) => all.find((k) => k === "height"), [0, -25], "Effects");
+export const dial_of_a_ring = () => follows("Ring", (all) => all.find((k) => k === "sweep"), [-26, 15]);
+export const dial_of_a_transform = () => follows("Transform", (all) => all.find((k) => k === "rotate"), [0, 30]);
+export const height_of_a_wave = () => follows("Wave (effect)", (all) => all.find((k) => k === "height"), [0, -25]);
 export const pin = () => follows("Pins", (all) => all.find((k) => k === "pair/2/1"));
 
 /** The sliders of a text shape follow the shape, in its units, and a choice while another is on the way wins. */
 export const settings_of_text_shapes = async () => {
   const { editor, page } = await started();
   try {
-    await choose(page, "Arch up pour", "Text shapes");
+    await choose(page, "Arch up pour");
     const before = await paths(page);
     await page.fill("#set-adj-adj2", "30");
     await page.keyboard.press("Enter");
@@ -80,7 +80,7 @@ export const point_of_a_mesh = () => follows("Mesh", (all) => all.find((k) => k 
 export const pair_of_points = () => follows("Pins", (all) => all.find((k) => k === "pair/0/1"));
 export const centre_of_a_swirl = () => follows("Swirl", (all) => all.find((k) => k === "center"));
 export const bend_of_a_style = () => follows("Flag", (all) => all.find((k) => k === "bend"), [0, -41]);
-export const radius_of_a_bulge = () => follows("Bulge (effect)", (all) => all.find((k) => k === "radius"), [37, 0], "Effects");
+export const radius_of_a_bulge = () => follows("Bulge (effect)", (all) => all.find((k) => k === "radius"), [37, 0]);
 export const node_of_a_triangle_net = () => follows("Triangle net", (all) => all.find((k) => k === "at/3"));
 export const row_of_points = () => follows("Two rows", (all) => all.find((k) => k === "top/0.0/1"));
 

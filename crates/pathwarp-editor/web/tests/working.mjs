@@ -200,7 +200,7 @@ export const fields_of_numbers = () => within("Arc", async (page) => {
 
 /** Lengths have the unit that is typed; places may be shares of the box; what the program refuses is said in the words of the page. */
 export const fields_of_lengths_and_places = () => within(null, async (page) => {
-  await choose(page, "Wave (effect)", "Effects");
+  await choose(page, "Wave (effect)");
   const type = async (id, text) => {
     await page.click(`#${id}`, { clickCount: 3 });
     await page.keyboard.type(text);
@@ -315,7 +315,7 @@ const allInView = (page) => page.evaluate(() => Array.from(document.querySelecto
   return !corners.every(([cx, cy]) => document.elementFromPoint(cx, cy)?.closest("#stage"));
 }).map((k) => k.dataset.key));
 const fits = (width, height) => within(null, async (page) => {
-  for (const [shape, section] of [["Möbius", ""], ["Triangle net", ""], ["Swirl", ""], ["Grid", ""], ["Ring", "Effects"], ["Bulge (effect)", "Effects"]]) {
+  for (const [shape, section] of [["Möbius", ""], ["Triangle net", ""], ["Swirl", ""], ["Grid", ""], ["Ring", ""], ["Bulge (effect)", ""]]) {
     if (width <= 900) await page.click("#open-shapes");
     await choose(page, shape, section);
     await page.click("#fit");

@@ -8,22 +8,26 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The guides. They name their pictures by relative paths.
-const GUIDES: [&str; 6] = [
+const GUIDES: [&str; 7] = [
     "README.md",
     "docs/lettering.md",
     "docs/paths.md",
     "docs/solid.md",
     "docs/cookbook.md",
     "docs/lettering-on-paths.md",
+    COMPARISON,
 ];
+/// The guide of small pictures in tables.
+const COMPARISON: &str = "docs/which.md";
 /// Guides whose pictures show the artwork beside the result.
 const COOKBOOKS: [&str; 2] = ["docs/cookbook.md", "docs/lettering-on-paths.md"];
 /// Marks the command of a picture of a model.
 const PREVIEW: &str = "--preview out.png";
 /// Marks a command on a folder of drawings.
 const INTO: &str = "--out-dir";
-/// Width of a picture in pixels.
+/// Widths of pictures in pixels.
 const WIDTH: &str = "800";
+const SMALL: &str = "400";
 
 /// Draws the pictures of all guides.
 pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
@@ -35,7 +39,9 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             if let Some(folder) = png.parent() {
                 fs::create_dir_all(folder).map_err(at(folder))?;
             }
-            if COOKBOOKS.contains(&guide) {
+            let words = words(command);
+            let photograph = words.iter().find(|w| w.ends_with(".jpg"));
+            if COOKBOOKS.contains(&guide) && photograph.is_none() {
                 shell::preview(root, program, command.trim_start_matches("pathwarp "), &png)?;
                 continue;
             }
@@ -47,7 +53,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
                 preview(root, program, &png, command)?;
                 continue;
             }
-            if let [_, simplify, source, ..] = &words(command)[..]
+            if let [_, simplify, source, ..] = &words[..]
                 && simplify == "simplify"
             {
                 nodes(root, program, &png, (source, command))?;
@@ -57,11 +63,11 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             for stage in stages(command) {
                 drawing = pipe(root, program, &stage, &drawing)?;
             }
-            if let Some(photograph) = words(command).iter().find(|w| w.ends_with(".jpg")) {
+            if let Some(photograph) = photograph {
                 beside(root, program, &png, (photograph, &drawing))?;
                 continue;
             }
-            shell::render(root, program, &drawing, WIDTH, &png)?;
+            shell::render(root, program, &drawing, if guide == COMPARISON { SMALL } else { WIDTH }, &png)?;
         }
     }
     Ok(())
@@ -165,15 +171,18 @@ fn preview(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(),
     done
 }
 
-/// Every picture of a page, with the command that draws it: the next line that starts with `pathwarp`.
+/// Every picture of a page, with the command that draws it: in a table that of its row, else the next line that starts with `pathwarp`.
 fn pictures(page: &str) -> Vec<(&str, &str)> {
     let mut out = Vec::new();
     let mut pending = None;
     for line in page.lines() {
-        if let Some((_, rest)) = line.strip_prefix("![").and_then(|l| l.split_once("](")) {
-            pending = rest.strip_suffix(')');
-        } else if line.starts_with("pathwarp ") {
-            out.extend(pending.take().map(|png| (png, line)));
+        let row = line.strip_prefix("| ");
+        if let Some((_, rest)) = row.unwrap_or(line).strip_prefix("![").and_then(|l| l.split_once("](")) {
+            pending = rest.split_once(')').map(|(png, _)| png);
+        }
+        let code = row.and_then(|row| row.split('`').find(|code| code.starts_with("pathwarp ")));
+        if let Some(command) = code.or(Some(line).filter(|line| line.starts_with("pathwarp "))) {
+            out.extend(pending.take().map(|png| (png, command)));
         }
     }
     out

@@ -72,9 +72,8 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     if !data::is_given(m) {
         return setting.write(texts, fill, target);
     }
-    let named = texts.iter().chain([&fill]).flatten().map(String::as_str).collect();
-    let work = data::Work { texts: named, reads, out: target.unwrap_or(Path::new("-")) };
-    data::for_each_row(registry, m, &work, |row, target| {
+    let named: Vec<&str> = texts.iter().chain([&fill]).flatten().map(String::as_str).collect();
+    data::for_each_row(registry, m, &named, &reads, |row, target| {
         let texts = texts.each_ref().map(|t| t.as_ref().map(|t| row.filled_lines(t)));
         setting.write(texts, fill.as_ref().map(|f| row.filled(f)), Some(target))
     })

@@ -237,9 +237,9 @@ impl Map for OnPiece {
 pub(super) enum Strip {
     /// F = p + s·t + d·n.
     Straight { p: Point, t: Vec2, n: Vec2 },
-    /// F = C(u(s)) + d·S with S the unit normal, blended into the mitre of a corner at the ends. s is the length of the offset
-    /// curve at height `even`.
-    Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even: f64 },
+    /// F = C(u(s)) + d·S with S the unit normal, blended into the mitre of a corner at the ends: linearly, or `smooth`ly where the
+    /// mitre vanishes within the piece. s is the length of the offset curve at height `even`.
+    Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even: f64, smooth: bool },
     /// The paper's polynomial F(u, v), v = d / unit; u by arc length if there is a table, else s / length.
     Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },
 }
@@ -270,28 +270,33 @@ impl SkeletonPiece {
     pub(super) fn point(&self, s: f64, d: f64) -> Point {
         match &self.strip {
             Strip::Straight { p, t, n } => *p + *t * s + *n * d,
-            Strip::Normals { spine, table, mitres: [a, b], .. } => {
+            Strip::Normals { spine, table, mitres, smooth, .. } => {
                 let (p, t) = spine.frame(table.parameter(s));
-                p + self.side(t, *a, *b, s) * d
+                p + self.side(t, mitres, *smooth, s).0 * d
             }
             Strip::Ribbon { .. } => self.jet(s, d).0,
         }
     }
 
-    /// Returns the side at distance `s`: the normal of `t`, blended into the mitres.
-    fn side(&self, t: Vec2, start: Vec2, end: Vec2, s: f64) -> Vec2 {
+    /// Returns the side at distance `s`, the normal of `t` blended into the mitres, and the derivative of the blend.
+    fn side(&self, t: Vec2, [start, end]: &[Vec2; 2], smooth: bool, s: f64) -> (Vec2, Vec2) {
         let share = s / self.length;
-        normal(t) + start * (1.0 - share) + end * share
+        let (a, b) = (1.0 - share, share);
+        if smooth {
+            let slope = (*end * b - *start * a) * (2.0 / self.length);
+            return (normal(t) + *start * (a * a) + *end * (b * b), slope);
+        }
+        (normal(t) + *start * a + *end * b, (*end - *start) / self.length)
     }
 
     /// Returns F, ∂F/∂s and ∂F/∂d at distance `s` from the piece's start and height `d`.
     pub(super) fn jet(&self, s: f64, d: f64) -> (Point, Vec2, Vec2) {
         match &self.strip {
             Strip::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
-            Strip::Normals { spine, table, mitres: [a, b], even } => {
+            Strip::Normals { spine, table, mitres, even, smooth } => {
                 let MovingFrame { p, t, bend } = spine.moving(table.parameter(s));
-                let side = self.side(t, *a, *b, s);
-                let along = t * ((1.0 + bend * d) / (1.0 + bend * even)) + (*b - *a) * (d / self.length);
+                let (side, slope) = self.side(t, mitres, *smooth, s);
+                let along = t * ((1.0 + bend * d) / (1.0 + bend * even)) + slope * d;
                 (p + side * d, along, side)
             }
             Strip::Ribbon { ribbon, unit, table } => {

@@ -4,8 +4,8 @@
 //! with the height above the baseline. Two kinds of sides S:
 //!
 //! - **unit normals** ([`map`]): with u by arc length s, ∂F/∂s = (1 + κd)·T and ∂F/∂d = N, exactly; the strip is as high as
-//!   the artwork everywhere and folds beyond the centre of curvature, 1 + κd = 0. At corners S is blended into the mitre,
-//!   linearly along both neighbours, so that offsets of a polygon are exact;
+//!   the artwork everywhere and folds beyond the centre of curvature, 1 + κd = 0. At corners S is blended into the mitre along
+//!   both neighbours, of lines only near the corner, so that offsets of a polygon are exact;
 //! - **handles** ([`map`]): the generalised algorithm of de Casteljau, one handle per leg of the control polygon, deeper
 //!   levels on request. F is polynomial in u and v, and the image of a Bézier curve is one again, exactly. By default a handle is
 //!   the leg's unit normal, as long as the artwork is high.
@@ -153,7 +153,7 @@ impl Bend {
         letters(letters: Arc<[Letter]>, setting: LetterSetting) => letters: letters, setting: Some(setting);
     }
 
-    /// Builds the map. Corners, folds and artwork longer than the skeleton give warnings.
+    /// Builds the map. Folds and artwork longer than the skeleton give warnings.
     ///
     /// # Errors
     /// [`Error::Geometry`] or [`Error::Usage`] for a skeleton that is not one connected path, has no length or turns back on
@@ -206,7 +206,7 @@ impl Bend {
         let mut built = Built::new(map.simplest());
         built.explanation.notes = notes;
         let spread = placed && (copies.is_some() || self.stretch == Stretch::Fit);
-        explain(&mut built, &map, &corners, if spread { Rect::ZERO } else { rect });
+        explain(&mut built, &map, &corners, if spread { [rect.x0; 2] } else { self.seen(rect, shift) });
         if copies.is_some() {
             built.note(format!("artwork repeated: {} times, one every {:.6}", repeats.count, repeats.spacing));
             let most = Repeats::new(None, (width, gaps as f64, self.gap), length, closed)?.count;
@@ -232,6 +232,13 @@ impl Bend {
         }
         built.overlay(Role::Cage, path.outline.to_bez_path(1e-4 * size));
         Ok(built)
+    }
+
+    /// The left and the right edge of what is seen of the artwork in all its copies, whose frame is `rect` and the last of which is
+    /// `shift` further right. Advances of letters are wider than their ink.
+    fn seen(&self, rect: Rect, shift: f64) -> [f64; 2] {
+        let letters = self.letters.iter().filter(|_| self.around_letters).filter_map(|l| l.outline.bounding_box());
+        letters.reduce(|a, b| a.union(b)).map_or([rect.x0, rect.x1], |ink| [ink.x0, ink.x1 + shift])
     }
 
     /// Handles belong to the pieces in the order they were drawn.
@@ -298,7 +305,11 @@ impl Bend {
         let unit = if self.frame.height() > 0.0 { self.frame.height() } else { 1.0 };
         match &self.handles {
             Some((given, _)) => skeleton.with_handles(Some(given), unit, !self.by_parameter),
-            None if !self.by_parameter => skeleton.with_normals(),
+            None if !self.by_parameter => {
+                let scale = if self.stretch == Stretch::Scale { skeleton.length / self.frame.width() } else { 1.0 };
+                let heights = [self.frame.y0, self.frame.y1].map(|y| (self.baseline - y).abs());
+                skeleton.with_normals(heights[0].max(heights[1]) * self.width * scale)
+            }
             None => skeleton.with_handles(None, unit, false),
         }
     }
@@ -334,23 +345,24 @@ impl Bend {
     }
 }
 
-/// Describes the skeleton; warns of corners, and of artwork longer than the skeleton. `rect` is the box of all copies.
-fn explain(built: &mut Built, map: &BendMap, corners: &[Corner], rect: Rect) {
+/// Describes the skeleton and its corners; warns of artwork longer than the skeleton, which is from `x0` to `x1` in all copies.
+fn explain(built: &mut Built, map: &BendMap, corners: &[Corner], [x0, x1]: [f64; 2]) {
+    /// Artwork longer by less than this share fits.
+    const CLOSE: f64 = 1e-3;
     let (length, closed) = (map.length, map.closed);
     let skeleton = format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" });
     built.explanation.notes.insert(0, skeleton);
     for c in corners {
-        built.warn(format!(
-            "bend: the skeleton has a corner at {} (it turns by {:.1}°): the artwork is mitred there; round it for a smooth bend",
-            show(c.at),
-            c.turn.to_degrees().abs()
-        ));
+        let turn = c.turn.to_degrees().abs();
+        built.note(format!("the artwork turns by {turn:.1}° at the corner {} of the skeleton", show(c.at)));
     }
-    let width = map.to_strip.k * rect.width();
-    if width > length * (1.0 + 1e-9) {
+    let [from, to] = [x0, x1].map(|x| map.to_strip.s(x));
+    let more = to - from - length;
+    if more > CLOSE * length {
         let what = if closed { "runs over itself" } else { "continues straight beyond its ends" };
         built.warn(format!(
-            "bend: the artwork is {width:.6} wide, the skeleton only {length:.6} long: it {what}; see `stretch`"
+            "bend: the artwork is longer than the path by {more:.3} ({:.0} % of the path), and {what}; `stretch scale` makes it fit",
+            (100.0 * more / length).max(1.0)
         ));
     }
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, show};
 use crate::map::curves::ArcLength;
 use crate::outline::{Seg, Subpath};
 use crate::param::NamedPath;
-use kurbo::{Point, Vec2};
+use kurbo::{Line, Point, Vec2};
 
 /// Below this angle (radians) a joint is smooth.
 const SMOOTH: f64 = 1e-6;
@@ -180,21 +180,23 @@ artwork's height; a smaller `width` helps too",
         Ok((sides, corners))
     }
 
-    /// Joins pieces whose sides are unit normals.
-    pub(super) fn with_normals(self) -> Result<Joined, Error> {
+    /// Joins pieces whose sides are unit normals, for artwork that is at most `height` from the skeleton.
+    pub(super) fn with_normals(self, height: f64) -> Result<Joined, Error> {
         let (sides, corners) = self.sides()?;
-        let strips = self.spines.iter().zip(sides).map(|((spine, table), [a, b])| {
+        let mut strips = Vec::with_capacity(self.spines.len());
+        for ((spine, table), [a, b]) in self.spines.iter().zip(sides) {
             let (first, last) = (spine.moving(0.0), spine.moving(1.0));
             let mitres = [a - normal(first.t), b - normal(last.t)];
-            let strip = match spine.seg {
-                Seg::Line(_) if mitres == [Vec2::ZERO; 2] => {
-                    Strip::Straight { p: first.p, t: first.t, n: normal(first.t) }
+            match spine.seg {
+                Seg::Line(line) => strips.extend(on_a_line(line, mitres, height)),
+                _ => {
+                    let curved =
+                        Strip::Normals { spine: *spine, table: table.clone(), mitres, even: self.even, smooth: false };
+                    strips.push((curved, table.length()));
                 }
-                _ => Strip::Normals { spine: *spine, table: table.clone(), mitres, even: self.even },
-            };
-            (strip, table.length())
-        });
-        let pieces = self.in_a_row(strips.collect());
+            }
+        }
+        let pieces = self.in_a_row(strips);
         Ok(Joined { pieces, corners, notes: Vec::new() })
     }
 
@@ -290,6 +292,38 @@ artwork's height; a smaller `width` helps too",
         }
         pieces
     }
+}
+
+/// The strips on a side of a polygon. Artwork turns near its corners: the sides are blended into a mitre within a few times what it
+/// juts out at `height`, and stand straight on the rest of the line. On a line too short for that they are blended all along.
+fn on_a_line(line: Line, mitres: [Vec2; 2], height: f64) -> Vec<(Strip, f64)> {
+    /// Length of a blend as a multiple of the mitre's width: at the corner, artwork on its inner side keeps a third of its width, and
+    /// with a factor of 2 none.
+    const REACH: f64 = 3.0;
+    let length = line.length();
+    let t = (line.p1 - line.p0) / length;
+    let between = |from: f64, to: f64, mitres: [Vec2; 2], smooth: bool| {
+        let part = Line::new(line.p0 + t * from, line.p0 + t * to);
+        let seg = Seg::Line(if to < length { part } else { Line::new(part.p0, line.p1) });
+        let strip = if mitres == [Vec2::ZERO; 2] {
+            Strip::Straight { p: part.p0, t, n: normal(t) }
+        } else {
+            Strip::Normals { spine: Spine::new(seg), table: ArcLength::of(&seg), mitres, even: 0.0, smooth }
+        };
+        (strip, to - from)
+    };
+    let [a, b] = mitres.map(|m| REACH * height * m.hypot());
+    if !(a + b < length && height > 0.0) {
+        return vec![between(0.0, length, mitres, false)];
+    }
+    let mut out = vec![between(a, length - b, [Vec2::ZERO; 2], false)];
+    if a > 0.0 {
+        out.insert(0, between(0.0, a, [mitres[0], Vec2::ZERO], true));
+    }
+    if b > 0.0 {
+        out.push(between(length - b, length, [Vec2::ZERO, mitres[1]], true));
+    }
+    out
 }
 
 /// Returns `true` if a closed run goes counter-clockwise on the screen: its area, y down, is negative.

@@ -69,7 +69,7 @@ fn joints_do_not_tear() {
     for by in ["arclength", "parameter"] {
         let along = "M0,50 L40,20 Q60,10 70,40 C80,70 100,80 120,60 A30,30 0 0 1 150,60";
         let b = build(&[("along", along), ("by", by), ("align", "start")]).unwrap();
-        assert!(b.explanation.warnings.iter().any(|w| w.contains("corner")), "{:?}", b.explanation.warnings);
+        assert!(b.explanation.notes.iter().any(|n| n.contains("corner")), "{:?}", b.explanation.notes);
         let mut creases = Creases::default();
         b.map.creases(&mut creases);
         assert!(creases.items().len() >= 4);
@@ -380,4 +380,38 @@ fn text_around_a_ring_is_spread_and_not_widened() {
         let gap = if i == 3 { 2.0 * spare / 5.0 } else { 2.0 + spare / 5.0 };
         assert!((along(place(i, 10.0), place((i + 1) % 4, 0.0)) - gap).abs() < 1e-9, "{i}");
     }
+}
+
+/// Artwork turns near the corners of a polygon. The rest of its sides is not sheared, and neither side of a corner folds.
+#[test]
+fn sides_of_a_polygon_are_straight_between_their_corners() {
+    // A tenth of the frame stands on each side of the skeleton, so the blends at a right angle are 30 long.
+    let m = build(&[("along", "0,0 1000,0 1000,1000"), ("align", "start"), ("width", "0.2")]).unwrap().map;
+    for i in 0..40 {
+        let (s, y) = (25.0 * f64::from(i) - 20.0, 2.5 * f64::from(i));
+        let d = 0.2 * (50.0 - y);
+        for (s, expected, dx, dy) in [
+            (s.min(969.0), Point::new(s.min(969.0), -d), Vec2::new(1.0, 0.0), Vec2::new(0.0, 0.2)),
+            (1031.0 + s.max(0.0), Point::new(1000.0 + d, 31.0 + s.max(0.0)), Vec2::new(0.0, 1.0), Vec2::new(-0.2, 0.0)),
+        ] {
+            let j = m.jet(Point::new(s, y));
+            assert!(j.p.distance(expected) < 1e-9 && (j.dx - dx).hypot() + (j.dy - dy).hypot() < 1e-12, "{s} {j:?}");
+        }
+        let near = m.jet(Point::new(960.0 + 2.0 * f64::from(i), y));
+        assert!(near.det() > 0.3 * 0.2, "{near:?}");
+    }
+    // On a side too short for that, the blend of both its mitres has no part of its own.
+    let short = build(&[("along", "0,0 50,0 50,50"), ("align", "start")]).unwrap().map;
+    assert!(short.point(Point::new(25.0, 0.0)).distance(Point::new(50.0, -50.0)) < 1e-9);
+}
+
+/// What fits says nothing, and what does not says in one sentence by how much.
+#[test]
+fn artwork_longer_than_the_path_is_named() {
+    let said = |along: &str| build(&[("along", along)]).unwrap().explanation.warnings;
+    assert_eq!(said("0,50 100,50"), [""; 0]);
+    assert_eq!(said("0,50 99.95,50"), [""; 0]);
+    assert_eq!(said("0,0 100,0 100,200"), [""; 0]);
+    let [warning] = &said("0,50 80,50")[..] else { panic!() };
+    assert!(warning.contains("longer than the path by 20.000 (25 % of the path)"), "{warning}");
 }
