@@ -169,7 +169,7 @@ fn landscape(width: u32, height: u32) -> Picture {
     let mut seed = 7_u32;
     for (i, p) in pixmap.pixels_mut().iter_mut().enumerate() {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        let (x, y) = ((i as u32 % width) as f64, (i as u32 / width) as f64);
+        let (x, y) = (f64::from(i as u32 % width), f64::from(i as u32 / width));
         let light = 30.0 * (x / 37.0).sin() * (y / 53.0).cos() + f64::from(seed >> 24) / 16.0 - 8.0;
         let c = |v: u8| (0.8 * f64::from(v) + light + 20.0).clamp(0.0, 255.0) as u8;
         *p = ColorU8::from_rgba(c(p.red()), c(p.green()), c(p.blue()), 255).premultiply();

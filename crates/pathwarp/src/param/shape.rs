@@ -6,7 +6,7 @@
 use super::value;
 use super::{Axis, Frame};
 use crate::outline::Outline;
-use kurbo::{Affine, Vec2};
+use kurbo::Affine;
 use std::sync::OnceLock;
 
 /// The drawing of all shapes, a line for each.
@@ -63,7 +63,7 @@ fn placed(name: &str, data: &str, values: &str, frame: &Frame) -> Result<Outline
     }
     let [ratio, width] = given;
     let width = width.unwrap_or(frame.rect.width());
-    if !(width > 0.0) {
+    if width.is_nan() || width <= 0.0 {
         return Err(format!("would be as wide as the artwork, which has no width: write {name},width=80mm"));
     }
     let outline = Outline::from_svg(data).map_err(|e| e.to_string())?;
@@ -71,7 +71,7 @@ fn placed(name: &str, data: &str, values: &str, frame: &Frame) -> Result<Outline
     let ratio = ratio.unwrap_or(bounds.width() / bounds.height());
     let onto = Affine::translate(frame.rect.center().to_vec2())
         * Affine::scale_non_uniform(width / bounds.width(), width / ratio / bounds.height())
-        * Affine::translate(-Vec2::from(bounds.center().to_vec2()));
+        * Affine::translate(-bounds.center().to_vec2());
     Ok(outline.transformed(onto))
 }
 
