@@ -63,12 +63,7 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     let mut drawn = Vec::with_capacity(cells.len());
     let shared = shared(cells, read);
     for (k, c) in cells.iter().enumerate() {
-        let tree = tree::parse_counted(c.svg.as_bytes(), &c.label, &shared)?.0;
-        let b = tree.root().abs_layer_bounding_box();
-        let (x, y) = (f64::from(b.x()), f64::from(b.y()));
-        let seen = Rect::new(x, y, x + f64::from(b.width()), y + f64::from(b.height()));
-        let own = WriteOptions { id_prefix: Some(format!("s{k}-")), ..WriteOptions::default() };
-        drawn.push((seen, inside(&tree.to_string(&own)).to_owned()));
+        drawn.push(embedded(&c.svg, &c.label, &format!("s{k}-"), &shared)?);
     }
     let room = ((w - 2.0 * INSET).max(1.0), (h - 2.0 * INSET - LABEL).max(1.0));
     let fit = |b: &Rect| (room.0 / b.width().max(1e-9)).min(room.1 / b.height().max(1e-9));
@@ -113,6 +108,20 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     let own = WriteOptions { id_prefix: Some("label-".into()), ..WriteOptions::default() };
     let _ = write!(out, "<g id=\"labels\">{}</g>\n</svg>\n", inside(&outlines.to_string(&own)));
     Ok(out)
+}
+
+/// The elements of a drawing, in px of its page, and the box of all that they paint, for another drawing to hold. Texts are outlines, and
+/// ids begin with a prefix.
+///
+/// # Errors
+/// Returns [`Error::Input`] for a drawing that cannot be read.
+pub fn embedded(svg: &str, name: &str, prefix: &str, read: &ReadOptions) -> Result<(Rect, String), Error> {
+    let tree = tree::parse_counted(svg.as_bytes(), name, read)?.0;
+    let b = tree.root().abs_layer_bounding_box();
+    let (x, y) = (f64::from(b.x()), f64::from(b.y()));
+    let seen = Rect::new(x, y, x + f64::from(b.width()), y + f64::from(b.height()));
+    let own = WriteOptions { id_prefix: Some(prefix.to_owned()), ..WriteOptions::default() };
+    Ok((seen, inside(&tree.to_string(&own)).to_owned()))
 }
 
 /// Options with one budget for all cells: that of the largest one, except that many small drawings hold more than one large drawing may.

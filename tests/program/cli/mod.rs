@@ -1,5 +1,6 @@
 //! The program from outside: exit codes, files, streams, messages.
 
+mod badges;
 mod batches;
 mod chains;
 mod circles;

@@ -132,6 +132,7 @@ static OTHERS: &[Subcommand] = &[
     subcommand("unwarp", |_| convert::unwarp_command(), |c| Ok(convert::unwarp(c.matches)?)),
     subcommand("schema", |_| about::schema_command(), |c| Ok(about::print_schema(c.registry)?)),
     subcommand("text", text::text_command, |c| Ok(text::text(c.registry, c.matches, c.words)?)),
+    subcommand("badge", text::badge_command, |c| Ok(text::badge(c.registry, c.matches, c.words)?)),
     subcommand("paths", |_| convert::paths_command(), |c| Ok(convert::list_paths(c.matches)?)),
     subcommand("simplify", |_| warp::simplify_command(), |c| c.deform("simplify")),
     subcommand("offset", |_| warp::offset_command(), |c| c.deform("offset")),

@@ -89,30 +89,54 @@ pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> 
     Ok(sheet.finish())
 }
 
-/// Text whose letters are in their last place, where they have no level baseline any more.
+/// A path in its last place.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SetLine {
-    /// The text.
-    pub text: String,
-    /// The letters with their characters.
-    pub letters: Vec<(String, WarpedPath)>,
+pub struct SetPath {
+    /// What it is: of a letter, its characters.
+    pub label: String,
+    /// The path.
+    pub path: WarpedPath,
+    /// The width of the line that it is drawn as; it is filled without one.
+    pub line: Option<f64>,
 }
 
-/// Writes lines as a drawing, as large as their ink and the margin around it: a group with an `aria-label` for every line, in it a
-/// path for every letter.
+/// Paths in their last place, where letters have no level baseline any more, or a drawing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SetGroup {
+    /// Its id, if it has one.
+    pub id: Option<&'static str>,
+    /// What it is: of lettering, the text.
+    pub label: String,
+    /// The paths.
+    pub paths: Vec<SetPath>,
+    /// SVG elements with a colour of their own, after the paths.
+    pub drawing: String,
+}
+
+/// Writes groups as a drawing with a title, as large as their paths and the margin around it: a group with an `aria-label` for each,
+/// in it an element for every path.
 ///
 /// # Errors
 /// As for [`write_lettering`].
-pub fn write_set_lines(lines: &[SetLine], options: &LetteringOptions) -> Result<String, Error> {
-    let paths = lines.iter().flat_map(|l| &l.letters).map(|(_, p)| &p.path).filter(|p| !p.is_empty());
-    let page = paths.map(Shape::bounding_box).reduce(|a, b| a.union(b)).unwrap_or_default();
-    let title: Vec<&str> = lines.iter().map(|l| l.text.as_str()).collect();
-    let mut sheet = Sheet::new(page, &title.join(" "), options)?;
-    for line in lines {
-        sheet.begin(&line.text, "");
-        for (text, path) in &line.letters {
-            sheet.letter(text, "", &path.data);
+pub fn write_set_groups(title: &str, groups: &[SetGroup], options: &LetteringOptions) -> Result<String, Error> {
+    let drawn = groups.iter().flat_map(|g| &g.paths).filter(|p| !p.path.path.is_empty());
+    let bounds = drawn.map(|p| {
+        let half = 0.5 * p.line.unwrap_or_default();
+        p.path.path.bounding_box().inflate(half, half)
+    });
+    let page = bounds.reduce(|a, b| a.union(b)).unwrap_or_default();
+    let mut sheet = Sheet::new(page, title, options)?;
+    for group in groups {
+        let id = group.id.map_or_else(String::new, |id| format!(" id=\"{id}\""));
+        sheet.begin(&group.label, &id);
+        for p in &group.paths {
+            let paint = options.fill.as_deref().unwrap_or("#000");
+            let line = p.line.map(|w| {
+                format!(" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"", escape(paint), sheet.numbers(&[w]))
+            });
+            sheet.letter(&p.label, &line.unwrap_or_default(), &p.path.data);
         }
+        sheet.out.push_str(&group.drawing);
         sheet.out.push_str("</g>\n");
     }
     Ok(sheet.finish())

@@ -39,6 +39,6 @@ pub(super) fn set(
     let params = registry.get(ENVELOPE).map_or(&[][..], |e| e.info().params);
     args.resolve_paths(params, |r| on_path::on_page(r, em, options)).map_err(Failure::of_recipe)?;
     let frame = Frame::new(text.ink().unwrap_or_default()).with_units_per_px(em.units_per_px());
-    let (line, warnings) = bent(registry, ENVELOPE, text, frame.with_letters(as_letters(text)), args, options)?;
+    let (line, warnings) = bent(registry, ENVELOPE, &text.text, frame.with_letters(as_letters(text)), args, options)?;
     Ok(SetLines { lines: vec![line], warnings })
 }

@@ -1,5 +1,6 @@
 //! `pathwarp text WORDS -o OUT.svg`: sets text as outlines, which any deformation takes as its input.
 
+mod badge;
 mod in_shape;
 mod on_path;
 mod style;
@@ -18,7 +19,7 @@ use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out, read_fon
 use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::readable::listed;
 use pathwarp_engine::{Warper, input, output};
-use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, write_lettering, write_set_lines};
+use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, write_lettering, write_set_groups};
 use pathwarp_text::{Align, Font, TextStyle};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -32,16 +33,67 @@ pub(super) fn text_command(registry: &Registry) -> Command {
         .after_help(AFTER)
 }
 
+pub(super) fn badge_command(_: &Registry) -> Command {
+    /// Options of `text` that are about one line of text, its font and its colour.
+    const SHARED: [&str; 10] =
+        ["out", "font", "weight", "italic", "synthesize", "variation", "fill", "margin", "data", "letter-spacing"];
+    let shared = text_and_font().into_iter().chain(spacing()).filter(|a| SHARED.contains(&a.get_id().as_str()));
+    Command::new("badge")
+        .about("Set two lines in a ring, around a drawing")
+        .args(badge::args())
+        .args(shared)
+        .args(shaping().map(|a| a.help_heading(SHAPING)))
+        .args(some_options(&OF_OUTPUT))
+        .args(reading_args())
+        .arg(Arg::new("quiet").short('q').long("quiet").action(ArgAction::SetTrue).help("Print no warnings"))
+        .after_help(badge::AFTER)
+}
+
 /// Sets the text, or that of each row of a table, and writes the drawings.
 pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
-    let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
-    let file = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
-    let reads: Vec<&Path> = file.chain(names.iter().copied().map(Path::new)).collect();
+    let size = ("size", TextStyle::default().size);
+    run(registry, m, words, &Job { size, font: None, texts: both_texts, draw: |s, t, l| s.text(t, l) })
+}
+
+/// Makes the badge, or that of each row of a table, and writes the drawings.
+pub(super) fn badge(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
+    let texts = |m: &ArgMatches| {
+        let mut words = m.get_many::<String>("WORDS").into_iter().flatten().cloned();
+        Ok([words.next(), words.next()])
+    };
+    run(registry, m, words, &Job { size: badge::WIDTH, font: Some(badge::FONT), texts, draw: |s, t, l| s.badge(t, l) })
+}
+
+/// What a command makes of texts.
+struct Job {
+    /// The option that the page has its unit from, and its default in px.
+    size: (&'static str, f64),
+    /// The font without `--font`, if it is not the bundled one.
+    font: Option<&'static str>,
+    texts: fn(&ArgMatches) -> Result<[Option<String>; 2], Failure>,
+    draw: Draw,
+}
+
+type Draw = fn(&Setting<'_>, [Option<String>; 2], &LetteringOptions) -> Result<Drawn, Failure>;
+
+/// A drawing of texts.
+struct Drawn {
+    svg: String,
+    warnings: Vec<String>,
+    /// Characters that no font has.
+    missing: BTreeSet<char>,
+}
+
+fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Result<Status, Failure> {
+    let named = m.get_many::<String>("font").into_iter().flatten().map(String::as_str);
+    let names: Vec<&str> = named.chain(job.font.filter(|_| !m.contains_id("font"))).collect();
+    let files = ["file", "center"].into_iter().filter_map(|f| m.try_get_one::<PathBuf>(f).ok()?.map(PathBuf::as_path));
+    let reads: Vec<&Path> = files.chain(names.iter().copied().map(Path::new)).collect();
     let target = target(m, &reads)?;
     let options = arguments::given(m).read()?;
     let format = Choice { what: "lettering is", among: DRAWINGS }.format(target, options.format)?;
-    let texts = both_texts(m)?;
-    let em = Em::given(m)?;
+    let texts = (job.texts)(m)?;
+    let em = Em::given(m, job.size.0, job.size.1)?;
     let style = style::style(m, &em)?;
     let weight = m.get_one::<String>("weight").map(|w| style::weight_of(w)).transpose()?;
     let (italic, synthesize) = (m.get_flag("italic"), m.get_flag("synthesize"));
@@ -70,12 +122,12 @@ pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> R
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
     let setting = Setting { registry, m, options, read, format, em, style, fonts, names };
     if !data::is_given(m) {
-        return setting.write(texts, fill, target);
+        return setting.write(job.draw, texts, fill, target);
     }
     let named: Vec<&str> = texts.iter().chain([&fill]).flatten().map(String::as_str).collect();
     data::for_each_row(registry, m, &named, &reads, |row, target| {
         let texts = texts.each_ref().map(|t| t.as_ref().map(|t| row.filled_lines(t)));
-        setting.write(texts, fill.as_ref().map(|f| row.filled(f)), Some(target))
+        setting.write(job.draw, texts, fill.as_ref().map(|f| row.filled(f)), Some(target))
     })
 }
 
@@ -93,42 +145,60 @@ struct Setting<'a> {
 }
 
 impl Setting<'_> {
-    /// Sets a text, and one below it, and writes the drawing.
+    /// Draws texts, and writes the drawing.
     fn write(
         &self,
+        draw: Draw,
         texts: [Option<String>; 2],
         fill: Option<String>,
         target: Option<&Path>,
     ) -> Result<Status, Failure> {
+        let Drawn { svg, mut warnings, missing } = draw(self, texts, &self.page(fill, target)?)?;
+        let lacking: Vec<char> = missing.into_iter().collect();
+        warnings.extend((!lacking.is_empty()).then(|| self::missing(&lacking, &self.names)));
+        let exported = export::drawing(svg, self.format, &self.read, &self.options, None)?;
+        let Exported { bytes, warnings: lost, kerf } = exported;
+        if !self.m.get_flag("quiet") {
+            warnings.iter().chain(&lost).for_each(|w| terminal::warning(w));
+            kerf.iter().for_each(|k| terminal::note(&k.note()));
+        }
+        output::write(target, &bytes)?;
+        Ok(Status::partial_if(!lacking.is_empty() || kerf.is_some_and(|k| k.is_partial())))
+    }
+
+    /// Sets a text, and one below it.
+    fn text(&self, texts: [Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
         let Self { registry, m, options, .. } = self;
         let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
         let set = |text: &String| laid_out(text, &self.fonts, &self.style, &limits);
         let [text, below] = texts.map(|t| t.as_ref().map(set).transpose());
         let (text, below) = (text?, below?);
-        let lettering = self.page(fill, target)?;
-        let (svg, mut warnings) = match &text {
+        let (svg, warnings) = match &text {
             Some(text) if !on_path::is_asked_for(m) && !in_shape::is_asked_for(m) => {
-                (write_lettering(text, &lettering)?, Vec::new())
+                (write_lettering(text, lettering)?, Vec::new())
             }
             text => {
                 let set = match text {
                     Some(text) if in_shape::is_asked_for(m) => in_shape::set(registry, m, text, &self.em, options)?,
                     _ => on_path::set(registry, m, [text.as_ref(), below.as_ref()], &self.em, options)?,
                 };
-                (write_set_lines(&set.lines, &lettering)?, set.warnings)
+                let title: Vec<&str> =
+                    [text.as_ref(), below.as_ref()].into_iter().flatten().map(|t| t.text.as_str()).collect();
+                (write_set_groups(&title.join(" "), &set.lines, lettering)?, set.warnings)
             }
         };
-        let lacking: BTreeSet<char> = text.iter().chain(&below).flat_map(|t| t.missing.iter().copied()).collect();
-        let lacking: Vec<char> = lacking.into_iter().collect();
-        warnings.extend((!lacking.is_empty()).then(|| missing(&lacking, &self.names)));
+        let missing = text.iter().chain(&below).flat_map(|t| t.missing.iter().copied()).collect();
         let svg = if m.get_flag("unite") { welded(registry, svg, m)? } else { svg };
-        let Exported { bytes, warnings: lost, kerf } = export::drawing(svg, self.format, &self.read, options, None)?;
-        if !m.get_flag("quiet") {
-            warnings.iter().chain(&lost).for_each(|w| terminal::warning(w));
-            kerf.iter().for_each(|k| terminal::note(&k.note()));
-        }
-        output::write(target, &bytes)?;
-        Ok(Status::partial_if(!lacking.is_empty() || kerf.is_some_and(|k| k.is_partial())))
+        Ok(Drawn { svg, warnings, missing })
+    }
+
+    /// Makes a badge of an upper text, and a lower one.
+    fn badge(&self, texts: [Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
+        let Self { registry, m, fonts, em, options, .. } = self;
+        let made = badge::Badge { registry, m, fonts, em, options }.made(&texts)?;
+        let title: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
+        let svg = write_set_groups(&title.join(" "), &made.groups, lettering)?;
+        Ok(Drawn { svg, warnings: made.warnings, missing: made.missing })
     }
 
     /// The colour, and the page with its margin. A drawing to look at has one unless the user says otherwise; what has a size on

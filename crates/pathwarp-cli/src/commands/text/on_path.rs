@@ -21,7 +21,7 @@ use pathwarp_engine::input::{self, PlainArtwork};
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::references::{self, HERE};
 use pathwarp_engine::session::Session;
-use pathwarp_svg::SetLine;
+use pathwarp_svg::{SetGroup, SetPath};
 use pathwarp_text::{Cluster, OutlinedText};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -33,6 +33,9 @@ const OF_BEND: [&str; 5] = ["glyphs", "stretch", "spacing", "offset", "reverse"]
 const HEADING: &str = "On a path or in a shape";
 const ON: &str = "on";
 const AT: &str = "at";
+const KEEP: &str = "keep-path";
+/// Width of a kept path, as a share of the size.
+const LINE: f64 = 0.05;
 const PARAMS: &[Param] = &[Param::path(ON, ""), Param::new(AT, Kind::Angle, "")];
 
 /// Middles of lines on a circle, in degrees clockwise from the right: its top and its bottom.
@@ -42,6 +45,19 @@ const BOTTOM: f64 = 90.0;
 /// An option of this kind whose value is text.
 pub(super) fn text_arg(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help_heading(HEADING)
+}
+
+/// A path as it is, filled or drawn as a line.
+pub(super) fn drawn(
+    path: &Outline,
+    label: &str,
+    line: Option<f64>,
+    options: &CommonOptions,
+) -> Result<SetPath, Failure> {
+    let tolerance = options.tolerance_for(path.bounding_box(), &Frame::new(path.bounding_box().unwrap_or_default()))?;
+    let path =
+        pathwarp_svg::warp_path(path, &AffineMap(Affine::IDENTITY), &refit::Options::new(tolerance), options.precision);
+    Ok(SetPath { label: label.to_owned(), path: path.map_err(Error::from)?, line })
 }
 
 pub(super) fn args(registry: &Registry) -> Vec<Arg> {
@@ -56,6 +72,9 @@ pub(super) fn args(registry: &Registry) -> Vec<Arg> {
         ),
         Arg::new("inside").long("inside").action(ArgAction::SetTrue).requires(ON).help_heading(HEADING).help(
             "Set the lines within the path: the height of capitals lies on it above, the baseline below",
+        ),
+        Arg::new(KEEP).long(KEEP).action(ArgAction::SetTrue).requires(ON).help_heading(HEADING).help(
+            "Leave the path in the drawing, as a line a twentieth of the size wide",
         ),
         text_arg(AT, "ANGLE").requires(ON).action(ArgAction::Append).help(
             "Middle of the line on a circle or an arc, clockwise from the right, as in arc: [default: 270, the top]; --below is \
@@ -74,8 +93,9 @@ pub(super) fn is_asked_for(m: &ArgMatches) -> bool {
 }
 
 /// Lines in their last place, and warnings.
+#[derive(Default)]
 pub(super) struct SetLines {
-    pub(super) lines: Vec<SetLine>,
+    pub(super) lines: Vec<SetGroup>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -99,7 +119,17 @@ pub(super) fn set(
     let first = at.first().copied();
     let second = at.get(1).copied().or(first.map(|a| a + 180.0));
     let middles = if above.is_some() { [first, second] } else { [first, None] };
-    let mut out = SetLines { lines: Vec::new(), warnings: Vec::new() };
+    let mut out = SetLines::default();
+    if m.get_flag(KEEP) {
+        let width = LINE * em.size;
+        let id = Some("path");
+        out.lines.push(SetGroup {
+            id,
+            label: path.name.clone(),
+            paths: vec![drawn(&path.outline, "", Some(width), options)?],
+            ..SetGroup::default()
+        });
+    }
     if let ([a, b], false) = (&frames[..], stretches) {
         let middles = [middles[0].unwrap_or(TOP), middles[1].unwrap_or(BOTTOM)];
         out.warnings.extend(curve.crowded(middles, [a.rect.width(), b.rect.width()]));
@@ -124,7 +154,7 @@ pub(super) fn set(
         }
         let shift = m.get_one::<String>("offset").map_or(Ok(0.0), |t| length(&frame, "offset", t))?;
         args.push("offset", (laid.shift + shift).to_string());
-        let (set, warnings) = line(registry, text, frame, args, &laid.path, options)?;
+        let (set, warnings) = line(registry, &text.text, frame, args, &laid.path, options)?;
         out.lines.push(set);
         out.warnings.extend(warnings);
     }
@@ -334,31 +364,32 @@ fn cap_height(text: &OutlinedText) -> f64 {
 }
 
 /// Bends a text onto a path.
-fn line(
+pub(super) fn line(
     registry: &Registry,
-    text: &OutlinedText,
+    label: &str,
     frame: Frame,
     mut args: Args,
     path: &Outline,
     options: &CommonOptions,
-) -> Result<(SetLine, Vec<String>), Failure> {
+) -> Result<(SetGroup, Vec<String>), Failure> {
     let params = registry.get(BEND).map_or(&[][..], |e| e.info().params);
     args.push("along", ON);
     args.resolve_paths(params, |_| Ok(Some(path.clone()))).map_err(Failure::of_recipe)?;
-    bent(registry, BEND, text, frame, args, options)
+    bent(registry, BEND, label, frame, args, options)
 }
 
 /// Bends a text by a deformation.
 pub(super) fn bent(
     registry: &Registry,
     deformation: &str,
-    text: &OutlinedText,
+    label: &str,
     frame: Frame,
     args: Args,
     options: &CommonOptions,
-) -> Result<(SetLine, Vec<String>), Failure> {
+) -> Result<(SetGroup, Vec<String>), Failure> {
     let letters = Arc::clone(&frame.letters);
-    let tolerance = options.tolerance_for(text.ink(), &frame)?;
+    let ink = letters.iter().filter_map(|l| l.outline.bounding_box()).reduce(|a, b| a.union(b));
+    let tolerance = options.tolerance_for(ink, &frame)?;
     let budget = Arc::new(Budget::new(options.reading.limits));
     let recipe = Recipe { steps: vec![Step::new(deformation, args)] };
     let session = Session { registry, recipe: &recipe, options, given: &Given::default() };
@@ -382,11 +413,11 @@ pub(super) fn bent(
         };
         pathwarp_svg::warp_path(&placed, map, &refit, options.precision)
     };
-    let set = letters.iter().enumerate().map(|(i, l)| Ok((l.name.clone(), set(i, l)?)));
-    let letters = set.collect::<Result<_, GeometryError>>().map_err(Error::from)?;
+    let set = |(i, l): (usize, &Letter)| Ok(SetPath { label: l.name.clone(), path: set(i, l)?, line: None });
+    let paths = letters.iter().enumerate().map(set).collect::<Result<_, GeometryError>>().map_err(Error::from)?;
     let flags = Flags::of(registry);
     // Heights and widths go with the size of the text here.
     let own = |w: &String| flags.in_text(w).replacen(&format!("{deformation}: "), "", 1).replace("--width", "--size");
     let warnings = built.steps.iter().flat_map(|s| &s.explanation.warnings).map(own);
-    Ok((SetLine { text: text.text.clone(), letters }, warnings.collect()))
+    Ok((SetGroup { label: label.to_owned(), paths, ..SetGroup::default() }, warnings.collect()))
 }

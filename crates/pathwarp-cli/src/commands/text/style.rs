@@ -17,12 +17,12 @@ pub(super) struct Em {
 }
 
 impl Em {
-    /// Reads `--size`. With a unit, user units of the page are that unit.
-    pub(super) fn given(m: &ArgMatches) -> Result<Self, Failure> {
-        let text = m.get_one::<String>("size").map(String::as_str);
+    /// Reads `--size`, or another option that the whole page has its unit from. With a unit, user units of the page are that unit.
+    pub(super) fn given(m: &ArgMatches, name: &str, default: f64) -> Result<Self, Failure> {
+        let text = word(m, name);
         let typed = text.map(str::parse::<Length>).transpose();
-        let typed = typed.map_err(|e| Failure::usage(format!("--size: `{}` {e}", text.unwrap_or_default())))?;
-        let default = Length { value: TextStyle::default().size, unit: LengthUnit::User };
+        let typed = typed.map_err(|e| Failure::usage(format!("--{name}: `{}` {e}", text.unwrap_or_default())))?;
+        let default = Length { value: default, unit: LengthUnit::User };
         let (size, unit) = match typed.unwrap_or(default) {
             Length { value, unit: LengthUnit::M } => (1000.0 * value, Some(LengthUnit::Mm)),
             Length { value, unit: LengthUnit::Q } => (0.25 * value, Some(LengthUnit::Mm)),
@@ -30,8 +30,13 @@ impl Em {
             Length { value, unit } => (value, Some(unit).filter(|u| u.px().is_some_and(|px| px != 1.0))),
         };
         let px = unit.and_then(LengthUnit::px).unwrap_or(1.0);
-        let frame = Frame::new(Rect::new(0.0, 0.0, size, size)).with_units_per_px([1.0 / px; 2]);
-        Ok(Self { size, unit, frame })
+        Ok(Self { size: 0.0, unit, frame: Frame::new(Rect::ZERO).with_units_per_px([1.0 / px; 2]) }.resized(size))
+    }
+
+    /// Another size on the same page.
+    pub(super) fn resized(&self, size: f64) -> Self {
+        let frame = Frame { rect: Rect::new(0.0, 0.0, size, size), ..self.frame.clone() };
+        Self { size, unit: self.unit, frame }
     }
 
     /// User units of the page per px.
@@ -41,21 +46,26 @@ impl Em {
 
     /// The length given for the option `name`, in user units of the page.
     pub(super) fn length(&self, m: &ArgMatches, name: &str) -> Result<Option<f64>, Failure> {
-        let Some(text) = m.get_one::<String>(name) else { return Ok(None) };
+        let Some(text) = word(m, name) else { return Ok(None) };
         let args = Args::new();
         Ok(Some(Settings::new(&[], &args, &self.frame)?.length_in(name, text, Axis::X)?))
     }
 }
 
+/// The value of an option that the command may have.
+fn word<'m>(m: &'m ArgMatches, name: &str) -> Option<&'m str> {
+    m.try_get_one::<String>(name).ok().flatten().map(String::as_str)
+}
+
 pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
-    let word = |name: &str| m.get_one::<String>(name).map(String::as_str);
+    let word = |name: &str| word(m, name);
     let mut all = Vec::new();
     for list in m.get_many::<String>("features").into_iter().flatten() {
         all.extend(features(list).map_err(|e| Failure::usage(format!("--features: {e}")))?);
     }
     /// Distance between lines in a shape, as a share of the size.
     const GAP: f64 = 0.06;
-    let gap = (m.contains_id("in") && !m.contains_id("line-height")).then_some(GAP * em.size);
+    let gap = (word("in").is_some() && word("line-height").is_none()).then_some(GAP * em.size);
     Ok(TextStyle {
         size: em.size,
         letter_spacing: em.length(m, "letter-spacing")?.unwrap_or(0.0),
@@ -68,8 +78,8 @@ pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
             Some("right") => Align::Right,
             Some("justify") => Align::Justify,
             Some("fill") => Align::Fill,
-            None if m.contains_id("on") => Align::Center,
-            None if m.contains_id("in") => Align::Fill,
+            None if word("on").is_some() => Align::Center,
+            None if word("in").is_some() => Align::Fill,
             _ => Align::Start,
         },
         direction: match word("direction") {

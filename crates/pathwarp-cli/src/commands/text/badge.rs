@@ -1,0 +1,524 @@
+//! `pathwarp badge`: two lines of text in a ring, with lines, separators and a drawing in the middle.
+//!
+//! Everything is parallel to the outline of the badge. The band between the ring lines holds the text, whose middle height, half of the
+//! capitals', lies on the middle of the band: there lengths are measured, so letters of the upper and of the lower line have equal
+//! distances at half their height, although the ones fan out where the others crowd.
+
+use super::on_path::{as_letters, drawn, line, on_page};
+use super::style::{Em, style};
+use crate::commands::args::choice;
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
+use pathwarp::outline::boundary;
+use pathwarp::param::{Args, Frame, Letter, Param, Settings};
+use pathwarp::{Outline, Seg, Subpath};
+use pathwarp_engine::failure::Failure;
+use pathwarp_engine::lettering::laid_out;
+use pathwarp_engine::options::CommonOptions;
+use pathwarp_engine::{Warper, input};
+use pathwarp_svg::SetGroup;
+use pathwarp_svg::sheet::embedded;
+use pathwarp_text::{Font, OutlinedText};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+pub(super) const AFTER: &str = "The type, of the bundled heavy condensed face unless --font names another, is as large as the ring allows, and smaller for long lines; --size and --band overrule that. \
+The drawing in the middle is as large as the free room allows. Groups of the result are called ring, upper, lower, separators and center.
+
+Examples:
+  pathwarp badge 'HARBOUR COFFEE' 'SINCE 1887' --center samples/icons/cup.svg --ring 2 --dots -o badge.svg
+  pathwarp badge 'SUMMIT' 'CAMP' --shape shield --stars --ring 3 --font 'DejaVu Serif' -o badge.svg
+  pathwarp badge 'Zoë’s' 'bakery' --shape oval --separator heart --fill '#8a1f2b' --width 60mm -o badge.pdf";
+
+/// The option for the size of the badge, which gives the page its unit, and its default in px.
+pub(super) const WIDTH: (&str, f64) = ("width", 480.0);
+/// The font without `--font`: regular type is too thin for a badge.
+pub(super) const FONT: &str = "display";
+const SEPARATOR: &str = "separator";
+const PARAMS: &[Param] = &[Param::path(SEPARATOR, "")];
+
+/// Width of a ring line as a share of half the badge's width; of the thin one beside it, as a share of that, with the space between.
+const LINE: f64 = 0.026;
+const THIN: f64 = 0.4;
+const APART: f64 = 0.9;
+/// The widest band as a share of half the badge's width, around a circle and around other shapes, and the least share of it that suits
+/// long lines.
+const BAND: [f64; 2] = [0.36, 0.31];
+const LEAST: f64 = 0.45;
+/// Height of capitals, and the most that any letter may reach from the middle, as shares of the band.
+const CAPITALS: f64 = 0.54;
+const REACH: f64 = 0.44;
+/// The narrowest that letters are made, and the most space that is added between them, in em; the least of it as for [`BAND`]: their feet
+/// crowd in a ring, and more at its corners.
+const NARROWEST: f64 = 0.85;
+const TRACKING: f64 = 0.12;
+const LEAST_TRACKING: [f64; 2] = [0.03, 0.06];
+/// Space between the lines, or on both sides of a separator, and the height of a separator and of a dot, as shares of the capitals.
+const SPACE: f64 = 0.8;
+const HEIGHT: f64 = 0.75;
+const DOT: f64 = 0.36;
+/// Room around the drawing in the middle, as a share of half the badge's width.
+const AROUND: f64 = 0.12;
+/// The size at which texts are measured.
+const EM: f64 = 100.0;
+
+pub(super) fn args() -> Vec<Arg> {
+    let text = |name: &'static str, value: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help(help)
+    };
+    let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
+    vec![
+        Arg::new("WORDS")
+            .value_names(["UPPER", "LOWER"])
+            .num_args(1..=2)
+            .required(true)
+            .help("The text along the upper side, and the one along the lower side"),
+        choice("shape", &["circle", "oval", "shield", "hexagon"], "Outline of the badge").default_value("circle"),
+        text(
+            WIDTH.0,
+            "LENGTH",
+            "Width of the badge; with a unit such as 60mm, the page has that unit too [default: 480]",
+        ),
+        Arg::new("ring")
+            .long("ring")
+            .value_name("N")
+            .value_parser(value_parser!(u8).range(0..=4))
+            .default_value("2")
+            .help("Lines of the ring: 1 is outside, 2 on both sides of the text, 3 doubles the outer one, 4 both"),
+        text(
+            "band",
+            "LENGTH",
+            "Width of the ring between its lines; percentages refer to the width [default: 18%, less for long lines]",
+        ),
+        flag("dots").help("Dots between the lines, as --separator circle"),
+        flag("stars").help("Stars between the lines, as --separator star").conflicts_with("dots"),
+        text(
+            SEPARATOR,
+            "PATHREF",
+            "A shape between the lines: its name, such as heart or leaf, FILE#NAME or path data",
+        )
+        .conflicts_with_all(["dots", "stars"]),
+        Arg::new("center")
+            .long("center")
+            .visible_alias("centre")
+            .value_name("FILE")
+            .value_parser(value_parser!(PathBuf))
+            .help("A drawing for the middle, as large as the room within the ring allows"),
+        text("size", "LENGTH", "Size of the em [default: what the ring has room for]"),
+    ]
+}
+
+/// What a badge is made with.
+pub(super) struct Badge<'a> {
+    pub(super) registry: &'a Registry,
+    pub(super) m: &'a ArgMatches,
+    pub(super) fonts: &'a [Font<'a>],
+    /// Its size is the width of the badge.
+    pub(super) em: &'a Em,
+    pub(super) options: &'a CommonOptions,
+}
+
+/// A badge as groups of a drawing.
+#[derive(Default)]
+pub(super) struct Made {
+    pub(super) groups: Vec<SetGroup>,
+    pub(super) warnings: Vec<String>,
+    pub(super) missing: BTreeSet<char>,
+}
+
+/// The place of everything.
+struct Layout {
+    /// Distances of the ring lines' middles from the outline, and their widths.
+    lines: Vec<(f64, f64)>,
+    /// The path that the middles of letters lie on, and its length.
+    path: Outline,
+    length: f64,
+    size: f64,
+    /// Width of letters, and space between them.
+    condensed: f64,
+    tracking: f64,
+    /// Height of the middle above the baseline, and of capitals.
+    middle: f64,
+    capitals: f64,
+    /// Distance of the free room in the middle from the outline.
+    free: f64,
+}
+
+impl Badge<'_> {
+    /// Makes the badge of an upper text, and a lower one.
+    pub(super) fn made(&self, texts: &[Option<String>; 2]) -> Result<Made, Failure> {
+        let texts: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
+        let natural: Vec<OutlinedText> = texts.iter().map(|t| self.set(t, EM, 0.0)).collect::<Result<_, _>>()?;
+        let separator = self.separator()?;
+        let layout = self.layout(&natural, separator.as_ref())?;
+        let mut out = Made::default();
+        let paths =
+            layout.lines.iter().map(|&(inset, width)| drawn(&self.inset(inset)?, "", Some(width), self.options));
+        let paths: Vec<_> = paths.collect::<Result<_, Failure>>()?;
+        if !paths.is_empty() {
+            out.groups.push(SetGroup { id: Some("ring"), label: "ring".into(), paths, ..SetGroup::default() });
+        }
+        let mut widths = Vec::new();
+        for (i, text) in texts.iter().enumerate() {
+            let set = self.set(text, layout.size, layout.tracking)?;
+            let glyphs = if set.rtl { "bend" } else { "rotate" };
+            let narrow = Affine::scale_non_uniform(layout.condensed, 1.0);
+            let letters: Vec<Letter> = as_letters(&set).iter().map(|l| narrowed(l, narrow)).collect();
+            let (frame, width) = self.frame(letters, set.lines.first().map_or(0.0, |l| l.start.y));
+            let (group, warnings) = self.line(text, frame, &layout, i == 1, 0.0, glyphs)?;
+            out.groups.push(SetGroup { id: Some(["upper", "lower"][i]), ..group });
+            // Bends of a ring are given; letters that touch need space.
+            let apart =
+                |w: &String| Some(format!("{}; --letter-spacing 6% sets them apart", w.split_once(", first near")?.0));
+            out.warnings.extend(warnings.iter().map(|w| apart(w).unwrap_or_else(|| w.clone())));
+            out.missing.extend(&set.missing);
+            widths.push(width);
+        }
+        if let Some(shape) = &separator {
+            out.groups.push(self.separators(shape, &layout, &widths)?);
+        }
+        out.groups.extend(self.center(&layout)?);
+        Ok(out)
+    }
+
+    /// Lays out a line.
+    fn set(&self, text: &str, size: f64, tracking: f64) -> Result<OutlinedText, Failure> {
+        let mut style = style(self.m, &self.em.resized(size))?;
+        style.letter_spacing += tracking;
+        let set = laid_out(text, self.fonts, &style, &self.options.reading.limits.for_input(text.len()))?;
+        if set.lines.len() > 1 || set.ink().is_none() {
+            return Err(Failure::usage(format!("“{}” is not one line of text", text.escape_debug())));
+        }
+        Ok(set)
+    }
+
+    fn half(&self) -> f64 {
+        0.5 * self.em.size
+    }
+
+    fn shape(&self) -> &str {
+        self.m.get_one::<String>("shape").map_or("circle", String::as_str)
+    }
+
+    /// The outline of the badge moved inwards.
+    fn inset(&self, by: f64) -> Result<Outline, Failure> {
+        let half = self.half();
+        let ellipse = |a: f64, b: f64| {
+            let data = format!("M{},0A{a},{b} 0 0 1 {a},0A{a},{b} 0 0 1 {},0Z", -a, -a);
+            Outline::from_svg(&data).map_err(|e| pathwarp::Error::from(e).into())
+        };
+        let data = match self.shape() {
+            "oval" => return self.offset(&ellipse(half, OVAL * half)?, by, "inside"),
+            "shield" => SHIELD,
+            "hexagon" => HEXAGON,
+            _ => return ellipse(half - by, half - by),
+        };
+        let shape = Outline::from_svg(data).map_err(pathwarp::Error::from)?.transformed(Affine::scale(half));
+        // Corners of all lines are round about the same centres.
+        let core = self.offset(&shape, half * CORNER, "inside")?;
+        let out = half * CORNER - by;
+        self.offset(&core, out.abs(), if out > 0.0 { "outside" } else { "inside" })
+    }
+
+    fn offset(&self, path: &Outline, by: f64, side: &str) -> Result<Outline, Failure> {
+        if by < 1e-9 * self.half() {
+            return Ok(path.clone());
+        }
+        let values = [("by", by.to_string()), ("side", side.to_owned())];
+        let moved = Warper::edit(self.registry, "offset", &values).and_then(|edit| edit.warp_outline(path));
+        let moved = moved.map_err(|e| Failure::Geometry(e.to_string()))?;
+        Ok(Outline::from(&moved.path.path))
+    }
+
+    /// The middle of a band from one distance from the outline to another, and its length.
+    fn middle(&self, from: f64, to: f64) -> Result<(Outline, f64), Failure> {
+        let path = self.inset(0.5 * (from + to))?;
+        let fine = 1e-5 * self.half();
+        let length = path.to_bez_path(fine).perimeter(fine);
+        Ok((path, length))
+    }
+}
+
+/// A closed path that is symmetrical about the y axis, once around: clockwise from its lowest place on that, or the other way from its
+/// highest one.
+fn around(path: &Outline, from_top: bool) -> Outline {
+    const HALVINGS: u32 = 60;
+    let fine = 1e-7 * path.extent();
+    let path = &Outline::from(&path.to_bez_path(fine));
+    let [only] = &path.subpaths[..] else { return path.clone() };
+    let segs = &only.segs;
+    let crossing = |i: usize| {
+        let seg = &segs[i];
+        let (a, b) = (seg.eval(0.0).x, seg.eval(1.0).x);
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let t = 0.5 * (low + high);
+            if (seg.eval(t).x < 0.0) == (a < 0.0) { low = t } else { high = t }
+        }
+        ((a < 0.0) != (b < 0.0)).then(|| (i, high, seg.eval(high)))
+    };
+    let up = |p: Point| if from_top { p.y } else { -p.y };
+    let crossings = (0..segs.len()).filter_map(crossing);
+    let Some((i, t, start)) = crossings.min_by(|a, b| up(a.2).total_cmp(&up(b.2))) else { return path.clone() };
+    let (first, last) = (segs[i].part(t, 1.0), segs[i].part(0.0, t));
+    let rest = segs[i + 1..].iter().chain(&segs[..i]).copied();
+    let segs: Vec<Seg> = first.into_iter().chain(rest).chain(last).collect();
+    let mut area = 0.0;
+    boundary(path.to_bez_path(fine), 1e4 * fine, |a, b| area += a.to_vec2().cross(b.to_vec2()));
+    let run = Outline { subpaths: vec![Subpath { start, segs, closed: true }] };
+    // Positive areas are clockwise, as y points down.
+    if (area > 0.0) == from_top {
+        Outline { subpaths: run.subpaths.iter().map(Subpath::reversed).collect() }
+    } else {
+        run
+    }
+}
+
+/// Outlines about the origin, from -1 to 1 when their corners are round: the height of an oval, a shield with an arched top, and a hexagon.
+const OVAL: f64 = 0.76;
+const SHIELD: &str = "M-1,-.62 A1.3,1.3 0 0 1 1,-.62 L1,.05 C1,.6 .55,.98 0,1.25 C-.55,.98 -1,.6 -1,.05 Z";
+const HEXAGON: &str = "M-1.0928,0 L-.5464,-.9464 L.5464,-.9464 L1.0928,0 L.5464,.9464 L-.5464,.9464 Z";
+/// Radius of the outermost corners.
+const CORNER: f64 = 0.6;
+
+/// A letter made narrower.
+fn narrowed(letter: &Letter, narrow: Affine) -> Letter {
+    Letter {
+        name: letter.name.clone(),
+        origin: narrow * letter.origin,
+        advance: letter.advance * narrow.as_coeffs()[0],
+        outline: letter.outline.transformed(narrow),
+    }
+}
+
+/// The centre of the area within a path; `None` if there is none.
+fn centroid(path: &BezPath, tolerance: f64) -> Option<(Point, f64)> {
+    let (mut area, mut moment) = (0.0, [0.0; 2]);
+    boundary(path.elements().iter().copied(), tolerance, |a, b| {
+        let cross = a.to_vec2().cross(b.to_vec2());
+        area += cross;
+        moment = [moment[0] + cross * (a.x + b.x), moment[1] + cross * (a.y + b.y)];
+    });
+    (area != 0.0).then(|| (Point::new(moment[0] / (3.0 * area), moment[1] / (3.0 * area)), 0.5 * area.abs()))
+}
+
+impl Badge<'_> {
+    /// Finds the largest type for which there is room.
+    fn layout(&self, natural: &[OutlinedText], separator: Option<&Outline>) -> Result<Layout, Failure> {
+        let (half, rings) = (self.half(), self.m.get_one::<u8>("ring").copied().unwrap_or(2));
+        let w = LINE * half;
+        let from = [0.0, w, w, w * (THIN + APART + 1.0), w * (THIN + APART + 1.0)][usize::from(rings)];
+        let heights = Heights::of(natural);
+        let kind = usize::from(self.shape() != "circle");
+        let widest = BAND[kind];
+        let (given_band, given_size) = (self.em.length(self.m, "band")?, self.em.length(self.m, "size")?);
+        let at = |t: f64| {
+            let band = given_band.or(given_size.map(|s| s * heights.capitals / CAPITALS)).unwrap_or(t * widest * half);
+            let share = if given_band.is_some() { t } else { 1.0 };
+            let fits = (share * CAPITALS / heights.capitals).min(REACH / heights.reach) * band;
+            (band, given_size.unwrap_or(fits))
+        };
+        let shape = separator.map_or(0.0, |s| {
+            let b = s.bounding_box().unwrap_or_default();
+            HEIGHT * b.width() / b.height()
+        });
+        let gap = if separator.is_some() { 2.0 * SPACE + shape } else { 1.5 * SPACE } * heights.capitals;
+        let between: usize = natural.iter().flat_map(|t| &t.lines).map(|l| l.clusters.len().saturating_sub(1)).sum();
+        let is_free = self.m.get_one::<String>("letter-spacing").is_none();
+        let least = if is_free { LEAST_TRACKING[kind] } else { 0.0 };
+        let widths: f64 =
+            natural.iter().filter_map(|t| Some(t.ink()?.width() / EM)).sum::<f64>() + least * between as f64;
+        let gaps = gap * natural.len() as f64;
+        let room = |t: f64| {
+            let (band, size) = at(t);
+            let (path, length) = self.middle(from, from + band)?;
+            Ok::<_, Failure>((path, length, band, size))
+        };
+        let spare = |length: f64, size: f64| length - size * (widths + gaps);
+        let mut found = room(1.0)?;
+        if spare(found.1, found.3) < 0.0 && given_size.is_none() {
+            let (mut fits, mut too_large) = (LEAST, 1.0);
+            found = room(fits)?;
+            while spare(found.1, found.3) > 0.0 && too_large - fits > 0.01 {
+                let t = 0.5 * (fits + too_large);
+                let tried = room(t)?;
+                if spare(tried.1, tried.3) >= 0.0 {
+                    (fits, found) = (t, tried);
+                } else {
+                    too_large = t;
+                }
+            }
+        }
+        let (path, length, band, size) = found;
+        let condensed = ((length / size - gaps) / widths).min(1.0);
+        if condensed < NARROWEST {
+            return Err(Failure::usage(format!(
+                "the texts are too long for the ring: they would need {:.0} % more of it; shorten them{}{}",
+                100.0 * (NARROWEST * widths + gaps - length / size) * size / length,
+                if self.m.contains_id("font") { ", take a narrower font such as --font display" } else { "" },
+                if given_size.is_some() { ", or make --size smaller" } else { "" }
+            )));
+        }
+        let more = if is_free && between > 0 { 0.5 * spare(length, size) / between as f64 } else { 0.0 };
+        let tracking = least * size + more.clamp(0.0, (TRACKING - least) * size);
+        let mut lines = Vec::new();
+        let to = from + band;
+        let own =
+            [(rings >= 3, 0.5 * THIN * w, THIN), (rings >= 1, from - 0.5 * w, 1.0), (rings >= 2, to + 0.5 * w, 1.0)];
+        lines.extend(own.iter().filter(|l| l.0).map(|l| (l.1, l.2 * w)));
+        lines.extend((rings == 4).then_some((to + w * (1.0 + APART + 0.5 * THIN), THIN * w)));
+        let free = lines.last().filter(|_| rings > 1).map_or(to, |(at, width)| at + 0.5 * width);
+        let (middle, capitals) = (heights.middle * size, heights.capitals * size);
+        Ok(Layout { lines, path, length, size, condensed, tracking, middle, capitals, free })
+    }
+
+    /// The frame of letters on a baseline, from the beginning of their ink to its end, and the width of that.
+    fn frame(&self, letters: Vec<Letter>, baseline: f64) -> (Frame, f64) {
+        let ink = letters.iter().filter_map(|l| l.outline.bounding_box()).reduce(|a, b| a.union(b)).unwrap_or_default();
+        let rect = Rect::new(ink.x0, baseline - self.em.size, ink.x1, baseline);
+        let frame = Frame::new(rect).with_units_per_px(self.em.units_per_px());
+        (frame.with_letters(letters.into()), ink.width())
+    }
+
+    /// Sets a line in the middle of the upper or of the lower side, or moved along by an offset.
+    fn line(
+        &self,
+        label: &str,
+        frame: Frame,
+        layout: &Layout,
+        is_lower: bool,
+        offset: f64,
+        glyphs: &str,
+    ) -> Result<(SetGroup, Vec<String>), Failure> {
+        let middle = layout.middle.to_string();
+        let mut args = Args::from_pairs(&[("as-drawn", "true"), ("glyphs", glyphs), ("baseline", &middle)]);
+        args.push("offset", offset.to_string());
+        line(self.registry, label, frame, args, &around(&layout.path, is_lower), self.options)
+    }
+
+    /// The shape between the lines.
+    fn separator(&self) -> Result<Option<Outline>, Failure> {
+        let flag = |name: &str| self.m.get_flag(name);
+        let own = self.m.get_one::<String>(SEPARATOR).map(String::as_str);
+        let named = if flag("dots") {
+            Some("circle")
+        } else if flag("stars") {
+            Some("star")
+        } else {
+            own
+        };
+        let Some(reference) = named else { return Ok(None) };
+        let mut args = Args::from_pairs(&[(SEPARATOR, reference)]);
+        args.resolve_paths(PARAMS, |r| on_page(r, self.em, self.options)).map_err(Failure::of_recipe)?;
+        let frame = Frame::new(Rect::new(0.0, 0.0, EM, EM)).with_units_per_px(self.em.units_per_px());
+        let path =
+            Settings::new(PARAMS, &args, &frame).and_then(|s| s.path_if(SEPARATOR)).map_err(Failure::of_recipe)?;
+        let Some(path) = path.map(|p| p.outline) else { return Ok(None) };
+        let bounds = path.bounding_box().filter(|b| b.width() > 0.0 && b.height() > 0.0);
+        bounds.map(|_| Some(path)).ok_or_else(|| Failure::usage(format!("--separator: {reference} has no area")))
+    }
+
+    /// The separators, each in the middle between the ends of the lines.
+    fn separators(&self, shape: &Outline, layout: &Layout, widths: &[f64]) -> Result<SetGroup, Failure> {
+        let bounds = shape.bounding_box().unwrap_or_default();
+        let height = if self.m.get_flag("dots") { DOT } else { HEIGHT } * layout.capitals;
+        let centre = centroid(&shape.to_bez_path(1e-4 * bounds.height()), 1e-4 * bounds.height());
+        let placed = Affine::translate((0.0, -layout.middle))
+            * Affine::scale(height / bounds.height())
+            * Affine::translate(-centre.map_or(bounds.center(), |c| c.0).to_vec2());
+        let outline = shape.transformed(placed);
+        let half = 0.5 * layout.length;
+        let places = match widths {
+            [upper, lower] => vec![0.5 * (half + 0.5 * (upper - lower)), -0.5 * (half + 0.5 * (upper - lower))],
+            _ => vec![half],
+        };
+        let mut group = SetGroup { id: Some("separators"), label: "separators".into(), ..SetGroup::default() };
+        for place in places {
+            let letter = Letter { name: String::new(), origin: Point::ORIGIN, advance: 0.0, outline: outline.clone() };
+            let (frame, _) = self.frame(vec![letter], 0.0);
+            let rect = Rect::new(-height, frame.rect.y0, height, 0.0);
+            let (set, _) = self.line("", Frame { rect, ..frame }, layout, false, place, "rotate")?;
+            group.paths.extend(set.paths);
+        }
+        Ok(group)
+    }
+
+    /// The drawing in the middle: halfway between the centre of its area and that of its box on the centre of the free room, and as large
+    /// as that allows.
+    fn center(&self, layout: &Layout) -> Result<Option<SetGroup>, Failure> {
+        const HALVINGS: u32 = 40;
+        /// What shadows add does not count.
+        const MOST_BEYOND: f64 = 1.2;
+        let Some(file) = self.m.get_one::<PathBuf>("center") else { return Ok(None) };
+        let (half, reading) = (self.half(), &self.options.reading);
+        let doc = input::document(file, reading)?;
+        let (seen, content) =
+            embedded(&doc.decoded(), &input::display(file), "center-", &input::read_options(file, reading))?;
+        let room = self.inset(layout.free + AROUND * half)?.to_bez_path(1e-5 * half);
+        let middle = centroid(&room, 1e-4 * half).filter(|_| room.bounding_box().width() < 2.0 * half);
+        let (middle, _) =
+            middle.ok_or_else(|| Failure::usage("--center: the ring leaves no room; make --band smaller"))?;
+        let shapes = doc.shapes();
+        let painted = shapes.iter().filter(|s| s.painted);
+        let paths: Vec<(Outline, bool)> =
+            painted.map(|s| (s.outline.transformed(doc.user_to_px()), s.filled)).collect();
+        let fine = 1e-3 * seen.width().max(seen.height());
+        let filled =
+            paths.iter().filter(|(_, filled)| *filled).filter_map(|(p, _)| centroid(&p.to_bez_path(fine), fine));
+        let (sum, area) =
+            filled.fold((pathwarp::kurbo::Vec2::ZERO, 0.0), |(s, a), (c, area)| (s + c.to_vec2() * area, a + area));
+        let weight = if area > 0.0 { (sum / area).to_point() } else { seen.center() };
+        let anchor = seen.center().midpoint(weight);
+        let segs = paths.iter().flat_map(|(p, _)| p.segs());
+        let mut points: Vec<Point> = segs.flat_map(|s| [0.0, 0.25, 0.5, 0.75].map(|t| s.eval(t))).collect();
+        if points.is_empty() {
+            points = vec![
+                seen.origin(),
+                Point::new(seen.x1, seen.y0),
+                Point::new(seen.x1, seen.y1),
+                Point::new(seen.x0, seen.y1),
+            ];
+        }
+        let ink = points.iter().fold(Rect::from_points(points[0], points[0]), |r, p| r.union_pt(*p));
+        // Lines reach beyond their paths.
+        let beyond = (seen.width() / ink.width()).max(seen.height() / ink.height()).clamp(1.0, MOST_BEYOND);
+        let fits = |scale: f64| points.iter().all(|p| room.contains(middle + (*p - anchor) * (scale * beyond)));
+        let (mut small, mut large) = (0.0, 2.0 * half / fine);
+        for _ in 0..HALVINGS {
+            let scale = 0.5 * (small + large);
+            if fits(scale) { small = scale } else { large = scale }
+        }
+        let at = middle.to_vec2() - anchor.to_vec2() * small;
+        let drawing = format!(
+            "<g transform=\"matrix({small} 0 0 {small} {} {})\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">{content}</g>\n",
+            at.x, at.y
+        );
+        Ok(Some(SetGroup { id: Some("center"), label: "center".into(), drawing, ..SetGroup::default() }))
+    }
+}
+
+/// Heights of letters for an em of 1.
+struct Heights {
+    capitals: f64,
+    /// The middle of the letters above the baseline.
+    middle: f64,
+    /// The greatest distance of any letter from the middle.
+    reach: f64,
+}
+
+impl Heights {
+    fn of(texts: &[OutlinedText]) -> Self {
+        /// Letters below this share of the capitals are small ones without ascenders.
+        const SMALL: f64 = 0.85;
+        let metrics = texts[0].metrics.scaled(1.0 / EM);
+        let ends = texts.iter().filter_map(|t| {
+            let (ink, base) = (t.ink()?, t.lines.first()?.start.y);
+            Some(((base - ink.y0) / EM, (base - ink.y1) / EM))
+        });
+        let (top, bottom) = ends.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1))).unwrap_or_default();
+        let capitals = if top < SMALL * metrics.cap_height { metrics.x_height } else { metrics.cap_height };
+        let middle = 0.5 * capitals;
+        Self { capitals, middle, reach: (top - middle).max(middle - bottom).max(middle) }
+    }
+}
