@@ -14,7 +14,7 @@ fn likely_mistakes_get_an_answer() {
         (&["warp", "a.svg", "--bend", "50"][..], 2, "write 50%"),
         (&["warp", "a.svg", "--style", "falg"], 2, "did you mean flag?"),
         (&["wordart", "a.svg", "--preset", "Buton"], 2, "did you mean button?"),
-        (&["help", "wrap"], 2, "did you mean `warp`?"),
+        (&["help", "shapr"], 2, "did you mean `shaper`?"),
         (&["compare", "p.xcf", "a.svg"], 3, "`pathwarp paths`"),
         (&["gallery", "p.xcf"], 3, "an XCF holds paths"),
         (&["expr", "a.svg", "--x", "sqrt(x-300)"], 4, "at 0.0000,0.0000 sqrt(-300) has no finite value"),

@@ -59,10 +59,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
                 nodes(root, program, &png, (source, command))?;
                 continue;
             }
-            let mut drawing = Vec::new();
-            for stage in stages(command) {
-                drawing = pipe(root, program, &stage, &drawing)?;
-            }
+            let drawing = made(root, program, command)?;
             if let Some(photograph) = photograph {
                 beside(root, program, &png, (photograph, &drawing))?;
                 continue;
@@ -71,6 +68,18 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
         }
     }
     Ok(())
+}
+
+/// What a command writes into its file, where pages of text have a margin that they have not on standard output.
+fn made(root: &Path, program: &Path, command: &str) -> Result<Vec<u8>, ChoreError> {
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let file = folder.path().join(words(command).last().ok_or("no output")?);
+    let mut all = stages(command);
+    if let Some(to) = all.last_mut().and_then(|stage| stage.last_mut()) {
+        *to = file.display().to_string();
+    }
+    all.iter().try_fold(Vec::new(), |drawing, stage| pipe(root, program, stage, &drawing))?;
+    fs::read(&file).map_err(at(&file))
 }
 
 /// The folder of a guide.

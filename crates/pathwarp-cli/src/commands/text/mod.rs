@@ -106,14 +106,14 @@ fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Re
     }
     chosen.push(bundled()?);
     let first = names.first().copied().unwrap_or("the bundled font");
-    style::check_style(&chosen[0], first, &Wanted { weight, italic, synthesize }, &read)?;
     let wanted = Wanted { weight, italic, synthesize };
+    style::check_style(&chosen[0], first, &wanted, &read)?;
     let mut said = Vec::new();
     if let Some(has) = wanted.other_weight(&chosen[0]) {
         let asked = m.get_one::<String>("weight").map_or("", String::as_str);
         said.push(format!("--weight {asked}: {first} has no such weight; {has:.0} is used"));
     }
-    let fonts = style::with_variations(chosen, &style::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
+    let fonts = style::with_variations(chosen, &style::axis_positions(m)?, &wanted)?;
     let lines: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
     said.extend(mistakes::unit_as_text(words, &lines));
     if !m.get_flag("quiet") {
