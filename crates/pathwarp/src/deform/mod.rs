@@ -46,7 +46,7 @@ pub use entry::{
     Built, ByHand, Case, Deformation, Example, Explanation, Failure, Gallery, Guides, InSpace, Info, Instead, Law,
     Overlay, Pairs, Placement, Role, SavedFile, Seam, SpaceFile, Undefined, Variant,
 };
-pub use envelope::{Envelope, Keep, Spread};
+pub use envelope::{Envelope, Keep, Lines, Spread};
 pub use expr::Expr;
 pub use ffd::Ffd;
 pub use lens::{Lens, LensModel};

@@ -58,12 +58,17 @@ pub fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
 /// The first control point with influence at `s`, and the values of the basis functions from there on.
 #[must_use]
 pub fn basis(degree: usize, cells: usize, s: f64) -> (usize, Vec<f64>) {
-    let cell = ((s * cells as f64).max(0.0) as usize).min(cells - 1);
-    let local = s * cells as f64 - cell as f64;
-    let b = bernstein(degree, local);
-    let rows = &extraction(degree, cells)[cell];
+    basis_on(&extraction(degree, cells), s)
+}
+
+/// The [`basis`] of cells with these matrices.
+pub(crate) fn basis_on(cells: &[Vec<Vec<f64>>], s: f64) -> (usize, Vec<f64>) {
+    let at = s * cells.len() as f64;
+    let cell = (at.max(0.0) as usize).min(cells.len() - 1);
+    let rows = &cells[cell];
+    let b = bernstein(rows.len() - 1, at - cell as f64);
     let through = |l: usize| rows.iter().zip(&b).map(|(row, b)| row[l] * b).sum();
-    (cell, (0..=degree).map(through).collect())
+    (cell, (0..rows.len()).map(through).collect())
 }
 
 /// The Bernstein polynomials of this degree at `t`, by their recursion.

@@ -96,13 +96,7 @@ impl Columns {
     pub(super) fn new(shape: &Subpath, upright: bool, room: &Room) -> Option<Self> {
         let (padding, ends) = (room.padding, room.ends.unwrap_or(0.0));
         let turn = if upright { Affine::IDENTITY } else { TRANSPOSED };
-        let segs: Vec<Seg> = shape.segs.iter().map(|s| s.transformed(turn)).collect();
-        let bounds = segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b))?;
-        let mut all = Region { pieces: Vec::new(), bounds };
-        all.add(&segs, false);
-        if padding > 0.0 {
-            all.add(&band(&segs, padding, bounds), true);
-        }
+        let mut all = Region::new(shape, turn, padding)?;
         let lines = all.lines();
         let chosen = largest(&lines)?;
         let area: f64 = lines.iter().map(|l| l.width * l.intervals.iter().map(Interval::height).sum::<f64>()).sum();
@@ -149,12 +143,34 @@ struct SmoothCurves {
 }
 
 /// Pieces of outlines.
-struct Region {
+pub(super) struct Region {
     pieces: Vec<Piece>,
-    bounds: Rect,
+    pub(super) bounds: Rect,
 }
 
 impl Region {
+    /// The inside of a closed path after `turn`, without a band along its outline.
+    pub(super) fn new(shape: &Subpath, turn: Affine, padding: f64) -> Option<Self> {
+        let segs: Vec<Seg> = shape.segs.iter().map(|s| s.transformed(turn)).collect();
+        let bounds = segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b))?;
+        let mut all = Self { pieces: Vec::new(), bounds };
+        all.add(&segs, false);
+        if padding > 0.0 {
+            all.add(&band(&segs, padding, bounds), true);
+        }
+        Some(all)
+    }
+
+    /// The intervals of a vertical line that are inside, by y.
+    pub(super) fn spans(&self, x: f64) -> Vec<[f64; 2]> {
+        self.intervals(&self.crossed(x), x).iter().map(|v| v.ys).collect()
+    }
+
+    /// The pieces that a vertical line crosses.
+    fn crossed(&self, x: f64) -> Vec<usize> {
+        (0..self.pieces.len()).filter(|i| (self.pieces[*i].from..self.pieces[*i].to).contains(&x)).collect()
+    }
+
     /// Adds an outline, cut where it turns back.
     fn add(&mut self, segs: &[Seg], band: bool) {
         for s in segs {
@@ -183,9 +199,7 @@ impl Region {
         let mut out = Vec::new();
         for e in events.windows(2) {
             let middle = 0.5 * (e[0] + e[1]);
-            let here: Vec<usize> = (0..self.pieces.len())
-                .filter(|i| (self.pieces[*i].from..self.pieces[*i].to).contains(&middle))
-                .collect();
+            let here = self.crossed(middle);
             let n = (COLUMNS * (e[1] - e[0]) / self.bounds.width()).ceil().max(1.0);
             let width = (e[1] - e[0]) / n;
             for i in 0..n as u32 {

@@ -311,6 +311,7 @@ pub(super) const SIDES: [&str; 4] = ["bottom", "right", "top", "left"];
 pub(super) const SAMPLES: u32 = 64;
 
 /// Four sides, head to tail.
+#[derive(Clone)]
 pub(in crate::deform) struct Ring {
     /// Bottom (left to right), right (upwards), top (right to left), left (downwards).
     pub(in crate::deform) sides: [Vec<Seg>; 4],

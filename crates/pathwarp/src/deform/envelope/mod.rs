@@ -7,17 +7,18 @@ mod columns;
 mod corners;
 mod distortion;
 mod fit;
+mod lines;
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Pairs, Variant};
+use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Pairs, Role, Variant};
 use crate::error::{Error, show};
-use crate::map::{Coons, Jet, Map, Pace, Side, Sides};
+use crate::map::{Coons, Jet, Map, Pace, Side, Sides, TileRow, Tiled};
 use crate::outline::{Outline, Seg, Subpath};
-use crate::param::{Axis, Choice as _, Kind, NamedPath, Settings, Value as _, parameters};
-use columns::{Columns, Room, bisected, filled, nothing};
+use crate::param::{Axis, Choice as _, Kind, Letter, NamedPath, Settings, Value as _, choice, parameters};
+use columns::{Columns, Region, Room, bisected, filled, nothing};
 use distortion::{distortion, grid, stretches, turned};
-use fit::{Corners, SIDES, area, bounds, is_curved, reversed};
+use fit::{Corners, SIDES, area, bounds, is_curved, reversed, shown};
 use kurbo::{Affine, Line, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -27,6 +28,16 @@ pub(super) use fit::{Ring, fit};
 
 /// The share of the greatest height at which lettering ends.
 const ENDS: f64 = 0.25;
+
+choice! {
+    /// What becomes of several lines of lettering in a closed shape.
+    pub enum Lines {
+        /// Each line is as wide as the shape at its height, with upright stems.
+        Fit = "fit",
+        /// One map bends them all together.
+        Together = "together",
+    }
+}
 
 parameters! {
     /// An envelope: the artwork's box put into a shape with four sides, each a curve of any number of pieces.
@@ -68,6 +79,9 @@ parameters! {
         reverse: bool = flag("reverse");
         /// Lines that stay straight.
         keep: Keep = new("keep", Kind::Choice(Keep::WORDS)).default("auto");
+        /// Several lines of lettering in a closed path with --keep auto or verticals: fit sets each to the width of the shape at its height,
+        /// together bends the block as a whole.
+        lines: Lines = new("lines", Kind::Choice(Lines::WORDS)).default("fit");
         /// In columns or rows: the artwork ends where the shape is still this share of its greatest height (width). Default: 25% for
         /// lettering, else 0.
         ends: Option<f64> = number("ends").within(0.0, 0.99).slider(0.0, 0.5);
@@ -79,6 +93,7 @@ parameters! {
         let spread: Option<Spread> = if s.given("by") { Some(Spread::read(s, "by")?) } else { None };
         let corners: Option<Corners> = corners(s)?;
         let lettering: bool = !s.frame().letters.is_empty();
+        let letters: Arc<[Letter]> = Arc::clone(&s.frame().letters);
         let ink: Arc<[Point]> = Arc::clone(&s.frame().ink);
     }
 }
@@ -135,6 +150,8 @@ impl Envelope {
         corner_nodes(nodes: [usize; 4]) => corners: Some(Corners::Nodes(nodes));
         /// Says that the artwork is lettering, which has stems to be kept upright.
         lettering(lettering: bool);
+        /// Gives the letters of the artwork, which may be several lines.
+        letters(letters: impl Into<Arc<[Letter]>>) => letters: letters.into(), lettering: true;
         /// Gives points of the artwork, where its distortion is visible. Default: the whole box.
         artwork(ink: impl Into<Arc<[Point]>>) => ink: ink.into();
     }
@@ -158,6 +175,10 @@ impl Envelope {
             }
             shape => (shape, Vec::new()),
         };
+        let lines = match self.lines {
+            Lines::Fit => lines::lines(&self.letters, &self.ink),
+            Lines::Together => Vec::new(),
+        };
         let choice = Choice {
             frame: self.frame,
             keep: self.keep,
@@ -167,6 +188,8 @@ impl Envelope {
                 padding: self.padding,
             },
             lettering: self.lettering,
+            lines: &lines,
+            letters: self.letters.len(),
             ink: &self.ink,
         };
         let ring = self.ring(shape.as_ref());
@@ -372,6 +395,10 @@ struct Choice<'a> {
     spread: Option<Spread>,
     room: Room,
     lettering: bool,
+    /// The lines to be fitted one by one, if there are several.
+    lines: &'a [lines::Line],
+    /// The number of letters.
+    letters: usize,
     /// Points of the artwork; empty if they are not known.
     ink: &'a [Point],
 }
@@ -382,6 +409,7 @@ impl Choice<'_> {
         // Curves that meet enclose a shape.
         let closed = closed.or_else(|| ring.as_ref().ok().filter(|r| r.meets()).map(Ring::closed));
         match (self.keep, closed) {
+            (Keep::Verticals, Some(shape)) if self.lines.len() > 1 => self.in_lines(&shape),
             (Keep::Verticals | Keep::Horizontals, Some(shape)) => {
                 filled(self.frame, &shape, self.keep == Keep::Verticals, &self.room)
             }
@@ -411,6 +439,10 @@ impl Choice<'_> {
     /// Builds what suits the shape and the artwork.
     fn suited(&self, shape: &Subpath, ring: Option<Ring>) -> Result<Built, Error> {
         let has_corners = ring.as_ref().is_some_and(|ring| has_own_corners(shape, ring));
+        if self.lines.len() > 1 {
+            let built = ring.filter(|_| has_corners).and_then(|ring| self.in_rows(ring, shape));
+            return built.map_or_else(|| self.in_lines(shape), Ok);
+        }
         let (ring, frame) = match ring {
             Some(ring) if has_corners && self.lettering => {
                 let (ring, frame) = between_notches(ring, shape, self.frame);
@@ -439,6 +471,32 @@ impl Choice<'_> {
         best.map(|b| b.0).ok_or_else(|| nothing(shape))
     }
 
+    /// Fits lines one by one.
+    fn in_lines(&self, shape: &Subpath) -> Result<Built, Error> {
+        let region = Region::new(shape, Affine::IDENTITY, self.room.padding).ok_or_else(|| nothing(shape))?;
+        let mut strips = lines::Strips::new(self.lines, self.letters);
+        let (map, notes) = lines::fitted(self.lines, &region, &mut strips)?;
+        let mut built = Built::new(map);
+        built.explanation.notes = notes;
+        built.overlay(Role::Cage, shown(shape));
+        Ok(placed(built, &strips))
+    }
+
+    /// Puts lines into rows of the patch of four sides.
+    fn in_rows(&self, ring: Ring, shape: &Subpath) -> Option<Built> {
+        let length = |k: usize| Side::new(&ring.sides[k], Pace::Length).map_or(0.0, |s| s.length());
+        let size = [0, 1].map(|k| 0.5 * (length(k) + length(k + 2)));
+        let mut strips = lines::Strips::new(self.lines, self.letters);
+        let row = |frame: Rect| {
+            let (ring, frame) = between_notches(ring.clone(), shape, frame);
+            Choice { frame, ..*self }.patched(&ring, Keep::Nothing)
+        };
+        let rows = strips.frames(self.lines, size).into_iter().map(row).collect::<Result<Vec<Built>, _>>().ok()?;
+        let tiles = rows.iter().map(|b| TileRow { cuts: Vec::new(), maps: vec![Arc::clone(&b.map)] }).collect();
+        let map = Tiled::over(self.frame, strips.cuts.clone(), tiles)?;
+        Some(placed(Built { map, ..rows.into_iter().next()? }, &strips))
+    }
+
     /// Returns the distortion of the artwork.
     fn distortion(&self, map: &dyn Map) -> f64 {
         let f = self.frame;
@@ -447,6 +505,13 @@ impl Choice<'_> {
         let corners = [(f.x0, f.y1), (f.x1, f.y1), (f.x1, f.y0), (f.x0, f.y0)].map(|p| map.point(p.into()));
         distortion(&points.iter().map(|p| map.jet(*p)).collect::<Vec<_>>()) + turned(corners)
     }
+}
+
+/// Puts letters before a map where its strips take them from.
+fn placed(mut built: Built, strips: &lines::Strips) -> Built {
+    built.placement.letters = strips.places();
+    built.placement.before = !built.placement.letters.is_empty();
+    built
 }
 
 /// Returns `true` if a shape has four corners of its own: no other sharp node points outwards, its bottom runs to the right and its
