@@ -138,3 +138,16 @@ fn the_forty_stickers_of_the_sample_are_set() {
     assert_eq!((said.as_str(), fs::read_dir(dir.path()).unwrap().count()), ("", 40));
     assert!(fs::read_to_string(dir.path().join("Smith, Jr..svg")).unwrap().contains("fill=\"#00796b\""));
 }
+
+#[test]
+fn badges_are_made_from_a_table() {
+    let dir = tempfile::tempdir().unwrap();
+    let (csv, out) = (dir.path().join("t.csv"), dir.path().join("{name}.svg"));
+    fs::write(&csv, "name,since\nHARBOUR,1887\nCAMP,2026\n").unwrap();
+    let args = ["badge", "{name}", "SINCE {since}", "--data", csv.to_str().unwrap(), "-o", out.to_str().unwrap()];
+    expect_code(0, &args);
+    for (name, since) in [("HARBOUR", "1887"), ("CAMP", "2026")] {
+        let drawing = fs::read_to_string(dir.path().join(format!("{name}.svg"))).unwrap();
+        assert!(drawing.contains(&format!("<title>{name} SINCE {since}</title>")), "{drawing}");
+    }
+}

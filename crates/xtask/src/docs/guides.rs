@@ -23,8 +23,8 @@ const COMPARISON: &str = "docs/which.md";
 const COOKBOOKS: [&str; 2] = ["docs/cookbook.md", "docs/lettering-on-paths.md"];
 /// Marks the command of a picture of a model.
 const PREVIEW: &str = "--preview out.png";
-/// Marks a command on a folder of drawings.
-const INTO: &str = "--out-dir";
+/// Mark commands that make many drawings: of a folder, and of a table.
+const MANY: [&str; 2] = ["--out-dir", "--data"];
 /// Widths of pictures in pixels.
 const WIDTH: &str = "800";
 const SMALL: &str = "400";
@@ -45,7 +45,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
                 shell::preview(root, program, command.trim_start_matches("pathwarp "), &png)?;
                 continue;
             }
-            if command.contains(INTO) {
+            if MANY.iter().any(|option| command.contains(option)) {
                 sheet(root, program, &png, command)?;
                 continue;
             }
@@ -87,35 +87,39 @@ fn folder_of(root: &Path, guide: &str) -> PathBuf {
     root.join(guide).parent().map_or_else(|| root.to_owned(), Path::to_owned)
 }
 
-/// Draws the picture for a command on a folder of drawings: the drawings in a row, and below them their results.
+/// Draws the picture for a command that makes many drawings: those of a folder in a row, and below them their results; or the results of a
+/// table.
 fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
-    /// The side of a drawing on the sheet, and the space between drawings.
-    const SIDE: usize = 100;
+    /// The sides of a drawing on the sheet, and the space between drawings.
+    const SQUARE: [usize; 2] = [100, 100];
+    const NAME: [usize; 2] = [100, 34];
     const GAP: usize = 20;
-    let bent = tempfile::tempdir().map_err(|e| e.to_string())?;
+    /// Names in a row.
+    const NAMES: usize = 8;
+    let made = tempfile::tempdir().map_err(|e| e.to_string())?;
     let mut words = words(command);
-    let into = words.iter().position(|w| w == INTO).ok_or("no --out-dir")?;
-    words[into + 1] = bent.path().display().to_string();
+    let last = words.pop().ok_or("no output")?;
+    let source = words.iter().find(|w| w.starts_with("samples/")).ok_or("no samples")?;
+    let of_folder = root.join(source).is_dir();
+    let below = |folder: &Path| shell::files_below(folder, |f| shell::ends_in(f, &["svg"]));
+    let mut files = if of_folder { below(&root.join(source))? } else { Vec::new() };
+    let (columns, [width, height]) = if of_folder { (files.len(), SQUARE) } else { (NAMES, NAME) };
+    let name = Path::new(&last).file_name().filter(|_| !of_folder).unwrap_or_default();
+    words.push(made.path().join(name).display().to_string());
     pipe(root, program, &words[1..], &[])?;
-    let source = words.iter().find(|w| w.starts_with("samples/")).ok_or("no folder of samples")?;
+    files.extend(below(made.path())?);
     let mut sheet = String::new();
-    let mut columns = 0;
-    for (row, folder) in [root.join(source), bent.path().to_owned()].iter().enumerate() {
-        let files = shell::files_below(folder, |f| shell::ends_in(f, &["svg"]))?;
-        columns = files.len();
-        for (column, file) in files.iter().enumerate() {
-            let drawing = fs::read_to_string(file).map_err(at(file))?;
-            let start = drawing.find("<svg ").ok_or("no drawing")? + "<svg ".len();
-            // Nest the whole drawing in the sheet, with a new place and size.
-            let inner =
-                drawing[start..].replacen(" width=", " data-width=", 1).replacen(" height=", " data-height=", 1);
-            let [x, y] = [column, row].map(|i| GAP + i * (SIDE + GAP));
-            let _ = write!(sheet, "<svg x='{x}' y='{y}' width='{SIDE}' height='{SIDE}' {inner}");
-        }
+    for (i, file) in files.iter().enumerate() {
+        let drawing = fs::read_to_string(file).map_err(at(file))?;
+        let start = drawing.find("<svg ").ok_or("no drawing")? + "<svg ".len();
+        // Nest the whole drawing in the sheet, with a new place and size.
+        let inner = drawing[start..].replacen(" width=", " data-width=", 1).replacen(" height=", " data-height=", 1);
+        let (x, y) = (GAP + i % columns * (width + GAP), GAP + i / columns * (height + GAP));
+        let _ = write!(sheet, "<svg x='{x}' y='{y}' width='{width}' height='{height}' {inner}");
     }
-    let [width, height] = [columns, 2].map(|n| GAP + n * (SIDE + GAP));
-    let sheet = format!("<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}'>{sheet}</svg>");
-    shell::render(root, program, sheet.as_bytes(), WIDTH, png)
+    let size = [(columns, width), (files.len().div_ceil(columns), height)].map(|(n, side)| GAP + n * (side + GAP));
+    let open = format!("<svg xmlns='http://www.w3.org/2000/svg' width='{}' height='{}'>", size[0], size[1]);
+    shell::render(root, program, format!("{open}{sheet}</svg>").as_bytes(), WIDTH, png)
 }
 
 /// Draws a photograph and beside it, as high, what a command made of it.
