@@ -2,7 +2,7 @@
 
 use crate::support::{pathwarp_in, root};
 use pathwarp::deform::Registry;
-use pathwarp::kurbo::{Point, Rect, Shape as _};
+use pathwarp::kurbo::{ParamCurve as _, Point, Rect, Shape as _};
 use pathwarp::map::Map;
 use pathwarp::param::{Args, Frame};
 use pathwarp_svg::{Document, ReadOptions, Selection};
@@ -109,9 +109,8 @@ fn a_ring_of_words_has_a_word_space_between_its_ends() {
         let ring = pathwarp_in(&root(), &args, &drawing).stdout;
         // Degrees clockwise from the top, where the middle of the words lies.
         let angles = outline(&ring)
-            .elements()
-            .iter()
-            .filter_map(pathwarp::kurbo::PathEl::end_point)
+            .segments()
+            .flat_map(|s| (0..=20).map(move |i| s.eval(f64::from(i) / 20.0)))
             .map(|p| p.x.atan2(-p.y).to_degrees())
             .collect::<Vec<_>>();
         let (least, most) = angles.iter().fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));

@@ -43,13 +43,13 @@ fn stained_glass_has_no_gaps() {
     assert!(shared_before > 20, "the sample has shared edges: {shared_before}");
     let shared = refit::SharedEdges::among(doc.shapes().iter().map(|s| &*s.outline));
     assert_ne!(shared, refit::SharedEdges::default());
-    for merge in [false, true] {
-        let options = refit::Options::new(1e-3).with_nodes(if merge { Nodes::Fewest } else { Nodes::Source });
+    for nodes in [Nodes::Source, Nodes::Fewest, Nodes::Auto, Nodes::Extremes] {
+        let options = refit::Options::new(1e-3).with_nodes(nodes);
         let warped = doc.warp(&map, &WarpOptions::new(options)).unwrap();
         let after = Document::read(warped.svg.as_bytes(), "out", &ReadOptions::default()).unwrap();
         // Every shared source edge gives one or more pieces, each found on both sides.
         let shared_after = count(&mut after.shapes().iter().map(|s| &*s.outline));
-        assert!(shared_after >= shared_before, "merge {merge}: {shared_before} before, {shared_after} after");
+        assert!(shared_after >= shared_before, "{nodes:?}: {shared_before} before, {shared_after} after");
     }
 }
 

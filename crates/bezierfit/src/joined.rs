@@ -18,6 +18,8 @@ pub(crate) struct JoinSettings {
     pub(crate) prove: bool,
     /// The stretches are those of pieces, so that new ones are hardly longer and must end at closer places.
     pub(crate) finely: bool,
+    /// Pieces are to be the same from either end.
+    pub(crate) evenly: bool,
 }
 
 /// A stretch with the pieces that cover it, and what is known of them.
@@ -78,7 +80,8 @@ pub(crate) fn joined<S: Source>(
             known(0, out, report)?;
             i += 1;
         } else {
-            fewest(&run, OwnPieces::new(count, known), settings.tolerance, memory, out, report)?;
+            let settings = (settings.tolerance, settings.evenly);
+            fewest(&run, OwnPieces::new(count, known), settings, memory, out, report)?;
             i += count;
         }
     }
@@ -111,26 +114,33 @@ pub fn cover_far<S: Source>(
     };
     let mut covered = Vec::with_capacity(count);
     own.add(&fitter.joints, &mut covered);
-    let settings = JoinSettings { tolerance: fitter.tolerance, corner, prove: fitter.form.is_some(), finely: true };
+    let StretchFitter { tolerance, evenly, .. } = *fitter;
+    let settings = JoinSettings { tolerance, corner, prove: fitter.form.is_some(), finely: true, evenly };
     fitter.extra.set(fitter.extra.get() + (2 * LONG_GRID + LONG_WORK) * covered.len());
     let lanes = covered.iter().flat_map(|c| sample_lanes(2 * LONG_GRID).map(move |t| (&c.part, t)));
     Source::announce(&mut { lanes }, &mut std::iter::empty());
     joined(&covered, settings, &mut ReachMemory::default(), pieces, report)
 }
 
-/// Appends the fewest pieces of a run.
+/// Appends the fewest pieces of a run, or few that are the same `evenly` from either end. Returns the number of cubics that were tried.
 pub(crate) fn fewest<S: Source + Clone>(
     run: &SegmentRun<S>,
     own: OwnPieces<impl FitOwn>,
-    tolerance: f64,
+    (tolerance, evenly): (f64, bool),
     memory: &mut ReachMemory,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<(), NotFinite> {
+) -> Result<usize, NotFinite> {
     let proof = run.segments.first().is_some_and(RunSegment::is_provable);
-    let settings = MergeSettings { tolerance, proof, marks: false, again: false, evenly: false };
+    let settings = MergeSettings { tolerance, proof, marks: false, again: false, evenly };
     let mut reaches = Reaches::new(run, own, settings, memory);
-    let legs = reaches.fewest()?;
-    let (mut own, legs) = refined(run, reaches.own, legs, settings, memory)?;
-    own.append(legs, run.assurance(tolerance), pieces, report)
+    let legs = match evenly {
+        true if run.segments.len() < 2 => None,
+        true => reaches.even()?,
+        false => reaches.fewest()?,
+    };
+    let tried = reaches.tried();
+    let (mut own, legs) = if evenly { (reaches.own, legs) } else { refined(run, reaches.own, legs, settings, memory)? };
+    own.append(legs, run.assurance(tolerance), pieces, report)?;
+    Ok(tried)
 }

@@ -72,7 +72,7 @@ pub mod parts {
     pub use crate::joined::cover_far;
     pub use crate::limits::{ACCEPTED, MERGE_GRID, SMOOTH_JOINT, STRAIGHT};
     pub use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches, refined};
-    pub use crate::nodes::{NodeSettings, Side, is_structure, placed};
+    pub use crate::nodes::{NodeSettings, PlacedWork, Side, is_structure, placed};
     pub use crate::path::append;
     pub use crate::run::{RunSegment, SegmentRun, per_segment, sample_lanes};
     pub use crate::sample::{CHECKED, FITTED, UNEVEN, fma, spaced};

@@ -268,7 +268,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             return Ok(k);
         }
         loop {
-            let m = self.seek(k, joint, limit)?;
+            let m = self.seek(k, (joint, limit), false)?;
             if m > k {
                 self.memory.last_reach = m - k;
             }
@@ -283,16 +283,17 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(k + self.run.grid == joint && self.own.count(k / self.run.grid)? == 1)
     }
 
-    /// The furthest place that one cubic reaches from `k` as far as its samples show.
-    fn seek(&mut self, k: usize, joint: usize, limit: usize) -> Result<usize, NotFinite> {
-        let start = self.run.place(k);
+    /// The furthest place that one cubic reaches from `k` as far as its samples show. `back`: places are counted from the end of the run.
+    fn seek(&mut self, k: usize, (joint, limit): (usize, usize), back: bool) -> Result<usize, NotFinite> {
+        let start = self.place(k, back);
         let (mut low, mut high) = (k, limit + 1);
         // Errors at `low` and `high`, as far as they are known.
         let (mut below, mut above) = (None, None);
         let mut probe = (joint + self.run.grid / 2).max(k + self.memory.last_reach).min(limit);
         for round in 0.. {
+            let [from, to] = self.in_order([k, probe], back);
             // Smaller errors are rounding to the guess, which then grows at most fivefold.
-            let error = self.error(k, probe)?.max(1e-4);
+            let error = self.error(from, to)?.max(1e-4);
             if error <= 1.0 {
                 (low, below) = (probe, Some(error));
             } else {
@@ -304,7 +305,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             if low + step(k, low) >= high {
                 break;
             }
-            let (l, h) = (self.run.place(low) - start, self.run.place(high.min(limit)) - start);
+            let (l, h) = (self.place(low, back) - start, self.place(high.min(limit), back) - start);
             let wanted = match (below, above) {
                 (Some(below), None) => l * (REACH_TARGET / below).powf(1.0 / 6.0),
                 (None, Some(above)) => h * above.powf(-1.0 / 6.0),
@@ -313,9 +314,76 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
                 }
                 _ => 0.5 * (l + h),
             };
-            probe = self.run.place_before(start + wanted, [low + 1, high - 1]);
+            probe = self.place_before(start + wanted, [low + 1, high - 1], back);
         }
         Ok(low)
+    }
+
+    /// Two places in the order of the run.
+    fn in_order(&self, [k, m]: [usize; 2], back: bool) -> [usize; 2] {
+        if back { [self.last() - m, self.last() - k] } else { [k, m] }
+    }
+
+    /// The length up to a place.
+    fn place(&self, k: usize, back: bool) -> f64 {
+        let run = self.run;
+        if back { run.place(self.last()) - run.place(self.last() - k) } else { run.place(k) }
+    }
+
+    /// The last place between two up to which the length is at most `length`; the first of them if there is none.
+    fn place_before(&self, length: f64, between: [usize; 2], back: bool) -> usize {
+        if !back {
+            return self.run.place_before(length, between);
+        }
+        let [mut low, mut high] = [between[0], between[1] + 1];
+        while low + 1 < high {
+            let mid = low.midpoint(high);
+            *if self.place(mid, true) <= length { &mut low } else { &mut high } = mid;
+        }
+        low
+    }
+
+    /// The places that divide the run into the fewest pieces, each in the middle of those at which it may lie. `None` if one cubic does
+    /// not lead from some place to the next.
+    pub(crate) fn middles(&mut self) -> Result<Option<Vec<usize>>, NotFinite> {
+        let last = self.last();
+        let mut ways = [vec![0], vec![0]];
+        for (way, back) in ways.iter_mut().zip([false, true]) {
+            let mut k = 0;
+            self.memory.last_reach = 0;
+            while k < last {
+                let m = self.seek(k, (k + 1, last), back)?;
+                let [from, to] = self.in_order([k, m], back);
+                if m == k {
+                    return Ok(None);
+                }
+                // A piece that does not pass its check is a miss from then on.
+                if self.piece(from, to)?.is_some() {
+                    self.memory.last_reach = m - k;
+                    way.push(m);
+                    k = m;
+                }
+            }
+        }
+        let n = ways[0].len().max(ways[1].len()) - 1;
+        let mut out = vec![0];
+        for i in 1..n {
+            let furthest = |way: &[usize], i: usize| way.get(i).copied().unwrap_or(last);
+            let (high, low) = (furthest(&ways[0], i), last - furthest(&ways[1], n - i));
+            let between = 0.5 * (self.run.place(low) + self.run.place(high));
+            out.push(self.nearest_place(between, [out[i - 1], last - 1]));
+        }
+        out.push(last);
+        Ok(out.windows(2).all(|w| w[0] < w[1]).then_some(out))
+    }
+
+    /// The place that is nearest to a length; of two that are as near, that closer to the middle, from whichever end.
+    pub(crate) fn nearest_place(&self, length: f64, between: [usize; 2]) -> usize {
+        let (run, whole) = (self.run, self.run.place(self.last()));
+        let k = run.place_before(length, between);
+        let (down, up) = (length - run.place(k), run.place(k + 1) - length);
+        let towards = if 2.0 * length < whole { 1.0 } else { -1.0 };
+        if down - up > -1e-6 * towards * whole / self.last() as f64 { k + 1 } else { k }
     }
 }
 

@@ -1,8 +1,9 @@
 //! Nodes where a type designer puts them: at the structure of a drawing and at extremes, with handles along the axes, and between them as
 //! few pieces as the tolerance allows, divided alike from either end.
 
+use crate::joined::{cover_far, fewest};
 use crate::limits::{FULL, HOPE, MAX_PLANNED, MOVED_TURN, ON_AXIS, PLACEMENTS, SMOOTH_JOINT};
-use crate::merge::{FitOwn, Leg, MergeSettings, OwnPieces, PassedLeg, ReachMemory, Reaches};
+use crate::merge::{FitOwn, Leg, OwnPieces, PassedLeg, ReachMemory, Reaches};
 use crate::options::Nodes;
 use crate::part::Part;
 use crate::report::{Piece, Report};
@@ -44,6 +45,15 @@ pub struct NodeSettings {
     pub left: f64,
 }
 
+/// Work of pieces between placed nodes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PlacedWork {
+    /// Number of cubics over several segments that were tried.
+    pub tried: usize,
+    /// Evaluations of single segments.
+    pub evaluations: usize,
+}
+
 /// A place on a run: a segment, its parameter there, and the direction of the handles if it is not the curve's own.
 #[derive(Debug, Clone, Copy)]
 struct Place {
@@ -58,8 +68,7 @@ impl Place {
     }
 }
 
-/// Appends the pieces of a run, with nodes where they are wanted. Those of a closed run begin at the first of them. Returns the number of
-/// cubics that were tried.
+/// Appends the pieces of a run, with nodes where they are wanted. Those of a closed run begin at the first of them. Returns the work.
 ///
 /// # Errors
 /// A segment is not finite.
@@ -69,7 +78,7 @@ pub fn placed<S: Source>(
     memory: &mut ReachMemory,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<usize, NotFinite> {
+) -> Result<PlacedWork, NotFinite> {
     let places = Places { run, closed: settings.closed };
     let mut kept = match settings.nodes {
         Nodes::Auto => places.structure()?,
@@ -88,12 +97,12 @@ pub fn placed<S: Source>(
     } else {
         ends.push(Place { segment: ends[0].segment + run.segments.len(), ..ends[0] });
     }
-    let mut tried = 0;
+    let mut work = PlacedWork::default();
     for w in ends.windows(2) {
         let stretch = places.between(w[0], w[1])?;
-        tried += evenly(&stretch, settings, memory, pieces, report)?;
+        evenly(&stretch, settings, memory, (pieces, report), &mut work)?;
     }
-    Ok(tried)
+    Ok(work)
 }
 
 /// Places on a run that are closer, in segments, are one.
@@ -343,6 +352,9 @@ fn root<S: Source>(
     }
     for _ in 0..60 {
         let t = (a * fb - b * fa) / (fb - fa);
+        if !t.is_finite() {
+            return Ok(None);
+        }
         let (f, d) = at(t)?;
         if f.abs() < 1e-12 {
             return Ok(Some((t, d)));
@@ -359,40 +371,40 @@ fn root<S: Source>(
     Ok((f.abs() <= ON_AXIS).then_some((b, d)))
 }
 
+/// Stretches that take more pieces are searched from both of their ends.
+const FROM_BOTH: usize = 2 * MAX_PLANNED;
+
 /// Errors ÷ tolerance above this, of a stretch that takes four pieces, tell no number of pieces.
 const MOST_TOLD: f64 = 4096.0;
 
 /// Appends the pieces of a stretch, alike from either end.
-fn evenly<S: Source>(
+fn evenly<S: Source + Clone>(
     run: &SegmentRun<S>,
     settings: NodeSettings,
     memory: &mut ReachMemory,
-    pieces: &mut Vec<Piece>,
-    report: &mut Report,
-) -> Result<usize, NotFinite> {
+    (pieces, report): (&mut Vec<Piece>, &mut Report),
+    work: &mut PlacedWork,
+) -> Result<(), NotFinite> {
     let NodeSettings { tolerance, left, .. } = settings;
     let proof = run.segments.first().is_some_and(RunSegment::is_provable);
     let own = OwnPieces::new(run.segments.len(), |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
         let segment = &run.segments[i];
         let mut fitter = StretchFitter::new(&segment.source, &segment.slow, tolerance, (proof, 0.0), left);
         fitter.evenly = true;
-        fitter.cover(&segment.from, &segment.to, pieces, report)
+        cover_far(&mut fitter, [&segment.from, &segment.to], SMOOTH_JOINT, pieces, report)?;
+        work.evaluations += fitter.evaluations();
+        Ok(())
     });
     memory.last_reach = 0;
-    let settings = MergeSettings { tolerance, proof, marks: false, again: false, evenly: true };
-    let mut reaches = Reaches::new(run, own, settings, memory);
-    let legs = if run.segments.len() > 1 { reaches.even()? } else { None };
-    let tried = reaches.tried();
-    let mut own = reaches.own;
-    own.append(legs, run.assurance(tolerance), pieces, report)?;
-    Ok(tried)
+    work.tried += fewest(run, own, (tolerance, true), memory, pieces, report)?;
+    Ok(())
 }
 
 impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     /// A way of few pieces of about equal difficulty, the same from either end. `None` if the segments have fewer.
-    fn even(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
+    pub(crate) fn even(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
         let last = self.last();
-        let (mut n, mut placements) = (1, 0);
+        let (mut n, mut placements, mut searched) = (1, 0, false);
         let mut ends = vec![0, last];
         loop {
             if n > self.own.segments() && n > self.own.total()? {
@@ -416,7 +428,13 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
                 next = (n + 1).max((sums[n] * HOPE).ceil() as usize);
                 placements = 0;
             }
-            // A stretch that takes many more pieces than are planned at once is covered from its start, piece by piece.
+            if next > FROM_BOTH && !searched {
+                searched = true;
+                if let Some(found) = self.middles()? {
+                    (n, ends) = (found.len() - 1, found);
+                    continue;
+                }
+            }
             let moved = if next > 2 * MAX_PLANNED { None } else { self.quantiles(&ends, &sums, next) };
             let Some(moved) = moved else {
                 return if self.own.total()? <= next { Ok(None) } else { self.fewest() };
@@ -429,18 +447,13 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     fn quantiles(&self, ends: &[usize], sums: &[f64], parts: usize) -> Option<Vec<usize>> {
         let (n, last) = (ends.len() - 1, self.last());
         let (run, total) = (self.run, sums[n]);
-        let whole = run.place(last);
         let mut out = vec![0];
         for i in 1..parts {
             let wanted = total * i as f64 / parts as f64;
             let at = (1..n).find(|k| sums[*k] >= wanted).unwrap_or(n);
             let [a, b] = [ends[at - 1], ends[at]].map(|k| run.place(k));
             let length = a + (b - a) * (wanted - sums[at - 1]) / (sums[at] - sums[at - 1]);
-            // The nearest place; of two that are as near, that closer to the middle, from whichever end.
-            let k = run.place_before(length, [out[i - 1], last - 1]);
-            let (down, up) = (length - run.place(k), run.place(k + 1) - length);
-            let towards = if 2.0 * length < whole { 1.0 } else { -1.0 };
-            out.push(if down - up > -1e-6 * towards * whole / last as f64 { k + 1 } else { k });
+            out.push(self.nearest_place(length, [out[i - 1], last - 1]));
         }
         out.push(last);
         out.windows(2).all(|w| w[0] < w[1]).then_some(out)

@@ -59,11 +59,11 @@ pub enum Nodes {
     /// to there. Pieces between them are as few as the tolerance allows, and divided alike from either end.
     Auto,
     /// Where the fewest pieces need them.
+    #[default]
     Fewest,
     /// At every smooth horizontal or vertical extreme of the result, with handles exactly along the axis; between them as for `Auto`.
     Extremes,
     /// Where the source has them: no piece crosses a joint.
-    #[default]
     Source,
 }
 
@@ -99,7 +99,7 @@ impl Options {
     pub fn new(tolerance: f64) -> Self {
         let (degree, pieces) = (Degree::Cubic, Pieces::Fewest);
         let (best, evaluations) = (false, MAX_EVALUATIONS);
-        Self { tolerance, prove: false, corner: None, nodes: Nodes::Fewest, degree, pieces, best, evaluations }
+        Self { tolerance, prove: false, corner: None, nodes: Nodes::default(), degree, pieces, best, evaluations }
     }
 
     /// Sets [`Options::prove`].

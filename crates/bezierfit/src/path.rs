@@ -85,7 +85,13 @@ fn merged_parts<S: Source>(
     }
     if options.nodes.merges() {
         let Options { tolerance, prove, .. } = *options;
-        let settings = JoinSettings { tolerance, corner: options.joint(), prove, finely: covered.len() > parts.len() };
+        let settings = JoinSettings {
+            tolerance,
+            corner: options.joint(),
+            prove,
+            finely: covered.len() > parts.len(),
+            evenly: false,
+        };
         joined(&covered, settings, memory, &mut out, report)?;
     } else {
         for own in covered {
@@ -232,13 +238,16 @@ pub(crate) fn smooth_run(
         itself(0, pieces, report)?;
         return Ok(1);
     }
-    fewest(&run, OwnPieces::new(count, itself), options.tolerance, memory, pieces, report)?;
+    fewest(&run, OwnPieces::new(count, itself), (options.tolerance, false), memory, pieces, report)?;
     Ok(count)
 }
 
 /// Appends quadratics for the first segments, as far as they join smoothly, and returns their number.
 fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Result<usize, NotFinite> {
-    let (run, count) = smooth_start(segments, options)?;
+    let (mut run, mut count) = smooth_start(segments, options)?;
+    if let (true, Some(to)) = (options.nodes.are_placed(), (1..count).find(|i| run.segments[*i].kept)) {
+        (run, count) = smooth_start(&segments[..to], options)?;
+    }
     let one = &segments[0];
     match one.seg {
         PathSeg::Line(l) if count < 2 => out.path.line_to(l.p1),
@@ -260,7 +269,8 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
                 // Long runs become few cubics first, so that circles of 100,000 cubics take linear time.
                 let close = CUBICS_FIRST * options.tolerance;
                 let (mut pieces, mut report, mut memory) = (Vec::new(), Report::default(), ReachMemory::default());
-                fewest(&run, OwnPieces::new(count, unchanged(segments)), close, &mut memory, &mut pieces, &mut report)?;
+                let own = OwnPieces::new(count, unchanged(segments));
+                fewest(&run, own, (close, false), &mut memory, &mut pieces, &mut report)?;
                 (curves, off) = (pieces.into_iter().map(Segment::from).collect(), report.max_error);
             }
             let first = out.report.pieces.len();

@@ -775,7 +775,7 @@ fn fitted(
         let own = OwnPieces::new(joined, |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
             contour[i + k].fit(options.tolerance, pieces, report)
         });
-        fewest(&run, own, options.tolerance, memory, &mut pieces, report)?;
+        fewest(&run, own, (options.tolerance, false), memory, &mut pieces, report)?;
         i += joined;
     }
     Ok(pieces)

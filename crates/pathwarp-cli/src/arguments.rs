@@ -1,5 +1,6 @@
 //! The common options as clap's arguments, and as a parsed command line gives them.
 
+use clap::builder::PossibleValue;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use pathwarp_engine::failure::Failure;
@@ -91,9 +92,11 @@ fn arg(option: &CommonOption) -> Arg {
     }
     match &option.value {
         OptionValue::Switch(_) => arg.action(ArgAction::SetTrue),
-        OptionValue::Choice(_) => {
+        OptionValue::Choice(all) => {
             let words = option.words();
-            arg.value_name(words.join("|")).value_parser(words).ignore_case(true).hide_possible_values(true)
+            let value = |(word, _): &(&'static str, _)| PossibleValue::new(*word).hide(!words.contains(word));
+            let values: Vec<PossibleValue> = all.iter().map(value).collect();
+            arg.value_name(words.join("|")).value_parser(values).ignore_case(true).hide_possible_values(true)
         }
         OptionValue::Whole { name, range, .. } => {
             let (least, most) = (i64::from(*range.start()), i64::from(*range.end()));

@@ -80,6 +80,7 @@ macro_rules! options {
 mod bend;
 mod document;
 mod embed;
+mod nodes;
 pub mod objects;
 mod scene;
 pub mod sheet;

@@ -10,6 +10,7 @@ mod hidden;
 mod lattice;
 mod limits;
 mod merge_random;
+mod node_figures;
 mod nodes;
 mod random;
 mod refit;

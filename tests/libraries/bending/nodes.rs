@@ -12,11 +12,13 @@ use std::sync::Arc;
 /// The frame of all maps, symmetrical about both axes.
 const SIZE: f64 = 100.0;
 
+/// A deformation of the registry, in a frame.
+pub(super) fn built_in(name: &str, args: &[(&str, &str)], frame: Rect) -> Arc<dyn Map> {
+    Registry::builtin().get(name).unwrap().build_from(&Args::from_pairs(args), &Frame::new(frame)).unwrap().map
+}
+
 fn built(name: &str, args: &[(&str, &str)]) -> Arc<dyn Map> {
-    let frame = Frame::new(Rect::new(-SIZE, -SIZE, SIZE, SIZE));
-    let registry = Registry::builtin();
-    let entry = registry.entries().iter().find(|e| e.info().name == name).unwrap();
-    entry.build_from(&Args::from_pairs(args), &frame).unwrap().map
+    built_in(name, args, Rect::new(-SIZE, -SIZE, SIZE, SIZE))
 }
 
 /// Maps that are symmetrical about x = 0.

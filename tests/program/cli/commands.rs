@@ -155,6 +155,25 @@ fn render_and_preview_write_pictures() {
     assert!(pathwarp_raster::decode_png(&fs::read(preview).unwrap()).unwrap().width() > 600);
 }
 
+/// A gallery of a curve has nodes and handles over each of its cells, and a preview is large enough to see them.
+#[test]
+fn pictures_show_nodes() {
+    let dir = tempfile::tempdir().unwrap();
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 90 60'><path d='M9,9C40,0 60,20 80,50H9Z'/></svg>";
+    let run = |args: &[&str]| {
+        let out = pathwarp_in(dir.path(), args, svg.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+        out.stdout
+    };
+    run(&["warp", "-", "--style", "flag", "-o", "o.svg", "--preview", "p.png", "--show-nodes"]);
+    let png = pathwarp_raster::decode_png(&fs::read(dir.path().join("p.png")).unwrap()).unwrap();
+    assert!(png.width() > 2800, "{}", png.width());
+    // Lines, knobs and nodes in each of the sixteen cells.
+    let paths = |sheet: &[u8]| text(sheet).matches("<path").count();
+    let [plain, shown] = [&["gallery", "-"][..], &["gallery", "-", "--show-nodes"]].map(|args| paths(&run(args)));
+    assert_eq!(shown - plain, 3 * 16);
+}
+
 /// The vertices of the mesh of a disc on a cylinder lie on the cylinder and, seen by the eye, inside the disc.
 #[test]
 fn artwork_on_a_mug_is_written_as_a_mesh() {

@@ -176,6 +176,31 @@ fn quadratics_are_within_the_tolerance_and_imply_their_joints() {
     assert!(distance(&wave(9.0), &fitted.path, 0.1) <= 0.1);
 }
 
+/// A closed curve whose extremes have handles along the axes, in uneven parts.
+#[test]
+fn quadratics_keep_extremes_on_the_curve() {
+    let d = "M100,0C100,30 80,70 0,70C-60,70 -90,40 -90,0C-90,-50 -40,-80 0,-80C70,-80 100,-40 100,0Z";
+    let ends = [(100.0, 0.0), (0.0, 70.0), (-90.0, 0.0), (0.0, -80.0)].map(Point::from);
+    let path = BezPath::from_svg(d).unwrap();
+    for tolerance in [1.0, 0.1, 0.01] {
+        let options = Options::new(tolerance).with_degree(Degree::Quadratic).with_nodes(Nodes::Auto);
+        let fitted = simplify(&path, &options).unwrap();
+        let segs: Vec<QuadBez> =
+            fitted.path.segments().filter_map(|s| if let PathSeg::Quad(q) = s { Some(q) } else { None }).collect();
+        for p in ends {
+            let at: Vec<usize> = (0..segs.len()).filter(|i| segs[*i].p0 == p).collect();
+            let [i] = at[..] else { panic!("{tolerance}: {p} is at {at:?}") };
+            let handle = segs[i].p1 - p;
+            assert!(handle.x.abs().min(handle.y.abs()) <= 1e-9, "{tolerance}: {handle}");
+        }
+        let error = off(
+            &path.segments().flat_map(|s| (0..=60).map(move |i| s.eval(f64::from(i) / 60.0))).collect::<Vec<_>>(),
+            &fitted.path,
+        );
+        assert!(error <= tolerance, "{tolerance}: {error}");
+    }
+}
+
 #[test]
 fn points_become_arcs_lines_and_corners() {
     let degrees = |d: f64| d.to_radians();

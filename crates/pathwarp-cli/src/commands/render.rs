@@ -124,7 +124,7 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
             "SHEET.svg|SHEET.png",
             "Write the sheet to this file: .svg, .svgz, .pdf, .png, .jpg or .webp; - or none writes SVG to standard output",
         ))
-        .args(some_options(&["format", "quality", "page-width", "page-height"]))
+        .args(some_options(&["format", "quality", "page-width", "page-height", "show-nodes"]))
         .arg(
             choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]),
         )
@@ -202,7 +202,7 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
         ));
     }
     let file = file.unwrap_or(Path::new("-"));
-    let Content { cells, title, left_out } = match fonts {
+    let Content { mut cells, title, left_out } = match fonts {
         Some(words) => in_fonts(words, &options)?,
         None => under_presets(registry, m, file, &options)?,
     };
@@ -211,7 +211,13 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
         cell: m.get_one::<(f64, f64)>("cell").copied().unwrap_or((260.0, 190.0)),
         title,
     };
-    let svg = sheet(&cells, &layout, &input::read_options(file, &options.reading))?;
+    let read = input::read_options(file, &options.reading);
+    if options.show_nodes {
+        for cell in &mut cells {
+            cell.svg = Document::read(cell.svg.as_bytes(), &cell.label, &read)?.with_nodes_shown();
+        }
+    }
+    let svg = sheet(&cells, &layout, &read)?;
     let plain = ReadOptions::default().with_turned(Some(Picture::turned)).with_limits(options.reading.limits);
     let bytes = if format.of_picture(None).is_some() {
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &plain)?;

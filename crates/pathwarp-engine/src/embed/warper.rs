@@ -252,7 +252,10 @@ impl Warper {
         let mut bent = self.bent(outline, 0.5)?;
         let cubic = |el: &PathEl| matches!(el, PathEl::CurveTo(..));
         if bent.path.path.elements().iter().any(cubic) {
-            let options = fit::Options::new(bent.tolerance).with_degree(Degree::Quadratic);
+            // Extremes that the cubics have at nodes stay points on the curve.
+            let placed = self.options().is_ok_and(|o| o.nodes.are_placed());
+            let nodes = if placed { fit::Nodes::Auto } else { fit::Nodes::Fewest };
+            let options = fit::Options::new(bent.tolerance).with_degree(Degree::Quadratic).with_nodes(nodes);
             let fitted = fit::simplify(&bent.path.path, &options).map_err(|e| Error::usage(e.to_string()))?;
             bent.path.path = fitted.path;
             bent.path.data = bent.path.path.to_svg();

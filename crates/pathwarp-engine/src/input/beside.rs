@@ -5,6 +5,7 @@ use crate::advice;
 use crate::bitmap::encode;
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
+use crate::options::CommonOptions;
 use pathwarp::deform::{Built, Role};
 use pathwarp::kurbo::{Affine, Point};
 use pathwarp::map::Map;
@@ -13,6 +14,9 @@ use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
 use pathwarp_solid::artwork::{self, NamedShape};
 use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use std::path::{Path, PathBuf};
+
+/// Longer side of a panel on which nodes are told apart, in pixels.
+const NODES_PANEL: u32 = 1400;
 
 /// The formats of previews.
 pub const PREVIEW: Choice<'_> = Choice { what: "a preview is", among: PICTURES };
@@ -24,11 +28,18 @@ pub(super) fn preview(
     (warped, back): (&str, Affine),
     built: &BuiltParts,
     read: &ReadOptions,
-    (file, quality): (&Path, Option<u8>),
+    (file, options): (&Path, &CommonOptions),
 ) -> Result<Vec<u8>, Failure> {
     let format = PREVIEW.format(Some(file), None)?;
     let after = Document::read(warped.as_bytes(), "the result", read)?;
-    let trees = [usvg_tree::shown(doc, read)?, usvg_tree::shown(&after, read)?];
+    let tree = |doc: &Document| {
+        if options.show_nodes {
+            let text = doc.with_nodes_shown();
+            return usvg_tree::shown(&Document::read(text.as_bytes(), "the preview", read)?, read);
+        }
+        usvg_tree::shown(doc, read)
+    };
+    let trees = [tree(doc)?, tree(&after)?];
     let mut left = Panel::new(&trees[0], doc.user_to_px(), doc.view_box());
     let mut right = Panel::new(&trees[1], after.user_to_px(), after.view_box());
     let everything = Selection::default();
@@ -37,7 +48,8 @@ pub(super) fn preview(
         *panel = doc.artwork_box(&everything).into_iter().fold(panel.clone(), Panel::showing);
     }
     let whole = &built.whole;
-    for (i, step) in whole.steps.iter().enumerate() {
+    // Guides would cover the nodes.
+    for (i, step) in whole.steps.iter().enumerate().filter(|_| !options.show_nodes) {
         let at = |end: fn(&[usize]) -> Option<&usize>| built.parts.iter().any(|p| end(&p.indices) == Some(&i));
         let (is_first, is_last) = (at(<[usize]>::first), at(<[usize]>::last));
         let has_target = step.explanation.overlays.iter().any(|o| o.role == Role::Target);
@@ -54,7 +66,9 @@ pub(super) fn preview(
             *panel = panel.clone().with(PreviewOverlay::new(kind, to * &o.path));
         }
     }
-    encode(Preview::new(left, right).render_within(&doc.budget().limits())?, format, quality)
+    let preview = Preview::new(left, right);
+    let preview = if options.show_nodes { preview.panel_size(NODES_PANEL) } else { preview };
+    encode(preview.render_within(&doc.budget().limits())?, format, options.quality)
 }
 
 /// Refuses steps that write such a file for artwork which other steps have bent in several ways.

@@ -601,7 +601,7 @@ impl FileArtwork for SvgArtwork {
         let files = files.collect::<Result<_, _>>()?;
         let preview = common.preview.as_deref();
         let shown = (warped.svg.as_str(), warped.back.unwrap_or_default());
-        let preview = preview.map(|file| beside::preview(&self.doc, shown, built, &self.read, (file, common.quality)));
+        let preview = preview.map(|file| beside::preview(&self.doc, shown, built, &self.read, (file, common)));
         let (result, (lost, kerf)) = match &self.paths {
             Some(paths) => {
                 let guides = &self.selection.guides;

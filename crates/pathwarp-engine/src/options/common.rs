@@ -118,6 +118,8 @@ pub struct CommonOptions {
     pub on_failure: OnFailure,
     pub report: Option<PathBuf>,
     pub preview: Option<PathBuf>,
+    /// Draw nodes and handles in pictures of curves.
+    pub show_nodes: bool,
     pub write_recipe: Option<PathBuf>,
     pub embed_recipe: bool,
     pub explain: bool,

@@ -177,7 +177,7 @@ pub static OPTIONS: &[CommonOption] = &[
                 ("on", |o| o.nodes = Nodes::Fewest),
                 ("off", |o| o.nodes = Nodes::Source),
             ]),
-            "Where curves have nodes: fewest where that saves most, auto where the artwork has them at extremes and at ends of lines and arcs, \
+            "Where curves have nodes: auto where the artwork has them at extremes and at ends of lines and arcs, fewest where that saves most, \
              extremes at all horizontal and vertical extremes of the result, source (as --merge off) where the artwork has them",
         )
     },
@@ -530,6 +530,11 @@ pub static OPTIONS: &[CommonOption] = &[
         "Draw the artwork, its guides and the result as a picture (.png, .jpg or .webp; - is a PNG on standard output)",
     ),
     of_the_run(
+        "show-nodes",
+        OptionValue::Switch(|o| o.show_nodes = true),
+        "Draw nodes and handles over the curves of the picture",
+    ),
+    of_the_run(
         "explain",
         OptionValue::Switch(|o| o.explain = true),
         "Print the decisions made for you: corners, sides, directions",
@@ -643,12 +648,11 @@ impl CommonOption {
         matches!(self.value, OptionValue::List { .. })
     }
 
-    /// The words of a choice.
+    /// The words of a choice, without those that are only for its [`alias`](Self::alias).
     pub fn words(&self) -> Vec<&'static str> {
-        match &self.value {
-            OptionValue::Choice(words) => words.iter().map(|(word, _)| *word).collect(),
-            _ => Vec::new(),
-        }
+        let OptionValue::Choice(words) = &self.value else { return Vec::new() };
+        let is_old = |word: &str| self.alias.is_some() && ["on", "off"].contains(&word);
+        words.iter().map(|(word, _)| *word).filter(|word| !is_old(word)).collect()
     }
 
     /// Checks a value as far as the kind alone decides: `Ok` if it is one of the words, in the range, or `true` for a switch.

@@ -194,8 +194,8 @@ impl<'a> Merger<'a> {
         let closed = self.ring && count == self.parts.len() && run.closes(SMOOTH_JOINT);
         let left = options.budget.left() / self.fitter.work;
         let settings = NodeSettings { nodes: options.nodes, tolerance: options.tolerance, closed, left };
-        let tried = placed(&run, settings, &mut self.memory.reach, &mut self.pieces, &mut self.report)?;
-        self.fitter.spend(TRIAL_WORK * tried as f64);
+        let work = placed(&run, settings, &mut self.memory.reach, &mut self.pieces, &mut self.report)?;
+        self.fitter.spend(TRIAL_WORK * work.tried as f64 + self.fitter.work * work.evaluations as f64);
         Ok(count)
     }
 

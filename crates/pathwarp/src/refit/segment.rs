@@ -8,7 +8,6 @@ use super::source;
 use super::source::SourceCurve;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
-use bezierfit::Nodes;
 use bezierfit::parts::{SMOOTH_JOINT, StretchFitter, cover_far};
 use bezierfit::{NotFinite, Piece, Report};
 use kurbo::{CubicBez, Line, Point};
@@ -103,7 +102,7 @@ impl SegmentFitter<'_> {
         let (tolerance, prove) = (self.options.tolerance, (self.options.certify, blur));
         let mut fitter = StretchFitter::new(source, &slow, tolerance, prove, left);
         fitter.evenly = self.options.nodes.are_placed();
-        let covered = if self.options.nodes == Nodes::Fewest {
+        let covered = if self.options.nodes.merges() {
             cover_far(&mut fitter, [&from, &to], SMOOTH_JOINT, pieces, report)
         } else {
             fitter.cover(&from, &to, pieces, report)

@@ -8,19 +8,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The guides. They name their pictures by relative paths.
-const GUIDES: [&str; 7] = [
+const GUIDES: [&str; 8] = [
     "README.md",
     "docs/lettering.md",
     "docs/paths.md",
     "docs/solid.md",
     "docs/cookbook.md",
     "docs/lettering-on-paths.md",
+    "docs/nodes.md",
     COMPARISON,
 ];
 /// The guide of small pictures in tables.
 const COMPARISON: &str = "docs/which.md";
 /// Guides whose pictures show the artwork beside the result.
-const COOKBOOKS: [&str; 2] = ["docs/cookbook.md", "docs/lettering-on-paths.md"];
+const COOKBOOKS: [&str; 3] = ["docs/cookbook.md", "docs/lettering-on-paths.md", "docs/nodes.md"];
 /// Marks the command of a picture of a model.
 const PREVIEW: &str = "--preview out.png";
 /// Mark commands that make many drawings: of a folder, and of a table.
