@@ -17,9 +17,11 @@ const PICTURES: &str = "docs/images/shapes";
 /// The drawing of all shapes.
 const SAMPLE: &str = "samples/shapes.svg";
 /// The artwork put into the shapes: a name, and the command that writes it to standard output.
-const ARTWORK: [(&str, &[&str]); 3] = [
+const ARTWORK: [(&str, &[&str]); 5] = [
     ("word", &["text", "OPEN", "-o", "-"]),
-    ("lines", &["text", "LOVE", "MUSIC", "--align", "fill", "--gap", "6%", "-o", "-"]),
+    ("two", &["text", "LOVE", "MUSIC", "--font", "display", "-o", "-"]),
+    ("three", &["text", "LOVE", "MUSIC", "ALWAYS", "--font", "display", "-o", "-"]),
+    ("four", &["text", "LOVE", "MUSIC", "ALWAYS", "FOREVER", "--font", "display", "-o", "-"]),
     ("logo", &["affine", "samples/logo.svg", "-o", "-"]),
 ];
 /// The box that the figures are computed for, of the size of a short word.
@@ -92,10 +94,13 @@ options of `text`; `text … | pathwarp envelope - --envelope SHAPE` is the same
 the word between its four sides. Every other shape is filled as letterers do it: in columns, so that stems stay upright, between the lower \
 and the upper outline. The letters end where the shape is still a quarter of its greatest height (`--ends`), and `--padding 3` keeps them \
 off the outline. `--explain` says what was chosen; `--keep verticals` or `--keep nothing` overrules it.\n\n\
-`text LOVE MUSIC --in heart` sizes every line to the width of the block (`--align fill --gap 6%`). Artwork without letters takes whatever distorts it \
+Several lines, told by their baselines, are each set to the width of the shape at their height: `text LOVE MUSIC ALWAYS --in heart`. The \
+gaps between them are even, stems stand, and a line under a notch parts around it or starts below it. Short words are not stretched without \
+limit, but spaced. Where a shape has no room for a line, the program names it. `envelope --lines together` bends all lines as one block. \
+Artwork without letters takes whatever distorts it \
 less, and goes from end to end.\n",
     );
-    let titles = ["One word", "Two lines", "A logo"];
+    let titles = ["One word", "Two lines", "Three lines", "Four lines", "A logo"];
     for ((name, _), title) in ARTWORK.iter().zip(titles) {
         let _ = write!(out, "\n![{title} in 24 shapes](images/shapes/{name}.png)\n");
     }

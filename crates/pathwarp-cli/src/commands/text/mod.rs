@@ -245,7 +245,7 @@ Examples:
   pathwarp text Welcome -o word.svg
   pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg
   pathwarp text LOVE MUSIC --align fill --gap 6% -o poster.svg
-  pathwarp text LOVE MUSIC --in heart -o heart.svg
+  pathwarp text LOVE MUSIC ALWAYS --in heart -o heart.svg
   pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
   pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
   pathwarp text Welcome --size 40mm --unite -o sign.dxf

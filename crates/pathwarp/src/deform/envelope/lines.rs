@@ -105,7 +105,7 @@ struct Room<'a> {
     region: &'a Region,
     bounds: Rect,
     /// The middle of a column, and its intervals inside the shape, each from its top downwards.
-    columns: Vec<(f64, Vec<[f64; 2]>)>,
+    columns: Vec<Column>,
     area: f64,
     /// The share of a line.
     share: f64,
@@ -116,6 +116,9 @@ struct Room<'a> {
     spread: f64,
     trends: [Trend; 2],
 }
+
+/// The x of a column, and its intervals inside the shape.
+type Column = (f64, Vec<[f64; 2]>);
 
 /// The clipped interval of a column.
 type Cut = Option<[f64; 2]>;
@@ -255,22 +258,21 @@ impl<'a> Room<'a> {
         let bounds = region.bounds;
         let step = bounds.width() / f64::from(COLUMNS);
         let xs = (0..COLUMNS).map(|i| bounds.x0 + (f64::from(i) + 0.5) * step);
-        let columns: Vec<(f64, Vec<[f64; 2]>)> = xs.map(|x| (x, region.spans(x))).collect();
-        let filled = |c: &(f64, Vec<[f64; 2]>)| c.1.iter().map(|s| s[1] - s[0]).sum::<f64>();
+        let columns: Vec<Column> = xs.map(|x| (x, region.spans(x))).collect();
+        let filled = |c: &Column| c.1.iter().map(|s| s[1] - s[0]).sum::<f64>();
         let total: f64 = columns.iter().map(filled).sum();
-        if !(total > 0.0) {
+        if total <= 0.0 {
             return None;
         }
-        let mean =
-            |f: &dyn Fn(&(f64, Vec<[f64; 2]>)) -> f64| columns.iter().map(|c| filled(c) * f(c)).sum::<f64>() / total;
+        let mean = |f: &dyn Fn(&Column) -> f64| columns.iter().map(|c| filled(c) * f(c)).sum::<f64>() / total;
         let middle = mean(&|c| c.0);
         let spread = mean(&|c| (c.0 - middle).powi(2));
         let trend = |end: fn(&[[f64; 2]]) -> f64| {
-            let y = |c: &(f64, Vec<[f64; 2]>)| if c.1.is_empty() { 0.0 } else { end(&c.1) };
+            let y = |c: &Column| if c.1.is_empty() { 0.0 } else { end(&c.1) };
             let m = mean(&y);
             let (u, q) = (|c: &(f64, _)| c.0 - middle, |c: &(f64, _)| (c.0 - middle).powi(2) - spread);
             let slope = mean(&|c| u(c) * (y(c) - m)) / spread;
-            let rest = |c: &(f64, Vec<[f64; 2]>)| y(c) - m - slope * u(c);
+            let rest = |c: &Column| y(c) - m - slope * u(c);
             let bend = mean(&|c| q(c) * rest(c)) / mean(&|c| q(c).powi(2));
             // Trends count as far as they explain the curve.
             let share =
@@ -437,12 +439,11 @@ impl<'a> Room<'a> {
             (points.into_iter().map(|y| sign * y).collect::<Vec<f64>>(), lift)
         };
         // Steep outlines need more cells.
-        let curves = [1, 2, 4].map(|k| k * cells).into_iter();
-        let mut curves = curves.map(|cells| (cells, side(0, 1.0, cells), side(1, -1.0, cells)));
-        let is_close = |c: &(usize, (Vec<f64>, f64), (Vec<f64>, f64))| {
-            c.1.1 + c.2.1 < LIFTED * lowest && c.1.0.iter().zip(&c.2.0).all(|(t, b)| t < b)
-        };
-        let (cells, (top, _), (bottom, _)) = curves.find(is_close)?;
+        let (cells, top, bottom) = [1, 2, 4].into_iter().find_map(|k| {
+            let ((top, a), (bottom, b)) = (side(0, 1.0, k * cells), side(1, -1.0, k * cells));
+            let is_close = a + b < LIFTED * lowest && top.iter().zip(&bottom).all(|(t, b)| t < b);
+            is_close.then_some((k * cells, top, bottom))
+        })?;
         let mut lattice = Lattice::regular(from, [3, 1], [cells, 1]);
         let places = bspline::regular(3, cells);
         for (i, s) in places.iter().enumerate() {
@@ -573,10 +574,12 @@ impl Strips {
 
     /// Spaces letters of a line that are to be widened by `ratio`, moves them to the right of `end`, and returns their box.
     fn spaced(&mut self, line: &Line, letters: &Range<usize>, ratio: f64, end: f64) -> Rect {
+        /// What is moved does not touch what it is moved away from.
+        const APART: f64 = 1e-3;
         let r = if letters.len() == line.letters.len() { line.rect } else { line.part(letters) };
         let space = r.width() * ((ratio / WIDEST).max(1.0) - 1.0);
         let each = space / (letters.len().max(2) - 1) as f64;
-        let shift = (end - r.x0).max(0.0);
+        let shift = (end + APART * line.rect.width() - r.x0).max(0.0);
         for (k, (letter, _)) in line.letters[letters.clone()].iter().enumerate() {
             let place = &mut self.places[*letter];
             *place = Affine::translate((shift + k as f64 * each, 0.0)) * *place;

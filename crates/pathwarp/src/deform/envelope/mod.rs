@@ -276,7 +276,9 @@ the drawing itself), or draw the sides one by one: --bottom and --top, with --le
 banner, a trapezoid) bends the artwork between its four sides. Lettering in any other shape stands in columns between the lower and \
 the upper outline, its stems upright; other artwork takes whatever distorts it less: columns, rows or four sides. Tails, such as a speech \
 bubble's, and thin ends stay free. In columns, lettering ends where the shape is still a quarter of its greatest height (--ends). \
---explain says what was chosen.\n\nA closed path's corners are its nodes, if it has just four and one lies in each quarter of its box. \
+--explain says what was chosen.\n\nSeveral lines of lettering, told by their baselines, are each set to the width of the shape at their \
+height (--lines fit): the gaps between them are even, only tops and bottoms are bent, and a line under a notch parts around it or starts \
+below it. What else is drawn between two lines goes along with the nearer one. --lines together bends all lines as one block.\n\nA closed path's corners are its nodes, if it has just four and one lies in each quarter of its box. \
 Otherwise they are those of its nodes that turn by 20° or more which distort the artwork least; for a quarter of the box without such \
 a node, the point nearest to its corner stands in. --corners overrules that; where another choice is hardly worse, a warning names it. \
 The bottom is the lowest side on the screen that can be read from left to right, so that lettering is never mirrored; --bottom-side and \
@@ -440,7 +442,7 @@ impl Choice<'_> {
     fn suited(&self, shape: &Subpath, ring: Option<Ring>) -> Result<Built, Error> {
         let has_corners = ring.as_ref().is_some_and(|ring| has_own_corners(shape, ring));
         if self.lines.len() > 1 {
-            let built = ring.filter(|_| has_corners).and_then(|ring| self.in_rows(ring, shape));
+            let built = ring.as_ref().filter(|_| has_corners).and_then(|ring| self.in_rows(ring, shape));
             return built.map_or_else(|| self.in_lines(shape), Ok);
         }
         let (ring, frame) = match ring {
@@ -483,7 +485,7 @@ impl Choice<'_> {
     }
 
     /// Puts lines into rows of the patch of four sides.
-    fn in_rows(&self, ring: Ring, shape: &Subpath) -> Option<Built> {
+    fn in_rows(&self, ring: &Ring, shape: &Subpath) -> Option<Built> {
         let length = |k: usize| Side::new(&ring.sides[k], Pace::Length).map_or(0.0, |s| s.length());
         let size = [0, 1].map(|k| 0.5 * (length(k) + length(k + 2)));
         let mut strips = lines::Strips::new(self.lines, self.letters);
