@@ -9,6 +9,7 @@ mod folds;
 mod hidden;
 mod lattice;
 mod limits;
+mod lines;
 mod merge_random;
 mod node_figures;
 mod nodes;

@@ -3,7 +3,7 @@
 use super::common::text;
 use crate::support::{expect_code, root};
 use pathwarp::Outline;
-use pathwarp::kurbo::{BezPath, ParamCurve as _, Point, Shape as _};
+use pathwarp::kurbo::{BezPath, ParamCurve as _, Point, Shape};
 use pathwarp_svg::{Document, ReadOptions};
 use std::f64::consts::TAU;
 
@@ -99,7 +99,7 @@ fn everything_has_its_place_in_every_shape() {
             }
         }
         let doc = Document::read(svg.as_bytes(), "svg", &ReadOptions::default()).unwrap();
-        let drawing: Vec<_> = doc.shapes().into_iter().filter(|s| s.id.starts_with("center-")).collect();
+        let drawing: Vec<_> = doc.shapes().iter().filter(|s| s.id.starts_with("center-")).collect();
         let ink = drawing.iter().map(|s| s.outline.bounding_box().unwrap()).reduce(|a, b| a.union(b)).unwrap();
         assert!(
             drawing.len() == 3 && drawing.iter().flat_map(|s| s.outline.segs()).all(|s| inner.contains(s.eval(0.5)))
@@ -109,7 +109,7 @@ fn everything_has_its_place_in_every_shape() {
             ink.height() > 0.4 * room.height() && ink.center().x.abs() < 0.06 * room.width(),
             "{shape}: {ink} {room}"
         );
-        let ends = |id: &str| group(&svg, id).iter().map(|p| p.bounding_box()).reduce(|a, b| a.union(b)).unwrap();
+        let ends = |id: &str| group(&svg, id).iter().map(Shape::bounding_box).reduce(|a, b| a.union(b)).unwrap();
         for id in ["upper", "lower", "separators"] {
             let b = ends(id);
             assert!((b.x0 + b.x1).abs() < 0.06 * b.width(), "{shape}, {id}: {b}");

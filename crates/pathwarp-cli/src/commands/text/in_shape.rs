@@ -16,7 +16,7 @@ const IN: &str = "in";
 pub(super) fn arg() -> Arg {
     text_arg(IN, "PATHREF").conflicts_with("on").help(
         "Put the text into this shape, as `pathwarp envelope` does: heart, shield, star, circle or another name, heart,ratio=1.2 (width to \
-         height), heart,width=80mm, FILE#NAME or path data; lines are sized to fill it (--align fill --gap 6%)",
+         height), heart,width=80mm, FILE#NAME or path data; each line is as wide as the shape at its height",
     )
 }
 

@@ -74,7 +74,7 @@ struct Job {
     draw: Draw,
 }
 
-type Draw = fn(&Setting<'_>, [Option<String>; 2], &LetteringOptions) -> Result<Drawn, Failure>;
+type Draw = fn(&Setting<'_>, &[Option<String>; 2], &LetteringOptions) -> Result<Drawn, Failure>;
 
 /// A drawing of texts.
 struct Drawn {
@@ -122,12 +122,12 @@ fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Re
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
     let setting = Setting { registry, m, options, read, format, em, style, fonts, names };
     if !data::is_given(m) {
-        return setting.write(job.draw, texts, fill, target);
+        return setting.write(job.draw, &texts, fill, target);
     }
     let named: Vec<&str> = texts.iter().chain([&fill]).flatten().map(String::as_str).collect();
     data::for_each_row(registry, m, &named, &reads, |row, target| {
         let texts = texts.each_ref().map(|t| t.as_ref().map(|t| row.filled_lines(t)));
-        setting.write(job.draw, texts, fill.as_ref().map(|f| row.filled(f)), Some(target))
+        setting.write(job.draw, &texts, fill.as_ref().map(|f| row.filled(f)), Some(target))
     })
 }
 
@@ -149,7 +149,7 @@ impl Setting<'_> {
     fn write(
         &self,
         draw: Draw,
-        texts: [Option<String>; 2],
+        texts: &[Option<String>; 2],
         fill: Option<String>,
         target: Option<&Path>,
     ) -> Result<Status, Failure> {
@@ -167,11 +167,11 @@ impl Setting<'_> {
     }
 
     /// Sets a text, and one below it.
-    fn text(&self, texts: [Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
+    fn text(&self, texts: &[Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
         let Self { registry, m, options, .. } = self;
         let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
         let set = |text: &String| laid_out(text, &self.fonts, &self.style, &limits);
-        let [text, below] = texts.map(|t| t.as_ref().map(set).transpose());
+        let [text, below] = texts.each_ref().map(|t| t.as_ref().map(set).transpose());
         let (text, below) = (text?, below?);
         let (svg, warnings) = match &text {
             Some(text) if !on_path::is_asked_for(m) && !in_shape::is_asked_for(m) => {
@@ -193,9 +193,9 @@ impl Setting<'_> {
     }
 
     /// Makes a badge of an upper text, and a lower one.
-    fn badge(&self, texts: [Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
+    fn badge(&self, texts: &[Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
         let Self { registry, m, fonts, em, options, .. } = self;
-        let made = badge::Badge { registry, m, fonts, em, options }.made(&texts)?;
+        let made = badge::Badge { registry, m, fonts, em, options }.made(texts)?;
         let title: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
         let svg = write_set_groups(&title.join(" "), &made.groups, lettering)?;
         Ok(Drawn { svg, warnings: made.warnings, missing: made.missing })
