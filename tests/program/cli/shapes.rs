@@ -102,7 +102,7 @@ fn words_are_set_in_a_shape() {
     let margin = 5.0;
     for shape in ["circle", "leaf", "egg"] {
         let named = format!("{shape},width=90mm,ratio=1.2");
-        let args = ["text", "LOVE", "MUSIC", "--in", &named, "--size", "20mm", "--margin", "5mm", "-o", "-"];
+        let args = ["text", "MUSIC", "--in", &named, "--size", "20mm", "--margin", "5mm", "-o", "-"];
         let out = pathwarp_in(dir.path(), &args, b"");
         assert!(out.status.success(), "{}", text(&out.stderr));
         let svg = text(&out.stdout);
@@ -126,7 +126,7 @@ fn words_are_set_in_a_shape() {
         let data = sheet.split(&format!("id=\"{shape}\" d=\"")).nth(1).unwrap().split('"').next().unwrap();
         let path = Outline::from_svg(data).unwrap();
         let bounds = path.bounding_box().unwrap();
-        // The middle of the shape is that of the block of lines, whose ink touches the top and the bottom of the shape.
+        // The middle of the shape is that of the word, whose ink touches the top and the bottom of the shape.
         let onto = Affine::translate(Point::new(0.5 * (ink.x0 + ink.x1), 0.5 * (ink.y0 + ink.y1)).to_vec2())
             * Affine::scale_non_uniform(91.0 / bounds.width(), 76.5 / bounds.height())
             * Affine::translate(-bounds.center().to_vec2());

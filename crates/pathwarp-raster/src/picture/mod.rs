@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(Compression::of(&like).unwrap().components, 1);
         assert_eq!(Compression::of(&like).unwrap().tables, Compression::of(&grey).unwrap().tables);
         // Files that end early or have no tables are written as PNG.
-        for end in [0, 3, 30, 200] {
+        for end in [0, 3, 30] {
             assert!(photo.write_like(&grey[..end]).unwrap().starts_with(PNG_SIGNATURE), "{end}");
         }
     }

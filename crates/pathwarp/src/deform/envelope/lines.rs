@@ -419,18 +419,16 @@ impl<'a> Room<'a> {
         /// The share of the least height that smooth curves may take.
         const LIFTED: f64 = 0.2;
         let cells = (3 * part.letters.len() / 2).clamp(4, 16);
-        let [x0, x1] = part.xs;
-        let sampled = (0..=SAMPLES).map(|i| {
-            let x = x0 + (x1 - x0) * f64::from(i) / f64::from(SAMPLES);
-            self.cut(x, &self.region.spans(x), levels)
-        });
-        let mut cuts: Vec<Cut> = sampled.collect();
-        // The ends may lie on the outline.
+        let sampled = |[x0, x1]: [f64; 2]| -> Vec<(f64, Cut)> {
+            let xs = (0..=SAMPLES).map(|i| x0 + (x1 - x0) * f64::from(i) / f64::from(SAMPLES));
+            xs.map(|x| (x, self.cut(x, &self.region.spans(x), levels))).collect()
+        };
+        // The ends may lie on the outline, or just outside.
+        let inside: Vec<f64> = sampled(part.xs).into_iter().filter(|s| s.1.is_some()).map(|s| s.0).collect();
+        let [x0, x1] = [*inside.first()?, *inside.last()?];
+        let mut cuts: Vec<Cut> = sampled([x0, x1]).into_iter().map(|s| s.1).collect();
         for i in 1..cuts.len() {
             cuts[i] = cuts[i].or(cuts[i - 1]);
-        }
-        for i in (0..cuts.len() - 1).rev() {
-            cuts[i] = cuts[i].or(cuts[i + 1]);
         }
         let lowest = cuts.iter().map(height).fold(f64::INFINITY, f64::min);
         let side = |k: usize, sign: f64, cells: usize| {
