@@ -3,9 +3,7 @@
 use super::jpeg;
 use crate::error::Error;
 use image_webp::WebPEncoder;
-use jpeg_encoder::{
-    ChromaSubsamplingMethod, ImageBuffer, JpegColorType, QuantizationTableType, SamplingFactor, rgb_to_ycbcr,
-};
+use jpeg_encoder::{ImageBuffer, JpegColorType, QuantizationTableType, SamplingFactor, rgb_to_ycbcr};
 use png::{BitDepth, ColorType, Compression, Filter, Info};
 use std::fmt::Display;
 use tiny_skia::Pixmap;
@@ -40,14 +38,9 @@ pub(super) fn encode(
 ) -> Result<Vec<u8>, Error> {
     match format {
         PictureFormat::Png => encode_png(pixmap, profile, exif),
-        PictureFormat::Jpeg { quality } => {
-            // Don't subsample colours, so that red on white has no fringes.
-            let sampling = SamplingFactor::F_1_1;
-            encode_jpeg(pixmap, profile, exif, JpegColorType::Ycbcr, |encoder| {
-                encoder.set_quality(quality.clamp(1, 100));
-                encoder.set_sampling_factor(sampling);
-            })
-        }
+        PictureFormat::Jpeg { quality } => encode_jpeg(pixmap, profile, exif, JpegColorType::Ycbcr, |encoder| {
+            encoder.set_quality(quality.clamp(1, 100));
+        }),
         PictureFormat::WebP => encode_webp(pixmap, profile, exif),
     }
 }
@@ -79,7 +72,7 @@ fn encode_webp(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>) -> 
     Ok(out)
 }
 
-/// Encodes a picture as another JPEG is compressed: as coarse, and in as many colours.
+/// Encodes a picture as coarsely as another JPEG, grey if that is, and with colours for every pixel.
 pub(super) fn encode_like(like: &jpeg::Compression, pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error> {
     let is_grey = like.components == 1;
     let color = if is_grey { JpegColorType::Luma } else { JpegColorType::Ycbcr };
@@ -87,10 +80,6 @@ pub(super) fn encode_like(like: &jpeg::Compression, pixmap: &Pixmap, profile: Op
         // The encoder writes values of 8 bits.
         let [luma, chroma] = like.tables.map(|t| QuantizationTableType::Custom(Box::new(t.map(|v| v.clamp(1, 255)))));
         encoder.set_quantization_tables(luma, chroma);
-        let (across, down) = if is_grey { (1, 1) } else { like.sampling };
-        encoder.set_sampling_factor(SamplingFactor::from_factors(across, down).unwrap_or(SamplingFactor::F_1_1));
-        encoder.set_chroma_subsampling_method(ChromaSubsamplingMethod::Average);
-        encoder.set_optimized_huffman_tables(true);
     })
 }
 
@@ -103,6 +92,8 @@ fn encode_jpeg(
 ) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
     let mut encoder = jpeg_encoder::Encoder::new(&mut out, PictureFormat::QUALITY);
+    // Don't subsample colours, so that red on white has no fringes.
+    encoder.set_sampling_factor(SamplingFactor::F_1_1);
     set(&mut encoder);
     exif.map_or(Ok(()), |exif| encoder.add_exif_metadata(exif)).map_err(unencodable)?;
     encoder.add_icc_profile(profile.unwrap_or_default()).map_err(unencodable)?;

@@ -64,11 +64,9 @@ fn wrong(why: DecodeErrors) -> Error {
     }
 }
 
-/// How a JPEG is compressed: its quantization tables for brightness and colour, row by row, and how colours are sampled.
+/// How a JPEG is compressed: its quantization tables for brightness and colour, row by row.
 pub(super) struct Compression {
     pub(super) tables: [[u16; 64]; 2],
-    /// Pixels across and down that share a colour.
-    pub(super) sampling: (u8, u8),
     /// 1 for grey, 3 for colours, 4 for inks.
     pub(super) components: usize,
 }
@@ -87,16 +85,8 @@ impl Compression {
         }
         let components: Vec<&[u8]> = frame?.get(6..)?.chunks_exact(3).collect();
         let table = |component: usize| tables[usize::from(components.get(component)?[2] & 3)];
-        let factors = |component: &[u8]| (component[1] >> 4, component[1] & 15);
-        let luma = factors(components.first()?);
-        let chroma = components.get(1).map_or(luma, |c| factors(c));
-        let share = |luma: u8, chroma: u8| luma.checked_div(chroma).unwrap_or(1).clamp(1, 2);
         let tables = [table(0)?, table(1).or(table(0))?];
-        Some(Self {
-            tables,
-            sampling: (share(luma.0, chroma.0), share(luma.1, chroma.1)),
-            components: components.len(),
-        })
+        Some(Self { tables, components: components.len() })
     }
 }
 

@@ -131,7 +131,7 @@ impl Picture {
     }
 
     /// Encodes the picture as an image of a drawing whose pixels come from `source`: as a JPEG if that is one, as coarse in brightness and
-    /// colours, on white where it is transparent; else as a PNG. It has no EXIF metadata.
+    /// in the colours of every pixel, on white where it is transparent; else as a PNG. It has no EXIF metadata.
     ///
     /// # Errors
     /// [`Error::Encode`], for instance for a JPEG with a side of more than 65535 pixels.
@@ -191,7 +191,7 @@ mod tests {
         assert_eq!(back.profile, half_red().profile);
     }
 
-    /// The tables and samplings come through encoders of their own, in the order in which a file has them.
+    /// The tables come through, in the order in which a file has them, however the source samples its colours.
     #[test]
     fn another_jpeg_is_as_coarse() {
         let photo = half_red();
@@ -204,8 +204,13 @@ mod tests {
             encoder.set_quantization_tables(custom[0].clone(), custom[1].clone());
             encoder.set_sampling_factor(jpeg_encoder::SamplingFactor::from_factors(across, down).unwrap());
             encoder.encode(&samples, 16, 8, jpeg_encoder::ColorType::Rgb).unwrap();
-            let like = Compression::of(&photo.write_like(&source).unwrap()).unwrap();
-            assert_eq!((like.tables, like.sampling, like.components), ([*table(1), *table(3)], (across, down), 3));
+            let written = photo.write_like(&source).unwrap();
+            let back = Picture::read(&written).unwrap().pixmap;
+            let [red, white] = [2, 13].map(|x| back.pixel(x, 4).unwrap());
+            assert!(red.red() > 200 && red.green() < 60 && red.blue() < 60, "{across} x {down}: {red:?}");
+            assert!(white.green() > 200 && white.blue() > 200, "{across} x {down}: {white:?}");
+            let like = Compression::of(&written).unwrap();
+            assert_eq!((like.tables, like.components), ([*table(1), *table(3)], 3));
         }
         let mut grey = Vec::new();
         let luma: Vec<u8> = samples.iter().step_by(3).copied().collect();

@@ -255,7 +255,7 @@ pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option
 
 /// The bent outline of the visible part of a bitmap, as path data in the user space that `after` leads to; `None` if it cannot be bent.
 fn visible_outline(b: &Bitmap, area: Rect, after: Affine, (map, options): (&dyn Map, &WarpOptions)) -> Option<String> {
-    let shown = b.crop.map_or(area, |c| c.inflate(1.0, 1.0).intersect(area));
+    let shown = b.crop.map_or(area, |c| c.intersect(area));
     let corners = [(shown.x0, shown.y0), (shown.x1, shown.y0), (shown.x1, shown.y1), (shown.x0, shown.y1)];
     let outline = Outline::from_points(&corners.map(|c| b.frame * Point::from(c)), true);
     let path = refit::warp_path(&outline, map, &options.refit).ok()?.path;
