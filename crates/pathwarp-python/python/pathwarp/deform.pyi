@@ -38,6 +38,7 @@ def envelope(
     bottom_side: Optional[Union[int, str]] = None,
     reverse: Optional[bool] = None,
     keep: Optional[Literal["auto", "nothing", "verticals", "horizontals", "lines"]] = None,
+    lines: Optional[Literal["fit", "together"]] = None,
     ends: Optional[Number] = None,
     padding: Optional[Number] = None,
     frame: Optional[Frame] = None,
