@@ -151,7 +151,7 @@ impl ImageWarper for Bender {
         if r.clipped {
             // The clip path has the picture's edge, where pixels are partly transparent.
             let whole: Vec<bool> = pixmap.pixels().iter().map(|p| p.alpha() == u8::MAX).collect();
-            edges::continue_colors(&mut pixmap, |i| whole[i]);
+            edges::continue_colors(&mut pixmap, &whole);
         }
         let bent = picture.remade(pixmap, false);
         let lost = if Picture::is_of_inks(r.data) {

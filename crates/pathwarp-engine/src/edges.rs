@@ -40,15 +40,15 @@ impl EdgePainter for Bender {
                 .all(|p| opaque(p.0, p.1))
         };
         let inside: Vec<bool> = (0..width * height).map(inside).collect();
-        continue_colors(&mut drawn, |i| inside[i]);
+        continue_colors(&mut drawn, &inside);
         Ok(encode_png(&drawn).map_err(|e| e.to_string())?)
     }
 }
 
-/// Gives all pixels the colour of the nearest that counts; those that count are opaque.
-pub(crate) fn continue_colors(picture: &mut Pixmap, counts: impl Fn(usize) -> bool) {
+/// Gives every pixel the colour of the nearest one that counts. Pixels that count are opaque.
+pub(crate) fn continue_colors(picture: &mut Pixmap, counts: &[bool]) {
     let (width, height) = (picture.width() as usize, picture.height() as usize);
-    let nearest = nearest(width, height, counts);
+    let nearest = nearest(width, height, |i| counts[i]);
     let pixels = picture.pixels_mut();
     // Pixels that count are their own nearest, so none of their colours is written before it is read.
     for (i, from) in nearest.into_iter().enumerate().filter(|(_, from)| *from != NONE) {

@@ -285,7 +285,7 @@ impl Document {
     #[must_use]
     pub fn picture_edges(&self, selection: &Selection) -> Vec<(String, Outline)> {
         let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection)).filter(|b| b.1);
-        let named = |b: &Bitmap| b.owner.map_or_else(|| "an image".into(), |e| self.drawing.source.display_name(e));
+        let named = |b: &Bitmap| self.drawing.source.image_name(b.owner);
         let edge = |b: &Bitmap| Some((named(b), Outline::from_points(&areas::picture_corners(b)?, true)));
         bitmaps.filter_map(|b| edge(b.0)).collect()
     }

@@ -110,7 +110,7 @@ const FONTS: &str = "fonts";
 
 /// The deformations with presets.
 fn sets(registry: &Registry) -> impl Iterator<Item = (&dyn Deformation, Gallery)> {
-    // Those that bend by an amount come first.
+    // Sets whose presets bend by an amount come before those of shapes.
     let all = || registry.entries().iter().filter_map(|e| Some((&**e, e.info().gallery?)));
     all().filter(|(_, g)| g.bend.is_some()).chain(all().filter(|(_, g)| g.bend.is_none()))
 }
@@ -233,7 +233,7 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
     Ok(Status::partial_if(!left_out.is_empty()))
 }
 
-/// What is on a sheet.
+/// The cells and the title of a sheet, with the reasons for cells that are left out.
 struct Content {
     cells: Vec<Cell>,
     title: String,
@@ -250,7 +250,7 @@ fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
         let svg = write_lettering(&text, &LetteringOptions::default())?;
         Ok((Cell { svg, label: family.clone() }, text.missing.is_empty()))
     };
-    // What an installed font is good for is not known before it is used.
+    // Fonts that cannot be read are left out: installed files may be damaged or hold no outlines.
     let set: Vec<_> = families.par_iter().map(set).filter_map(Result::ok).collect();
     let cells: Vec<Cell> = set.into_iter().filter(|(_, has_all)| *has_all).map(|(cell, _)| cell).collect();
     if cells.is_empty() {

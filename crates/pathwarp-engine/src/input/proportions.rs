@@ -47,7 +47,7 @@ impl Proportions {
         (ratio.is_normal() && focal_length.is_normal()).then_some(Self { ratio, focal_length })
     }
 
-    /// Whether a camera can be like that, and pixels are small enough to tell.
+    /// Returns `true` if cameras have such a focal length, and one pixel at a corner hardly changes the ratio.
     pub(super) fn is_sound(&self, corners: [Point; 4], picture: Rect) -> bool {
         let moved = |corner: usize, by: Vec2| {
             let mut corners = corners;

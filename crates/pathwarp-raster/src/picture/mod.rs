@@ -92,7 +92,7 @@ impl Picture {
         Self::sniff(bytes) && decode::is_turned(bytes, limits)
     }
 
-    /// Whether the bytes are a JPEG whose colours are inks (CMYK), which become RGB.
+    /// Returns `true` if the bytes are a JPEG in CMYK, which is read as RGB.
     #[must_use]
     pub fn is_of_inks(bytes: &[u8]) -> bool {
         Compression::of(bytes).is_some_and(|c| c.components == 4)
@@ -130,8 +130,8 @@ impl Picture {
         self.profile.as_deref().filter(|p| !p.is_empty() && !is_other(p))
     }
 
-    /// Encodes the picture as an image of a drawing whose pixels come from `source`: as a JPEG if that is one, as coarse in brightness and
-    /// in the colours of every pixel, on white where it is transparent; else as a PNG. It has no EXIF metadata.
+    /// Encodes the picture as an image of a drawing whose pixels come from `source`. If that is a JPEG, the result is one with the same
+    /// quantization tables, on white where it is transparent; else it is a PNG. It has no EXIF metadata.
     ///
     /// # Errors
     /// [`Error::Encode`], for instance for a JPEG with a side of more than 65535 pixels.

@@ -97,7 +97,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     let images: Vec<_> = scene.bitmaps.iter().map(bend).collect();
     for (b, image) in scene.bitmaps.iter().zip(&images) {
         if let EmbeddedImage::Bent { image: BentImage { lost: Some(text), .. }, .. } = image {
-            let name = b.owner.map_or_else(|| "an image".to_owned(), |e| drawing.source.display_name(e));
+            let name = drawing.source.image_name(b.owner);
             out.warnings.push(Warning::Note { text, names: vec![name] });
         }
     }

@@ -213,7 +213,7 @@ pub(crate) enum EmbeddedImage {
     /// Bent, in the user space outside its placing transform.
     Bent {
         image: BentImage,
-        /// Path data of the outline that clips an image without transparency.
+        /// Path data of the outline that clips the image, which may go on beyond it.
         clip: Option<String>,
     },
 }
@@ -248,7 +248,7 @@ pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option
     let (placed, crop, to_px) = (b.frame, b.crop, scene.to_px);
     let request = ImageRequest { data, placed, crop, clipped, pixelated, map: *map, after, to_px };
     match warper.warp(&request) {
-        Ok(image) => EmbeddedImage::Bent { clip: clip.filter(|_| image.is_jpeg()), image },
+        Ok(image) => EmbeddedImage::Bent { image, clip },
         Err(why) => approximate(&why.to_string()),
     }
 }

@@ -14,7 +14,7 @@ pub struct BentImage {
     pub file: Vec<u8>,
     /// Position in the requested user space.
     pub area: Rect,
-    /// What the picture has lost, in a sentence.
+    /// A sentence about colours or a profile that the picture has lost.
     pub lost: Option<&'static str>,
 }
 
@@ -25,13 +25,13 @@ impl BentImage {
         Self { file, area, lost: None }
     }
 
-    /// Whether it is a JPEG, which covers all of its area with colours.
-    pub(crate) fn is_jpeg(&self) -> bool {
-        is_jpeg(&self.file)
+    /// The media type of the file.
+    pub(crate) fn media_type(&self) -> &'static str {
+        if is_jpeg(&self.file) { "image/jpeg" } else { "image/png" }
     }
 }
 
-/// Whether a file starts as a JPEG does.
+/// Returns `true` if a file starts with the markers of a JPEG.
 pub(crate) fn is_jpeg(file: &[u8]) -> bool {
     file.starts_with(b"\xff\xd8\xff")
 }
@@ -78,7 +78,7 @@ pub struct ImageRequest<'a> {
     pub placed: Affine,
     /// The visible pixels, if not all are visible. The drawing clips the result to them, so the others need not be bent.
     pub crop: Option<Rect>,
-    /// Whether the drawing clips the result to the outline of its visible pixels, so that a JPEG will do.
+    /// The drawing clips the result to the outline of its visible pixels, so it may have any colours beyond, as a JPEG must.
     pub clipped: bool,
     /// Whether pixels are shown as squares, however large.
     pub pixelated: bool,

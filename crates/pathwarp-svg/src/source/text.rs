@@ -331,6 +331,11 @@ impl SourceText {
         self.attr_in(e, Namespace::Inkscape, "label")
     }
 
+    /// The name of an image in messages; its element may be unknown.
+    pub(crate) fn image_name(&self, e: Option<ElementId>) -> String {
+        e.map_or_else(|| "an image".to_owned(), |e| self.display_name(e))
+    }
+
     /// Names an element in messages: its id, or else its tag and position, such as `path at 12:5`, with the letter of a glyph:
     /// `path “G” at 12:5`.
     pub(crate) fn display_name(&self, e: ElementId) -> String {

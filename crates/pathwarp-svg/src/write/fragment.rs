@@ -673,7 +673,7 @@ impl<'a> Writer<'a> {
         match &input.images[i] {
             EmbeddedImage::Placed => placed(&self.markup, &bitmap.image),
             EmbeddedImage::Approximate(why) => {
-                let id = bitmap.owner.map_or_else(|| "an image".into(), |e| input.source.display_name(e));
+                let id = input.source.image_name(bitmap.owner);
                 self.skipped.push(Skipped { id, why: why.clone() });
                 placed(&self.markup, &bitmap.image)
             }

@@ -240,7 +240,7 @@ pub(super) fn data_url(media_type: &str, data: &[u8]) -> String {
 
 /// A bent bitmap as a `data:` URL.
 pub(super) fn bent_url(bent: &BentImage) -> String {
-    data_url(if bent.is_jpeg() { "image/jpeg" } else { "image/png" }, &bent.file)
+    data_url(bent.media_type(), &bent.file)
 }
 
 /// Bounding box of a part's path in its user space.

@@ -109,7 +109,7 @@ pub(super) fn args() -> Vec<Arg> {
     ]
 }
 
-/// What a badge is made with.
+/// Options, fonts and size of a badge.
 pub(super) struct Badge<'a> {
     pub(super) registry: &'a Registry,
     pub(super) m: &'a ArgMatches,
@@ -448,7 +448,7 @@ impl Badge<'_> {
     /// as that allows.
     fn center(&self, layout: &Layout) -> Result<Option<SetGroup>, Failure> {
         const HALVINGS: u32 = 40;
-        /// What shadows add does not count.
+        /// Strokes enlarge the box of the paths by at most this factor. Shadows enlarge it more, and need no room.
         const MOST_BEYOND: f64 = 1.2;
         let Some(file) = self.m.get_one::<PathBuf>("center") else { return Ok(None) };
         let (half, reading) = (self.half(), &self.options.reading);

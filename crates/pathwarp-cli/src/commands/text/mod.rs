@@ -64,7 +64,7 @@ pub(super) fn badge(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> 
     run(registry, m, words, &Job { size: badge::WIDTH, font: Some(badge::FONT), texts, draw: |s, t, l| s.badge(t, l) })
 }
 
-/// What a command makes of texts.
+/// A command that draws texts.
 struct Job {
     /// The option that the page has its unit from, and its default in px.
     size: (&'static str, f64),

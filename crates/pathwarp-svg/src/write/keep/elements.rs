@@ -236,7 +236,7 @@ pub(super) fn bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
         }
         (EmbeddedImage::Approximate(why), _) => why.clone(),
     };
-    let id = e.map_or_else(|| "an image".to_owned(), |e| k.source.display_name(e));
+    let id = k.source.image_name(e);
     k.writer.skipped.push(Skipped { id, why });
 }
 
