@@ -201,7 +201,7 @@ mod tests {
             }
         }
         let d = defaults();
-        assert!(d.nodes == Nodes::Fewest && d.warp_images, "{d:?}");
+        assert!(d.nodes == Nodes::Auto && d.warp_images, "{d:?}");
     }
 
     #[test]

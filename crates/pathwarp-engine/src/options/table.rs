@@ -165,7 +165,7 @@ pub static OPTIONS: &[CommonOption] = &[
         "Prove the distance where the deformation allows it, instead of measuring it",
     ),
     CommonOption {
-        default: Some("fewest"),
+        default: Some("auto"),
         alias: Some("merge"),
         ..stored(
             "nodes",

@@ -132,7 +132,7 @@ pub(crate) fn overlap(a: Rect, b: Rect) -> Option<Rect> {
 
 /// Work of each segment below. It is less than that of an ordinary one, since the numbers are upper bounds, and fitting them is
 /// charged separately.
-const EXPANDED: f64 = 15.0;
+const EXPANDED: f64 = 18.0;
 
 /// Segments of the outline of a dash or a subpath with its caps. Each segment is held three times: expanded, bent, and as written.
 const PER_DASH: f64 = 3.0 * 8.0;
