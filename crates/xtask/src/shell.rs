@@ -85,19 +85,26 @@ pub(crate) fn render(root: &Path, program: &Path, drawing: &[u8], width: &str, p
 
 /// Renders the preview of a command, given without its leading `pathwarp`, to a PNG file.
 pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) -> Result<(), ChoreError> {
-    let mut stages = stages(&format!("pathwarp {command}"));
+    let line = format!("pathwarp {command}");
+    let mut stages = stages(&line);
     let Some(mut last) = stages.pop() else { return Ok(()) };
     let mut drawing = Vec::new();
     for stage in stages {
         drawing = pipe(root, program, &stage, &drawing)?;
     }
-    if last[0] == "text" {
-        // There is nothing to show before text.
+    if ["text", "badge"].contains(&last[0].as_str()) {
+        // There is nothing to show before lettering.
         return render(root, program, &pipe(root, program, &last, &drawing)?, "800", png);
     }
     // Replace any preview that the example itself asks for.
     if let Some(i) = last.iter().position(|w| w == "--preview") {
         last.drain(i..(i + 2).min(last.len()));
+    }
+    // Some options are for one format alone.
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let file = words(&line).into_iter().skip_while(|w| w != "-o").nth(1);
+    if let (Some(file), Some(output)) = (file, last.iter_mut().skip_while(|w| *w != "-o").nth(1)) {
+        *output = folder.path().join(file).display().to_string();
     }
     last.retain(|w| w != "--explain");
     last.extend(["--quiet", "--preview"].map(str::to_owned));
