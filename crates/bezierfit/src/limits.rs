@@ -276,5 +276,5 @@ pub(crate) const ON_AXIS: f64 = 1e-7;
 
 // Quadratics
 
-/// Samples for each piece of a quadratic spline, and twice as many for the shortest run.
-pub(crate) const SPLINE_SAMPLES: usize = 16;
+/// Samples for each piece of a quadratic spline.
+pub(crate) const SPLINE_SAMPLES: usize = 8;

@@ -4,6 +4,9 @@
 //! residuals along the normals at the foot points of samples, by banded normal equations, in turn with the foot points. Weights that
 //! grow with the residual (Lawson) bring the largest one down. The least n whose spline passes its check is taken. A single piece has no
 //! freedom: its control point is where the end tangents meet.
+//!
+//! A quadratic that touches an arc of radius R and angle θ at both ends is R·θ⁴/128 off in its middle. The number of pieces that this law
+//! gives for the turns between samples is where the search for n begins, and lays out the foot points.
 
 use crate::banded::solve_banded;
 use crate::limits::{ACCEPTED, SPLINE_SAMPLES, STRAIGHT};
@@ -11,8 +14,8 @@ use crate::report::{Assurance, REPORT_MARGIN, Report};
 use crate::source::{BreakPoint, NotFinite, Source};
 use kurbo::{BezPath, Point, Vec2};
 
-/// Rounds of a fit, the first five of which are plain least squares.
-const ROUNDS: usize = 30;
+/// Rounds of a fit, the first of which is plain least squares.
+const ROUNDS: usize = 16;
 /// Control points of a spline, at most: a longer run is divided.
 const MOST: usize = 48;
 /// Stretches shorter than this share of a curve are not divided, nor are any after so many for which nothing was found.
@@ -25,19 +28,27 @@ const MOST_CLOSELY: f64 = 32.0;
 /// Error that is recorded for what fails a check.
 const MISSED: f64 = 1.001;
 /// Share of the residual along the tangent: it keeps the system regular.
-const ALONG: f64 = 0.02;
-
+const ALONG: f64 = 0.005;
+/// By how much least squares bring the error below that of quadratics that touch the curve.
+const BALANCED: f64 = 1.3;
+/// A fit ends if the bound of its error exceeds the tolerance by this factor.
+const HOPELESS: f64 = 1.02;
+/// Weights begin when the mean falls by less than this factor in a round. A fit goes on if as many rounds more like the last would bring the
+/// mean to the tolerance.
+const SETTLED: f64 = 0.95;
+const PATIENCE: i32 = 8;
+/// Layouts that differ by less than this, in pieces, lead to the same spline.
+const ALIKE: f64 = 0.25;
 /// Curves that are covered together, at most, so that the time is linear.
-const MOST_CURVES: usize = 128;
-/// Pieces of a run of several curves, at most.
-const TOGETHER: usize = 24;
+const MOST_CURVES: usize = 32;
+/// A spline with more pieces than this multiple of the estimate may not suit the whole of its curves.
+const UNSUITED: f64 = 1.5;
 
-/// A stretch of one of the curves of a run, and the number of pieces that it needs alone.
+/// A stretch of one of the curves of a run.
 #[derive(Debug, Clone, Copy)]
 struct Span {
     curve: usize,
     t: [f64; 2],
-    pieces: usize,
 }
 
 /// Curves that follow each other smoothly, and the tolerance.
@@ -48,16 +59,24 @@ pub(crate) struct Run<'a, S> {
     pub(crate) is_spent: &'a dyn Fn() -> bool,
 }
 
-/// Samples of a stretch: points, the length up to each, and its share of the pieces by what the curves need alone.
+/// Samples of a stretch: points, the length up to each, and the pieces that are expected up to each.
 struct Samples {
     p: Vec<Point>,
+    /// Intervals between samples of each curve.
+    each: usize,
     length: Vec<f64>,
-    share: Vec<f64>,
+    expected: Vec<f64>,
 }
 
-/// Spans that are covered together.
-struct Covered {
+/// Consecutive spans with the points and tangents at their ends.
+#[derive(Debug, Clone)]
+struct Stretch {
     spans: Vec<Span>,
+    ends: [BreakPoint; 2],
+}
+
+/// What covers a stretch.
+struct Covered {
     ends: [BreakPoint; 2],
     /// A line if there is none.
     spline: Option<Spline>,
@@ -72,107 +91,136 @@ impl Covered {
 }
 
 impl<S: Source> Run<'_, S> {
-    /// Appends few quadratics from the current point of `path`: the fewest for each curve, then fewer for several together, as many as
-    /// gain by it.
+    /// Appends few quadratics from the current point of `path`.
     pub(crate) fn cover(
         &self,
         ends: [BreakPoint; 2],
         path: &mut BezPath,
         report: &mut Report,
     ) -> Result<(), NotFinite> {
-        let mut alone = Vec::with_capacity(self.curves.len());
-        for (curve, source) in self.curves.iter().enumerate() {
-            let from = if curve == 0 { ends[0] } else { source.end(0.0)? };
-            let to = if curve + 1 == self.curves.len() { ends[1] } else { source.end(1.0)? };
-            self.alone(Span { curve, t: [0.0, 1.0], pieces: 1 }, [from, to], &mut alone)?;
-        }
         let unknown = |s: &S| s.resolved([0.0, 1.0], SPLINE_SAMPLES, self.tolerance).is_none();
         let assurance = if self.curves.iter().any(unknown) { Assurance::Sampled } else { Assurance::Checked };
-        let mut i = 0;
-        while i < alone.len() {
-            let mut group: Option<Covered> = None;
-            let (mut end, mut stride) = (i + 1, 1);
-            while end < alone.len() {
-                let to = (end + stride).min(alone.len());
-                let now = group.as_ref().map_or(alone[i].pieces(), Covered::pieces);
-                let most = now + alone[end..to].iter().map(Covered::pieces).sum::<usize>() - 1;
-                let spans: Vec<Span> = alone[i..to].iter().flat_map(|c| c.spans.iter().copied()).collect();
-                let is_line = |c: &Covered| c.spline.is_none();
-                let too_many = now > TOGETHER || most > 2 * TOGETHER || to - i > MOST_CURVES;
-                let found = if too_many || alone[i..to].iter().any(is_line) {
-                    None
-                } else {
-                    self.together(spans, [alone[i].ends[0], alone[to - 1].ends[1]], most)?
-                };
-                match found {
-                    Some(found) => (group, end, stride) = (Some(found), to, 2 * stride),
-                    None if stride > 1 => stride = 1,
-                    None => break,
-                }
-            }
-            group.as_ref().unwrap_or(&alone[i]).append((self.tolerance, assurance), path, report);
-            i = end;
-        }
-        Ok(())
-    }
-
-    /// Appends what covers a curve by itself, divided if it needs too many pieces.
-    fn alone(&self, span: Span, ends: [BreakPoint; 2], out: &mut Vec<Covered>) -> Result<(), NotFinite> {
-        let mut stack = vec![(span, ends)];
         let mut futile = 0;
-        while let Some((span, ends)) = stack.pop() {
-            let [t0, t1] = span.t;
-            let mut samples = self.samples(&[span], 2 * SPLINE_SAMPLES, &ends)?;
-            if let Some(error) = samples.straight(STRAIGHT * self.tolerance) {
-                out.push(Covered { spans: vec![span], ends, spline: None, error, resolved: true });
-                continue;
-            }
-            // Upwards by the error, which goes with the third to fourth power of the length, then back to the least that fits.
-            let (mut n, mut too_few) = (1, 0);
-            let mut found = None;
-            while n <= MOST && too_few < n {
-                if samples.p.len() <= SPLINE_SAMPLES * n {
-                    samples = self.samples(&[span], (SPLINE_SAMPLES * n).next_power_of_two(), &ends)?;
-                }
-                match self.best(&[span], n, &samples, &ends)? {
-                    Ok(fits) => (found, n) = (Some(fits), n - 1),
-                    Err(_) if found.is_some() => break,
-                    Err(error) => {
-                        too_few = n;
-                        let more = n as f64 * (error / self.tolerance).min(1e6).powf(0.25) * 0.85;
-                        n = (more as usize).clamp(n + 1, 2 * n + 2);
-                    }
-                }
-            }
-            if let Some((spline, error)) = found {
-                let span = Span { pieces: spline.c.len(), ..span };
-                out.push(Covered { spans: vec![span], ends, spline: Some(spline), error, resolved: true });
-            } else if t1 - t0 < SHORTEST || futile > MOST_FUTILE + out.len() || (self.is_spent)() {
-                let error = samples.straight(f64::INFINITY).unwrap_or(self.tolerance);
-                out.push(Covered { spans: vec![span], ends, spline: None, error, resolved: error <= self.tolerance });
-            } else {
-                futile += 1;
-                let t = 0.5 * (t0 + t1);
-                let mid = self.curves[span.curve].end(t)?;
-                stack.push((Span { t: [t, t1], ..span }, [mid, ends[1]]));
-                stack.push((Span { t: [t0, t], ..span }, [ends[0], mid]));
-            }
+        for stretch in self.stretches(ends)? {
+            let covered = self.covered(stretch, &mut futile)?;
+            covered.iter().for_each(|c| c.append((self.tolerance, assurance), path, report));
         }
         Ok(())
     }
 
-    /// The fewest pieces for several spans, if that is at most `most`.
-    fn together(&self, spans: Vec<Span>, ends: [BreakPoint; 2], most: usize) -> Result<Option<Covered>, NotFinite> {
-        let each = (SPLINE_SAMPLES * most).div_ceil(spans.len()).next_power_of_two().max(8);
-        let samples = self.samples(&spans, each, &ends)?;
-        let mut found = None;
-        for n in (1..=most).rev() {
-            match self.best(&spans, n, &samples, &ends)? {
-                Ok(fits) => found = Some(fits),
-                Err(_) => break,
+    /// The curves of the run: straight ones alone, and between them as many together as a spline may cover.
+    fn stretches(&self, ends: [BreakPoint; 2]) -> Result<Vec<Stretch>, NotFinite> {
+        let mut all: Vec<(Stretch, f64)> = Vec::new();
+        let (mut from, last) = (ends[0], self.curves.len() - 1);
+        for (curve, source) in self.curves.iter().enumerate() {
+            let to = if curve == last { ends[1] } else { source.end(1.0)? };
+            let span = Span { curve, t: [0.0, 1.0] };
+            let samples = self.samples(&[span], SPLINE_SAMPLES, &[from, to])?;
+            let straight = samples.straight(STRAIGHT * self.tolerance).is_some();
+            // A line has an expectation beyond all limits.
+            let expected = if straight { f64::INFINITY } else { samples.expected[samples.p.len() - 1] };
+            match all.last_mut() {
+                Some((s, sum)) if *sum + expected <= 0.5 * MOST as f64 && s.spans.len() < MOST_CURVES => {
+                    s.spans.push(span);
+                    s.ends[1] = to;
+                    *sum += expected;
+                }
+                _ => all.push((Stretch { spans: vec![span], ends: [from, to] }, expected)),
+            }
+            from = if curve == last { to } else { self.curves[curve + 1].end(0.0)? };
+        }
+        Ok(all.into_iter().map(|(s, _)| s).collect())
+    }
+
+    /// Covers a stretch, divided where it needs too many pieces or fewer in parts.
+    fn covered(&self, stretch: Stretch, futile: &mut usize) -> Result<Vec<Covered>, NotFinite> {
+        let (found, expected) = self.least(&stretch)?;
+        let [t0, t1] = stretch.spans[0].t;
+        let unsuited = |c: &Covered| c.pieces() as f64 > (UNSUITED * expected).max(2.0);
+        let whole = match found {
+            Some(c) if stretch.spans.len() == 1 || !unsuited(&c) => return Ok(vec![c]),
+            None if stretch.spans.len() == 1 && (t1 - t0 < SHORTEST || *futile > MOST_FUTILE || (self.is_spent)()) => {
+                let samples = self.samples(&stretch.spans, SPLINE_SAMPLES, &stretch.ends)?;
+                let error = samples.straight(f64::INFINITY).unwrap_or(self.tolerance);
+                return Ok(vec![Covered {
+                    ends: stretch.ends,
+                    spline: None,
+                    error,
+                    resolved: error <= self.tolerance,
+                }]);
+            }
+            found => found,
+        };
+        *futile += usize::from(whole.is_none());
+        let mut halves = Vec::new();
+        for half in self.halves(stretch)? {
+            halves.extend(self.covered(half, futile)?);
+        }
+        *futile = if halves.iter().all(|c| c.resolved) { 0 } else { *futile };
+        // Points that are stored: a control point for each piece, and one between splines.
+        let points: usize = halves.iter().map(|c| c.pieces() + 1).sum();
+        Ok(match whole {
+            Some(whole) if whole.pieces() < points => vec![whole],
+            _ => halves,
+        })
+    }
+
+    /// Divides a stretch between curves, or a curve in its middle.
+    fn halves(&self, stretch: Stretch) -> Result<[Stretch; 2], NotFinite> {
+        let Stretch { spans, ends } = stretch;
+        let (mut first, mut second) = (spans.clone(), spans);
+        if let [span] = first[..] {
+            let mid = 0.5 * (span.t[0] + span.t[1]);
+            first[0].t[1] = mid;
+            second[0].t[0] = mid;
+        } else {
+            first.truncate(second.len() / 2);
+            second.drain(..first.len());
+        }
+        let end = |s: &Span, t: f64| self.curves[s.curve].end(t);
+        let to = end(&first[first.len() - 1], first[first.len() - 1].t[1])?;
+        let from = end(&second[0], second[0].t[0])?;
+        Ok([Stretch { spans: first, ends: [ends[0], to] }, Stretch { spans: second, ends: [from, ends[1]] }])
+    }
+
+    /// What covers a stretch with the fewest pieces, if [`MOST`] suffice, and how many were expected.
+    fn least(&self, stretch: &Stretch) -> Result<(Option<Covered>, f64), NotFinite> {
+        let Stretch { spans, ends } = stretch;
+        let sampled = |n: usize| {
+            let each = (SPLINE_SAMPLES * (n + 1)).div_ceil(spans.len());
+            self.samples(spans, each.max(SPLINE_SAMPLES), ends)
+        };
+        let mut samples = sampled(1)?;
+        let covered = |spline, error| Some(Covered { ends: *ends, spline, error, resolved: true });
+        if let Some(error) = samples.straight(STRAIGHT * self.tolerance) {
+            return Ok((covered(None, error), 1.0));
+        }
+        let expected = samples.expected[samples.p.len() - 1];
+        let mut n = ((0.5 * expected) as usize).clamp(1, MOST / 2);
+        let (mut too_few, mut found) = (0, None);
+        // Up by the error, which goes with the third to fourth power of the length, then down to the least that fits.
+        while n <= MOST && too_few < n {
+            if samples.p.len() <= SPLINE_SAMPLES * n {
+                samples = sampled(n)?;
+            }
+            match self.best(spans, n, &samples, ends)? {
+                Ok((spline, error, bound)) => {
+                    found = Some((spline, error));
+                    // The bound of the error grows with the third to fourth power of the length, too.
+                    if bound * (n as f64 / (n as f64 - 1.0)).powi(2) > self.tolerance {
+                        break;
+                    }
+                    n -= 1;
+                }
+                Err(_) if found.is_some() => break,
+                Err(error) => {
+                    too_few = n;
+                    let more = n as f64 * (error / self.tolerance).min(1e6).powf(0.25) * 0.85;
+                    n = (more as usize).clamp(n + 1, 2 * n + 2);
+                }
             }
         }
-        Ok(found.map(|(spline, error)| Covered { spans, ends, spline: Some(spline), error, resolved: true }))
+        Ok((found.and_then(|(spline, error)| covered(Some(spline), error)), expected))
     }
 
     /// The best spline of `n` pieces with its error, measured at samples as close as it needs; otherwise the least error found.
@@ -182,15 +230,15 @@ impl<S: Source> Run<'_, S> {
         n: usize,
         samples: &Samples,
         ends: &[BreakPoint; 2],
-    ) -> Result<Result<(Spline, f64), f64>, NotFinite> {
-        let (spline, error, u) = match Spline::best(n, samples, ends, self.tolerance) {
+    ) -> Result<Result<(Spline, f64, f64), f64>, NotFinite> {
+        let (spline, [error, bound], u) = match Spline::best(n, samples, ends, self.tolerance) {
             Ok(found) => found,
             Err(error) => return Ok(Err(error)),
         };
         let step = u.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
         let by = (step * CLOSELY).ceil().min(MOST_CLOSELY) as usize;
         if by < 2 {
-            return Ok(Ok((spline, error)));
+            return Ok(Ok((spline, error, bound)));
         }
         let closer = self.samples(spans, by * (samples.p.len() - 1) / spans.len(), ends)?;
         let mut feet: Vec<f64> = (0..closer.p.len())
@@ -200,13 +248,13 @@ impl<S: Source> Run<'_, S> {
             })
             .collect();
         let error = spline.checked(&closer, &mut feet).filter(|e| *e <= ACCEPTED * self.tolerance);
-        Ok(error.map(|e| (spline, e)).ok_or(MISSED * self.tolerance))
+        Ok(error.map(|e| (spline, e, bound)).ok_or(MISSED * self.tolerance))
     }
 
     /// `each` intervals between samples of every span.
     fn samples(&self, spans: &[Span], each: usize, ends: &[BreakPoint; 2]) -> Result<Samples, NotFinite> {
         let all = each * spans.len() + 1;
-        let (mut p, mut length) = (vec![ends[0].p], vec![0.0]);
+        let mut p = vec![ends[0].p];
         for span in spans {
             let [t0, t1] = span.t;
             for i in 1..=each {
@@ -215,18 +263,11 @@ impl<S: Source> Run<'_, S> {
                 if !q.is_finite() {
                     return Err(NotFinite { t, at: self.curves[span.curve].place(t) });
                 }
-                length.push(length[p.len() - 1] + q.distance(p[p.len() - 1]));
                 p.push(q);
             }
         }
         p[all - 1] = ends[1].p;
-        let pieces: usize = spans.iter().map(|s| s.pieces).sum();
-        let mut share = vec![0.0];
-        for span in spans {
-            let (from, step) = (share[share.len() - 1], span.pieces as f64 / (pieces * each) as f64);
-            share.extend((1..=each).map(|i| from + step * i as f64));
-        }
-        Ok(Samples { p, length, share })
+        Ok(Samples::new((p, each), ends, self.tolerance))
     }
 }
 
@@ -246,19 +287,49 @@ impl Covered {
 }
 
 impl Samples {
+    fn new((p, each): (Vec<Point>, usize), ends: &[BreakPoint; 2], tolerance: f64) -> Self {
+        let (mut length, mut expected) = (vec![0.0], vec![0.0]);
+        let pieces = (128.0 * BALANCED * tolerance).powf(-0.25);
+        let turn = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b)).abs();
+        let mut before = ends[0].away;
+        for i in 1..p.len() {
+            let chord = p[i] - p[i - 1];
+            let along = chord.hypot();
+            // Half of the turns at inner samples, and those at the ends.
+            let after = if i + 1 < p.len() { p[i + 1] - p[i] } else { ends[1].into };
+            let half = |inner: bool, turn: f64| if inner { 0.5 * turn } else { turn };
+            let angle = half(i > 1, turn(before, chord)) + half(i + 1 < p.len(), turn(chord, after));
+            length.push(length[i - 1] + along);
+            expected.push(expected[i - 1] + pieces * angle.powf(0.75) * along.powf(0.25));
+            before = chord;
+        }
+        Self { p, each, length, expected }
+    }
+
     /// The largest distance from the chord, if it is at most `limit` and the samples advance along it.
     fn straight(&self, limit: f64) -> Option<f64> {
         let (a, b) = (self.p[0], self.p[self.p.len() - 1]);
         let (q, length) = (b - a, a.distance(b));
         let advances = self.p.windows(2).all(|w| (w[1] - w[0]).dot(q) >= 0.0);
-        let worst = self.p.iter().map(|p| (*p - a).cross(q).abs()).fold(0.0, f64::max) / length.max(f64::MIN_POSITIVE);
+        let off = |p: &Point| if length > 0.0 { (*p - a).cross(q).abs() / length } else { a.distance(*p) };
+        let worst = self.p.iter().map(off).fold(0.0, f64::max);
         ((advances || limit == f64::INFINITY) && worst <= limit).then_some(worst)
     }
 
-    /// Shares along which pieces are laid out to begin with: by what the curves need alone, and by length.
+    /// Shares along which pieces are laid out to begin with: by the parameters of curves with what is expected of each, and by length.
     fn layouts(&self) -> [Vec<f64>; 2] {
-        let whole = self.length[self.p.len() - 1].max(f64::MIN_POSITIVE);
-        [self.share.clone(), self.length.iter().map(|x| x / whole).collect()]
+        let all = self.p.len() - 1;
+        let even: Vec<f64> = (0..=all)
+            .map(|i| {
+                let k = i / self.each * self.each;
+                let next = (k + self.each).min(all);
+                self.expected[k] + (self.expected[next] - self.expected[k]) * (i - k) as f64 / self.each as f64
+            })
+            .collect();
+        [&even, &self.length].map(|up_to| {
+            let whole = up_to[all].max(f64::MIN_POSITIVE);
+            up_to.iter().map(|x| x / whole).collect()
+        })
     }
 }
 
@@ -306,20 +377,24 @@ impl Spline {
     }
 
     /// The best spline of `n` pieces with its error and the foot points of the samples; otherwise the least error found.
-    fn best(n: usize, samples: &Samples, ends: &[BreakPoint; 2], tolerance: f64) -> Result<(Self, f64, Vec<f64>), f64> {
+    fn best(
+        n: usize,
+        samples: &Samples,
+        ends: &[BreakPoint; 2],
+        tolerance: f64,
+    ) -> Result<(Self, [f64; 2], Vec<f64>), f64> {
         let mut least = f64::INFINITY;
-        for layout in samples.layouts() {
+        let layouts = samples.layouts();
+        let alike = layouts[0].iter().zip(&layouts[1]).all(|(a, b)| (a - b).abs() * n as f64 <= ALIKE);
+        for layout in &layouts[..if alike || n == 1 { 1 } else { 2 }] {
             let mut u: Vec<f64> = layout.iter().map(|s| s * n as f64).collect();
-            let Some((spline, error)) = Self::fitted(n, samples, ends, &mut u, tolerance) else { continue };
+            let Some((spline, [error, bound])) = Self::fitted(n, samples, ends, &mut u, tolerance) else { continue };
             least = least.min(error);
             if error <= ACCEPTED * tolerance
                 && let Some(checked) = spline.checked(samples, &mut u)
                 && checked <= ACCEPTED * tolerance
             {
-                return Ok((spline, checked, u));
-            }
-            if n == 1 {
-                break;
+                return Ok((spline, [checked, bound], u));
             }
         }
         Err(least.max(MISSED * tolerance))
@@ -332,7 +407,7 @@ impl Spline {
         ends: &[BreakPoint; 2],
         u: &mut [f64],
         tolerance: f64,
-    ) -> Option<(Self, f64)> {
+    ) -> Option<(Self, [f64; 2])> {
         let [from, to] = ends;
         if n == 1 {
             let (q, turn) = (to.p - from.p, from.away.cross(to.into));
@@ -343,19 +418,20 @@ impl Spline {
             };
             return (a > 0.0 && b > 0.0 && spline.c[0].is_finite()).then(|| {
                 let error = worst(&spline, u);
-                (spline, error)
+                (spline, [error; 2])
             });
         }
         let mut weights = vec![1.0; u.len()];
         let mut normals = tangents(samples);
         let mut best: Option<(Self, f64, Vec<f64>)> = None;
-        let mut errors = vec![0.0; u.len()];
-        for round in 0..ROUNDS {
+        let (mut errors, mut bound) = (vec![0.0; u.len()], f64::INFINITY);
+        for _ in 0..ROUNDS {
             let Some(spline) = solve(n, samples, ends, u, &weights, &normals) else { break };
-            let mut worst = 0.0f64;
+            let (mut worst, mut squares) = (0.0f64, 0.0);
             for (i, p) in samples.p.iter().enumerate() {
                 errors[i] = spline.settle(*p, &mut u[i], 2).abs();
                 worst = worst.max(errors[i]);
+                squares += weights[i] * errors[i] * errors[i];
                 normals[i] = spline.at(u[i]).1.normalize();
             }
             (u[0], u[samples.p.len() - 1]) = (0.0, n as f64);
@@ -366,10 +442,17 @@ impl Spline {
                 best = Some((spline, worst, u.to_vec()));
             }
             let least = best.as_ref().map_or(f64::INFINITY, |b| b.1);
-            if least <= ACCEPTED * 0.98 * tolerance || (round >= 5 && least > 4.0 * tolerance) {
+            // No spline has a largest error below the weighted mean of the least squares.
+            let before = std::mem::replace(&mut bound, (squares / weights.iter().sum::<f64>()).sqrt());
+            if least <= ACCEPTED * 0.98 * tolerance {
                 break;
             }
-            if round >= 5 {
+            // Foot points still move while the mean falls.
+            let falls = (bound / before).min(1.0);
+            if bound * falls.powi(PATIENCE) > HOPELESS * tolerance {
+                break;
+            }
+            if falls > SETTLED {
                 weights.iter_mut().zip(&errors).for_each(|(w, e)| *w *= 0.02 + e / worst);
                 let most = weights.iter().copied().fold(0.0, f64::max);
                 weights.iter_mut().for_each(|w| *w = (*w / most).max(1e-6));
@@ -377,7 +460,7 @@ impl Spline {
         }
         let (spline, worst, feet) = best?;
         u.copy_from_slice(&feet);
-        Some((spline, worst))
+        Some((spline, [worst, bound]))
     }
 
     /// The largest error at and between the samples; `None` if they may have missed something.
