@@ -118,7 +118,7 @@ pub(crate) fn outside(unread: &UnreadImages) -> Option<String> {
 }
 
 /// Lists the images that were not read.
-fn unread(unread: &UnreadImages) -> Vec<String> {
+pub(crate) fn unread(unread: &UnreadImages) -> Vec<String> {
     let unreadable = unread.unreadable.iter().map(|link| format!("the image {link} cannot be read"));
     let outside_links = unread.outside.iter().map(|link| format!("the image {link} was not read"));
     unreadable.chain(outside_links).chain(outside(unread)).collect()

@@ -15,6 +15,7 @@ use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, Format};
 use pathwarp_engine::input;
 use pathwarp_engine::input::GimpFile;
+use pathwarp_engine::links::Destination;
 use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::output;
 use pathwarp_engine::{advice, readable};
@@ -82,7 +83,8 @@ pub(crate) fn convert_file(
 fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOptions) -> Result<Status, Failure> {
     let doc = input::document(file, &options.reading)?;
     let read = input::read_options(file, &options.reading);
-    let Exported { bytes, warnings, kerf } = export::drawing(doc.decoded().into_owned(), format, &read, options, None)?;
+    let Exported { bytes, warnings, kerf } =
+        export::drawing(doc.decoded().into_owned(), (format, &Destination::Back), &read, options, None)?;
     let (unread, undrawn) = (doc.unread_images(), doc.undrawn());
     let is_undecided = kerf.as_ref().is_some_and(KerfReport::is_partial);
     let is_partial = is_undecided || !unread.is_empty() || !undrawn.is_empty();
