@@ -144,6 +144,12 @@ fn results_without_a_place_hold_their_pictures() {
         assert_eq!(source == drawing, to == "r.svg", "{to}");
         let text = String::from_utf8(source).unwrap();
         assert_eq!(links(&text).iter().all(|l| data(l).is_some()), holds, "{to}");
+        let back = pathwarp_in(&art, &["unwarp", to, "-o", "in/back.svg"], b"");
+        assert!(back.status.success(), "{}", String::from_utf8_lossy(&back.stderr));
+        let back = fs::read_to_string(art.join("in/back.svg")).unwrap();
+        let found =
+            links(&back).into_iter().map(|l| data(&l).unwrap_or_else(|| fs::read(file(&art.join("in"), &l)).unwrap()));
+        assert_eq!(found.collect::<Vec<_>>(), contents, "{to}");
     }
 }
 

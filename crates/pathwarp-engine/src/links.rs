@@ -25,7 +25,10 @@ impl Destination {
     }
 
     /// A result with the links that it has there. `read` says where they lead now, and what may be read.
-    pub(crate) fn linked(&self, svg: String, read: &ReadOptions) -> Result<String, Failure> {
+    ///
+    /// # Errors
+    /// The pictures that are put in exceed the limits.
+    pub fn linked(&self, svg: String, read: &ReadOptions) -> Result<String, Failure> {
         Ok(self.relinking(read).of(&svg, read)?.unwrap_or(svg))
     }
 

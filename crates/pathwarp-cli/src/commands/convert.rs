@@ -24,6 +24,7 @@ use pathwarp_svg::Origin;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
+use std::string::FromUtf8Error;
 
 pub(super) fn convert_command() -> Command {
     Command::new("convert")
@@ -253,7 +254,8 @@ pub(super) fn unwarp(m: &ArgMatches) -> Result<Status, Failure> {
     let target = target(m, [file])?;
     let name = input::display(file);
     let bytes = input::bytes(file)?;
-    let limits = arguments::reading(m)?.limits.for_input(bytes.len());
+    let reading = arguments::reading(m)?;
+    let limits = reading.limits.for_input(bytes.len());
     let origin = Origin::of_file(&bytes, &name, &limits).map_err(|e| Failure::from(e).about(&name))?;
     let lacks =
         |what: &str| Failure::Input(format!("{name}: holds no {what}; only drawings written with --embed-recipe do"));
@@ -261,7 +263,11 @@ pub(super) fn unwarp(m: &ArgMatches) -> Result<Status, Failure> {
     if m.get_flag("recipe") && origin.recipe.trim().is_empty() {
         return Err(lacks("recipe"));
     }
-    let bytes = if m.get_flag("recipe") { origin.recipe.into_bytes() } else { origin.source };
+    let bytes = match (String::from_utf8(origin.source), Destination::of(target)) {
+        _ if m.get_flag("recipe") => origin.recipe.into_bytes(),
+        (Ok(text), to @ Destination::File(_)) => to.linked(text, &input::read_options(file, &reading))?.into_bytes(),
+        (text, _) => text.map_or_else(FromUtf8Error::into_bytes, String::into_bytes),
+    };
     output::write(target, &bytes)?;
     Ok(Status::Complete)
 }

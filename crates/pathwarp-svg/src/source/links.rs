@@ -124,8 +124,8 @@ impl Relinking {
         if is_still || !["href", "src", "url("].iter().any(|word| svg.contains(word)) {
             return Ok(None);
         }
-        let Ok(doc) = xml::document(svg) else { return Ok(None) };
         let options = options.begin(svg.len());
+        let Ok(doc) = xml::parse(svg, "the drawing", &options.budget) else { return Ok(None) };
         let mut new = BTreeMap::new();
         for node in doc.descendants() {
             self.rewrite(node, svg, &options, &mut new)?;
