@@ -621,7 +621,8 @@ impl FileArtwork for SvgArtwork {
             n => Some(format!("{n} filters became pictures; --filters affine keeps them")),
         });
         warnings.extend(folds);
-        warnings.extend(advice::outside(&self.doc.unread_images()));
+        let unread = self.doc.unread_images();
+        warnings.extend(advice::unread_besides(&unread, &warped.skipped));
         beside::check_surface(built)?;
         let parts = built.parts.iter().zip(&options);
         let surfaces = parts.map(|(part, options)| beside::surface_files(&self.doc, part, options));
@@ -649,7 +650,7 @@ impl FileArtwork for SvgArtwork {
             warnings,
             files,
             preview: preview.transpose()?,
-            partial: empty || is_damaged || kerf.as_ref().is_some_and(KerfReport::is_partial),
+            partial: empty || is_damaged || !unread.is_empty() || kerf.as_ref().is_some_and(KerfReport::is_partial),
             kerf,
             proportions: None,
             page,

@@ -3,7 +3,7 @@
 use super::fragment::Writer;
 use super::input::WriteInput;
 use super::{keep, line, page};
-use crate::bend::options::Structure;
+use crate::bend::options::{Structure, WarpOptions};
 use crate::bend::outcome::{Notes, Skipped, Warning, WarpedDocument};
 use crate::scene::drawing::Drawing;
 use crate::source::elements::{ElementId, is_shape};
@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 /// Writes the document to `out`, with warnings and everything skipped.
 pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<(), Error> {
     let structure = input.options.structure;
-    let unread = unread_images(input.drawing).chain(elements(input));
+    let unread = unread_images(input.drawing, input.options).chain(elements(input));
     let mut notes = Notes::default();
     for note in &input.scene.notes {
         notes.add(note.text, &note.name);
@@ -69,13 +69,14 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
     Ok(())
 }
 
-/// Lists the images that could not be read, whether they are bent or stay.
-fn unread_images(drawing: &Drawing) -> impl Iterator<Item = Skipped> {
+/// Lists the selected images that could not be read.
+fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item = Skipped> {
     let source = &drawing.source;
     let missed = &drawing.missed.images;
-    let is_image = move |e: &ElementId| matches!(source.elements[*e].tag.as_ref(), "image" | "feImage");
-    let all = if missed.is_empty() { 0 } else { source.elements.len() };
-    (0..all).filter(is_image).filter_map(|e| {
+    let selected = if missed.is_empty() { Vec::new() } else { options.selection.resolve(source) };
+    let is_image = move |e: ElementId| matches!(source.elements[e].tag.as_ref(), "image" | "feImage");
+    let images = selected.into_iter().enumerate().filter(move |(e, s)| *s && is_image(*e));
+    images.filter_map(|(e, _)| {
         let own = source.link(e)?;
         let link = missed.iter().find(|link| is_same_link(&own, link))?;
         let reason = if drawing.missed.outside.contains(link) {
