@@ -26,6 +26,7 @@ mod guarantee;
 mod hostile;
 mod inkscape;
 mod lettering;
+mod linked_pictures;
 mod oracle;
 mod photographs;
 mod pictures;

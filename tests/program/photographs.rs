@@ -250,3 +250,31 @@ fn bent_photographs_stay_jpegs_of_like_quality() {
     assert!(said.contains("CMYK") && embedded(&svg).len() == 1, "{said}");
     assert!(!bent(&drawing(&colored, "image/jpeg", ""), &[]).1.contains("CMYK"));
 }
+
+/// A turned photograph has the size at which it is shown, and comes through to the byte where it is not bent: this one ends with its header,
+/// so decoded and encoded again it would be another.
+#[test]
+fn turned_photographs_that_are_not_bent_are_not_decoded() {
+    // An APP1 segment with orientation (0x0112) = 6: the first row is the right side.
+    const TURNED: &[u8] = b"\xff\xe1\x00\x22Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0";
+    let dir = tempfile::tempdir().unwrap();
+    let wide = Picture::from(photograph(DRAWING, 200));
+    let mut file = wide.write(PictureFormat::Jpeg { quality: PictureFormat::QUALITY }).unwrap();
+    file.splice(2..2, TURNED.iter().copied());
+    let scan = file.windows(2).position(|w| w == b"\xff\xda").unwrap() + 2;
+    file.truncate(scan + usize::from(u16::from_be_bytes([file[scan], file[scan + 1]])));
+    assert!(Picture::read(&file).unwrap().early_end.is_some());
+    fs::write(dir.path().join("turned.jpg"), &file).unwrap();
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 300 300'><image id='i' href='turned.jpg'/></svg>";
+    fs::write(dir.path().join("in.svg"), svg).unwrap();
+    for structure in ["keep", "flatten"] {
+        let args = ["affine", "in.svg", "--rotate", "90", "--structure", structure, "--fit", "none", "-o", "out.svg"];
+        let output = pathwarp_in(dir.path(), &[&args[..], &["--report", "-"]].concat(), b"");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["inputs"][0]["frame"], serde_json::json!([0.0, 0.0, 120.0, 200.0]));
+        let result = fs::read_to_string(dir.path().join("out.svg")).unwrap();
+        let embedded = format!("data:image/jpeg;base64,{}", STANDARD.encode(&file));
+        assert!(result.contains(if structure == "keep" { "turned.jpg" } else { &embedded }), "{result}");
+    }
+}

@@ -3406,6 +3406,8 @@
     unit = byId("save-unit");
     background = byId("save-background");
     colour = byId("save-colour");
+    /** The photograph whose own size was offered. */
+    offered = "";
     /** The steps that were downloaded last. */
     downloaded = "";
     show() {
@@ -3459,6 +3461,9 @@
       if (state.steps.length === 0) return toast(NOTHING);
       this.name.value = state.target;
       this.choose("svg");
+      if (!state.photograph) this.recall();
+      else if (this.offered !== state.drawing) [this.unit.value, this.size.value] = ["%", "100"];
+      this.offered = state.photograph ? state.drawing : "";
       this.folder.value = state.savedIn ?? state.folder;
       if (unwritable) this.refuse(unwritable);
       this.dialog.showModal();
@@ -3483,7 +3488,7 @@
         return null;
       }
       const background = this.background.value === "colour" ? this.colour.value : this.background.value;
-      localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background }));
+      if (!this.offered) localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background }));
       const picture = { ...unit === "%" ? { scale: size / 100 } : { width: size }, background: background === "none" ? null : background };
       return { name, folder, picture };
     }

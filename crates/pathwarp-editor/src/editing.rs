@@ -19,6 +19,7 @@ use pathwarp_engine::format::{Choice, DRAWINGS, Format, PICTURES};
 use pathwarp_engine::framed::framed;
 use pathwarp_engine::input::{Artwork as _, FileArtwork as _, SvgArtwork, WarpRequest, WarpedResult, Which};
 use pathwarp_engine::lettering::set_plainly;
+use pathwarp_engine::links::Destination;
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::output::PendingFile;
 use pathwarp_engine::recipe_file::SavedRecipe;
@@ -26,8 +27,8 @@ use pathwarp_engine::report::ReportedShape;
 use pathwarp_engine::session::{Framed, Ready, Session};
 use pathwarp_engine::steps::OF_STEPS;
 use pathwarp_engine::{coming_from, recipe_file, references};
-use pathwarp_raster::{Picture, RenderOptions, Size};
-use pathwarp_svg::{Document, Origin, ReadOptions, Turned, families, usvg_tree};
+use pathwarp_raster::{RenderOptions, Size};
+use pathwarp_svg::{Document, Origin, ReadOptions, Relinking, families, usvg_tree};
 use pathwarp_text::TextStyle;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -96,15 +97,18 @@ impl EditedArtwork {
 
     /// Makes the sketch of a large drawing, unless there is one.
     fn draw_sketch(&mut self) -> Result<(), Failure> {
-        /// Size of texts, in bytes, from which small pictures show a bitmap: bending fifty of them takes seconds.
+        /// Size of texts with their pictures, in bytes, from which small pictures show a bitmap: bending fifty of them takes seconds.
         const LARGE: usize = 256 << 10;
         /// The longer side of the bitmap, in pixels: small pictures are half as large.
         const PIXELS: f32 = 256.0;
-        let document = self.svg.document();
-        if document.text().len() < LARGE || self.sketch.is_some() {
+        let (document, reading) = (self.svg.document(), self.svg.reading());
+        let with_pictures = Relinking { embed: true, ..Relinking::default() };
+        if self.sketch.is_some()
+            || with_pictures.of(document.text(), reading)?.as_deref().unwrap_or(document.text()).len() < LARGE
+        {
             return Ok(());
         }
-        let bitmap = page::Picture::bitmap(document.text(), PIXELS, Some(Picture::turned));
+        let bitmap = page::Picture::bitmap(document.text(), PIXELS, reading);
         let (png, filled) = bitmap.map_err(Failure::Input)?;
         let place = document.user_to_px().inverse().transform_rect_bbox(filled);
         let boxed = |r: Rect| [r.x0, r.y0, r.width(), r.height()];
@@ -157,7 +161,7 @@ impl EditedArtwork {
     }
 
     /// The result as a file of this format; for a picture, as the SVG that it is drawn from.
-    fn finished(&mut self, recipe: &Recipe, format: Format) -> Result<Exported, Failure> {
+    fn finished(&mut self, recipe: &Recipe, format: Format, to: Destination) -> Result<Exported, Failure> {
         let folder = self.folder.clone();
         self.with_steps(recipe, Version::File, |session, svg, ready| {
             let embeds = matches!(format, Format::Svg | Format::Svgz);
@@ -167,9 +171,11 @@ impl EditedArtwork {
             };
             let embedded_recipe = embeds.then(text).transpose()?;
             let request = WarpRequest { recipe, embedded_recipe, ..session.request(svg, &ready)? };
-            svg.set_format(if format.of_picture(None).is_none() { format } else { Format::Svg });
+            if format.of_picture(None).is_none() {
+                svg.send(format, to);
+            }
             let written = svg.written(&request);
-            svg.set_format(Format::Svg);
+            svg.send(Format::Svg, Destination::Back);
             ready.checked(written)
         })
     }
@@ -179,18 +185,19 @@ impl EditedArtwork {
         &mut self,
         recipe: &Recipe,
         to: &Path,
+        stays: bool,
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), Failure> {
         let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
         let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
-        let Exported { bytes, mut warnings, kerf } = self.finished(recipe, format)?;
+        let destination = if stays { Destination::of(Some(to)) } else { Destination::Anywhere };
+        let Exported { bytes, mut warnings, kerf } = self.finished(recipe, format, destination)?;
         warnings.extend(kerf.map(|k| k.note()));
         if format.of_picture(None).is_none() {
             return Ok((bytes, warnings));
         }
         let limits = self.options.reading.limits.for_input(bytes.len());
-        let tree =
-            usvg_tree::parse_tree(&bytes, "the result", &ReadOptions::default().with_turned(Some(Picture::turned)))?;
+        let tree = usvg_tree::parse_tree(&bytes, "the result", self.svg.reading())?;
         let size = picture.scale.map_or(Size::Width(picture.width), Size::Scale);
         let background = picture.background.as_deref().map(background).transpose().map_err(Failure::usage)?;
         let background = background.and_then(|b| b.0);
@@ -280,6 +287,10 @@ impl Artwork for EditedArtwork {
         self.svg.document()
     }
 
+    fn reading(&self) -> &ReadOptions {
+        self.svg.reading()
+    }
+
     fn frame(&self) -> Rect {
         let known = self.framed.as_ref().map(|f| f.frame.rect);
         known.or_else(|| self.svg.bounding_box(Which::All)).unwrap_or_else(|| self.document().view_box())
@@ -298,9 +309,10 @@ impl Artwork for EditedArtwork {
         &mut self,
         recipe: &Recipe,
         to: &Path,
+        stays: bool,
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), String> {
-        let written = Self::written(self, recipe, to, picture);
+        let written = Self::written(self, recipe, to, stays, picture);
         self.said(written)
     }
 
@@ -397,10 +409,6 @@ impl EngineHost {
 impl Host for EngineHost {
     fn registry(&self) -> &Registry {
         &self.registry
-    }
-
-    fn turned(&self) -> Option<Turned> {
-        Some(Picture::turned)
     }
 
     fn first(&self) -> &[Info] {

@@ -5,7 +5,7 @@ use pathwarp::Outline;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
-use pathwarp_svg::{Document, Turned};
+use pathwarp_svg::{Document, ReadOptions};
 use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -53,11 +53,6 @@ pub trait Host: Send + Sync {
     /// Names that other programs have for deformations, each with that of the deformation: what a user may search for.
     fn foreign_words(&self) -> Vec<(&str, &str)> {
         Vec::new()
-    }
-
-    /// Turns pictures in drawings as browsers do.
-    fn turned(&self) -> Option<Turned> {
-        None
     }
 
     /// The families of the fonts there are.
@@ -112,6 +107,9 @@ pub trait Artwork: Send {
     /// The drawing.
     fn document(&self) -> &Document;
 
+    /// The options that it was read with, which results are read with, too.
+    fn reading(&self) -> &ReadOptions;
+
     /// The box that percentages of the first step refer to.
     fn frame(&self) -> Rect;
 
@@ -124,8 +122,8 @@ pub trait Artwork: Send {
     /// A step cannot be built, or the drawing cannot be bent.
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String>;
 
-    /// Bends the drawing and writes it in the format that the extension of `to` names, an SVG with the recipe and the source in it. Returns the
-    /// bytes and what the format cannot hold.
+    /// Bends the drawing and writes it in the format that the extension of `to` names, an SVG with the recipe and the source in it, and with
+    /// its linked pictures if it does not `stay` on this machine. Returns the bytes and what the format cannot hold.
     ///
     /// # Errors
     /// As for [`bend`](Self::bend), or the format is unknown.
@@ -133,6 +131,7 @@ pub trait Artwork: Send {
         &mut self,
         recipe: &Recipe,
         to: &Path,
+        stays: bool,
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), String>;
 

@@ -6,8 +6,8 @@
 use pathwarp::budget::{Budget, Limits};
 use pathwarp::kurbo::{BezPath, Point, Rect, Shape as _, Size, Vec2};
 use pathwarp_raster::{Pixmap, encode_png, render_group};
+use pathwarp_svg::ReadOptions;
 use pathwarp_svg::usvg_tree::parse_tree;
-use pathwarp_svg::{ReadOptions, Turned};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,8 +24,8 @@ pub(crate) struct Picture {
 
 impl Picture {
     /// Resolves a drawing. `decimals` is the number of decimals of coordinates, in px.
-    pub(crate) fn of(svg: &str, decimals: u8, turned: Option<Turned>) -> Result<Self, String> {
-        let tree = resolved(svg, turned)?;
+    pub(crate) fn of(svg: &str, decimals: u8, reading: &ReadOptions) -> Result<Self, String> {
+        let tree = resolved(svg, reading)?;
         let options = WriteOptions {
             id_prefix: Some(ID_PREFIX.into()),
             coordinates_precision: decimals,
@@ -37,10 +37,10 @@ impl Picture {
     }
 
     /// The text of a drawing that shows all there is, and not the page.
-    pub(crate) fn small(svg: &str, turned: Option<Turned>) -> Result<String, String> {
+    pub(crate) fn small(svg: &str, reading: &ReadOptions) -> Result<String, String> {
         /// Space around the drawing, as a share of its size.
         const MARGIN: f64 = 0.02;
-        let tree = resolved(svg, turned)?;
+        let tree = resolved(svg, reading)?;
         let seen = seen(&tree, svg.len())?;
         let margin = MARGIN * seen.width().max(seen.height());
         let options = WriteOptions { coordinates_precision: 2, indent: Indent::Spaces(0), ..WriteOptions::default() };
@@ -56,8 +56,8 @@ impl Picture {
     }
 
     /// A bitmap of all that a drawing shows, with its longer side of this many pixels: the PNG, and the box that it fills, in px.
-    pub(crate) fn bitmap(svg: &str, longest: f32, turned: Option<Turned>) -> Result<(Vec<u8>, Rect), String> {
-        let (drawn, filled) = drawn(resolved(svg, turned)?.as_ref(), longest, svg.len())?;
+    pub(crate) fn bitmap(svg: &str, longest: f32, reading: &ReadOptions) -> Result<(Vec<u8>, Rect), String> {
+        let (drawn, filled) = drawn(resolved(svg, reading)?.as_ref(), longest, svg.len())?;
         Ok((encode_png(&drawn).map_err(|e| e.to_string())?, filled))
     }
 
@@ -302,9 +302,8 @@ fn is_same(a: &str, b: &str) -> bool {
     read(a).zip(read(b)).is_some_and(|((a, m), (b, n))| m == n && near(a, b))
 }
 
-fn resolved(svg: &str, turned: Option<Turned>) -> Result<Arc<usvg::Tree>, String> {
-    let options = ReadOptions::default().with_turned(turned);
-    parse_tree(svg.as_bytes(), "the drawing", &options).map_err(|e| e.to_string())
+fn resolved(svg: &str, reading: &ReadOptions) -> Result<Arc<usvg::Tree>, String> {
+    parse_tree(svg.as_bytes(), "the drawing", reading).map_err(|e| e.to_string())
 }
 
 #[cfg(test)]
@@ -314,7 +313,10 @@ mod tests {
     #[test]
     fn any_name_is_shown() {
         let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path id="a&lt;&amp;&quot;&#10;b" d="M1,1h5v5z"/></svg>"#;
-        for text in [Picture::of(svg, 2, None).unwrap().text(), Picture::small(svg, None).unwrap()] {
+        for text in [
+            Picture::of(svg, 2, &ReadOptions::default()).unwrap().text(),
+            Picture::small(svg, &ReadOptions::default()).unwrap(),
+        ] {
             let document =
                 pathwarp_svg::Document::read(text.as_bytes(), "the picture", &ReadOptions::default()).unwrap();
             let id = &document.parts()[0].name;
@@ -326,7 +328,7 @@ mod tests {
         let svg = format!(
             "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' viewBox='0 0 40 20'>{body}</svg>"
         );
-        Picture::of(&svg, 4, None).unwrap()
+        Picture::of(&svg, 4, &ReadOptions::default()).unwrap()
     }
 
     #[test]
@@ -371,7 +373,7 @@ mod tests {
     }
 
     fn quick(text: &str) -> Option<Quick> {
-        Quick::from(text.to_owned(), &Picture::of(text, 2, None).unwrap())
+        Quick::from(text.to_owned(), &Picture::of(text, 2, &ReadOptions::default()).unwrap())
     }
 
     #[test]
@@ -380,7 +382,7 @@ mod tests {
         let changes = quick.next(&text("M0,0H8V9z", "red")).unwrap();
         let [(line, data)] = changes.as_slice() else { panic!("{changes:?}") };
         assert_eq!(data, "M0,0H8V9z");
-        let mut picture = Picture::of(&text("M0,0h9v9z", "red"), 2, None).unwrap();
+        let mut picture = Picture::of(&text("M0,0h9v9z", "red"), 2, &ReadOptions::default()).unwrap();
         picture.redraw(&changes);
         assert_eq!(picture.paths()[0], (*line, "M0,0H8V9z"));
         assert_eq!(quick.next(&text("M0,0H8V9z", "red")), Some(Vec::new()));

@@ -17,7 +17,8 @@ use pathwarp::deform::{Info, Variant};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Map as _, inverse_over};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
-use pathwarp_svg::{DrawingPart, Selection, Turned};
+use pathwarp_engine::framed::is_framed;
+use pathwarp_svg::{DrawingPart, ReadOptions, Selection};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -68,13 +69,13 @@ pub(crate) struct Shown {
     /// A look at it while something is dragged.
     pub(crate) is_draft: bool,
     pub(crate) about: Value,
-    turned: Option<Turned>,
+    reading: ReadOptions,
 }
 
 impl Shown {
     /// The picture of the drawing.
     pub(crate) fn picture(&self) -> Result<Picture, String> {
-        Picture::of(&self.svg, if self.is_draft { DRAFT_DECIMALS } else { DECIMALS }, self.turned)
+        Picture::of(&self.svg, if self.is_draft { DRAFT_DECIMALS } else { DECIMALS }, &self.reading)
     }
 }
 
@@ -254,6 +255,7 @@ impl Session {
             "toPx": document.user_to_px().as_coeffs(),
             "page": [page.x0, page.y0, page.width(), page.height()],
             "words": self.words,
+            "photograph": is_framed(document.text(), page.size()),
             "missing": document.missing(),
         })
     }
@@ -268,12 +270,14 @@ impl Session {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
         let bent = self.opened.artwork.bend(&recipe(given), fineness)?;
         let about = self.about(self.firsts(given), &bent);
-        Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about, turned: self.host.turned() })
+        let reading = self.opened.artwork.reading().clone();
+        Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about, reading })
     }
 
     /// The drawing as it is without steps.
     pub(crate) fn before(&self) -> Result<Picture, String> {
-        Picture::of(self.opened.artwork.document().text(), DECIMALS, self.host.turned())
+        let artwork = &self.opened.artwork;
+        Picture::of(artwork.document().text(), DECIMALS, artwork.reading())
     }
 
     /// The number of steps that come before bending.
@@ -480,7 +484,7 @@ impl Session {
         let frame = self.opened.artwork.frame();
         let tolerance = THUMBNAIL_TOLERANCE * frame.width().hypot(frame.height());
         let bent = self.opened.artwork.bend(&recipe(given), Fineness::Small(tolerance))?;
-        Picture::small(&bent.svg, self.host.turned())
+        Picture::small(&bent.svg, self.opened.artwork.reading())
     }
 
     /// A deformation with the values of its examples.
@@ -555,7 +559,7 @@ impl Session {
         if to.exists() && !own && !asked && !replace {
             return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
         }
-        let (bytes, lost) = self.finished(&to, &target.picture)?;
+        let (bytes, lost) = self.finished(&to, true, &target.picture)?;
         if let Err(why) = self.host.write(&to, &bytes) {
             return Ok(json!({ "unwritable": why }));
         }
@@ -574,18 +578,18 @@ impl Session {
     pub(crate) fn download(&mut self, target: &Target) -> Result<Value, String> {
         self.refuse_for_program("nothing can be downloaded")?;
         let to = self.place(target)?;
-        let (bytes, lost) = self.finished(&to, &target.picture)?;
+        let (bytes, lost) = self.finished(&to, false, &target.picture)?;
         let name = to.file_name().map(|n| n.to_string_lossy());
         Ok(json!({ "written": name, "bytes": STANDARD.encode(bytes), "warnings": lost }))
     }
 
-    /// The result in the format of the file `to`, and what that cannot hold.
-    fn finished(&mut self, to: &Path, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
+    /// The result in the format of the file `to`, where it `stays` unless that is elsewhere, and what it cannot hold.
+    fn finished(&mut self, to: &Path, stays: bool, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
         let given = recipe(&self.kept.now.steps);
         if saving::has_extension(to, &["toml"]) {
             return Ok((self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new()));
         }
-        self.opened.artwork.written(&given, to, picture)
+        self.opened.artwork.written(&given, to, stays, picture)
     }
 
     /// The file that a command line bends, what has to be run before, and the name of the file if it has been written now: a drawing that

@@ -6,7 +6,7 @@ use pathwarp::budget::Exceeded;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Kind;
 use pathwarp::{Error, GeometryError};
-use pathwarp_svg::{LetteringFrameError, ShapeReport, UnreadImages, Warning};
+use pathwarp_svg::{LetteringFrameError, ShapeReport, Skipped, UnreadImages, Warning};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The error of edits of a picture.
@@ -111,14 +111,21 @@ pub fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String], note
 }
 
 /// Describes images that were not read because they lie outside of the drawing's folder.
-pub(crate) fn outside(unread: &UnreadImages) -> Option<String> {
+fn outside(unread: &UnreadImages) -> Option<String> {
     let n = unread.outside.len();
     let what = if n == 1 { "1 linked image lies".to_owned() } else { format!("{n} linked images lie") };
     (n > 0).then(|| format!("{what} outside of the drawing's folder; --allow-external reads images from anywhere"))
 }
 
+/// Lists the images that were not read and that are not among those skipped, which are named already; and says how many lie outside.
+pub(crate) fn unread_besides(images: &UnreadImages, skipped: &[Skipped]) -> Vec<String> {
+    let besides = |link: &&String| !skipped.iter().any(|s| s.why.contains(link.as_str()));
+    let named = images.unreadable.iter().chain(&images.outside).filter(besides);
+    named.map(|link| format!("the image {link} was not read")).chain(outside(images)).collect()
+}
+
 /// Lists the images that were not read.
-fn unread(unread: &UnreadImages) -> Vec<String> {
+pub(crate) fn unread(unread: &UnreadImages) -> Vec<String> {
     let unreadable = unread.unreadable.iter().map(|link| format!("the image {link} cannot be read"));
     let outside_links = unread.outside.iter().map(|link| format!("the image {link} was not read"));
     unreadable.chain(outside_links).chain(outside(unread)).collect()

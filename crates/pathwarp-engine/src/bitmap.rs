@@ -99,7 +99,7 @@ impl ImageWarper for Bender {
         count_evaluations(&self.budget, &*self.map, PICTURE).map_err(too_much)?;
         let (width, height) = header_size(r.data).map_err(|e| e.to_string())?;
         count_pixels(&self.budget, Pixel::Decoded, f64::from(width) * f64::from(height)).map_err(too_much)?;
-        let picture = Picture::read_stored_within(r.data, &self.budget.limits()).map_err(|e| e.to_string())?;
+        let picture = Picture::read_sized_within(r.data, &self.budget.limits()).map_err(|e| e.to_string())?;
         let size = (picture.pixmap.width(), picture.pixmap.height());
         let part = shown_part(size, r.crop).ok_or("nothing of it is shown")?;
         let is_whole = (part.width(), part.height()) == size;

@@ -23,7 +23,7 @@ impl EdgePainter for Bender {
         let scale: f64 = self.dpi().map_or(PRINTED, |dpi| dpi / 96.0).min((MOST / (width * height)).sqrt());
         let pixels = (width * scale).ceil().max(1.0);
         count_picture(&self.budget, Pixel::Warped, (pixels, (height * scale).ceil())).map_err(too_much)?;
-        let read = ReadOptions::default().with_system_fonts(false);
+        let read = ReadOptions::default().with_system_fonts(false).with_turned(Some(Picture::turned));
         let tree = pathwarp_svg::usvg_tree::parse_tree(drawing.as_bytes(), "the artwork", &read);
         let tree = tree.map_err(|e| e.to_string())?;
         let options = RenderOptions { size: Size::Width(pixels as u32), background: None };

@@ -2,7 +2,7 @@
 
 use crate::bitmap::{Bender, Pixel, count_evaluations, count_pixels, too_much};
 use pathwarp::budget::{Budget, Limit};
-use pathwarp_raster::{Continued, DrawingWarp, Error, encode_smooth_png};
+use pathwarp_raster::{Continued, DrawingWarp, Error, Picture, encode_smooth_png};
 use pathwarp_svg::usvg_tree::{ReadTree, read_tree};
 use pathwarp_svg::{BentImage, FilterPainter, FilterRequest, PictureError, ReadOptions};
 
@@ -76,5 +76,6 @@ impl Bender {
 /// Reads a drawing that was written for a filter.
 fn tree(svg: &str, budget: &Budget) -> Result<ReadTree, PictureError> {
     count_pixels(budget, Pixel::Decoded, svg.len() as f64).map_err(too_much)?;
-    read_tree(svg.as_bytes(), "what a filter draws", &ReadOptions::default()).map_err(|e| e.to_string().into())
+    let read = ReadOptions::default().with_turned(Some(Picture::turned));
+    read_tree(svg.as_bytes(), "what a filter draws", &read).map_err(|e| e.to_string().into())
 }

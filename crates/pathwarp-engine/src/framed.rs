@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::budget::Limits;
+use pathwarp::kurbo::Size;
 use pathwarp_raster::{Picture, PictureFormat};
 use std::borrow::Cow;
 
@@ -25,9 +26,18 @@ pub fn framed(bytes: &[u8], limits: &Limits) -> Result<Option<Vec<u8>>, Failure>
         Cow::Borrowed(bytes)
     };
     let (width, height) = (upright.pixmap.width(), upright.pixmap.height());
+    let shown = STANDARD.encode(shown);
+    Ok(Some(format!("{}data:{media_type};base64,{shown}\"/></svg>", before([width, height])).into_bytes()))
+}
+
+/// What stands before the data of a picture of this size.
+fn before([width, height]: [u32; 2]) -> String {
     let size = format!("width=\"{width}\" height=\"{height}\"");
-    let image = format!("<image id=\"picture\" {size} href=\"data:{media_type};base64,{}\"/>", STANDARD.encode(shown));
-    let svg =
-        format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size} viewBox=\"0 0 {width} {height}\">{image}</svg>");
-    Ok(Some(svg.into_bytes()))
+    let page = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size} viewBox=\"0 0 {width} {height}\">");
+    page + &format!("<image id=\"picture\" {size} href=\"")
+}
+
+/// Whether a drawing is that of a picture alone, with a page of this size.
+pub fn is_framed(svg: &str, page: Size) -> bool {
+    svg.starts_with(&before([page.width as u32, page.height as u32]))
 }

@@ -34,6 +34,7 @@ pub mod format;
 pub mod framed;
 pub mod input;
 pub mod lettering;
+pub mod links;
 pub mod meter;
 pub mod options;
 pub mod output;

@@ -265,6 +265,11 @@ pub fn is_stdout(to: &Path) -> bool {
     to.as_os_str() == "-"
 }
 
+/// Returns `true` if `to` stands for no place in a folder: standard output, a pipe, a terminal.
+pub(crate) fn is_stream(to: &Path) -> bool {
+    matches!(Place::of(to), Place::Stdout | Place::Device)
+}
+
 /// Returns `true` if `to` exists and is neither a file nor a folder: a pipe, a terminal.
 pub fn is_device(to: &Path) -> bool {
     to.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir())

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::input::{
     Artwork, Baseline, FileArtwork, Input, Planned, Proportions, WarpRequest, WarpedResult, Which, display, planned,
 };
+use crate::links::Destination;
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
 use crate::page::PageNews;
@@ -78,21 +79,21 @@ pub struct Warped {
 }
 
 /// Warps the content of a file called `name` by a recipe whose file references have been looked up. Linked pictures are looked up
-/// beside `name`, which is empty if there is no such place. The switch `stop` ends the work.
+/// beside `name`, which is empty if there is no such place; `destination` says what becomes of links. The switch `stop` ends the work.
 pub fn warp_bytes(
     registry: &Registry,
     recipe: &Recipe,
     given: &Given,
     stop: Option<&'static AtomicBool>,
-    name: &Path,
+    (name, destination): (&Path, Destination),
     bytes: &[u8],
 ) -> Result<(Vec<u8>, Warped), Failure> {
     // The page of a drawing stays in the program that calls; a picture has none.
     let mut options = if Picture::sniff(bytes) { given.read()? } else { given.keeping_pages().read()? };
     options.reading.stop(stop);
     let (session, flags) = (Session { registry, recipe, options: &options, given }, Flags::of(registry));
-    let warped =
-        Input::of_bytes(bytes, name, &options, None).and_then(|mut input| session.warp(input.artwork(), &flags));
+    let warped = Input::of_bytes(bytes, name, &options, (None, destination))
+        .and_then(|mut input| session.warp(input.artwork(), &flags));
     let mut warped = warped.map_err(|f| f.about(&display(name)))?;
     match &mut warped.result {
         WarpedResult::Bytes(bytes) => Ok((std::mem::take(bytes), warped)),

@@ -107,6 +107,7 @@ pub use scene::plot::{Plot, PlotLoss, PlotShape};
 pub use scene::selected_lettering::{Lettering, LetteringFrame, LetteringFrameError};
 pub use source::faces::{GenericFamilies, bundled_font};
 pub use source::fonts::{FontFile, check_fonts, families, family_styles, find_font};
+pub use source::links::Relinking;
 pub use source::read::{ReadOptions, Turned, compressed};
 pub use source::select::{Division, Elements, Selection};
 pub use write::lettering::{LetteringOptions, SetGroup, SetPath, write_lettering, write_set_groups};

@@ -15,6 +15,7 @@ use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, Format};
 use pathwarp_engine::input;
 use pathwarp_engine::input::GimpFile;
+use pathwarp_engine::links::Destination;
 use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::output;
 use pathwarp_engine::{advice, readable};
@@ -23,6 +24,7 @@ use pathwarp_svg::Origin;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
+use std::string::FromUtf8Error;
 
 pub(super) fn convert_command() -> Command {
     Command::new("convert")
@@ -82,7 +84,8 @@ pub(crate) fn convert_file(
 fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOptions) -> Result<Status, Failure> {
     let doc = input::document(file, &options.reading)?;
     let read = input::read_options(file, &options.reading);
-    let Exported { bytes, warnings, kerf } = export::drawing(doc.decoded().into_owned(), format, &read, options, None)?;
+    let Exported { bytes, warnings, kerf } =
+        export::drawing(doc.decoded().into_owned(), (format, &Destination::Back), &read, options, None)?;
     let (unread, undrawn) = (doc.unread_images(), doc.undrawn());
     let is_undecided = kerf.as_ref().is_some_and(KerfReport::is_partial);
     let is_partial = is_undecided || !unread.is_empty() || !undrawn.is_empty();
@@ -251,7 +254,8 @@ pub(super) fn unwarp(m: &ArgMatches) -> Result<Status, Failure> {
     let target = target(m, [file])?;
     let name = input::display(file);
     let bytes = input::bytes(file)?;
-    let limits = arguments::reading(m)?.limits.for_input(bytes.len());
+    let reading = arguments::reading(m)?;
+    let limits = reading.limits.for_input(bytes.len());
     let origin = Origin::of_file(&bytes, &name, &limits).map_err(|e| Failure::from(e).about(&name))?;
     let lacks =
         |what: &str| Failure::Input(format!("{name}: holds no {what}; only drawings written with --embed-recipe do"));
@@ -259,7 +263,11 @@ pub(super) fn unwarp(m: &ArgMatches) -> Result<Status, Failure> {
     if m.get_flag("recipe") && origin.recipe.trim().is_empty() {
         return Err(lacks("recipe"));
     }
-    let bytes = if m.get_flag("recipe") { origin.recipe.into_bytes() } else { origin.source };
+    let bytes = match (String::from_utf8(origin.source), Destination::of(target)) {
+        _ if m.get_flag("recipe") => origin.recipe.into_bytes(),
+        (Ok(text), to @ Destination::File(_)) => to.linked(text, &input::read_options(file, &reading))?.into_bytes(),
+        (text, _) => text.map_or_else(FromUtf8Error::into_bytes, String::into_bytes),
+    };
     output::write(target, &bytes)?;
     Ok(Status::Complete)
 }

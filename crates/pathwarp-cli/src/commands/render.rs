@@ -13,6 +13,7 @@ use pathwarp_engine::bitmap::{Background, background, encode};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, Format, PICTURES};
 use pathwarp_engine::lettering::{REGULAR, find_font, laid_out, read_font};
+use pathwarp_engine::links::Destination;
 use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::report::SkippedShape;
 use pathwarp_engine::{advice, export, input, output};
@@ -226,7 +227,7 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
         let drawn = RenderOptions { size, background: None }.render_within(&tree, &limits)?;
         encode(drawn, format, options.quality)?
     } else {
-        export::drawing(svg, format, &plain, &options, None)?.bytes
+        export::drawing(svg, (format, &Destination::Back), &plain, &options, None)?.bytes
     };
     left_out.iter().for_each(|reason| terminal::warning(reason));
     output::write(target, &bytes)?;

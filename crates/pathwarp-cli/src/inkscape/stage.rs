@@ -11,6 +11,7 @@ use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
 use pathwarp_engine::advice::Flags;
 use pathwarp_engine::failure::Failure;
+use pathwarp_engine::links::Destination;
 use pathwarp_engine::meter;
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::report::FileReport;
@@ -95,9 +96,9 @@ impl Stage<'_> {
         }
         references::resolve_files(self.registry, &mut recipe, &reading)?;
         // The drawing is open on the page that it has.
-        let name = &self.call.file;
+        let place = (&*self.call.file, Destination::Back);
         let (bytes, warped) =
-            pathwarp_engine::session::warp_bytes(self.registry, &recipe, &given, None, name, svg.as_bytes())?;
+            pathwarp_engine::session::warp_bytes(self.registry, &recipe, &given, None, place, svg.as_bytes())?;
         let FileReport { frame, baseline, warnings, skipped, .. } = warped.report;
         let skipped = skipped.iter().map(ToString::to_string);
         Ok(Outcome {

@@ -1,7 +1,6 @@
 //! The one run of every deformation: the outputs are planned, each input is opened, built, warped and reported
 //! ([`Session`]), and its files are put in place, all or none. Of several inputs, each is finished on its own.
 
-mod links;
 mod plan;
 
 pub(crate) use plan::{Folders, InputFile, Inputs, Job};
@@ -134,7 +133,7 @@ fn run_job(session: &Session<'_>, flags: &Flags, job: &Job) -> Result<Finished, 
     report.output = target.or(session.options.into.as_deref()).map(|t| t.display().to_string());
     let mut files = vec![match (result, target) {
         (WarpedResult::File(file), _) => file,
-        (WarpedResult::Bytes(bytes), Some(t)) => PendingFile::new(t, &links::moved(&bytes, &job.input, t))?,
+        (WarpedResult::Bytes(bytes), Some(t)) => PendingFile::new(t, &bytes)?,
         (WarpedResult::Bytes(bytes), None) => PendingFile::stdout(bytes),
     }];
     files.extend(others);

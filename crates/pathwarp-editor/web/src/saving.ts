@@ -47,6 +47,8 @@ export class Saving {
   private unit = byId<HTMLSelectElement>("save-unit");
   private background = byId<HTMLSelectElement>("save-background");
   private colour = byId<HTMLInputElement>("save-colour");
+  /** The photograph whose own size was offered. */
+  private offered = "";
   /** The steps that were downloaded last. */
   private downloaded = "";
 
@@ -134,6 +136,9 @@ export class Saving {
     if (state.steps.length === 0) return toast(NOTHING);
     this.name.value = state.target;
     this.choose("svg");
+    if (!state.photograph) this.recall();
+    else if (this.offered !== state.drawing) [this.unit.value, this.size.value] = ["%", "100"];
+    this.offered = state.photograph ? state.drawing : "";
     this.folder.value = state.savedIn ?? state.folder;
     if (unwritable) this.refuse(unwritable);
     this.dialog.showModal();
@@ -160,7 +165,8 @@ export class Saving {
       return null;
     }
     const background = this.background.value === "colour" ? this.colour.value : this.background.value;
-    localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background } satisfies Choices));
+    // Photographs are offered in their own size.
+    if (!this.offered) localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background } satisfies Choices));
     const picture = { ...(unit === "%" ? { scale: size / 100 } : { width: size }), background: background === "none" ? null : background };
     return { name, folder, picture };
   }

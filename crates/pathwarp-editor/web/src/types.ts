@@ -131,6 +131,8 @@ export interface State {
   missing: string[];
   /** The words that the drawing was set from, if it was. */
   words: Words | null;
+  /** The drawing is a photograph alone, a px for each of its pixels. */
+  photograph: boolean;
 }
 
 /** Words, their family, the size in mm, and the space between letters in per cent of it. */

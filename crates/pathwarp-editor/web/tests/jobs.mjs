@@ -1,6 +1,6 @@
 // Whole jobs, by visible labels and places alone. SHOTS=FOLDER keeps a picture of each.
 import { execFileSync } from "node:child_process";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { becomes, check, edit, folder, keep, open, paths, program, quiet, sample } from "./harness.mjs";
 
@@ -243,6 +243,66 @@ export const job_photograph = () => {
       await page2.getByText("Saved badge-bent.svg in").waitFor();
       check(page2.problems.length === 0, page2.problems.join("; "));
     });
+  }, card);
+};
+
+/** A photograph beside the drawing, whose caption alone follows the flag: it is on the canvas, in the original, in small pictures and in the
+ * PNG, as the browser shows the drawing; a photograph alone is offered as a picture of its own size. */
+export const job_linked_photograph = () => {
+  const photograph = execFileSync(program, ["render", sample("badge.svg"), "--width", "300", "--background", "#8ac", "--format", "png", "-o", "-"]);
+  const card = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 360 380" width="360" height="380"><image id="photo" x="30" y="20" width="300" height="300" href="a%20photo.png"/>
+    <text id="caption" x="180" y="352" font-family="Noto Sans" font-size="26" text-anchor="middle" fill="#333">Seaside, 1962</text></svg>`;
+  return job("linked-photograph", "card.svg", async (page, dir, editor) => {
+    writeFileSync(join(dir, "a photo.png"), photograph);
+    await page.reload();
+    await page.waitForSelector("#stage .art image", { state: "attached" });
+    // The mean colours of a picture of the card at places of its photograph.
+    const colours = (url) => page.evaluate(async (src) => {
+      const image = Object.assign(new Image(), { src });
+      await image.decode();
+      const canvas = Object.assign(document.createElement("canvas"), { width: 360, height: 380 });
+      canvas.getContext("2d").drawImage(image, 0, 0, 360, 380);
+      const at = (x, y) => {
+        const { data } = canvas.getContext("2d").getImageData(x - 6, y - 6, 13, 13);
+        return [0, 1, 2, 3].map((k) => data.reduce((sum, v, i) => sum + (i % 4 === k ? v : 0), 0) / 169);
+      };
+      return [[40, 40], [180, 170], [180, 60], [90, 170]].map(([x, y]) => at(x, y));
+    }, url);
+    const data = (type, bytes) => `data:${type};base64,${Buffer.from(bytes).toString("base64")}`;
+    const truth = await colours(data("image/svg+xml", card.replace("a%20photo.png", data("image/png", photograph))));
+    const isPhotograph = (found, what) => {
+      const far = Math.max(...found.flatMap((c, i) => c.map((v, k) => Math.abs(v - truth[i][k]))));
+      check(far < 24 && truth[0][2] > 190, `${what}: ${JSON.stringify(found)}, not ${JSON.stringify(truth)}`);
+    };
+    const shown = async () => (await page.locator("#stage .art:not([visibility=hidden]) image").first().getAttribute("xlink:href")) ?? "";
+    check((await shown()).startsWith("data:image/png"), "the canvas lacks the photograph");
+    await press(page, "Flag");
+    const small = page.locator(".card:not(.bare) img[src^=blob]").first();
+    await small.waitFor({ state: "attached" });
+    const blue = await small.evaluate(async (image) => {
+      await image.decode();
+      const canvas = Object.assign(document.createElement("canvas"), { width: 100, height: 100 });
+      canvas.getContext("2d").drawImage(image, 0, 0, 100, 100);
+      const { data } = canvas.getContext("2d").getImageData(0, 0, 100, 100);
+      return data.filter((v, i) => i % 4 === 2 && v > 190 && data[i - 2] < 150).length;
+    });
+    check(blue > 500, `small pictures lack the photograph: ${blue} of its pixels`);
+    await page.getByRole("button", { name: "Undo", exact: true }).click();
+    await quiet(page);
+    // Small pictures of the shapes above it take long.
+    await page.getByPlaceholder("Find a shape").fill("Turn and scale");
+    await press(page, "Turn and scale");
+    check((await shown()).startsWith("data:image/png"), "the turned drawing lacks the photograph");
+    await saved(page, "PNG", "card.png");
+    isPhotograph(await colours(data("image/png", readFileSync(join(dir, "card.png")))), "the PNG");
+    await saved(page, "SVG ", "card-bent.svg");
+    check(readFileSync(join(dir, "card-bent.svg"), "utf8").includes('href="a%20photo.png"'), "the link is another");
+    await given(page, "Open…", { name: "badge.png", mimeType: "image/png", buffer: photograph });
+    await page.getByRole("heading", { name: "badge.png" }).waitFor();
+    await quiet(page);
+    await press(page, "Turn and scale");
+    await saved(page, "PNG", "badge-turned.png");
+    check(readFileSync(join(dir, "badge-turned.png")).readUInt32BE(16) === 300, "the picture has not its own size");
   }, card);
 };
 

@@ -5,6 +5,7 @@ use super::{PointMap, check_option, meaning, option_names};
 use crate::edits::{self, EDITS};
 use crate::failure::Failure;
 use crate::input::{PlainArtwork, planned};
+use crate::links::Destination;
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
 use crate::report::Fold;
 use crate::session::{Session, warp_bytes};
@@ -309,7 +310,7 @@ impl Warper {
     }
 
     /// Warps a drawing (SVG, also compressed) or a picture (PNG, JPEG, WebP). `name` is its name in messages; linked pictures are
-    /// looked up beside it. Without a name there are none. The page stays unless the option `fit` is given.
+    /// looked up beside it and put into the result. Without a name there are none. The page stays unless the option `fit` is given.
     ///
     /// # Errors
     /// The drawing cannot be read, a value is wrong, or the geometry does not allow the deformation.
@@ -317,8 +318,8 @@ impl Warper {
         guarded(&self.registry, || {
             self.options()?;
             self.given.check_conflicts().map_err(Failure::Usage)?;
-            let name = name.unwrap_or(FilePath::new(""));
-            let (bytes, done) = warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, name, bytes)?;
+            let place = (name.unwrap_or(FilePath::new("")), Destination::Anywhere);
+            let (bytes, done) = warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, place, bytes)?;
             let report = serde_json::to_string(&done.report).map_err(|e| Failure::Output(e.to_string()))?;
             Ok(Drawing { bytes, report, warnings: done.report.warnings, notes: done.notes })
         })

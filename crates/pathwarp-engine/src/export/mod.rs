@@ -11,6 +11,7 @@ pub use kerf::KerfReport;
 
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::links::Destination;
 use crate::options::CommonOptions;
 use pathwarp::kurbo::Size;
 use pathwarp::param::LengthUnit;
@@ -36,11 +37,11 @@ fn resized(doc: &Document, options: &CommonOptions) -> String {
     doc.resized(scale.by, name, unit.px().unwrap_or(1.0))
 }
 
-/// The drawing `svg` in a format. `read` says how to read it, `tolerance` (user units) how close the lines of a DXF follow
+/// The drawing `svg` in a format, with the links that it has where it goes. `read` says how to read it, `tolerance` (user units) how close the lines of a DXF follow
 /// curves; by default it is that of the options.
 pub fn drawing(
     svg: String,
-    format: Format,
+    (format, destination): (Format, &Destination),
     read: &ReadOptions,
     options: &CommonOptions,
     tolerance: Option<f64>,
@@ -60,10 +61,13 @@ pub fn drawing(
     };
     let parsed = |text: &str| Document::read(text.as_bytes(), "the result", read);
     let svg = if resizes { resized(&parsed(&svg)?, options) } else { svg };
-    if format == Format::Svgz {
-        return Ok(compressed(&svg).map_err(|e| Failure::file(Path::new("the result"), e))?.into());
-    }
-    let Some(write) = write else { return Ok(svg.into_bytes().into()) };
+    let Some(write) = write else {
+        let svg = destination.linked(svg, read)?;
+        if format == Format::Svgz {
+            return Ok(compressed(&svg).map_err(|e| Failure::file(Path::new("the result"), e))?.into());
+        }
+        return Ok(svg.into_bytes().into());
+    };
     // PDF and its reader know single precision only.
     let there = parsed(&svg)?;
     let there = there.moved_to_origin()?.map_or(Ok(there), |near| parsed(&near))?;
@@ -81,7 +85,8 @@ pub fn paths(
     tolerance: Option<f64>,
 ) -> Result<Exported, Failure> {
     if !matches!(format, Format::PointList | Format::Xcf) {
-        return drawing(to_svg(canvas, paths, None), format, &ReadOptions::default(), options, tolerance);
+        let there = (format, &Destination::Back);
+        return drawing(to_svg(canvas, paths, None), there, &ReadOptions::default(), options, tolerance);
     }
     let scale = options.page_scale(Size::new(canvas[0], canvas[1])).map_or(1.0, |scale| scale.by);
     let larger = |p: &[f64; 2]| p.map(|v| v * scale);

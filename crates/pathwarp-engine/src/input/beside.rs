@@ -33,11 +33,8 @@ pub(super) fn preview(
     let format = PREVIEW.format(Some(file), None)?;
     let after = Document::read(warped.as_bytes(), "the result", read)?;
     let tree = |doc: &Document| {
-        if options.show_nodes {
-            let text = doc.with_nodes_shown();
-            return usvg_tree::shown(&Document::read(text.as_bytes(), "the preview", read)?, read);
-        }
-        usvg_tree::shown(doc, read)
+        let text = if options.show_nodes { doc.with_nodes_shown() } else { doc.text().to_owned() };
+        usvg_tree::shown(&Document::read(text.as_bytes(), "the preview", read)?, read)
     };
     let trees = [tree(doc)?, tree(&after)?];
     let mut left = Panel::new(&trees[0], doc.user_to_px(), doc.view_box());

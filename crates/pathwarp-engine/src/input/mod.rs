@@ -25,6 +25,7 @@ pub(crate) use proportions::Proportions;
 pub use svg::SvgArtwork;
 
 use crate::failure::Failure;
+use crate::links::Destination;
 use crate::options::CommonOptions;
 use pathwarp_raster::Picture;
 use picture::PictureArtwork;
@@ -37,7 +38,7 @@ impl Input {
     /// Opens an input and checks that the options and the target suit its kind.
     pub fn open(input: &Path, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
         if let (None, Some(bytes)) = (&options.into, files::ordinary_bytes(input)?) {
-            return Self::of_bytes(&bytes, input, options, target);
+            return Self::of_bytes(&bytes, input, options, (target, Destination::of(target)));
         }
         if let Some(paths) = gimp::open(input, options, target)? {
             return Ok(Self(Box::new(paths)));
@@ -46,20 +47,20 @@ impl Input {
             let file = display(input);
             return Err(Failure::usage(format!("--into copies an XCF with its paths warped; {file} is not an XCF")));
         }
-        Self::of_bytes(&bytes(input)?, input, options, target)
+        Self::of_bytes(&bytes(input)?, input, options, (target, Destination::of(target)))
     }
 
-    /// A drawing or picture with this content. `input` is its name.
+    /// A drawing or picture with this content. `input` is its name; the target says the format.
     pub(crate) fn of_bytes(
         bytes: &[u8],
         input: &Path,
         options: &CommonOptions,
-        target: Option<&Path>,
+        (target, destination): (Option<&Path>, Destination),
     ) -> Result<Self, Failure> {
         if Picture::sniff(bytes) {
             return Ok(Self(Box::new(PictureArtwork::read(bytes, input, options, target)?)));
         }
-        Ok(Self(Box::new(SvgArtwork::read(bytes, input, options, target)?)))
+        Ok(Self(Box::new(SvgArtwork::read(bytes, input, options, target)?.going(destination))))
     }
 
     /// The artwork in the file, to be warped.

@@ -9,7 +9,8 @@ use crate::bitmap::Bender;
 use crate::export::{self, KerfReport};
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
-use crate::options::{CommonOptions, FrameChoice};
+use crate::links::Destination;
+use crate::options::{CommonOptions, FrameChoice, OnFailure};
 use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{Fold, ReportedShape};
@@ -23,6 +24,7 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::refit::Nodes;
 use pathwarp::{Error, Outline, refit};
+use pathwarp_raster::Picture;
 use pathwarp_svg::{
     Document, Edit, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
     Selection, ShapeReport, Strokes, Structure, WarpOptions, WarpedDocument,
@@ -51,8 +53,9 @@ pub struct SvgArtwork {
     /// What each step holds for, and what each set of steps does; empty if all hold for everything.
     steps: Vec<Selection>,
     parts: Vec<Selection>,
-    /// The format of the result.
+    /// The format of the result, and where it goes.
     format: Format,
+    destination: Destination,
     /// The drawing as it was read, if `doc` is an edited one.
     original: Option<Original>,
     /// GIMP's paths that the drawing was made of. It has no page and no strokes of its own.
@@ -72,7 +75,7 @@ impl SvgArtwork {
         if let Some((_, option, instead)) = of_pictures.into_iter().find(|(given, ..)| *given) {
             return Err(Failure::usage(format!("--{option} is for PNG, JPEG and WebP files; {instead}")));
         }
-        let doc = Document::read(bytes, &name, &read).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
+        let doc = Document::read(bytes, &name, &bending(&read)).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
         meter::count_pixels(doc.budget().taken(Limit::Pixels));
         let selection = selection(options);
         doc.check_selection(&selection)?;
@@ -94,7 +97,8 @@ impl SvgArtwork {
         format: Format,
         paths: Option<GimpPaths>,
     ) -> Self {
-        Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format, original: None, paths }
+        let (steps, parts, destination) = (Vec::new(), Vec::new(), Destination::default());
+        Self { name, doc, read, selection, steps, parts, format, destination, original: None, paths }
     }
 
     /// Counts the work from here on anew, for a drawing that is bent again and again.
@@ -144,12 +148,26 @@ impl SvgArtwork {
     /// The result in its format, without looking for folds.
     pub fn written(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
         let (_, warped, tolerance) = self.warped(request)?;
-        export::drawing(warped.svg, self.format, &self.read, request.options, Some(tolerance))
+        self.exported(warped.svg, request.options, tolerance)
     }
 
-    /// Changes the format of the result.
-    pub fn set_format(&mut self, format: Format) {
-        self.format = format;
+    fn exported(&self, svg: String, options: &CommonOptions, tolerance: f64) -> Result<export::Exported, Failure> {
+        export::drawing(svg, (self.format, &self.destination), &self.read, options, Some(tolerance))
+    }
+
+    /// Changes the format of the result, and where it goes.
+    pub fn send(&mut self, format: Format, destination: Destination) {
+        (self.format, self.destination) = (format, destination);
+    }
+
+    /// Says where the result goes.
+    pub(super) fn going(self, destination: Destination) -> Self {
+        Self { destination, ..self }
+    }
+
+    /// The options that the drawing was read with.
+    pub fn reading(&self) -> &ReadOptions {
+        &self.read
     }
 
     /// The selection that is meant.
@@ -183,7 +201,7 @@ impl SvgArtwork {
 
     /// A result, all of it scaled and moved.
     fn moved(&self, svg: &str, to: Affine, own: &WarpOptions) -> Result<String, Error> {
-        let doc = Document::read(svg.as_bytes(), &self.name, &self.read)?;
+        let doc = Document::read(svg.as_bytes(), &self.name, &bending(&self.read))?;
         let refit = refit::Options::new(own.refit.tolerance).with_budget(doc.budget().clone());
         let options = WarpOptions::new(refit).with_precision(own.precision).with_text(own.text);
         let options = options.with_structure(own.structure).with_clones(own.clones);
@@ -194,6 +212,11 @@ impl SvgArtwork {
     /// and the tolerance, too.
     fn warped(&self, request: &WarpRequest<'_>) -> Result<(Vec<WarpOptions>, WarpedDocument, f64), Failure> {
         let WarpRequest { built, options: common, mut tolerance, .. } = *request;
+        if let Some(first) = advice::unread(&self.doc.unread_images()).first()
+            && common.on_failure == OnFailure::Stop
+        {
+            return Err(Failure::Input(format!("{}: {first}; --on-error continue goes on without it", self.name)));
+        }
         let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
         // The scale of the result's page is known once the artwork is on it.
         if common.has_tolerance_of_result()
@@ -206,7 +229,8 @@ impl SvgArtwork {
             (options, warped) = self.bent(&built.parts, |k, part| self.warp_options(&finer, k, part))?;
         }
         if let Some(recipe) = &request.embedded_recipe {
-            let origin = Origin { recipe: recipe.clone(), source: self.document().source().to_vec() };
+            let source = self.destination.source(self.document(), &self.read)?;
+            let origin = Origin { recipe: recipe.clone(), source };
             warped.svg = origin.embed(&warped.svg)?;
         }
         Ok((options, warped, tolerance))
@@ -406,6 +430,11 @@ impl SvgArtwork {
     }
 }
 
+/// The options for a drawing that is bent and not drawn: its pictures are decoded only where they are bent.
+fn bending(read: &ReadOptions) -> ReadOptions {
+    read.clone().with_turned(Some(Picture::sized))
+}
+
 /// The selection that holds for all steps.
 fn selection(options: &CommonOptions) -> Selection {
     Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() }
@@ -448,7 +477,7 @@ impl Artwork for SvgArtwork {
             return Ok(());
         }
         let Edited { document: doc, grown, warnings } =
-            wanted.done(self.document(), &self.name, &self.read, options)?;
+            wanted.done(self.document(), &self.name, &bending(&self.read), options)?;
         let edited = std::mem::replace(&mut self.doc, doc);
         let document = self.original.take().map_or(edited, |o| o.document);
         self.original = Some(Original { document, wanted, grown, warnings });
@@ -592,7 +621,8 @@ impl FileArtwork for SvgArtwork {
             n => Some(format!("{n} filters became pictures; --filters affine keeps them")),
         });
         warnings.extend(folds);
-        warnings.extend(advice::outside(&self.doc.unread_images()));
+        let unread = self.doc.unread_images();
+        warnings.extend(advice::unread_besides(&unread, &warped.skipped));
         beside::check_surface(built)?;
         let parts = built.parts.iter().zip(&options);
         let surfaces = parts.map(|(part, options)| beside::surface_files(&self.doc, part, options));
@@ -608,7 +638,7 @@ impl FileArtwork for SvgArtwork {
                 paths.written(&warped.svg, guides, (self.format, common, tolerance), &mut shapes)?
             }
             None => {
-                let result = export::drawing(warped.svg, self.format, &self.read, common, Some(tolerance))?;
+                let result = self.exported(warped.svg, common, tolerance)?;
                 (WarpedResult::Bytes(result.bytes), (result.warnings, result.kerf))
             }
         };
@@ -620,7 +650,7 @@ impl FileArtwork for SvgArtwork {
             warnings,
             files,
             preview: preview.transpose()?,
-            partial: empty || is_damaged || kerf.as_ref().is_some_and(KerfReport::is_partial),
+            partial: empty || is_damaged || !unread.is_empty() || kerf.as_ref().is_some_and(KerfReport::is_partial),
             kerf,
             proportions: None,
             page,

@@ -36,10 +36,10 @@ pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Dec
     Ok(Decoded { pixmap: orientation.apply(pixmap, limits)?, profile, exif, early_end })
 }
 
-/// Returns `true` if the metadata of a picture ask to turn its pixels.
-pub(super) fn is_turned(bytes: &[u8], limits: &Limits) -> bool {
+/// How the metadata of a picture ask to turn its pixels.
+pub(super) fn orientation(bytes: &[u8], limits: &Limits) -> Orientation {
     let exif = open(bytes, limits).ok().and_then(|mut bitmap| bitmap.exif());
-    exif.is_some_and(|exif| Orientation::of_exif(&exif) != Orientation::default())
+    exif.as_deref().map_or_else(Orientation::default, Orientation::of_exif)
 }
 
 /// Returns the width and height in the header of a picture.

@@ -105,6 +105,16 @@ fn segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
     })
 }
 
+/// A JPEG with other sides in its header: the height in the place of the width.
+pub(super) fn with_sides_exchanged(bytes: &[u8]) -> Option<Vec<u8>> {
+    let (_, frame) = segments(bytes).find(|(marker, _)| (0xc0..=0xc2).contains(marker))?;
+    let at = frame.as_ptr().addr() - bytes.as_ptr().addr();
+    let mut out = bytes.to_vec();
+    // After the precision.
+    out.get_mut(at + 1..at + 5)?.rotate_left(2);
+    Some(out)
+}
+
 /// Reads the tables of a DQT segment, whose values go in zigzag order.
 fn read_tables(mut content: &[u8], tables: &mut [Option<[u16; 64]>; 4]) -> Option<()> {
     while let Some((&head, rest)) = content.split_first() {

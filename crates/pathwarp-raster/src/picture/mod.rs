@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::picture::bitmap::Kind;
 use crate::picture::decode::Decoded;
 use crate::picture::jpeg::Compression;
+use crate::picture::orientation::Orientation;
 use pathwarp::budget::Limits;
 use tiny_skia::Pixmap;
 
@@ -89,7 +90,7 @@ impl Picture {
     /// Whether the EXIF metadata of a PNG, JPEG or WebP ask to turn its pixels. Decodes none of them.
     #[must_use]
     pub fn is_turned(bytes: &[u8], limits: &Limits) -> bool {
-        Self::sniff(bytes) && decode::is_turned(bytes, limits)
+        Self::sniff(bytes) && decode::orientation(bytes, limits) != Orientation::default()
     }
 
     /// Returns `true` if the bytes are a JPEG in CMYK, which is read as RGB.
@@ -107,6 +108,28 @@ impl Picture {
             return None;
         }
         Self::read_within(bytes, limits).ok()?.write_like(bytes).ok()
+    }
+
+    /// An image of a drawing that has the size at which browsers show it: of a JPEG, only the header changes, and the same again gives the
+    /// file back; others as by [`turned`](Self::turned). For drawings whose images are read by [`Picture::read_sized_within`].
+    #[must_use]
+    pub fn sized(bytes: &[u8], limits: &Limits) -> Option<Vec<u8>> {
+        if Kind::of(bytes) != Some(Kind::Jpeg) {
+            return Self::turned(bytes, limits);
+        }
+        let exchanges = decode::orientation(bytes, limits).exchanges_sides();
+        exchanges.then(|| jpeg::with_sides_exchanged(bytes)).flatten()
+    }
+
+    /// Reads an image of a drawing as browsers show it, from a file that [`Picture::sized`] has changed where it does.
+    ///
+    /// # Errors
+    /// As for [`Picture::read`].
+    pub fn read_sized_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
+        if Kind::of(bytes) != Some(Kind::Jpeg) || !Self::is_turned(bytes, limits) {
+            return Self::read_stored_within(bytes, limits);
+        }
+        Self::decode(Self::sized(bytes, limits).as_deref().unwrap_or(bytes), true, limits)
     }
 
     fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
@@ -255,6 +278,13 @@ mod tests {
             let size = turned.as_deref().map(|file| header_size(file).unwrap());
             assert_eq!(size, turns.then_some((height, width)));
             assert_eq!(turned.and_then(|file| Picture::turned(&file, &limits)), None);
+            let sized = Picture::sized(&file, &limits);
+            assert_eq!(sized.as_deref().map(|file| header_size(file).unwrap()), turns.then_some((height, width)));
+            let sized = sized.unwrap_or_else(|| file.clone());
+            let shown = if turns { Picture::read(&file) } else { Picture::read_stored(&file) };
+            assert_eq!(Picture::read_sized_within(&sized, &limits).unwrap().pixmap, shown.unwrap().pixmap);
+            let again = Picture::sized(&sized, &limits);
+            assert_eq!(again, matches!(format, PictureFormat::Jpeg { .. }).then_some(file));
         }
     }
 

@@ -24,6 +24,11 @@ impl Orientation {
         })
     }
 
+    /// Whether width and height change places.
+    pub(super) fn exchanges_sides(self) -> bool {
+        self.transpose
+    }
+
     /// Turns a picture upright.
     pub(super) fn apply(self, stored: Pixmap, limits: &Limits) -> Result<Pixmap, Error> {
         if self == Self::default() {

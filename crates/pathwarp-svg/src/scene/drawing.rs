@@ -7,7 +7,7 @@ use super::resolve::{self, Tiling};
 use crate::source::elements::ElementId;
 use crate::source::images::{linked_drawing, shown};
 use crate::source::mesh::MeshGradient;
-use crate::source::read::{self, ReadOptions};
+use crate::source::read::{self, ReadOptions, Turned};
 use crate::source::select::Selection;
 use crate::source::text::{SourceText, WORTH_THREADS};
 use crate::source::threads::{map_parallel, with_stack};
@@ -40,6 +40,8 @@ pub(crate) struct Drawing {
     /// For every element, the index of the bend that applies to it. Clip paths and masks are resolved once for each bend.
     division: Vec<Option<usize>>,
     dpi: f64,
+    /// Turns images.
+    pub(crate) turned: Option<Turned>,
     /// Counts the work that the drawing causes.
     pub(crate) budget: Arc<Budget>,
 }
@@ -81,6 +83,7 @@ impl Drawing {
             letters: Arc::new(letters),
             division: Vec::new(),
             dpi,
+            turned: options.turned,
             budget: options.budget.clone(),
         })
     }
@@ -153,6 +156,7 @@ impl Drawing {
             letters: self.letters.clone(),
             division,
             dpi: self.dpi,
+            turned: self.turned,
             budget: self.budget.clone(),
         })
     }

@@ -2,6 +2,7 @@
 //! followed only where the user allows it.
 
 use super::check;
+use super::links::{Place, allowed, linked};
 use super::read::{self, ReadOptions};
 use super::text::plain;
 use base64::Engine as _;
@@ -11,9 +12,7 @@ use flate2::read::ZlibDecoder;
 use pathwarp::Error;
 use pathwarp::budget::{Exceeded, Limit};
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::{self, Read as _};
-use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 /// Scheme of embedded data.
@@ -35,7 +34,7 @@ pub(super) struct Unread {
 }
 
 /// Media type of data whose format is detected from its content.
-const ANY: &str = "text/plain";
+pub(super) const ANY: &str = "text/plain";
 /// The same for embedded data, which has to declare its type if it is a drawing.
 const EMBEDDED: &str = "";
 
@@ -102,7 +101,7 @@ pub(super) fn resolver<'a>(
             })
         }),
         resolve_string: Box::new(move |link, usvg| {
-            let found = allowed(Path::new(link), options);
+            let found = allowed(link, options);
             if matches!(found, Place::Outside) {
                 record(&unread_files.outside, link.to_owned());
             }
@@ -167,76 +166,15 @@ fn is_png_without_header(data: &[u8]) -> bool {
     data.starts_with(b"\x89PNG") && data.get(12..16) != Some(b"IHDR")
 }
 
-/// Reads a linked image. A link may name anything in the file system, so only plain files up to a limit are read.
-fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
-    let size = std::fs::metadata(file).ok().filter(std::fs::Metadata::is_file)?.len();
-    // Larger files are recorded as unread.
-    options.budget.check(Limit::Memory, size as f64).ok()?;
-    let mut data = Vec::new();
-    File::open(file).ok()?.take(size).read_to_end(&mut data).ok()?;
-    Some(data)
-}
-
 /// Reads the drawing that an image links to. As a file it has no type, so its name decides. None of its own links are followed.
 pub(crate) fn linked_drawing(link: &str, options: &ReadOptions) -> Option<String> {
-    let Place::Inside(file) = allowed(Path::new(link), options) else { return None };
+    let Place::Inside(file) = allowed(link, options) else { return None };
     file.extension().filter(|extension| extension.eq_ignore_ascii_case("svg"))?;
     read::decoded(linked(&file, options)?.into()).ok()
 }
 
-/// Target of a link.
-enum Place {
-    Inside(PathBuf),
-    /// A file that must not be read.
-    Outside,
-    Nowhere,
-}
-
-/// Finds the file that a link names. After symbolic links are resolved, it must be in the base folder or below. Without a base
-/// folder, links are not followed at all.
-fn allowed(link: &Path, options: &ReadOptions) -> Place {
-    let Some(base) = &options.base_dir else { return Place::Nowhere };
-    let file = base.join(link);
-    if options.external {
-        return Place::Inside(file);
-    }
-    // Refuse a path that leads elsewhere without touching the file system.
-    if link.has_root() || link.is_absolute() || leaves(link) {
-        return Place::Outside;
-    }
-    match (file.canonicalize(), base.canonicalize()) {
-        (Ok(file), Ok(base)) if file.starts_with(&base) => Place::Inside(file),
-        (Ok(_), Ok(_)) => Place::Outside,
-        // Do not reveal whether the target of a symbolic link exists.
-        _ if is_through_symlink(base, link) => Place::Outside,
-        _ => Place::Nowhere,
-    }
-}
-
-/// Whether a relative link passes through a symbolic link.
-fn is_through_symlink(base: &Path, link: &Path) -> bool {
-    let mut places = link.components().scan(base.to_owned(), |at, c| {
-        at.push(c);
-        Some(at.symlink_metadata())
-    });
-    places.any(|m| m.is_ok_and(|m| m.is_symlink()))
-}
-
-/// Whether a relative link goes above the folder where it starts.
-fn leaves(link: &Path) -> bool {
-    let mut depth = 0_i32;
-    link.components().any(|c| {
-        depth += match c {
-            Component::ParentDir => -1,
-            Component::Normal(_) => 1,
-            _ => 0,
-        };
-        depth < 0
-    })
-}
-
 /// Embeds data in a link.
-fn embedded(mime: &str, data: &[u8]) -> String {
+pub(super) fn embedded(mime: &str, data: &[u8]) -> String {
     format!("{DATA}{mime}{BASE64}{}", STANDARD.encode(data))
 }
 

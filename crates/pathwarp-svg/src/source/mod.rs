@@ -7,6 +7,7 @@ pub(crate) mod faces;
 pub(crate) mod fontface;
 pub(crate) mod fonts;
 pub(crate) mod images;
+pub(crate) mod links;
 pub(crate) mod markup;
 pub(crate) mod mesh;
 pub(crate) mod number;

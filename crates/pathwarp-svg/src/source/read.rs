@@ -49,7 +49,8 @@ options! {
     }
 }
 
-/// An image with its pixels turned, within limits; `None` where they stay.
+/// An image with its pixels turned, within limits; `None` where they stay. Where an image is written as it was read, this is done once more:
+/// one that only prepares images to be turned when they are bent undoes itself.
 pub type Turned = fn(&[u8], &Limits) -> Option<Vec<u8>>;
 
 impl Default for ReadOptions {

@@ -79,10 +79,10 @@ fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item
     images.filter_map(|(e, _)| {
         let own = source.link(e)?;
         let link = missed.iter().find(|link| is_same_link(&own, link))?;
-        let reason = if link.contains("://") {
-            "is not a file on this machine"
-        } else if drawing.missed.outside.contains(link) {
+        let reason = if drawing.missed.outside.contains(link) {
             "lies outside of the drawing's folder, and was not read"
+        } else if link.contains("://") {
+            "is not a file on this machine"
         } else {
             "cannot be read"
         };

@@ -671,15 +671,43 @@ impl<'a> Writer<'a> {
             return String::new();
         }
         match &input.images[i] {
-            EmbeddedImage::Placed => placed(&self.markup, &bitmap.image),
+            EmbeddedImage::Placed => self.placed(&bitmap.image),
             EmbeddedImage::Approximate(why) => {
                 let id = input.source.image_name(bitmap.owner);
                 self.skipped.push(Skipped { id, why: why.clone() });
-                placed(&self.markup, &bitmap.image)
+                self.placed(&bitmap.image)
             }
             // Back to the group's coordinates, the bitmap's pixels. The placing has no rotation.
             EmbeddedImage::Bent { image, clip } => self.clipped(image, clip.as_deref(), bitmap.placing.inverse()),
         }
+    }
+
+    /// Writes a bitmap that is not bent.
+    fn placed(&self, image: &usvg::Image) -> String {
+        let drawing = self.input.drawing;
+        let file = |media_type: &str, data: &[u8]| {
+            let stored = drawing.turned.and_then(|turned| turned(data, &drawing.budget.limits()));
+            data_url(media_type, stored.as_deref().unwrap_or(data))
+        };
+        let url = match image.kind() {
+            ImageKind::JPEG(d) => file("image/jpeg", d),
+            ImageKind::PNG(d) => file("image/png", d),
+            ImageKind::GIF(d) => file("image/gif", d),
+            ImageKind::WEBP(d) => file("image/webp", d),
+            ImageKind::SVG(t) => file("image/svg+xml", t.to_string(&usvg::WriteOptions::default()).as_bytes()),
+        };
+        let rendering = match image.rendering_mode() {
+            ImageRendering::OptimizeQuality => None,
+            ImageRendering::OptimizeSpeed => Some("optimizeSpeed"),
+            ImageRendering::Smooth => Some("smooth"),
+            ImageRendering::HighQuality => Some("high-quality"),
+            ImageRendering::CrispEdges => Some("crisp-edges"),
+            ImageRendering::Pixelated => Some("pixelated"),
+        };
+        let [width, height] = [image.size().width(), image.size().height()].map(|side| single(side.into()));
+        let tag = self.markup.element("image").with("width", &width).with("height", &height);
+        let style = rendering.map(|how| ("style", format!("image-rendering:{how}")));
+        tag.with_all(style).raw(&format!(" {}=\"{url}\"", self.markup.link())).empty()
     }
 
     /// Writes a bent bitmap, and the outline that clips it as a definition.
@@ -721,29 +749,6 @@ impl<'a> Writer<'a> {
 pub(super) fn bent(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String {
     let tag = markup.element("image").with_all(bent_attributes(bent, to));
     tag.raw(&format!(" {}=\"{}\"", markup.link(), bent_url(bent))).empty()
-}
-
-/// Writes a bitmap that is not bent.
-fn placed(markup: &Markup<'_>, image: &usvg::Image) -> String {
-    let url = match image.kind() {
-        ImageKind::JPEG(d) => data_url("image/jpeg", d),
-        ImageKind::PNG(d) => data_url("image/png", d),
-        ImageKind::GIF(d) => data_url("image/gif", d),
-        ImageKind::WEBP(d) => data_url("image/webp", d),
-        ImageKind::SVG(t) => data_url("image/svg+xml", t.to_string(&usvg::WriteOptions::default()).as_bytes()),
-    };
-    let rendering = match image.rendering_mode() {
-        ImageRendering::OptimizeQuality => None,
-        ImageRendering::OptimizeSpeed => Some("optimizeSpeed"),
-        ImageRendering::Smooth => Some("smooth"),
-        ImageRendering::HighQuality => Some("high-quality"),
-        ImageRendering::CrispEdges => Some("crisp-edges"),
-        ImageRendering::Pixelated => Some("pixelated"),
-    };
-    let tag = markup.element("image").with("width", &single(image.size().width().into()));
-    let tag = tag.with("height", &single(image.size().height().into()));
-    let style = rendering.map(|how| ("style", format!("image-rendering:{how}")));
-    tag.with_all(style).raw(&format!(" {}=\"{url}\"", markup.link())).empty()
 }
 
 /// The id of a paint server.

@@ -16,6 +16,7 @@ use pathwarp_engine::export::{self, Exported};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, DRAWINGS, Format};
 use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out, read_font};
+use pathwarp_engine::links::Destination;
 use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::readable::listed;
 use pathwarp_engine::{Warper, input, output};
@@ -156,7 +157,7 @@ impl Setting<'_> {
         let Drawn { svg, mut warnings, missing } = draw(self, texts, &self.page(fill, target)?)?;
         let lacking: Vec<char> = missing.into_iter().collect();
         warnings.extend((!lacking.is_empty()).then(|| self::missing(&lacking, &self.names)));
-        let exported = export::drawing(svg, self.format, &self.read, &self.options, None)?;
+        let exported = export::drawing(svg, (self.format, &Destination::Back), &self.read, &self.options, None)?;
         let Exported { bytes, warnings: lost, kerf } = exported;
         if !self.m.get_flag("quiet") {
             warnings.iter().chain(&lost).for_each(|w| terminal::warning(w));

@@ -1,0 +1,259 @@
+//! Links of a drawing to files: which are followed and where they lead, and how they are rewritten for another place.
+
+use super::images::{self, ANY, SVG, embedded};
+use super::read::{self, GZIP, ReadOptions};
+use pathwarp::Error;
+use pathwarp::budget::Limit;
+use pathwarp_reader::xml;
+use std::collections::BTreeMap;
+use std::fs::{File, Metadata};
+use std::io::Read as _;
+use std::ops::Range;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+use usvg::roxmltree;
+
+/// Target of a link.
+pub(super) enum Place {
+    Inside(PathBuf),
+    /// A file that must not be read.
+    Outside,
+    Nowhere,
+}
+
+/// Finds the file that a link names: as browsers read it, or else a file of just this name. Without a base folder, links are not followed at
+/// all.
+pub(super) fn allowed(link: &str, options: &ReadOptions) -> Place {
+    let Some(base) = &options.base_dir else { return Place::Nowhere };
+    let plain = file_of(link);
+    match found(base, Path::new(&plain), options.external) {
+        Place::Nowhere if plain != link => found(base, Path::new(link), options.external),
+        place => place,
+    }
+}
+
+/// After symbolic links are resolved, a file must be in the base folder or below.
+fn found(base: &Path, link: &Path, external: bool) -> Place {
+    let file = base.join(link);
+    if external {
+        return if file.exists() { Place::Inside(file) } else { Place::Nowhere };
+    }
+    // Refuse a path that leads elsewhere without touching the file system.
+    if link.has_root() || link.is_absolute() || leaves(link) {
+        return Place::Outside;
+    }
+    match (file.canonicalize(), base.canonicalize()) {
+        (Ok(file), Ok(base)) if file.starts_with(&base) => Place::Inside(file),
+        (Ok(_), Ok(_)) => Place::Outside,
+        // Do not reveal whether the target of a symbolic link exists.
+        _ if is_through_symlink(base, link) => Place::Outside,
+        _ => Place::Nowhere,
+    }
+}
+
+/// Whether a relative link passes through a symbolic link.
+fn is_through_symlink(base: &Path, link: &Path) -> bool {
+    let mut places = link.components().scan(base.to_owned(), |at, c| {
+        at.push(c);
+        Some(at.symlink_metadata())
+    });
+    places.any(|m| m.is_ok_and(|m| m.is_symlink()))
+}
+
+/// Whether a relative link goes above the folder where it starts.
+fn leaves(link: &Path) -> bool {
+    let mut depth = 0_i32;
+    link.components().any(|c| {
+        depth += match c {
+            Component::ParentDir => -1,
+            Component::Normal(_) => 1,
+            _ => 0,
+        };
+        depth < 0
+    })
+}
+
+/// The path in a link: without query and fragment, without the scheme `file`, and with `%20` as a space (RFC 3986, 2.1 and 3.4).
+fn file_of(link: &str) -> String {
+    let link = link.trim();
+    let path = link.split(['?', '#']).next().unwrap_or_default();
+    let is_file = path.get(..7).is_some_and(|scheme| scheme.eq_ignore_ascii_case("file://"));
+    let path = if is_file { path[7..].strip_prefix("localhost").unwrap_or(&path[7..]) } else { path };
+    let mut parts = path.split('%');
+    let mut out = parts.next().unwrap_or_default().as_bytes().to_vec();
+    for part in parts {
+        let digits = part.get(..2).filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()));
+        match digits.and_then(|d| u8::from_str_radix(d, 16).ok()) {
+            Some(byte) => {
+                out.push(byte);
+                out.extend_from_slice(&part.as_bytes()[2..]);
+            }
+            None => out.extend([b"%", part.as_bytes()].concat()),
+        }
+    }
+    String::from_utf8(out).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Reads a linked image. A link may name anything in the file system, so only plain files up to a limit are read.
+pub(super) fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
+    let size = std::fs::metadata(file).ok().filter(Metadata::is_file)?.len();
+    // Larger files are recorded as unread.
+    options.budget.check(Limit::Memory, size as f64).ok()?;
+    let mut data = Vec::new();
+    File::open(file).ok()?.take(size).read_to_end(&mut data).ok()?;
+    Some(data)
+}
+
+/// How a drawing's links to files are rewritten for another place.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Relinking {
+    /// What relative links begin with from now on, such as `../art/`.
+    pub way: String,
+    /// Put pictures into the drawing, as far as they may be read and can be.
+    pub embed: bool,
+}
+
+impl Relinking {
+    /// The text of a drawing with its links rewritten: those of elements, and `url()` in attributes and style sheets. `options` say where
+    /// they lead now, and which files may be read. `None` if nothing changes.
+    ///
+    /// # Errors
+    /// The pictures exceed the limits.
+    pub fn of(&self, svg: &str, options: &ReadOptions) -> Result<Option<String>, Error> {
+        let is_still = self.way.is_empty() && !self.embed;
+        if is_still || !["href", "src", "url("].iter().any(|word| svg.contains(word)) {
+            return Ok(None);
+        }
+        let options = options.begin(svg.len());
+        let Ok(doc) = xml::parse(svg, "the drawing", &options.budget) else { return Ok(None) };
+        let mut new = BTreeMap::new();
+        for node in doc.descendants() {
+            self.rewrite(node, svg, &options, &mut new)?;
+        }
+        if new.is_empty() {
+            return Ok(None);
+        }
+        let (mut out, mut done) = (String::new(), 0);
+        for (start, (end, text)) in new {
+            out.push_str(&svg[done..start]);
+            out.push_str(&text);
+            done = end;
+        }
+        Ok(Some(out + &svg[done..]))
+    }
+
+    /// Adds the new links of a node, by where they begin: to where what they replace ends, and their text. An entity's are found wherever it is
+    /// used.
+    fn rewrite(
+        &self,
+        node: roxmltree::Node<'_, '_>,
+        svg: &str,
+        options: &ReadOptions,
+        new: &mut BTreeMap<usize, (usize, String)>,
+    ) -> Result<(), Error> {
+        let mut starts = Vec::new();
+        if node.is_pi() || node.is_text() && node.parent().is_some_and(|p| p.tag_name().name() == "style") {
+            starts.extend(places(svg, node.range(), if node.is_pi() { "href=" } else { "url(" }));
+        }
+        let is_picture = matches!(node.tag_name().name(), "image" | "feImage" | "img");
+        for a in node.attributes() {
+            let range = a.range_value();
+            if !matches!(a.name(), "href" | "src") {
+                starts.extend(places(svg, range, "url("));
+            } else if let Some(data) = picture(a.value(), is_picture && self.embed, options)? {
+                new.insert(range.start, (range.end, data));
+            } else {
+                starts.push(range.end - svg[range].trim_start().len());
+            }
+        }
+        for at in starts.into_iter().filter(|at| !self.way.is_empty() && is_relative(&svg[*at..])) {
+            new.insert(at, (at, self.way.clone()));
+        }
+        Ok(())
+    }
+}
+
+/// The positions in a range where links begin, each behind a word and perhaps a quotation mark.
+fn places<'a>(text: &'a str, range: Range<usize>, word: &'a str) -> impl Iterator<Item = usize> + 'a {
+    text[range.clone()].match_indices(word).map(move |(at, _)| {
+        let inside = text[range.start + at + word.len()..range.end].trim_start();
+        let quotes = ["&quot;", "&apos;", "\"", "'"];
+        let inside = quotes.iter().find_map(|q| inside.strip_prefix(q)).unwrap_or(inside);
+        range.end - inside.len()
+    })
+}
+
+/// Whether a link, which text may follow, leads from the folder of its drawing.
+fn is_relative(text: &str) -> bool {
+    let end = text.find(|c: char| c.is_whitespace() || "\"'()<>&".contains(c)).unwrap_or(text.len());
+    let link = &text[..end];
+    let scheme = link.split(['/', '#', '?']).next().is_some_and(|first| first.contains(':'));
+    !link.is_empty() && !link.starts_with(['#', '/', '?', '\\']) && !scheme
+}
+
+/// The picture that a link leads to as data in a link, if it is `wanted` and can be read.
+fn picture(link: &str, wanted: bool, options: &ReadOptions) -> Result<Option<String>, Error> {
+    let link = link.trim();
+    let is_inside =
+        link.is_empty() || link.starts_with('#') || link.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:"));
+    if !wanted || is_inside {
+        return Ok(None);
+    }
+    let Place::Inside(file) = allowed(link, options) else { return Ok(None) };
+    let Some(data) = linked(&file, options).map(Arc::new) else { return Ok(None) };
+    if images::checked(ANY, Arc::clone(&data), link, options)?.is_none() {
+        return Ok(None);
+    }
+    let media_type = match data.as_slice() {
+        [0x89, b'P', ..] => "image/png",
+        [0xff, 0xd8, ..] => "image/jpeg",
+        [b'G', b'I', b'F', ..] => "image/gif",
+        [b'R', b'I', b'F', b'F', ..] => "image/webp",
+        _ => SVG,
+    };
+    // Browsers do not unpack embedded drawings.
+    let unpacked = data.starts_with(GZIP).then(|| read::text(&data, link, &options.budget)).transpose()?;
+    Ok(Some(embedded(media_type, unpacked.as_ref().map_or(&data, |text| text.as_bytes()))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_to_the_same_files() {
+        let svg = "<?xml-stylesheet href='s.css'?><svg xmlns:xlink='http://www.w3.org/1999/xlink'><image href=\" p.png\"/>\
+                   <use xlink:href='#a' fill='url( &quot;x.svg#b&quot; )'/><text title=\"href='t'\">href='u' url(v)</text>\
+                   <!-- href='w' --><image href='data:image/png;base64,AA=='/><a href='https://x.org/'/>\
+                   <style>a{src:url(f/a.woff)}</style></svg>";
+        let way = Relinking { way: "../in%20put/".into(), embed: false };
+        let new = way.of(svg, &ReadOptions::default()).unwrap().unwrap();
+        let mut wanted = svg.to_owned();
+        for (old, new) in [
+            ("s.css", "../in%20put/s.css"),
+            ("p.png", "../in%20put/p.png"),
+            ("x.svg", "../in%20put/x.svg"),
+            ("f/a.woff", "../in%20put/f/a.woff"),
+        ] {
+            wanted = wanted.replace(old, new);
+        }
+        assert_eq!(new, wanted);
+        assert_eq!(Relinking::default().of(svg, &ReadOptions::default()).unwrap(), None);
+    }
+
+    #[test]
+    fn links_name_files_as_browsers_read_them() {
+        for (link, file) in [
+            ("a%20b.png?x#y", "a b.png"),
+            ("%2e%2E/s.png", "../s.png"),
+            ("100%.png", "100%.png"),
+            ("%e4%BD%a0.png", "你.png"),
+            ("%ff.png", "%ff.png"),
+            ("FILE:///etc/x%20y", "/etc/x y"),
+            ("file://localhost/a", "/a"),
+            ("%zz%4", "%zz%4"),
+        ] {
+            assert_eq!(file_of(link), file, "{link}");
+        }
+    }
+}
