@@ -2,6 +2,7 @@
 
 use crate::error::{Error, guarded};
 use crate::glyph::{Outlines, Synthesis};
+use crate::itemize::Writing;
 use crate::metrics::{FontAxis, FontMetrics};
 use crate::style::Variation;
 use harfrust::{ShaperData, ShaperInstance};
@@ -23,6 +24,8 @@ pub struct Font<'a> {
     units_per_em: f64,
     metrics: FontMetrics,
     pub(crate) synthesis: Synthesis,
+    /// The writing that alone may use it.
+    pub(crate) only: Option<Writing>,
 }
 
 impl fmt::Debug for Font<'_> {
@@ -65,6 +68,7 @@ impl<'a> Font<'a> {
             units_per_em,
             metrics: FontMetrics::default(),
             synthesis: Synthesis::default(),
+            only: None,
             font,
         };
         out.measure();
@@ -94,6 +98,14 @@ impl<'a> Font<'a> {
         self.instance = ShaperInstance::from_coords(&self.font, location.coords().iter().copied());
         self.measure();
         Ok(self)
+    }
+
+    /// Restricts the font to one writing, for which it stands in for others: text of other writings does not use it, and emoji use it
+    /// before fonts without this restriction.
+    #[must_use]
+    pub fn only_for(mut self, writing: Writing) -> Self {
+        self.only = Some(writing);
+        self
     }
 
     /// Synthesizes a bold font: thickens the stems of every letter by a fraction of the em, and widens its advance by as much.

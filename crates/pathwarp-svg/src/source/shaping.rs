@@ -1,0 +1,98 @@
+//! Shapes runs of text with the fonts that a text names, and with others for the letters that these lack.
+
+use super::fallback::Wanted;
+use super::faces::Look;
+use super::fonts::{Bytes, Chooser};
+use pathwarp_text::{Font, FontRun, Run, Variation, Writing, features, shape_run};
+use std::sync::Arc;
+use usvg::fontdb::{Database, ID, Source};
+
+/// A font that a text may use.
+pub(super) struct TextFont {
+    /// The face in the database; `None` for a file that a user gave.
+    pub(super) face: Option<ID>,
+    pub(super) data: Bytes,
+    pub(super) index: u32,
+    /// The writing that it was found for; `None` if the text names it.
+    pub(super) only: Option<Writing>,
+}
+
+impl TextFont {
+    pub(super) fn of_face(face: ID, only: Option<Writing>, db: &Database) -> Option<Self> {
+        let info = db.face(face)?;
+        let data = match &info.source {
+            Source::Binary(data) => data.clone(),
+            _ => db.with_face_data(face, |data, _| Arc::new(data.to_vec()) as Bytes)?,
+        };
+        Some(Self { face: Some(face), data, index: info.index, only })
+    }
+
+    fn font(&self, style: &ShapingStyle) -> Option<Font<'_>> {
+        let font = Font::new((*self.data).as_ref(), self.index).ok()?;
+        let axes = font.axes();
+        let position = |(tag, value): &(String, f32)| {
+            let axis = axes.iter().find(|a| a.tag == *tag)?;
+            Variation::new(tag, f64::from(*value).clamp(axis.min, axis.max)).ok()
+        };
+        let font = font.with_variations(&style.variations.iter().filter_map(position).collect::<Vec<_>>()).ok()?;
+        Some(match self.only {
+            Some(writing) => font.only_for(writing),
+            None => font,
+        })
+    }
+}
+
+/// What the shape of letters depends on beside their font.
+#[derive(Default)]
+pub(super) struct ShapingStyle {
+    pub(super) size: f64,
+    /// OpenType features as [`features`] reads them.
+    pub(super) features: String,
+    /// Positions on axes; those that a font lacks have no effect.
+    pub(super) variations: Vec<(String, f32)>,
+    pub(super) language: String,
+}
+
+/// Shapes a run of a line, from left to right. Adds fonts for what `fonts` lack, in the order in which letters need them. Empty if the
+/// fonts are damaged.
+pub(super) fn shaped(
+    line: &str,
+    run: &Run,
+    fonts: &mut Vec<TextFont>,
+    (style, look): (&ShapingStyle, Look),
+    (chooser, db): (&Chooser, &mut Arc<Database>),
+) -> Vec<FontRun> {
+    /// Fonts for the letters of one run. Real texts need one or two.
+    const MOST: usize = 8;
+    let features = features(&style.features).unwrap_or_default();
+    let mut add = |letters: &str, fonts: &mut Vec<TextFont>| {
+        let tried = |f: &&TextFont| f.only.is_none_or(|w| w == run.writing);
+        let used: Vec<ID> = fonts.iter().filter(tried).filter_map(|f| f.face).collect();
+        let found = chooser.fallback(&Wanted { letters, writing: run.writing, language: &style.language, look }, &used, db);
+        let is_for_emoji = |id: &ID| db.face(*id).is_some_and(|f| f.families.iter().any(|n| n.0.contains("Emoji")));
+        let found = found.filter(|id| run.writing != Writing::Emoji || is_for_emoji(id) || !fonts.is_empty());
+        let font = found.and_then(|id| TextFont::of_face(id, Some(run.writing), db));
+        let added = font.is_some();
+        fonts.extend(font);
+        added
+    };
+    if run.writing == Writing::Emoji && !fonts.iter().any(|f| f.only == Some(Writing::Emoji)) {
+        add(&line[run.range.clone()], fonts);
+    }
+    let mut absent: Vec<std::ops::Range<usize>> = Vec::new();
+    for _ in 0..MOST {
+        // An unreadable font must keep its place.
+        let read: Vec<Option<Font<'_>>> = fonts.iter().map(|f| f.font(style)).collect();
+        let places: Vec<usize> = (0..read.len()).filter(|i| read[*i].is_some()).collect();
+        let usable: Vec<Font<'_>> = read.into_iter().flatten().collect();
+        let Ok(mut parts) = shape_run(line, run, &usable, style.size, &features) else { return Vec::new() };
+        parts.iter_mut().for_each(|p| p.font = places[p.font]);
+        let lacking = parts.iter().filter(|p| p.missing).flat_map(|p| &p.clusters).map(|c| &c.0);
+        let Some(cluster) = lacking.filter(|c| !absent.contains(c)).min_by_key(|c| c.start).cloned() else { return parts };
+        drop(usable);
+        if !add(&line[cluster.clone()], fonts) {
+            absent.push(cluster);
+        }
+    }
+    Vec::new()
+}
