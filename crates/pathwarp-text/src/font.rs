@@ -28,6 +28,19 @@ pub struct Font<'a> {
     pub(crate) only: Option<Writing>,
 }
 
+impl Clone for Font<'_> {
+    fn clone(&self) -> Self {
+        Self {
+            font: self.font.clone(),
+            data: ShaperData::new(&self.font),
+            instance: self.instance.clone(),
+            outlines: self.outlines.clone(),
+            charmap: self.charmap.clone(),
+            ..*self
+        }
+    }
+}
+
 impl fmt::Debug for Font<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Font").field("name", &self.name()).field("metrics", &self.metrics).finish_non_exhaustive()
@@ -40,10 +53,22 @@ impl<'a> Font<'a> {
     /// # Errors
     /// The bytes are not such a font, or the file has fewer fonts.
     pub fn new(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
-        guarded(|| Self::read(bytes, index))
+        guarded(|| Self::read(bytes, index, Outlines::new))
     }
 
-    fn read(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
+    /// Reads a font, of any or no outlines, to shape text. Glyphs are empty.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new), but for fonts without outlines.
+    pub fn for_shaping(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
+        guarded(|| Self::read(bytes, index, |_| Ok(Outlines::default())))
+    }
+
+    fn read(
+        bytes: &'a [u8],
+        index: u32,
+        outlines: impl FnOnce(&FontRef<'a>) -> Result<Outlines<'a>, Error>,
+    ) -> Result<Self, Error> {
         let font = match FileRef::new(bytes) {
             Ok(FileRef::Font(font)) if index == 0 => font,
             Ok(FileRef::Font(_)) => return Err(Error::NoSuchFace { index, count: 1 }),
@@ -63,7 +88,7 @@ impl<'a> Font<'a> {
         let mut out = Self {
             data: ShaperData::new(&font),
             instance: ShaperInstance::default(),
-            outlines: Outlines::new(&font)?,
+            outlines: outlines(&font)?,
             charmap: Charmap::new(&font),
             units_per_em,
             metrics: FontMetrics::default(),

@@ -29,7 +29,8 @@ impl Writing {
     #[must_use]
     pub fn is_plain(self) -> bool {
         use Script as S;
-        let plain = [S::Common, S::Latin, S::Greek, S::Cyrillic, S::Armenian, S::Georgian, S::Han, S::Hiragana, S::Katakana];
+        let plain =
+            [S::Common, S::Latin, S::Greek, S::Cyrillic, S::Armenian, S::Georgian, S::Han, S::Hiragana, S::Katakana];
         matches!(self, Self::Script(script) if plain.contains(&script))
     }
 }
@@ -115,7 +116,8 @@ fn writings(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Writing)> {
 /// otherwise.
 fn emoji_length(text: &str) -> usize {
     const JOINER: char = '\u{200d}';
-    let follows = |c: char| matches!(c, '\u{fe0f}' | '\u{20e3}' | '\u{1f3fb}'..='\u{1f3ff}' | '\u{e0020}'..='\u{e007f}');
+    let follows =
+        |c: char| matches!(c, '\u{fe0f}' | '\u{20e3}' | '\u{1f3fb}'..='\u{1f3ff}' | '\u{e0020}'..='\u{e007f}');
     let mut chars = text.chars();
     let Some(first) = chars.next() else { return 0 };
     match chars.next() {

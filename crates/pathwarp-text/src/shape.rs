@@ -40,7 +40,13 @@ impl RunShaper<'_, '_> {
     }
 
     /// Shapes a part of a run with the first font of `order`, and what that lacks with the others.
-    fn shape(&mut self, line: &str, run: &Run, range: Range<usize>, order: &[usize]) -> Result<Vec<ShapedCluster>, Error> {
+    fn shape(
+        &mut self,
+        line: &str,
+        run: &Run,
+        range: Range<usize>,
+        order: &[usize],
+    ) -> Result<Vec<ShapedCluster>, Error> {
         let [first, others @ ..] = order else { return Err(Error::NoFont) };
         let own = self.with_font(line, run, &range, *first)?;
         if others.is_empty() || !own.iter().any(|c| c.missing) {

@@ -9,7 +9,7 @@ use crate::bitmap::Bender;
 use crate::export::{self, KerfReport};
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
-use crate::options::{CommonOptions, FrameChoice};
+use crate::options::{CommonOptions, FrameChoice, OnFailure};
 use crate::output::PendingFile;
 use crate::page::{self, PageNews};
 use crate::report::{Fold, ReportedShape};
@@ -25,7 +25,7 @@ use pathwarp::refit::Nodes;
 use pathwarp::{Error, Outline, refit};
 use pathwarp_svg::{
     Document, Edit, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
-    Selection, ShapeReport, Strokes, Structure, WarpOptions, WarpedDocument,
+    Selection, ShapeReport, Strokes, Structure, Warning, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -195,6 +195,10 @@ impl SvgArtwork {
     fn warped(&self, request: &WarpRequest<'_>) -> Result<(Vec<WarpOptions>, WarpedDocument, f64), Failure> {
         let WarpRequest { built, options: common, mut tolerance, .. } = *request;
         let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        let boxes = warped.warnings.iter().find(|w| matches!(w, Warning::MissingLetters(_)));
+        if let Some(boxes) = boxes.filter(|_| common.on_failure == OnFailure::Stop) {
+            return Err(Failure::Input(boxes.to_string()));
+        }
         // The scale of the result's page is known once the artwork is on it.
         if common.has_tolerance_of_result()
             && let Some(scale) = common.page_scale(self.size_px(warped.page))

@@ -254,4 +254,7 @@ fn warn(
     if !drawing.missed.fonts.is_empty() && bends_text() {
         out.warnings.push(Warning::MissingFonts(drawing.missed.fonts.clone()));
     }
+    if !drawing.missed.letters.is_empty() && bends_text() {
+        out.warnings.push(Warning::MissingLetters(drawing.missed.without_font()));
+    }
 }

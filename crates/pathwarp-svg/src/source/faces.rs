@@ -39,6 +39,12 @@ pub(super) struct Look {
 }
 
 impl Look {
+    /// Upright or italic, of a weight from 100 to 900.
+    pub(super) fn new(weight: u16, italic: bool) -> Self {
+        let style = if italic { fontdb::Style::Italic } else { fontdb::Style::Normal };
+        Self { weight: fontdb::Weight(weight), stretch: fontdb::Stretch::Normal, style }
+    }
+
     /// That of a text.
     pub(super) fn of_text(font: &usvg::Font) -> Self {
         let weight = fontdb::Weight(font.weight());

@@ -281,8 +281,7 @@ pub struct FontFile {
 /// Returns [`Error::Usage`] if there is no such family, with suggestions of similar names.
 pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) -> Result<FontFile, Error> {
     let db = database(read.system_fonts, &read.fonts);
-    let style = if italic { fontdb::Style::Italic } else { fontdb::Style::Normal };
-    let look = Look { weight: fontdb::Weight(weight), stretch: fontdb::Stretch::Normal, style };
+    let look = Look::new(weight, italic);
     let generic = match family.to_ascii_lowercase().as_str() {
         "serif" => Some(FontFamily::Serif),
         "sans-serif" => Some(FontFamily::SansSerif),

@@ -71,7 +71,8 @@ pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) 
         let mut divider = Divider { text, chooser, language: language(*node), named: &mut named, out: &mut out };
         let Some(pieces) = divider.pieces() else { return };
         let shown: Vec<char> = text.chunks().iter().flat_map(|c| c.text().chars()).collect();
-        let mut writer = Writer { source: xml.input_text(), shown: &shown, next: 0, pieces: &pieces, rotate: text.rotate() };
+        let mut writer =
+            Writer { source: xml.input_text(), shown: &shown, next: 0, pieces: &pieces, rotate: text.rotate() };
         // Copies of a text share its element; the first one counts.
         let known = edits.iter().any(|(range, _)| *range == node.range());
         edits.extend(writer.element(*node).filter(|_| !known).map(|text| (node.range(), text)));
@@ -186,8 +187,17 @@ impl Divider<'_> {
                 offset += count;
                 continue;
             };
-            let along = |(a, b): (f64, f64)| if vertical { (start.0 - b, start.1 + a) } else { (start.0 + a, start.1 + b) };
-            self.cut(chunk, &parts, &letters, &layout, &|place| if on_path { (start.0 + place.0, place.1) } else { along(place) }, offset, &mut out);
+            let along =
+                |(a, b): (f64, f64)| if vertical { (start.0 - b, start.1 + a) } else { (start.0 + a, start.1 + b) };
+            self.cut(
+                chunk,
+                &parts,
+                &letters,
+                &layout,
+                &|place| if on_path { (start.0 + place.0, place.1) } else { along(place) },
+                offset,
+                &mut out,
+            );
             last = (!on_path).then(|| along(layout.end));
             offset += count;
         }
@@ -240,7 +250,12 @@ impl Divider<'_> {
         for found in shaped(chunk.text(), run, fonts, (&style, look), (self.chooser, db)) {
             let face = fonts[found.font].face.filter(|_| found.font > 0);
             let part = parts.len();
-            letters.extend(found.clusters.into_iter().map(|(bytes, advance)| Letter { bytes, natural: advance, advance, part }));
+            letters.extend(found.clusters.into_iter().map(|(bytes, advance)| Letter {
+                bytes,
+                natural: advance,
+                advance,
+                part,
+            }));
             parts.push(Part { span: index, run: run.clone(), face, missing: found.missing });
         }
     }
@@ -307,7 +322,8 @@ impl Divider<'_> {
                 continue;
             }
             let group = &letters[start..end];
-            let bytes = group.iter().map(|l| l.bytes.start).min().unwrap_or(0)..group.iter().map(|l| l.bytes.end).max().unwrap_or(0);
+            let bytes = group.iter().map(|l| l.bytes.start).min().unwrap_or(0)
+                ..group.iter().map(|l| l.bytes.end).max().unwrap_or(0);
             let chars = |b: usize| offset + chunk.text()[..b].chars().count();
             let (x, y) = placed(layout.places[start]);
             let mut attributes = match chunk.text_flow() {
@@ -356,9 +372,10 @@ impl Divider<'_> {
         let of_text = if writing == Writing::Emoji { face } else { first };
         let db = Arc::make_mut(&mut self.out.db);
         let info = db.face(of_text)?.clone();
-        let known = self.out.fonts.iter().position(|(a, b)| *b == face && db.face(*a).is_some_and(|a| {
-            a.post_script_name == info.post_script_name && a.index == info.index
-        }));
+        let known = self.out.fonts.iter().position(|(a, b)| {
+            *b == face
+                && db.face(*a).is_some_and(|a| a.post_script_name == info.post_script_name && a.index == info.index)
+        });
         Some(known.unwrap_or_else(|| {
             self.out.fonts.push((db.push_face_info(info), face));
             self.out.fonts.len() - 1
@@ -387,7 +404,9 @@ fn space(chunk: &TextChunk, letters: &mut [Letter]) {
     let count = letters.len();
     let span = |at: usize| chunk.spans().iter().find(|s| (s.start()..s.end()).contains(&at));
     for (i, l) in letters.iter_mut().enumerate() {
-        let (Some(span), Some(c)) = (span(l.bytes.start), chunk.text()[l.bytes.start..].chars().next()) else { continue };
+        let (Some(span), Some(c)) = (span(l.bytes.start), chunk.text()[l.bytes.start..].chars().next()) else {
+            continue;
+        };
         if i + 1 < count && takes_spacing(c.script()) {
             l.advance += f64::from(span.letter_spacing());
         }
@@ -413,7 +432,8 @@ fn space(chunk: &TextChunk, letters: &mut [Letter]) {
 /// Whether usvg spaces the letters of a script.
 fn takes_spacing(script: Script) -> bool {
     use Script as S;
-    let joined = [S::Arabic, S::Syriac, S::Nko, S::Manichaean, S::Psalter_Pahlavi, S::Mandaic, S::Mongolian, S::Phags_Pa];
+    let joined =
+        [S::Arabic, S::Syriac, S::Nko, S::Manichaean, S::Psalter_Pahlavi, S::Mandaic, S::Mongolian, S::Phags_Pa];
     let hung = [S::Devanagari, S::Bengali, S::Gurmukhi, S::Modi, S::Sharada, S::Syloti_Nagri, S::Tirhuta, S::Ogham];
     !joined.contains(&script) && !hung.contains(&script)
 }
@@ -447,7 +467,8 @@ impl Writer<'_> {
         let mut out = String::new();
         let mut at = 0;
         for a in node.attributes().filter(|a| matches!(a.name(), "x" | "y" | "dx" | "dy" | "rotate" | "space")) {
-            let range = a.range().start.checked_sub(node.range().start)?..a.range().end.checked_sub(node.range().start)?;
+            let range =
+                a.range().start.checked_sub(node.range().start)?..a.range().end.checked_sub(node.range().start)?;
             out += tag.get(at..range.start)?;
             at = range.end;
         }
@@ -508,7 +529,9 @@ impl Writer<'_> {
                 starts = found.is_some_and(|f| self.pieces[f].chars.start == at);
             }
             // The place of a piece stands for the order of its letters among others.
-            if found.is_some() && !matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}') {
+            if found.is_some()
+                && !matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+            {
                 letters.push(if is_space(c) { ' ' } else { c });
                 turns.push(self.rotate.get(at).copied().unwrap_or(0.0));
             }

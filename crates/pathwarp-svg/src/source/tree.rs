@@ -34,9 +34,22 @@ pub(crate) struct Missed {
 }
 
 impl Missed {
+    /// Names the letters that no font has.
+    pub(crate) fn without_font(&self) -> Vec<String> {
+        let shortened = |text: &str| match text.char_indices().nth(40) {
+            Some((end, _)) => format!("{}…", &text[..end]),
+            None => text.to_owned(),
+        };
+        let name = |(letters, text): &(String, String)| match letters == text {
+            true => format!("no font has the letters “{}”", shortened(text)),
+            false => format!("no font has the letters “{}” of “{}”", shortened(letters), shortened(text)),
+        };
+        self.letters.iter().map(name).collect()
+    }
+
     /// Adds what else a picture of the drawing lacks.
     pub(crate) fn lacking(self, source: &SourceText) -> Self {
-        let undrawn = undrawn(source).into_iter().chain(meshes(source)).collect();
+        let undrawn = undrawn(source).into_iter().chain(meshes(source)).chain(self.without_font()).collect();
         Self { undrawn, notes: source.notes.clone(), ..self }
     }
 }
