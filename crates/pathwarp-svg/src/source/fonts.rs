@@ -162,11 +162,11 @@ impl Chooser {
         self.admitted(face, db)
     }
 
-    /// The fonts that a text names, in its order. If there is none, the one that stands in for them.
+    /// The fonts that a text names, in its order, or the one that stands in for them; then the one that Chromium takes without a name.
     pub(super) fn named(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Vec<ID> {
         let look = Look::of_text(font);
         let found = font.families().iter().filter_map(|f| face_of_family(f, look, &self.generic, db));
-        let found: Vec<ID> = found.collect();
+        let found: Vec<ID> = found.chain(look.standard_face(&self.generic, db)).collect();
         let mut all: Vec<ID> = self.first(font, db).into_iter().collect();
         for face in found {
             all.extend(self.admitted(face, db).filter(|f| !all.contains(f)));

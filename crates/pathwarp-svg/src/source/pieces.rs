@@ -55,8 +55,8 @@ struct Piece {
     chars: Range<usize>,
     /// Attributes of its `tspan`.
     attributes: String,
-    /// Characters before its text, for the order of its letters.
-    before: &'static str,
+    /// Characters before its text, for the order of its letters, and after it. They show nothing.
+    around: [&'static str; 2],
 }
 
 /// Divides the texts of a drawing that usvg has resolved.
@@ -71,8 +71,14 @@ pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) 
         let mut divider = Divider { text, chooser, language: language(*node), named: &mut named, out: &mut out };
         let Some(pieces) = divider.pieces() else { return };
         let shown: Vec<char> = text.chunks().iter().flat_map(|c| c.text().chars()).collect();
-        let mut writer =
-            Writer { source: xml.input_text(), shown: &shown, next: 0, pieces: &pieces, rotate: text.rotate() };
+        let mut writer = Writer {
+            source: xml.input_text(),
+            shown: &shown,
+            next: 0,
+            pieces: &pieces,
+            rotate: text.rotate(),
+            on_path: Vec::new(),
+        };
         // Copies of a text share its element; the first one counts.
         let known = edits.iter().any(|(range, _)| *range == node.range());
         edits.extend(writer.element(*node).filter(|_| !known).map(|text| (node.range(), text)));
@@ -164,7 +170,8 @@ impl Divider<'_> {
             }
         };
         text.chunks().iter().zip(&chunks).for_each(note);
-        if !chunks.iter().any(|(parts, _)| is_divided(parts)) {
+        let is_divided = |(chunk, (parts, _)): (&TextChunk, &(Vec<Part>, Vec<Letter>))| is_divided(chunk, parts);
+        if !text.chunks().iter().zip(&chunks).any(is_divided) {
             return None;
         }
         let vertical = text.writing_mode() == WritingMode::TopToBottom;
@@ -316,7 +323,8 @@ impl Divider<'_> {
             let part = &parts[letters[start].part];
             let turned = before_letters(&chunk.text()[part.run.range.clone()], part.run.rtl);
             let span = &chunk.spans()[part.span];
-            let spaced = !turned.is_empty() && (span.letter_spacing() != 0.0 || span.text_length().is_some());
+            let spaced = !turned.is_empty() && (span.letter_spacing() != 0.0 || span.text_length().is_some())
+                || span.letter_spacing() != 0.0 && hangs(part.run.writing);
             let goes_on = |next: &Letter| next.part == letters[start].part && near(shift(end), shift(start)) && !spaced;
             if letters.get(end).is_some_and(goes_on) {
                 continue;
@@ -332,7 +340,15 @@ impl Divider<'_> {
                 TextFlow::Path(_) => format!(" x=\"{x}\" dy=\"{y}\""),
             };
             attributes += &self.style(span, part, group, spaced);
-            out.push(Piece { chars: chars(bytes.start)..chars(bytes.end), attributes, before: turned });
+            // usvg spaces all letters but the last one, whose space would be missing beneath an underline.
+            let around = match part.run.rtl {
+                // White space at the end of a line would go with the line.
+                true if !turned.is_empty() => [turned, "\u{200f}"],
+                _ if span.letter_spacing() == 0.0 || spaced => [turned, ""],
+                true => ["\u{200f}", ""],
+                false => ["", "\u{200e}"],
+            };
+            out.push(Piece { chars: chars(bytes.start)..chars(bytes.end), attributes, around });
             start = end;
         }
     }
@@ -391,12 +407,13 @@ fn sets_alike(a: &TextSpan, b: &TextSpan) -> bool {
 }
 
 /// Whether usvg would shape the parts of a chunk otherwise.
-fn is_divided(parts: &[Part]) -> bool {
+fn is_divided(chunk: &TextChunk, parts: &[Part]) -> bool {
+    let spaced = |p: &Part| hangs(p.run.writing) && chunk.spans()[p.span].letter_spacing() != 0.0;
     let mixed = |a: &Part, b: &Part| {
         let (x, y) = (&a.run, &b.run);
         x.level_run == y.level_run && x.writing != y.writing && !(x.writing.is_plain() && y.writing.is_plain())
     };
-    parts.iter().any(|p| p.face.is_some()) || parts.windows(2).any(|w| mixed(&w[0], &w[1]))
+    parts.iter().any(|p| p.face.is_some() || spaced(p)) || parts.windows(2).any(|w| mixed(&w[0], &w[1]))
 }
 
 /// Adds the spacing of a chunk to its letters, as usvg does.
@@ -429,13 +446,19 @@ fn space(chunk: &TextChunk, letters: &mut [Letter]) {
     }
 }
 
-/// Whether usvg spaces the letters of a script.
+/// Whether letters of a script may be set apart: not if they are joined, as in browsers.
 fn takes_spacing(script: Script) -> bool {
     use Script as S;
     let joined =
         [S::Arabic, S::Syriac, S::Nko, S::Manichaean, S::Psalter_Pahlavi, S::Mandaic, S::Mongolian, S::Phags_Pa];
+    !joined.contains(&script)
+}
+
+/// Whether usvg sets no letters of a script apart although browsers do.
+fn hangs(writing: Writing) -> bool {
+    use Script as S;
     let hung = [S::Devanagari, S::Bengali, S::Gurmukhi, S::Modi, S::Sharada, S::Syloti_Nagri, S::Tirhuta, S::Ogham];
-    !joined.contains(&script) && !hung.contains(&script)
+    matches!(writing, Writing::Script(script) if hung.contains(&script))
 }
 
 /// What must stand before a piece, for its letters to go in one direction by themselves.
@@ -457,6 +480,9 @@ struct Writer<'a> {
     next: usize,
     pieces: &'a [Piece],
     rotate: &'a [f32],
+    /// Start and end tags of the elements from a `textPath` inwards. usvg has only the first piece in one on the path, so each piece
+    /// gets one.
+    on_path: Vec<(String, String)>,
 }
 
 impl Writer<'_> {
@@ -474,9 +500,15 @@ impl Writer<'_> {
         }
         out += tag.get(at..)?.strip_suffix('>')?;
         out += if node.has_tag_name((super::elements::SVG, "text")) { " xml:space=\"preserve\">" } else { ">" };
+        let name = whole[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()?;
+        let end = format!("</{name}>");
+        let is_on_path = node.tag_name().name() == "textPath" || !self.on_path.is_empty();
+        if is_on_path {
+            self.on_path.push((out.clone(), end.clone()));
+        }
         for child in node.children() {
             if let Some(text) = child.text().filter(|_| child.is_text()) {
-                self.letters(text, &mut out)?;
+                out += &self.letters(text)?;
             } else if child.is_element() && matches!(child.tag_name().name(), "tspan" | "textPath" | "a") {
                 out += &self.element(child)?;
             } else if child.has_tag_name((super::elements::SVG, "tref")) {
@@ -485,33 +517,15 @@ impl Writer<'_> {
                 out += &self.source[child.range()];
             }
         }
-        let name = whole[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()?;
-        let _ = write!(out, "</{name}>");
-        Some(out)
+        if is_on_path {
+            self.on_path.pop();
+        }
+        Some(out + &end)
     }
 
     /// Writes characters in the pieces that they belong to.
-    fn letters(&mut self, text: &str, out: &mut String) -> Option<()> {
-        let mut open: Option<usize> = None;
-        let (mut letters, mut turns): (String, Vec<f32>) = (String::new(), Vec::new());
-        let mut starts = false;
-        let turned = self.rotate.iter().any(|r| *r != 0.0);
-        let mut close = |piece: Option<usize>, starts: bool, letters: &mut String, turns: &mut Vec<f32>| {
-            let Some(piece) = piece.map(|p| &self.pieces[p]).filter(|_| !letters.is_empty()) else { return };
-            out.push_str("<tspan");
-            // A piece goes on in the next element without a place of its own.
-            let attributes = &piece.attributes;
-            out.push_str(if starts { attributes } else { &attributes[attributes.find(" style=").unwrap_or(0)..] });
-            if starts && !piece.before.is_empty() {
-                turns.insert(0, 0.0);
-            }
-            if turned {
-                let _ = write!(out, " rotate=\"{}\"", turns.iter().map(f32::to_string).collect::<Vec<_>>().join(" "));
-            }
-            let _ = write!(out, ">{}{}</tspan>", if starts { piece.before } else { "" }, escape(letters));
-            letters.clear();
-            turns.clear();
-        };
+    fn letters(&mut self, text: &str) -> Option<String> {
+        let mut stretches: Vec<Stretch> = Vec::new();
         for c in text.chars() {
             let is_space = |c: char| matches!(c, ' ' | '\t' | '\n' | '\r');
             match self.shown.get(self.next) {
@@ -521,24 +535,55 @@ impl Writer<'_> {
             }
             let at = self.next;
             self.next += 1;
-            let found = self.pieces.partition_point(|p| p.chars.end <= at);
-            let found = Some(found).filter(|f| self.pieces.get(*f).is_some_and(|p| p.chars.contains(&at)));
-            if found != open || letters.is_empty() {
-                close(open, starts, &mut letters, &mut turns);
-                open = found;
-                starts = found.is_some_and(|f| self.pieces[f].chars.start == at);
+            let piece = self.pieces.partition_point(|p| p.chars.end <= at);
+            if !self.pieces.get(piece).is_some_and(|p| p.chars.contains(&at)) {
+                continue;
             }
+            if stretches.last().is_none_or(|s| s.piece != piece) {
+                stretches.push(Stretch { piece, chars: at..at, letters: String::new(), turns: Vec::new() });
+            }
+            let Some(stretch) = stretches.last_mut() else { continue };
+            stretch.chars.end = at + 1;
             // The place of a piece stands for the order of its letters among others.
-            if found.is_some()
-                && !matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-            {
-                letters.push(if is_space(c) { ' ' } else { c });
-                turns.push(self.rotate.get(at).copied().unwrap_or(0.0));
+            if !matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}') {
+                stretch.letters.push(if is_space(c) { ' ' } else { c });
+                stretch.turns.push(self.rotate.get(at).copied().unwrap_or(0.0));
             }
         }
-        close(open, starts, &mut letters, &mut turns);
-        Some(())
+        Some(stretches.into_iter().map(|s| self.stretch(s)).collect())
     }
+
+    fn stretch(&self, stretch: Stretch) -> String {
+        let Piece { chars, attributes, around: [before, after] } = &self.pieces[stretch.piece];
+        let Stretch { chars: own, letters, mut turns, .. } = stretch;
+        let starts = own.start == chars.start;
+        let mut out = String::new();
+        if starts {
+            self.on_path.iter().rev().for_each(|(_, end)| out += end);
+            self.on_path.iter().for_each(|(start, _)| out += start);
+        }
+        // A piece goes on in the next element without a place of its own.
+        let style = attributes.find(" style=").unwrap_or(0);
+        let _ = write!(out, "<tspan{}", if starts { attributes } else { &attributes[style..] });
+        let before = if starts { before } else { "" };
+        if self.rotate.iter().any(|r| *r != 0.0) {
+            turns.splice(..0, before.chars().map(|_| 0.0));
+            let _ = write!(out, " rotate=\"{}\"", turns.iter().map(f32::to_string).collect::<Vec<_>>().join(" "));
+        }
+        let after = if own.end == chars.end { after } else { "" };
+        let _ = write!(out, ">{before}{}{after}</tspan>", escape(&letters));
+        out
+    }
+}
+
+/// A part of a piece within one element.
+struct Stretch {
+    piece: usize,
+    /// Characters among all of the text.
+    chars: Range<usize>,
+    letters: String,
+    /// Rotation of each letter, in degrees.
+    turns: Vec<f32>,
 }
 
 /// The length of the start tag at the beginning of an element.
