@@ -92,7 +92,9 @@ fn writings(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Writing)> {
         return vec![(0..line.len(), Writing::Script(script))];
     }
     const COMMON: Writing = Writing::Script(Script::Common);
-    let own = |c: char| Some(c.script()).filter(|s| !matches!(s, Script::Common | Script::Inherited | Script::Unknown));
+    let of_none = |s: &Script| matches!(s, Script::Common | Script::Inherited | Script::Unknown);
+    // Variation selectors of Mongolian stand between letters of any script to keep them apart.
+    let own = |c: char| Some(c.script()).filter(|s| !of_none(s) && !matches!(c, '\u{180b}'..='\u{180d}'));
     let mut out: Vec<(Range<usize>, Writing)> = Vec::new();
     let mut emoji_end = 0;
     for (i, c) in line.char_indices() {

@@ -26,46 +26,40 @@ pub(super) fn fallback(wanted: &Wanted<'_>, used: &[ID], db: &Database) -> Optio
     let off = |f: &FaceInfo| {
         (f.style != look.style, f.stretch != look.stretch, f.weight.0.abs_diff(look.weight.0), f.weight.0)
     };
-    let name = |f: &FaceInfo| f.families.first().map_or_else(String::new, |(name, _)| name.clone());
-    let mut all: Vec<_> = db
-        .faces()
-        .filter(|f| !used.contains(&f.id))
-        .map(|f| {
-            let name = name(f);
-            (if is_bundled(f) { LAST } else { rank(&name, wanted) }, name, off(f), f.id)
-        })
-        .collect();
+    let (script, region) = (wanted.writing.name(), region(wanted.language));
+    let own = [format!("Noto Sans {script}"), format!("Noto Sans CJK {region}"), format!("Noto Sans {region}")];
+    let emoji = wanted.writing == Writing::Emoji;
+    let ranked = |f: &FaceInfo| if is_bundled(f) { LAST } else { rank(family(f), &own, emoji) };
+    let mut all: Vec<&FaceInfo> = db.faces().filter(|f| !used.contains(&f.id)).collect();
     // The sort is stable, so the first of several equals wins.
-    all.sort_by(|a, b| (a.0, &a.1, &a.2).cmp(&(b.0, &b.1, &b.2)));
-    all.into_iter().map(|f| f.3).find(|id| wanted.letters.chars().all(|c| has_letter(*id, c, db)))
+    all.sort_by(|a, b| (ranked(a), family(a), off(a)).cmp(&(ranked(b), family(b), off(b))));
+    all.into_iter().map(|f| f.id).find(|id| wanted.letters.chars().all(|c| has_letter(*id, c, db)))
+}
+
+fn family(face: &FaceInfo) -> &str {
+    face.families.first().map_or("", |(name, _)| name)
 }
 
 /// The rank of the bundled fonts, after all others.
 const LAST: usize = 100;
 
-/// The place of a family among those for a writing (fontconfig's `60-latin.conf`; names of the Noto and Source families).
-fn rank(family: &str, wanted: &Wanted<'_>) -> usize {
+/// The place of a family among those for a writing, which has `own` families (fontconfig's `60-latin.conf`; names of the Noto families).
+fn rank(family: &str, own: &[String; 3], emoji: bool) -> usize {
     const GENERAL: [&str; 7] =
         ["Noto Sans", "DejaVu Sans", "Verdana", "Arial", "Liberation Sans", "Helvetica", "Tahoma"];
-    const OWN: usize = GENERAL.len();
-    let script = wanted.writing.name();
-    if wanted.writing == Writing::Emoji && family.contains("Emoji") {
+    let is_kind = |words: &[&str]| words.iter().any(|w| family.contains(w));
+    if emoji && family.contains("Emoji") {
         return 0;
     }
-    if let Some(place) = GENERAL.iter().position(|f| *f == family) {
-        return 1 + place;
-    }
-    let region = region(wanted.language);
-    let names = [format!("Noto Sans {script}"), format!("Noto Sans CJK {region}"), format!("Noto Sans {region}")];
-    if let Some(place) = names.iter().position(|n| n == family) {
-        return 1 + OWN + place;
-    }
-    let is_kind = |words: &[&str]| words.iter().any(|w| family.contains(w));
-    match () {
-        () if is_kind(&["Mono", "Math", "Symbols", "Serif", "UI"]) => 60,
-        () if family.starts_with("Noto Sans") => 40,
-        () => 50,
-    }
+    let known = GENERAL.into_iter().chain(own.iter().map(String::as_str)).position(|f| f == family);
+    known.map_or_else(
+        || match () {
+            () if is_kind(&["Mono", "Math", "Symbols", "Serif", "UI"]) => 60,
+            () if family.starts_with("Noto Sans") => 40,
+            () => 50,
+        },
+        |place| 1 + place,
+    )
 }
 
 /// The suffix of Noto's families for the Chinese characters of a language. Without a language, fontconfig takes the Japanese ones.

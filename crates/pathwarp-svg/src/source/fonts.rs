@@ -12,7 +12,6 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, ID, Source};
 use usvg::{FontFamily, FontResolver};
@@ -112,10 +111,8 @@ pub(super) struct Chooser {
     missing: Missing,
     guard: FontGuard,
     held: Held,
-    /// The letters that no font has, since there may be hundreds of fonts to search.
-    absent: Mutex<HashSet<String>>,
-    /// Whether usvg asked for letters that the first font of a text lacks.
-    pub(super) fell_back: AtomicBool,
+    /// The letters that no font has but those used, since there may be hundreds of fonts to search.
+    absent: Mutex<HashSet<(String, Vec<ID>)>>,
 }
 
 /// The start of the names by which pieces of text name their fonts, before the number of the piece.
@@ -126,8 +123,7 @@ pub(super) type PieceFonts = (ID, ID);
 
 impl Chooser {
     pub(super) fn new(generic: GenericFamilies, missing: Missing, guard: FontGuard) -> Arc<Self> {
-        let (held, absent, fell_back) = <(Held, Mutex<HashSet<String>>, AtomicBool)>::default();
-        Arc::new(Self { generic, missing, guard, held, absent, fell_back })
+        Arc::new(Self { generic, missing, guard, held: Held::default(), absent: Mutex::default() })
     }
 
     /// Finds fonts as usvg's own resolver does, but always returns one, and records missing families. `pieces` are the fonts that texts
@@ -144,7 +140,6 @@ impl Chooser {
                 named.and_then(|n| Some(pieces.get(n)?.0)).or_else(|| chooser.first(font, db))
             }),
             select_fallback: Box::new(move |c, used, db| {
-                other.fell_back.store(true, Ordering::Relaxed);
                 if let Some(face) = used.first().and_then(|first| of_piece.get(first)) {
                     return (!used.contains(face)).then_some(*face);
                 }
@@ -176,14 +171,13 @@ impl Chooser {
 
     /// The font for letters that the fonts `used` so far lack.
     pub(super) fn fallback(&self, wanted: &Wanted<'_>, used: &[ID], db: &mut Arc<Database>) -> Option<ID> {
+        let key = (wanted.letters.to_owned(), used.to_vec());
         let mut absent = self.absent.lock().unwrap_or_else(PoisonError::into_inner);
-        if absent.contains(wanted.letters) {
+        if absent.contains(&key) {
             return None;
         }
         let Some(face) = fallback(wanted, used, db) else {
-            if used.is_empty() || fallback(wanted, &[], db).is_none() {
-                absent.insert(wanted.letters.to_owned());
-            }
+            absent.insert(key);
             return None;
         };
         self.admitted(face, db).filter(|f| !used.contains(f))

@@ -323,8 +323,7 @@ impl Divider<'_> {
             let part = &parts[letters[start].part];
             let turned = before_letters(&chunk.text()[part.run.range.clone()], part.run.rtl);
             let span = &chunk.spans()[part.span];
-            let spaced = !turned.is_empty() && (span.letter_spacing() != 0.0 || span.text_length().is_some())
-                || span.letter_spacing() != 0.0 && hangs(part.run.writing);
+            let spaced = !turned.is_empty() && (span.letter_spacing() != 0.0 || span.text_length().is_some());
             let goes_on = |next: &Letter| next.part == letters[start].part && near(shift(end), shift(start)) && !spaced;
             if letters.get(end).is_some_and(goes_on) {
                 continue;
@@ -366,8 +365,9 @@ impl Divider<'_> {
         }
         style.push('"');
         let natural: f64 = letters.iter().map(|l| l.natural).sum();
+        let hung = hangs(part.run.writing) && span.letter_spacing() != 0.0;
         match (span.text_length(), span.length_adjust()) {
-            (Some(_), LengthAdjust::Spacing) if !spaced && letters.len() > 1 => {
+            (length, LengthAdjust::Spacing) if (length.is_some() || hung) && !spaced && letters.len() > 1 => {
                 let all: f64 = letters.iter().map(|l| l.advance).sum();
                 let last = letters.last().map_or(0.0, |l| l.advance - l.natural);
                 let _ = write!(style, " textLength=\"{}\"", all - last);
@@ -550,7 +550,9 @@ impl Writer<'_> {
                 stretch.turns.push(self.rotate.get(at).copied().unwrap_or(0.0));
             }
         }
-        Some(stretches.into_iter().map(|s| self.stretch(s)).collect())
+        let is_empty =
+            |s: &Stretch| s.letters.chars().all(|c| matches!(c, '\u{180b}' | '\u{200b}'..='\u{200d}' | '\u{2060}'));
+        Some(stretches.into_iter().filter(|s| !is_empty(s)).map(|s| self.stretch(s)).collect())
     }
 
     fn stretch(&self, stretch: Stretch) -> String {
