@@ -46,6 +46,8 @@ struct Part {
     run: Run,
     /// The face, unless it is that of the span.
     face: Option<ID>,
+    /// Whether its letters are small forms of their capitals.
+    small: bool,
     missing: bool,
 }
 
@@ -55,6 +57,8 @@ struct Piece {
     chars: Range<usize>,
     /// Attributes of its `tspan`.
     attributes: String,
+    /// Whether its letters are written as capitals.
+    small: bool,
     /// Characters before its text, for the order of its letters, and after it. They show nothing.
     around: [&'static str; 2],
 }
@@ -120,14 +124,12 @@ fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
     }
 }
 
-/// The drawing with an id for each text with letters beyond ASCII, by which [`divided`] finds it. `None` if all have one.
+/// The drawing with an id for each text, by which [`divided`] finds it. `None` if all have one.
 pub(super) fn with_ids(xml: &Document<'_>) -> Option<String> {
     let source = xml.input_text();
     let (mut out, mut at) = (String::new(), 0);
     let lacks_id = |n: &Node<'_, '_>| {
-        n.has_tag_name((super::elements::SVG, "text"))
-            && n.attribute("id").is_none_or(str::is_empty)
-            && source.get(n.range()).is_some_and(|t| !t.is_ascii() || t.contains('&'))
+        n.has_tag_name((super::elements::SVG, "text")) && n.attribute("id").is_none_or(str::is_empty)
     };
     for (i, node) in xml.descendants().filter(lacks_id).enumerate() {
         let start = node.range().start;
@@ -244,26 +246,55 @@ impl Divider<'_> {
         if span.font_optical_sizing() == usvg::FontOpticalSizing::Auto && !variations.iter().any(|v| v.0 == "opsz") {
             variations.push(("opsz".into(), size));
         }
-        let feature = |on: bool, name: &'static str| if on { name } else { "" };
-        let features = [feature(span.small_caps(), "smcp=1"), feature(!span.apply_kerning(), "kern=0")].join(",");
+        let features = [(span.small_caps(), "smcp=1"), (!span.apply_kerning(), "kern=0")];
+        let features: Vec<&str> = features.into_iter().filter(|f| f.0).map(|f| f.1).collect();
         let language = self.language.clone();
-        let style = ShapingStyle { size: f64::from(size), features, variations, language: language.clone() };
+        let features = features.join(",");
+        let mut style = ShapingStyle { size: f64::from(size), features, variations, language: language.clone() };
         let db = &mut self.out.db;
         let fonts = self.named.entry((span.font().clone(), language)).or_insert_with(|| {
             let named = self.chooser.named(span.font(), db);
             named.into_iter().filter_map(|face| TextFont::of_face(face, None, db)).collect()
         });
         let look = Look::of_text(span.font());
-        for found in shaped(chunk.text(), run, fonts, (&style, look), (self.chooser, db)) {
-            let face = fonts[found.font].face.filter(|_| found.font > 0);
-            let part = parts.len();
-            letters.extend(found.clusters.into_iter().map(|(bytes, advance)| Letter {
-                bytes,
-                natural: advance,
-                advance,
-                part,
-            }));
-            parts.push(Part { span: index, run: run.clone(), face, missing: found.missing });
+        let is_small = span.small_caps() && fonts.first().is_some_and(|f| !f.has_small_capitals());
+        let whole = &chunk.text()[run.range.clone()];
+        let lower = |c: char| is_small && c.is_lowercase();
+        let mut at = run.range.start;
+        let mut stretches: Vec<(bool, Range<usize>)> = Vec::new();
+        for c in whole.chars() {
+            let range = at..at + c.len_utf8();
+            at = range.end;
+            match stretches.last_mut() {
+                Some((small, before)) if *small == lower(c) => before.end = range.end,
+                _ => stretches.push((lower(c), range)),
+            }
+        }
+        if run.rtl {
+            stretches.reverse();
+        }
+        for (small, range) in stretches {
+            style.size = f64::from(size) * if small { SMALL } else { 1.0 };
+            let own = Run { range, ..run.clone() };
+            // Capitals may have another number of bytes.
+            let (line, origins) = if small { capitals(chunk.text(), &own.range) } else { Default::default() };
+            let (line, set) = if small {
+                (line.as_str(), Run { range: 0..line.len(), ..own.clone() })
+            } else {
+                (chunk.text(), own.clone())
+            };
+            let origin = |b: usize| if small { origins[b] } else { b };
+            for found in shaped(line, &set, fonts, (&style, look), (self.chooser, db)) {
+                let face = fonts[found.font].face.filter(|_| found.font > 0);
+                let part = parts.len();
+                letters.extend(found.clusters.into_iter().map(|(bytes, advance)| Letter {
+                    bytes: origin(bytes.start)..origin(bytes.end),
+                    natural: advance,
+                    advance,
+                    part,
+                }));
+                parts.push(Part { span: index, run: own.clone(), face, small, missing: found.missing });
+            }
         }
     }
 
@@ -347,7 +378,7 @@ impl Divider<'_> {
                 true => ["\u{200f}", ""],
                 false => ["", "\u{200e}"],
             };
-            out.push(Piece { chars: chars(bytes.start)..chars(bytes.end), attributes, around });
+            out.push(Piece { chars: chars(bytes.start)..chars(bytes.end), attributes, small: part.small, around });
             start = end;
         }
     }
@@ -362,6 +393,9 @@ impl Divider<'_> {
         }
         if spaced {
             style += ";letter-spacing:0";
+        }
+        if part.small {
+            let _ = write!(style, ";font-size:{}px", f64::from(span.font_size().get()) * SMALL);
         }
         style.push('"');
         let natural: f64 = letters.iter().map(|l| l.natural).sum();
@@ -399,6 +433,20 @@ impl Divider<'_> {
     }
 }
 
+/// The size of small capitals that a font lacks, as a share of its size (CSS Fonts 4, section 6.6, leaves it open; browsers).
+const SMALL: f64 = 0.7;
+
+/// Letters of a text as capitals, and the place in the text of each of their bytes and of the end.
+fn capitals(text: &str, range: &Range<usize>) -> (String, Vec<usize>) {
+    let (mut out, mut origins) = (String::new(), Vec::new());
+    for (i, c) in text[range.clone()].char_indices() {
+        out.extend(c.to_uppercase());
+        origins.resize(out.len(), range.start + i);
+    }
+    origins.push(range.end);
+    (out, origins)
+}
+
 /// Whether two spans are shaped together.
 fn sets_alike(a: &TextSpan, b: &TextSpan) -> bool {
     let of = |s: &TextSpan| (s.font_size(), s.small_caps(), s.apply_kerning(), s.font_optical_sizing());
@@ -413,7 +461,7 @@ fn is_divided(chunk: &TextChunk, parts: &[Part]) -> bool {
         let (x, y) = (&a.run, &b.run);
         x.level_run == y.level_run && x.writing != y.writing && !(x.writing.is_plain() && y.writing.is_plain())
     };
-    parts.iter().any(|p| p.face.is_some() || spaced(p)) || parts.windows(2).any(|w| mixed(&w[0], &w[1]))
+    parts.iter().any(|p| p.face.is_some() || p.small || spaced(p)) || parts.windows(2).any(|w| mixed(&w[0], &w[1]))
 }
 
 /// Adds the spacing of a chunk to its letters, as usvg does.
@@ -556,7 +604,7 @@ impl Writer<'_> {
     }
 
     fn stretch(&self, stretch: Stretch) -> String {
-        let Piece { chars, attributes, around: [before, after] } = &self.pieces[stretch.piece];
+        let Piece { chars, attributes, small, around: [before, after] } = &self.pieces[stretch.piece];
         let Stretch { chars: own, letters, mut turns, .. } = stretch;
         let starts = own.start == chars.start;
         let mut out = String::new();
@@ -573,6 +621,7 @@ impl Writer<'_> {
             let _ = write!(out, " rotate=\"{}\"", turns.iter().map(f32::to_string).collect::<Vec<_>>().join(" "));
         }
         let after = if own.end == chars.end { after } else { "" };
+        let letters = if *small { letters.to_uppercase() } else { letters };
         let _ = write!(out, ">{before}{}{after}</tspan>", escape(&letters));
         out
     }

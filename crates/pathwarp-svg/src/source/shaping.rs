@@ -7,6 +7,8 @@ use super::fonts::{FontFile, FontGuard};
 use super::images::{Missing, Rejected};
 use super::read::ReadOptions;
 use pathwarp_text::{Error, Font, FontRun, Run, Variation, Writing, features, runs, shape_run};
+use skrifa::raw::TableProvider as _;
+use skrifa::{FontRef, Tag};
 use std::sync::Arc;
 use usvg::fontdb::{Database, ID, Source};
 
@@ -28,6 +30,13 @@ impl TextFont {
             _ => db.with_face_data(face, |data, _| Arc::new(data.to_vec()) as Bytes)?,
         };
         Some(Self { face: Some(face), data, index: info.index, only })
+    }
+
+    /// Whether it has small capitals of its own.
+    pub(super) fn has_small_capitals(&self) -> bool {
+        let font = FontRef::from_index((*self.data).as_ref(), self.index).ok();
+        let features = font.and_then(|f| f.gsub().ok()?.feature_list().ok());
+        features.is_some_and(|all| all.feature_records().iter().any(|r| r.feature_tag() == Tag::new(b"smcp")))
     }
 
     fn font(&self, style: &ShapingStyle) -> Option<Font<'_>> {
