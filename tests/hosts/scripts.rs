@@ -85,7 +85,7 @@ fn texts_are_as_in_chromium() {
         let text = format!(
             "<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}' viewBox='0 0 {width} {height}'>\
              <rect width='100%' height='100%' fill='white'/>\
-             <text {place} y='60' font-size='36' font-family='sans-serif' {attributes}>{content}</text></svg>"
+             <g font-family='sans-serif' text-rendering='geometricPrecision'><text {place} y='60' font-size='36' {attributes}>{content}</text></g></svg>"
         );
         let file = dir.path().join("a.svg");
         fs::write(&file, text).unwrap();
@@ -95,6 +95,11 @@ fn texts_are_as_in_chromium() {
         let out = pathwarp_in(dir.path(), &args, b"");
         assert!(out.status.success(), "{content}: {}", String::from_utf8_lossy(&out.stderr));
         let own = decode_png(&fs::read(dir.path().join("a.png")).unwrap()).unwrap();
+        if let Some(folder) = std::env::var_os("PATHWARP_SHEET") {
+            let folder = Path::new(&folder);
+            shown.save_png(folder.join(format!("{}-chromium.png", wrong.len()))).unwrap();
+            own.save_png(folder.join(format!("{}-pathwarp.png", wrong.len()))).unwrap();
+        }
         let off = (strays(&shown, &own), strays(&own, &shown));
         if off.0 + off.1 > 12 {
             wrong.push(format!("{content} ({attributes}): {off:?}"));
