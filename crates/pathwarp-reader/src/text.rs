@@ -195,14 +195,7 @@ impl TextStyle {
             };
             set("text-anchor", anchor.to_owned());
         }
-        if let Some(caps) = value("font-variant-caps").or_else(|| value("font-variant")) {
-            let small = caps.split_whitespace().any(|w| w.ends_with("small-caps"));
-            let known = if small { "small-caps" } else { "normal" };
-            if value("font-variant").unwrap_or("normal") != known {
-                set("font-variant", known.to_owned());
-            }
-            self.case = if caps == "all-small-caps" { Case::Lower } else { self.case };
-        }
+        self.capitals(&value, &mut set);
         let collapses = tag == "text" && self.keeps_space.is_none() && loses_spaces(node);
         if collapses {
             out.attributes.push(("xml:space", "preserve".to_owned()));
@@ -235,13 +228,19 @@ impl TextStyle {
         ];
         out.notes = notes.into_iter().filter(|n| n.0).map(|n| n.1).collect();
         let overrides = matches!(value("unicode-bidi"), Some("bidi-override" | "isolate-override"));
-        let direction = match (self.rtl, overrides) {
-            (true, true) => Some('\u{202e}'),
-            (true, false) => Some('\u{202b}'),
-            (false, true) => Some('\u{202d}'),
-            (false, false) => None,
-        };
+        let direction = control(self.rtl, overrides);
         (out, Letters { case: self.case, separate: self.spaced, direction, collapses })
+    }
+
+    /// Says small capitals as usvg reads them.
+    fn capitals<'a>(&mut self, value: &impl Fn(&str) -> Option<&'a str>, set: &mut impl FnMut(&str, String)) {
+        let Some(caps) = value("font-variant-caps").or_else(|| value("font-variant")) else { return };
+        let small = caps.split_whitespace().any(|w| w.ends_with("small-caps"));
+        let known = if small { "small-caps" } else { "normal" };
+        if value("font-variant").unwrap_or("normal") != known {
+            set("font-variant", known.to_owned());
+        }
+        self.case = if caps == "all-small-caps" { Case::Lower } else { self.case };
     }
 
     /// Multiplies the opacity of a part of a text into those of its fill and stroke.
@@ -295,6 +294,16 @@ impl TextStyle {
 fn keeps_space(style: Option<bool>, node: Option<Node<'_, '_>>) -> bool {
     let said = |n: Node<'_, '_>| n.ancestors().find_map(|a| attribute(a, "xml:space").map(|v| v == "preserve"));
     style.or_else(|| said(node?)).unwrap_or(false)
+}
+
+/// The control character that sets a direction, if it is not that of left-to-right text.
+fn control(rtl: bool, overrides: bool) -> Option<char> {
+    match (rtl, overrides) {
+        (true, true) => Some('\u{202e}'),
+        (true, false) => Some('\u{202b}'),
+        (false, true) => Some('\u{202d}'),
+        (false, false) => None,
+    }
 }
 
 /// Whether usvg leaves out the space before a word of a text, where a part begins with it.
