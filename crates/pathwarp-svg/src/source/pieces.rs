@@ -513,7 +513,7 @@ fn hangs(writing: Writing) -> bool {
 fn before_letters(text: &str, rtl: bool) -> &'static str {
     let goes_left = |c: char| matches!(c, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{fefc}' | '\u{10800}'..='\u{10fff}' | '\u{1e800}'..='\u{1efff}');
     match rtl {
-        true if !text.chars().all(|c| c.is_alphabetic()) => "\u{202e}",
+        true if !text.chars().all(char::is_alphabetic) => "\u{202e}",
         false if text.chars().any(goes_left) => "\u{202d}",
         _ => "",
     }
