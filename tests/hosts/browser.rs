@@ -35,8 +35,14 @@ pub fn missing() -> Option<&'static str> {
 }
 
 /// What Chromium shows of a page of this size in px. The script starts it anew where it takes no picture.
-pub fn shown(page: &Path, [width, height]: [usize; 2]) -> Pixmap {
+pub fn shown(page: &Path, size: [usize; 2]) -> Pixmap {
+    shown_with(page, size, &[])
+}
+
+/// As [`shown`], with variables of the environment.
+pub fn shown_with(page: &Path, [width, height]: [usize; 2], environment: &[(&str, &str)]) -> Pixmap {
     let mut node = Command::new("node");
+    node.envs(environment.iter().copied());
     node.arg(root().join("crates/xtask/src/browser/pages.mjs")).stdin(Stdio::piped()).stdout(Stdio::piped());
     let mut node = node.spawn().unwrap();
     let asked = json!({ "file": page, "size": [width, height], "scale": 1 });

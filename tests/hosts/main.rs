@@ -21,6 +21,7 @@ mod page;
 mod pdf;
 #[cfg(unix)]
 mod plugins;
+mod scripts;
 mod styles;
 #[path = "../support/mod.rs"]
 mod support;

@@ -34,6 +34,7 @@ mod pictures;
 mod plugins;
 mod presets;
 mod recipes;
+mod scripts;
 mod solid;
 mod straightened;
 #[path = "../support/mod.rs"]

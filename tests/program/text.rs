@@ -257,7 +257,7 @@ fn near_rect(a: Rect, b: Rect) {
 fn characters_no_font_has_are_named() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out.svg").display().to_string();
-    let (_, said) = expect_code(1, &["text", "a日本b", "-o", &out]);
+    let (_, said) = expect_code(1, &["text", "a日本b", "-o", &out, "--no-system-fonts"]);
     assert!(said.contains("日 (U+65E5)") && said.contains("本 (U+672C)") && said.contains("--font"), "{said}");
     // They are drawn with the font's glyph for missing characters.
     assert_eq!(fs::read_to_string(&out).unwrap().matches("<path").count(), 4);

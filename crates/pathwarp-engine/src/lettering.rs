@@ -6,7 +6,7 @@ use crate::input;
 use crate::options::Reading;
 use pathwarp::budget::{Exceeded, Limit, Limits, cost};
 use pathwarp::param::LengthUnit;
-use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, bundled_font, write_lettering};
+use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, bundled_font, fallback_fonts, write_lettering};
 use pathwarp_text::{Font, OutlinedText, TextLimits, TextStyle, layout_within};
 use std::path::Path;
 
@@ -45,7 +45,8 @@ pub fn set_plainly(
     let file = family.map(|name| find_font(name, REGULAR, false, &read)).transpose()?;
     let own = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
     let fonts: Vec<Font<'_>> = own.into_iter().chain([bundled()?]).collect();
-    let text = laid_out(words, &fonts, style, &reading.limits.for_input(words.len()))?;
+    let limits = reading.limits.for_input(words.len());
+    let text = laid_out_with_installed(words, &fonts, style, (REGULAR, false), &read, &limits)?;
     let options = LetteringOptions { unit: Some(LengthUnit::Mm), ..LetteringOptions::default() };
     Ok((write_lettering(&text, &options)?, text.missing))
 }
@@ -58,6 +59,25 @@ pub fn read_font<'a>(name: &str, file: &'a FontFile) -> Result<Font<'a>, Failure
 /// The bundled font.
 pub fn bundled() -> Result<Font<'static>, Failure> {
     Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))
+}
+
+/// Lays out words within the limits. Letters that the fonts lack come from installed ones, of a weight and upright or italic.
+pub fn laid_out_with_installed(
+    words: &str,
+    fonts: &[Font<'_>],
+    style: &TextStyle,
+    look: (u16, bool),
+    read: &ReadOptions,
+    limits: &Limits,
+) -> Result<OutlinedText, Failure> {
+    let own = laid_out(words, fonts, style, limits)?;
+    if own.missing.is_empty() {
+        return Ok(own);
+    }
+    let found = fallback_fonts(&own.text, fonts, look, style.language.as_deref().unwrap_or_default(), read);
+    let found = found.iter().filter_map(|(file, w)| Some(Font::new(&file.bytes, file.index).ok()?.only_for(*w)));
+    let all: Vec<Font<'_>> = fonts.iter().cloned().chain(found).collect();
+    if all.len() == fonts.len() { Ok(own) } else { laid_out(words, &all, style, limits) }
 }
 
 /// Lays out words within the limits.

@@ -46,8 +46,8 @@ const SIZES: [(&str, f64); 8] = [
 
 /// Properties that usvg ignores, with the words that ask for nothing special. A value with any other word is reported.
 const WITHOUT_EFFECT: [(&str, &[&str]); 13] = [
-    ("font-variant", &["normal", "none", "common-ligatures", "contextual"]),
-    ("font-variant-caps", &["normal"]),
+    ("font-variant", &["normal", "none", "common-ligatures", "contextual", "small-caps"]),
+    ("font-variant-caps", &["normal", "small-caps", "all-small-caps"]),
     ("font-variant-ligatures", &["normal", "common-ligatures", "contextual"]),
     ("font-variant-numeric", &["normal"]),
     ("font-variant-position", &["normal"]),
@@ -142,6 +142,8 @@ pub(super) struct Letters {
     /// A control character to set the direction of the text (Unicode Standard Annex 9, section 2), since usvg always starts from
     /// left to right.
     pub(super) direction: Option<char>,
+    /// Whether to collapse white space, which usvg does otherwise.
+    pub(super) collapses: bool,
 }
 
 impl TextStyle {
@@ -193,6 +195,11 @@ impl TextStyle {
             };
             set("text-anchor", anchor.to_owned());
         }
+        self.capitals(&value, &mut set);
+        let collapses = tag == "text" && self.keeps_space.is_none() && loses_spaces(node);
+        if collapses {
+            out.attributes.push(("xml:space", "preserve".to_owned()));
+        }
         self.fade(tag, &value, &mut set);
         if let Some(keeps) = self.keeps_space.filter(|_| is_content) {
             out.attributes.push(("xml:space", if keeps { "preserve" } else { "default" }.to_owned()));
@@ -221,13 +228,19 @@ impl TextStyle {
         ];
         out.notes = notes.into_iter().filter(|n| n.0).map(|n| n.1).collect();
         let overrides = matches!(value("unicode-bidi"), Some("bidi-override" | "isolate-override"));
-        let direction = match (self.rtl, overrides) {
-            (true, true) => Some('\u{202e}'),
-            (true, false) => Some('\u{202b}'),
-            (false, true) => Some('\u{202d}'),
-            (false, false) => None,
-        };
-        (out, Letters { case: self.case, separate: self.spaced, direction })
+        let direction = control(self.rtl, overrides);
+        (out, Letters { case: self.case, separate: self.spaced, direction, collapses })
+    }
+
+    /// Says small capitals as usvg reads them.
+    fn capitals<'a>(&mut self, value: &impl Fn(&str) -> Option<&'a str>, set: &mut impl FnMut(&str, String)) {
+        let Some(caps) = value("font-variant-caps").or_else(|| value("font-variant")) else { return };
+        let small = caps.split_whitespace().any(|w| w.ends_with("small-caps"));
+        let known = if small { "small-caps" } else { "normal" };
+        if value("font-variant").unwrap_or("normal") != known {
+            set("font-variant", known.to_owned());
+        }
+        self.case = if caps == "all-small-caps" { Case::Lower } else { self.case };
     }
 
     /// Multiplies the opacity of a part of a text into those of its fill and stroke.
@@ -281,6 +294,36 @@ impl TextStyle {
 fn keeps_space(style: Option<bool>, node: Option<Node<'_, '_>>) -> bool {
     let said = |n: Node<'_, '_>| n.ancestors().find_map(|a| attribute(a, "xml:space").map(|v| v == "preserve"));
     style.or_else(|| said(node?)).unwrap_or(false)
+}
+
+/// The control character that sets a direction, if it is not that of left-to-right text.
+fn control(rtl: bool, overrides: bool) -> Option<char> {
+    match (rtl, overrides) {
+        (true, true) => Some('\u{202e}'),
+        (true, false) => Some('\u{202b}'),
+        (false, true) => Some('\u{202d}'),
+        (false, false) => None,
+    }
+}
+
+/// Whether usvg leaves out the space before a word of a text, where a part begins with it.
+fn loses_spaces(text: Node<'_, '_>) -> bool {
+    let keeps = |n: Node<'_, '_>| {
+        attribute(n, "xml:space").is_some() || n.attribute("style").is_some_and(|s| s.contains("white-space"))
+    };
+    let parts = text.descendants().filter(Node::is_element);
+    if keeps_space(None, Some(text)) || parts.skip(1).any(keeps) {
+        return false;
+    }
+    let mut before = None;
+    text.descendants().filter(Node::is_text).any(|n| {
+        let words = n.text().unwrap_or_default();
+        let is_inside = n.parent().is_some_and(|p| p != text);
+        let lost =
+            is_inside && words.starts_with(char::is_whitespace) && before.is_some_and(|c: char| !c.is_whitespace());
+        before = words.chars().next_back().or(before);
+        lost
+    })
 }
 
 /// Whether a part of a text sets only its y, so that it begins below the end of the words before it.
@@ -511,6 +554,9 @@ pub(super) fn rewritten(text: Node<'_, '_>, letters: &[Letters]) -> Option<Vec<R
         before = old.chars().next_back().or(before);
         line.push(Run { new, old, style });
     }
+    if letters.first().is_some_and(|l| l.collapses) {
+        collapse(lines.iter_mut().flatten());
+    }
     if is_marked && is_placed {
         return None;
     }
@@ -518,6 +564,30 @@ pub(super) fn rewritten(text: Node<'_, '_>, letters: &[Letters]) -> Option<Vec<R
         lines.iter_mut().for_each(|line| mark(line));
     }
     Some(lines.into_iter().flatten().filter(|r| r.new.text != r.old).map(|r| r.new).collect())
+}
+
+/// Collapses white space as browsers do: that between words to one space, and none before the first and after the last word.
+fn collapse<'a, 'b: 'a>(runs: impl Iterator<Item = &'a mut Run<'b>>) {
+    let is_space = |c: char| matches!(c, ' ' | '\t' | '\n' | '\r');
+    let mut after_space = true;
+    let mut last: Option<&mut Run<'_>> = None;
+    for run in runs {
+        let mut text = String::with_capacity(run.new.text.len());
+        for c in run.new.text.chars() {
+            if !is_space(c) {
+                text.push(c);
+            } else if !after_space {
+                text.push(' ');
+            }
+            after_space = is_space(c);
+        }
+        let is_empty = text.is_empty();
+        run.new.text = text;
+        last = if is_empty { last } else { Some(run) };
+    }
+    if let Some(run) = last.filter(|_| after_space) {
+        run.new.text.truncate(run.new.text.trim_end_matches(' ').len());
+    }
 }
 
 /// Sets the direction of a line, breaks up its ligatures, and ends it so that its last letter keeps its spacing.

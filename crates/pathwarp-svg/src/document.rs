@@ -213,13 +213,14 @@ impl Document {
     pub fn missing(&self) -> Vec<String> {
         let missed = &self.drawing.missed;
         let fonts = missed.fonts.iter().map(|name| format!("text uses another font, as {name} is missing"));
+        let fonts = fonts.chain(missed.without_font());
         fonts.chain(missed.images.iter().map(|link| format!("the image {link} cannot be read"))).collect()
     }
 
     /// What the drawing asks for and a picture of it lacks, in words: content and style that are not supported.
     #[must_use]
     pub fn undrawn(&self) -> Vec<String> {
-        undrawn(&self.drawing.source)
+        undrawn(&self.drawing.source).into_iter().chain(self.drawing.missed.without_font()).collect()
     }
 
     /// What browsers show a little otherwise, in words.

@@ -110,4 +110,5 @@ pub use source::fonts::{FontFile, check_fonts, families, family_styles, find_fon
 pub use source::links::Relinking;
 pub use source::read::{ReadOptions, Turned, compressed};
 pub use source::select::{Division, Elements, Selection};
+pub use source::shaping::fallback_fonts;
 pub use write::lettering::{LetteringOptions, SetGroup, SetPath, write_lettering, write_set_groups};

@@ -12,6 +12,7 @@ use skrifa::{FontRef, GlyphId};
 use std::cell::Cell;
 
 /// The charstrings of a font.
+#[derive(Clone)]
 pub(crate) struct Charstrings<'a>(CffFontRef<'a>);
 
 impl<'a> Charstrings<'a> {

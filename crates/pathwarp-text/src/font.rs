@@ -2,6 +2,7 @@
 
 use crate::error::{Error, guarded};
 use crate::glyph::{Outlines, Synthesis};
+use crate::itemize::Writing;
 use crate::metrics::{FontAxis, FontMetrics};
 use crate::style::Variation;
 use harfrust::{ShaperData, ShaperInstance};
@@ -23,6 +24,21 @@ pub struct Font<'a> {
     units_per_em: f64,
     metrics: FontMetrics,
     pub(crate) synthesis: Synthesis,
+    /// The writing that alone may use it.
+    pub(crate) only: Option<Writing>,
+}
+
+impl Clone for Font<'_> {
+    fn clone(&self) -> Self {
+        Self {
+            font: self.font.clone(),
+            data: ShaperData::new(&self.font),
+            instance: self.instance.clone(),
+            outlines: self.outlines.clone(),
+            charmap: self.charmap.clone(),
+            ..*self
+        }
+    }
 }
 
 impl fmt::Debug for Font<'_> {
@@ -37,10 +53,22 @@ impl<'a> Font<'a> {
     /// # Errors
     /// The bytes are not such a font, or the file has fewer fonts.
     pub fn new(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
-        guarded(|| Self::read(bytes, index))
+        guarded(|| Self::read(bytes, index, Outlines::new))
     }
 
-    fn read(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
+    /// Reads a font, of any or no outlines, to shape text. Glyphs are empty.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new), but for fonts without outlines.
+    pub fn for_shaping(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
+        guarded(|| Self::read(bytes, index, |_| Ok(Outlines::default())))
+    }
+
+    fn read(
+        bytes: &'a [u8],
+        index: u32,
+        outlines: impl FnOnce(&FontRef<'a>) -> Result<Outlines<'a>, Error>,
+    ) -> Result<Self, Error> {
         let font = match FileRef::new(bytes) {
             Ok(FileRef::Font(font)) if index == 0 => font,
             Ok(FileRef::Font(_)) => return Err(Error::NoSuchFace { index, count: 1 }),
@@ -60,11 +88,12 @@ impl<'a> Font<'a> {
         let mut out = Self {
             data: ShaperData::new(&font),
             instance: ShaperInstance::default(),
-            outlines: Outlines::new(&font)?,
+            outlines: outlines(&font)?,
             charmap: Charmap::new(&font),
             units_per_em,
             metrics: FontMetrics::default(),
             synthesis: Synthesis::default(),
+            only: None,
             font,
         };
         out.measure();
@@ -94,6 +123,14 @@ impl<'a> Font<'a> {
         self.instance = ShaperInstance::from_coords(&self.font, location.coords().iter().copied());
         self.measure();
         Ok(self)
+    }
+
+    /// Restricts the font to one writing, for which it stands in for others: text of other writings does not use it, and emoji use it
+    /// before fonts without this restriction.
+    #[must_use]
+    pub fn only_for(mut self, writing: Writing) -> Self {
+        self.only = Some(writing);
+        self
     }
 
     /// Synthesizes a bold font: thickens the stems of every letter by a fraction of the em, and widens its advance by as much.

@@ -18,8 +18,10 @@ use std::collections::HashMap;
 const MAX_PARTS: usize = 10_000;
 
 /// The outlines of a font.
+#[derive(Clone, Default)]
 pub(crate) struct Outlines<'a> {
-    glyphs: OutlineGlyphCollection<'a>,
+    /// `None` if the font is for shaping only.
+    glyphs: Option<OutlineGlyphCollection<'a>>,
     composites: Option<(Glyf<'a>, Loca<'a>)>,
     charstrings: Option<Charstrings<'a>>,
 }
@@ -35,7 +37,7 @@ impl<'a> Outlines<'a> {
             _ => None,
         };
         let charstrings = composites.is_none().then(|| Charstrings::new(font)).flatten();
-        Ok(Self { glyphs, composites, charstrings })
+        Ok(Self { glyphs: Some(glyphs), composites, charstrings })
     }
 
     /// Returns the outline of a glyph; empty for spaces.
@@ -48,7 +50,7 @@ impl<'a> Outlines<'a> {
             return Err(damaged(format!("it has {MAX_WORK} bytes or more, with all of its subroutines")));
         }
         let mut pen = GlyphPen::default();
-        if let Some(outline) = self.glyphs.get(glyph) {
+        if let Some(outline) = self.glyphs.as_ref().and_then(|all| all.get(glyph)) {
             // The HarfBuzz style keeps fractions of units in variable fonts; the FreeType style rounds.
             let settings = DrawSettings::unhinted(Size::unscaled(), at).with_path_style(PathStyle::HarfBuzz);
             outline.draw(settings, &mut pen).map_err(|e| damaged(e.to_string()))?;

@@ -1,4 +1,4 @@
-//! Splits a line into runs of one direction and one script, in visual order.
+//! Splits a line into runs of one direction and one writing, in visual order.
 
 use harfrust::Script as ShapeScript;
 use skrifa::Tag;
@@ -6,28 +6,74 @@ use std::ops::Range;
 use unicode_bidi::{BidiInfo, Level};
 use unicode_script::{Script, UnicodeScript as _};
 
-/// Text of one direction and one script.
+/// What the letters of a run are: those of a script, or emoji.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Writing {
+    /// Letters of a script, with the punctuation and digits among them.
+    Script(Script),
+    /// Pictures: characters that Unicode shows as emoji, with what modifies and joins them.
+    Emoji,
+}
+
+impl Writing {
+    /// Returns the name of the script in Unicode, with spaces, such as `Devanagari` or `Canadian Aboriginal`; `Emoji` for pictures.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::Script(script) => script.full_name().replace('_', " "),
+            Self::Emoji => "Emoji".into(),
+        }
+    }
+
+    /// Whether letters stand side by side unchanged, so that a shaper may take two such writings for one.
+    #[must_use]
+    pub fn is_plain(self) -> bool {
+        use Script as S;
+        let plain =
+            [S::Common, S::Latin, S::Greek, S::Cyrillic, S::Armenian, S::Georgian, S::Han, S::Hiragana, S::Katakana];
+        matches!(self, Self::Script(script) if plain.contains(&script))
+    }
+}
+
+/// Text of one direction and one writing.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Run {
+pub struct Run {
     /// Byte range in the line.
-    pub(crate) range: Range<usize>,
-    pub(crate) rtl: bool,
-    pub(crate) script: Script,
+    pub range: Range<usize>,
+    /// Whether its letters go from right to left.
+    pub rtl: bool,
+    /// What it is written in.
+    pub writing: Writing,
+    /// Number, from the left, of the stretch of one bidirectional level that it belongs to.
+    pub level_run: usize,
+}
+
+/// Returns the runs of a line from left to right, in a paragraph that goes from left to right.
+///
+/// ```
+/// let runs = pathwarp_text::runs("Hi שלום 👍🏽");
+/// let names: Vec<_> = runs.iter().map(|r| (r.writing.name(), r.rtl)).collect();
+/// assert_eq!(names, [("Latin".into(), false), ("Hebrew".into(), true), ("Hebrew".into(), false), ("Emoji".into(), false)]);
+/// ```
+#[must_use]
+pub fn runs(line: &str) -> Vec<Run> {
+    runs_from(line, false, None)
 }
 
 /// Returns the runs of a line from left to right (Unicode annex 9, rules L1 and L2).
-pub(crate) fn runs(line: &str, rtl: bool, script: Option<Script>) -> Vec<Run> {
+pub(crate) fn runs_from(line: &str, rtl: bool, script: Option<Script>) -> Vec<Run> {
     let base = if rtl { Level::rtl() } else { Level::ltr() };
-    let scripts = scripts(line, script);
+    let writings = writings(line, script);
     let bidi = BidiInfo::new(line, Some(base));
     let mut out = Vec::new();
     for paragraph in &bidi.paragraphs {
         let (levels, visual) = bidi.visual_runs(paragraph, paragraph.range.clone());
-        for range in visual {
+        for (level_run, range) in visual.into_iter().enumerate() {
             let rtl = levels.get(range.start).is_some_and(Level::is_rtl);
-            let mut parts: Vec<Run> = scripts
+            let within = |r: &Range<usize>| r.start.max(range.start)..r.end.min(range.end);
+            let mut parts: Vec<Run> = writings
                 .iter()
-                .map(|(r, script)| Run { range: r.start.max(range.start)..r.end.min(range.end), rtl, script: *script })
+                .map(|(r, writing)| Run { range: within(r), rtl, writing: *writing, level_run })
                 .filter(|r| !r.range.is_empty())
                 .collect();
             if rtl {
@@ -39,31 +85,66 @@ pub(crate) fn runs(line: &str, rtl: bool, script: Option<Script>) -> Vec<Run> {
     out
 }
 
-/// Splits a line by script. Characters common to many scripts join the preceding text, or else the following text (Unicode annex 24,
-/// 5.1).
-fn scripts(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Script)> {
+/// Splits a line by writing. Characters common to many scripts join the preceding letters, or else the following ones (Unicode annex
+/// 24, 5.1).
+fn writings(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Writing)> {
     if let Some(script) = all {
-        return vec![(0..line.len(), script)];
+        return vec![(0..line.len(), Writing::Script(script))];
     }
-    let own = |c: char| Some(c.script()).filter(|s| !matches!(s, Script::Common | Script::Inherited | Script::Unknown));
-    let mut out: Vec<(Range<usize>, Script)> = Vec::new();
+    const COMMON: Writing = Writing::Script(Script::Common);
+    let of_none = |s: &Script| matches!(s, Script::Common | Script::Inherited | Script::Unknown);
+    // Variation selectors of Mongolian stand between letters of any script to keep them apart.
+    let own = |c: char| Some(c.script()).filter(|s| !of_none(s) && !matches!(c, '\u{180b}'..='\u{180d}'));
+    let mut out: Vec<(Range<usize>, Writing)> = Vec::new();
+    let mut emoji_end = 0;
     for (i, c) in line.char_indices() {
         let end = i + c.len_utf8();
-        let script = own(c);
+        emoji_end = emoji_end.max(i + emoji_length(&line[i..]));
+        let found = if i < emoji_end { Some(Writing::Emoji) } else { own(c).map(Writing::Script) };
         match out.last_mut() {
-            Some((range, s)) if script.is_none() || script == Some(*s) => {
-                debug_assert_eq!(range.end, i);
-                range.end = end;
-            }
+            Some((range, w)) if found == Some(*w) || found.is_none() && *w != Writing::Emoji => range.end = end,
             // Leading common characters take the first script found.
-            Some((range, s)) if *s == Script::Common => {
+            Some((range, w)) if *w == COMMON && found != Some(Writing::Emoji) => {
                 range.end = end;
-                *s = script.unwrap_or(*s);
+                *w = found.unwrap_or(COMMON);
             }
-            _ => out.push((i..end, script.unwrap_or(Script::Common))),
+            _ => out.push((i..end, found.unwrap_or(COMMON))),
         }
     }
     out
+}
+
+/// The number of bytes at the start of a text that make one emoji (Unicode technical standard 51, section 1.4.9); 0 if it starts
+/// otherwise.
+fn emoji_length(text: &str) -> usize {
+    const JOINER: char = '\u{200d}';
+    let follows =
+        |c: char| matches!(c, '\u{fe0f}' | '\u{20e3}' | '\u{1f3fb}'..='\u{1f3ff}' | '\u{e0020}'..='\u{e007f}');
+    let mut chars = text.chars();
+    let Some(first) = chars.next() else { return 0 };
+    match chars.next() {
+        Some('\u{fe0f}') => {}
+        Some('\u{fe0e}') => return 0,
+        _ if !is_picture(first) => return 0,
+        _ => {}
+    }
+    let mut joined = false;
+    let goes_on = |c: &char| {
+        let goes_on = joined || *c == JOINER || follows(*c);
+        joined = *c == JOINER;
+        goes_on
+    };
+    let rest: usize = text.chars().skip(1).take_while(goes_on).map(char::len_utf8).sum();
+    first.len_utf8() + rest
+}
+
+/// Whether a character is a picture without being told so (`Emoji_Presentation` of Unicode; beyond U+1F300, all pictures).
+fn is_picture(c: char) -> bool {
+    const SINGLE: &str = "⏰⏳☔☕♿⚓⚡⚽⚾⛄⛅⛎⛔⛪⛲⛳⛵⛺⛽✅✊✋✨❌❎❓❔❕❗➕➖➗➰➿⬛⬜⭐⭕🀄🃏🆎";
+    let range = matches!(c, '⌚' | '⌛' | '⏩'..='⏬' | '◽' | '◾' | '♈'..='♓' | '⚪' | '⚫' | '\u{1f191}'..='\u{1f19a}')
+        || matches!(c, '\u{1f1e6}'..='\u{1f202}' | '\u{1f21a}'..='\u{1f265}' | '\u{1f300}'..='\u{1f6ff}' | '\u{1f7e0}'..='\u{1f7ff}')
+        || matches!(c, '\u{1f900}'..='\u{1faff}');
+    range || c > '⌀' && SINGLE.contains(c)
 }
 
 /// Converts a script for the shaper.
@@ -72,17 +153,10 @@ pub(crate) fn for_shaper(script: Script) -> Option<ShapeScript> {
 }
 
 /// Whether a script joins letters, which letter spacing would tear apart (CSS Text 3, "Cursive Scripts").
-pub(crate) fn joins(script: Script) -> bool {
-    matches!(
-        script,
-        Script::Arabic
-            | Script::Hanifi_Rohingya
-            | Script::Mandaic
-            | Script::Mongolian
-            | Script::Nko
-            | Script::Phags_Pa
-            | Script::Syriac
-    )
+pub(crate) fn joins(writing: Writing) -> bool {
+    use Script as S;
+    let joined = [S::Arabic, S::Hanifi_Rohingya, S::Mandaic, S::Mongolian, S::Nko, S::Phags_Pa, S::Syriac];
+    matches!(writing, Writing::Script(script) if joined.contains(&script))
 }
 
 /// Whether the first character with a direction is right-to-left (Unicode annex 9, rules P2 and P3).
@@ -95,7 +169,11 @@ mod tests {
     use super::*;
 
     fn split(line: &str, rtl: bool) -> Vec<(String, bool, Script)> {
-        runs(line, rtl, None).into_iter().map(|r| (line[r.range].to_owned(), r.rtl, r.script)).collect()
+        let script = |r: &Run| match r.writing {
+            Writing::Script(script) => script,
+            Writing::Emoji => Script::Unknown,
+        };
+        runs_from(line, rtl, None).into_iter().map(|r| (line[r.range.clone()].to_owned(), r.rtl, script(&r))).collect()
     }
 
     #[test]
@@ -114,6 +192,17 @@ mod tests {
         );
         assert_eq!(split("גד ef", true), [("ef".into(), false, latin), ("גד ".into(), true, hebrew)]);
         assert_eq!(split("aβ", false), [("a".into(), false, latin), ("β".into(), false, greek)]);
+        assert_eq!(
+            split("a 👩‍👩‍👧 1️⃣2 ☺ ☺️", false),
+            [
+                ("a ".into(), false, latin),
+                ("👩‍👩‍👧".into(), false, Script::Unknown),
+                (" ".into(), false, Script::Common),
+                ("1️⃣".into(), false, Script::Unknown),
+                ("2 ☺ ".into(), false, Script::Common),
+                ("☺️".into(), false, Script::Unknown)
+            ]
+        );
         assert!(starts_rtl("12 ג a") && !starts_rtl("a ג") && !starts_rtl("1 2"));
     }
 }

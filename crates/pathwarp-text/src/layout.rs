@@ -62,7 +62,7 @@ pub fn layout_within(
         let mut out = Vec::with_capacity(lines.len());
         for (i, line) in lines.iter().enumerate() {
             let y = metrics.ascent + i as f64 * step;
-            let clusters = clusters(line, &itemize::runs(line, rtl, script), style, &mut shaper)?;
+            let clusters = clusters(line, &itemize::runs_from(line, rtl, script), style, &mut shaper)?;
             out.push(painter.line(line, clusters, y)?);
         }
         align(&mut out, style.align, rtl);
@@ -119,7 +119,7 @@ fn clusters(
 ) -> Result<Vec<SpacedCluster>, Error> {
     let mut out: Vec<SpacedCluster> = Vec::new();
     for run in runs {
-        let joined = itemize::joins(run.script);
+        let joined = itemize::joins(run.writing);
         let shaped = shaper.run(line, run)?;
         let count = shaped.len();
         for (i, cluster) in shaped.into_iter().enumerate() {

@@ -39,9 +39,11 @@ mod work;
 
 pub use error::{Error, Quantity};
 pub use font::Font;
+pub use itemize::{Run, Writing, runs};
 pub use layout::{layout, layout_within};
 pub use lettering::{Cluster, LetteringLine, OutlinedText, PlacedGlyph};
 pub use limits::TextLimits;
 pub use metrics::{FontAxis, FontMetrics};
+pub use shape::{FontRun, shape_run};
 pub use style::{Align, Direction, Feature, Ligatures, TextStyle, Variation, features, variations};
 pub use work::{GlyphWork, MAX_WORK};

@@ -1,8 +1,8 @@
 //! Shapes runs with the first font, and the parts that it lacks with the next one.
 
-use crate::error::Error;
+use crate::error::{Error, guarded};
 use crate::font::Font;
-use crate::itemize::{Run, for_shaper};
+use crate::itemize::{Run, Writing, for_shaper};
 use crate::lettering::PlacedGlyph;
 use crate::limits::TextLimits;
 use crate::style::Feature;
@@ -35,13 +35,21 @@ pub(crate) struct RunShaper<'s, 'f> {
 impl RunShaper<'_, '_> {
     /// Shapes a run. The clusters go from left to right.
     pub(crate) fn run(&mut self, line: &str, run: &Run) -> Result<Vec<ShapedCluster>, Error> {
-        self.shape(line, run, run.range.clone(), 0)
+        let order = order(self.fonts, run.writing);
+        self.shape(line, run, run.range.clone(), &order)
     }
 
-    /// Shapes a part of a run with the fonts from `first` on.
-    fn shape(&mut self, line: &str, run: &Run, range: Range<usize>, first: usize) -> Result<Vec<ShapedCluster>, Error> {
-        let own = self.with_font(line, run, &range, first)?;
-        if first + 1 >= self.fonts.len() || !own.iter().any(|c| c.missing) {
+    /// Shapes a part of a run with the first font of `order`, and what that lacks with the others.
+    fn shape(
+        &mut self,
+        line: &str,
+        run: &Run,
+        range: Range<usize>,
+        order: &[usize],
+    ) -> Result<Vec<ShapedCluster>, Error> {
+        let [first, others @ ..] = order else { return Err(Error::NoFont) };
+        let own = self.with_font(line, run, &range, *first)?;
+        if others.is_empty() || !own.iter().any(|c| c.missing) {
             return Ok(own);
         }
         let mut out = Vec::with_capacity(own.len());
@@ -55,7 +63,10 @@ impl RunShaper<'_, '_> {
             let start = group.iter().map(|c| c.range.start).min().unwrap_or(0);
             let end = group.iter().map(|c| c.range.end).max().unwrap_or(0);
             if sought.insert(start) && start < end {
-                out.extend(self.shape(line, run, start..end, first + 1)?);
+                let found = self.shape(line, run, start..end, others)?;
+                // What no font has is a box of the first one.
+                let none = found.iter().all(|c| c.missing);
+                out.extend(if none { group.to_vec() } else { found });
             }
         }
         Ok(out)
@@ -83,8 +94,9 @@ impl RunShaper<'_, '_> {
         flags.set(BufferFlags::END_OF_TEXT, range.end == line.len());
         buffer.set_flags(flags);
         buffer.set_direction(if run.rtl { Direction::RightToLeft } else { Direction::LeftToRight });
-        if let Some(script) = for_shaper(run.script) {
-            buffer.set_script(script);
+        match run.writing {
+            Writing::Script(script) => for_shaper(script).into_iter().for_each(|s| buffer.set_script(s)),
+            Writing::Emoji => buffer.set_script(harfrust::script::COMMON),
         }
         if let Some(language) = &self.language {
             buffer.set_language(language.clone());
@@ -125,6 +137,55 @@ impl RunShaper<'_, '_> {
         }
         Ok(out)
     }
+}
+
+/// The fonts for a writing, in the order in which they are asked: emoji ask fonts for emoji first.
+fn order(fonts: &[Font<'_>], writing: Writing) -> Vec<usize> {
+    let whose = |only: Option<Writing>| (0..fonts.len()).filter(move |i| fonts[*i].only == only);
+    let (all, own) = (whose(None), whose(Some(writing)));
+    if writing == Writing::Emoji { own.chain(all).collect() } else { all.chain(own).collect() }
+}
+
+/// A part of a line in one font.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FontRun {
+    /// Index of the font.
+    pub font: usize,
+    /// The clusters from left to right: byte range in the line, and advance width in user units.
+    pub clusters: Vec<(Range<usize>, f64)>,
+    /// Whether no font has these letters.
+    pub missing: bool,
+}
+
+/// Shapes a run of a line and divides it by font, from left to right. Letters outside the run have no influence.
+///
+/// # Errors
+/// A font is damaged, or a glyph exceeds the limits.
+pub fn shape_run(
+    line: &str,
+    run: &Run,
+    fonts: &[Font<'_>],
+    size: f64,
+    features: &[Feature],
+) -> Result<Vec<FontRun>, Error> {
+    let limits = TextLimits::default();
+    let mut shaper =
+        RunShaper { fonts, size, features: for_whole_text(features), language: None, limits: &limits, set: 0 };
+    let start = run.range.start;
+    let alone = Run { range: 0..run.range.len(), ..run.clone() };
+    let clusters = guarded(|| shaper.run(&line[run.range.clone()], &alone))?;
+    let mut out: Vec<FontRun> = Vec::new();
+    for c in clusters {
+        let font = c.glyphs.first().map_or(0, |g| g.font);
+        if out.last().is_none_or(|r| (r.font, r.missing) != (font, c.missing)) {
+            out.push(FontRun { font, clusters: Vec::new(), missing: c.missing });
+        }
+        if let Some(last) = out.last_mut() {
+            last.clusters.push((c.range.start + start..c.range.end + start, c.advance));
+        }
+    }
+    Ok(out)
 }
 
 /// Converts features for the shaper, applying them to the whole text.

@@ -169,7 +169,7 @@ fn fonts_go_by_their_full_names() {
 fn style_of_text_without_effect_is_reported() {
     let small = |style: &str| bent(&format!("<g style='{style}'><text id='s' x='10' y='50'>abc</text></g>"));
     for style in [
-        "font-variant:small-caps",
+        "font-variant:petite-caps",
         "font-feature-settings:&quot;ss01&quot;",
         "text-shadow:1px 1px red",
         "text-orientation:upright",

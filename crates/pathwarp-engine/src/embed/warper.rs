@@ -258,7 +258,7 @@ impl Warper {
             let nodes = if placed { fit::Nodes::Auto } else { fit::Nodes::Fewest };
             // Joints of the cubics are smooth or corners: there is no noise to look through.
             let options = fit::Options::new(bent.tolerance).with_degree(Degree::Quadratic).with_nodes(nodes);
-            let options = options.with_corner(fit::SMOOTH_JOINT);
+            let options = options.with_corner(fit::parts::SMOOTH_JOINT);
             let fitted = fit::simplify(&bent.path.path, &options).map_err(|e| Error::usage(e.to_string()))?;
             bent.path.path = fitted.path;
             bent.path.data = bent.path.path.to_svg();

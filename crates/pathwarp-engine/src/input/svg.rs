@@ -27,7 +27,7 @@ use pathwarp::{Error, Outline, refit};
 use pathwarp_raster::Picture;
 use pathwarp_svg::{
     Document, Edit, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
-    Selection, ShapeReport, Strokes, Structure, WarpOptions, WarpedDocument,
+    Selection, ShapeReport, Strokes, Structure, Warning, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -218,6 +218,10 @@ impl SvgArtwork {
             return Err(Failure::Input(format!("{}: {first}; --on-error continue goes on without it", self.name)));
         }
         let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        let boxes = warped.warnings.iter().find(|w| matches!(w, Warning::MissingLetters(_)));
+        if let Some(boxes) = boxes.filter(|_| common.on_failure == OnFailure::Stop) {
+            return Err(Failure::Input(boxes.to_string()));
+        }
         // The scale of the result's page is known once the artwork is on it.
         if common.has_tolerance_of_result()
             && let Some(scale) = common.page_scale(self.size_px(warped.page))

@@ -20,7 +20,7 @@ use pathwarp::kurbo::Affine;
 use pathwarp::map::{Gathered, Map};
 use pathwarp::refit::{self, KnownShapes};
 use pathwarp::{Error, GeometryError, Outline};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// Width of a hairline in millimetres. A quarter of a point is 0.088 mm, and laser and plotter programs treat lines up to 0.1 mm as
@@ -249,9 +249,19 @@ fn warn(
                 .push(Warning::Note { text: "open lines stay where they are (--lines moves them, too)", names });
         }
     }
+    let of_text = |b: &&Bitmap| b.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
+    let bent = drawing.scene().bitmaps.iter().filter(of_text).filter(|b| bends.of(b.owner).is_some());
+    let names: BTreeSet<String> = bent.map(|b| drawing.source.image_name(b.owner)).collect();
+    if !names.is_empty() {
+        let text = "letters whose font has them as bitmaps only, such as emoji, become pictures";
+        out.warnings.push(Warning::Note { text, names: names.into_iter().collect() });
+    }
     let bends_text =
         || drawing.scene().texts.iter().any(|t| outcomes.get(t.first).is_some_and(|o| o.warped().is_some()));
     if !drawing.missed.fonts.is_empty() && bends_text() {
         out.warnings.push(Warning::MissingFonts(drawing.missed.fonts.clone()));
+    }
+    if !drawing.missed.letters.is_empty() && bends_text() {
+        out.warnings.push(Warning::MissingLetters(drawing.missed.without_font()));
     }
 }

@@ -292,6 +292,8 @@ pub enum Warning {
     SharedImages,
     /// Text uses another font, as these are missing.
     MissingFonts(Vec<String>),
+    /// Letters that no font has, each with the text around it, in words.
+    MissingLetters(Vec<String>),
     /// Artwork that lay off the page has moved onto it: these elements, in the order of the file.
     Arrivals(Vec<String>),
     /// Something else that is lost or changed.
@@ -322,6 +324,9 @@ impl Display for Warning {
             }
             Self::MissingFonts(names) => {
                 write!(f, "text uses another font, as {} is missing; install it or outline the text", names.join(", "))
+            }
+            Self::MissingLetters(sentences) => {
+                write!(f, "{}; install a font that has them, or give one", sentences.join(", "))
             }
             Self::Note { text, names } => {
                 f.write_str(text)?;

@@ -39,6 +39,23 @@ pub(super) struct Look {
 }
 
 impl Look {
+    /// Upright or italic, of a weight from 100 to 900.
+    pub(super) fn new(weight: u16, italic: bool) -> Self {
+        let style = if italic { fontdb::Style::Italic } else { fontdb::Style::Normal };
+        Self { weight: fontdb::Weight(weight), stretch: fontdb::Stretch::Normal, style }
+    }
+
+    /// That of a text.
+    pub(super) fn of_text(font: &usvg::Font) -> Self {
+        let weight = fontdb::Weight(font.weight());
+        Self { weight, stretch: font.stretch().into(), style: font.style().into() }
+    }
+
+    /// That of a face.
+    pub(super) fn of_face(face: &fontdb::FaceInfo) -> Self {
+        Self { weight: face.weight, stretch: face.stretch, style: face.style }
+    }
+
     pub(super) fn face_of(self, family: &str, db: &Database) -> Option<ID> {
         let Self { weight, stretch, style } = self;
         db.query(&fontdb::Query { families: &[Family::Name(family)], weight, stretch, style })

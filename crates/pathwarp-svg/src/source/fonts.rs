@@ -1,16 +1,16 @@
 //! Fonts for text: installed ones on request, given files, and a bundled fallback.
 
 use super::faces::{BUNDLED, BUNDLED_FAMILY, DISPLAY, DISPLAY_FAMILY, GenericFamilies, Look, asked_for, of_interface};
+use super::fallback::{Wanted, fallback};
 use super::images::{self, Missing, Rejected};
 use super::read::ReadOptions;
 use pathwarp::Error;
-use pathwarp_text::{GlyphWork, MAX_WORK};
+use pathwarp_text::{GlyphWork, MAX_WORK, runs};
 use skrifa::raw::{FileRef, TableProvider as _};
 use skrifa::{FontRef, MetadataProvider as _, Tag};
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::io::Read as _;
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, ID, Source};
@@ -105,89 +105,94 @@ pub(super) fn load_unnamed(db: &mut Database, data: &Bytes, family: String) -> O
     }))
 }
 
-/// Finds fonts as usvg's own resolver does, but always returns one, and records missing families.
-pub(super) fn resolver(generic: GenericFamilies, missing: Missing, guard: FontGuard) -> FontResolver<'static> {
-    let held = Arc::new((Held::default(), guard));
-    let also_held = held.clone();
-    let absent = Mutex::default();
-    let admitted = |(held, guard): &(Held, FontGuard), face: ID, db: &mut Arc<Database>| {
-        let face = guard.admits(face, db).then(|| held.face(face, db))?;
-        guard.trust(face);
+/// Chooses fonts for a drawing's texts.
+pub(super) struct Chooser {
+    generic: GenericFamilies,
+    missing: Missing,
+    guard: FontGuard,
+    held: Held,
+    /// The letters that no font has but those used, since there may be hundreds of fonts to search.
+    absent: Mutex<HashSet<(String, Vec<ID>)>>,
+}
+
+/// The start of the names by which pieces of text name their fonts, before the number of the piece.
+pub(super) const PIECE: &str = "pathwarp-piece-";
+
+/// The fonts of a piece of text: the one whose heights count, and the one that its letters come from.
+pub(super) type PieceFonts = (ID, ID);
+
+impl Chooser {
+    pub(super) fn new(generic: GenericFamilies, missing: Missing, guard: FontGuard) -> Arc<Self> {
+        Arc::new(Self { generic, missing, guard, held: Held::default(), absent: Mutex::default() })
+    }
+
+    /// Finds fonts as usvg's own resolver does, but always returns one, and records missing families. `pieces` are the fonts that texts
+    /// name by [`PIECE`].
+    pub(super) fn resolver(self: &Arc<Self>, pieces: Vec<PieceFonts>) -> FontResolver<'static> {
+        let (chooser, other) = (self.clone(), self.clone());
+        let of_piece: HashMap<ID, ID> = pieces.iter().copied().collect();
+        FontResolver {
+            select_font: Box::new(move |font, db| {
+                let named = match font.families() {
+                    [FontFamily::Named(name)] => name.strip_prefix(PIECE).and_then(|n| n.parse::<usize>().ok()),
+                    _ => None,
+                };
+                named.and_then(|n| Some(pieces.get(n)?.0)).or_else(|| chooser.first(font, db))
+            }),
+            select_fallback: Box::new(move |c, used, db| {
+                if let Some(face) = used.first().and_then(|first| of_piece.get(first)) {
+                    return (!used.contains(face)).then_some(*face);
+                }
+                let letter = c.to_string();
+                let writing = runs(&letter).first()?.writing;
+                let look = Look::of_face(db.face(*used.first()?)?);
+                other.fallback(&Wanted { letters: &letter, writing, language: "", look }, used, db)
+            }),
+        }
+    }
+
+    /// The first font of a text.
+    pub(super) fn first(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Option<ID> {
+        let face = select(font, db, &self.generic, &self.missing)?;
+        self.admitted(face, db)
+    }
+
+    /// The fonts that a text names, in its order, or the one that stands in for them; then the one that Chromium takes without a name.
+    pub(super) fn named(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Vec<ID> {
+        let look = Look::of_text(font);
+        let found = font.families().iter().filter_map(|f| face_of_family(f, look, &self.generic, db));
+        let found: Vec<ID> = found.chain(look.standard_face(&self.generic, db)).collect();
+        let mut all: Vec<ID> = self.first(font, db).into_iter().collect();
+        for face in found {
+            all.extend(self.admitted(face, db).filter(|f| !all.contains(f)));
+        }
+        all
+    }
+
+    /// The font for letters that the fonts `used` so far lack.
+    pub(super) fn fallback(&self, wanted: &Wanted<'_>, used: &[ID], db: &mut Arc<Database>) -> Option<ID> {
+        let key = (wanted.letters.to_owned(), used.to_vec());
+        let mut absent = self.absent.lock().unwrap_or_else(PoisonError::into_inner);
+        if absent.contains(&key) {
+            return None;
+        }
+        let Some(face) = fallback(wanted, used, db) else {
+            absent.insert(key);
+            return None;
+        };
+        self.admitted(face, db).filter(|f| !used.contains(f))
+    }
+
+    /// A face held in memory, if it may be used.
+    fn admitted(&self, face: ID, db: &mut Arc<Database>) -> Option<ID> {
+        let face = self.guard.admits(face, db).then(|| self.held.face(face, db))?;
+        self.guard.trust(face);
         Some(face)
-    };
-    FontResolver {
-        select_font: Box::new(move |font, db| {
-            let face = select(font, db, &generic, &missing)?;
-            admitted(&held, face, db)
-        }),
-        select_fallback: Box::new(move |c, used, db| {
-            let face = fallback(c, used, db, &absent)?;
-            let face = admitted(&also_held, face, db)?;
-            (!used.contains(&face)).then_some(face)
-        }),
     }
-}
-
-/// Finds a font for a letter that the fonts `used` so far lack, preferably one that looks like the first of them; usvg's own choice
-/// may be bold in a regular text. `absent` caches the letters that no font has, since there may be hundreds of fonts to search.
-fn fallback(letter: char, used: &[ID], db: &Database, absent: &Mutex<HashSet<char>>) -> Option<ID> {
-    let mut absent = absent.lock().unwrap_or_else(PoisonError::into_inner);
-    if absent.contains(&letter) {
-        return None;
-    }
-    let first = db.face(*used.first()?)?;
-    let off = |f: &fontdb::FaceInfo| {
-        (f.style != first.style, f.stretch != first.stretch, f.weight.0.abs_diff(first.weight.0))
-    };
-    let mut others: Vec<_> = db.faces().filter(|f| !used.contains(&f.id)).map(|f| (off(f), f.id)).collect();
-    // The sort is stable, so the first of several equals wins.
-    others.sort_by_key(|(off, _)| *off);
-    let found = others.into_iter().map(|(_, id)| id).find(|id| has_letter(*id, letter, db));
-    if found.is_none() && !used.iter().any(|id| has_letter(*id, letter, db)) {
-        absent.insert(letter);
-    }
-    found
-}
-
-/// The letters of a font, as sorted ranges.
-type Letters = Vec<RangeInclusive<u32>>;
-
-fn has_letter(face: ID, letter: char, db: &Database) -> bool {
-    let asked = |data: &[u8], index: u32| Some(FontRef::from_index(data, index).ok()?.charmap().map(letter).is_some());
-    match db.face(face).map(|f| (&f.source, f.index)) {
-        Some((Source::File(path), index)) => {
-            let letters = letters_of(path, index, || db.with_face_data(face, letters_in).unwrap_or_default());
-            let (letter, after) = (u32::from(letter), letters.partition_point(|r| *r.start() <= u32::from(letter)));
-            after > 0 && letters[after - 1].contains(&letter)
-        }
-        _ => db.with_face_data(face, asked).flatten().unwrap_or(false),
-    }
-}
-
-/// Caches the letters that `read` finds in a font file. A drawing may look for thousands of letters in all fonts, and opening a file
-/// takes longer than the search.
-fn letters_of(path: &Path, index: u32, read: impl FnOnce() -> Letters) -> Arc<Letters> {
-    static KNOWN: Mutex<BTreeMap<(PathBuf, u32), Arc<Letters>>> = Mutex::new(BTreeMap::new());
-    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    known.entry((path.to_owned(), index)).or_insert_with(|| Arc::new(read())).clone()
-}
-
-fn letters_in(data: &[u8], index: u32) -> Letters {
-    let Ok(font) = FontRef::from_index(data, index) else { return Letters::new() };
-    let mut all: Vec<u32> = font.charmap().mappings().map(|(letter, _)| letter).collect();
-    all.sort_unstable();
-    let mut out = Letters::new();
-    for letter in all {
-        match out.last_mut() {
-            Some(last) if letter <= last.end() + 1 => *last = *last.start()..=letter,
-            _ => out.push(letter..=letter),
-        }
-    }
-    out
 }
 
 /// Bytes of a font.
-type Bytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
+pub(super) type Bytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
 
 /// Font files held in memory, since usvg would read the file up to four times for each letter. Each has its faces in the database
 /// used last; pictures have databases besides the drawing's.
@@ -221,22 +226,10 @@ pub(super) const NO_FAMILY: &str = "a family";
 
 /// Finds the face for a font of the drawing.
 fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: &Missing) -> Option<ID> {
-    let style = match font.style() {
-        usvg::FontStyle::Normal => fontdb::Style::Normal,
-        usvg::FontStyle::Italic => fontdb::Style::Italic,
-        usvg::FontStyle::Oblique => fontdb::Style::Oblique,
-    };
-    let look = Look { weight: fontdb::Weight(font.weight()), stretch: stretch(font.stretch()), style };
-    let query = |family: &str| look.face_of(family, db);
+    let look = Look::of_text(font);
     let (mut absent, mut similar) = (Vec::new(), None);
     for family in font.families() {
-        let found = match family {
-            FontFamily::Named(name) => match of_interface(name) {
-                Some(kind) => look.face_of_kind(&kind, generic, db),
-                None => query(name).or_else(|| look.face_called(name, db)),
-            },
-            other => look.face_of_kind(other, generic, db),
-        };
+        let found = face_of_family(family, look, generic, db);
         if found.is_some() {
             return found;
         }
@@ -252,22 +245,17 @@ fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: 
     }
     let last = similar.or_else(|| look.face_like(&absent, generic, db));
     let last = last.or_else(|| look.standard_face(generic, db));
-    last.or_else(|| query(BUNDLED_FAMILY)).or_else(|| db.faces().next().map(|f| f.id))
+    last.or_else(|| look.face_of(BUNDLED_FAMILY, db)).or_else(|| db.faces().next().map(|f| f.id))
 }
 
-fn stretch(s: usvg::FontStretch) -> fontdb::Stretch {
-    use fontdb::Stretch as D;
-    use usvg::FontStretch as S;
-    match s {
-        S::UltraCondensed => D::UltraCondensed,
-        S::ExtraCondensed => D::ExtraCondensed,
-        S::Condensed => D::Condensed,
-        S::SemiCondensed => D::SemiCondensed,
-        S::Normal => D::Normal,
-        S::SemiExpanded => D::SemiExpanded,
-        S::Expanded => D::Expanded,
-        S::ExtraExpanded => D::ExtraExpanded,
-        S::UltraExpanded => D::UltraExpanded,
+/// The face of a family, by any of its names, or of a generic family.
+fn face_of_family(family: &FontFamily, look: Look, generic: &GenericFamilies, db: &Database) -> Option<ID> {
+    match family {
+        FontFamily::Named(name) => match of_interface(name) {
+            Some(kind) => look.face_of_kind(&kind, generic, db),
+            None => look.face_of(name, db).or_else(|| look.face_called(name, db)),
+        },
+        other => look.face_of_kind(other, generic, db),
     }
 }
 
@@ -287,8 +275,7 @@ pub struct FontFile {
 /// Returns [`Error::Usage`] if there is no such family, with suggestions of similar names.
 pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) -> Result<FontFile, Error> {
     let db = database(read.system_fonts, &read.fonts);
-    let style = if italic { fontdb::Style::Italic } else { fontdb::Style::Normal };
-    let look = Look { weight: fontdb::Weight(weight), stretch: fontdb::Stretch::Normal, style };
+    let look = Look::new(weight, italic);
     let generic = match family.to_ascii_lowercase().as_str() {
         "serif" => Some(FontFamily::Serif),
         "sans-serif" => Some(FontFamily::SansSerif),

@@ -3,12 +3,14 @@
 use super::check;
 use super::elements::{ElementId, is_shape};
 use super::fontface;
-use super::fonts::{self, FontGuard};
+use super::fonts::{self, Chooser, FontGuard};
 use super::images::{self, Missing, Rejected, Unread};
+use super::pieces::{self, Divided};
 use super::read::{self, ReadOptions};
 use super::text::{SourceText, plain};
 use super::threads::with_stack;
 use pathwarp::Error;
+use pathwarp_reader::xml;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -19,6 +21,8 @@ use usvg::roxmltree;
 pub(crate) struct Missed {
     /// Missing font families.
     pub(crate) fonts: Vec<String>,
+    /// Letters that no font has, each with the text around it.
+    pub(crate) letters: BTreeSet<(String, String)>,
     /// Links to images that were not read.
     pub(crate) images: Vec<String>,
     /// The links among `images` that lead out of the folder of the drawing.
@@ -30,9 +34,22 @@ pub(crate) struct Missed {
 }
 
 impl Missed {
+    /// Names the letters that no font has.
+    pub(crate) fn without_font(&self) -> Vec<String> {
+        let shortened = |text: &str| match text.char_indices().nth(40) {
+            Some((end, _)) => format!("{}…", &text[..end]),
+            None => text.to_owned(),
+        };
+        let name = |(letters, text): &(String, String)| match letters == text {
+            true => format!("no font has the letters “{}”", shortened(text)),
+            false => format!("no font has the letters “{}” of “{}”", shortened(letters), shortened(text)),
+        };
+        self.letters.iter().map(name).collect()
+    }
+
     /// Adds what else a picture of the drawing lacks.
     pub(crate) fn lacking(self, source: &SourceText) -> Self {
-        let undrawn = undrawn(source).into_iter().chain(meshes(source)).collect();
+        let undrawn = undrawn(source).into_iter().chain(meshes(source)).chain(self.without_font()).collect();
         Self { undrawn, notes: source.notes.clone(), ..self }
     }
 }
@@ -49,29 +66,58 @@ pub(crate) fn tree(
     let features = check::drawing(xml, name, &options.budget)?;
     let (missing, unread, rejected) = (Missing::default(), Unread::default(), Rejected::default());
     // Reading the installed fonts takes longer than most drawings, so do it only for text.
-    let base = if features.text {
-        let installed = fonts::database(options.system_fonts, &options.fonts);
-        let fontdb = fontface::add(installed, xml, &options.budget)
-            .map_err(|e| Error::limit(name, "with its text, its fonts take", e))?;
-        let guard = FontGuard::new(options, &rejected);
-        let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone(), guard);
-        usvg::Options {
-            fontdb,
-            font_resolver,
-            font_size: MEDIUM,
-            font_family: fonts::NO_FAMILY.to_owned(),
-            ..usvg::Options::default()
-        }
-    } else {
-        usvg::Options::default()
-    };
-    let mut usvg = usvg::Options { resources_dir: options.base_dir.clone(), dpi: options.dpi, ..base };
+    let mut usvg = usvg::Options { resources_dir: options.base_dir.clone(), dpi: options.dpi, ..Default::default() };
     if features.images {
         usvg.image_href_resolver = images::resolver(name, options, &rejected, &unread);
     }
-    let resolved = catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_xmltree(xml, &usvg)));
+    let mut letters = BTreeSet::new();
+    let tree = if features.text {
+        let installed = fonts::database(options.system_fonts, &options.fonts);
+        usvg.fontdb = fontface::add(installed, xml, &options.budget)
+            .map_err(|e| Error::limit(name, "with its text, its fonts take", e))?;
+        let guard = FontGuard::new(options, &rejected);
+        let chooser = Chooser::new(options.generic_families.clone(), missing.clone(), guard);
+        usvg.font_size = MEDIUM;
+        fonts::NO_FAMILY.clone_into(&mut usvg.font_family);
+        let (tree, without) = with_letters(xml, name, &mut usvg, &chooser)?;
+        letters = without;
+        tree
+    } else {
+        resolved(xml, name, &usvg)?
+    };
+    if let Some(e) = rejected.lock().ok().and_then(|mut r| r.take()) {
+        return Err(e);
+    }
+    let listed = |m: Missing| m.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default();
+    let [fonts, images, outside] = [missing, unread.images, unread.outside].map(listed);
+    Ok((tree, Missed { fonts, images, outside, letters, ..Missed::default() }))
+}
+
+/// Resolves a drawing with texts, in pieces where usvg would shape them otherwise than browsers. Also returns the letters that no font
+/// has, each with the text around it.
+fn with_letters(
+    xml: &roxmltree::Document<'_>,
+    name: &str,
+    usvg: &mut usvg::Options<'_>,
+    chooser: &Arc<Chooser>,
+) -> Result<(usvg::Tree, BTreeSet<(String, String)>), Error> {
+    usvg.font_resolver = chooser.resolver(Vec::new());
+    let marked = pieces::with_ids(xml);
+    let marked = marked.as_deref().map(|text| xml::parse_checked(text, name)).transpose()?;
+    let xml = marked.as_ref().unwrap_or(xml);
+    let whole = resolved(xml, name, usvg)?;
+    let Divided { text, fonts, db, missing } = pieces::divided(xml, &whole, chooser);
+    let Some(text) = text else { return Ok((whole, missing)) };
+    usvg.fontdb = db;
+    usvg.font_resolver = chooser.resolver(fonts);
+    Ok((resolved(&xml::parse_checked(&text, name)?, name, usvg)?, missing))
+}
+
+/// Has usvg resolve a drawing.
+fn resolved(xml: &roxmltree::Document<'_>, name: &str, options: &usvg::Options<'_>) -> Result<usvg::Tree, Error> {
+    let resolved = catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_xmltree(xml, options)));
     let failed = |_| Error::input(name, "the library that reads SVG fails on it; please report it");
-    let tree = resolved.map_err(failed)?.map_err(|e| {
+    resolved.map_err(failed)?.map_err(|e| {
         let problem = match e {
             usvg::Error::InvalidSize => {
                 "the root <svg> has no valid size; give it a viewBox, or width and height".into()
@@ -83,13 +129,7 @@ pub(crate) fn tree(
             other => other.to_string(),
         };
         Error::input(name, problem)
-    })?;
-    if let Some(e) = rejected.lock().ok().and_then(|mut r| r.take()) {
-        return Err(e);
-    }
-    let listed = |m: Missing| m.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default();
-    let [fonts, images, outside] = [missing, unread.images, unread.outside].map(listed);
-    Ok((tree, Missed { fonts, images, outside, ..Missed::default() }))
+    })
 }
 
 /// Reads SVG or svgz data into usvg's tree. The list of what is missed is complete.

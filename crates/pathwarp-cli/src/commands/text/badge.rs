@@ -14,11 +14,11 @@ use pathwarp::outline::boundary;
 use pathwarp::param::{Args, Frame, Letter, Param, Settings};
 use pathwarp::{Outline, Seg, Subpath};
 use pathwarp_engine::failure::Failure;
-use pathwarp_engine::lettering::laid_out;
+use pathwarp_engine::lettering::laid_out_with_installed;
 use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::{Warper, input};
-use pathwarp_svg::SetGroup;
 use pathwarp_svg::sheet::embedded;
+use pathwarp_svg::{ReadOptions, SetGroup};
 use pathwarp_text::{Font, OutlinedText};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -117,6 +117,9 @@ pub(super) struct Badge<'a> {
     /// Its size is the width of the badge.
     pub(super) em: &'a Em,
     pub(super) options: &'a CommonOptions,
+    pub(super) read: &'a ReadOptions,
+    /// Weight, and whether italic, of fonts that are not named.
+    pub(super) look: (u16, bool),
 }
 
 /// A badge as groups of a drawing.
@@ -186,7 +189,8 @@ impl Badge<'_> {
     fn set(&self, text: &str, size: f64, tracking: f64) -> Result<OutlinedText, Failure> {
         let mut style = style(self.m, &self.em.resized(size))?;
         style.letter_spacing += tracking;
-        let set = laid_out(text, self.fonts, &style, &self.options.reading.limits.for_input(text.len()))?;
+        let limits = self.options.reading.limits.for_input(text.len());
+        let set = laid_out_with_installed(text, self.fonts, &style, self.look, self.read, &limits)?;
         if set.lines.len() > 1 || set.ink().is_none() {
             return Err(Failure::usage(format!("“{}” is not one line of text", text.escape_debug())));
         }

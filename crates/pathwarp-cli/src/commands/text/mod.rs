@@ -15,7 +15,7 @@ use pathwarp::deform::Registry;
 use pathwarp_engine::export::{self, Exported};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, DRAWINGS, Format};
-use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out, read_font};
+use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out_with_installed, read_font};
 use pathwarp_engine::links::Destination;
 use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::readable::listed;
@@ -121,7 +121,8 @@ fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Re
         said.iter().for_each(|w| terminal::warning(w));
     }
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
-    let setting = Setting { registry, m, options, read, format, em, style, fonts, names };
+    let setting =
+        Setting { registry, m, options, read, look: (weight.unwrap_or(REGULAR), italic), format, em, style, fonts };
     if !data::is_given(m) {
         return setting.write(job.draw, &texts, fill, target);
     }
@@ -138,11 +139,12 @@ struct Setting<'a> {
     m: &'a ArgMatches,
     options: CommonOptions,
     read: ReadOptions,
+    /// Weight, and whether italic, of fonts that are not named.
+    look: (u16, bool),
     format: Format,
     em: Em,
     style: TextStyle,
     fonts: Vec<Font<'a>>,
-    names: Vec<&'a str>,
 }
 
 impl Setting<'_> {
@@ -156,7 +158,7 @@ impl Setting<'_> {
     ) -> Result<Status, Failure> {
         let Drawn { svg, mut warnings, missing } = draw(self, texts, &self.page(fill, target)?)?;
         let lacking: Vec<char> = missing.into_iter().collect();
-        warnings.extend((!lacking.is_empty()).then(|| self::missing(&lacking, &self.names)));
+        warnings.extend((!lacking.is_empty()).then(|| self::missing(&lacking)));
         let exported = export::drawing(svg, (self.format, &Destination::Back), &self.read, &self.options, None)?;
         let Exported { bytes, warnings: lost, kerf } = exported;
         if !self.m.get_flag("quiet") {
@@ -171,7 +173,8 @@ impl Setting<'_> {
     fn text(&self, texts: &[Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
         let Self { registry, m, options, .. } = self;
         let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
-        let set = |text: &String| laid_out(text, &self.fonts, &self.style, &limits);
+        let set =
+            |text: &String| laid_out_with_installed(text, &self.fonts, &self.style, self.look, &self.read, &limits);
         let [text, below] = texts.each_ref().map(|t| t.as_ref().map(set).transpose());
         let (text, below) = (text?, below?);
         let (svg, warnings) = match &text {
@@ -195,8 +198,8 @@ impl Setting<'_> {
 
     /// Makes a badge of an upper text, and a lower one.
     fn badge(&self, texts: &[Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
-        let Self { registry, m, fonts, em, options, .. } = self;
-        let made = badge::Badge { registry, m, fonts, em, options }.made(texts)?;
+        let Self { registry, m, fonts, em, options, read, look, .. } = self;
+        let made = badge::Badge { registry, m, fonts, em, options, read, look: *look }.made(texts)?;
         let title: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
         let svg = write_set_groups(&title.join(" "), &made.groups, lettering)?;
         Ok(Drawn { svg, warnings: made.warnings, missing: made.missing })
@@ -226,13 +229,11 @@ fn welded(registry: &Registry, svg: String, m: &ArgMatches) -> Result<String, Fa
 }
 
 /// The warning about characters that no font has.
-fn missing(chars: &[char], names: &[&str]) -> String {
+fn missing(chars: &[char]) -> String {
     /// Number of characters that fit a line or two.
     const SHOWN: usize = 12;
     let shown: Vec<String> = chars.iter().map(|c| format!("{c} (U+{:04X})", u32::from(*c))).collect();
-    let fonts = if names.is_empty() { "the bundled font" } else { "the fonts" };
-    let lack = if names.is_empty() { "lacks" } else { "lack" };
-    format!("{fonts} {lack} {}; name a font that has them with --font", listed(&shown, SHOWN))
+    format!("no font has {}; install one that has them, or name it with --font", listed(&shown, SHOWN))
 }
 
 const SPACING: &str = "Spacing and lines";

@@ -1,0 +1,652 @@
+//! Divides texts into pieces of one font and one script before they are drawn.
+//!
+//! Where the font of a line lacks a letter, usvg shapes the whole line with another one, and gives up if that has another number of
+//! glyphs. All letters of one direction are shaped as those of the script of the first one. So each text that needs several fonts or
+//! scripts is written anew: every piece is a `tspan` at its own place, with a name for its font that [`Chooser`] knows.
+
+use super::faces::Look;
+use super::fonts::{Chooser, PIECE, PieceFonts};
+use super::shaping::{ShapingStyle, TextFont, shaped};
+use pathwarp_reader::xml::escape;
+use pathwarp_text::{Run, Writing, runs};
+use std::collections::{BTreeSet, HashMap};
+use std::fmt::Write as _;
+use std::ops::Range;
+use std::sync::Arc;
+use unicode_script::{Script, UnicodeScript as _};
+use usvg::fontdb::{Database, ID};
+use usvg::roxmltree::{Document, Node};
+use usvg::{LengthAdjust, Text, TextAnchor, TextChunk, TextFlow, TextSpan, WritingMode};
+
+/// A drawing with its texts in pieces.
+pub(super) struct Divided {
+    /// The drawing; `None` if it may stay as it is.
+    pub(super) text: Option<String>,
+    pub(super) fonts: Vec<PieceFonts>,
+    pub(super) db: Arc<Database>,
+    /// Letters that no font has, each with the text around it.
+    pub(super) missing: BTreeSet<(String, String)>,
+}
+
+/// Letters that stand together, in their place in a chunk.
+struct Letter {
+    /// Bytes of the chunk.
+    bytes: Range<usize>,
+    /// Advance as shaped.
+    natural: f64,
+    /// Advance with spacing.
+    advance: f64,
+    /// Index of the part of the chunk.
+    part: usize,
+}
+
+/// Part of a chunk in one font.
+struct Part {
+    span: usize,
+    run: Run,
+    /// The face, unless it is that of the span.
+    face: Option<ID>,
+    /// Whether its letters are small forms of their capitals.
+    small: bool,
+    missing: bool,
+}
+
+/// Letters that are set together.
+struct Piece {
+    /// Characters among all of the text.
+    chars: Range<usize>,
+    /// Attributes of its `tspan`.
+    attributes: String,
+    /// Whether its letters are written as capitals.
+    small: bool,
+    /// Characters before its text, for the order of its letters, and after it. They show nothing.
+    around: [&'static str; 2],
+}
+
+/// Divides the texts of a drawing that usvg has resolved.
+pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) -> Divided {
+    let mut out = Divided { text: None, fonts: Vec::new(), db: tree.fontdb().clone(), missing: BTreeSet::new() };
+    let texts = xml.descendants().filter(|n| n.has_tag_name((super::elements::SVG, "text")));
+    let by_id: HashMap<&str, Node<'_, '_>> = texts.filter_map(|n| Some((n.attribute("id")?, n))).collect();
+    let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+    let mut named: HashMap<(usvg::Font, String), Vec<TextFont>> = HashMap::new();
+    each_text(tree.root(), &mut |text| {
+        let Some(node) = by_id.get(text.id()) else { return };
+        let mut divider = Divider { text, chooser, language: language(*node), named: &mut named, out: &mut out };
+        let Some(pieces) = divider.pieces() else { return };
+        let shown: Vec<char> = text.chunks().iter().flat_map(|c| c.text().chars()).collect();
+        let mut writer = Writer {
+            source: xml.input_text(),
+            shown: &shown,
+            next: 0,
+            pieces: &pieces,
+            rotate: text.rotate(),
+            on_path: Vec::new(),
+        };
+        // Copies of a text share its element; the first one counts.
+        let known = edits.iter().any(|(range, _)| *range == node.range());
+        edits.extend(writer.element(*node).filter(|_| !known).map(|text| (node.range(), text)));
+    });
+    edits.sort_by_key(|(range, _)| range.start);
+    if !edits.is_empty() {
+        let (mut text, mut at) = (String::new(), 0);
+        for (range, new) in edits {
+            text += &xml.input_text()[at..range.start];
+            text += &new;
+            at = range.end;
+        }
+        out.text = Some(text + &xml.input_text()[at..]);
+    }
+    out
+}
+
+/// The language of an element.
+fn language(node: Node<'_, '_>) -> String {
+    let of = |n: &Node<'_, '_>| {
+        let attributes = n.attributes();
+        let mut named = attributes.filter(|a| a.name() == "lang").map(|a| a.value().to_owned());
+        named.next()
+    };
+    node.ancestors().find_map(|n| of(&n)).unwrap_or_default()
+}
+
+/// Visits all texts but those of images, which are drawings by themselves.
+fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
+    for node in group.children() {
+        match node {
+            usvg::Node::Group(g) => each_text(g, see),
+            usvg::Node::Text(t) => see(t),
+            _ => {}
+        }
+        if !matches!(node, usvg::Node::Image(_)) {
+            node.subroots(|g| each_text(g, see));
+        }
+    }
+}
+
+/// The drawing with an id for each text, by which [`divided`] finds it. `None` if all have one.
+pub(super) fn with_ids(xml: &Document<'_>) -> Option<String> {
+    let source = xml.input_text();
+    let (mut out, mut at) = (String::new(), 0);
+    let lacks_id = |n: &Node<'_, '_>| {
+        n.has_tag_name((super::elements::SVG, "text")) && n.attribute("id").is_none_or(str::is_empty)
+    };
+    for (i, node) in xml.descendants().filter(lacks_id).enumerate() {
+        let start = node.range().start;
+        let name = source[start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/')?;
+        out += source.get(at..start + name)?;
+        let _ = write!(out, " id=\"{PIECE}text-{i}\"");
+        at = start + name;
+    }
+    (at > 0).then(|| out + &source[at..])
+}
+
+/// Divides one text.
+struct Divider<'a> {
+    text: &'a Text,
+    chooser: &'a Chooser,
+    language: String,
+    /// The fonts of texts by what they name, and language.
+    named: &'a mut HashMap<(usvg::Font, String), Vec<TextFont>>,
+    out: &'a mut Divided,
+}
+
+/// Where the letters of a chunk are.
+struct Layout {
+    /// The place of each letter along the line, and its shift across.
+    places: Vec<(f64, f64)>,
+    /// Where the next chunk goes on, along the line and across.
+    end: (f64, f64),
+}
+
+impl Divider<'_> {
+    /// The pieces of the text, in the order of its characters. Returns `None` if usvg shapes it as a whole, or it cannot be divided.
+    fn pieces(&mut self) -> Option<Vec<Piece>> {
+        let text = self.text;
+        let chunks: Vec<_> = text.chunks().iter().map(|c| self.parts(c)).collect();
+        let note = |(chunk, (parts, letters)): (&TextChunk, &(Vec<Part>, Vec<Letter>))| {
+            let lost = letters.iter().filter(|l| parts[l.part].missing).map(|l| &chunk.text()[l.bytes.clone()]);
+            let lost: String = lost.collect();
+            if !lost.is_empty() {
+                self.out.missing.insert((lost, chunk.text().to_owned()));
+            }
+        };
+        text.chunks().iter().zip(&chunks).for_each(note);
+        let is_divided = |(chunk, (parts, _)): (&TextChunk, &(Vec<Part>, Vec<Letter>))| is_divided(chunk, parts);
+        if !text.chunks().iter().zip(&chunks).any(is_divided) {
+            return None;
+        }
+        let vertical = text.writing_mode() == WritingMode::TopToBottom;
+        let (mut out, mut offset) = (Vec::new(), 0);
+        let mut last = Some((0.0, 0.0));
+        for (chunk, (parts, mut letters)) in text.chunks().iter().zip(chunks) {
+            let on_path = matches!(chunk.text_flow(), TextFlow::Path(_));
+            if on_path && vertical {
+                return None;
+            }
+            let count = chunk.text().chars().count();
+            let given = (chunk.x().map(f64::from), chunk.y().map(f64::from));
+            let start = match (on_path, given) {
+                (true, _) => (given.0.unwrap_or(0.0), 0.0),
+                (false, (Some(x), Some(y))) => (x, y),
+                (false, (x, y)) => (x.unwrap_or(last?.0), y.unwrap_or(last?.1)),
+            };
+            space(chunk, &mut letters);
+            let Some(layout) = self.layout(chunk, &letters, offset, vertical) else {
+                offset += count;
+                continue;
+            };
+            let along =
+                |(a, b): (f64, f64)| if vertical { (start.0 - b, start.1 + a) } else { (start.0 + a, start.1 + b) };
+            self.cut(
+                chunk,
+                &parts,
+                &letters,
+                &layout,
+                &|place| if on_path { (start.0 + place.0, place.1) } else { along(place) },
+                offset,
+                &mut out,
+            );
+            last = (!on_path).then(|| along(layout.end));
+            offset += count;
+        }
+        out.sort_by_key(|p: &Piece| p.chars.start);
+        Some(out)
+    }
+
+    /// The parts and letters of a chunk, from left to right.
+    fn parts(&mut self, chunk: &TextChunk) -> (Vec<Part>, Vec<Letter>) {
+        let (mut parts, mut letters) = (Vec::new(), Vec::new());
+        for run in runs(chunk.text()) {
+            let mut stretches: Vec<(usize, Range<usize>)> = Vec::new();
+            for (i, span) in chunk.spans().iter().enumerate() {
+                let range = span.start().max(run.range.start)..span.end().min(run.range.end);
+                match stretches.last_mut() {
+                    _ if range.is_empty() => {}
+                    Some((first, whole)) if sets_alike(&chunk.spans()[*first], span) => whole.end = range.end,
+                    _ => stretches.push((i, range)),
+                }
+            }
+            if run.rtl {
+                stretches.reverse();
+            }
+            for (span, range) in stretches {
+                let run = Run { range, ..run.clone() };
+                self.shape(chunk, span, &run, &mut parts, &mut letters);
+            }
+        }
+        (parts, letters)
+    }
+
+    fn shape(&mut self, chunk: &TextChunk, index: usize, run: &Run, parts: &mut Vec<Part>, letters: &mut Vec<Letter>) {
+        let span = &chunk.spans()[index];
+        let size = span.font_size().get();
+        let mut variations: Vec<(String, f32)> =
+            span.font().variations().iter().map(|v| (String::from_utf8_lossy(&v.tag).into_owned(), v.value)).collect();
+        if span.font_optical_sizing() == usvg::FontOpticalSizing::Auto && !variations.iter().any(|v| v.0 == "opsz") {
+            variations.push(("opsz".into(), size));
+        }
+        let features = [(span.small_caps(), "smcp=1"), (!span.apply_kerning(), "kern=0")];
+        let features: Vec<&str> = features.into_iter().filter(|f| f.0).map(|f| f.1).collect();
+        let language = self.language.clone();
+        let features = features.join(",");
+        let mut style = ShapingStyle { size: f64::from(size), features, variations, language: language.clone() };
+        let db = &mut self.out.db;
+        let fonts = self.named.entry((span.font().clone(), language)).or_insert_with(|| {
+            let named = self.chooser.named(span.font(), db);
+            named.into_iter().filter_map(|face| TextFont::of_face(face, None, db)).collect()
+        });
+        let look = Look::of_text(span.font());
+        let is_small = span.small_caps() && fonts.first().is_some_and(|f| !f.has_small_capitals());
+        let whole = &chunk.text()[run.range.clone()];
+        let lower = |c: char| is_small && c.is_lowercase();
+        let mut at = run.range.start;
+        let mut stretches: Vec<(bool, Range<usize>)> = Vec::new();
+        for c in whole.chars() {
+            let range = at..at + c.len_utf8();
+            at = range.end;
+            match stretches.last_mut() {
+                Some((small, before)) if *small == lower(c) => before.end = range.end,
+                _ => stretches.push((lower(c), range)),
+            }
+        }
+        if run.rtl {
+            stretches.reverse();
+        }
+        for (small, range) in stretches {
+            style.size = f64::from(size) * if small { SMALL } else { 1.0 };
+            let own = Run { range, ..run.clone() };
+            // Capitals may have another number of bytes.
+            let (line, origins) = if small { capitals(chunk.text(), &own.range) } else { Default::default() };
+            let (line, set) = if small {
+                (line.as_str(), Run { range: 0..line.len(), ..own.clone() })
+            } else {
+                (chunk.text(), own.clone())
+            };
+            let origin = |b: usize| if small { origins[b] } else { b };
+            for found in shaped(line, &set, fonts, (&style, look), (self.chooser, db)) {
+                let face = fonts[found.font].face.filter(|_| found.font > 0);
+                let part = parts.len();
+                letters.extend(found.clusters.into_iter().map(|(bytes, advance)| Letter {
+                    bytes: origin(bytes.start)..origin(bytes.end),
+                    natural: advance,
+                    advance,
+                    part,
+                }));
+                parts.push(Part { span: index, run: own.clone(), face, small, missing: found.missing });
+            }
+        }
+    }
+
+    /// Places the letters of a chunk as usvg does. Returns `None` if it has none.
+    fn layout(&self, chunk: &TextChunk, letters: &[Letter], offset: usize, vertical: bool) -> Option<Layout> {
+        let mut order: Vec<usize> = (0..letters.len()).collect();
+        order.sort_by_key(|i| letters[*i].bytes.start);
+        let (mut shifts, mut sum) = (vec![(0.0, 0.0); letters.len()], (0.0, 0.0));
+        for &i in &order {
+            let at = offset + chunk.text()[..letters[i].bytes.start].chars().count();
+            let of = |list: &[f32]| list.get(at).copied().map_or(0.0, f64::from);
+            sum = (sum.0 + of(self.text.dx()), sum.1 + of(self.text.dy()));
+            shifts[i] = if vertical { (sum.1, -sum.0) } else { sum };
+        }
+        let (first, last) = (*order.first()?, *order.last()?);
+        let (mut left, mut right, mut advance) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        let mut places = Vec::new();
+        for (letter, shift) in letters.iter().zip(&shifts) {
+            let start = advance + shift.0;
+            left = left.min(start.min(start + letter.advance));
+            right = right.max(start.max(start + letter.advance));
+            places.push((start, shift.1));
+            advance += letter.advance;
+        }
+        let anchored = |width: f64| match chunk.anchor() {
+            TextAnchor::Start => 0.0,
+            TextAnchor::Middle => -0.5 * width,
+            TextAnchor::End => -width,
+        };
+        let before = match chunk.text_flow() {
+            TextFlow::Linear => shifts[first].0 - left + anchored(right - left),
+            TextFlow::Path(_) => anchored(advance),
+        };
+        places.iter_mut().for_each(|p| p.0 += before);
+        Some(Layout { places, end: (before + advance + shifts[last].0, shifts[last].1) })
+    }
+
+    /// Cuts a chunk into pieces.
+    #[expect(clippy::too_many_arguments, reason = "what is known of one chunk")]
+    fn cut(
+        &mut self,
+        chunk: &TextChunk,
+        parts: &[Part],
+        letters: &[Letter],
+        layout: &Layout,
+        placed: &dyn Fn((f64, f64)) -> (f64, f64),
+        offset: usize,
+        out: &mut Vec<Piece>,
+    ) {
+        let shift = |i: usize| {
+            let before: f64 = letters[..i].iter().map(|l| l.advance).sum();
+            (layout.places[i].0 - before, layout.places[i].1)
+        };
+        let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() < 1e-6 && (a.1 - b.1).abs() < 1e-6;
+        let mut start = 0;
+        for end in 1..=letters.len() {
+            let part = &parts[letters[start].part];
+            let turned = before_letters(&chunk.text()[part.run.range.clone()], part.run.rtl);
+            let span = &chunk.spans()[part.span];
+            let spaced = !turned.is_empty() && (span.letter_spacing() != 0.0 || span.text_length().is_some());
+            let goes_on = |next: &Letter| next.part == letters[start].part && near(shift(end), shift(start)) && !spaced;
+            if letters.get(end).is_some_and(goes_on) {
+                continue;
+            }
+            let group = &letters[start..end];
+            let bytes = group.iter().map(|l| l.bytes.start).min().unwrap_or(0)
+                ..group.iter().map(|l| l.bytes.end).max().unwrap_or(0);
+            let chars = |b: usize| offset + chunk.text()[..b].chars().count();
+            let (x, y) = placed(layout.places[start]);
+            let mut attributes = match chunk.text_flow() {
+                TextFlow::Linear => format!(" x=\"{x}\" y=\"{y}\""),
+                TextFlow::Path(_) if y == 0.0 => format!(" x=\"{x}\""),
+                TextFlow::Path(_) => format!(" x=\"{x}\" dy=\"{y}\""),
+            };
+            attributes += &self.style(span, part, group, spaced);
+            // usvg spaces all letters but the last one, whose space would be missing beneath an underline.
+            let around = match part.run.rtl {
+                // White space at the end of a line would go with the line.
+                true if !turned.is_empty() => [turned, "\u{200f}"],
+                _ if span.letter_spacing() == 0.0 || spaced => [turned, ""],
+                true => ["\u{200f}", ""],
+                false => ["", "\u{200e}"],
+            };
+            out.push(Piece { chars: chars(bytes.start)..chars(bytes.end), attributes, small: part.small, around });
+            start = end;
+        }
+    }
+
+    /// The attributes of a piece beside its place.
+    fn style(&mut self, span: &TextSpan, part: &Part, letters: &[Letter], spaced: bool) -> String {
+        let mut style = " style=\"text-anchor:start".to_owned();
+        if let Some(face) = part.face
+            && let Some(n) = self.font(span, face, part.run.writing)
+        {
+            let _ = write!(style, ";font-family:{PIECE}{n}");
+        }
+        if spaced {
+            style += ";letter-spacing:0";
+        }
+        if part.small {
+            let _ = write!(style, ";font-size:{}px", f64::from(span.font_size().get()) * SMALL);
+        }
+        style.push('"');
+        let natural: f64 = letters.iter().map(|l| l.natural).sum();
+        let hung = hangs(part.run.writing) && span.letter_spacing() != 0.0;
+        match (span.text_length(), span.length_adjust()) {
+            (length, LengthAdjust::Spacing) if (length.is_some() || hung) && !spaced && letters.len() > 1 => {
+                let all: f64 = letters.iter().map(|l| l.advance).sum();
+                let last = letters.last().map_or(0.0, |l| l.advance - l.natural);
+                let _ = write!(style, " textLength=\"{}\"", all - last);
+            }
+            (Some(_), LengthAdjust::SpacingAndGlyphs) if natural > 0.0 => {
+                let all: f64 = letters.iter().map(|l| l.advance).sum();
+                let _ = write!(style, " textLength=\"{all}\" lengthAdjust=\"spacingAndGlyphs\"");
+            }
+            _ => {}
+        }
+        style
+    }
+
+    /// The number of the fonts of a piece. The face of its text is in the database once more for each font that stands in for it.
+    fn font(&mut self, span: &TextSpan, face: ID, writing: Writing) -> Option<usize> {
+        let first = self.named.get(&(span.font().clone(), self.language.clone()))?.first()?.face?;
+        // A font without colours may have letters that stand for emoji, so usvg must not ask it.
+        let of_text = if writing == Writing::Emoji { face } else { first };
+        let db = Arc::make_mut(&mut self.out.db);
+        let info = db.face(of_text)?.clone();
+        let known = self.out.fonts.iter().position(|(a, b)| {
+            *b == face
+                && db.face(*a).is_some_and(|a| a.post_script_name == info.post_script_name && a.index == info.index)
+        });
+        Some(known.unwrap_or_else(|| {
+            self.out.fonts.push((db.push_face_info(info), face));
+            self.out.fonts.len() - 1
+        }))
+    }
+}
+
+/// The size of small capitals that a font lacks, as a share of its size (CSS Fonts 4, section 6.6, leaves it open; browsers).
+const SMALL: f64 = 0.7;
+
+/// Letters of a text as capitals, and the place in the text of each of their bytes and of the end.
+fn capitals(text: &str, range: &Range<usize>) -> (String, Vec<usize>) {
+    let (mut out, mut origins) = (String::new(), Vec::new());
+    for (i, c) in text[range.clone()].char_indices() {
+        out.extend(c.to_uppercase());
+        origins.resize(out.len(), range.start + i);
+    }
+    origins.push(range.end);
+    (out, origins)
+}
+
+/// Whether two spans are shaped together.
+fn sets_alike(a: &TextSpan, b: &TextSpan) -> bool {
+    let of = |s: &TextSpan| (s.font_size(), s.small_caps(), s.apply_kerning(), s.font_optical_sizing());
+    let spacing = |s: &TextSpan| [Some(s.letter_spacing()), Some(s.word_spacing()), s.text_length()];
+    of(a) == of(b) && spacing(a) == spacing(b) && a.font() == b.font()
+}
+
+/// Whether usvg would shape the parts of a chunk otherwise.
+fn is_divided(chunk: &TextChunk, parts: &[Part]) -> bool {
+    let spaced = |p: &Part| hangs(p.run.writing) && chunk.spans()[p.span].letter_spacing() != 0.0;
+    let mixed = |a: &Part, b: &Part| {
+        let (x, y) = (&a.run, &b.run);
+        x.level_run == y.level_run && x.writing != y.writing && !(x.writing.is_plain() && y.writing.is_plain())
+    };
+    parts.iter().any(|p| p.face.is_some() || p.small || spaced(p)) || parts.windows(2).any(|w| mixed(&w[0], &w[1]))
+}
+
+/// Adds the spacing of a chunk to its letters, as usvg does.
+fn space(chunk: &TextChunk, letters: &mut [Letter]) {
+    let count = letters.len();
+    let span = |at: usize| chunk.spans().iter().find(|s| (s.start()..s.end()).contains(&at));
+    for (i, l) in letters.iter_mut().enumerate() {
+        let (Some(span), Some(c)) = (span(l.bytes.start), chunk.text()[l.bytes.start..].chars().next()) else {
+            continue;
+        };
+        if i + 1 < count && takes_spacing(c.script()) {
+            l.advance += f64::from(span.letter_spacing());
+        }
+        if matches!(c, ' ' | '\u{a0}' | '\u{1361}' | '\u{10100}' | '\u{10101}' | '\u{1039f}' | '\u{1091f}') {
+            l.advance += f64::from(span.word_spacing());
+        }
+    }
+    for span in chunk.spans() {
+        let Some(target) = span.text_length().map(f64::from) else { continue };
+        let within = |l: &&mut Letter| (span.start()..span.end()).contains(&l.bytes.start);
+        let natural: Vec<f64> = letters.iter_mut().filter(within).map(|l| l.natural).collect();
+        let (width, gaps) = (natural.iter().sum::<f64>(), natural.len().saturating_sub(1) as f64);
+        for l in letters.iter_mut().filter(within) {
+            l.advance = match span.length_adjust() {
+                LengthAdjust::Spacing if gaps > 0.0 => l.natural + (target - width) / gaps,
+                LengthAdjust::Spacing => l.natural,
+                LengthAdjust::SpacingAndGlyphs => l.natural * target / width.max(f64::MIN_POSITIVE),
+            };
+        }
+    }
+}
+
+/// Whether letters of a script may be set apart: not if they are joined, as in browsers.
+fn takes_spacing(script: Script) -> bool {
+    use Script as S;
+    let joined =
+        [S::Arabic, S::Syriac, S::Nko, S::Manichaean, S::Psalter_Pahlavi, S::Mandaic, S::Mongolian, S::Phags_Pa];
+    !joined.contains(&script)
+}
+
+/// Whether usvg sets no letters of a script apart although browsers do.
+fn hangs(writing: Writing) -> bool {
+    use Script as S;
+    let hung = [S::Devanagari, S::Bengali, S::Gurmukhi, S::Modi, S::Sharada, S::Syloti_Nagri, S::Tirhuta, S::Ogham];
+    matches!(writing, Writing::Script(script) if hung.contains(&script))
+}
+
+/// What must stand before a piece, for its letters to go in one direction by themselves.
+fn before_letters(text: &str, rtl: bool) -> &'static str {
+    let goes_left = |c: char| matches!(c, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{fefc}' | '\u{10800}'..='\u{10fff}' | '\u{1e800}'..='\u{1efff}');
+    match rtl {
+        true if !text.chars().all(char::is_alphabetic) => "\u{202e}",
+        false if text.chars().any(goes_left) => "\u{202d}",
+        _ => "",
+    }
+}
+
+/// Writes a text in pieces.
+struct Writer<'a> {
+    source: &'a str,
+    /// The characters that usvg shows.
+    shown: &'a [char],
+    /// The next of them.
+    next: usize,
+    pieces: &'a [Piece],
+    rotate: &'a [f32],
+    /// Start and end tags of the elements from a `textPath` inwards. usvg has only the first piece in one on the path, so each piece
+    /// gets one.
+    on_path: Vec<(String, String)>,
+}
+
+impl Writer<'_> {
+    /// Writes an element with its places left out. Returns `None` if its characters are not those shown.
+    fn element(&mut self, node: Node<'_, '_>) -> Option<String> {
+        let whole = &self.source[node.range()];
+        let tag = &whole[..start_tag(whole)?];
+        let mut out = String::new();
+        let mut at = 0;
+        for a in node.attributes().filter(|a| matches!(a.name(), "x" | "y" | "dx" | "dy" | "rotate" | "space")) {
+            let range =
+                a.range().start.checked_sub(node.range().start)?..a.range().end.checked_sub(node.range().start)?;
+            out += tag.get(at..range.start)?;
+            at = range.end;
+        }
+        out += tag.get(at..)?.strip_suffix('>')?;
+        out += if node.has_tag_name((super::elements::SVG, "text")) { " xml:space=\"preserve\">" } else { ">" };
+        let name = whole[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()?;
+        let end = format!("</{name}>");
+        let is_on_path = node.tag_name().name() == "textPath" || !self.on_path.is_empty();
+        if is_on_path {
+            self.on_path.push((out.clone(), end.clone()));
+        }
+        for child in node.children() {
+            if let Some(text) = child.text().filter(|_| child.is_text()) {
+                out += &self.letters(text)?;
+            } else if child.is_element() && matches!(child.tag_name().name(), "tspan" | "textPath" | "a") {
+                out += &self.element(child)?;
+            } else if child.has_tag_name((super::elements::SVG, "tref")) {
+                return None;
+            } else if child.is_element() {
+                out += &self.source[child.range()];
+            }
+        }
+        if is_on_path {
+            self.on_path.pop();
+        }
+        Some(out + &end)
+    }
+
+    /// Writes characters in the pieces that they belong to.
+    fn letters(&mut self, text: &str) -> Option<String> {
+        let mut stretches: Vec<Stretch> = Vec::new();
+        for c in text.chars() {
+            let is_space = |c: char| matches!(c, ' ' | '\t' | '\n' | '\r');
+            match self.shown.get(self.next) {
+                Some(shown) if *shown == c || is_space(*shown) && is_space(c) => {}
+                _ if is_space(c) => continue,
+                _ => return None,
+            }
+            let at = self.next;
+            self.next += 1;
+            let piece = self.pieces.partition_point(|p| p.chars.end <= at);
+            if !self.pieces.get(piece).is_some_and(|p| p.chars.contains(&at)) {
+                continue;
+            }
+            if stretches.last().is_none_or(|s| s.piece != piece) {
+                stretches.push(Stretch { piece, chars: at..at, letters: String::new(), turns: Vec::new() });
+            }
+            let Some(stretch) = stretches.last_mut() else { continue };
+            stretch.chars.end = at + 1;
+            // The place of a piece stands for the order of its letters among others.
+            if !matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}') {
+                stretch.letters.push(if is_space(c) { ' ' } else { c });
+                stretch.turns.push(self.rotate.get(at).copied().unwrap_or(0.0));
+            }
+        }
+        let is_empty =
+            |s: &Stretch| s.letters.chars().all(|c| matches!(c, '\u{180b}' | '\u{200b}'..='\u{200d}' | '\u{2060}'));
+        Some(stretches.into_iter().filter(|s| !is_empty(s)).map(|s| self.stretch(s)).collect())
+    }
+
+    fn stretch(&self, stretch: Stretch) -> String {
+        let Piece { chars, attributes, small, around: [before, after] } = &self.pieces[stretch.piece];
+        let Stretch { chars: own, letters, mut turns, .. } = stretch;
+        let starts = own.start == chars.start;
+        let mut out = String::new();
+        if starts {
+            self.on_path.iter().rev().for_each(|(_, end)| out += end);
+            self.on_path.iter().for_each(|(start, _)| out += start);
+        }
+        // A piece goes on in the next element without a place of its own.
+        let style = attributes.find(" style=").unwrap_or(0);
+        let _ = write!(out, "<tspan{}", if starts { attributes } else { &attributes[style..] });
+        let before = if starts { before } else { "" };
+        if self.rotate.iter().any(|r| *r != 0.0) {
+            turns.splice(..0, before.chars().map(|_| 0.0));
+            let _ = write!(out, " rotate=\"{}\"", turns.iter().map(f32::to_string).collect::<Vec<_>>().join(" "));
+        }
+        let after = if own.end == chars.end { after } else { "" };
+        let letters = if *small { letters.to_uppercase() } else { letters };
+        let _ = write!(out, ">{before}{}{after}</tspan>", escape(&letters));
+        out
+    }
+}
+
+/// A part of a piece within one element.
+struct Stretch {
+    piece: usize,
+    /// Characters among all of the text.
+    chars: Range<usize>,
+    letters: String,
+    /// Rotation of each letter, in degrees.
+    turns: Vec<f32>,
+}
+
+/// The length of the start tag at the beginning of an element.
+fn start_tag(element: &str) -> Option<usize> {
+    let mut quote = None;
+    for (i, b) in element.bytes().enumerate() {
+        match (quote, b) {
+            (None, b'"' | b'\'') => quote = Some(b),
+            (Some(q), b) if q == b => quote = None,
+            (None, b'>') => return element.as_bytes().get(i - 1).is_some_and(|b| *b != b'/').then_some(i + 1),
+            _ => {}
+        }
+    }
+    None
+}
