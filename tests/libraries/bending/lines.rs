@@ -59,6 +59,9 @@ const WORDS: [&[&str]; 4] = [
     &["EAT", "SLEEP", "SURF", "REPEAT"],
 ];
 
+/// Shapes that have no room for four lines of these words.
+const TOO_LOW: [&str; 1] = ["crescent"];
+
 /// In every shape: nothing folds, stems stand, and the lowest letter is at least a third as high as the highest, at its lowest place.
 #[test]
 fn letters_stand_and_are_alike() {
@@ -67,7 +70,13 @@ fn letters_stand_and_are_alike() {
     for words in WORDS {
         let letters = letters(words);
         for (name, shape) in &all {
-            let built = put(&letters, shape, Lines::Fit).unwrap_or_else(|e| panic!("{name} {words:?}: {e}"));
+            let built = match put(&letters, shape, Lines::Fit) {
+                Err(e) if words.len() == 4 && TOO_LOW.contains(name) => {
+                    assert!(e.to_string().contains("has no room"), "{e}");
+                    continue;
+                }
+                built => built.unwrap_or_else(|e| panic!("{name} {words:?}: {e}")),
+            };
             let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
             for (_, _, b) in sources(&built, &letters) {
                 let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
