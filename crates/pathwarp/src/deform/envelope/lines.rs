@@ -210,8 +210,8 @@ const PLACES: usize = 16;
 /// The space between lines, as a share of their mean height.
 const GAP: f64 = 0.12;
 /// A line ends where its band is lower than one of these shares of the height aimed at, and is nowhere higher than the last.
-const ENDS: [f64; 3] = [0.62, 0.75, 0.9];
-const HIGHEST: f64 = 1.6;
+const ENDS: [f64; 3] = [0.59, 0.75, 0.9];
+const HIGHEST: f64 = 1.65;
 /// How far boundaries follow the bend of the outline.
 const BEND: f64 = 0.5;
 /// Letters are widened by no more than this. Further widening is space between them, by no more than this.
@@ -220,16 +220,18 @@ const SPACED: f64 = 1.45;
 /// Letters are narrowed to no less than this.
 const NARROWEST: f64 = 0.3;
 /// Costs, as shares of the shape's area: of letters of unlike heights and widths, of slopes, and of a line away from the middle.
-const UNLIKE: f64 = 0.35;
+const UNLIKE: f64 = 0.3;
 const STEEP: f64 = 0.3;
 const STEEPEST: f64 = 1.5;
 const BESIDE: f64 = 10.0;
 /// A line parts at a gap of no more than these shares of its width: within a word, and between words.
 const APART: [f64; 2] = [0.15, 0.4];
+/// What a word that parts costs, as a share of what it fills.
+const DIVIDED: f64 = 0.15;
 /// Gaps of more than this share of the height are word spaces.
 const WORD: f64 = 0.2;
 /// Letters fill at least this share of a shape.
-const LEAST: f64 = 0.5;
+const LEAST: f64 = 0.48;
 
 impl<'a> Room<'a> {
     fn new(region: &'a Region, lines: usize) -> Option<Self> {
@@ -322,7 +324,7 @@ impl<'a> Room<'a> {
     }
 
     /// The best way to put a line into a band: as a whole, or parted at a notch. `share` is its share of all lines.
-    fn band(&self, line: &Line, share: f64, (cuts, (runs, pairs)): &Places, aim: &Aim) -> Option<(f64, Vec<Part>)> {
+    fn band(&self, line: &Line, share: f64, (cuts, (runs, pairs)): &Places<'_>, aim: &Aim) -> Option<(f64, Vec<Part>)> {
         let n = line.letters.len();
         let middle = (self.middle - self.bounds.x0) / self.step;
         let whole = runs.iter().filter_map(|run| {
@@ -336,7 +338,8 @@ impl<'a> Room<'a> {
             let (worth, a) = self.put(cuts, (left, [1.0, notch]), (line, 0..k, share(k)), aim)?;
             let (more, b) = self.put(cuts, (right, [0.0, notch]), (line, k..n, share(n - k)), aim)?;
             let apart = (b.xs[0] - a.xs[1]) / (b.xs[1] - a.xs[0]);
-            (apart <= APART[usize::from(line.is_space(k))]).then(|| (worth + more, vec![a, b]))
+            let cost = if line.is_space(k) { 0.0 } else { DIVIDED * share(n) };
+            (apart <= APART[usize::from(line.is_space(k))]).then(|| (worth + more - cost, vec![a, b]))
         });
         whole.chain(parted).max_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -388,7 +391,7 @@ impl<'a> Room<'a> {
     fn map(&self, part: &Part, levels: [Option<f64>; 2], from: Rect) -> Option<Arc<dyn Map>> {
         const SAMPLES: u32 = 240;
         /// The share of the least height that smooth curves leave.
-        const KEPT: f64 = 0.88;
+        const KEPT: f64 = 0.94;
         let cells = (3 * part.letters.len() / 2).clamp(4, 16);
         let sampled = |[x0, x1]: [f64; 2]| -> Vec<(f64, Cut)> {
             let xs = (0..=SAMPLES).map(|i| x0 + (x1 - x0) * f64::from(i) / f64::from(SAMPLES));
