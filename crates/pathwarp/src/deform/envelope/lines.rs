@@ -4,7 +4,7 @@
 //!
 //! The boundaries between lines are parabolas that lead from the top of the shape over to its bottom. A band between two of them, clipped by
 //! the outline, ends where it is too low for letters. Of all heights of the boundaries, those are taken that fill the shape best with
-//! letters that are widened evenly. t and b are splines within the band, so no letter has a corner of the outline in it.
+//! letters of like heights and widths, about its middle. t and b are splines within the band, so no letter has a corner of the outline in it.
 
 use super::columns::Region;
 use crate::error::Error;
@@ -136,7 +136,7 @@ fn height(c: &Cut) -> f64 {
 /// The columns of a band.
 struct Cuts {
     all: Vec<Cut>,
-    /// Sums over all before each: of the heights, their logarithms, the squares of these, and the squares of the slopes.
+    /// Sums over all before each: of the heights, their logarithms, and the fourth powers of the slopes.
     sums: Vec<[f64; 3]>,
     /// The least height of a jump.
     jump: f64,
@@ -209,7 +209,7 @@ const JUMP: f64 = 3.0;
 const PLACES: usize = 16;
 /// The space between lines, as a share of their mean height.
 const GAP: f64 = 0.12;
-/// A line ends where its band is lower than one of these shares of the height aimed at, and is nowhere higher than the last.
+/// A line ends where its band is lower than one of these shares of the height aimed at, and is nowhere higher than this one.
 const ENDS: [f64; 3] = [0.59, 0.75, 0.9];
 const HIGHEST: f64 = 1.65;
 /// How far boundaries follow the bend of the outline.
@@ -219,14 +219,15 @@ const WIDEST: f64 = 2.0;
 const SPACED: f64 = 1.45;
 /// Letters are narrowed to no less than this.
 const NARROWEST: f64 = 0.3;
-/// Costs, as shares of the shape's area: of letters of unlike heights and widths, of slopes, and of a line away from the middle.
+/// Costs, as shares of the shape's area: of letters of unlike heights and widths, of slopes, and of a line away from the middle. That of a
+/// slope is small below the second value, and large above it.
 const UNLIKE: f64 = 0.3;
 const STEEP: f64 = 0.3;
 const STEEPEST: f64 = 1.5;
 const BESIDE: f64 = 10.0;
 /// A line parts at a gap of no more than these shares of its width: within a word, and between words.
 const APART: [f64; 2] = [0.15, 0.4];
-/// What a word that parts costs, as a share of what it fills.
+/// What a word that parts costs, as a share of the shape's area.
 const DIVIDED: f64 = 0.15;
 /// Gaps of more than this share of the height are word spaces.
 const WORD: f64 = 0.2;
