@@ -91,7 +91,7 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
     for stage in stages {
         drawing = pipe(root, program, &stage, &drawing)?;
     }
-    if last[0] == "text" {
+    if ["text", "badge"].contains(&last[0].as_str()) {
         // There is nothing to show before text.
         return render(root, program, &pipe(root, program, &last, &drawing)?, "800", png);
     }
