@@ -95,8 +95,8 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
         // There is nothing to show before text.
         return render(root, program, &pipe(root, program, &last, &drawing)?, "800", png);
     }
-    // Replace any preview that the example itself asks for.
-    if let Some(i) = last.iter().position(|w| w == "--preview") {
+    // Replace any preview that the example itself asks for, and leave out what only cutters read.
+    while let Some(i) = last.iter().position(|w| ["--preview", "--kerf", "--engrave"].contains(&w.as_str())) {
         last.drain(i..(i + 2).min(last.len()));
     }
     last.retain(|w| w != "--explain");
