@@ -392,7 +392,7 @@ impl<'a> Room<'a> {
     fn map(&self, part: &Part, levels: [Option<f64>; 2], from: Rect) -> Option<Arc<dyn Map>> {
         const SAMPLES: u32 = 240;
         /// The share of the least height that smooth curves leave.
-        const KEPT: f64 = 0.94;
+        const KEPT: f64 = 0.93;
         let cells = (3 * part.letters.len() / 2).clamp(4, 16);
         let sampled = |[x0, x1]: [f64; 2]| -> Vec<(f64, Cut)> {
             let xs = (0..=SAMPLES).map(|i| x0 + (x1 - x0) * f64::from(i) / f64::from(SAMPLES));
@@ -411,7 +411,7 @@ impl<'a> Room<'a> {
             above(&ys, cells).map(|v| v.into_iter().map(|y| sign * y).collect::<Vec<f64>>())
         };
         // Steep outlines need more cells.
-        let (cells, top, bottom) = [1, 2, 4].into_iter().find_map(|k| {
+        let (cells, top, bottom) = [1, 2, 4, 8].into_iter().find_map(|k| {
             let ([top, y0], [bottom, y1]) = (side(0, 1.0, k * cells), side(1, -1.0, k * cells));
             let is_high = y0.iter().zip(&y1).all(|(a, b)| b - a >= KEPT * lowest);
             is_high.then_some((k * cells, top, bottom))
