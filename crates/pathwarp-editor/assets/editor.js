@@ -1716,7 +1716,7 @@
       const { step: step2 } = this.app;
       for (const { button, deformation, args, variant } of this.cards) {
         const others = this.app.deformation(deformation)?.variants ?? [];
-        const isVariant = variant ? step2?.args[variant.param] !== void 0 : !others.some((o) => step2?.args[o.param]);
+        const isVariant = variant ? step2?.args[variant.param] !== void 0 && others.find((o) => o.param === variant.param) === variant : !others.some((o) => step2?.args[o.param]);
         const isChosen = step2?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step2.args[k]?.[0] === v[0]);
         button.setAttribute("aria-pressed", String(isChosen));
       }

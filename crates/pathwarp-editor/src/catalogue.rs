@@ -1,9 +1,9 @@
 //! The deformations with their parameters as a page needs them: everything follows from the registry's tables.
 
 use pathwarp::Outline;
-use pathwarp::deform::{Info, Registry, Variant};
+use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::{Affine, Rect};
-use pathwarp::param::{Axis, Kind, Param, is_inline};
+use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings, is_inline, shape_names};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -36,6 +36,8 @@ fn deformation(info: &Info) -> Value {
     let words: Vec<&str> = info.params.iter().filter(|p| p.kind != Kind::Path).map(|p| p.name).collect();
     // A page writes no files but the result.
     let params = info.params.iter().filter(|p| p.kind != Kind::Save);
+    let variants = info.by_hand.variants.iter().map(|v| (v.label.to_owned(), v.param));
+    let variants = variants.chain(shapes(info).map(|(label, param, _)| (label, param)));
     json!({
         "name": info.name,
         "label": info.by_hand.label,
@@ -45,7 +47,7 @@ fn deformation(info: &Info) -> Value {
         "first": false,
         "knownAs": [],
         "params": params.map(|p| param(info, p)).collect::<Value>(),
-        "variants": info.by_hand.variants.iter().map(|v| json!({ "label": v.label, "param": v.param })).collect::<Value>(),
+        "variants": variants.map(|(label, param)| json!({ "label": label, "param": param })).collect::<Value>(),
         "gallery": info.gallery.filter(|g| words.contains(&g.presets)).map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
     })
 }
@@ -102,10 +104,41 @@ fn kind(kind: Kind) -> &'static str {
     }
 }
 
-/// The values of a variant for artwork in `frame`: those that change nothing, or those that show something.
-pub(crate) fn of_variant(variant: &Variant, frame: Rect, shows: bool) -> BTreeMap<String, Vec<String>> {
-    let data = if shows { variant.showing } else { variant.neutral };
-    BTreeMap::from([(variant.param.to_owned(), vec![laid_out(data, frame)])])
+/// The shapes by name that a deformation may begin with: a label, the parameter and the name.
+fn shapes(info: &Info) -> impl Iterator<Item = (String, &'static str, &'static str)> {
+    let taken =
+        info.gallery.map(|g| g.presets).filter(|n| info.params.iter().any(|p| p.name == *n && p.kind == Kind::Path));
+    taken.into_iter().flat_map(|param| {
+        shape_names()
+            .iter()
+            .map(move |name| (format!("{}{} shape", name[..1].to_uppercase(), &name[1..]), param, *name))
+    })
+}
+
+/// The values of a variant for artwork in `frame`: those that change nothing, or those that show something. A shape is path data, whose
+/// nodes can be dragged.
+pub(crate) fn of_variant(
+    info: &Info,
+    label: &str,
+    frame: Rect,
+    shows: bool,
+) -> Result<BTreeMap<String, Vec<String>>, String> {
+    /// How far curves are from the shape's arcs, as a share of the width.
+    const FINE: f64 = 2e-4;
+    if let Some(v) = info.by_hand.variants.iter().find(|v| v.label == label) {
+        return Ok(BTreeMap::from([(
+            v.param.to_owned(),
+            vec![laid_out(if shows { v.showing } else { v.neutral }, frame)],
+        )]));
+    }
+    let shape = shapes(info).find(|s| s.0 == label);
+    let (_, param, name) = shape.ok_or_else(|| format!("{} has no variant {label}", info.name))?;
+    let args = Args::from_pairs(&[(param, name)]);
+    let path = Settings::new(info.params, &args, &Frame::new(frame)).and_then(|s| s.path_if(param));
+    let path = path.map_err(|e| e.to_string())?;
+    // Arcs become curves of few nodes.
+    let curves = path.map(|p| Outline::from(&p.outline.to_bez_path(FINE * frame.width())));
+    Ok(curves.map(|c| (param.to_owned(), vec![crate::grips::path_data(&c)])).into_iter().collect())
 }
 
 /// The first values of a deformation for artwork in `frame`.
@@ -188,6 +221,25 @@ mod tests {
     use pathwarp::param::{Args, Frame};
     use pathwarp::recipe::{Recipe, Step};
 
+    /// The shapes by name are as wide as the artwork, have its middle, and are closed paths that a page can drag.
+    #[test]
+    fn shapes_are_variants() {
+        let registry = Registry::builtin();
+        let info = registry.get("envelope").unwrap().info();
+        let frame = Rect::new(10.0, 20.0, 130.0, 60.0);
+        let all = deformation(info)["variants"].clone();
+        let labels: Vec<&str> = all.as_array().unwrap().iter().map(|v| v["label"].as_str().unwrap()).collect();
+        assert!(labels.contains(&"Heart shape") && labels.contains(&"Star shape"), "{labels:?}");
+        for label in labels.iter().filter(|l| l.ends_with(" shape") && **l != "Closed shape") {
+            let data = &of_variant(info, label, frame, false).unwrap()["envelope"][0];
+            assert!(is_inline(data), "{label}: {data}");
+            let bounds = Outline::from_svg(data).unwrap().bounding_box().unwrap();
+            assert!((bounds.width() - 120.0).abs() < 0.05, "{label}: {bounds:?}");
+            assert!(bounds.center().distance(frame.center()) < 0.05, "{label}: {bounds:?}");
+        }
+        assert!(of_variant(info, "Nose shape", frame, false).is_err());
+    }
+
     #[test]
     fn every_deformation_and_parameter_is_there() {
         let registry = Registry::builtin();
@@ -246,7 +298,7 @@ mod tests {
         let infos = || registry.entries().iter().map(|e| e.info());
         let variants = || infos().flat_map(|i| i.by_hand.variants.iter().map(move |v| (i, v)));
         let usual = infos().filter(|i| !i.by_hand.neutral.is_empty()).map(|i| (i.name, build(i)));
-        let others = variants().map(|(i, v)| (v.label, build_with(i, of_variant(v, FRAME, false))));
+        let others = variants().map(|(i, v)| (v.label, build_with(i, of_variant(i, v.label, FRAME, false).unwrap())));
         for (name, built) in usual.chain(others) {
             for p in [Point::new(20.0, 30.0), Point::new(333.0, 111.0), Point::new(600.0, 200.0)] {
                 let off = built.map.point(p).distance(p);
@@ -255,7 +307,7 @@ mod tests {
         }
         for (info, v) in variants() {
             let p = FRAME.center() + pathwarp::kurbo::Vec2::new(60.0, 30.0);
-            let built = build_with(info, of_variant(v, FRAME, true));
+            let built = build_with(info, of_variant(info, v.label, FRAME, true).unwrap());
             assert!(built.map.point(p).distance(p) > 5.0, "{} shows nothing", v.label);
         }
     }

@@ -13,7 +13,6 @@ use crate::words::Words;
 use crate::{presets, saving};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use pathwarp::deform::{Info, Variant};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Map as _, inverse_over};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
@@ -497,8 +496,8 @@ impl Session {
         let bending = self.host.registry().get(deformation).map(|e| e.info());
         let info = bending.or_else(|| self.host.first().iter().find(|i| i.name == deformation));
         let info = info.ok_or_else(|| format!("there is no deformation {deformation}"))?;
-        let args = match variant_of(info, variant)? {
-            Some(variant) => of_variant(variant, frame, shows),
+        let args = match variant {
+            Some(label) => of_variant(info, label, frame, shows)?,
             None if shows => example(info, frame),
             None => opening(info, frame),
         };
@@ -652,13 +651,6 @@ fn folder_of(file: &Path) -> String {
 /// Returns `true` for a file that holds the source and the steps, to go on with.
 fn is_svg(file: &Path) -> bool {
     saving::has_extension(file, &["svg", "svgz"])
-}
-
-/// The variant of a deformation with this label.
-fn variant_of(info: &Info, label: Option<&str>) -> Result<Option<&'static Variant>, String> {
-    let Some(label) = label else { return Ok(None) };
-    let found = info.by_hand.variants.iter().find(|v| v.label == label);
-    found.map(Some).ok_or_else(|| format!("{} has no variant {label}", info.name))
 }
 
 /// The steps that a page shows.

@@ -357,11 +357,13 @@ fn members<'p>(portions: &'p [Portion<'_>], i: usize) -> impl Iterator<Item = us
 fn check_placement(placement: &Placement, i: usize, is_first: bool, step: &Step) -> Result<(), Error> {
     let effect = match placement {
         p if !p.copies.is_empty() => "repeats the artwork",
+        p if p.before => "sets lines of letters one by one",
         p if !p.letters.is_empty() => "places letters",
         _ => return Ok(()),
     };
     let problem = match (is_first, step.inverse) {
         (true, false) => return Ok(()),
+        (_, true) if placement.before => "has no inverse; `lines` as `together`, one map for all of them, has one",
         (_, true) => "has no inverse",
         _ => "only the first step can do; put it first, or in a separate run",
     };

@@ -136,6 +136,11 @@ fn a_line_without_room_is_named() {
     let letters = letters(&["A"; 30]);
     let error = put(&letters, shape, Lines::Fit).unwrap_err().to_string();
     assert!(error.contains("has no room") && error.contains("line"), "{error}");
+    // Lines that would leave most of the shape empty.
+    let bar = Outline::from_svg("M0,0 H1000 V60 H0 Z").unwrap();
+    let words = self::letters(&["LOVE", "MUSIC", "ALWAYS"]);
+    assert!(put(&words, &bar, Lines::Fit).unwrap_err().to_string().contains("has no room"));
+    assert!(put(&words, &Outline::from_svg("M0,0 H200 V60 H0 Z").unwrap(), Lines::Fit).is_ok());
     let together = put(&letters, shape, Lines::Together).unwrap();
     assert!(together.explanation.notes.iter().any(|n| n.contains("columns")) && together.placement.letters.is_empty());
 }

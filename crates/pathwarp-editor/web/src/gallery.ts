@@ -206,7 +206,8 @@ export class Gallery {
     const { step } = this.app;
     for (const { button, deformation, args, variant } of this.cards) {
       const others = this.app.deformation(deformation)?.variants ?? [];
-      const isVariant = variant ? step?.args[variant.param] !== undefined : !others.some((o) => step?.args[o.param]);
+      // A shape is a beginning: what has come of it is the variant that any path is.
+      const isVariant = variant ? step?.args[variant.param] !== undefined && others.find((o) => o.param === variant.param) === variant : !others.some((o) => step?.args[o.param]);
       const isChosen = step?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step.args[k]?.[0] === v[0]);
       button.setAttribute("aria-pressed", String(isChosen));
     }

@@ -4,7 +4,7 @@
 //!
 //! The boundaries between lines are parabolas that lead from the top of the shape over to its bottom. A band between two of them, clipped by
 //! the outline, ends where it is too low for letters. Of all heights of the boundaries, those are taken that fill the shape best with
-//! letters that are widened evenly. t and b are splines within the band, so no letter has a corner of the outline in it.
+//! letters of like heights and widths, about its middle. t and b are splines within the band, so no letter has a corner of the outline in it.
 
 use super::columns::Region;
 use crate::error::Error;
@@ -76,6 +76,7 @@ struct Part {
     xs: [f64; 2],
     /// How much wider the letters are drawn than in the artwork, in relation to their height, space between them included.
     ratio: f64,
+    area: f64,
 }
 
 /// A line in its band.
@@ -86,11 +87,17 @@ struct Band {
     parts: Vec<Part>,
 }
 
-/// Where letters may stand in a band: runs, and pairs of them for a line that parts.
-struct Runs {
-    whole: Vec<Run>,
-    pairs: Vec<[Run; 2]>,
+impl Band {
+    fn width(&self) -> f64 {
+        self.parts.iter().map(|p| p.xs[1] - p.xs[0]).sum()
+    }
 }
+
+/// A band, and where letters may stand in it.
+type Places<'a> = (&'a Cuts, (Vec<Range<usize>>, Vec<[Range<usize>; 2]>));
+
+/// Bands and what they are worth together.
+type Plan = (f64, Vec<Band>);
 
 /// How a curve of the shape runs: its mean height, its slope and its bend.
 #[derive(Clone, Copy, Default)]
@@ -104,12 +111,11 @@ struct Trend {
 struct Room<'a> {
     region: &'a Region,
     bounds: Rect,
-    /// The middle of a column, and its intervals inside the shape, each from its top downwards.
     columns: Vec<Column>,
+    step: f64,
     area: f64,
-    /// The share of a line.
-    share: f64,
-    /// The distance between lines.
+    /// The mean height of a line, and the distance between lines.
+    mean: f64,
     gap: f64,
     /// The middle and the spread of the shape along x.
     middle: f64,
@@ -117,31 +123,23 @@ struct Room<'a> {
     trends: [Trend; 2],
 }
 
-/// The x of a column, and its intervals inside the shape.
+/// The x of a column, and its intervals inside the shape, each from its top downwards.
 type Column = (f64, Vec<[f64; 2]>);
 
-/// The clipped interval of a column.
+/// The interval of a column between two boundaries.
 type Cut = Option<[f64; 2]>;
 
 fn height(c: &Cut) -> f64 {
     c.map_or(0.0, |c| c[1] - c[0])
 }
 
-/// The columns of a band, and sums over all before each: of the heights, and of what letters on them are worth.
+/// The columns of a band.
 struct Cuts {
     all: Vec<Cut>,
-    sums: [Vec<f64>; 2],
-    most: f64,
-    /// The mean number of a column.
-    middle: f64,
-}
-
-/// Columns that follow one another: their numbers, what a notch takes from their heights, and the greatest of these.
-#[derive(Clone)]
-struct Run {
-    columns: Range<usize>,
-    dips: f64,
-    most: f64,
+    /// Sums over all before each: of the heights, their logarithms, and the fourth powers of the slopes.
+    sums: Vec<[f64; 3]>,
+    /// The least height of a jump.
+    jump: f64,
 }
 
 impl Cuts {
@@ -149,109 +147,92 @@ impl Cuts {
     fn new(all: Vec<Cut>, step: f64) -> Self {
         /// Slopes are measured over so many columns to both sides.
         const REACH: usize = 3;
-        let (mut sums, mut middle) = ([vec![0.0], vec![0.0]], 0.0);
+        let mut sums = vec![[0.0; 3]];
         for (i, c) in all.iter().enumerate() {
-            let (a, b) = (i.saturating_sub(REACH), (i + REACH).min(all.len() - 1));
-            let (a, b) = (if all[a].is_some() { a } else { i }, if all[b].is_some() { b } else { i });
+            let end = |k: usize| if all[k].is_some() { k } else { i };
+            let (a, b) = (end(i.saturating_sub(REACH)), end((i + REACH).min(all.len() - 1)));
             let rise = all[a].zip(all[b]).map_or(0.0, |(p, q)| (q[0] - p[0]).abs().max((q[1] - p[1]).abs()));
-            let worth = (1.0 - (rise / (step * (b - a).max(1) as f64) / STEEP).powi(2)).max(-3.0);
-            middle += i as f64 * height(c);
-            for (sums, v) in sums.iter_mut().zip([height(c), worth * height(c)]) {
-                sums.push(sums[i] + v);
-            }
+            let (h, slope) = (height(c), rise / (step * (b - a).max(1) as f64));
+            let log = if h > 0.0 { h.ln() } else { 0.0 };
+            let more = [h, log, (slope / STEEPEST).powi(4)];
+            sums.push([0, 1, 2].map(|k| sums[i][k] + more[k]));
         }
-        let most = all.iter().map(height).fold(0.0, f64::max);
-        middle /= sums[0][all.len()];
-        Self { all, sums, most, middle }
+        Self { all, sums, jump: JUMP * step }
     }
 
-    fn mean(&self, r: &Range<usize>, of: usize) -> f64 {
-        (self.sums[of][r.end] - self.sums[of][r.start]) / r.len() as f64
+    fn means(&self, r: &Range<usize>) -> [f64; 3] {
+        [0, 1, 2].map(|k| (self.sums[r.end][k] - self.sums[r.start][k]) / r.len() as f64)
     }
 
-    /// The heights of a run, and for each the lower of the greatest on its left and on its right.
-    fn filled(&self, r: &Range<usize>) -> (Vec<f64>, Vec<f64>) {
-        let heights: Vec<f64> = self.all[r.clone()].iter().map(height).collect();
-        let rising = |most: &mut f64, h: &f64| {
-            *most = most.max(*h);
-            Some(*most)
-        };
-        let right: Vec<f64> = heights.iter().rev().scan(0.0, rising).collect();
-        let filled = heights.iter().scan(0.0, rising).zip(right.iter().rev()).map(|(l, r)| l.min(*r)).collect();
-        (heights, filled)
-    }
-
-    fn run(&self, columns: Range<usize>) -> Run {
-        let (heights, filled) = self.filled(&columns);
-        let dips = filled.iter().zip(&heights).map(|(f, h)| f - h).sum();
-        Run { dips, most: filled.iter().copied().fold(0.0, f64::max), columns }
-    }
-
-    /// Runs that are high enough for letters.
-    fn runs(&self, ends: f64, tallest: f64) -> Vec<Run> {
-        let least = (ends * self.most).max(LEAST * tallest);
+    /// Columns that follow one another without a jump and are high enough, but not too high.
+    fn runs(&self, least: f64, most: f64) -> Vec<Range<usize>> {
+        let on = |a: &Cut, b: &Cut| a.zip(*b).is_some_and(|(a, b)| (0..2).all(|k| (a[k] - b[k]).abs() <= self.jump));
         let mut out: Vec<Range<usize>> = Vec::new();
         for (i, c) in self.all.iter().enumerate().filter(|c| height(c.1) >= least) {
-            let on = |a: &Cut, b: &Cut| a.zip(*b).is_some_and(|(a, b)| a[1].min(b[1]) > a[0].max(b[0]));
             match out.last_mut() {
                 Some(run) if run.end == i && on(&self.all[i - 1], c) => run.end = i + 1,
                 _ => out.push(i..i + 1),
             }
         }
-        out.into_iter().flat_map(|r| self.without_waist(r)).map(|r| self.run(r)).collect()
+        out.retain(|r| self.all[r.clone()].iter().all(|c| height(c) <= most));
+        out
     }
 
-    /// Divides a run at a waist.
-    fn without_waist(&self, r: Range<usize>) -> Vec<Range<usize>> {
-        const WAIST: f64 = 0.65;
-        let (heights, filled) = self.filled(&r);
-        let narrow = |i: usize| heights[i] / filled[i];
-        let waist = (1..r.len()).min_by(|a, b| narrow(*a).total_cmp(&narrow(*b))).filter(|i| narrow(*i) < WAIST);
-        waist.map_or_else(|| vec![r.clone()], |i| vec![r.start..r.start + i, r.start + i..r.end])
-    }
-
-    /// Two runs at both sides of a notch, without what is too low beside it.
-    fn inner(&self, pair: &[Run]) -> [Run; 2] {
-        let [a, b] = [0, 1].map(|k| (pair[k].columns.clone(), INNER * pair[k].most));
-        let end = a.0.clone().rev().find(|i| height(&self.all[*i]) >= a.1).map_or(a.0.end, |i| i + 1);
-        let start = b.0.clone().find(|i| height(&self.all[*i]) >= b.1).unwrap_or(b.0.start);
-        [self.run(a.0.start..end), self.run(start..b.0.end)]
+    /// Where letters of about a height may stand: runs, and pairs of them at both sides of a notch, which end lower there.
+    fn places(&self, height: f64) -> (Vec<Range<usize>>, Vec<[Range<usize>; 2]>) {
+        let [low, rest @ ..] = ENDS.map(|e| self.runs(e * height, HIGHEST * height));
+        let outer = |x: usize| low.iter().find(|r| r.contains(&x)).cloned().unwrap_or(x..x + 1);
+        let inner = rest.iter().flat_map(|runs| runs.windows(2));
+        let inner = inner.map(|w| [outer(w[0].start).start..w[0].end, w[1].start..outer(w[1].end - 1).end]);
+        let pairs = low.windows(2).map(|w| [w[0].clone(), w[1].clone()]).chain(inner);
+        let pairs = pairs.filter(|[a, b]| a.end < b.start).collect();
+        (low.iter().chain(rest.iter().flatten()).cloned().collect(), pairs)
     }
 }
 
-/// What a plan is measured by.
+/// What letters should be: the logarithms of their height, and of how much wider they are drawn than in the artwork, in relation to it.
 #[derive(Clone, Copy)]
 struct Aim {
-    /// Letters are no taller than this.
-    tallest: f64,
-    /// The logarithm of how much wider letters are drawn than in the artwork, in relation to their height.
-    width: f64,
+    height: f64,
+    ratio: f64,
 }
 
 const COLUMNS: u32 = 200;
 /// Heights at which boundaries are tried.
 const LEVELS: usize = 24;
-/// Greatest heights of letters that are tried, by the mean height of a line, and widenings.
-const TALLEST: [f64; 5] = [0.85, 1.1, 1.4, 1.85, 2.4];
-const WIDTHS: [f64; 4] = [0.4, 0.65, 1.0, 1.6];
+/// Heights of letters that are tried, by the mean height of a line, and widenings.
+const HEIGHTS: [f64; 5] = [0.6, 0.8, 1.0, 1.25, 1.6];
+const RATIOS: [f64; 5] = [0.4, 0.65, 1.0, 1.6, 2.4];
+/// Ends of columns that differ by more than so many widths of them belong to a jump.
+const JUMP: f64 = 3.0;
+/// Places that are tried for a line that is narrower than its band.
+const PLACES: usize = 16;
 /// The space between lines, as a share of their mean height.
 const GAP: f64 = 0.12;
-/// A line ends where its band is lower than one of these shares of its greatest height,
-const ENDS: [f64; 2] = [0.5, 0.7];
-/// or of the greatest height of a letter.
-const LEAST: f64 = 0.42;
-/// Beside a notch at which a line parts, letters have at least this share of the greatest height.
-const INNER: f64 = 0.75;
+/// A line ends where its band is lower than one of these shares of the height aimed at, and is nowhere higher than this one.
+const ENDS: [f64; 3] = [0.59, 0.75, 0.9];
+const HIGHEST: f64 = 1.65;
 /// How far boundaries follow the bend of the outline.
 const BEND: f64 = 0.5;
 /// Letters are widened by no more than this. Further widening is space between them, by no more than this.
-const WIDEST: f64 = 1.8;
-const SPACED: f64 = 1.35;
-/// Lines are widened by no more than this in relation to the mean.
-const WIDER: f64 = 1.6;
-/// Letters are narrowed to no less than this, and by no more than this in relation to the mean.
+const WIDEST: f64 = 2.0;
+const SPACED: f64 = 1.45;
+/// Letters are narrowed to no less than this.
 const NARROWEST: f64 = 0.3;
-const NARROWER: f64 = 2.0;
+/// Costs, as shares of the shape's area: of letters of unlike heights and widths, of slopes, and of a line away from the middle. That of a
+/// slope is small below the second value, and large above it.
+const UNLIKE: f64 = 0.3;
+const STEEP: f64 = 0.3;
+const STEEPEST: f64 = 1.5;
+const BESIDE: f64 = 10.0;
+/// A line parts at a gap of no more than these shares of its width: within a word, and between words.
+const APART: [f64; 2] = [0.15, 0.4];
+/// What a word that parts costs, as a share of the shape's area.
+const DIVIDED: f64 = 0.15;
+/// Gaps of more than this share of the height are word spaces.
+const WORD: f64 = 0.2;
+/// Letters fill at least this share of a shape.
+const LEAST: f64 = 0.48;
 
 impl<'a> Room<'a> {
     fn new(region: &'a Region, lines: usize) -> Option<Self> {
@@ -286,9 +267,8 @@ impl<'a> Room<'a> {
         let common = if a * b > 0.0 { a.abs().min(b.abs()) * a.signum() } else { 0.0 };
         trends.iter_mut().for_each(|t| t.bend = common + BEND * (t.bend - common));
         let area = total * step;
-        let share = 1.0 / lines as f64;
-        let gap = GAP * share * area / bounds.width();
-        Some(Self { region, bounds, columns, area, share, gap, middle, spread, trends })
+        let mean = area / bounds.width() / lines as f64;
+        Some(Self { region, bounds, columns, step, area, mean, gap: GAP * mean, middle, spread, trends })
     }
 
     /// The height at `x` of the boundary with this mean height.
@@ -310,89 +290,81 @@ impl<'a> Room<'a> {
 
     fn cuts(&self, levels: [Option<f64>; 2]) -> Cuts {
         let all = self.columns.iter().map(|(x, spans)| self.cut(*x, spans, levels)).collect();
-        Cuts::new(all, self.bounds.width() / f64::from(COLUMNS))
+        Cuts::new(all, self.step)
     }
 
-    /// Puts letters into a run of columns, and says what they are worth there.
-    fn put(&self, cuts: &Cuts, run: &Run, (line, letters): (&Line, Range<usize>), aim: &Aim) -> Option<(f64, Part)> {
-        let step = self.bounds.width() / f64::from(COLUMNS);
-        let shape = line.part(&letters).width() / line.rect.height();
-        let most = widest(letters.len()).min(WIDER * aim.width.exp());
-        let widest = |r: &Range<usize>| most * shape * cuts.mean(r, 0);
-        let most = widest(&run.columns);
-        let run = if most < run.columns.len() as f64 * step {
-            // Where it is high, and near the middle.
-            let (r, n) = (&run.columns, (most / step).round().max(1.0));
-            let off = |from: usize| (from as f64 + 0.5 * n - cuts.middle).abs() / r.len() as f64;
-            let columns = |from: usize| from..from + n as usize;
-            let value = |from: usize| cuts.mean(&columns(from), 0) * (1.0 - ASIDE * off(from));
-            let best = (r.start..=r.end - n as usize).max_by(|a, b| value(*a).total_cmp(&value(*b)))?;
-            &cuts.run(columns(best))
-        } else {
-            run
+    /// Puts letters into a run of columns, and says what they are worth there. `anchor` is the place, from 0 at their left end to 1 at
+    /// their right one, that belongs on an axis, and the column of that. `share` is the letters' share of all.
+    fn put(
+        &self,
+        cuts: &Cuts,
+        (run, anchor): (&Range<usize>, [f64; 2]),
+        (line, letters, share): (&Line, Range<usize>, f64),
+        aim: &Aim,
+    ) -> Option<(f64, Part)> {
+        let natural = line.part(&letters).width() / line.rect.height();
+        let width = |ratio: f64| (ratio * natural * cuts.means(run)[0] / self.step).round().max(1.0) as usize;
+        let most = run.len().min(width(widest(letters.len())));
+        let worth = |r: Range<usize>| {
+            let [h, log, steep] = cuts.means(&r);
+            let width = r.len() as f64 * self.step;
+            let ratio = width / h / natural;
+            let unlike = (log - aim.height).powi(2) + (ratio.ln() - aim.ratio).powi(2);
+            let beside = (r.start as f64 + anchor[0] * r.len() as f64 - anchor[1]) / f64::from(COLUMNS);
+            let cost = UNLIKE * unlike + STEEP * steep + BESIDE * beside.powi(2);
+            let xs = [r.start, r.end - 1].map(|i| self.columns[i].0);
+            let part = Part { letters: letters.clone(), xs, ratio, area: width * h };
+            (ratio >= NARROWEST).then_some((part.area / self.area - share * cost, part))
         };
-        let (r, tall) = (&run.columns, cuts.mean(&run.columns, 0));
-        let width = widest(r).min(r.len() as f64 * step);
-        let ratio = width / tall / shape;
-        if ratio < NARROWEST.max(aim.width.exp() / NARROWER) || run.most > aim.tallest {
-            return None;
-        }
-        let middle = self.columns[r.start].0 + 0.5 * (r.len() - 1) as f64 * step;
-        let (uneven, low) = ((ratio.ln() - aim.width).powi(2), (1.0 - tall / aim.tallest).powi(2));
-        let worth = (width * cuts.mean(r, 1) - DIP * step * run.dips) / self.area;
-        let share = letters.len() as f64 / line.letters.len() as f64;
-        let worth = worth - share * (EVEN * uneven + LOW * low) * self.share;
-        Some((worth, Part { letters, xs: [middle - 0.5 * width, middle + 0.5 * width], ratio }))
+        let widths = [1.0, 1.5].map(|k| width(k * aim.ratio.exp())).into_iter().filter(|n| *n < most).chain([most]);
+        let places = widths.flat_map(|n| {
+            let step = ((run.len() - n) / PLACES).max(1);
+            (run.start..=run.end - n).step_by(step).map(move |from| from..from + n)
+        });
+        places.filter_map(worth).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The best way to put a line into runs of a band: as a whole, or parted.
-    fn band(&self, line: &Line, (cuts, runs): (&Cuts, &Runs), aim: &Aim) -> Option<(f64, Vec<Part>)> {
+    /// The best way to put a line into a band: as a whole, or parted at a notch. `share` is its share of all lines.
+    fn band(&self, line: &Line, share: f64, (cuts, (runs, pairs)): &Places<'_>, aim: &Aim) -> Option<(f64, Vec<Part>)> {
         let n = line.letters.len();
-        let middle = self.columns[0].0 + cuts.middle * self.bounds.width() / f64::from(COLUMNS);
-        let aside = |a: f64, b: f64| BESIDE * ((0.5 * (a + b) - middle) / self.bounds.width()).powi(2);
-        let whole = runs.whole.iter().filter_map(|run| {
-            let (worth, part) = self.put(cuts, run, (line, 0..n), aim)?;
-            Some((worth - aside(part.xs[0], part.xs[1]), vec![part]))
+        let middle = (self.middle - self.bounds.x0) / self.step;
+        let whole = runs.iter().filter_map(|run| {
+            let (worth, part) = self.put(cuts, (run, [0.5, middle]), (line, 0..n, share), aim)?;
+            Some((worth, vec![part]))
         });
-        let parted = runs.pairs.iter().flat_map(|pair| line.divisions(pair).map(move |k| (pair, k)));
-        let parted = parted.filter_map(|(pair, k)| {
-            let (worth, a) = self.put(cuts, &pair[0], (line, 0..k), aim)?;
-            let (more, b) = self.put(cuts, &pair[1], (line, k..n), aim)?;
-            let scale = |part: &Part| (part.xs[1] - part.xs[0]) / line.part(&part.letters).width();
-            let ([x0, x1], [x2, x3]) = (a.xs, b.xs);
-            let (apart, most) = ((x2 - x1) / (x3 - x0), if line.is_space(k) { 0.4 } else { 0.22 });
-            let cost = APART * apart / most + UNLIKE * (scale(&a) / scale(&b)).ln().powi(2) + aside(x0, x3);
-            (apart <= most).then(|| (worth + more - cost, vec![a, b]))
+        let parted = pairs.iter().flat_map(|pair| line.divisions(pair).map(move |k| (pair, k)));
+        let parted = parted.filter_map(|([left, right], k)| {
+            let notch = 0.5 * (left.end + right.start) as f64;
+            let share = |letters: usize| share * letters as f64 / n as f64;
+            let (worth, a) = self.put(cuts, (left, [1.0, notch]), (line, 0..k, share(k)), aim)?;
+            let (more, b) = self.put(cuts, (right, [0.0, notch]), (line, k..n, share(n - k)), aim)?;
+            let apart = (b.xs[0] - a.xs[1]) / (b.xs[1] - a.xs[0]);
+            let cost = if line.is_space(k) { 0.0 } else { DIVIDED * share(n) };
+            (apart <= APART[usize::from(line.is_space(k))]).then(|| (worth + more - cost, vec![a, b]))
         });
         whole.chain(parted).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The best bands for all lines, or the number of the first line without room.
-    fn plan(&self, lines: &[Line]) -> Result<Vec<Band>, usize> {
-        let mean = self.share * self.area / self.bounds.width();
+    /// The best bands for all lines.
+    fn plan(&self, lines: &[Line]) -> Result<Vec<Band>, Error> {
         let at =
             |k: usize| (k > 0 && k < LEVELS).then(|| self.bounds.y0 + self.bounds.height() * k as f64 / LEVELS as f64);
         let pairs = (0..LEVELS).flat_map(|a| (a + 1..=LEVELS).map(move |b| [a, b]));
         let all: Vec<([usize; 2], Cuts)> = pairs.map(|p| (p, self.cuts(p.map(at)))).collect();
-        let mut best: Option<(f64, Vec<Band>)> = None;
+        let share = 1.0 / lines.len() as f64;
+        let mut best: Option<Plan> = None;
         let mut reached = 0;
-        for tallest in TALLEST.map(|k| k * mean) {
-            let high = all.iter().filter(|c| (LEAST * tallest..=tallest).contains(&c.1.most));
-            let runs = |cuts: &Cuts| {
-                let whole: Vec<Vec<Run>> = ENDS.iter().map(|e| cuts.runs(*e, tallest)).collect();
-                let pairs = whole.iter().flat_map(|r| r.windows(2)).map(|p| cuts.inner(p)).collect();
-                Runs { whole: whole.concat(), pairs }
-            };
-            let high: Vec<_> = high.map(|(p, cuts)| (p, (cuts, runs(cuts)))).collect();
-            for width in WIDTHS.map(f64::ln) {
-                let aim = Aim { tallest, width };
+        for height in HEIGHTS.map(|k| k * self.mean) {
+            let places: Vec<_> = all.iter().map(|(p, cuts)| (*p, (cuts, cuts.places(height)))).collect();
+            for ratio in RATIOS {
+                let aim = Aim { height: height.ln(), ratio: ratio.ln() };
                 // For every level, the best bands of the lines so far above it.
-                let mut above = vec![Some((-NATURAL * width * width, Vec::new())); LEVELS + 1];
+                let mut above: Vec<Option<Plan>> = vec![Some((0.0, Vec::new())); LEVELS + 1];
                 for (i, line) in lines.iter().enumerate() {
-                    let mut next: Vec<Option<(f64, Vec<Band>)>> = vec![None; LEVELS + 1];
-                    for ([a, b], (cuts, runs)) in &high {
+                    let mut next: Vec<Option<Plan>> = vec![None; LEVELS + 1];
+                    for ([a, b], places) in &places {
                         let Some((score, bands)) = &above[*a] else { continue };
-                        let Some((more, parts)) = self.band(line, (cuts, runs), &aim) else { continue };
+                        let Some((more, parts)) = self.band(line, share, places, &aim) else { continue };
                         if next[*b].as_ref().is_none_or(|o| o.0 < score + more) {
                             let band = Band { levels: [at(*a), at(*b)], parts };
                             next[*b] = Some((score + more, [&bands[..], &[band]].concat()));
@@ -403,21 +375,24 @@ impl<'a> Room<'a> {
                         reached = reached.max(i + 1);
                     }
                 }
-                for found in above.into_iter().flatten() {
-                    if best.as_ref().is_none_or(|b| b.0 < found.0) {
-                        best = Some(found);
-                    }
-                }
+                best = above.into_iter().flatten().chain(best).reduce(|a, b| if b.0 > a.0 { b } else { a });
             }
         }
-        best.map(|b| b.1).ok_or(reached)
+        let bands = best.ok_or_else(|| lines[reached].refused(reached + 1))?.1;
+        let filled: f64 = bands.iter().flat_map(|b| &b.parts).map(|p| p.area).sum();
+        if filled < LEAST * self.area {
+            let height = |b: &Band| b.parts.iter().map(|p| p.area).sum::<f64>() / b.width();
+            let lowest = (0..bands.len()).min_by(|a, b| height(&bands[*a]).total_cmp(&height(&bands[*b]))).unwrap_or(0);
+            return Err(lines[lowest].refused(lowest + 1));
+        }
+        Ok(bands)
     }
 
     /// The map of a part of a line, from a box of the artwork.
     fn map(&self, part: &Part, levels: [Option<f64>; 2], from: Rect) -> Option<Arc<dyn Map>> {
         const SAMPLES: u32 = 240;
-        /// The share of the least height that smooth curves may take.
-        const LIFTED: f64 = 0.2;
+        /// The share of the least height that smooth curves leave.
+        const KEPT: f64 = 0.93;
         let cells = (3 * part.letters.len() / 2).clamp(4, 16);
         let sampled = |[x0, x1]: [f64; 2]| -> Vec<(f64, Cut)> {
             let xs = (0..=SAMPLES).map(|i| x0 + (x1 - x0) * f64::from(i) / f64::from(SAMPLES));
@@ -433,14 +408,13 @@ impl<'a> Room<'a> {
         let lowest = cuts.iter().map(height).fold(f64::INFINITY, f64::min);
         let side = |k: usize, sign: f64, cells: usize| {
             let ys: Vec<f64> = cuts.iter().map(|c| sign * c.map_or(0.0, |c| c[k])).collect();
-            let (points, lift) = above(&ys, cells);
-            (points.into_iter().map(|y| sign * y).collect::<Vec<f64>>(), lift)
+            above(&ys, cells).map(|v| v.into_iter().map(|y| sign * y).collect::<Vec<f64>>())
         };
         // Steep outlines need more cells.
-        let (cells, top, bottom) = [1, 2, 4].into_iter().find_map(|k| {
-            let ((top, a), (bottom, b)) = (side(0, 1.0, k * cells), side(1, -1.0, k * cells));
-            let is_close = a + b < LIFTED * lowest && top.iter().zip(&bottom).all(|(t, b)| t < b);
-            is_close.then_some((k * cells, top, bottom))
+        let (cells, top, bottom) = [1, 2, 4, 8].into_iter().find_map(|k| {
+            let ([top, y0], [bottom, y1]) = (side(0, 1.0, k * cells), side(1, -1.0, k * cells));
+            let is_high = y0.iter().zip(&y1).all(|(a, b)| b - a >= KEPT * lowest);
+            is_high.then_some((k * cells, top, bottom))
         })?;
         let mut lattice = Lattice::regular(from, [3, 1], [cells, 1]);
         let places = bspline::regular(3, cells);
@@ -453,55 +427,39 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Tops and bottoms of letters with this slope are worth nothing.
-const STEEP: f64 = 1.7;
-/// How often the area of a notch counts that letters follow.
-const DIP: f64 = 7.0;
-/// Costs, as shares of the shape's area: of letters that are widened unevenly, or unlike those of the artwork; of a line away from the
-/// middle of its band; of parts whose letters are unlike.
-const EVEN: f64 = 0.35;
-const NATURAL: f64 = 0.03;
-const BESIDE: f64 = 2.0;
-const UNLIKE: f64 = 0.4;
-/// Of letters lower than the tallest, and of a gap in a line.
-const LOW: f64 = 0.6;
-const APART: f64 = 0.07;
-/// What a line loses that is as far from the middle of its band as it may be.
-const ASIDE: f64 = 0.3;
-/// Gaps of more than this share of the height are word spaces.
-const WORD: f64 = 0.2;
-
 /// The most that letters are widened, with the space between them.
 fn widest(letters: usize) -> f64 {
     if letters > 1 { WIDEST * SPACED } else { WIDEST }
 }
 
-/// The control points of a smooth spline above samples at equal distances, close to them, and by how much all had to be lifted.
-fn above(ys: &[f64], cells: usize) -> (Vec<f64>, f64) {
+/// The control points of a smooth spline above samples at equal distances, close to them, and its values there.
+fn above(ys: &[f64], cells: usize) -> [Vec<f64>; 2] {
     const ROUNDS: usize = 6;
     let last = (ys.len() - 1) as f64;
     let places = bspline::regular(3, cells);
     let pieces = bspline::extraction(3, cells);
     let bases: Vec<(usize, Vec<f64>)> = (0..ys.len()).map(|i| bspline::basis_on(&pieces, i as f64 / last)).collect();
-    let near = |s: f64| {
+    let most = |v: &[f64], s: f64| {
         let reach = 0.5 / cells as f64;
         let (a, b) = ((s - reach).max(0.0) * last, (s + reach).min(1.0) * last);
-        a.ceil() as usize..=b.floor() as usize
+        v[a.ceil() as usize..=b.floor() as usize].iter().copied().fold(f64::NEG_INFINITY, f64::max)
     };
-    let most = |v: &[f64], s: f64| v[near(s)].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let values = |points: &[f64]| -> Vec<f64> {
+        bases.iter().map(|(first, b)| b.iter().zip(&points[*first..]).map(|(b, p)| b * p).sum()).collect()
+    };
     let mut points: Vec<f64> = places.iter().map(|s| most(ys, *s)).collect();
-    let short = |points: &[f64]| -> Vec<f64> {
-        let value = |(first, b): &(usize, Vec<f64>)| b.iter().zip(&points[*first..]).map(|(b, p)| b * p).sum::<f64>();
-        bases.iter().zip(ys).map(|(b, y)| y - value(b)).collect()
-    };
-    for _ in 0..ROUNDS {
-        let short = short(&points);
-        for (p, s) in points.iter_mut().zip(&places) {
-            *p += most(&short, *s);
+    let mut short: Vec<f64> = Vec::new();
+    for round in 0..=ROUNDS {
+        short = values(&points).iter().zip(ys).map(|(v, y)| y - v).collect();
+        if round < ROUNDS {
+            points.iter_mut().zip(&places).for_each(|(p, s)| *p += most(&short, *s));
         }
     }
-    let lift = short(&points).into_iter().fold(0.0, f64::max);
-    (points.iter().map(|p| p + lift).collect(), lift)
+    // A spline whose control points are all raised is raised as much.
+    let lift = short.into_iter().fold(0.0, f64::max);
+    points.iter_mut().for_each(|p| *p += lift);
+    let values = values(&points);
+    [points, values]
 }
 
 impl Line {
@@ -523,19 +481,19 @@ impl Line {
     }
 
     /// Letters before which the line may part, to fill two runs alike.
-    fn divisions(&self, pair: &[Run; 2]) -> impl Iterator<Item = usize> {
-        let [a, b] = [0, 1].map(|k| pair[k].columns.len() as f64);
+    fn divisions(&self, pair: &[Range<usize>; 2]) -> impl Iterator<Item = usize> {
+        let [a, b] = [0, 1].map(|k| pair[k].len() as f64);
         let x = self.rect.x0 + self.rect.width() * a / (a + b);
         let k = self.letters.partition_point(|l| l.1.center().x < x);
         let word = (1..self.letters.len()).filter(|k| self.is_space(*k)).min_by_key(|w| w.abs_diff(k));
-        let last = self.letters.len();
-        (k.max(1)..(k + 2).min(last)).chain(k.checked_sub(1)).chain(word).filter(move |k| (1..last).contains(k))
+        let last = self.letters.len().max(1);
+        (k.saturating_sub(1)..k + 2).filter(move |k| (2..last - 1).contains(k)).chain(word)
     }
 
     fn refused(&self, number: usize) -> Error {
         let problem = format!(
-            "has no room in the shape: line {number} would be too low, or too narrow; take fewer or shorter lines, another shape, or one \
-map for all lines"
+            "has no room in the shape: line {number} would be too low or too narrow; take fewer lines, words of other lengths, a shape with \
+another ratio of width to height, or `together`, one map for all lines"
         );
         Error::advised("lines", self.name.clone(), problem, "")
     }
@@ -593,18 +551,19 @@ impl Strips {
         self.places.iter().map(|p| vec![*p]).collect()
     }
 
-    /// For each line, the box that must be laid onto a block, as wide and high as given, to put the line into a row of its own.
-    pub(super) fn frames(&mut self, lines: &[Line], [width, height]: [f64; 2]) -> Vec<Rect> {
+    /// For each line, the box that must be laid onto a block, as wide and high as given, to put the line into a row of its own. `None` if
+    /// they would fill too little of it.
+    pub(super) fn frames(&mut self, lines: &[Line], [width, height]: [f64; 2]) -> Option<Vec<Rect>> {
         /// Rows are no lower than this share of the highest.
-        const LOWEST: f64 = 0.4;
+        const LOWEST: f64 = 0.5;
         let gap = GAP * height / lines.len() as f64;
         let room = height - gap * (lines.len() - 1) as f64;
-        // As high as the letters would be at an even width.
+        // Between even heights, and those that letters of an even width have.
         let natural: Vec<f64> = lines.iter().map(|l| l.rect.height() / l.rect.width()).collect();
         let most = natural.iter().copied().fold(0.0, f64::max);
-        let rows: Vec<f64> = natural.iter().map(|h| h.max(LOWEST * most)).collect();
+        let rows: Vec<f64> = natural.iter().map(|h| (h / most).sqrt().max(LOWEST)).collect();
         let sum: f64 = rows.iter().sum();
-        let mut top = 0.0;
+        let (mut top, mut filled) = (0.0, 0.0);
         let mut frames = Vec::new();
         for (i, (line, row)) in lines.iter().zip(rows).enumerate() {
             let row = row / sum * room;
@@ -618,8 +577,9 @@ impl Strips {
             let y0 = from - scale * top;
             frames.push(Rect::new(r.x0, y0, r.x1, y0 + scale * height));
             top += row + gap;
+            filled += wide * row;
         }
-        frames
+        (filled >= LEAST * width * height).then_some(frames)
     }
 }
 
@@ -631,7 +591,7 @@ pub(super) fn fitted(
 ) -> Result<(Arc<dyn Map>, Vec<String>), Error> {
     let refused = |k: usize| lines[k].refused(k + 1);
     let room = Room::new(region, lines.len()).ok_or_else(|| refused(0))?;
-    let bands = room.plan(lines).map_err(refused)?;
+    let bands = room.plan(lines)?;
     let (mut rows, mut notes) = (Vec::new(), Vec::new());
     for (i, (line, band)) in lines.iter().zip(&bands).enumerate() {
         let [from, to] = strips.ys[i];

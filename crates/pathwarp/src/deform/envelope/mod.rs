@@ -493,7 +493,7 @@ impl Choice<'_> {
             let (ring, frame) = between_notches(ring.clone(), shape, frame);
             Choice { frame, ..*self }.patched(&ring, Keep::Nothing)
         };
-        let rows = strips.frames(self.lines, size).into_iter().map(row).collect::<Result<Vec<Built>, _>>().ok()?;
+        let rows = strips.frames(self.lines, size)?.into_iter().map(row).collect::<Result<Vec<Built>, _>>().ok()?;
         let tiles = rows.iter().map(|b| TileRow { cuts: Vec::new(), maps: vec![Arc::clone(&b.map)] }).collect();
         let map = Tiled::over(self.frame, strips.cuts.clone(), tiles)?;
         Some(placed(Built { map, ..rows.into_iter().next()? }, &strips))
