@@ -1,5 +1,5 @@
 // Every kind of handle is dragged, and the picture follows.
-import { becomes, check, choose, curves, drag, edit, folder, keys, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { becomes, check, choose, curves, drag, edit, folder, keys, middle, open, paths, quiet, sample, stepOf } from "./harness.mjs";
 
 async function started(name = "logo.svg") {
   const dir = folder({ [name]: sample(name) });
@@ -118,7 +118,7 @@ export async function every_shape_opens() {
     check(names.length > 15, `only ${names.length} shapes`);
     for (const name of names) {
       await page.locator(".card[title]", { hasText: new RegExp(`^${name.replace(/[()]/g, "\\$&")}$`) }).click();
-      await page.waitForFunction((n) => document.querySelector("#steps").textContent.includes(n), name.replace(" (effect)", ""));
+      await page.waitForFunction((n) => document.querySelector("#steps").textContent.includes(n), stepOf(name.replace(" (effect)", "")));
       check(!(await page.isVisible("#problem")), `${name}: ${await page.textContent("#problem")}`);
     }
     check(page.problems.length === 0, page.problems.join("; "));

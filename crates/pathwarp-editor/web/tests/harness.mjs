@@ -208,6 +208,9 @@ export async function choose(page, name, section = "") {
 export const becomes = (page, picture, message) => page.waitForFunction((wanted) => Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) path"), (p) => p.getAttribute("d")).join("|") === wanted, picture)
   .catch((e) => { throw new Error(`${message}: ${e.message}`); });
 
+/** What the step of a card is called: a shape by name is a closed shape that any path may be. */
+export const stepOf = (card) => (card.endsWith(" shape") ? "Closed shape" : card);
+
 export function check(condition, message) {
   if (!condition) throw new Error(message);
 }

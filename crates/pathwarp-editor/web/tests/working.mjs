@@ -1,7 +1,7 @@
 // An hour of real work: corners of cages, undo, fields. Real mouse moves and real keys.
 import { execFileSync } from "node:child_process";
 import { readFileSync, rmSync } from "node:fs";
-import { becomes, changes, check, choose, drag, edit, folder, keys, middle, open, paths, program, quiet, sample, withoutPause } from "./harness.mjs";
+import { becomes, changes, check, choose, drag, edit, folder, keys, middle, open, paths, program, quiet, sample, stepOf, withoutPause } from "./harness.mjs";
 
 async function within(shape, test, options = {}) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
@@ -463,7 +463,7 @@ export const words_find_shapes = () => within(null, async (page) => {
   const [first] = await found("bottle");
   await page.keyboard.press("Enter");
   await quiet(page);
-  check((await steps(page)).join() === first, `Enter took ${await steps(page)}, not ${first}`);
+  check((await steps(page)).join() === stepOf(first), `Enter took ${await steps(page)}, not ${first}`);
 });
 
 /** A preset of the same name is replaced only when that is wanted. */
