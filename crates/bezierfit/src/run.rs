@@ -478,6 +478,15 @@ impl Stretch {
         Trial { error: *error, cubic: fits.then(|| self.with([fit.z.a, fit.z.b], *mark, false)) }
     }
 
+    /// Returns `true` if a handle of a curve that turns one way reaches beyond the crossing of both.
+    fn crosses(&self, a: f64, b: f64) -> bool {
+        let [from, to] = &self.ends;
+        let (u, v, q) = (from.away, to.into, to.p - from.p);
+        let turn = u.cross(v);
+        let [most_a, most_b] = [q.cross(v) / turn, u.cross(q) / turn];
+        most_a > 0.0 && most_b > 0.0 && (a > CROSSING * most_a || b > CROSSING * most_b)
+    }
+
     fn with(&self, [a, b]: [f64; 2], feet: Evenly, line: bool) -> RunCubic {
         let ends = [self.ends[0].p, self.ends[1].p];
         RunCubic { frame: self.frame, ends, a, b, line, samples: self.samples, shares: self.shares, feet }
@@ -521,6 +530,9 @@ impl Fitting for Stretch {
             let e0 = self.frame.signed_distances(&self.g, z.a, z.b, &fitted.s, &fitted.squares);
             let e1 = self.frame.signed_distances(&self.check, z.a, z.b, &s, &squares);
             error = highest_parabola(&interleaved(&e0, &e1, 0.0), error);
+        }
+        if self.evenly && self.crosses(z.a, z.b) {
+            error = larger(error, MISSED * self.tolerance);
         }
         Ok((error, interleaved(&fitted.s, &s, 1.0)))
     }
@@ -566,6 +578,11 @@ fn picked(v: &Evenly, set: &[usize; 8]) -> Lane {
     }
     out
 }
+
+/// A handle may be longer than up to the crossing by this factor: rounding.
+const CROSSING: f64 = 1.01;
+/// Error that is recorded for a cubic whose handles cross.
+const MISSED: f64 = 1.05;
 
 const FITTED_AT: [usize; 8] = [1, 3, 5, 7, 10, 12, 14, 16];
 const CHECKED_AT: [usize; 8] = [2, 4, 6, 8, 9, 11, 13, 15];
