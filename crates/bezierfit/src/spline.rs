@@ -69,13 +69,12 @@ struct Samples {
 }
 
 /// Consecutive spans with the points and tangents at their ends.
-#[derive(Debug, Clone)]
 struct Stretch {
     spans: Vec<Span>,
     ends: [BreakPoint; 2],
 }
 
-/// What covers a stretch.
+/// A line or a spline that covers a stretch.
 struct Covered {
     ends: [BreakPoint; 2],
     /// A line if there is none.
@@ -118,7 +117,7 @@ impl<S: Source> Run<'_, S> {
             let samples = self.samples(&[span], SPLINE_SAMPLES, &[from, to])?;
             let straight = samples.straight(STRAIGHT * self.tolerance).is_some();
             // A line has an expectation beyond all limits.
-            let expected = if straight { f64::INFINITY } else { samples.expected[samples.p.len() - 1] };
+            let expected = if straight { f64::INFINITY } else { samples.pieces() };
             match all.last_mut() {
                 Some((s, sum)) if *sum + expected <= 0.5 * MOST as f64 && s.spans.len() < MOST_CURVES => {
                     s.spans.push(span);
@@ -183,7 +182,7 @@ impl<S: Source> Run<'_, S> {
         Ok([Stretch { spans: first, ends: [ends[0], to] }, Stretch { spans: second, ends: [from, ends[1]] }])
     }
 
-    /// What covers a stretch with the fewest pieces, if [`MOST`] suffice, and how many were expected.
+    /// Covers a stretch with the fewest pieces, if [`MOST`] suffice. Returns the expected number, too.
     fn least(&self, stretch: &Stretch) -> Result<(Option<Covered>, f64), NotFinite> {
         let Stretch { spans, ends } = stretch;
         let sampled = |n: usize| {
@@ -195,7 +194,7 @@ impl<S: Source> Run<'_, S> {
         if let Some(error) = samples.straight(STRAIGHT * self.tolerance) {
             return Ok((covered(None, error), 1.0));
         }
-        let expected = samples.expected[samples.p.len() - 1];
+        let expected = samples.pieces();
         let mut n = ((0.5 * expected) as usize).clamp(1, MOST / 2);
         let (mut too_few, mut found) = (0, None);
         // Up by the error, which goes with the third to fourth power of the length, then down to the least that fits.
@@ -206,7 +205,7 @@ impl<S: Source> Run<'_, S> {
             match self.best(spans, n, &samples, ends)? {
                 Ok((spline, error, bound)) => {
                     found = Some((spline, error));
-                    // The bound of the error grows with the third to fourth power of the length, too.
+                    // One piece less raises the bound by the third to fourth power of the length; the square leaves room for luck.
                     if bound * (n as f64 / (n as f64 - 1.0)).powi(2) > self.tolerance {
                         break;
                     }
@@ -304,6 +303,11 @@ impl Samples {
             before = chord;
         }
         Self { p, each, length, expected }
+    }
+
+    /// The number of pieces that are expected of all.
+    fn pieces(&self) -> f64 {
+        self.expected[self.p.len() - 1]
     }
 
     /// The largest distance from the chord, if it is at most `limit` and the samples advance along it.

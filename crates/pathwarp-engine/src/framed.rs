@@ -30,14 +30,14 @@ pub fn framed(bytes: &[u8], limits: &Limits) -> Result<Option<Vec<u8>>, Failure>
     Ok(Some(format!("{}data:{media_type};base64,{shown}\"/></svg>", before([width, height])).into_bytes()))
 }
 
-/// What stands before the data of a picture of this size.
+/// The markup before the data of a picture of this size.
 fn before([width, height]: [u32; 2]) -> String {
     let size = format!("width=\"{width}\" height=\"{height}\"");
     let page = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size} viewBox=\"0 0 {width} {height}\">");
     page + &format!("<image id=\"picture\" {size} href=\"")
 }
 
-/// Whether a drawing is that of a picture alone, with a page of this size.
+/// Returns `true` if a drawing holds one picture alone, on a page of this size.
 pub fn is_framed(svg: &str, page: Size) -> bool {
     svg.starts_with(&before([page.width as u32, page.height as u32]))
 }

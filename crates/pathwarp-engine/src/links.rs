@@ -65,7 +65,7 @@ fn way(from: &Path, file: &Path) -> Option<String> {
     for part in from.components().skip(shared) {
         let Component::Normal(name) = part else { return None };
         for b in name.to_str()?.bytes() {
-            // What ends a link, or begins something else in one.
+            // Other characters may end a link, or begin its query or fragment.
             if b.is_ascii_alphanumeric() || b"-_.~+@,=!$*".contains(&b) {
                 out.push(char::from(b));
             } else {

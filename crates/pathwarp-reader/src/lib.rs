@@ -39,4 +39,5 @@ pub mod xml;
 pub use guard::guarded;
 pub use range::LARGEST;
 pub use rewrite::{Change, Linked, Plain, ReadError, resolve};
+pub use value::percent_decoded;
 pub use words::{PaintProperty, Words};

@@ -142,7 +142,7 @@ pub(super) struct Letters {
     /// A control character to set the direction of the text (Unicode Standard Annex 9, section 2), since usvg always starts from
     /// left to right.
     pub(super) direction: Option<char>,
-    /// Whether to collapse white space, which usvg does otherwise.
+    /// White space is collapsed before usvg reads the text, since usvg would lose spaces.
     pub(super) collapses: bool,
 }
 
@@ -306,7 +306,7 @@ fn control(rtl: bool, overrides: bool) -> Option<char> {
     }
 }
 
-/// Whether usvg leaves out the space before a word of a text, where a part begins with it.
+/// Returns `true` if usvg leaves out a space of this text, one that a part begins with.
 fn loses_spaces(text: Node<'_, '_>) -> bool {
     let keeps = |n: Node<'_, '_>| {
         attribute(n, "xml:space").is_some() || n.attribute("style").is_some_and(|s| s.contains("white-space"))

@@ -306,19 +306,21 @@ pub(super) fn reference(value: &str) -> Option<Reference<'_>> {
     Some(Reference { id, rest: value.get(input.position().byte_index()..)? })
 }
 
-/// Decodes the percent escapes of a URL's fragment.
-pub(super) fn percent_decoded(fragment: &str) -> Cow<'_, str> {
-    if !fragment.contains('%') {
-        return Cow::Borrowed(fragment);
+/// Decodes the percent escapes in a part of a URL (RFC 3986, 2.1). A part whose bytes are not UTF-8 then stays as it is.
+#[must_use]
+pub fn percent_decoded(part: &str) -> Cow<'_, str> {
+    if !part.contains('%') {
+        return Cow::Borrowed(part);
     }
-    let bytes = fragment.as_bytes();
+    let bytes = part.as_bytes();
     let (mut out, mut at) = (Vec::with_capacity(bytes.len()), 0);
     while let Some(&b) = bytes.get(at) {
-        let code = fragment.get(at + 1..at + 3).filter(|_| b == b'%').and_then(|c| u8::from_str_radix(c, 16).ok());
+        let digits = part.get(at + 1..at + 3).filter(|d| b == b'%' && d.bytes().all(|d| d.is_ascii_hexdigit()));
+        let code = digits.and_then(|d| u8::from_str_radix(d, 16).ok());
         out.push(code.unwrap_or(b));
         at += if code.is_some() { 3 } else { 1 };
     }
-    String::from_utf8(out).map_or(Cow::Borrowed(fragment), Cow::Owned)
+    String::from_utf8(out).map_or(Cow::Borrowed(part), Cow::Owned)
 }
 
 /// Replaces characters of an id that would end references by their codes.

@@ -37,8 +37,8 @@ fn resized(doc: &Document, options: &CommonOptions) -> String {
     doc.resized(scale.by, name, unit.px().unwrap_or(1.0))
 }
 
-/// The drawing `svg` in a format, with the links that it has where it goes. `read` says how to read it, `tolerance` (user units) how close the lines of a DXF follow
-/// curves; by default it is that of the options.
+/// The drawing `svg` in a format, with links that hold at its destination. `read` says how to read it, `tolerance` (user units) how close
+/// the lines of a DXF follow curves; by default it is that of the options.
 pub fn drawing(
     svg: String,
     (format, destination): (Format, &Destination),

@@ -83,7 +83,7 @@ fn is_bundled(face: &FaceInfo) -> bool {
 type Letters = Vec<RangeInclusive<u32>>;
 
 fn has_letter(face: ID, letter: char, db: &Database) -> bool {
-    // What joins or varies other letters needs no glyph.
+    // Joiners, direction marks and variation selectors need no glyph.
     if matches!(letter, '\u{200c}'..='\u{200f}' | '\u{fe00}'..='\u{fe0f}') {
         return true;
     }

@@ -4,7 +4,7 @@ use super::images::{self, ANY, SVG, embedded};
 use super::read::{self, GZIP, ReadOptions};
 use pathwarp::Error;
 use pathwarp::budget::Limit;
-use pathwarp_reader::xml;
+use pathwarp_reader::{percent_decoded, xml};
 use std::collections::BTreeMap;
 use std::fs::{File, Metadata};
 use std::io::Read as _;
@@ -51,7 +51,7 @@ fn found(base: &Path, link: &Path, external: bool) -> Place {
     }
 }
 
-/// Whether a relative link passes through a symbolic link.
+/// Returns `true` if a relative link passes through a symbolic link.
 fn is_through_symlink(base: &Path, link: &Path) -> bool {
     let mut places = link.components().scan(base.to_owned(), |at, c| {
         at.push(c);
@@ -60,7 +60,7 @@ fn is_through_symlink(base: &Path, link: &Path) -> bool {
     places.any(|m| m.is_ok_and(|m| m.is_symlink()))
 }
 
-/// Whether a relative link goes above the folder where it starts.
+/// Returns `true` if a relative link goes above the folder where it starts.
 fn leaves(link: &Path) -> bool {
     let mut depth = 0_i32;
     link.components().any(|c| {
@@ -79,19 +79,7 @@ fn file_of(link: &str) -> String {
     let path = link.split(['?', '#']).next().unwrap_or_default();
     let is_file = path.get(..7).is_some_and(|scheme| scheme.eq_ignore_ascii_case("file://"));
     let path = if is_file { path[7..].strip_prefix("localhost").unwrap_or(&path[7..]) } else { path };
-    let mut parts = path.split('%');
-    let mut out = parts.next().unwrap_or_default().as_bytes().to_vec();
-    for part in parts {
-        let digits = part.get(..2).filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()));
-        match digits.and_then(|d| u8::from_str_radix(d, 16).ok()) {
-            Some(byte) => {
-                out.push(byte);
-                out.extend_from_slice(&part.as_bytes()[2..]);
-            }
-            None => out.extend([b"%", part.as_bytes()].concat()),
-        }
-    }
-    String::from_utf8(out).unwrap_or_else(|_| path.to_owned())
+    percent_decoded(path).into_owned()
 }
 
 /// Reads a linked image. A link may name anything in the file system, so only plain files up to a limit are read.
@@ -107,7 +95,7 @@ pub(super) fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
 /// How a drawing's links to files are rewritten for another place.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Relinking {
-    /// What relative links begin with from now on, such as `../art/`.
+    /// The beginning that relative links get, such as `../art/`.
     pub way: String,
     /// Put pictures into the drawing, as far as they may be read and can be.
     pub embed: bool,

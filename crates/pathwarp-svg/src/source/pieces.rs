@@ -4,6 +4,7 @@
 //! glyphs. All letters of one direction are shaped as those of the script of the first one. So each text that needs several fonts or
 //! scripts is written anew: every piece is a `tspan` at its own place, with a name for its font that [`Chooser`] knows.
 
+use super::elements::{SVG, tag_end};
 use super::faces::Look;
 use super::fonts::{Chooser, PIECE, PieceFonts};
 use super::shaping::{ShapingStyle, TextFont, shaped};
@@ -66,7 +67,7 @@ struct Piece {
 /// Divides the texts of a drawing that usvg has resolved.
 pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) -> Divided {
     let mut out = Divided { text: None, fonts: Vec::new(), db: tree.fontdb().clone(), missing: BTreeSet::new() };
-    let texts = xml.descendants().filter(|n| n.has_tag_name((super::elements::SVG, "text")));
+    let texts = xml.descendants().filter(|n| n.has_tag_name((SVG, "text")));
     let by_id: HashMap<&str, Node<'_, '_>> = texts.filter_map(|n| Some((n.attribute("id")?, n))).collect();
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
     let mut named: HashMap<(usvg::Font, String), Vec<TextFont>> = HashMap::new();
@@ -128,9 +129,7 @@ fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
 pub(super) fn with_ids(xml: &Document<'_>) -> Option<String> {
     let source = xml.input_text();
     let (mut out, mut at) = (String::new(), 0);
-    let lacks_id = |n: &Node<'_, '_>| {
-        n.has_tag_name((super::elements::SVG, "text")) && n.attribute("id").is_none_or(str::is_empty)
-    };
+    let lacks_id = |n: &Node<'_, '_>| n.has_tag_name((SVG, "text")) && n.attribute("id").is_none_or(str::is_empty);
     for (i, node) in xml.descendants().filter(lacks_id).enumerate() {
         let start = node.range().start;
         let name = source[start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/')?;
@@ -447,14 +446,14 @@ fn capitals(text: &str, range: &Range<usize>) -> (String, Vec<usize>) {
     (out, origins)
 }
 
-/// Whether two spans are shaped together.
+/// Returns `true` if two spans are shaped together.
 fn sets_alike(a: &TextSpan, b: &TextSpan) -> bool {
     let of = |s: &TextSpan| (s.font_size(), s.small_caps(), s.apply_kerning(), s.font_optical_sizing());
     let spacing = |s: &TextSpan| [Some(s.letter_spacing()), Some(s.word_spacing()), s.text_length()];
     of(a) == of(b) && spacing(a) == spacing(b) && a.font() == b.font()
 }
 
-/// Whether usvg would shape the parts of a chunk otherwise.
+/// Returns `true` if usvg would shape a chunk unlike its parts.
 fn is_divided(chunk: &TextChunk, parts: &[Part]) -> bool {
     let spaced = |p: &Part| hangs(p.run.writing) && chunk.spans()[p.span].letter_spacing() != 0.0;
     let mixed = |a: &Part, b: &Part| {
@@ -494,7 +493,7 @@ fn space(chunk: &TextChunk, letters: &mut [Letter]) {
     }
 }
 
-/// Whether letters of a script may be set apart: not if they are joined, as in browsers.
+/// Returns `true` if letters of a script may be set apart: not if they are joined, as in browsers.
 fn takes_spacing(script: Script) -> bool {
     use Script as S;
     let joined =
@@ -502,14 +501,14 @@ fn takes_spacing(script: Script) -> bool {
     !joined.contains(&script)
 }
 
-/// Whether usvg sets no letters of a script apart although browsers do.
+/// Returns `true` if usvg sets no letters of a script apart although browsers do.
 fn hangs(writing: Writing) -> bool {
     use Script as S;
     let hung = [S::Devanagari, S::Bengali, S::Gurmukhi, S::Modi, S::Sharada, S::Syloti_Nagri, S::Tirhuta, S::Ogham];
     matches!(writing, Writing::Script(script) if hung.contains(&script))
 }
 
-/// What must stand before a piece, for its letters to go in one direction by themselves.
+/// The direction mark before a piece whose letters would not go in one direction by themselves.
 fn before_letters(text: &str, rtl: bool) -> &'static str {
     let goes_left = |c: char| matches!(c, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{fefc}' | '\u{10800}'..='\u{10fff}' | '\u{1e800}'..='\u{1efff}');
     match rtl {
@@ -537,7 +536,10 @@ impl Writer<'_> {
     /// Writes an element with its places left out. Returns `None` if its characters are not those shown.
     fn element(&mut self, node: Node<'_, '_>) -> Option<String> {
         let whole = &self.source[node.range()];
-        let tag = &whole[..start_tag(whole)?];
+        let tag = &whole[..tag_end(whole, 0, whole.len())?];
+        if tag.ends_with("/>") {
+            return None;
+        }
         let mut out = String::new();
         let mut at = 0;
         for a in node.attributes().filter(|a| matches!(a.name(), "x" | "y" | "dx" | "dy" | "rotate" | "space")) {
@@ -547,7 +549,7 @@ impl Writer<'_> {
             at = range.end;
         }
         out += tag.get(at..)?.strip_suffix('>')?;
-        out += if node.has_tag_name((super::elements::SVG, "text")) { " xml:space=\"preserve\">" } else { ">" };
+        out += if node.has_tag_name((SVG, "text")) { " xml:space=\"preserve\">" } else { ">" };
         let name = whole[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()?;
         let end = format!("</{name}>");
         let is_on_path = node.tag_name().name() == "textPath" || !self.on_path.is_empty();
@@ -559,7 +561,7 @@ impl Writer<'_> {
                 out += &self.letters(text)?;
             } else if child.is_element() && matches!(child.tag_name().name(), "tspan" | "textPath" | "a") {
                 out += &self.element(child)?;
-            } else if child.has_tag_name((super::elements::SVG, "tref")) {
+            } else if child.has_tag_name((SVG, "tref")) {
                 return None;
             } else if child.is_element() {
                 out += &self.source[child.range()];
@@ -635,18 +637,4 @@ struct Stretch {
     letters: String,
     /// Rotation of each letter, in degrees.
     turns: Vec<f32>,
-}
-
-/// The length of the start tag at the beginning of an element.
-fn start_tag(element: &str) -> Option<usize> {
-    let mut quote = None;
-    for (i, b) in element.bytes().enumerate() {
-        match (quote, b) {
-            (None, b'"' | b'\'') => quote = Some(b),
-            (Some(q), b) if q == b => quote = None,
-            (None, b'>') => return element.as_bytes().get(i - 1).is_some_and(|b| *b != b'/').then_some(i + 1),
-            _ => {}
-        }
-    }
-    None
 }
