@@ -3,6 +3,7 @@
 use crate::catalogue::Catalogue;
 use pathwarp::deform::Info;
 use pathwarp::param::{Kind, Param};
+use pathwarp_solid::deform::Registry3;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
@@ -123,6 +124,14 @@ pub fn meant(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     }
 }
 
+/// Returns `true` if the help of a deformation mentions all of `word`.
+fn has_in_help(info: &Info, word: &str) -> bool {
+    let wanted = format!(" {} ", plain(word));
+    let params = info.params.iter().map(|p| p.help);
+    let mut texts = [info.about, info.source].into_iter().chain(params);
+    wanted.len() > 3 && texts.any(|text| format!(" {} ", plain(text)).contains(&wanted))
+}
+
 /// A name in small letters without accents, without signs and without words that say only what it is.
 pub fn plain(name: &str) -> String {
     const KINDS: [&str; 5] = ["tool", "effect", "filter", "panel", "lpe"];
@@ -154,6 +163,14 @@ pub fn help(catalogue: &dyn Catalogue, word: &str, title: impl Fn(&str) -> Optio
         let text = Some(entry.text).filter(|t| !t.is_empty()).map(|t| format!("\n  {t}")).unwrap_or_default();
         let line = entry.line().map(|line| format!("\n    {line}")).unwrap_or_default();
         let _ = write!(out, "{text}{line}\n\n");
+    }
+    if out.is_empty() {
+        for catalogue in [catalogue, &Registry3::builtin()] {
+            let solid = if catalogue.is_solid() { "solid " } else { "" };
+            for info in catalogue.infos().into_iter().filter(|info| has_in_help(info, word)) {
+                let _ = writeln!(out, "{word} is in the help of {solid}{} — {}", info.name, info.title);
+            }
+        }
     }
     (!out.is_empty()).then(|| {
         out + "`pathwarp help NAME` describes a command. The page docs/coming-from.md shows all words with pictures.\n"

@@ -100,8 +100,8 @@ impl Shaper {
     /// Builds the map.
     ///
     /// # Errors
-    /// [`Error::Geometry`] if the path does not close or has other than four sides, or if anchors coincide or three of them
-    /// lie on a line; [`Error::Missing`] without base and frame; [`Error::Usage`] for a bottom side out of range.
+    /// [`Error::Geometry`] if the path does not close or has other than four sides, if anchors coincide, or if three of four lie
+    /// on a line and a projective map needs them: those of base and target, and the shaper's if the target has four; [`Error::Missing`] without base and frame; [`Error::Usage`] for a bottom side out of range.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let mut explanation = Explanation::default();
@@ -109,26 +109,28 @@ impl Shaper {
             within("bottom", n as f64, 1.0, 4.0)?;
         }
         let base = self.base_anchors();
+        let target = self.target.as_ref().map(|t| anchors::of_path(t, self.target_as_drawn)).transpose()?;
+        // Only a projective map to the target forbids corners on a line.
+        let usable = if matches!(target, Some(Anchors::Four(_))) { anchors::general } else { anchors::distinct };
         let (net, path, name) = match &self.cage {
             Cage::Path(path) => {
                 let corners = match &base {
                     Ok(Anchors::Four(corners)) if self.target.is_none() => Some(corners),
                     _ => None,
                 };
-                let net = from_cage(path, self.bottom, self.reverse, corners, &mut explanation)?;
+                let net = self.net_from_sides(path, usable, corners, &mut explanation)?;
                 (net, sides_path(&net), &path.name)
             }
             Cage::Net(net, name) => (**net, rows_path(net), name),
         };
         let corners = [net[0][0], net[0][3], net[3][3], net[3][0]];
         if matches!(self.cage, Cage::Net(..)) {
-            anchors::general(name, &corners)?;
+            usable(name, &corners)?;
         }
         let notes = &mut explanation.notes;
         notes.push(format!("corners of {name}: {} (bottom left, bottom right, top right, top left)", list(&corners)));
 
         let base = base?;
-        let target = self.target.as_ref().map(|t| anchors::of_path(t, self.target_as_drawn)).transpose()?;
         notes.push(format!("base: {} ({})", list(base.points()), wrapper(&base)));
         let after = match &target {
             None => {
@@ -152,6 +154,42 @@ impl Shaper {
             built.overlay(Role::Target, t.outline().to_bez_path(0.0));
         }
         Ok(built)
+    }
+
+    /// Makes the net of a closed path with four sides. `base` are the four corners that it is laid onto, if there are four; `usable` checks the path's corners.
+    fn net_from_sides(
+        &self,
+        path: &NamedPath,
+        usable: fn(&str, &[Point]) -> Result<(), GeometryError>,
+        base: Option<&[Point; 4]>,
+        explanation: &mut Explanation,
+    ) -> Result<Net, Error> {
+        const EXPECTED: &str = "exactly four, in one closed path";
+        let sub = anchors::closed_subpath(path, EXPECTED, |lines| lines == 3)?;
+        let drawn = sub.anchors();
+        let wrong_count = |drawn: Vec<Point>| GeometryError::anchor_count(&path.name, &drawn, EXPECTED);
+        let corners: [Point; 4] = drawn.try_into().map_err(wrong_count)?;
+        usable(&path.name, &corners)?;
+        let sides: [CubicBez; 4] = std::array::from_fn(|i| sub.segs[i].to_cubic());
+
+        // The mean height of a cubic over its parameter is the mean of its control points' heights.
+        let heights = sides.map(|c| (c.p0.y + c.p1.y + c.p2.y + c.p3.y) / 4.0);
+        let lowest = Arrangement::by_rule(&corners, &heights);
+        let (mut arrangement, why) = match (self.bottom, base) {
+            (Bottom::Side(n), _) => (Arrangement::from_bottom(&corners, n - 1), "as given".to_owned()),
+            (Bottom::LeastDistorting, Some(base)) => least_distorting(&path.name, base, &corners, lowest, explanation),
+            _ => (lowest, "the lowest on the screen".to_owned()),
+        };
+        if self.reverse {
+            arrangement.reversed = !arrangement.reversed;
+        }
+        explanation.notes.push(format!(
+            "bottom side of {}: side {} as drawn, {}: {why}",
+            path.name,
+            arrangement.bottom + 1,
+            if arrangement.reversed { "run backwards" } else { "run forwards" }
+        ));
+        Ok(complete_net(outer_net(&sides, &arrangement)))
     }
 
     fn base_anchors(&self) -> Result<Anchors, Error> {
@@ -225,42 +263,6 @@ enum Bottom {
     Lowest,
     /// 1 to 4, as drawn.
     Side(usize),
-}
-
-/// Makes the net of a closed path with four sides. `base` are the four corners that it is laid onto, if there are four.
-fn from_cage(
-    path: &NamedPath,
-    bottom: Bottom,
-    reverse: bool,
-    base: Option<&[Point; 4]>,
-    explanation: &mut Explanation,
-) -> Result<Net, Error> {
-    const EXPECTED: &str = "exactly four, in one closed path";
-    let sub = anchors::closed_subpath(path, EXPECTED, |lines| lines == 3)?;
-    let drawn = sub.anchors();
-    let wrong_count = |drawn: Vec<Point>| GeometryError::anchor_count(&path.name, &drawn, EXPECTED);
-    let corners: [Point; 4] = drawn.try_into().map_err(wrong_count)?;
-    anchors::general(&path.name, &corners)?;
-    let sides: [CubicBez; 4] = std::array::from_fn(|i| sub.segs[i].to_cubic());
-
-    // The mean height of a cubic over its parameter is the mean of its control points' heights.
-    let heights = sides.map(|c| (c.p0.y + c.p1.y + c.p2.y + c.p3.y) / 4.0);
-    let lowest = Arrangement::by_rule(&corners, &heights);
-    let (mut arrangement, why) = match (bottom, base) {
-        (Bottom::Side(n), _) => (Arrangement::from_bottom(&corners, n - 1), "as given".to_owned()),
-        (Bottom::LeastDistorting, Some(base)) => least_distorting(&path.name, base, &corners, lowest, explanation),
-        _ => (lowest, "the lowest on the screen".to_owned()),
-    };
-    if reverse {
-        arrangement.reversed = !arrangement.reversed;
-    }
-    explanation.notes.push(format!(
-        "bottom side of {}: side {} as drawn, {}: {why}",
-        path.name,
-        arrangement.bottom + 1,
-        if arrangement.reversed { "run backwards" } else { "run forwards" }
-    ));
-    Ok(complete_net(outer_net(&sides, &arrangement)))
 }
 
 /// Chooses the way of laying `base` on the corners that distorts least, and says why. Warns if that turns the artwork on its side.
@@ -436,8 +438,9 @@ static INFO: Info = Info::new("shaper", "bend artwork into a closed path of four
     .about("Draw a closed path with four anchors: that is the shape. The artwork's box (or the base) is laid onto it, side by \
 side, and everything inside follows smoothly. With a target, the shaper's corners are then moved there, so that its \
 size and position do not matter.\n\nThe bottom is the side that lies lowest on the screen, run left to right, unless another \
-way of laying the four corners distorts them much less, as for a wide logo in a tilted shape; --bottom and --reverse-shaper overrule \
-that, and --explain says which was chosen and why. Bases and targets of two anchors are run left to right, \
+way of laying the four corners distorts them much less, as for a wide logo in a tilted shape. The paper always takes the lowest (--bottom lowest); but of a shape that leans, the lowest \
+side may be a short one, and the artwork would be squeezed and lie on its side, which seldom is meant. --bottom and --reverse-shaper \
+overrule the choice, and --explain says what was chosen and why. Bases and targets of two anchors are run left to right, \
 those of four start with their lowest side; --base-as-drawn and --target-as-drawn take them as they were drawn.\n\nA base of \
 two anchors fixes only the bottom side: artwork twice as tall as the base is wide reaches past the shaper's top.")
     .source("Markku Koppinen, A plane transformation from 16 control points, equations (1)-(10)")

@@ -48,6 +48,40 @@ fn base_lands_on_target() {
     }
 }
 
+/// Criterion: three corners on a line, and two shapes whose four are, bend by F₀ alone (equation 6), and fail by name with four
+/// targets, which need a projective map (equation 10).
+#[test]
+fn corners_on_a_line_are_refused_only_with_four_targets() {
+    let four = "200,150 320,150 320,40 200,40";
+    for cage in [
+        "M0,100 C30,120 70,80 100,100 C110,80 90,60 100,50 C80,-10 60,10 100,0 C60,10 40,60 0,100 Z",
+        "M0,0 C10,40 20,40 30,0 C35,20 55,20 60,0 C70,30 85,30 90,0 C60,-90 30,-90 0,0 Z",
+    ] {
+        let sides: Vec<CubicBez> = Outline::from_svg(cage).unwrap().segs().map(Seg::to_cubic).collect();
+        let pairs = [("shaper", cage), ("bottom", "1"), ("base", "0,100 100,100")];
+        for target in [None, Some("0,0 10,10")] {
+            let map = build(&pairs.into_iter().chain(target.map(|t| ("target", t))).collect::<Vec<_>>()).unwrap().map;
+            let (from, to) = (sides[0].p0, sides[0].p3);
+            for i in 0..=20 {
+                let t = f64::from(i) / 20.0;
+                let side = sides[0].eval(t);
+                let want = target.map_or(side, |_| {
+                    // The similitude that takes the ends of the bottom side to (0, 0) and (10, 10).
+                    let (p, along) = (side - from, to - from);
+                    let (u, v) = (p.dot(along) / along.hypot2(), along.cross(p) / along.hypot2());
+                    Point::new(10.0 * (u - v), 10.0 * (u + v))
+                });
+                assert!(map.point(Point::new(100.0 * t, 100.0)).distance(want) < 1e-9, "{cage} {t}");
+            }
+        }
+        let error = build(&pairs.into_iter().chain([("target", four)]).collect::<Vec<_>>()).unwrap_err();
+        assert!(
+            matches!(&error, Error::Geometry(GeometryError::Collinear { path, .. }) if path == "shaper"),
+            "{error}"
+        );
+    }
+}
+
 #[test]
 fn the_net_given_in_full_equals_the_cage() {
     let by_cage = build(&[("shaper", CAGE)]).unwrap();
@@ -120,7 +154,8 @@ fn every_fault_is_named() {
     let square = "0,0 100,0 100,100 0,100";
     assert!(fault(&[("shaper", "M0,0 L1,0 L1,1 L0,1 L0,0.5")]).contains("shaper is not closed"));
     assert!(fault(&[("shaper", "M0,0 L1,0 L1,1 Z")]).contains("has 3 anchors (0,0 1,0 1,1)"));
-    assert!(fault(&[("shaper", "M0,0 L1,0 L2,0 L0,1 Z")]).contains("anchors 1, 2 and 3"));
+    let flat = ("shaper", "M0,0 L1,0 L2,0 L0,1 Z");
+    assert!(fault(&[flat, ("target", square)]).contains("shaper: anchors 1, 2 and 3"));
     assert!(fault(&[("shaper", square), ("base", "5,5 5,5")]).contains("base: anchors 1 and 2 coincide at 5,5"));
     assert!(fault(&[("shaper", square), ("target", "0,0 1,0 2,0 0,1")]).contains("target: anchors 1, 2 and 3"));
     assert!(fault(&[("shaper", square), ("base", "1,1 2,2 3,5")]).contains("base has 3 anchors"));

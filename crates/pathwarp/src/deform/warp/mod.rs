@@ -494,7 +494,7 @@ to a side.\n\nA style of your own is a TOML or JSON file: rules that move the si
 one), with formulas of w and h (the box), b (the bend), u and v (the point's position), and k, S, C for circular arcs:\n\n  \
 name = \"roof\"\n  family = \"boundary\"   # or \"points\", \"frame\": the part that distortions act on\n  \
 moves = [{ at = \"0,1\", y = \"-b*h/2\" }, { at = \"0,2\", y = \"-b*h/2\" }]")
-    .source("Nets measured on Adobe Illustrator 2026, published with the OPuller editor, 2026; completion: K. Koppinen, A plane \
+    .source("Nets measured on Adobe Illustrator 2026, published with the OPuller editor, 2026; completion: Markku Koppinen, A plane \
 transformation from 16 control points, equation (7)")
     .params(Warp::PARAMS)
     .demo(&[("style", "arc"), ("bend", "40%"), ("horizontal", "15%"), ("vertical", "-20%")])
