@@ -45,6 +45,7 @@ fn c_type(t: &Type, returned: bool) -> String {
                 "usize" => "size_t",
                 "i32" if returned => "pathwarp_status",
                 "PathwarpWarper" => "pathwarp_warper",
+                "PathwarpFunction" => "pathwarp_function",
                 other => panic!("{other} has no counterpart in the header"),
             };
             format!("{c} ")

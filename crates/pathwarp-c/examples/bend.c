@@ -36,7 +36,7 @@ int main(int argc, char **argv) {
         uint8_t *bytes = read_file(argv[1], &length), *result;
         char *report;
         if (!bytes) return 3;
-        status = pathwarp_warp_drawing(arc, bytes, length, &result, &result_length, &report, &error);
+        status = pathwarp_warp_drawing(arc, bytes, length, argv[1], &result, &result_length, &report, NULL, NULL, &error);
         free(bytes);
         if (status) fail(status, error);
         fwrite(result, 1, result_length, stdout);

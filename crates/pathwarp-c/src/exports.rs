@@ -2,22 +2,32 @@
 
 #![expect(unsafe_code, reason = "C calls these functions, and they take its pointers")]
 
+use crate::function::{Function, PathwarpFunction, on_all_threads, on_calling_thread};
 use crate::raw::{
-    Failed, array, array_mut, drop_bytes, drop_text, hand_over, owned_bytes, owned_text, place, put, status, take_back,
-    text, value, value_mut, wrong,
+    Failed, array, array_mut, drop_bytes, drop_text, drop_texts, hand_over, owned_bytes, owned_text, owned_texts,
+    place, put, status, take_back, text, value, value_mut, wrong,
 };
-use pathwarp::deform::Registry;
+use pathwarp::deform::{Deformation as _, Registry};
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp_engine::Warper;
 use pathwarp_engine::input::hatching;
+use pathwarp_engine::{Warper, option_names};
+use pathwarp_plugin::Reserved;
 use std::ffi::{CStr, c_char};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Points mapped by one call of the map.
 const BLOCK: usize = 256;
 
-/// `pathwarp_warper`.
-pub struct PathwarpWarper(Warper);
+/// `pathwarp_warper`: deformations, and whether all of their functions may be called by any thread.
+pub struct PathwarpWarper(Warper, bool);
+
+impl PathwarpWarper {
+    /// Does something with the warper on all cores, or on the calling thread alone, as its functions need it.
+    fn run<T: Send>(&self, work: impl FnOnce(&Warper) -> T + Send) -> T {
+        if self.1 { on_all_threads(|| work(&self.0)) } else { on_calling_thread(|| work(&self.0)) }
+    }
+}
 
 /// The version of the library.
 #[unsafe(no_mangle)]
@@ -44,17 +54,80 @@ pub unsafe extern "C" fn pathwarp_new(
 ) -> i32 {
     let made = || {
         // SAFETY: the header says that these are texts, and arrays of `count` texts.
-        let (name, names, values) =
-            unsafe { (text(name, "name")?, array(names, count, "names")?, array(values, count, "values")?) };
-        let pairs = names.iter().zip(values).map(|(n, v)| {
-            // SAFETY: as above.
-            Ok(unsafe { (text(*n, "an element of names")?, text(*v, "an element of values")?) })
-        });
-        let pairs: Vec<(&str, &str)> = pairs.collect::<Result<_, Failed>>()?;
-        Ok(Warper::new(&Registry::builtin(), name, &pairs)?)
+        let (name, pairs) = unsafe { (text(name, "name")?, pairs(names, values, count)?) };
+        let registry = Registry::builtin();
+        let is_edit = pathwarp_engine::edits::info(name).is_some();
+        let made = if is_edit { Warper::edit(&registry, name, &pairs) } else { Warper::new(&registry, name, &pairs) };
+        Ok((made?, true))
     };
     // SAFETY: the header says that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
+}
+
+/// Makes the deformation of a plug-in.
+///
+/// # Safety
+/// Every pointer is null or as `pathwarp.h` says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pathwarp_new_plugin(
+    file: *const c_char,
+    names: *const *const c_char,
+    values: *const *const c_char,
+    count: usize,
+    warper: *mut *mut PathwarpWarper,
+    error: *mut *mut c_char,
+) -> i32 {
+    let made = || {
+        // SAFETY: the header says that these are texts, and arrays of `count` texts.
+        let (file, pairs) = unsafe { (text(file, "file")?, pairs(names, values, count)?) };
+        let built_in = Registry::builtin();
+        let taken: Vec<&str> = built_in.entries().iter().map(|e| e.info().name).collect();
+        let parameters: Vec<&str> = option_names().map(|(name, _)| name).collect();
+        let reserved = Reserved { names: &taken, parameters: &parameters };
+        let started = pathwarp_plugin::by_file(Path::new(file), reserved);
+        let plugin = started.map_err(|fault| Failed::input(fault.of(Path::new(file)).to_string()))?;
+        let name = plugin.info().name;
+        Ok((Warper::new(&built_in.with(plugin), name, &pairs)?, true))
+    };
+    // SAFETY: the header says that both may be written to.
+    unsafe { status(error, || new_warper(warper, made)) }
+}
+
+/// Makes a deformation of a function.
+///
+/// # Safety
+/// Every pointer is null or as `pathwarp.h` says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pathwarp_new_function(
+    function: *const PathwarpFunction,
+    warper: *mut *mut PathwarpWarper,
+    error: *mut *mut c_char,
+) -> i32 {
+    let made = || {
+        // SAFETY: the header says that it describes functions.
+        let (function, abilities, any_thread) = unsafe { Function::read(function)? };
+        Ok((Warper::from_function(&Registry::builtin(), Arc::new(function), abilities), any_thread))
+    };
+    // SAFETY: the header says that both may be written to.
+    unsafe { status(error, || new_warper(warper, made)) }
+}
+
+/// Reads pairs of texts.
+///
+/// # Safety
+/// The arrays are null, or hold `count` texts that stay as they are while the result is used.
+unsafe fn pairs<'a>(
+    names: *const *const c_char,
+    values: *const *const c_char,
+    count: usize,
+) -> Result<Vec<(&'a str, &'a str)>, Failed> {
+    // SAFETY: as the caller says.
+    let (names, values) = unsafe { (array(names, count, "names")?, array(values, count, "values")?) };
+    let pair = |(n, v): (&*const c_char, &*const c_char)| {
+        // SAFETY: as the caller says.
+        Ok(unsafe { (text(*n, "an element of names")?, text(*v, "an element of values")?) })
+    };
+    names.iter().zip(values).map(pair).collect()
 }
 
 /// Makes what a recipe says.
@@ -71,7 +144,7 @@ pub unsafe extern "C" fn pathwarp_from_recipe(
     let made = || {
         // SAFETY: the header says that these are texts.
         let (text, folder) = unsafe { (crate::raw::text(text, "text")?, crate::raw::text(folder, "folder")?) };
-        Ok(Warper::from_recipe(&Registry::builtin(), text, Path::new(folder), false)?)
+        Ok((Warper::from_recipe(&Registry::builtin(), text, Path::new(folder), false)?, true))
     };
     // SAFETY: the header says that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
@@ -88,8 +161,11 @@ pub unsafe extern "C" fn pathwarp_then(
     warper: *mut *mut PathwarpWarper,
     error: *mut *mut c_char,
 ) -> i32 {
-    // SAFETY: the header says that these are warpers that were not released.
-    let made = || unsafe { Ok(value(first, "first")?.0.then(&value(second, "second")?.0)) };
+    let made = || {
+        // SAFETY: the header says that these are warpers that were not released.
+        let (first, second) = unsafe { (value(first, "first")?, value(second, "second")?) };
+        Ok((first.0.then(&second.0), first.1 && second.1))
+    };
     // SAFETY: the header says that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
@@ -105,7 +181,7 @@ pub unsafe extern "C" fn pathwarp_inverse(
     error: *mut *mut c_char,
 ) -> i32 {
     // SAFETY: the header says that it is a warper that was not released.
-    let made = || unsafe { Ok(value(of, "of")?.0.inverted()) };
+    let made = || unsafe { value(of, "of").map(|of| (of.0.inverted(), of.1)) };
     // SAFETY: the header says that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
@@ -116,10 +192,11 @@ pub unsafe extern "C" fn pathwarp_inverse(
 /// `warper` is null, or may be written to.
 unsafe fn new_warper(
     warper: *mut *mut PathwarpWarper,
-    made: impl FnOnce() -> Result<Warper, Failed>,
+    made: impl FnOnce() -> Result<(Warper, bool), Failed>,
 ) -> Result<(), Failed> {
     place(warper, "warper")?;
-    let made = hand_over(PathwarpWarper(made()?));
+    let (made, any_thread) = made()?;
+    let made = hand_over(PathwarpWarper(made, any_thread));
     // SAFETY: as the caller says.
     unsafe { put(warper, made) };
     Ok(())
@@ -166,16 +243,17 @@ pub unsafe extern "C" fn pathwarp_map_points(
         let points: Vec<Point> = from.as_chunks().0.iter().map(|[x, y]| Point::new(*x, *y)).collect();
         let finite = || points.iter().filter(|p| p.is_finite());
         let bounds = || finite().map(|p| Rect::from_points(*p, *p)).reduce(|a, b| a.union(b));
-        let map = warper.0.point_map(bounds, hatching)?;
+        let map = warper.run(|warper| warper.point_map(bounds, hatching))?;
+        let block = if map.prefers_batches() { points.len().max(1) } else { BLOCK };
+        let mut images = vec![Point::ORIGIN; points.len()];
+        for (source, images) in points.chunks(block).zip(images.chunks_mut(block)) {
+            map.points(source, images);
+        }
+        map.check()?;
         // SAFETY: the header says that the numbers may be written to; `from`, which may be the same, is not used any more.
         let to = unsafe { array_mut(to, numbers, "to")? };
-        let mut images = [Point::ORIGIN; BLOCK];
-        for (source, target) in points.chunks(BLOCK).zip(to.as_chunks_mut::<2>().0.chunks_mut(BLOCK)) {
-            let images = &mut images[..source.len()];
-            map.points(source, images);
-            for (out, p) in target.iter_mut().zip(images) {
-                *out = [p.x, p.y];
-            }
+        for (out, p) in to.as_chunks_mut::<2>().0.iter_mut().zip(images) {
+            *out = [p.x, p.y];
         }
         Ok(())
     };
@@ -199,7 +277,7 @@ pub unsafe extern "C" fn pathwarp_warp_path(
         place(result, "result")?;
         // SAFETY: the header says that it is a warper, and a text.
         let (warper, data) = unsafe { (value(warper, "warper")?, text(data, "data")?) };
-        let warped = warper.0.warp_path(data)?.path;
+        let warped = warper.run(|warper| warper.warp_path(data))?.path;
         // SAFETY: the header says that both may be written to, and `max_error` may be null.
         unsafe {
             put(result, owned_text(&warped.data));
@@ -220,30 +298,74 @@ pub unsafe extern "C" fn pathwarp_warp_drawing(
     warper: *const PathwarpWarper,
     bytes: *const u8,
     length: usize,
+    name: *const c_char,
     result: *mut *mut u8,
     result_length: *mut usize,
     report: *mut *mut c_char,
+    warnings: *mut *mut *mut c_char,
+    warning_count: *mut usize,
     error: *mut *mut c_char,
 ) -> i32 {
     let warp = || {
         place(result, "result")?;
         place(result_length, "result_length")?;
+        if !warnings.is_null() {
+            place(warning_count, "warning_count")?;
+        }
         // SAFETY: the header says that it is a warper, and that the bytes are there.
         let (warper, bytes) = unsafe { (value(warper, "warper")?, array(bytes, length, "bytes")?) };
-        let warped = warper.0.warp_drawing(bytes, None)?;
+        // SAFETY: the header says that it is NULL or a text.
+        let name = if name.is_null() { None } else { Some(Path::new(unsafe { text(name, "name")? })) };
+        let warped = warper.run(|warper| warper.warp_drawing(bytes, name))?;
         let (first, count) = owned_bytes(warped.bytes);
-        // SAFETY: the header says that all may be written to, and `report` may be null.
+        // SAFETY: the header says that all may be written to, and `report` and `warnings` may be null.
         unsafe {
             put(result, first);
             put(result_length, count);
             if !report.is_null() {
                 put(report, owned_text(&warped.report));
             }
+            if !warnings.is_null() {
+                let (texts, count) = owned_texts(&warped.warnings);
+                put(warnings, texts);
+                put(warning_count, count);
+            }
         }
         Ok(())
     };
     // SAFETY: the header says that `error` may be written to.
     unsafe { status(error, warp) }
+}
+
+/// Sets words as a drawing.
+///
+/// # Safety
+/// Every pointer is null or as `pathwarp.h` says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pathwarp_text(
+    words: *const c_char,
+    font: *const c_char,
+    size: f64,
+    result: *mut *mut u8,
+    result_length: *mut usize,
+    error: *mut *mut c_char,
+) -> i32 {
+    let set = || {
+        place(result, "result")?;
+        place(result_length, "result_length")?;
+        // SAFETY: the header says that these are texts, and that `font` may be null.
+        let (words, font) =
+            unsafe { (text(words, "words")?, if font.is_null() { None } else { Some(text(font, "font")?) }) };
+        let (first, count) = owned_bytes(pathwarp_engine::lettering_drawing(words, font, size)?.into_bytes());
+        // SAFETY: the header says that both may be written to.
+        unsafe {
+            put(result, first);
+            put(result_length, count);
+        }
+        Ok(())
+    };
+    // SAFETY: the header says that `error` may be written to.
+    unsafe { status(error, set) }
 }
 
 /// Releases a warper.
@@ -264,6 +386,16 @@ pub unsafe extern "C" fn pathwarp_free(warper: *mut PathwarpWarper) {
 pub unsafe extern "C" fn pathwarp_string_free(text: *mut c_char) {
     // SAFETY: as the caller says.
     unsafe { drop_text(text) };
+}
+
+/// Releases a list of texts.
+///
+/// # Safety
+/// It is null, or a list of this library with this count that was not released.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pathwarp_strings_free(texts: *mut *mut c_char, count: usize) {
+    // SAFETY: as the caller says.
+    unsafe { drop_texts(texts, count) };
 }
 
 /// Releases bytes.

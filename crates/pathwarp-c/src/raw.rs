@@ -30,6 +30,13 @@ impl From<Error> for Failed {
     }
 }
 
+impl Failed {
+    /// The error for a file that cannot be used.
+    pub(crate) fn input(message: String) -> Self {
+        Self(INPUT, message)
+    }
+}
+
 /// The error for a wrong argument.
 pub(crate) fn wrong(message: String) -> Failed {
     Failed(USAGE, message)
@@ -172,6 +179,28 @@ pub(crate) unsafe fn drop_text(text: *mut c_char) {
     if !text.is_null() {
         // SAFETY: it came from `CString::into_raw`, and the caller gives it up.
         drop(unsafe { CString::from_raw(text) });
+    }
+}
+
+/// Hands a list of texts over to C.
+pub(crate) fn owned_texts(texts: &[String]) -> (*mut *mut c_char, usize) {
+    let texts: Box<[*mut c_char]> = texts.iter().map(|t| owned_text(t)).collect();
+    let count = texts.len();
+    (Box::into_raw(texts).cast(), count)
+}
+
+/// Takes a list of texts back and drops it.
+///
+/// # Safety
+/// `texts` is null, or came from [`owned_texts`] with this count and was not released.
+pub(crate) unsafe fn drop_texts(texts: *mut *mut c_char, count: usize) {
+    if !texts.is_null() {
+        // SAFETY: they came from a boxed slice of this length, and the caller gives them up.
+        let texts = unsafe { Box::from_raw(std::ptr::slice_from_raw_parts_mut(texts, count)) };
+        for text in texts {
+            // SAFETY: each came from `owned_text`.
+            unsafe { drop_text(text) };
+        }
     }
 }
 

@@ -20,6 +20,117 @@ static void refused(pathwarp_status status, char *error, const char *words) {
     pathwarp_string_free(error);
 }
 
+/* A shear along x by a wave, and what goes with it. `data` counts the calls. */
+static int32_t wave(void *data, const double *from, double *to, size_t count) {
+    (*(int *)data)++;
+    for (size_t i = 0; i < count; i++) {
+        to[2 * i] = from[2 * i] + 3 * sin(from[2 * i + 1] / 9);
+        to[2 * i + 1] = from[2 * i + 1];
+    }
+    return 0;
+}
+
+static int32_t wave_jets(void *data, const double *from, double *to, size_t count) {
+    (*(int *)data)++;
+    for (size_t i = 0; i < count; i++) {
+        double y = from[2 * i + 1];
+        const double jet[] = {from[2 * i] + 3 * sin(y / 9), y, 1, 0, cos(y / 9) / 3, 1};
+        memcpy(to + 6 * i, jet, sizeof jet);
+    }
+    return 0;
+}
+
+static int32_t wave_back(void *data, const double *from, double *to, size_t count) {
+    (*(int *)data)++;
+    for (size_t i = 0; i < count; i++) {
+        to[2 * i] = from[2 * i] - 3 * sin(from[2 * i + 1] / 9);
+        to[2 * i + 1] = from[2 * i + 1];
+    }
+    return 0;
+}
+
+static int32_t fails(void *data, const double *from, double *to, size_t count) {
+    (void)data, (void)from, (void)to, (void)count;
+    return 17;
+}
+
+/* Bends with the library from within a function. */
+static int32_t nested(void *data, const double *from, double *to, size_t count) {
+    return pathwarp_map_points(data, from, to, count, NULL);
+}
+
+/* Functions as maps: their values, ends of curves, inverses, chains, failures, and which thread calls them. */
+static void functions(const char *page) {
+    char *error, *bent;
+    int calls = 0;
+    pathwarp_warper *map, *back, *both;
+    const pathwarp_function whole = {wave, wave_jets, wave_back, NULL, 14, 0, &calls}, plain = {.points = wave, .data = &calls};
+    const pathwarp_function *kinds[] = {&whole, &plain};
+    for (int k = 0; k < 2; k++) {
+        check(!pathwarp_new_function(kinds[k], &map, &error), "a function");
+        double points[] = {10, 20, 60, 50, 30, 30}, images[6], again[6];
+        check(!pathwarp_map_points(map, points, images, 3, &error), "points of a function");
+        for (int i = 0; i < 3; i++) check(images[2 * i] == points[2 * i] + 3 * sin(points[2 * i + 1] / 9), "values of a function");
+        double x, y;
+        check(!pathwarp_warp_path(map, "M5,9 L20,80", &bent, NULL, &error), "a path under a function");
+        check(sscanf(bent, "M%lf,%lf", &x, &y) == 2 && fabs(x - 5 - 3 * sin(1)) < 1e-3 && fabs(y - 9) < 1e-3, "the start of the path");
+        pathwarp_string_free(bent);
+        check(!pathwarp_inverse(map, &back, &error) && !pathwarp_set_option(back, "frame", "0,0,100,100", &error), "its inverse");
+        check(!pathwarp_map_points(back, images, again, 3, &error), "back by a function");
+        for (int i = 0; i < 6; i++) check(fabs(again[i] - points[i]) < 1e-9, "the inverse of a function undoes");
+        check(!pathwarp_then(map, map, &both, &error) && !pathwarp_map_points(both, points, images, 3, &error), "twice");
+        for (int i = 0; i < 3; i++) check(fabs(images[2 * i] - points[2 * i] - 6 * sin(points[2 * i + 1] / 9)) < 1e-12, "two functions");
+        uint8_t *result;
+        size_t length, count;
+        char **warnings;
+        check(!pathwarp_warp_drawing(both, (const uint8_t *)page, strlen(page), "a.svg", &result, &length, NULL, &warnings, &count, &error), "a drawing");
+        pathwarp_bytes_free(result, length), pathwarp_strings_free(warnings, count);
+        pathwarp_free(both), pathwarp_free(back), pathwarp_free(map);
+    }
+    check(calls > 10, "functions were called");
+    const pathwarp_function failing = {.points = fails}, none = {.points = NULL}, creased = {.points = wave, .creases = "line 1 2"};
+    check(!pathwarp_new_function(&failing, &map, &error), "a function that fails");
+    double at[] = {1, 2, 3, 4}, to[] = {7, 7, 7, 7};
+    check(pathwarp_map_points(map, at, to, 2, &error) == PATHWARP_INPUT && strstr(error, "function.points: failed with 17"), "its failure");
+    check(to[0] == 7 && to[3] == 7, "a failed call leaves its results");
+    pathwarp_string_free(error);
+    check(pathwarp_warp_path(map, "M0,0 H9", &bent, NULL, &error) == PATHWARP_INPUT && strstr(error, "failed with 17"), "its failure on a path");
+    pathwarp_string_free(error), pathwarp_free(map);
+    refused(pathwarp_new_function(NULL, &map, &error), error, "function is NULL");
+    refused(pathwarp_new_function(&none, &map, &error), error, "function.points is NULL");
+    refused(pathwarp_new_function(&creased, &map, &error), error, "line A B C");
+
+    pathwarp_warper *inner;
+    check(!pathwarp_new("swirl", NULL, NULL, 0, &inner, &error) && !pathwarp_set_option(inner, "frame", "0,0,9,9", &error), "inner");
+    const pathwarp_function within = {.points = nested, .data = inner};
+    check(!pathwarp_new_function(&within, &map, &error) && !pathwarp_warp_path(map, "M1,1 H8", &bent, NULL, &error), "a call within a call");
+    pathwarp_string_free(bent), pathwarp_free(map), pathwarp_free(inner);
+}
+
+/* Edits, words, and names of presets in recipes. */
+static void others(void) {
+    char *error, *bent, *same;
+    const char *names[] = {"by"}, *values[] = {"2"};
+    pathwarp_warper *edit, *arc, *preset;
+    uint8_t *result;
+    size_t length;
+    check(!pathwarp_new("offset", names, values, 1, &edit, &error), "an edit");
+    check(!pathwarp_warp_path(edit, "M0,0 H9 V9 H0 Z", &bent, NULL, &error) && strstr(bent, "A"), "round corners");
+    pathwarp_string_free(bent), pathwarp_free(edit);
+    check(!pathwarp_text("Word", NULL, 20, &result, &length, &error) && length > 500, "words");
+    check(!memcmp(result, "<svg", 4), "words are a drawing");
+    pathwarp_bytes_free(result, length);
+    check(pathwarp_text("Word", "no such family", 20, &result, &length, &error) == PATHWARP_INPUT, "an unknown font");
+    pathwarp_string_free(error);
+    check(!pathwarp_from_recipe("pathwarp = 1\n[[step]]\ndeformation = \"arc\"\n", "", &preset, &error), "a preset in a recipe");
+    check(!pathwarp_new("arc", NULL, NULL, 0, &arc, &error), "arc");
+    check(!pathwarp_warp_path(preset, "M0,0 H9 V9", &bent, NULL, &error) && !pathwarp_warp_path(arc, "M0,0 H9 V9", &same, NULL, &error), "both");
+    check(!strcmp(bent, same), "a preset in a recipe is that preset");
+    pathwarp_string_free(bent), pathwarp_string_free(same), pathwarp_free(arc), pathwarp_free(preset);
+    check(pathwarp_new_plugin("/no/such/plug-in", NULL, NULL, 0, &edit, &error) == PATHWARP_INPUT && strstr(error, "is not a file"), "no plug-in");
+    pathwarp_string_free(error);
+}
+
 int main(void) {
     char *error, *bent;
     pathwarp_status status;
@@ -37,7 +148,7 @@ int main(void) {
     const char *page = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M0,0H9V9z'/></svg>";
     uint8_t *result;
     size_t length;
-    status = pathwarp_warp_drawing(back, (const uint8_t *)page, strlen(page), &result, &length, NULL, &error);
+    status = pathwarp_warp_drawing(back, (const uint8_t *)page, strlen(page), NULL, &result, &length, NULL, NULL, NULL, &error);
     refused(status, error, unknown);
     check(!pathwarp_set_option(swirl, "frame", "0,0,100,100", &error), "frame");
     check(!pathwarp_set_option(back, "frame", "0,0,100,100", &error), "frame after inverse");
@@ -63,5 +174,7 @@ int main(void) {
 
     pathwarp_free(plain);
     pathwarp_free(swirl);
+    functions(page);
+    others();
     return failures != 0;
 }

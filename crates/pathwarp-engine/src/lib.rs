@@ -48,4 +48,6 @@ pub mod steps;
 pub mod temporaries;
 pub mod units;
 
-pub use embed::{Details, Drawing, Error, ErrorKind, Path, PointMap, Warper, option_names, option_words, preset};
+pub use embed::{
+    Details, Drawing, Error, ErrorKind, Path, PointMap, Warper, lettering_drawing, option_names, option_words, preset,
+};

@@ -17,6 +17,7 @@
 
 use crate::advice;
 use crate::catalogue::Catalogue;
+use crate::embed::preset;
 use crate::failure::Failure;
 use crate::input::{split_reference, unreadable};
 use crate::options::Given;
@@ -114,8 +115,16 @@ fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> 
     let name = table.get(DEFORMATION).and_then(Value::as_str).ok_or("has no `deformation = \"NAME\"`")?;
     let infos = catalogue.infos();
     let known = infos.iter().map(|i| i.name);
-    let info = catalogue.info(name).ok_or_else(|| advice::unknown("deformation", name, known))?;
-    let mut step = Step::new(name, Args::new());
+    let plain = catalogue.info(name).map(|info| (info, None));
+    let preset = || preset(catalogue, name).map(|(info, param, value)| (info, Some((param, value))));
+    let (info, preset) = plain.or_else(preset).ok_or_else(|| advice::unknown("deformation", name, known))?;
+    let mut step = Step::new(info.name, Args::new());
+    if let Some((param, value)) = preset {
+        if table.contains_key(param) {
+            return Err(format!("{param}: `{name}` is one already"));
+        }
+        step.args.push(param, value);
+    }
     for (key, value) in table {
         match key.as_str() {
             DEFORMATION => {}

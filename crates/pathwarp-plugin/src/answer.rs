@@ -1,44 +1,16 @@
 //! Requests, answers and descriptions of built maps, which the binary and the text form of the protocol share.
 
 use crate::fault::Fault;
-use pathwarp::kurbo::{Point, Rect, Vec2};
-use pathwarp::map::{Crease, CreaseKind, Creases, Jet, Level};
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::map::{Ask, Crease, CreaseKind, Creases, Level};
 
-/// The kind of a batch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Ask {
-    /// Values.
-    Points,
-    /// Values with both partial derivatives.
-    Jets,
-    /// Values of the inverse.
-    Inverse,
-}
-
-impl Ask {
-    /// The command of the text protocol.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Points => "points",
-            Self::Jets => "jets",
-            Self::Inverse => "inverse",
-        }
+/// Returns the command of the text protocol that asks so.
+pub(crate) fn word(ask: Ask) -> &'static str {
+    match ask {
+        Ask::Points => "points",
+        Ask::Jets => "jets",
+        Ask::Inverse => "inverse",
     }
-
-    /// The number of numbers in the answer for one point.
-    pub(crate) fn numbers(self) -> usize {
-        if self == Self::Jets { 6 } else { 2 }
-    }
-}
-
-/// Reads a point from two numbers of an answer.
-pub(crate) fn point(&[x, y]: &[f64; 2]) -> Point {
-    Point::new(x, y)
-}
-
-/// Reads a jet from six numbers of an answer: F, ∂F/∂x, ∂F/∂y.
-pub(crate) fn jet(&[x, y, xx, xy, yx, yy]: &[f64; 6]) -> Jet {
-    Jet { p: Point::new(x, y), dx: Vec2::new(xx, xy), dy: Vec2::new(yx, yy) }
 }
 
 /// A program's description of the map that it has built.
@@ -64,7 +36,7 @@ pub(crate) struct CreaseAnswer {
 }
 
 impl CreaseAnswer {
-    fn crease(&self) -> Option<Crease> {
+    pub(crate) fn crease(&self) -> Option<Crease> {
         let level = match (self.line, self.circle, self.within) {
             (Some([a, b, c]), None, None) if a.hypot(b) > 0.0 => Level::Line { a, b, c },
             (Some([a, b, c]), None, Some([x0, y0, x1, y1])) if a.hypot(b) > 0.0 && !self.edge => {

@@ -2,16 +2,16 @@
 
 use crate::entry::{Entry, Reserved, lines, read};
 use crate::fault::Fault;
-use crate::map::{Abilities, ProgramMap};
 use crate::session::{Instance, Program, Protocol, Session};
 use crate::{answer, binary, text};
 use pathwarp::Error;
 use pathwarp::deform::{Built, Deformation, Info};
-use pathwarp::map::{CreaseKind, Map as _};
+use pathwarp::kurbo::Point;
+use pathwarp::map::{Abilities, Ask, Called, Callee};
 use pathwarp::param::{Axis, Settings};
 use std::fmt;
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// A program as a deformation.
 #[derive(Clone)]
@@ -51,7 +51,7 @@ impl Plugin {
 
     fn new(path: &Path, entry: &Entry, running: Option<Session>) -> Self {
         let program = Arc::new(Program::new(path.to_owned(), entry.protocol, running));
-        Self { info: entry.info, version: entry.version, abilities: entry.abilities, program }
+        Self { info: entry.info, version: entry.version, abilities: entry.abilities.clone(), program }
     }
 
     /// The file of the program.
@@ -91,31 +91,43 @@ impl Deformation for Plugin {
             Protocol::Text => text::build(&lines),
             Protocol::Binary => binary::build(&lines).map_err(|fault| fault.of(&self.program.path))?,
         };
-        let instance = Arc::new(Instance::new(request));
+        let instance = Instance::new(request);
         let refused = |fault: Fault| match fault {
             Fault::Refused(why) => Error::input(self.info.name, why),
             fault => fault.of(&self.program.path),
         };
         let answer = self.program.build(&instance).map_err(refused)?;
         let creases = answer::creases(&answer.creases).map_err(refused)?;
-        if creases.items().iter().any(|c| c.kind == CreaseKind::Kink) && !self.abilities.jacobian {
-            let why = "it declares creases but no derivatives (\"jacobian\": true), and differences would cross them";
-            return Err(Fault::Entry(why.to_owned()).of(&self.program.path));
-        }
-        let (program, abilities) = (Arc::clone(&self.program), self.abilities);
-        let failed = Arc::new(OnceLock::new());
-        let size = frame.extent(Axis::Diagonal).max(f64::MIN_POSITIVE);
-        let (detail, failed_here) = (answer.detail, Arc::clone(&failed));
-        let map = ProgramMap { program, instance, abilities, creases, detail, size, failed: failed_here };
-        let mut built = Built::new(Arc::new(map.clone()));
-        if abilities.partial {
-            let unknown = move |p| (!map.point(p).is_finite()).then(|| "the plug-in gives no numbers there".to_owned());
-            built.undefined = Some(Arc::new(unknown));
-        }
+        let abilities = Abilities { creases, detail: answer.detail, ..self.abilities.clone() };
+        let callee = Arc::new(Asked { program: Arc::clone(&self.program), instance });
+        let map = Called::new(callee, abilities, frame.extent(Axis::Diagonal));
+        let mut built = Built::called(map, "the plug-in gives no numbers there");
         answer.notes.into_iter().for_each(|n| built.note(n));
         answer.warnings.into_iter().for_each(|w| built.warn(w));
-        let path = self.program.path.clone();
-        built.failure = Some(Arc::new(move || failed.get().map(|fault: &Fault| fault.of(&path))));
         Ok(built)
+    }
+}
+
+/// A map that a program has built.
+struct Asked {
+    program: Arc<Program>,
+    instance: Instance,
+}
+
+impl Callee for Asked {
+    fn ask(&self, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Error> {
+        self.program.ask(&self.instance, ask, points).map_err(|fault| fault.of(&self.program.path))
+    }
+
+    fn ask_both(&self, points: &[Point], others: &[Point]) -> Result<[Vec<f64>; 2], Error> {
+        self.program.ask_both(&self.instance, [points, others]).map_err(|fault| fault.of(&self.program.path))
+    }
+
+    fn not_finite(&self, at: Point) -> Error {
+        Fault::NotFinite(at.x, at.y).of(&self.program.path)
+    }
+
+    fn work(&self) -> f64 {
+        self.program.work()
     }
 }

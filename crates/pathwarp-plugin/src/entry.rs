@@ -1,10 +1,10 @@
 //! Reads the entry of a program, which is JSON with the schema of `pathwarp list --json`, as a description for the registry.
 
 use crate::fault::Fault;
-use crate::map::Abilities;
 use crate::session::Protocol;
 use pathwarp::Error;
 use pathwarp::deform::{Case, Example, Info, Law, Pairs};
+use pathwarp::map::Abilities;
 use pathwarp::param::{Args, Axis, Kind, NamedPath, Param, Settings};
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -175,7 +175,7 @@ pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault>
         .laws(written.laws.iter().map(law).collect::<Vec<_>>().leak())
         .cases(written.cases.iter().map(case).collect::<Vec<_>>().leak());
     let partial = written.domain == Domain::Partial;
-    let abilities = Abilities { jacobian: written.jacobian, inverse: written.inverse, partial };
+    let abilities = Abilities { jacobian: written.jacobian, inverse: written.inverse, partial, ..Abilities::default() };
     let (version, protocol) = (written.version, written.protocol);
     Ok(Entry { info: Box::leak(Box::new(info)), version, protocol, abilities })
 }

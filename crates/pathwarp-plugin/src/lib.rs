@@ -17,7 +17,6 @@ mod deformation;
 mod entry;
 mod fault;
 mod folder;
-mod map;
 #[cfg(unix)]
 mod pipes_by_poll;
 #[cfg(any(test, not(unix)))]
@@ -30,3 +29,4 @@ pub use deformation::Plugin;
 pub use entry::Reserved;
 pub use fault::Fault;
 pub use folder::{Broken, FOLDER_VARIABLE, Found, by_file, folder, installed, name_of};
+pub use text::creases;

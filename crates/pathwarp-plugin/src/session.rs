@@ -1,6 +1,6 @@
 //! Talks to running programs: asks for their entries, maps and points.
 
-use crate::answer::{Ask, BuildAnswer};
+use crate::answer::BuildAnswer;
 use crate::binary;
 use crate::child::Running;
 use crate::fault::{Fault, MAX_ENTRY_BYTES, MAX_LINE_BYTES, MAX_MESSAGE_BYTES, MAX_POINTS, beginning};
@@ -10,6 +10,7 @@ use crate::pipes_by_poll::Pipes;
 use crate::pipes_by_threads::Pipes;
 use crate::text::{self, LineCount};
 use pathwarp::kurbo::Point;
+use pathwarp::map::Ask;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,8 +1,9 @@
 //! The protocol as lines of text, for programs written by hand.
 
-use crate::answer::{Ask, BuildAnswer, CreaseAnswer};
+use crate::answer::{BuildAnswer, CreaseAnswer, word};
 use crate::fault::{Fault, beginning};
 use pathwarp::kurbo::Point;
+use pathwarp::map::{Ask, Creases};
 use std::fmt::Write as _;
 
 /// Encodes the request to build a map from `lines`.
@@ -13,7 +14,7 @@ pub(crate) fn build(lines: &[String]) -> Vec<u8> {
 /// Encodes the request for a batch.
 pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
     let mut text = String::with_capacity(40 * points.len() + 16);
-    let _ = writeln!(text, "{} {}", ask.word(), points.len());
+    let _ = writeln!(text, "{} {}", word(ask), points.len());
     for p in points {
         let _ = writeln!(text, "{} {}", p.x, p.y);
     }
@@ -77,6 +78,22 @@ fn crease(text: &str, edge: bool) -> Option<CreaseAnswer> {
         ("circle", &[x, y, r]) => Some(CreaseAnswer { circle: Some([x, y, r]), ..none }),
         _ => None,
     }
+}
+
+/// Reads creases and edges as programs declare them: `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`, each perhaps after `crease` or `edge`.
+///
+/// # Errors
+/// [`Fault::Garbage`] for a text that is none of them.
+pub fn creases<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Creases, Fault> {
+    let mut out = Creases::default();
+    for text in texts {
+        let (word, rest) = text.trim().split_once(' ').unwrap_or((text, ""));
+        let shape = if ["crease", "edge"].contains(&word) { rest } else { text };
+        let read = crease(shape, word == "edge").and_then(|answer| answer.crease());
+        let expected = || "line A B C [X0 Y0 X1 Y1] or circle X Y R, perhaps after edge".to_owned();
+        out.push(read.ok_or_else(|| Fault::Garbage { expected: expected(), found: beginning(text.as_bytes()) })?);
+    }
+    Ok(out)
 }
 
 /// Counts the lines of an answer as it arrives.

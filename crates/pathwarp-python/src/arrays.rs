@@ -42,12 +42,14 @@ pub(crate) fn map(
 }
 
 fn chunk(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut2<'_, f64>, stop: &AtomicBool) {
-    let (mut source, mut image) = ([Point::ORIGIN; BLOCK], [Point::ORIGIN; BLOCK]);
-    for start in (0..to.nrows()).step_by(BLOCK) {
+    // A function of Python is called with as many points as there are.
+    let block = if map.prefers_batches() { CHUNK } else { BLOCK }.min(to.nrows().max(1));
+    let (mut source, mut image) = (vec![Point::ORIGIN; block], vec![Point::ORIGIN; block]);
+    for start in (0..to.nrows()).step_by(block) {
         if stop.load(Ordering::Relaxed) {
             return;
         }
-        let rows = start..(start + BLOCK).min(to.nrows());
+        let rows = start..(start + block).min(to.nrows());
         let (source, image) = (&mut source[..rows.len()], &mut image[..rows.len()]);
         match &from {
             Some(from) => read(from.slice_axis(Axis(0), rows.clone().into()), source),
@@ -86,16 +88,16 @@ pub(crate) fn jacobian(
     mut out: ArrayViewMut3<'_, f64>,
     stop: &AtomicBool,
 ) {
-    let out: Vec<_> = out.axis_chunks_iter_mut(Axis(0), BLOCK).collect();
-    let points: Vec<_> = points.axis_chunks_iter(Axis(0), BLOCK).collect();
+    let block = if map.prefers_batches() { CHUNK } else { BLOCK };
+    let out: Vec<_> = out.axis_chunks_iter_mut(Axis(0), block).collect();
+    let points: Vec<_> = points.axis_chunks_iter(Axis(0), block).collect();
     points.into_par_iter().zip(out).for_each(|(points, mut out)| {
         if stop.load(Ordering::Relaxed) {
             return;
         }
-        let (mut at, mut columns) = ([Point::ORIGIN; BLOCK], [[Vec2::ZERO; 2]; BLOCK]);
-        let n = points.nrows();
-        read(points, &mut at[..n]);
-        map.jacobians(&at[..n], &mut columns[..n]);
+        let (mut at, mut columns) = (vec![Point::ORIGIN; points.nrows()], vec![[Vec2::ZERO; 2]; points.nrows()]);
+        read(points, &mut at);
+        map.jacobians(&at, &mut columns);
         for (mut m, [dx, dy]) in out.outer_iter_mut().zip(&columns) {
             (m[[0, 0]], m[[0, 1]], m[[1, 0]], m[[1, 1]]) = (dx.x, dy.x, dx.y, dy.y);
         }

@@ -4,7 +4,9 @@
 mod arrays;
 mod catalog;
 mod errors;
+mod function;
 mod outline;
+mod plugins;
 mod threads;
 mod warper;
 
@@ -17,7 +19,7 @@ mod _native {
     #[pymodule_export]
     use super::threads::use_threads;
     #[pymodule_export]
-    use super::warper::{Warper, path_box};
+    use super::warper::{Warper, path_box, path_verbs};
     use super::{Bound, PyModule, PyModuleMethods as _, PyResult};
 
     #[pymodule_init]

@@ -108,7 +108,6 @@ pub(crate) fn on_threads<T: Send>(py: Python<'_>, work: impl FnOnce(&'static Ato
     let switch = Switch::take();
     let stop = switch.0;
     let Some(pool) = pool() else {
-        // A process that may start no threads works on one.
         return Ok(py.detach(|| work(stop)));
     };
     let (end, result) = (End::default(), Mutex::new(None));
@@ -155,7 +154,12 @@ fn done<T>(result: LockResult<Option<T>>) -> PyResult<T> {
     result.ok_or_else(|| PyRuntimeError::new_err("pathwarp failed; please report it"))
 }
 
+/// The threads of this process. `None` if it may start none, and on one of them, as in a function that a map calls: there is no other to
+/// wait for then, and work is done at once.
 fn pool() -> Option<Arc<ThreadPool>> {
+    if rayon::current_thread_index().is_some() {
+        return None;
+    }
     let (process, threads) = (std::process::id(), THREADS.load(Ordering::Relaxed));
     let mut current = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(p) = current.as_ref().filter(|p| p.process == process && p.threads == threads) {

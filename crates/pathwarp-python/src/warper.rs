@@ -1,11 +1,15 @@
 //! The class `Warper`: [`pathwarp_engine::Warper`] for Python. Work is done without the interpreter's lock.
 
 use crate::errors::{exception, usage};
+use crate::function::Function;
+use crate::plugins;
 use crate::threads::{on_threads, on_threads_alone};
 use crate::{arrays, outline};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
+use pathwarp::map::{Abilities, Callee};
+use pathwarp::recipe::Step;
 use pathwarp::refit::Assurance;
 use pathwarp_engine::input::hatching;
 use pathwarp_engine::{Error, PointMap};
@@ -21,60 +25,104 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Deformations one after another, with options.
 #[pyclass(frozen, module = "pathwarp._native")]
-pub(crate) struct Warper(pathwarp_engine::Warper);
+pub(crate) struct Warper {
+    engine: pathwarp_engine::Warper,
+    /// The functions of Python among the deformations.
+    functions: Vec<Arc<Function>>,
+}
 
 /// Verbs, coordinates and report of a path.
 type VerbsOut<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>);
 
 #[pymethods]
 impl Warper {
+    /// A deformation by its name. Plug-ins are those in the files `plugins`, and those of the user's folder.
     #[new]
-    fn new(py: Python<'_>, name: &str, values: Vec<(String, String)>) -> PyResult<Self> {
-        done(py, py.detach(|| pathwarp_engine::Warper::new(&Registry::builtin(), name, &values))).map(Self)
+    fn new(py: Python<'_>, name: &str, values: Vec<(String, String)>, plugins: Vec<PathBuf>) -> PyResult<Self> {
+        let registry = plugins::registry(py, &plugins, &[name])?;
+        done(py, py.detach(|| pathwarp_engine::Warper::new(&registry, name, &values))).map(Self::of)
+    }
+
+    /// A function of Python as a deformation; `call` answers as [`Function`] asks.
+    #[staticmethod]
+    fn function(
+        py: Python<'_>,
+        call: Py<PyAny>,
+        gives: (bool, bool),
+        creases: Vec<String>,
+        detail: Option<f64>,
+    ) -> PyResult<Self> {
+        let creases = pathwarp_plugin::creases(creases.iter().map(String::as_str));
+        let creases = creases.map_err(|fault| usage(py, &format!("creases: {fault}")))?;
+        let abilities = Abilities { jacobian: gives.0, inverse: gives.1, partial: true, creases, detail };
+        let function = Arc::new(Function::new(call));
+        let callee = Arc::clone(&function) as Arc<dyn Callee>;
+        let engine = pathwarp_engine::Warper::from_function(&Registry::builtin(), callee, abilities);
+        Ok(Self { engine, functions: vec![function] })
     }
 
     /// An edit of shapes, such as `simplify`.
     #[staticmethod]
     fn edit(py: Python<'_>, name: &str, values: Vec<(String, String)>) -> PyResult<Self> {
-        done(py, pathwarp_engine::Warper::edit(&Registry::builtin(), name, &values)).map(Self)
+        done(py, pathwarp_engine::Warper::edit(&Registry::builtin(), name, &values)).map(Self::of)
     }
 
     /// The recipe in the text of a recipe file.
     #[staticmethod]
     fn from_recipe(py: Python<'_>, text: &str, folder: PathBuf, external: bool) -> PyResult<Self> {
-        let read = || pathwarp_engine::Warper::from_recipe(&Registry::builtin(), text, &folder, external);
-        done(py, py.detach(read)).map(Self)
+        let read = |registry: &Registry| pathwarp_engine::Warper::from_recipe(registry, text, &folder, external);
+        // A name that is not built in may be that of an installed plug-in.
+        let built_in = py.detach(|| read(&Registry::builtin()));
+        let engine = match built_in {
+            Ok(engine) => engine,
+            Err(_) => {
+                let registry = plugins::registry(py, &[], &[""])?;
+                done(py, py.detach(|| read(&registry)))?
+            }
+        };
+        Ok(Self::of(engine))
     }
 
     /// The same with more options.
     fn with_options(&self, py: Python<'_>, options: Vec<(String, String)>) -> PyResult<Self> {
-        let mut warper = self.0.clone();
+        let mut engine = self.engine.clone();
         for (name, value) in &options {
-            done(py, warper.set_option(name, value))?;
+            done(py, engine.set_option(name, value))?;
         }
-        Ok(Self(warper))
+        Ok(Self { engine, functions: self.functions.clone() })
     }
 
     fn then(&self, later: &Self) -> Self {
-        Self(self.0.then(&later.0))
+        let functions = [&self.functions[..], &later.functions].concat();
+        Self { engine: self.engine.then(&later.engine), functions }
     }
 
     fn inverted(&self) -> Self {
-        Self(self.0.inverted())
+        Self { engine: self.engine.inverted(), functions: self.functions.clone() }
     }
 
     #[getter]
     fn steps(&self) -> Vec<String> {
-        self.0.steps().map(str::to_owned).collect()
+        self.engine.steps().map(str::to_owned).collect()
+    }
+
+    /// The deformations with their values, and whether each is inverted.
+    #[getter]
+    fn typed(&self) -> Vec<(String, Vec<(String, Vec<String>)>, bool)> {
+        let step = |s: &Step| {
+            let values = s.args.iter().map(|(name, values)| (name.to_owned(), values.to_vec()));
+            (s.deformation.clone(), values.collect(), s.inverse)
+        };
+        self.engine.typed_steps().map(step).collect()
     }
 
     #[getter]
     fn frame(&self) -> Option<String> {
-        self.0.frame()
+        self.engine.frame()
     }
 
     fn to_recipe(&self, py: Python<'_>, folder: PathBuf) -> PyResult<String> {
-        done(py, self.0.to_recipe(&folder))
+        done(py, self.engine.to_recipe(&folder))
     }
 
     /// Maps points, to `out` if it is given, which may be the same array.
@@ -93,9 +141,9 @@ impl Warper {
             on_threads(py, |stop| {
                 let map = self.point_map(target.view(), stop)?;
                 arrays::map(&map, None, target.view_mut(), stop);
-                Ok(())
+                map.check()
             })
-            .and_then(|mapped| done(py, mapped))?;
+            .and_then(|mapped| self.done(py, mapped))?;
             return Ok(out.clone());
         }
         let out = out.unwrap_or_else(|| PyArray2::zeros(py, points.dims(), false));
@@ -111,9 +159,9 @@ impl Warper {
         on_threads(py, |stop| {
             let map = self.point_map(source, stop)?;
             arrays::map(&map, Some(source), target.view_mut(), stop);
-            Ok(())
+            map.check()
         })
-        .and_then(|mapped| done(py, mapped))?;
+        .and_then(|mapped| self.done(py, mapped))?;
         Ok(out)
     }
 
@@ -131,17 +179,17 @@ impl Warper {
         on_threads(py, |stop| {
             let map = self.point_map(source, stop)?;
             arrays::jacobian(&map, source, target.view_mut(), stop);
-            Ok(())
+            map.check()
         })
-        .and_then(|mapped| done(py, mapped))?;
+        .and_then(|mapped| self.done(py, mapped))?;
         Ok(out)
     }
 
     /// Bends a path: its data and report.
     fn warp_path<'py>(&self, py: Python<'py>, data: &str) -> PyResult<(String, Bound<'py, PyDict>)> {
-        let (warper, data) = (self.0.clone(), data.to_owned());
+        let (warper, data) = (self.engine.clone(), data.to_owned());
         let warped = on_threads_alone(py, || Ok(()), move |stop| warper.stopped_by(stop).warp_path(&data))?;
-        let warped = done(py, warped)?;
+        let warped = self.done(py, warped)?;
         let report = report(py, &warped)?;
         Ok((warped.path.data, report))
     }
@@ -156,7 +204,7 @@ impl Warper {
     ) -> PyResult<VerbsOut<'py>> {
         let path = outline::path(verbs, coordinates.as_slice()?).map_err(|e| usage(py, &e))?;
         let outline = Outline::from(&path);
-        let warper = self.0.clone();
+        let warper = self.engine.clone();
         let warped = on_threads_alone(
             py,
             || Ok(()),
@@ -165,7 +213,7 @@ impl Warper {
                 if quadratic { warper.warp_outline_to_quadratics(&outline) } else { warper.warp_outline(&outline) }
             },
         )?;
-        let warped = done(py, warped)?;
+        let warped = self.done(py, warped)?;
         let (verbs, coordinates) = outline::verbs(&warped.path.path);
         Ok((verbs, coordinates.into_pyarray(py), report(py, &warped)?))
     }
@@ -178,7 +226,7 @@ impl Warper {
         drawings: Vec<(PyBackedBytes, Option<PathBuf>)>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let (warper, finished) = (self.0.clone(), Arc::new(AtomicUsize::new(0)));
+        let (warper, finished) = (self.engine.clone(), Arc::new(AtomicUsize::new(0)));
         let counted = Arc::clone(&finished);
         let mut told = 0;
         let mut tell = || {
@@ -199,7 +247,7 @@ impl Warper {
         tell()?;
         let result = |warped: Result<pathwarp_engine::Drawing, Error>| match warped {
             Ok(d) => (PyBytes::new(py, &d.bytes), d.report, d.warnings, d.notes).into_bound_py_any(py),
-            Err(e) => match exception(py, &e) {
+            Err(e) => match self.exception(py, &e) {
                 e if e.is_instance_of::<PyException>(py) => e.into_bound_py_any(py),
                 // Ctrl-C while the exception was made.
                 e => Err(e),
@@ -210,12 +258,26 @@ impl Warper {
 }
 
 impl Warper {
+    fn of(engine: pathwarp_engine::Warper) -> Self {
+        Self { engine, functions: Vec::new() }
+    }
+
+    fn done<T>(&self, py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
+        result.map_err(|e| self.exception(py, &e))
+    }
+
+    /// The exception for an error: what a function raised, if the error tells of that.
+    fn exception(&self, py: Python<'_>, error: &Error) -> PyErr {
+        let raised = self.functions.iter().find_map(|f| f.raised(py, &error.message));
+        raised.unwrap_or_else(|| exception(py, error))
+    }
+
     fn point_map(
         &self,
         points: numpy::ndarray::ArrayView2<'_, f64>,
         stop: &'static AtomicBool,
     ) -> Result<PointMap, Error> {
-        self.0.stopped_by(stop).point_map(|| arrays::bounds(points), hatching)
+        self.engine.stopped_by(stop).point_map(|| arrays::bounds(points), hatching)
     }
 }
 
@@ -224,6 +286,15 @@ impl Warper {
 pub(crate) fn path_box(data: &str) -> Option<[f64; 4]> {
     let b = Outline::from_svg(data).ok()?.bounding_box()?;
     Some([b.x0, b.y0, b.width(), b.height()])
+}
+
+/// The verbs and coordinates of path data, arcs as cubics within a millionth of its size. Empty if it is malformed.
+#[pyfunction]
+pub(crate) fn path_verbs<'py>(py: Python<'py>, data: &str) -> (String, Bound<'py, PyArray1<f64>>) {
+    let outline = Outline::from_svg(data).unwrap_or_default();
+    let size = outline.bounding_box().map_or(1.0, |b| b.width().hypot(b.height()));
+    let (verbs, coordinates) = outline::verbs(&outline.to_bez_path(1e-6 * size));
+    (verbs, coordinates.into_pyarray(py))
 }
 
 /// Checks that an array holds pairs.

@@ -15,18 +15,18 @@ def drawing(content):
 
 def test_a_polygon_becomes_a_round_curve():
     d = "M" + " ".join(f"{x:.3f},{y:.3f}" for x, y in CIRCLE) + "Z"
-    path = pathwarp.simplify_path(d, polylines=True, tolerance=0.1)
+    path = pathwarp.simplify(d, tolerance=0.1)
     numbers = [float(n) for n in re.findall(r"-?[\d.]+", path)]
     assert path.count("C") <= 5 and path.report["segments_in"] == 72
     assert all(abs(math.hypot(*p) - 100) < 0.2 for p in zip(numbers[::6], numbers[1::6]))
-    done = pathwarp.simplify(drawing(f"<path id='a' d='{d}'/>"), polylines=True, tolerance=0.1)
+    done = pathwarp.simplify(drawing(f"<path id='a' d='{d}'/>"), tolerance=0.1)
     assert done.count(b"C") <= 5 and done.report["shapes"][0]["segments_out"] <= 5
 
 
 def test_what_gets_no_fewer_nodes_stays():
     svg = drawing("<rect width='3' height='4'/><path d='M0 0l9 0l0 9z'/>")
     assert pathwarp.simplify(svg) == svg.encode()
-    assert pathwarp.simplify_path("M0,0 L9,0 L9,9 Z").count("L") == 2
+    assert pathwarp.simplify("M0,0 L9,0 L9,9 Z").count("L") == 2
 
 
 def test_strokes_become_outlines():
@@ -38,11 +38,11 @@ def test_misspelt_parameters_are_said():
     with pytest.raises(pathwarp.UsageError, match="did you mean `tolerance`"):
         pathwarp.simplify(drawing(""), tolerence=1)
     with pytest.raises(pathwarp.UsageError, match="corners"):
-        pathwarp.simplify_path("M0,0 H9", corners="wide")
+        pathwarp.simplify("M0,0 H9", corners="wide")
 
 
 def test_areas_grow_and_shrink():
-    d = pathwarp.offset_path("M0,0 H40 V40 H0 Z", 10, join="miter")
+    d = pathwarp.offset("M0,0 H40 V40 H0 Z", 10, join="miter")
     numbers = [float(n) for n in re.findall(r"-?[\d.]+", d)]
     assert (min(numbers), max(numbers)) == pytest.approx((-10, 50), abs=0.01)
     svg = drawing("<rect id='a' width='40' height='40'/>")

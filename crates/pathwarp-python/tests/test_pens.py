@@ -65,7 +65,7 @@ def test_the_docstrings_example_saves_a_truetype_font(tmp_path):
     font = TTFont(FONTS / "arabic.ttf")
     composite = next(g for g in font.getGlyphOrder() if font["glyf"][g].isComposite())
     code = "\n".join(line[4:] for line in example.splitlines()).replace('"A"', repr(composite))
-    code = code.replace("bent.ttf", str(tmp_path / "bent.ttf"))
+    code = code.replace("bent.ttf", str(tmp_path / "bent.ttf")).replace('"font.ttf"', repr(str(FONTS / "arabic.ttf")))
     source = DecomposingRecordingPen(font.getGlyphSet())
     names = {**vars(pathwarp), "WarpPen": WarpPen, "TTGlyphPen": TTGlyphPen, "font": font}
     font.getGlyphSet()[composite].draw(source)

@@ -4,18 +4,24 @@
 //! line: both take the same road. Nothing is printed, and no file is written. Panics become errors.
 
 mod error;
+mod function;
 mod warper;
 
 pub use error::{Details, Error, ErrorKind};
 pub use warper::{Drawing, Path, Warper};
 
 use crate::advice;
-use crate::options::{CommonOption, OPTIONS};
+use crate::catalogue::Catalogue;
+use crate::lettering::set_plainly;
+use crate::options::{CommonOption, OPTIONS, Reading};
 use crate::steps::INVERSE;
+use error::guarded;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::kurbo::{Point, Vec2};
 use pathwarp::map::{Chain, Creases, Jet, Map};
 use pathwarp::param::Kind;
+use pathwarp::recipe::BuiltRecipe;
+use pathwarp_text::TextStyle;
 
 /// A parameter with the value that a preset's name gives it.
 type Setting = (&'static str, &'static str);
@@ -37,10 +43,10 @@ pub(super) fn meaning<'a>(registry: &'a Registry, name: &str) -> Result<(&'a Inf
 
 /// The preset called `name`: its deformation, and the parameter that takes the preset's name.
 #[must_use]
-pub fn preset<'a>(registry: &'a Registry, name: &str) -> Option<(&'a Info, &'static str, &'static str)> {
-    registry.entries().iter().find_map(|e| {
-        let (param, names) = presets(e.info());
-        names.into_iter().find(|n| *n == name).map(|n| (e.info(), param, n))
+pub fn preset<'a>(catalogue: &'a dyn Catalogue, name: &str) -> Option<(&'a Info, &'static str, &'static str)> {
+    catalogue.infos().into_iter().find_map(|info| {
+        let (param, names) = presets(info);
+        names.into_iter().find(|n| *n == name).map(|n| (info, param, n))
     })
 }
 
@@ -111,18 +117,44 @@ pub(super) fn without_dashes(message: &str, registry: &Registry) -> String {
     out + rest
 }
 
+/// Sets words as a drawing in mm whose letters are outlines: in `font`, a family or a file, or in the bundled Noto Sans; `size` is that of
+/// the em in mm.
+///
+/// # Errors
+/// There is no such font, the size is out of range, or the words take more work than the limits allow.
+pub fn lettering_drawing(words: &str, font: Option<&str>, size: f64) -> Result<String, Error> {
+    let style = TextStyle { size, ..TextStyle::default() };
+    guarded(&Registry::builtin(), || set_plainly(words, font, &style, &Reading::default()).map(|(drawing, _)| drawing))
+}
+
 /// A recipe built for some points: the map, and where it is defined.
 #[derive(Debug, Clone)]
 pub struct PointMap {
+    built: BuiltRecipe,
     map: Chain,
     creases: Creases,
+    registry: Registry,
 }
 
 impl PointMap {
-    pub(super) fn new(map: Chain) -> Self {
-        let mut creases = Creases::default();
+    pub(super) fn new(built: BuiltRecipe, registry: &Registry) -> Self {
+        let (map, mut creases) = (built.unlimited(), Creases::default());
         map.creases(&mut creases);
-        Self { map, creases }
+        Self { built, map, creases, registry: registry.clone() }
+    }
+
+    /// Returns `true` if calls are expensive and points cheap, so that many should be mapped at once.
+    #[must_use]
+    pub fn prefers_batches(&self) -> bool {
+        self.map.cost().batches.is_some()
+    }
+
+    /// Checks the points mapped so far.
+    ///
+    /// # Errors
+    /// A plug-in or function failed, and points are NaN for it.
+    pub fn check(&self) -> Result<(), Error> {
+        guarded(&self.registry, || self.built.failure().map_or(Ok(()), |e| Err(e.into())))
     }
 
     /// Maps `from` to `to`, of the same length. Points outside of the map's domain become NaN.

@@ -1,6 +1,7 @@
 //! [`Warper`]: a recipe with its options, applied in memory.
 
 use super::error::{Error, guarded};
+use super::function::{Function, is_function};
 use super::{PointMap, check_option, meaning, option_names};
 use crate::edits::{self, EDITS};
 use crate::failure::Failure;
@@ -13,11 +14,12 @@ use crate::steps::{self, in_lower_case};
 use crate::{advice, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
-use pathwarp::deform::Registry;
+use pathwarp::deform::{Deformation as _, Info, Registry};
 use pathwarp::fit::{self, Degree};
 use pathwarp::fold::Survey;
 use pathwarp::kurbo::{PathEl, Rect};
-use pathwarp::param::{Args, Frame, Kind, Param};
+use pathwarp::map::{Abilities, Callee};
+use pathwarp::param::{Args, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit::{self, Assurance};
 use pathwarp_svg::{Edit, WarpedPath};
@@ -96,7 +98,38 @@ impl Warper {
             }
         }
         typed(name, info.params, values, &mut args)?;
-        Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
+        check_values(registry, info, &args)?;
+        let made = Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())?;
+        made.check_names()?;
+        Ok(made)
+    }
+
+    /// Checks the names of presets, which only the deformation itself knows in all their spellings.
+    fn check_names(&self) -> Result<(), Error> {
+        let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+        for step in &self.resolved.steps {
+            let Some(entry) = self.registry.get(&step.deformation) else { continue };
+            let is_name = |param: &str| {
+                entry.info().params.iter().any(|p| p.name == param && matches!(p.kind, Kind::NameOrFile(_)))
+            };
+            if step.args.iter().any(|(param, _)| is_name(param))
+                && let Err(error @ pathwarp::Error::Usage { .. }) = entry.build_from(&step.args, &frame)
+                && matches!(&error, pathwarp::Error::Usage { param, .. } if is_name(param))
+            {
+                return guarded(&self.registry, || Err(error.into()));
+            }
+        }
+        Ok(())
+    }
+
+    /// A function of the program around, given by its values at batches of points.
+    #[must_use]
+    pub fn from_function(registry: &Registry, callee: Arc<dyn Callee>, abilities: Abilities) -> Self {
+        let function = Function::new(callee, abilities);
+        let recipe = Recipe { steps: vec![Step::new(function.info().name, Args::new())] };
+        let (typed, given) = (recipe.clone(), Given::default());
+        let registry = registry.clone().with(function);
+        Self { registry, typed, resolved: recipe, given, inverted: false, stop: None }
     }
 
     /// An edit of shapes, as by the command of this name: `simplify`, `offset`, `unite`, `contour` or `outline`, with values as a user would type them.
@@ -108,6 +141,7 @@ impl Warper {
         let info = edits::info(name).ok_or_else(missing)?;
         let mut args = Args::new();
         typed(name, info.params, values, &mut args)?;
+        check_values(registry, info, &args)?;
         Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
     }
 
@@ -156,7 +190,8 @@ impl Warper {
         };
         let (typed, given) = joined(&self.typed, &later.typed);
         let (resolved, _) = joined(&self.resolved, &later.resolved);
-        Self { typed, resolved, given, inverted: self.inverted || later.inverted, ..self.clone() }
+        let registry = self.registry.joined(&later.registry);
+        Self { registry, typed, resolved, given, inverted: self.inverted || later.inverted, ..self.clone() }
     }
 
     /// The recipe that undoes this one. It needs the option `frame`, the box of the source, before it is used.
@@ -176,6 +211,11 @@ impl Warper {
         self.typed.steps.iter().map(|s| s.deformation.as_str())
     }
 
+    /// The deformations with their values as they were typed.
+    pub fn typed_steps(&self) -> impl Iterator<Item = &Step> {
+        self.typed.steps.iter()
+    }
+
     /// The value of the option `frame`, if it is given.
     #[must_use]
     pub fn frame(&self) -> Option<String> {
@@ -185,8 +225,11 @@ impl Warper {
     /// The text of a recipe file for `folder`.
     ///
     /// # Errors
-    /// The current folder cannot be read.
+    /// A step is a function of this program, which no file can describe, or the current folder cannot be read.
     pub fn to_recipe(&self, folder: &FilePath) -> Result<String, Error> {
+        if self.steps().any(is_function) {
+            return Err(Error::usage("a recipe file cannot hold a function of this program; write it as a plug-in"));
+        }
         guarded(&self.registry, || recipe_file::write(&self.registry, &self.typed, &self.given, folder))
     }
 
@@ -224,7 +267,7 @@ impl Warper {
                 }
             })?;
             // Points are mapped as often as the program around this likes.
-            Ok(PointMap::new(built.unlimited()))
+            Ok(PointMap::new(built, &self.registry))
         })
     }
 
@@ -299,6 +342,8 @@ impl Warper {
                 Some(Edit::Outline) => return Err(Failure::usage("a path has no stroke that could become an outline")),
                 Some(edit) => pathwarp_svg::edit_path(outline, edit, &refit, digits),
             };
+            // A map that has failed gives no numbers, which is not the geometry's fault.
+            built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;
             let path = path.map_err(pathwarp::Error::from)?;
             let survey = Survey::new(&built.map, repeated.bounding_box(), repeated.segs().count());
             let orientation = survey.orientation_of_copies(outline, copies, true);
@@ -370,6 +415,12 @@ fn typed(
         }
     }
     Ok(())
+}
+
+/// Checks values as far as they can be read without the artwork.
+fn check_values(registry: &Registry, info: &Info, args: &Args) -> Result<(), Error> {
+    let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+    guarded(registry, || Ok(Settings::new(info.params, args, &frame)?.check_values()?))
 }
 
 /// Describes a parameter that there is not. Options are often given beside parameters, so theirs may be meant.

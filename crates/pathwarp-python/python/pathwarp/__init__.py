@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import difflib
 import os
-from typing import Any, Dict, Mapping, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, Mapping, Tuple, Union
 
-from . import deform
+import numpy as np
+
+from . import _inputs, deform
 
 from ._catalog import Info, Parameter, deformations, find, options, python_name
 from ._deformation import Deformation, Frame, Steps, Warped, WarpedPath
@@ -45,12 +47,11 @@ __all__ = [
     "contour",
     "deform",
     "deformations",
+    "fit",
     "offset",
-    "offset_path",
     "options",
     "outline",
     "simplify",
-    "simplify_path",
     "unite",
     "use_threads",
     "warp_path",
@@ -93,37 +94,53 @@ def warp_svg(
     return chosen.warp_svg(svg, name=name, **given)
 
 
+def fit(
+    curve: Callable[[Any], Any], start: float, end: float, tolerance: float, /, *, corners: Iterable[float] = (), **options: Any
+) -> WarpedPath:
+    """Fits Bézier curves to a curve, within `tolerance`, and returns path data.
+
+    `curve` takes an array of parameters from `start` to `end`, and gives a pair of arrays, x and y, or an array of complex numbers.
+    `corners` are the parameters at which it has one. Options are those of a path, and `detail`: no feature takes a shorter interval.
+
+        >>> import numpy as np, pathwarp
+        >>> d = pathwarp.fit(lambda t: (np.cos(t), np.sin(t)), 0, 2 * np.pi, 1e-3, precision=4)
+        >>> d.count("C"), d.report["max_error"] <= 1e-3
+        (4, True)
+    """
+
+    def image(t: Any, _: Any) -> Any:
+        given = curve(t)
+        return (given.real, given.imag) if getattr(given, "dtype", np.dtype(float)).kind == "c" else given
+
+    detail = options.pop("detail", None)
+    shown = Deformation(image, creases=[(1.0, 0.0, -float(t)) for t in corners], detail=detail)
+    return shown.warp_path([(start, 0.0), (end, 0.0)], tolerance=tolerance, **options)
+
+
 def simplify(
-    svg: Any,
+    shapes: Any,
     /,
     *,
     corners: Any = None,
-    polylines: bool = False,
     name: Union[str, "os.PathLike[str]", None] = None,
     **options: Any,
-) -> Warped:
-    """Gives the paths of a drawing the fewest nodes within `tolerance`, as `pathwarp simplify` does, and returns the file.
+) -> Any:
+    """Gives the paths of a drawing the fewest nodes within `tolerance`, as `pathwarp simplify` does.
 
-    `svg` is what `warp_svg` takes. Joints that turn by more than `corners` degrees stay corners; without it, those for which no smooth curve
-    can stand within `tolerance`. `polylines` is no longer needed.
-    """
-    edit = Deformation._edit("simplify", {"corners": corners, "polylines": polylines})
-    return edit.warp_svg(svg, name=name, **options)
-
-
-def simplify_path(d: Any, /, *, corners: Any = None, polylines: bool = False, **options: Any) -> WarpedPath:
-    """The same for a path, given as for `warp_path`.
+    `shapes` is a drawing, as `warp_svg` takes it, and the file is returned; or a path, and one of its kind is returned: path data, a path of
+    svgpathtools or svgelements, or an array of points, which are then those of polylines within `tolerance`, with a row of NaN between
+    two. The other functions for shapes do so, too. Joints that turn by more than `corners` degrees stay corners; without it, those for
+    which no smooth curve can stand within `tolerance`.
 
         >>> import pathwarp
-        >>> pathwarp.simplify_path("M0,0 C5,0 10,.5 15,1.5 C20,2.5 25,4 30,6 L60,60", tolerance=0.1)
+        >>> pathwarp.simplify("M0,0 C5,0 10,.5 15,1.5 C20,2.5 25,4 30,6 L60,60", tolerance=0.1)
         'M0,0 C10.261,0 20.473,2.189 30,6 L60,60'
     """
-    edit = Deformation._edit("simplify", {"corners": corners, "polylines": polylines})
-    return edit.warp_path(d, **options)
+    return _edited("simplify", {"corners": corners}, shapes, name, options)
 
 
 def offset(
-    svg: Any,
+    shapes: Any,
     by: Any,
     /,
     *,
@@ -131,17 +148,12 @@ def offset(
     side: str = "outside",
     name: Union[str, "os.PathLike[str]", None] = None,
     **options: Any,
-) -> Warped:
-    """Lets areas of a drawing grow or shrink by a distance (`2`, `"2mm"`), and lines run beside themselves, as `pathwarp offset` does.
+) -> Any:
+    """Lets areas of a drawing or path grow or shrink by a distance (`2`, `"2mm"`), and lines run beside themselves, as `pathwarp offset` does.
 
-    `join` is round, miter or bevel, `side` outside, inside or both.
+    `join` is round, miter or bevel, `side` outside, inside or both. `shapes` and the result are as those of `simplify`.
     """
-    return Deformation._edit("offset", {"by": by, "join": join, "side": side}).warp_svg(svg, name=name, **options)
-
-
-def offset_path(d: Any, by: Any, /, *, join: str = "round", side: str = "outside", **options: Any) -> WarpedPath:
-    """The same for a path, given as for `warp_path`."""
-    return Deformation._edit("offset", {"by": by, "join": join, "side": side}).warp_path(d, **options)
+    return _edited("offset", {"by": by, "join": join, "side": side}, shapes, name, options)
 
 
 def outline(svg: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **options: Any) -> Warped:
@@ -150,23 +162,40 @@ def outline(svg: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, *
 
 
 def unite(
-    svg: Any, /, *, by: str = "all", name: Union[str, "os.PathLike[str]", None] = None, **options: Any
-) -> Warped:
-    """Makes one shape of those of a drawing that overlap or touch, as `pathwarp unite` does; by "fill", one for each paint."""
-    return Deformation._edit("unite", {"by": by}).warp_svg(svg, name=name, **options)
+    shapes: Any, /, *, by: str = "all", name: Union[str, "os.PathLike[str]", None] = None, **options: Any
+) -> Any:
+    """Makes one shape of those of a drawing or path that overlap or touch, as `pathwarp unite` does; by "fill", one for each paint.
+
+    `shapes` and the result are as those of `simplify`.
+    """
+    return _edited("unite", {"by": by}, shapes, name, options)
 
 
-def contour(
-    svg: Any, by: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **values: Any
-) -> Warped:
-    """Draws one line around all that is visible of a drawing, at a distance (`"3mm"`), as `pathwarp contour` does.
+def contour(shapes: Any, by: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **values: Any) -> Any:
+    """Draws one line around all that is visible of a drawing or path, at a distance (`"3mm"`), as `pathwarp contour` does.
 
-    `values` are its parameters `holes`, `join`, `only`, `spot`, `knockout`, `bleed` and `marks`, and options.
+    `values` are its parameters `holes`, `join`, `only`, `spot`, `knockout`, `bleed` and `marks`, and options. `shapes` and the result are
+    as those of `simplify`.
     """
     known = options()
     given = {name: value for name, value in values.items() if name in known}
     parameters = {name: value for name, value in values.items() if name not in known}
-    return Deformation._edit("contour", {"by": by, **parameters}).warp_svg(svg, name=name, **given)
+    return _edited("contour", {"by": by, **parameters}, shapes, name, given)
+
+
+def _edited(
+    edit: str, values: Mapping[str, Any], shapes: Any, name: Union[str, "os.PathLike[str]", None], options: Mapping[str, Any]
+) -> Any:
+    """A drawing edited, or a path of the kind that was given."""
+    made = Deformation._edit(edit, values)
+    if not _inputs.is_path(shapes):
+        return made.warp_svg(shapes, name=name, **options)
+    path = made.warp_path(shapes, **options)
+    try:
+        tolerance = float(options.get("tolerance", 0)) or _inputs.size(path) * 1e-4
+    except (TypeError, ValueError):
+        tolerance = _inputs.size(path) * 1e-4
+    return _inputs.like(shapes, path, tolerance)
 
 
 def _divided(deformation: Steps, values: Mapping[str, Any]) -> Tuple[Deformation, Dict[str, Any]]:
@@ -174,7 +203,7 @@ def _divided(deformation: Steps, values: Mapping[str, Any]) -> Tuple[Deformation
     known = options()
     given = {name: value for name, value in values.items() if name in known}
     parameters = {name: value for name, value in values.items() if name not in known}
-    if isinstance(deformation, str):
+    if isinstance(deformation, str) or (callable(deformation) and not isinstance(deformation, Deformation)):
         return Deformation(deformation, **parameters), given
     if parameters:
         name = next(iter(parameters))

@@ -9,15 +9,17 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Seque
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _inputs, _native, _show, _values
+from . import _functions, _inputs, _native, _show, _values
+from ._catalog import find
 from ._errors import InputError, PathwarpError, UsageError, in_python
+from ._functions import Function
 from ._reports import PathReport, Report
 
 Frame = Union[str, Sequence[float]]
 """A box: (x, y, width, height), or one of the names that the option `frame` has on the command line."""
 
-Steps = Union[str, "Deformation", "os.PathLike[str]", Sequence[Union[str, "Deformation"]]]
-"""A deformation, the name of one, the file of a recipe (as a Path), or a list of deformations."""
+Steps = Union[str, "Deformation", Function, "os.PathLike[str]", Sequence[Union[str, "Deformation", Function]]]
+"""A deformation, the name of one, a function of x and y, the file of a recipe (as a Path), or a list of deformations."""
 
 
 class WarpedPath(str):
@@ -70,13 +72,48 @@ class Deformation:
     lists of points, or paths of svgpathtools. `frame` is the box that percentages refer to, (x, y, width, height); without it, that
     is the bounding box of what is bent.
 
+    A function is a deformation, too: `Deformation(lambda x, y: (x, y + 5 * np.sin(x / 9)))`. It is called with two arrays, x and y, and
+    gives a pair of arrays. `jacobian(x, y)` may give the derivatives, ((∂x'/∂x, ∂x'/∂y), (∂y'/∂x, ∂y'/∂y)); without it they are
+    differences. `inverse(x, y)` leads back. `creases` are lines and circles at which it has a kink, in user units: `(a, b, c)` for
+    a·x + b·y + c = 0, or `"circle X Y R"`; `"edge line A B C"` ends its domain where that is negative. `detail` is the size of its
+    smallest feature, a quarter of its shortest wave; without it, reports say that curves were sampled. NaN is no image. An exception of
+    the function comes out as it was raised.
+
+    `plugins` are files of plug-ins that may have the name; those of the user's folder are known.
+
     `a + b` applies a, then b. Deformations are immutable, and can be pickled: file names in them are kept, not the files.
     """
 
-    __slots__ = ("_warper", "_options")
+    __slots__ = ("_warper", "_options", "_made")
 
-    def __init__(self, name: str, /, *, frame: Optional[Frame] = None, **parameters: Any) -> None:
-        self._warper = _native.Warper(name, _values.parameters(name, parameters))
+    def __init__(
+        self,
+        name: Union[str, Function],
+        /,
+        *,
+        frame: Optional[Frame] = None,
+        plugins: Iterable[Union[str, "os.PathLike[str]"]] = (),
+        jacobian: Optional[Function] = None,
+        inverse: Optional[Function] = None,
+        creases: Any = None,
+        detail: Optional[float] = None,
+        **parameters: Any,
+    ) -> None:
+        of_function = {"jacobian": jacobian, "inverse": inverse, "creases": creases, "detail": detail}
+        self._made: Optional[Tuple[Any, ...]] = None
+        if isinstance(name, str):
+            given = {**parameters, **{key: value for key, value in of_function.items() if value is not None}}
+            files = [os.fspath(p) for p in plugins]
+            self._warper = _native.Warper(name, _values.parameters(name, given), files)
+            if files:
+                self._made = (Deformation, (name,), {**given, "plugins": files})
+        elif callable(name) and not isinstance(name, Deformation):
+            if parameters:
+                raise UsageError(f"`{next(iter(parameters))}` is a parameter, which a function does not have")
+            self._warper = _functions.warper(name, jacobian, inverse, creases, detail)
+            self._made = (Deformation, (name,), of_function)
+        else:
+            raise TypeError(f"a deformation is a name or a function of x and y, not {type(name).__name__}")
         self._options: List[Tuple[str, str]] = []
         if frame is not None:
             self._add({"frame": frame})
@@ -90,6 +127,10 @@ class Deformation:
             return cls(steps)
         if isinstance(steps, os.PathLike):
             return cls.from_recipe(steps)
+        if callable(steps):
+            return cls(steps)
+        if not isinstance(steps, Iterable):
+            raise TypeError(f"a deformation is a name, a Deformation, a function or a list of them, not {type(steps).__name__}")
         chained = [cls.chain(s) for s in steps]
         if not chained:
             raise UsageError("a list of deformations is empty")
@@ -124,14 +165,17 @@ class Deformation:
         """The text of a recipe file in `folder`, for `pathwarp run`."""
         return self._warper.to_recipe(os.fspath(folder))
 
-    def __add__(self, later: Union[str, "Deformation"]) -> "Deformation":
-        if not isinstance(later, (str, Deformation)):
+    def __add__(self, later: Union[str, "Deformation", Function]) -> "Deformation":
+        if not isinstance(later, (str, Deformation)) and not callable(later):
             return NotImplemented
         other = Deformation.chain(later)
-        return self._of(self._warper.then(other._warper), self._options + other._options)
+        joined = self._of(self._warper.then(other._warper), self._options + other._options)
+        if self._made or other._made:
+            joined._made = (Deformation.chain, ([self, other],), {})
+        return joined
 
-    def __radd__(self, earlier: str) -> "Deformation":
-        return Deformation(earlier) + self if isinstance(earlier, str) else NotImplemented
+    def __radd__(self, earlier: Union[str, Function]) -> "Deformation":
+        return Deformation(earlier) + self if isinstance(earlier, str) or callable(earlier) else NotImplemented
 
     @property
     def steps(self) -> List[str]:
@@ -140,7 +184,7 @@ class Deformation:
 
     def with_options(self, **options: Any) -> "Deformation":
         """The same with options of the command line: `frame`, `tolerance`, `strokes`… `pathwarp.options()` lists them."""
-        changed = self._of(self._warper, list(self._options))
+        changed = self._of(self._warper, list(self._options), self._made)
         changed._add(options)
         return changed
 
@@ -155,7 +199,8 @@ class Deformation:
                 "an inverse does not know the box of the source, which percentages and defaults refer to: "
                 "give it (frame=(x, y, width, height))"
             )
-        return self._of(framed._warper.inverted(), framed._options)
+        made = framed._made and (Deformation.inverse, (framed,), {})
+        return self._of(framed._warper.inverted(), framed._options, made)
 
     @overload
     def map(self, points: complex, *, out: None = None) -> complex: ...  # type: ignore[overload-overlap]
@@ -220,7 +265,7 @@ class Deformation:
         not name outputs: `tolerance`, `strokes`, `fit`, `format="pdf"`… `pathwarp.options()` lists them with their help.
         """
         (done,) = self.warp_svgs([svg], names=None if name is None else [name], **options)
-        if isinstance(done, PathwarpError):
+        if isinstance(done, Exception):
             raise done
         return done
 
@@ -232,7 +277,7 @@ class Deformation:
         names: Optional[Iterable[Union[str, "os.PathLike[str]"]]] = None,
         progress: Optional[Callable[[int], object]] = None,
         **options: Any,
-    ) -> List[Union[Warped, PathwarpError]]:
+    ) -> List[Union[Warped, Exception]]:
         """Warps many drawings, on all processors, and returns the results in their order, each as by `warp_svg`.
 
         In place of a drawing that cannot be warped stands the exception, so one bad file does not stop the others. `progress` is called
@@ -244,7 +289,7 @@ class Deformation:
         named: List[Any] = [None] * len(given) if names is None else list(names)
         if len(named) != len(given):
             raise UsageError(f"names: has {len(named)} entries for {len(given)} drawings")
-        results: List[Union[Warped, PathwarpError, None]] = [None] * len(given)
+        results: List[Union[Warped, Exception, None]] = [None] * len(given)
         read: List[Tuple[int, bytes, Optional[str]]] = []
         for i, (drawing, name) in enumerate(zip(given, named)):
             try:
@@ -255,32 +300,44 @@ class Deformation:
         unread = len(given) - len(read)
         tell = progress and (lambda done: progress(unread + done))
         done = self._with(options).warp_drawings([(content, name) for _, content, name in read], tell)
-        for (i, _, _), result in zip(read, done):
+        for (i, _, file), result in zip(read, done):
             results[i] = _warped(result)
+            if isinstance(result, Exception) and not isinstance(result, PathwarpError):
+                _note(result, f"in a function of pathwarp, while it warped {file or f'drawing {i + 1}'}")
         return [r for r in results if r is not None]
 
     def _repr_svg_(self) -> Optional[str]:
         return _show.grid(self)
 
     def __repr__(self) -> str:
-        return f"<pathwarp.Deformation {' + '.join(self.steps)}>"
+        steps = " + ".join(_shown(*step) for step in self._warper.typed)
+        options = ", ".join(f"{name.replace('-', '_')}={_value([value])}" for name, value in self._options)
+        several = "(" if len(self.steps) > 1 else ""
+        return f"{several}{steps}{')' if several else ''}.with_options({options})" if options else steps
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Deformation):
             return NotImplemented
+        if self._made or other._made:
+            return self._made == other._made and self._options == other._options
         return self._options == other._options and self.to_recipe() == other.to_recipe()
 
     def __hash__(self) -> int:
-        return hash(self.to_recipe())
+        return hash(tuple(self.steps) if self._made else self.to_recipe())
 
     def __reduce__(self) -> Tuple[Any, ...]:
+        if self._made:
+            return _made_again, (self._made, self._options)
         return _unpickled, (self.to_recipe(), os.getcwd(), self._options)
 
     @classmethod
-    def _of(cls, warper: _native.Warper, options: List[Tuple[str, str]]) -> "Deformation":
-        made = cls.__new__(cls)
-        made._warper, made._options = warper, options
-        return made
+    def _of(
+        cls, warper: _native.Warper, options: List[Tuple[str, str]], made: Optional[Tuple[Any, ...]] = None
+    ) -> "Deformation":
+        """`made` is the call that makes it, if a recipe cannot tell: of functions, and of plug-ins in files."""
+        of = cls.__new__(cls)
+        of._warper, of._options, of._made = warper, options, made
+        return of
 
     def _add(self, options: Dict[str, Any]) -> None:
         pairs = _values.options(options)
@@ -291,8 +348,44 @@ class Deformation:
         return self._warper.with_options(_values.options(options)) if options else self._warper
 
 
-def _warped(result: Union[Tuple[bytes, str, List[str], List[str]], PathwarpError]) -> Union[Warped, PathwarpError]:
-    if isinstance(result, PathwarpError):
+def _note(error: Exception, note: str) -> None:
+    """Adds a line below the error's own, which Python shows from version 3.11 on."""
+    notes = getattr(error, "__notes__", [])
+    error.__notes__ = [*notes, note]  # type: ignore[attr-defined]
+
+
+def _shown(name: str, values: List[Tuple[str, List[str]]], inverse: bool) -> str:
+    """A step as it would be written."""
+    if name.startswith("function #"):
+        name = "function"
+    info = find(name)
+    order = [p.name.rstrip("_").replace("_", "-") for p in info.parameters] if info else []
+    values = sorted(values, key=lambda v: order.index(v[0]) if v[0] in order else len(order))
+    arguments = [repr(name), *(f"{key.replace('-', '_')}={_value(texts)}" for key, texts in values)]
+    return f"Deformation({', '.join(arguments)})" + (".inverse()" if inverse else "")
+
+
+def _value(texts: List[str]) -> str:
+    def one(text: str) -> str:
+        try:
+            return repr(float(text)) if "." in text or "e" in text.lower() else repr(int(text))
+        except ValueError:
+            return {"true": "True", "false": "False"}.get(text, repr(text))
+
+    return one(texts[0]) if len(texts) == 1 else f"[{', '.join(map(one, texts))}]"
+
+
+def _made_again(made: Tuple[Any, ...], options: List[Tuple[str, str]]) -> Deformation:
+    call, arguments, named = made
+    again: Deformation = call(*arguments, **named)
+    # The deformations in it have brought their options.
+    later = options[len(again._options) :]
+    again._warper, again._options = again._warper.with_options(later), list(options)
+    return again
+
+
+def _warped(result: Union[Tuple[bytes, str, List[str], List[str]], Exception]) -> Union[Warped, Exception]:
+    if isinstance(result, Exception):
         return result
     content, report, warnings, notes = result
     made = Warped(content)

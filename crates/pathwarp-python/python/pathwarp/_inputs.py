@@ -8,11 +8,12 @@ import re
 import struct
 import sys
 import zlib
-from typing import Any, Optional, Tuple
+from typing import Any, List, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _native
 from ._errors import InputError, UsageError
 
 DRAWINGS = "bytes, text, the name of a file, an open file, an element of ElementTree or lxml, or an array of pixels"
@@ -162,6 +163,71 @@ def path(given: Any) -> str:
         return given
     points, _ = coordinates(given, "d")
     return "M" + " ".join(f"{x!r},{y!r}" for x, y in points.tolist())
+
+
+def is_path(given: Any) -> bool:
+    """It is a path, where a drawing may stand, too."""
+    if isinstance(given, str):
+        return bool(_PATH_DATA.match(given))
+    if callable(getattr(given, "d", None)):
+        return True
+    array = np.asarray(given) if isinstance(given, (list, tuple, np.ndarray)) else np.zeros(0, np.uint8)
+    return array.dtype.kind == "c" or (array.ndim == 2 and array.shape[1] == 2 and array.dtype.kind in "fi")
+
+
+def like(given: Any, data: str, tolerance: float) -> Any:
+    """Path data as what was given: text, a path of svgpathtools or svgelements, or points."""
+    if isinstance(given, (str, bytes)) or hasattr(given, "tag"):
+        return data
+    if callable(getattr(given, "d", None)):
+        package = type(given).__module__.split(".")[0]
+        if package == "svgpathtools":
+            return sys.modules["svgpathtools"].parse_path(str(data))
+        made = getattr(sys.modules[package], "Path", type(given))
+        return made(str(data))
+    points = _flattened(data, tolerance)
+    return points[:, 0] + 1j * points[:, 1] if np.asarray(given).dtype.kind == "c" else points
+
+
+def size(data: str) -> float:
+    """The diagonal of the box of path data, above 0."""
+    box = _native.path_box(data) or [0.0, 0.0, 0.0, 0.0]
+    return float(np.hypot(box[2], box[3])) or 1.0
+
+
+def _flattened(data: str, tolerance: float) -> NDArray[np.float64]:
+    """The corners of polylines within a distance of path data; a row of NaN stands between two."""
+    verbs, coordinates = _native.path_verbs(data)
+    points = coordinates.reshape(-1, 2)
+    out: List[NDArray[np.float64]] = []
+    first = last = np.zeros(2)
+    at = 0
+    for verb in verbs:
+        count = {"M": 1, "L": 1, "Q": 2, "C": 3, "Z": 0}[verb]
+        p = points[at : at + count]
+        at += count
+        if verb == "M":
+            out += [np.full((1, 2), np.nan)] if out else []
+            first = p[0]
+        elif verb == "Z":
+            p = first[np.newaxis] if np.any(first != last) else p
+        elif count > 1:
+            p = _curve(np.concatenate([last[np.newaxis], p]), tolerance)
+        out.append(p)
+        last = p[-1] if len(p) else last
+    return np.concatenate(out) if out else np.zeros((0, 2))
+
+
+def _curve(control: NDArray[np.float64], tolerance: float) -> NDArray[np.float64]:
+    """Points of a Bézier curve after its first: a chord is at most max|B''|/8 n² away."""
+    degree = len(control) - 1
+    bend = degree * (degree - 1) * np.hypot(*np.diff(control, 2, axis=0).T).max()
+    n = int(np.clip(np.ceil(np.sqrt(bend / (8 * tolerance))), 1, 10_000))
+    t = np.linspace(0, 1, n + 1)[1:, np.newaxis]
+    layers = control[:, np.newaxis] + 0 * t
+    for _ in range(degree):
+        layers = layers[:-1] * (1 - t) + layers[1:] * t
+    return np.asarray(layers[0])
 
 
 def coordinates(given: Any, name: str = "points") -> Tuple[NDArray[np.float64], Optional[Tuple[int, ...]]]:

@@ -34,7 +34,9 @@ def _function(info: Info, preset: Optional[str]) -> Callable[..., Deformation]:
 
 def _doc(info: Info, preset: Optional[str], own: list[Any]) -> str:
     title = f"{info.title}: {preset}." if preset else f"{info.title}."
-    lines = [title[0].upper() + title[1:], "", *textwrap.wrap(info.about, 100), ""]
+    about = [part for line in info.about.split("\n") for part in (textwrap.wrap(line, 100) or [""])]
+    examples = [line for command in info.examples for line in ("", f"    {command}")]
+    lines = [title[0].upper() + title[1:], "", *about, "", "On the command line:", *examples, ""]
     for p in own:
         default = f" Default: {p.default}." if p.default else ""
         lines.append(f"{p.name} ({p.kind})")

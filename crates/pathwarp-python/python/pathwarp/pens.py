@@ -2,6 +2,11 @@
 
 Whole contours are bent when a glyph is complete, so call `flush` at the end, or use the pen as a context manager:
 
+    from fontTools.pens.ttGlyphPen import TTGlyphPen
+    from fontTools.ttLib import TTFont
+    from pathwarp import Deformation
+    from pathwarp.pens import WarpPen
+    font = TTFont("font.ttf")
     glyphs, arc = font.getGlyphSet(), Deformation("arc", bend=0.4, frame=(0, -700, 600, 700))
     out = TTGlyphPen(None)
     with WarpPen(out, arc, glyphs, tolerance=1) as pen:

@@ -3,7 +3,7 @@
 use super::options::Edit;
 use super::united::FINE;
 use crate::source::number::{MAX_DECIMALS, arcs_data, path_data, path_data_by};
-use pathwarp::edit::Area;
+use pathwarp::edit::{Area, Offset, OpenPaths};
 use pathwarp::kurbo::{BezPath, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Class, Map};
 use pathwarp::outline::{EllipticArc, Subpath};
@@ -36,6 +36,12 @@ pub fn edit_path(
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
+    // Nothing says what is filled: what returns to its start is an area, and the rest are lines.
+    let outline = &returning_closed(outline);
+    let edit = match edit {
+        Edit::Offset(offset) => Edit::Offset(Offset { open: OpenPaths::Move, ..offset }),
+        other => other,
+    };
     if let Edit::Unite { .. } = edit {
         let area = Area::of(outline, false, FINE * options.tolerance)?.with_gaps_closed(options.tolerance, outline);
         let one = area.with_arcs_of(outline, FINE * options.tolerance);
@@ -50,6 +56,15 @@ pub fn edit_path(
     }
     let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
     Ok(WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report })
+}
+
+/// Closes the subpaths that return to their start.
+fn returning_closed(outline: &Outline) -> Outline {
+    let mut outline = outline.clone();
+    for sub in &mut outline.subpaths {
+        sub.closed |= sub.segs.len() > 1 && sub.end() == sub.start;
+    }
+    outline
 }
 
 /// Maps a path and writes its image as path data, as [`Document::warp`](crate::Document::warp) writes that of a `<path>` in root

@@ -1,7 +1,7 @@
 //! A deformation as the registry sees it: the trait [`Deformation`] and the data that describes one.
 
 use crate::error::Error;
-use crate::map::Map;
+use crate::map::{Called, Map};
 use crate::param::{Args, Frame, Param, Settings};
 use kurbo::{Affine, BezPath, Point};
 use std::fmt;
@@ -335,6 +335,18 @@ impl Built {
             undefined: None,
             failure: None,
         }
+    }
+
+    /// Wraps the map of a program or function; `nothing` explains a place where it gives no numbers.
+    #[must_use]
+    pub fn called(map: Called, nothing: &'static str) -> Self {
+        let (values, state) = (map.clone(), map.clone());
+        let mut built = Self::new(Arc::new(map));
+        if values.is_partial() {
+            built.undefined = Some(Arc::new(move |p| (!values.point(p).is_finite()).then(|| nothing.to_owned())));
+        }
+        built.failure = Some(Arc::new(move || state.failure()));
+        built
     }
 
     /// Adds a note.

@@ -37,6 +37,13 @@ impl Registry {
         self
     }
 
+    /// Returns this registry with the entries of another whose names it lacks.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        let lacks = |e: &&Arc<dyn Deformation>| self.get(e.info().name).is_none();
+        Self::new(self.entries.iter().chain(other.entries.iter().filter(lacks)).cloned().collect())
+    }
+
     /// Returns all entries, in menu order.
     #[must_use]
     pub fn entries(&self) -> &[Arc<dyn Deformation>] {

@@ -46,6 +46,31 @@ impl<'a> Settings<'a> {
         Ok(Self { params, args, frame, any_range: false })
     }
 
+    /// Checks the values that can be read without knowing the artwork: numbers, counts, angles, points, words and switches, and the
+    /// notation of lengths.
+    ///
+    /// # Errors
+    /// [`Error::Usage`], naming the parameter.
+    pub fn check_values(&self) -> Result<(), Error> {
+        for (name, values) in self.args.iter() {
+            let kind = self.params.iter().find(|p| p.name == name).map(|p| p.kind);
+            for value in values {
+                let one = Args::from_pairs(&[(name, value.as_str())]);
+                let any_range = matches!(kind, Some(Kind::Length(_)));
+                let alone = Settings { params: self.params, args: &one, frame: self.frame, any_range };
+                match kind {
+                    Some(Kind::Flag) => drop(alone.flag(name)?),
+                    Some(Kind::Number | Kind::Count | Kind::Angle | Kind::Length(_)) => drop(alone.number_if(name)?),
+                    Some(Kind::Numbers(_)) => drop(alone.numbers_if(name)?),
+                    Some(Kind::Point) => drop(alone.point(name)?),
+                    Some(Kind::Choice(_)) => drop(alone.choice(name)?),
+                    _ => {}
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// The defaults alone, whether or not the frame makes lengths of them that are in range. `args` is empty.
     pub(crate) fn defaults(params: &'a [Param], args: &'a Args, frame: &'a Frame) -> Self {
         Self { params, args, frame, any_range: true }

@@ -1,46 +1,120 @@
-//! A map whose values come from a program.
+//! Maps whose values come from elsewhere, many points at a time: from another program, or a function of another language.
 
-use crate::answer::{Ask, jet, point};
-use crate::fault::Fault;
-use crate::session::{Instance, Program};
-use pathwarp::kurbo::{Point, Rect, Vec2};
-use pathwarp::map::{Batches, Cost, Creases, Images, Jet, Map};
+use super::{Batches, Cost, Creases, Images, Jet, Map};
+use crate::Error;
+use kurbo::{Point, Rect, Vec2};
 use std::borrow::Cow;
+use std::f64::consts::TAU;
+use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// What a program can answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Abilities {
-    pub(crate) jacobian: bool,
-    pub(crate) inverse: bool,
-    /// Whether it may answer NaN where its map is undefined.
-    pub(crate) partial: bool,
+/// The kind of a question to a [`Callee`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ask {
+    /// Values: x' and y' for each point.
+    Points,
+    /// Values with both partial derivatives: x', y', ∂x'/∂x, ∂y'/∂x, ∂x'/∂y and ∂y'/∂y for each point.
+    Jets,
+    /// Values of the inverse: x and y for each point.
+    Inverse,
 }
 
-/// A map that a program has built. Once the program has failed, all values are NaN.
+impl Ask {
+    /// Returns the number of numbers in the answer for one point.
+    #[must_use]
+    pub fn numbers(self) -> usize {
+        if self == Self::Jets { 6 } else { 2 }
+    }
+}
+
+/// A program or function that gives the values of a map.
+pub trait Callee: Send + Sync {
+    /// Answers for some points, all of which are finite: [`Ask::numbers`] numbers for each. Only what its [`Abilities`] name is asked.
+    ///
+    /// # Errors
+    /// The callee failed. The map is undefined everywhere from then on, and its failure is this error.
+    fn ask(&self, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Error>;
+
+    /// Answers for the values at `points` and the jets at `others`, neither of them empty.
+    ///
+    /// # Errors
+    /// As [`ask`](Self::ask).
+    fn ask_both(&self, points: &[Point], others: &[Point]) -> Result<[Vec<f64>; 2], Error> {
+        Ok([self.ask(Ask::Points, points)?, self.ask(Ask::Jets, others)?])
+    }
+
+    /// Returns the error that an answer for `at`, within the domain, is not finite.
+    fn not_finite(&self, at: Point) -> Error;
+
+    /// Returns the work of asking for one point, in evaluations of a net.
+    fn work(&self) -> f64 {
+        2.0
+    }
+}
+
+/// The abilities of a [`Callee`], and what is known of its map.
+#[derive(Debug, Clone, Default)]
+pub struct Abilities {
+    /// It answers [`Ask::Jets`]. Without them, derivatives are differences of values.
+    pub jacobian: bool,
+    /// It answers [`Ask::Inverse`].
+    pub inverse: bool,
+    /// It may answer NaN where its map is undefined.
+    pub partial: bool,
+    /// The creases of its map.
+    pub creases: Creases,
+    /// The size of the smallest feature of its map; see [`Map::detail`].
+    pub detail: Option<f64>,
+}
+
+/// The map of a [`Callee`]. Once that has failed, all values are NaN.
 #[derive(Clone)]
-pub(crate) struct ProgramMap {
-    pub(crate) program: Arc<Program>,
-    pub(crate) instance: Arc<Instance>,
-    pub(crate) abilities: Abilities,
-    pub(crate) creases: Creases,
-    pub(crate) detail: Option<f64>,
+pub struct Called {
+    callee: Arc<dyn Callee>,
+    abilities: Abilities,
     /// The frame's diagonal.
-    pub(crate) size: f64,
-    pub(crate) failed: Arc<OnceLock<Fault>>,
+    size: f64,
+    failed: Arc<OnceLock<Error>>,
 }
 
-impl ProgramMap {
-    /// The program's answers, or `None` if it has failed.
-    fn answers<T>(&self, answers: impl FnOnce(&Program) -> Result<T, Fault>) -> Option<T> {
+impl fmt::Debug for Called {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Called")
+            .field("abilities", &self.abilities)
+            .field("failed", &self.failed)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Called {
+    /// Returns the map of a callee for artwork whose box has the diagonal `size`, in user units.
+    #[must_use]
+    pub fn new(callee: Arc<dyn Callee>, abilities: Abilities, size: f64) -> Self {
+        Self { callee, abilities, size: size.max(f64::MIN_POSITIVE), failed: Arc::default() }
+    }
+
+    /// Returns the error with which the callee failed; `None` while it has not.
+    #[must_use]
+    pub fn failure(&self) -> Option<Error> {
+        self.failed.get().cloned()
+    }
+
+    /// Returns `true` if the map may be undefined at places that only its values tell.
+    #[must_use]
+    pub fn is_partial(&self) -> bool {
+        self.abilities.partial
+    }
+
+    /// Returns the callee's answers, or `None` if it has failed.
+    fn answers<T>(&self, answers: impl FnOnce(&dyn Callee) -> Result<T, Error>) -> Option<T> {
         if self.failed.get().is_some() {
             return None;
         }
         // The first error wins.
-        answers(&self.program).map_err(|fault| self.failed.set(fault)).ok()
+        answers(self.callee.as_ref()).map_err(|error| self.failed.set(error)).ok()
     }
 
-    /// Writes the answers for the finite points among `ps`. The others stay undefined, as do all once the program has failed.
+    /// Writes the answers for the finite points among `ps`. The others stay undefined, as do all once the callee has failed.
     fn write<const N: usize, T: Clone>(
         &self,
         ask: Ask,
@@ -50,9 +124,9 @@ impl ProgramMap {
     ) {
         let places = ps.iter().zip(out).filter(|(p, _)| p.is_finite());
         for ((p, o), answer) in places.zip(numbers.as_chunks::<N>().0) {
-            let defined = ask != Ask::Inverse && !self.abilities.partial && self.creases.defined_at(*p);
+            let defined = ask != Ask::Inverse && !self.abilities.partial && self.abilities.creases.defined_at(*p);
             if defined && answer.iter().any(|v| !v.is_finite()) {
-                let _ = self.failed.set(Fault::NotFinite(p.x, p.y));
+                let _ = self.failed.set(self.callee.not_finite(*p));
                 return;
             }
             *o = read(answer);
@@ -62,22 +136,30 @@ impl ProgramMap {
     fn points_by(&self, ask: Ask, ps: &[Point], out: &mut [Point]) {
         out.fill(UNDEFINED);
         let finite = finite(ps);
-        if let (false, Some(numbers)) =
-            (finite.is_empty(), self.answers(|program| program.ask(&self.instance, ask, &finite)))
-        {
+        if let (false, Some(numbers)) = (finite.is_empty(), self.answers(|callee| callee.ask(ask, &finite))) {
             self.write(ask, (ps, out), &numbers, point);
         }
     }
 
-    /// The map as it is on the side of `inside` of every crease.
+    /// Returns the map as it is on the side of `inside` of every crease.
     fn beside(&self, inside: Point) -> Beside {
         Beside { map: self.clone(), inside }
     }
 }
 
+/// Reads a point from two numbers of an answer.
+fn point(&[x, y]: &[f64; 2]) -> Point {
+    Point::new(x, y)
+}
+
+/// Reads a jet from six numbers of an answer: F, ∂F/∂x, ∂F/∂y.
+fn jet(&[x, y, xx, xy, yx, yy]: &[f64; 6]) -> Jet {
+    Jet { p: Point::new(x, y), dx: Vec2::new(xx, xy), dy: Vec2::new(yx, yy) }
+}
+
 const UNDEFINED: Point = Point::new(f64::NAN, f64::NAN);
 
-/// The finite points. The program is not asked for others.
+/// The finite points. The callee is not asked for others.
 fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
     if ps.iter().all(|p| p.is_finite()) {
         Cow::Borrowed(ps)
@@ -86,7 +168,7 @@ fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
     }
 }
 
-impl Map for ProgramMap {
+impl Map for Called {
     fn jet(&self, p: Point) -> Jet {
         let mut out = [Jet::UNDEFINED];
         self.jets(&[p], &mut out);
@@ -112,21 +194,21 @@ impl Map for ProgramMap {
     }
 
     fn cost(&self) -> Cost<'_> {
-        Cost::new(self.program.work()).batched(self)
+        Cost::new(self.callee.work()).batched(self)
     }
 
     fn creases(&self, out: &mut Creases) {
-        for crease in self.creases.items() {
+        for crease in self.abilities.creases.items() {
             out.push(crease.clone());
         }
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        (!self.creases.items().is_empty()).then(|| Arc::new(self.beside(inside)) as Arc<dyn Map>)
+        (!self.abilities.creases.items().is_empty()).then(|| Arc::new(self.beside(inside)) as Arc<dyn Map>)
     }
 
     fn detail(&self, _area: Rect) -> Option<f64> {
-        self.detail
+        self.abilities.detail
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -134,7 +216,7 @@ impl Map for ProgramMap {
     }
 }
 
-impl Batches for ProgramMap {
+impl Batches for Called {
     fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
         if !self.abilities.jacobian {
             self.points(ps, images);
@@ -143,11 +225,11 @@ impl Batches for ProgramMap {
         images.fill(UNDEFINED);
         jets.fill(Jet::UNDEFINED);
         let (points, others) = (finite(ps), finite(qs));
-        let answers = self.answers(|program| match (points.is_empty(), others.is_empty()) {
+        let answers = self.answers(|callee| match (points.is_empty(), others.is_empty()) {
             (true, true) => Ok([Vec::new(), Vec::new()]),
-            (false, true) => Ok([program.ask(&self.instance, Ask::Points, &points)?, Vec::new()]),
-            (true, false) => Ok([Vec::new(), program.ask(&self.instance, Ask::Jets, &others)?]),
-            (false, false) => program.ask_both(&self.instance, [&points, &others]),
+            (false, true) => Ok([callee.ask(Ask::Points, &points)?, Vec::new()]),
+            (true, false) => Ok([Vec::new(), callee.ask(Ask::Jets, &others)?]),
+            (false, false) => callee.ask_both(&points, &others),
         });
         if let Some([values, derivatives]) = answers {
             self.write(Ask::Points, (ps, images), &values, point);
@@ -160,28 +242,61 @@ impl Batches for ProgramMap {
     }
 }
 
-/// The map on one side of its creases. The program does not know the side, so points on a crease are moved slightly towards `inside`.
+/// The map on one side of its creases. The callee does not know the side, so points on a crease are moved slightly towards `inside`, and
+/// differences beside one are one-sided.
 struct Beside {
-    map: ProgramMap,
+    map: Called,
     inside: Point,
 }
 
 impl Beside {
-    /// Fraction of the way by which a point is moved, well above rounding and invisibly small.
-    const AWAY: f64 = 1e-9;
-
     /// Distance within which rounding may put a point on either side of a crease, as a fraction of the frame.
     const NEAR: f64 = 1e-11;
 
     fn moved(&self, p: Point) -> Point {
-        let near = self.map.creases.items().iter().any(|c| c.level.at(p).abs() <= Self::NEAR * self.map.size);
-        if near { p.lerp(self.inside, Self::AWAY) } else { p }
+        let near = self.map.abilities.creases.items().iter().any(|c| c.level.at(p).abs() <= Self::NEAR * self.map.size);
+        if near { p + (self.inside - p).normalize() * (4.0 * Self::NEAR * self.map.size) } else { p }
+    }
+
+    /// Returns `true` if no crease lies between `p` and `inside`, seen along the straight line.
+    fn is_on_its_side(&self, p: Point) -> bool {
+        self.map.abilities.creases.items().iter().all(|c| c.level.at(p) * c.level.at(self.inside) > 0.0)
+    }
+
+    /// Returns two directions from `p` for differences that cross no crease; `None` if central differences cross none.
+    fn directions(&self, p: Point) -> Option<[Vec2; 2]> {
+        let reach = |d: Vec2, share: f64| p + d * (share * self.map.size);
+        let around = (0..16).map(|k| Vec2::from_angle(f64::from(k) * (TAU / 16.0)));
+        if around.clone().all(|d| self.is_on_its_side(reach(d, STEPS[0]))) {
+            return None;
+        }
+        let mut open: Vec<Vec2> = around.filter(|d| self.is_on_its_side(reach(*d, 4.0 * ONE_SIDED_STEP))).collect();
+        let first = open.pop()?;
+        open.into_iter().max_by(|a, b| a.cross(first).abs().total_cmp(&b.cross(first).abs())).map(|d| [first, d])
+    }
+
+    /// Returns the jet at `p` by one-sided differences of fourth order along two directions.
+    fn one_sided(&self, p: Point, directions: [Vec2; 2]) -> Jet {
+        const WEIGHTS: [f64; 5] = [-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -0.25];
+        let h = ONE_SIDED_STEP * self.map.size;
+        let asked: Vec<Point> =
+            directions.iter().flat_map(|d| (0..5).map(move |k| p + *d * (f64::from(k) * h))).collect();
+        let mut images = vec![UNDEFINED; asked.len()];
+        self.map.points(&asked, &mut images);
+        let slope = |images: &[Point]| {
+            images.iter().zip(WEIGHTS).fold(Vec2::ZERO, |sum, (image, w)| sum + (*image - images[0]) * w) / h
+        };
+        let ([a, b], [along_a, along_b]) = (directions, [slope(&images[..5]), slope(&images[5..])]);
+        let det = a.cross(b);
+        Jet { p: images[0], dx: (along_a * b.y - along_b * a.y) / det, dy: (along_b * a.x - along_a * b.x) / det }
     }
 }
 
 impl Map for Beside {
     fn jet(&self, p: Point) -> Jet {
-        self.map.jet(self.moved(p))
+        let mut out = [Jet::UNDEFINED];
+        self.jets(&[p], &mut out);
+        out[0]
     }
 
     fn point(&self, p: Point) -> Point {
@@ -189,7 +304,16 @@ impl Map for Beside {
     }
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        self.map.jets(&ps.iter().map(|p| self.moved(*p)).collect::<Vec<_>>(), out);
+        let ps: Vec<Point> = ps.iter().map(|p| self.moved(*p)).collect();
+        if self.map.abilities.jacobian {
+            return self.map.jets(&ps, out);
+        }
+        self.map.jets(&ps, out);
+        for (p, out) in ps.iter().zip(out) {
+            if let Some(directions) = self.directions(*p) {
+                *out = self.one_sided(*p, directions);
+            }
+        }
     }
 
     fn points(&self, ps: &[Point], out: &mut [Point]) {
@@ -207,8 +331,8 @@ impl Map for Beside {
 
 impl Batches for Beside {}
 
-/// The inverse that a program gives. Its derivatives are those of the map, inverted.
-struct Inverse(ProgramMap);
+/// The inverse that a callee gives. Its derivatives are those of the map, inverted.
+struct Inverse(Called);
 
 impl Map for Inverse {
     fn jet(&self, p: Point) -> Jet {
@@ -250,6 +374,9 @@ impl Batches for Inverse {}
 /// Steps for differences, as fractions of the frame's diagonal. The first is best for maps that bend a few times across the frame, for
 /// which truncation and rounding each contribute an error of 10⁻¹². The others are for waves of a hundredth and a thousandth of the frame.
 const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
+
+/// Step of one-sided differences beside a crease, as a fraction of the frame's diagonal.
+const ONE_SIDED_STEP: f64 = 2e-4;
 
 /// Estimate of the relative error that is good enough. Where the third derivative happens to be small, the error is a few tens of
 /// times the estimate; tangents need half as many digits.
@@ -325,6 +452,7 @@ fn slope(places: &[Point], images: &[Point], k: usize) -> (Vec2, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::{Crease, CreaseKind, Level};
 
     /// Waves from a tenth of the frame to a thousandth: exact to the digits that their steps can have.
     #[test]
@@ -343,6 +471,36 @@ mod tests {
                 let (dx, dy) = (Vec2::new(1.0, -0.5 * (k * p.x).sin()), Vec2::new((k * p.y).cos(), 2.0));
                 let off = (j.dx - dx).hypot().max((j.dy - dy).hypot());
                 assert!(off < most, "{length}: {off:e} at {p}");
+            }
+        }
+    }
+
+    /// A map that is folded along x = 50: the derivatives beside and on the fold are those of the side.
+    #[test]
+    fn differences_cross_no_crease() {
+        struct Fold;
+        impl Callee for Fold {
+            fn ask(&self, _: Ask, points: &[Point]) -> Result<Vec<f64>, Error> {
+                let wave =
+                    |p: &Point| [p.x + 3.0 * (p.y / 9.0).sin(), p.y + 0.5 * (p.x - 50.0).abs() + (p.x / 20.0).cos()];
+                Ok(points.iter().flat_map(wave).collect())
+            }
+
+            fn not_finite(&self, _: Point) -> Error {
+                Error::input("fold", "not finite")
+            }
+        }
+        let mut creases = Creases::default();
+        creases.push(Crease { level: Level::Line { a: 2.0, b: 0.0, c: -100.0 }, kind: CreaseKind::Kink });
+        let map = Called::new(Arc::new(Fold), Abilities { creases, ..Abilities::default() }, 140.0);
+        for (inside, side) in [(Point::new(10.0, 7.0), -1.0), (Point::new(90.0, 7.0), 1.0)] {
+            let branch = map.branch(inside).unwrap();
+            for distance in [0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.13, 0.15, 5.0] {
+                let p = Point::new(50.0 + side * distance, 33.0);
+                let jet = branch.jet(p);
+                let dx = Vec2::new(1.0, 0.5 * side - (p.x / 20.0).sin() / 20.0);
+                let off = (jet.dx - dx).hypot().max((jet.dy - Vec2::new((p.y / 9.0).cos() / 3.0, 1.0)).hypot());
+                assert!(off < 1e-9, "{off:e} at {p}");
             }
         }
     }
