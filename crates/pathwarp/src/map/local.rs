@@ -101,6 +101,11 @@ impl Map for Local {
         self.sides.iter().any(|s| beyond(s.0)).then(|| curve.clone())
     }
 
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let inside = self.inside.preimages(q)?.into_iter().filter(|p| self.depth(*p) >= -1e3 * self.reach);
+        Some(inside.chain((!self.contains(q)).then_some(q)).collect())
+    }
+
     /// The inverse of the map inside where its answers lie inside, and the identity outside.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let back = match self.inside.class() {

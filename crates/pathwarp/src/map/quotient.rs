@@ -8,8 +8,8 @@
 
 use super::rational_bezier::Scaled;
 use super::{
-    AffineMap, Class, Cost, Crease, Creases, Formula, Homography, Level, Map, NewtonInverse, RationalBezier,
-    RationalDegree, Real,
+    AffineMap, Class, Cost, Crease, Creases, Formula, Homography, Level, Map, NewtonInverse, Polynomials,
+    RationalBezier, RationalDegree, Real,
 };
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
@@ -191,6 +191,19 @@ impl Formula for Quotient {
         }
         let q = self.pre * p;
         self.w.at(q.x, q.y)
+    }
+
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let [mut x, mut y, mut w] = [&self.x, &self.y, &self.w].map(Plane::clone);
+        if self.is_polynomial() {
+            let [sx, sy] = source_coordinates(self.pre);
+            (x, y, w) =
+                (x.plus(1.0, &Plane::linear(sx)), y.plus(1.0, &Plane::linear(sy)), Plane::linear([1.0, 0.0, 0.0]));
+        }
+        let all = [(x, [1.0, 0.0, 0.0]), (y, [0.0, 1.0, 0.0]), (w, [0.0, 0.0, 1.0])];
+        let terms =
+            all.iter().flat_map(|(plane, unit)| plane.terms().map(move |(i, j, c)| (i, j, unit.map(|u| u * c))));
+        Polynomials { pre: self.pre, origin: self.origin, terms: terms.collect() }.preimages(self, q)
     }
 
     /// By the matrix for degree one, by Newton's method over the domain otherwise.

@@ -27,7 +27,7 @@ fn the_papers_quadrilateral() {
     let (p00, p10, p01, p11) =
         (Point::new(0.0, 0.0), Point::new(12.0, 0.0), Point::new(8.0, 6.0), Point::new(12.0, 4.0));
     // Figure 3.c: A = (20, 0), Q0 = (0, 0) and Q1 = (0, 10) give w01 = 5/3 with the others 1.
-    let row = |a: Point, b: Point| Monoid::with_axis(&[a, b], [20.0, 0.0, 1.0], p00, Point::new(0.0, 10.0)).unwrap();
+    let row = |a: Point, b: Point| Monoid::new(&[a, b], [20.0, 0.0, 1.0], [p00, Point::new(0.0, 10.0)]).unwrap();
     let rows = [row(p00, p01), row(p10, p11)];
     assert!((rows[0].weights[1] - 5.0 / 3.0).abs() < 1e-15 && (rows[1].weights[1] - 1.0).abs() < 1e-15);
     assert!((condition([[p00, p01], [p10, p11]]) - 3.0 / 5.0).abs() < 1e-15, "w00·w11 / (w01·w10)");
@@ -68,7 +68,7 @@ fn the_rows_equations_invert_the_map() {
             let x = map.point(p);
             let (f0, f1) = (a.implicit(x), b.implicit(x));
             assert!((f0 / (f0 - f1) - p.x).abs() < 1e-12, "{p:?}");
-            assert!((a.t(x) - p.y).abs() < 1e-13 && (b.t(x) - p.y).abs() < 1e-13);
+            assert!((a.parameter(x) - p.y).abs() < 1e-13 && (b.parameter(x) - p.y).abs() < 1e-13);
             if i == 0 {
                 assert!(f0.abs() < 1e-14, "{f0}");
             }
