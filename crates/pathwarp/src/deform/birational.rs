@@ -1,18 +1,22 @@
 //! Free-form deformation of degree 1×n with a closed-form inverse.
 //!
 //! Two rows of n + 1 freely placed points face each other; P(s,t) = (1−s)·P₀(t) + s·P₁(t), with weights that make the map one
-//! to one and its inverse rational (T. W. Sederberg, J. Zheng, *Birational 2D free-form deformation of degree 1×n*, CAGD
-//! 2016, equations 11-13 and 26): see [`map::Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
+//! to one and its inverse rational (T. W. Sederberg, R. N. Goldman, X. Wang, *Birational 2D free-form deformation of degree 1×n*,
+//! CAGD 44, 2016, equations 11-13 and 26): see [`map::Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
 //! CAGD 2015.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Pairs, Role};
 use super::ffd::{MAX_CELLS, MAX_DEGREE};
-use crate::error::{Error, GeometryError};
+use crate::error::{Error, GeometryError, show};
 use crate::map::{self, AffineMap, Class, Map, Rows};
 use crate::outline::Seg;
 use crate::param::{Kind, Settings, parameters};
+use crate::solve::{misses, smallest_change};
 use kurbo::{BezPath, Point, Rect};
 use std::sync::Arc;
+
+/// The smallest angle between two pieces that is worth a warning, in degrees.
+const VISIBLE_KINK: f64 = 0.1;
 
 parameters! {
     /// Free-form deformation of degree 1×n between two rows of points, with a closed-form inverse.
@@ -40,11 +44,23 @@ parameters! {
         param = path("right");
         /// Take the rows for B-splines of this degree; they need at least one point more than that.
         spline: Option<usize> = new("spline", Kind::Count).within(1.0, MAX_DEGREE as f64);
+        /// Instead of one of the rows, the point in which all lines across them meet: the row is then the other one, halved towards it.
+        param = new("meet", Kind::Point);
+        /// Spacing along the rows: above 1 the artwork moves towards their last points, below 1 towards their first.
+        spacing: f64 = number("spacing").default("1").within(0.01, 100.0);
+        /// Instead of the spacing, a point on the line through the rows' first points, with --q1: the lines across divide the segment from
+        /// the one to the other evenly.
+        q0: Option<Point> = new("q0", Kind::Point);
+        /// A point on the line through the rows' last points, with --q0.
+        q1: Option<Point> = new("q1", Kind::Point);
+        /// Instead of the spacing, the weight of point J of row I, both from 0; may be given three times, the other weights follow.
+        param = new("weight", Kind::Text("I,J:W")).repeated();
         /// The box that is laid between the rows; the map continues outside it.
         param = new("region", Kind::Text("artwork|X,Y,W,H")).default("artwork");
         /// Accept points outside the lines that join the rows' ends: the map is infinite somewhere then.
         allow_poles: bool = flag("allow-poles");
         let region: Rect = s.rect_if("region")?.unwrap_or(s.frame().rect);
+        let weights: Vec<([usize; 2], f64)> = weights(s)?;
     }
 }
 
@@ -70,14 +86,23 @@ impl Birational {
         Self { rows: Rows::LeftRight, ..Self::top_bottom(region, left, right) }
     }
 
-    /// Builds the map.
+    /// Gives point `j` of row `i`, both counted from 0, a positive weight; the weights that are not given follow, with the smallest change
+    /// (equation 7). At most three differ from what the others make them.
+    #[must_use]
+    pub fn weight(mut self, i: usize, j: usize, weight: f64) -> Self {
+        self.weights.push(([i, j], weight));
+        self
+    }
+
+    /// Builds the map. A kink between B-spline pieces gives a warning.
     ///
     /// # Errors
     /// [`Error::Geometry`] for rows of different or illegal length, facing ends that coincide, and points on the wrong side of
-    /// the lines that join the rows' ends; [`Error::Usage`] for a region without area or a degree out of range.
+    /// the lines that join the rows' ends; [`Error::Usage`] for a region without area, a number out of range, weights that are not positive
+    /// or contradict each other, and a Q₀ or Q₁ off its line.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
-        let Self { region, rows, first, second, spline, allow_poles } = self;
+        let Self { region, rows, first, second, spline, allow_poles, .. } = self;
         let names = match rows {
             Rows::TopBottom => ["top", "bottom"],
             Rows::LeftRight => ["left", "right"],
@@ -86,8 +111,22 @@ impl Birational {
         if !(region.width() > 0.0 && region.height() > 0.0) {
             return Err(Error::usage("region", "artwork", "has no area: the artwork is flat; name a box x,y,w,h"));
         }
-        let map = map::Birational::new(*region, *rows, [first, second], *spline, *allow_poles, names)?;
-        let mut notes = Vec::new();
+        let map = self.spaced(map::Birational::new(*region, *rows, [first, second], *spline, *allow_poles, names)?)?;
+        let mut notes = match map.axis() {
+            _ if spline.is_some() => Vec::new(),
+            [x, y, w] if w != 0.0 => {
+                vec![format!("the lines across the rows meet in {}", show(Point::new(x / w, y / w)))]
+            }
+            _ => vec!["the lines across the rows are parallel".to_owned()],
+        };
+        let kink = map.kink().filter(|(angle, _)| *angle > VISIBLE_KINK);
+        let warnings = kink.map(|(angle, at)| {
+            format!(
+                "curves along the rows turn by up to {angle:.1} degrees where two pieces of the spline meet, near {}: place the points of \
+both rows opposite each other, on parallel lines or on lines through one point",
+                show(at)
+            )
+        });
         for (k, [a, b]) in map.weights().enumerate() {
             notes.push(format!("weights of piece {}: {a:.6?} and {b:.6?}", k + 1));
         }
@@ -95,10 +134,76 @@ impl Birational {
             Class::Affine(m) => Arc::new(AffineMap(m)),
             _ => Arc::new(map),
         };
-        let mut built = Built::new(map).explained(Explanation { notes, ..Explanation::default() });
+        let mut built = Built::new(map).explained(Explanation {
+            notes,
+            warnings: warnings.into_iter().collect(),
+            ..Explanation::default()
+        });
         built.overlay(Role::Base, kurbo::Shape::to_path(region, 0.0));
         built.overlay(Role::Cage, net(first, second));
         Ok(built)
+    }
+
+    /// The map with the spacing, the points or the weights that are given.
+    fn spaced(&self, map: map::Birational) -> Result<map::Birational, Error> {
+        let Self { spacing, q0, q1, weights, allow_poles, .. } = self;
+        let given =
+            [("spacing", *spacing != 1.0), ("q0", q0.is_some() || q1.is_some()), ("weight", !weights.is_empty())];
+        let given: Vec<&str> = given.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect();
+        let refused = |name: &str, problem: String| Error::usage(name, "", problem);
+        match given[..] {
+            [] => return Ok(map),
+            [_] if self.spline.is_none() => {}
+            [name] => return Err(refused(name, "cannot go with `spline`, whose pieces share their lines".into())),
+            [name, other, ..] => return Err(refused(name, format!("cannot go with `{other}`: both set the weights"))),
+        }
+        if let (Some(q0), Some(q1)) = (*q0, *q1) {
+            let map = map.along([q0, q1]).map_err(|e| match e {
+                GeometryError::WrongSide { path, at, line, .. } if path.starts_with('Q') => {
+                    let problem = format!("does not lie on the line through the rows' ends, at {}", show(line[0]));
+                    Error::usage(&path.to_lowercase(), show(at), problem)
+                }
+                GeometryError::Coincident { path, at, .. } => {
+                    Error::usage(&path.to_lowercase(), show(at), "is the point in which the lines across the rows meet")
+                }
+                e => e.into(),
+            })?;
+            if !allow_poles && map.weights().flatten().flatten().any(|w| *w <= 0.0) {
+                let problem =
+                    "lies beyond the point in which the lines across the rows meet; take one on the side of the rows";
+                return Err(Error::usage("q0", show(q0), problem));
+            }
+            return Ok(map);
+        }
+        if q0.is_some() || q1.is_some() {
+            let name = if q0.is_some() { "q1" } else { "q0" };
+            return Err(Error::missing(name, "the second of the two points that set the spacing"));
+        }
+        let out_of_range = || refused(given[0], "leads to weights out of range".into());
+        if weights.is_empty() {
+            return map.respaced([1.0; 2], *spacing).ok_or_else(out_of_range);
+        }
+        let own: Vec<[&[f64]; 2]> = map.weights().collect();
+        let (mut rows, mut want) = (Vec::new(), Vec::new());
+        for &([i, j], w) in weights {
+            let wrong = |problem: &str| Error::usage("weight", format!("{i},{j}:{w}"), problem);
+            let old = own[0].get(i).and_then(|row| row.get(j)).ok_or_else(|| wrong("is not a point of a row"))?;
+            if !(w > 0.0 && w.is_finite() && *old > 0.0) {
+                return Err(wrong("is not a positive weight of a lattice without poles"));
+            }
+            // ln w = ln wᵢⱼ + ln kᵢ + j·ln g.
+            rows.push(vec![if i == 0 { 1.0 } else { 0.0 }, if i == 1 { 1.0 } else { 0.0 }, j as f64]);
+            want.push([(w / old).ln()]);
+        }
+        let change = smallest_change(&rows, &want);
+        for (([i, j], w), off) in weights.iter().zip(misses(&rows, &want, &change)) {
+            if off > 1e-9 {
+                let problem = "contradicts the other weights: three of them determine all others; leave it out";
+                return Err(Error::usage("weight", format!("{i},{j}:{w}"), problem));
+            }
+        }
+        let [k0, k1, g] = [0, 1, 2].map(|k| change[k][0].exp());
+        map.respaced([k0, k1], g).ok_or_else(out_of_range)
     }
 
     /// Refuses rows of different or illegal length; `name` is the second row's.
@@ -136,7 +241,8 @@ then horizontals stay straight. The rows are curves that begin and end in their 
 others, as with any Bézier curve.\n\nAs long as the rows do not cross, the result does not fold over, and undoing it is exact and fast: no search is needed.\n\n\
 Each row's inner points must lie between the lines that join the rows' ends; --allow-poles lifts that restriction, for artwork that \
 keeps clear of the points where the map is infinite. With --spline, rows of many points become B-splines and bend locally.")
-    .source("T. W. Sederberg, J. Zheng, Birational 2D free-form deformation of degree 1xn, Computer Aided Geometric Design 2016")
+    .source("T. W. Sederberg, R. N. Goldman, X. Wang, Birational 2D free-form deformation of degree 1xn, Computer Aided Geometric Design 44, \
+2016; of degree 1x1: T. W. Sederberg, J. Zheng, Birational quadrilateral maps, Computer Aided Geometric Design 32, 2015")
     .params(Birational::PARAMS)
     .demo(&[("top", "0,10 30,-25 70,30 100,5"), ("bottom", "5,90 35,110 60,70 95,100")])
     .examples(&[
@@ -195,6 +301,15 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     let (rows, first, second) = match (top?, bottom?, left?, right?) {
         (Some(a), Some(b), None, None) => (Rows::TopBottom, a, b),
         (None, None, Some(a), Some(b)) => (Rows::LeftRight, a, b),
+        (a, b, None, None) if s.given("meet") && a.is_some() != b.is_some() => with_meet(s, Rows::TopBottom, a, b)?,
+        (None, None, a, b) if s.given("meet") && a.is_some() != b.is_some() => with_meet(s, Rows::LeftRight, a, b)?,
+        _ if s.given("meet") => {
+            return Err(Error::usage(
+                "meet",
+                s.texts("meet").join(" "),
+                "takes the place of a row: give one row with it",
+            ));
+        }
         (None, None, None, None) => {
             let hint =
                 "with `bottom`, a row of equally many points, left to right (or `left` and `right`, top to bottom)";
@@ -211,6 +326,29 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     };
     Birational::read(s, rows, first, second)?.build()
 });
+
+/// One row and its copy halved towards the point `meet`.
+fn with_meet(
+    s: &Settings<'_>,
+    rows: Rows,
+    first: Option<Vec<Point>>,
+    second: Option<Vec<Point>>,
+) -> Result<(Rows, Vec<Point>, Vec<Point>), Error> {
+    let meet = s.point("meet")?;
+    let halved = |row: &Vec<Point>| row.iter().map(|p| p.midpoint(meet)).collect();
+    let (a, b) = (first.clone().or_else(|| second.as_ref().map(halved)), second.or_else(|| first.as_ref().map(halved)));
+    Ok((rows, a.unwrap_or_default(), b.unwrap_or_default()))
+}
+
+/// Reads `weight`.
+fn weights(s: &Settings<'_>) -> Result<Vec<([usize; 2], f64)>, Error> {
+    let words = s.texts("weight").into_iter().flat_map(str::split_whitespace);
+    let weight = |text| {
+        let (node, value) = s.node_in::<2>("weight", text)?;
+        Ok((node, s.number_in("weight", value)?))
+    };
+    words.map(weight).collect()
+}
 
 fn facing(missing: &str, given: &str) -> Error {
     Error::missing(missing, format!("the row that faces `{given}`, with as many points"))

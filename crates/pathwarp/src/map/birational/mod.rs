@@ -165,6 +165,48 @@ impl Birational {
             .then(|| Self::from_monoids(self.region, self.rows, vec![pair]))
     }
 
+    /// A, the point in which all lines across the rows of the first piece meet, in homogeneous coordinates: at infinity if they are parallel.
+    #[must_use]
+    pub fn axis(&self) -> [f64; 3] {
+        let Monoid { first, last, .. } = &self.pieces[0].rows[0];
+        // Relative to a point on the first line, on which A lies.
+        let (det, c) = (first.normal.cross(last.normal), last.at(first.through));
+        let (at, along) = (first.through.to_vec2(), Vec2::new(first.normal.y, -first.normal.x));
+        let size = first.normal.hypot() * last.normal.hypot();
+        let w = if det.abs() <= PARALLEL * size { 0.0 } else { det };
+        [along.x * c + at.x * w, along.y * c + at.y * w, w]
+    }
+
+    /// The map with one Bézier piece whose line of parameter t joins A and (1 − t)·Q₀ + t·Q₁, two points on the lines through the first
+    /// and the last pair of points: these lines divide the segment from Q₀ to Q₁ evenly (equations 9 to 12).
+    ///
+    /// # Errors
+    /// As for [`Monoid::new`].
+    pub fn along(&self, q: [Point; 2]) -> Result<Self, GeometryError> {
+        let [a, b] = &self.pieces[0].rows;
+        let row = |m: &Monoid| Monoid::new(&m.points, self.axis(), q);
+        Ok(Self::from_monoids(self.region, self.rows, vec![[row(a)?, row(b)?]]))
+    }
+
+    /// The largest angle in degrees by which curves along the rows turn on a line between two pieces, and its place in the image.
+    #[must_use]
+    pub fn kink(&self) -> Option<(f64, Point)> {
+        const SAMPLES: usize = 16;
+        let at = |n: usize| n as f64 / SAMPLES as f64;
+        let turn = |w: &[BirationalPiece], n: usize| {
+            let r = w[1].patch.rect();
+            let (p, along): (Point, fn(&Jet) -> Vec2) = match self.rows {
+                Rows::LeftRight => (Point::new(r.x0 + r.width() * at(n), r.y0), |j| j.dy),
+                Rows::TopBottom => (Point::new(r.x0, r.y0 + r.height() * at(n)), |j| j.dx),
+            };
+            let [a, b] = [w[0].patch.jet(p), w[1].patch.jet(p)];
+            let angle = along(&a).cross(along(&b)).atan2(along(&a).dot(along(&b)));
+            (angle.abs().to_degrees(), b.p)
+        };
+        let joints = self.pieces.windows(2).flat_map(|w| (0..=SAMPLES).map(|n| turn(w, n)).collect::<Vec<_>>());
+        joints.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
     /// The inverse map, in closed form.
     #[must_use]
     pub fn inverted(&self) -> BirationalInverse {
@@ -429,6 +471,8 @@ impl Formula for BirationalInverse {
 
 // The weights of the rows: general position, and the normalisation over all pieces.
 
+/// End lines whose directions differ by less than this are parallel.
+const PARALLEL: f64 = 1e-14;
 /// Points closer to a line than this share of the lattice's size count as on it.
 const ON_LINE: f64 = 1e-9;
 
