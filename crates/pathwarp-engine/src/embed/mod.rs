@@ -54,7 +54,7 @@ fn presets(info: &Info) -> (&'static str, Vec<&'static str>) {
 }
 
 /// Common options that name outputs or change what the program prints.
-const OF_THE_PROGRAM: [&str; 11] = [
+const OF_THE_PROGRAM: [&str; 12] = [
     "out",
     "out-dir",
     "in-place",
@@ -64,6 +64,7 @@ const OF_THE_PROGRAM: [&str; 11] = [
     "report",
     "write-recipe",
     "preview",
+    "show-polygons",
     "jobs",
     "quiet",
 ];

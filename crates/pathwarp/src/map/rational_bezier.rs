@@ -57,7 +57,8 @@ impl RationalBezier {
     }
 
     /// The control points, whose convex hull holds the curve; `None` if a weight is not positive.
-    pub(crate) fn hull(&self) -> Option<Vec<Point>> {
+    #[must_use]
+    pub fn hull(&self) -> Option<Vec<Point>> {
         self.points.iter().map(|[x, y, w]| (*w > 0.0).then(|| Point::new(x / w, y / w))).collect()
     }
 

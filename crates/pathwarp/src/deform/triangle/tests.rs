@@ -31,7 +31,7 @@ fn every_degree_agrees_with_the_definition() {
                     net.set_weight([i, j, k], 1.5 + wobble.sin());
                 }
             }
-            let m = net.map(true);
+            let m = net.map(true, None);
             for p in [(30.0, 40.0), (0.0, 20.0), (90.0, 10.0), (40.0, 100.0), (-15.0, 120.0)].map(Point::from) {
                 let area = |a: Point, b: Point, c: Point| (b - a).cross(c - a);
                 let [a, b, c] = corners;
@@ -53,7 +53,7 @@ fn every_degree_agrees_with_the_definition() {
                 let near = if inside { 1e-13 * 3f64.powi(n as i32) } else { 1e-7 };
                 assert!(off < near, "degree {n}: {off:e}");
                 if p.x > 0.0 && p.y < 50.0 {
-                    assert!(net.map(false).point(p).distance(m.point(p)) < 1e-12);
+                    assert!(net.map(false, None).point(p).distance(m.point(p)) < 1e-12);
                 }
             }
         }
