@@ -76,18 +76,18 @@ impl Polynomials {
                 }
             }
         }
-        Some(distinct(found))
+        let back = self.pre.inverse();
+        Some(distinct(found, back * Point::ORIGIN, back.determinant().abs().sqrt()))
     }
 }
 
-/// Sorts points and drops those that repeat.
-fn distinct(mut points: Vec<Point>) -> Vec<Point> {
+/// Sorts points and drops those that repeat, by their distances from the center of an area and by its size.
+fn distinct(mut points: Vec<Point>, center: Point, size: f64) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     points.retain(|p| p.is_finite());
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let size = points.iter().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max);
     for p in points {
-        if out.iter().all(|o| o.distance(p) > SAME * size) {
+        if out.iter().all(|o| o.distance(p) > SAME * (size + p.distance(center))) {
             out.push(p);
         }
     }
@@ -100,9 +100,10 @@ fn distinct(mut points: Vec<Point>) -> Vec<Point> {
 pub fn preimages(map: &Arc<dyn Map>, qs: &[Point], area: Rect) -> Vec<Vec<Point>> {
     let mut creases = Creases::default();
     map.creases(&mut creases);
+    let size = area.width() + area.height();
     let search = LazyCell::new(|| {
         let area = area.inflate(0.5 * area.width(), 0.5 * area.height());
-        (NewtonInverse::over(Arc::clone(map), area, 0.0), SAME * (area.width() + area.height()))
+        (NewtonInverse::over(Arc::clone(map), area, 0.0), SAME * size)
     });
     let searched = |q: Point| {
         let mut found: Vec<Point> =
@@ -114,7 +115,7 @@ pub fn preimages(map: &Arc<dyn Map>, qs: &[Point], area: Rect) -> Vec<Vec<Point>
         found
     };
     let all = |q: &Point| {
-        let found = distinct(map.preimages(*q).unwrap_or_else(|| searched(*q)));
+        let found = distinct(map.preimages(*q).unwrap_or_else(|| searched(*q)), area.center(), size);
         found.into_iter().filter(|p| creases.defined_at(*p)).collect()
     };
     qs.iter().map(all).collect()
@@ -303,7 +304,7 @@ mod tests {
             }
             let p = Point::new(2.0 * random(&mut state), 2.0 * random(&mut state));
             let q = by_definition(&points, p.x, p.y);
-            let found = distinct(LatticeMap::new(&lattice, true).preimages(q).unwrap());
+            let found = LatticeMap::new(&lattice, true).preimages(q).unwrap();
             assert!(found.iter().any(|f| f.distance(p) < 1e-8), "{k}: {p:?} {found:?}");
             assert_eq!(found.len() % 2, 0, "{k}: {m}x{n} {p:?} {found:?}");
             assert!(found.len() <= 2 * m * n);

@@ -387,7 +387,7 @@ second and third corner. 2,0,0 is the first corner of a triangle of degree 2, 0,
 explicit triangle (--reference) nothing moves, unless --extend is given. Where a side's control points stay in their places, inside \
 and outside join without a gap; otherwise there is a warning.")
     .source("G. Farin, Triangular Bernstein-Bézier patches, CAGD 3, 1986; J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form \
-Deformation, CAGD 46, 2016")
+Deformation, CAGD 46, 2016; for --birational: T. W. Sederberg, R. N. Goldman, X. Wang, Birational 2D free-form deformation of degree 1xn, CAGD 44, 2016")
     .params(Triangle::PARAMS)
     .demo(&[("move", "0,1,1:10,15"), ("weight", "1,1,0:2")])
     .examples(&[
@@ -398,6 +398,10 @@ Deformation, CAGD 46, 2016")
         Example {
             what: "Push out one spot of a badge; its surroundings stay",
             command: "triangle samples/badge.svg --reference '50%,5% 5%,80% 95%,80%' --degree 3 --move 1,1,1:0,-20% -o out.svg",
+        },
+        Example {
+            what: "The same with an inverse that needs no search",
+            command: "triangle samples/lettering.svg --move 0,1,1:0,60% --birational -o out.svg",
         },
         Example {
             what: "Two of the six points moved",
