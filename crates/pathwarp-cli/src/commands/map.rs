@@ -29,7 +29,7 @@ use std::sync::Arc;
 /// The work of a point, in evaluations of the map with all that a fit does.
 const POINT: f64 = 0.25;
 /// The same for a point with all its preimages.
-const ALL: f64 = 2000.0;
+const ALL: f64 = 5000.0;
 
 pub(super) fn map_command(registry: &Registry) -> Command {
     let mut c = Command::new("map")

@@ -47,7 +47,7 @@ parameters! {
         /// Instead of one of the rows, the point in which all lines across them meet: the row is then the other one, halved towards it.
         param = new("meet", Kind::Point);
         /// Spacing along the rows: above 1 the artwork moves towards their last points, below 1 towards their first.
-        spacing: f64 = number("spacing").default("1").within(0.01, 100.0);
+        spacing: f64 = number("spacing").default("1").within(0.01, 100.0).slider(0.2, 5.0);
         /// Instead of the spacing, a point on the line through the rows' first points, with --q1: the lines across divide the segment from
         /// the one to the other evenly.
         q0: Option<Point> = new("q0", Kind::Point);

@@ -19,7 +19,7 @@ const FAR: f64 = 1e6;
 /// The width of squares that are not divided further: their zero is a point on a fold.
 const NARROW: f64 = 1e-8;
 /// The number of squares, far above what finitely many zeros need, after which the zeros count as infinitely many.
-const MAX_SQUARES: usize = 50_000;
+const MAX_SQUARES: usize = 20_000;
 
 /// A map as X, Y and W in powers of u and v.
 pub(crate) struct Polynomials {
