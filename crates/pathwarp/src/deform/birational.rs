@@ -53,7 +53,7 @@ parameters! {
         q0: Option<Point> = new("q0", Kind::Point);
         /// A point on the line through the rows' last points, with --q0.
         q1: Option<Point> = new("q1", Kind::Point);
-        /// Instead of the spacing, the weight of point J of row I, both from 0; may be given three times, the other weights follow.
+        /// The weight of point J of row I, both from 0; may be given three times, the other weights follow.
         param = new("weight", Kind::Text("I,J:W")).repeated();
         /// The box that is laid between the rows; the map continues outside it.
         param = new("region", Kind::Text("artwork|X,Y,W,H")).default("artwork");

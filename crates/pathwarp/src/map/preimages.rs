@@ -160,7 +160,7 @@ impl Chart<'_> {
         self.of.pre.inverse() * Point::from(<(f64, f64)>::from(self.turned(at)))
     }
 
-    /// Returns `false` where W vanishes but for rounding: all three polynomials do at a base point, which is nobody's preimage.
+    /// Returns `true` if W is more than rounding: at a base point, which is nobody's preimage, all three polynomials vanish.
     fn is_regular(&self, at: [f64; 2]) -> bool {
         let [u, v] = self.turned(at);
         let terms = self.of.terms.iter().map(|(i, j, c)| c[2] * u.powi(*i as i32) * v.powi(*j as i32));
