@@ -17,6 +17,7 @@ mod first_words;
 mod fonts;
 mod overwriting;
 mod page;
+mod papers;
 mod parts;
 mod readme;
 mod report;

@@ -60,7 +60,7 @@ fn presets(info: &Info) -> (&'static str, Vec<&'static str>) {
 }
 
 /// Common options that name outputs or change what the program prints.
-const OF_THE_PROGRAM: [&str; 11] = [
+const OF_THE_PROGRAM: [&str; 12] = [
     "out",
     "out-dir",
     "in-place",
@@ -70,6 +70,7 @@ const OF_THE_PROGRAM: [&str; 11] = [
     "report",
     "write-recipe",
     "preview",
+    "show-polygons",
     "jobs",
     "quiet",
 ];

@@ -7,8 +7,8 @@ use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use crate::options::CommonOptions;
 use pathwarp::deform::{Built, Role};
-use pathwarp::kurbo::{Affine, Point};
-use pathwarp::map::Map;
+use pathwarp::kurbo::{Affine, BezPath, Point};
+use pathwarp::map::{Map, RationalBezier, exact_images};
 use pathwarp::recipe::{BuiltParts, BuiltRecipe};
 use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
 use pathwarp_solid::artwork::{self, NamedShape};
@@ -63,9 +63,36 @@ pub(super) fn preview(
             *panel = panel.clone().with(PreviewOverlay::new(kind, to * &o.path));
         }
     }
+    if !options.show_polygons.is_empty() {
+        right = right
+            .with(PreviewOverlay::new(OverlayKind::Target, back * polygons(doc, &options.show_polygons, &whole.map)?));
+    }
     let preview = Preview::new(left, right);
     let preview = if options.show_nodes { preview.panel_size(NODES_PANEL) } else { preview };
     encode(preview.render_within(&doc.budget().limits())?, format, options.quality)
+}
+
+/// The control polygons of the exact images of some paths.
+fn polygons(doc: &Document, selectors: &[String], map: &dyn Map) -> Result<BezPath, Failure> {
+    let mut path = BezPath::new();
+    let selection = Selection { select: selectors.to_vec(), ..Selection::default() };
+    let mut count = 0;
+    for shape in doc.selected(&selection) {
+        for seg in shape.outline.segs() {
+            let hulls =
+                exact_images(map, seg).and_then(|c| c.iter().map(RationalBezier::hull).collect::<Option<Vec<_>>>());
+            let problem = || format!("--show-polygons: the image of {} is no Bézier curve without poles", shape.id);
+            for hull in hulls.ok_or_else(|| Failure::usage(problem()))? {
+                count += 1;
+                path.move_to(hull[0]);
+                hull[1..].iter().for_each(|p| path.line_to(*p));
+            }
+        }
+    }
+    if count == 0 {
+        return Err(Failure::usage(format!("--show-polygons: {} selects no path", selectors.join(" "))));
+    }
+    Ok(path)
 }
 
 /// Refuses steps that write such a file for artwork which other steps have bent in several ways.

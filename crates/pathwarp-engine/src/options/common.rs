@@ -120,6 +120,8 @@ pub struct CommonOptions {
     pub preview: Option<PathBuf>,
     /// Draw nodes and handles in pictures of curves.
     pub show_nodes: bool,
+    /// Selectors of the paths whose images are drawn with their control polygons in previews.
+    pub show_polygons: Vec<String>,
     pub write_recipe: Option<PathBuf>,
     pub embed_recipe: bool,
     pub explain: bool,

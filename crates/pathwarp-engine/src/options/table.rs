@@ -535,6 +535,17 @@ pub static OPTIONS: &[CommonOption] = &[
         "Draw nodes and handles over the curves of the picture",
     ),
     of_the_run(
+        "show-polygons",
+        OptionValue::List {
+            name: "SEL",
+            push: |o, text| {
+                o.show_polygons.push(text.to_owned());
+                Ok(())
+            },
+        },
+        "Draw the control polygons of these paths' exact images in the picture of --preview; may be given several times",
+    ),
+    of_the_run(
         "explain",
         OptionValue::Switch(|o| o.explain = true),
         "Print the decisions made for you: corners, sides, directions",

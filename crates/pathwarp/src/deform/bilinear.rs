@@ -159,6 +159,12 @@ impl Formula for BilinearMap {
         Some(RationalBezier::from_coordinates([&x, &y, &ww], curve.is_polynomial()))
     }
 
+    /// One on each side of the fold.
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let side = |side: f64| Map::point(&BilinearInverse { of: *self, side }, q);
+        Some([1.0, -1.0].map(side).into_iter().filter(|p| p.is_finite()).collect())
+    }
+
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let det = self.det(0.5, 0.5);
         (det != 0.0 && det.is_finite())

@@ -6,7 +6,7 @@
 //! Evaluated in power form, in which a completed net loses its four highest terms.
 
 use super::rational_bezier::Scaled;
-use super::{AffineMap, Class, Jet, Map, RationalBezier, RationalDegree};
+use super::{AffineMap, Class, Jet, Map, Polynomials, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point, Rect, Vec2};
 
 /// Control points: four rows along v, each of four points along u.
@@ -90,6 +90,12 @@ impl BicubicNet {
         Self::new(net, Affine::new([1.0 / w, 0.0, 0.0, 1.0 / h, -rect.x0 / w, -rect.y0 / h]))
     }
 
+    /// The terms uⁱvʲ that do not vanish, as (i, j, coefficient).
+    fn terms(&self) -> impl Iterator<Item = (usize, usize, Vec2)> {
+        let all = self.c.iter().enumerate().flat_map(|(j, row)| row.iter().enumerate().map(move |(i, v)| (i, j, *v)));
+        all.filter(|t| t.2 != Vec2::ZERO)
+    }
+
     /// The coefficients of the powers of v at `u`.
     #[inline]
     fn rows(&self, u: f64) -> [Vec2; 4] {
@@ -135,8 +141,7 @@ impl Map for BicubicNet {
 
     fn class(&self) -> Class {
         let c = &self.c;
-        let terms = c.iter().enumerate().flat_map(|(j, row)| row.iter().enumerate().map(move |(i, v)| (i + j, v)));
-        let degree = terms.filter(|(_, v)| **v != Vec2::ZERO).map(|(n, _)| n).max().unwrap_or(0);
+        let degree = self.terms().map(|(i, j, _)| i + j).max().unwrap_or(0);
         if degree <= 1 {
             let (o, u, v) = (c[0][0], c[0][1], c[1][0]);
             Class::Affine(Affine::new([u.x, u.y, v.x, v.y, o.x, o.y]) * self.pre)
@@ -149,10 +154,7 @@ impl Map for BicubicNet {
     /// other) and 6n for a general net, or less if terms vanish.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let curve = AffineMap(self.pre).image(curve)?;
-        let terms = || {
-            let rows = self.c.iter().enumerate();
-            rows.flat_map(|(j, row)| row.iter().enumerate().map(move |(i, v)| (i, j, *v))).filter(|t| t.2 != Vec2::ZERO)
-        };
+        let terms = || self.terms();
         let total = terms().map(|(i, j, _)| i + j).max().unwrap_or(0);
         let (u, v, w) =
             (curve.coordinate(0).powers(3), curve.coordinate(1).powers(3), curve.coordinate(2).powers(total));
@@ -164,6 +166,13 @@ impl Map for BicubicNet {
             y.add_scaled(c.y, &term);
         }
         Some(RationalBezier::from_coordinates([&x, &y, &w[total]], curve.is_polynomial()))
+    }
+
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let origin = self.c[0][0].to_point();
+        let terms = self.terms().map(|(i, j, c)| (i, j, [c.x, c.y, 0.0])).filter(|t| t.0 + t.1 > 0);
+        Polynomials { pre: self.pre, origin, terms: terms.chain([(0, 0, [0.0, 0.0, 1.0])]).collect() }
+            .preimages(self, q)
     }
 
     fn detail(&self, _: Rect) -> Option<f64> {

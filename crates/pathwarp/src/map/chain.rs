@@ -298,6 +298,14 @@ impl Map for Chain {
         back.map(|steps| Arc::new(Self::new(steps)) as Arc<dyn Map>)
     }
 
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let step = |qs: Vec<Point>, m: &Arc<dyn Map>| {
+            let found: Option<Vec<_>> = qs.into_iter().map(|q| m.preimages(q)).collect();
+            found.map(|f| f.concat())
+        };
+        self.steps.iter().rev().try_fold(vec![q], step)
+    }
+
     fn cost(&self) -> Cost<'_> {
         let (mut work, mut all) = (0.0, Cost::NET);
         for cost in self.steps.iter().map(|s| s.cost()) {

@@ -55,6 +55,11 @@ pub trait Formula: Send + Sync {
         None
     }
 
+    /// See [`Map::preimages`].
+    fn preimages(&self, _q: Point) -> Option<Vec<Point>> {
+        None
+    }
+
     /// See [`Map::cost`].
     fn cost(&self) -> Cost<'_> {
         Cost::NET
@@ -100,6 +105,10 @@ impl<F: Formula> Map for F {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Formula::inverse(self)
+    }
+
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        Formula::preimages(self, q)
     }
 
     fn cost(&self) -> Cost<'_> {

@@ -392,6 +392,26 @@ impl Map for LatticeMap {
         (self.cell(Point::new(h.x1, h.y1)) == Some(cell)).then(|| self.patches[cell].image(curve))?
     }
 
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let mut all: Vec<Point> = self.cell(q).is_none().then_some(q).into_iter().collect();
+        for (c, patch) in self.patches.iter().enumerate() {
+            // Points on a border count on both sides of it.
+            let (i, j, near) = (c % self.cells[0], c / self.cells[0], 1e3 * (self.inside.x1 - self.region.x1));
+            let b = patch.rect().inflate(near, near);
+            let within = |v: f64, lo: f64, hi: f64, at: usize, n: usize| {
+                (v >= lo || self.extended && at == 0) && (v <= hi || self.extended && at + 1 == n)
+            };
+            let [nx, ny] = self.cells;
+            all.extend(
+                patch
+                    .preimages(q)?
+                    .into_iter()
+                    .filter(|p| within(p.x, b.x0, b.x1, i, nx) && within(p.y, b.y0, b.y1, j, ny)),
+            );
+        }
+        Some(all)
+    }
+
     fn detail(&self, area: Rect) -> Option<f64> {
         self.patches[0].detail(area)
     }

@@ -101,16 +101,20 @@ impl Map for Local {
         self.sides.iter().any(|s| beyond(s.0)).then(|| curve.clone())
     }
 
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let inside = self.inside.preimages(q)?.into_iter().filter(|p| self.depth(*p) >= -1e3 * self.reach);
+        Some(inside.chain((!self.contains(q)).then_some(q)).collect())
+    }
+
     /// The inverse of the map inside where its answers lie inside, and the identity outside.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let back = match self.inside.class() {
-            Class::Rational(_) | Class::Smooth => InnerInverse::Newton(Arc::new(NewtonInverse::new(
-                self.inside.clone(),
-                self.bounds(),
-                self.margin(),
-                [1, 1],
-            ))),
-            _ => InnerInverse::Closed(self.inside.inverse()?),
+        let back = match self.inside.inverse().filter(|m| m.cost().searches.is_none()) {
+            Some(closed) => InnerInverse::Closed(closed),
+            None if !matches!(self.inside.class(), Class::Rational(_) | Class::Smooth) => return None,
+            None => {
+                let (inside, bounds) = (self.inside.clone(), self.bounds());
+                InnerInverse::Newton(Arc::new(NewtonInverse::new(inside, bounds, self.margin(), [1, 1])))
+            }
         };
         Some(Arc::new(LocalInverse { of: self.clone(), back }))
     }

@@ -50,6 +50,7 @@ mod lattice;
 mod local;
 mod newton;
 pub(crate) mod patch;
+mod preimages;
 mod projective;
 pub(crate) mod quotient;
 pub(crate) mod rational_bezier;
@@ -64,7 +65,7 @@ use std::sync::Arc;
 pub use batches::Gathered;
 pub(crate) use bicubic::complete_net;
 pub use bicubic::{BicubicNet, Net};
-pub use birational::{Birational, BirationalInverse, Rows};
+pub use birational::{Birational, BirationalInverse, Monoid, Rows};
 pub use called::{Abilities, Ask, Called, Callee};
 pub use chain::Chain;
 pub use coons::{Coons, Sides};
@@ -76,14 +77,16 @@ pub use formula::{Formula, FromFn, FromFnWith, from_fn, from_fn_with};
 pub use homography::Homography;
 pub use lattice::{Lattice, LatticeMap};
 pub use newton::{NewtonInverse, inverse_over};
+pub use preimages::preimages;
 pub use projective::AffineMap;
-pub use rational_bezier::RationalBezier;
+pub use rational_bezier::{RationalBezier, exact_images};
 pub use real::{Dual, Real};
 
 pub(crate) use curves::{Along, Guide, increasing_root};
 pub(crate) use local::Local;
 pub(crate) use newton::INVERSE_WORK;
 pub(crate) use patch::{Patch, powers};
+pub(crate) use preimages::Polynomials;
 pub(crate) use quotient::{Plane, Quotient, source_coordinates};
 pub(crate) use tiled::{TileRow, Tiled};
 
@@ -143,6 +146,15 @@ pub trait Map: Send + Sync {
     /// The inverse map, if there is one.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         None
+    }
+
+    /// All points of the plane that the map takes to `q`, in any order, among them perhaps points where it is not defined. `None` if the map
+    /// cannot tell, or if there are infinitely many. See [`preimages`].
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        match self.class() {
+            Class::Affine(_) | Class::Projective(_) => Some(vec![self.inverse()?.point(q)]),
+            _ => None,
+        }
     }
 
     /// The cost of an evaluation, for [`budget`](crate::budget). A map whose work grows with its number of parts says so here.
@@ -335,6 +347,9 @@ macro_rules! forward {
         }
         fn inverse(&self) -> Option<Arc<dyn Map>> {
             (**self).inverse()
+        }
+        fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+            (**self).preimages(q)
         }
         fn cost(&self) -> Cost<'_> {
             (**self).cost()

@@ -8,7 +8,7 @@
 //! rounded. Horner's scheme runs on a whole batch of points.
 
 use super::rational_bezier::Scaled;
-use super::{Class, Cost, Crease, Creases, Jet, Level, Map, RationalBezier};
+use super::{Class, Cost, Crease, Creases, Jet, Level, Map, Polynomials, RationalBezier};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -374,6 +374,15 @@ impl Map for Patch {
         }
         let polynomial = self.is_polynomial() && curve.is_polynomial();
         Some(RationalBezier::from_coordinates(sums.each_ref(), polynomial))
+    }
+
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let pre = Affine::scale_non_uniform(self.k.x, self.k.y) * Affine::translate(-self.center.to_vec2());
+        // About the center, so that no digits are lost far from the origin.
+        let mut terms = self.terms();
+        let c = self.center;
+        terms.iter_mut().for_each(|(_, _, [x, y, w])| (*x, *y) = (*x - c.x * *w, *y - c.y * *w));
+        Polynomials { pre, origin: c, terms }.preimages(self, q)
     }
 
     fn detail(&self, _: Rect) -> Option<f64> {

@@ -8,8 +8,8 @@
 
 use super::rational_bezier::Scaled;
 use super::{
-    AffineMap, Class, Cost, Crease, Creases, Formula, Homography, Level, Map, NewtonInverse, RationalBezier,
-    RationalDegree, Real,
+    AffineMap, Class, Cost, Crease, Creases, Formula, Homography, Level, Map, NewtonInverse, Polynomials,
+    RationalBezier, RationalDegree, Real,
 };
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
@@ -33,6 +33,8 @@ pub(crate) struct Quotient {
     without_poles: bool,
     /// The box over which the inverse is sought.
     domain: Rect,
+    /// The inverse, if it is known and a quotient too.
+    pub(crate) back: Option<Box<Self>>,
 }
 
 impl Quotient {
@@ -41,7 +43,8 @@ impl Quotient {
         let size = x.largest().max(y.largest());
         let (x, y) = (x.tidied(size), y.tidied(size));
         let degree = x.degree().max(y.degree()).max(1);
-        Self { pre, origin: Point::ORIGIN, x, y, w: Plane::default(), guard: None, degree, without_poles: true, domain }
+        let w = Plane::default();
+        Self { pre, origin: Point::ORIGIN, x, y, w, guard: None, degree, without_poles: true, domain, back: None }
     }
 
     /// The map p ↦ `origin` + (x, y)/w.
@@ -59,7 +62,7 @@ impl Quotient {
             return Self::polynomial(pre, shift(&x, origin.x, sx), shift(&y, origin.y, sy), domain);
         }
         let degree = x.degree().max(y.degree()).max(w.degree());
-        Self { pre, origin, x, y, w, guard: None, degree, without_poles: false, domain }
+        Self { pre, origin, x, y, w, guard: None, degree, without_poles: false, domain, back: None }
     }
 
     /// Marks the map as having no pole in its domain of use.
@@ -193,8 +196,28 @@ impl Formula for Quotient {
         self.w.at(q.x, q.y)
     }
 
-    /// By the matrix for degree one, by Newton's method over the domain otherwise.
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        if let Some(back) = &self.back {
+            return Some(vec![Map::point(&**back, q)]);
+        }
+        let [mut x, mut y, mut w] = [&self.x, &self.y, &self.w].map(Plane::clone);
+        if self.is_polynomial() {
+            let [sx, sy] = source_coordinates(self.pre);
+            (x, y, w) =
+                (x.plus(1.0, &Plane::linear(sx)), y.plus(1.0, &Plane::linear(sy)), Plane::linear([1.0, 0.0, 0.0]));
+        }
+        let all = [(x, [1.0, 0.0, 0.0]), (y, [0.0, 1.0, 0.0]), (w, [0.0, 0.0, 1.0])];
+        let terms =
+            all.iter().flat_map(|(plane, unit)| plane.terms().map(move |(i, j, c)| (i, j, unit.map(|u| u * c))));
+        Polynomials { pre: self.pre, origin: self.origin, terms: terms.collect() }.preimages(self, q)
+    }
+
+    /// In closed form if that is known, by the matrix for degree one, by Newton's method over the domain otherwise.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
+        if let Some(back) = &self.back {
+            let own = Self { back: None, ..self.clone() };
+            return Some(Arc::new(Self { back: Some(Box::new(own)), ..(**back).clone() }));
+        }
         match Formula::class(self) {
             Class::Affine(m) => AffineMap(m).inverse(),
             Class::Projective(h) => h.inverse(),

@@ -1,5 +1,6 @@
 //! Rational Bézier curves of any degree in homogeneous coordinates: the exact images on which error bounds are proved.
 
+use super::{Creases, Map};
 use crate::outline::{EllipticArc, Seg};
 use kurbo::Point;
 
@@ -56,7 +57,8 @@ impl RationalBezier {
     }
 
     /// The control points, whose convex hull holds the curve; `None` if a weight is not positive.
-    pub(crate) fn hull(&self) -> Option<Vec<Point>> {
+    #[must_use]
+    pub fn hull(&self) -> Option<Vec<Point>> {
         self.points.iter().map(|[x, y, w]| (*w > 0.0).then(|| Point::new(x / w, y / w))).collect()
     }
 
@@ -87,11 +89,76 @@ impl RationalBezier {
         row.first().map_or(Point::ORIGIN, |p| Point::new(p[0] / p[2], p[1] / p[2]))
     }
 
+    /// The same curve with as few control points as its homogeneous coordinates allow: those of a degree that was raised drop out.
+    #[must_use]
+    pub fn reduced(mut self) -> Self {
+        /// Rounding of the leading coefficient, as a share of its terms.
+        const NOISE: f64 = 1e-13;
+        while self.points.len() > 2 {
+            let n = self.points.len() - 1;
+            let sign = |i: usize| if (n - i).is_multiple_of(2) { 1.0 } else { -1.0 };
+            let vanishes = |k: usize| {
+                let terms = binomials(n).into_iter().zip(&self.points).map(|(b, p)| b * p[k]);
+                let (sum, size) = terms.enumerate().fold((0.0, 0.0), |(s, a), (i, t)| (s + sign(i) * t, a + t.abs()));
+                f64::abs(sum) <= NOISE * size
+            };
+            if !(0..3).all(vanishes) {
+                break;
+            }
+            // Each half from its own end, where the recurrence is stable: P̂ᵢ = (i·P̂ᵢ₋₁ + (n − i)·P̂ᵢ)/n of the lower degree.
+            let (p, mut low) = (&self.points, vec![[0.0; 3]; n]);
+            for k in 0..3 {
+                for i in 0..n.div_ceil(2) {
+                    let before = if i > 0 { low[i - 1][k] } else { 0.0 };
+                    low[i][k] = (n as f64 * p[i][k] - i as f64 * before) / (n - i) as f64;
+                }
+                for i in (n.div_ceil(2)..n).rev() {
+                    let after = if i + 1 < n { low[i + 1][k] } else { 0.0 };
+                    low[i][k] = (n as f64 * p[i + 1][k] - (n - 1 - i) as f64 * after) / (i + 1) as f64;
+                }
+            }
+            self.points = low;
+        }
+        self
+    }
+
     /// The curve whose homogeneous control points are `f` of these: the exact image for linear `f`.
     #[must_use]
     pub fn mapped(&self, f: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         Self { points: self.points.iter().map(|p| f(*p)).collect() }
     }
+}
+
+/// The exact image of a segment, of the lowest degree that its coordinates allow: one curve for each part between the creases of the map.
+/// `None` if a part has no such image ([`Map::image`]).
+///
+/// ```
+/// use pathwarp::kurbo::{Line, Rect, Vec2};
+/// use pathwarp::map::{Lattice, LatticeMap, exact_images};
+/// use pathwarp::outline::Seg;
+///
+/// let mut lattice = Lattice::regular(Rect::new(0.0, 0.0, 1.0, 1.0), [3, 2], [1, 1]);
+/// lattice.shift(1, 1, Vec2::new(0.1, 0.3));
+/// let upright = Seg::Line(Line::new((0.6, 0.0), (0.6, 1.0)));
+/// let images = exact_images(&LatticeMap::new(&lattice, true), &upright).unwrap_or_default();
+/// assert_eq!(images[0].degree(), 2); // the lattice's degree along the line
+/// ```
+#[must_use]
+pub fn exact_images(map: &dyn Map, seg: &Seg) -> Option<Vec<RationalBezier>> {
+    let mut creases = Creases::default();
+    map.creases(&mut creases);
+    let halves = if matches!(seg, Seg::Arc(_)) { vec![0.25, 0.5, 0.75] } else { Vec::new() };
+    let mut cuts = [vec![0.0, 1.0], halves, creases.splits(seg)].concat();
+    cuts.sort_by(f64::total_cmp);
+    let image = |w: &[f64]| {
+        let part = match seg {
+            Seg::Arc(arc) => Seg::Arc(arc.subsegment(w[0], w[1])),
+            _ => seg.part(w[0], w[1])?,
+        };
+        let (curve, branch) = (RationalBezier::from_seg(&part)?, map.branch(part.eval(0.5)));
+        Some(branch.as_deref().map_or_else(|| map.image(&curve), |m| m.image(&curve))?.reduced())
+    };
+    cuts.windows(2).map(image).collect()
 }
 
 // Polynomials in Bernstein form over [0, 1], for exact images of curves.

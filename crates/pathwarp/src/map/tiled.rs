@@ -156,6 +156,16 @@ impl Map for Tiled {
         points.iter().all(|p| self.index(*p) == (j, i)).then(|| self.rows[j].maps[i].image(curve))?
     }
 
+    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        let near = MARGIN * (self.region.width() + self.region.height());
+        let tile = |(j, i): (usize, usize)| {
+            let b = self.extended_rect(j, i).inflate(near, near);
+            Some(self.rows[j].maps[i].preimages(q)?.into_iter().filter(move |p| b.contains(*p)))
+        };
+        let all: Option<Vec<_>> = self.tiles().map(tile).collect();
+        Some(all?.into_iter().flatten().collect())
+    }
+
     /// By Newton's method in every tile, up to half the size of the region beyond it.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(TiledInverse::new(self)))

@@ -9,6 +9,7 @@
 //! G. Farin, *Triangular Bernstein–Bézier patches*, CAGD 3 (1986); J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form
 //! deformation*, CAGD 46 (2016), where the net is moved along rays (see `anamorph`).
 
+mod birational;
 #[cfg(test)]
 mod tests;
 
@@ -46,6 +47,9 @@ parameters! {
         param = new("at", Kind::Text("I,J,K:X,Y")).repeated();
         /// Strength with which a control point pulls the artwork towards itself, 1 by default; may be given many times.
         param = new("weight", Kind::Text("I,J,K:W")).repeated();
+        /// Choose the weights of the three points between the corners such that the inverse of degree 2 is exact and fast: every place in the
+        /// image then comes from one place alone.
+        birational: bool = flag("birational");
         /// Let the map continue outside the triangle instead of leaving everything there in place.
         extend: bool = flag("extend");
         let changes: Vec<([usize; 3], Change)> = changes(s, |text| vec![text])?;
@@ -103,7 +107,12 @@ impl Triangle {
         for &(node, change) in &self.changes {
             self.change(&mut net, node, change)?;
         }
-        let mut built = Built::new(net.map(extend));
+        let back = if self.birational { Some(self.make_birational(&mut net)?) } else { None };
+        let mut built = Built::new(net.map(extend, back));
+        if self.birational {
+            let [a, b, c] = [[1, 1, 0], [1, 0, 1], [0, 1, 1]].map(|k| net.weights[index(k)]);
+            built.note(format!("weights of 1,1,0, of 1,0,1 and of 0,1,1: {a:.6}, {b:.6} and {c:.6}"));
+        }
         if !extend {
             let names = ["first and second", "second and third", "third and first"];
             let crosses = |k: usize| self.frame.is_none_or(|f| meets(f, corners[k], corners[(k + 1) % 3]));
@@ -118,6 +127,30 @@ is torn apart; keep that side's points in place, choose a larger `reference`, or
         built.overlay(Role::Base, outline(corners));
         built.overlay(Role::Cage, cage(&net));
         Ok(built)
+    }
+
+    /// Sets the weights that make a net birational; returns the inverse.
+    fn make_birational(&self, net: &mut TriangleNet) -> Result<Quotient, Error> {
+        let wrong = |problem: &str| Error::usage("birational", "", problem.to_owned());
+        if self.degree != 2 {
+            return Err(wrong("is for degree 2, whose net has six points"));
+        }
+        let between = |node: &[usize; 3]| !node.contains(&2);
+        if self.changes.iter().any(|(node, change)| between(node) && matches!(change, Change::Weight(_))) {
+            return Err(wrong("sets the weights of the points between the corners: give weights of corners only"));
+        }
+        let points: Vec<Point> = indices(2).into_iter().map(|ijk| net.point(ijk)).collect();
+        let lambda = [[2, 0, 0], [0, 2, 0], [0, 0, 2]].map(|corner| net.weights[index(corner)].sqrt());
+        let found = birational::birational(&points, lambda, self.corners).ok_or_else(|| {
+            wrong(
+                "finds no positive weights for this net: its corners lie on one line, or a point between two corners lies too far off; \
+move it nearer to the side between them",
+            )
+        })?;
+        for (node, weight) in [[1, 1, 0], [1, 0, 1], [0, 1, 1]].into_iter().zip(found.weights) {
+            net.set_weight(node, weight);
+        }
+        Ok(found.back)
     }
 
     fn change(&self, net: &mut TriangleNet, node: [usize; 3], change: Change) -> Result<(), Error> {
@@ -307,8 +340,8 @@ impl TriangleNet {
         on.iter().all(|&k| self.moves[k].hypot() <= 1e-12 * size && self.weights[k] == self.weights[on[0]])
     }
 
-    /// Returns the map. Outside the triangle it is the identity or, if `extended`, the continued polynomials.
-    fn map(&self, extended: bool) -> Arc<dyn Map> {
+    /// Returns the map, with its inverse if that is known. Outside the triangle it is the identity or, if `extended`, the continued polynomials.
+    fn map(&self, extended: bool, back: Option<Quotient>) -> Arc<dyn Map> {
         let pre = coordinates(self.corners);
         let [a, b, c] = self.corners;
         let bounds = Rect::from_points(a, b).union_pt(c);
@@ -317,7 +350,7 @@ impl TriangleNet {
             expanded(self.degree, &all)
         };
         let domain = if extended { bounds.inflate(0.5 * bounds.width(), 0.5 * bounds.height()) } else { bounds };
-        let whole = if self.weights.iter().all(|w| *w == self.weights[0]) {
+        let mut whole = if self.weights.iter().all(|w| *w == self.weights[0]) {
             let (x, y) = (plane(&|at, _| self.moves[at].x), plane(&|at, _| self.moves[at].y));
             Quotient::polynomial(pre, x, y, domain)
         } else {
@@ -326,6 +359,7 @@ impl TriangleNet {
             let y = plane(&|at, ijk| (self.point(ijk).y - origin.y) * self.weights[at]);
             Quotient::rational(pre, origin, x, y, plane(&|at, _| self.weights[at]), domain)
         };
+        whole.back = back.map(Box::new);
         if extended {
             return whole.simplest();
         }
@@ -353,7 +387,7 @@ second and third corner. 2,0,0 is the first corner of a triangle of degree 2, 0,
 explicit triangle (--reference) nothing moves, unless --extend is given. Where a side's control points stay in their places, inside \
 and outside join without a gap; otherwise there is a warning.")
     .source("G. Farin, Triangular Bernstein-Bézier patches, CAGD 3, 1986; J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form \
-Deformation, CAGD 46, 2016")
+Deformation, CAGD 46, 2016; for --birational: T. W. Sederberg, R. N. Goldman, X. Wang, Birational 2D free-form deformation of degree 1xn, CAGD 44, 2016")
     .params(Triangle::PARAMS)
     .demo(&[("move", "0,1,1:10,15"), ("weight", "1,1,0:2")])
     .examples(&[
@@ -364,6 +398,10 @@ Deformation, CAGD 46, 2016")
         Example {
             what: "Push out one spot of a badge; its surroundings stay",
             command: "triangle samples/badge.svg --reference '50%,5% 5%,80% 95%,80%' --degree 3 --move 1,1,1:0,-20% -o out.svg",
+        },
+        Example {
+            what: "The same with an inverse that needs no search",
+            command: "triangle samples/lettering.svg --move 0,1,1:0,60% --birational -o out.svg",
         },
         Example {
             what: "Two of the six points moved",

@@ -31,7 +31,7 @@ fn every_degree_agrees_with_the_definition() {
                     net.set_weight([i, j, k], 1.5 + wobble.sin());
                 }
             }
-            let m = net.map(true);
+            let m = net.map(true, None);
             for p in [(30.0, 40.0), (0.0, 20.0), (90.0, 10.0), (40.0, 100.0), (-15.0, 120.0)].map(Point::from) {
                 let area = |a: Point, b: Point, c: Point| (b - a).cross(c - a);
                 let [a, b, c] = corners;
@@ -53,7 +53,7 @@ fn every_degree_agrees_with_the_definition() {
                 let near = if inside { 1e-13 * 3f64.powi(n as i32) } else { 1e-7 };
                 assert!(off < near, "degree {n}: {off:e}");
                 if p.x > 0.0 && p.y < 50.0 {
-                    assert!(net.map(false).point(p).distance(m.point(p)) < 1e-12);
+                    assert!(net.map(false, None).point(p).distance(m.point(p)) < 1e-12);
                 }
             }
         }
@@ -138,4 +138,71 @@ fn every_fault_is_named() {
         let e = build(pairs).err().unwrap().to_string();
         assert!(e.contains(part), "{e}");
     }
+}
+
+/// Equation 2 for a net of six points in the order of `index`, from the definition.
+fn six(points: &[Point], weights: &[f64], [a, b, c]: [f64; 3]) -> Point {
+    let basis = [a * a, 2.0 * a * b, 2.0 * a * c, b * b, 2.0 * b * c, c * c];
+    let w: f64 = basis.iter().zip(weights).map(|(b, w)| b * w).sum();
+    let terms = points.iter().zip(basis.iter().zip(weights));
+    terms.map(|(p, (b, k))| p.to_vec2() * (b * k / w)).sum::<Vec2>().to_point()
+}
+
+/// Every net near a regular one has weights that make it birational: its inverse is exact, and no other real point has the same image.
+#[test]
+fn six_points_are_birational() {
+    let mut state = 11u64;
+    let mut random = || {
+        state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let corners = [Point::new(0.0, 0.0), Point::new(100.0, 0.0), Point::new(20.0, 90.0)];
+    let at = |u: [f64; 3]| corners[0] + (corners[1] - corners[0]) * u[1] + (corners[2] - corners[0]) * u[2];
+    let (mut others, mut several) = (0, 0);
+    for round in 0..200 {
+        let lambda = if round % 2 == 0 { [1.0; 3] } else { [1.5, 0.8, 1.1] };
+        let mut net = TriangleNet::regular(corners, 2).unwrap();
+        indices(2).into_iter().for_each(|ijk| net.shift(ijk, Vec2::new(9.0 * random(), 9.0 * random())));
+        let points: Vec<Point> = indices(2).into_iter().map(|ijk| net.point(ijk)).collect();
+        let found = birational::birational(&points, lambda, corners).unwrap();
+        let [a, b, c] = found.weights;
+        let weights = [lambda[0] * lambda[0], a, b, lambda[1] * lambda[1], c, lambda[2] * lambda[2]];
+        for (ijk, w) in indices(2).into_iter().zip(weights) {
+            net.set_weight(ijk, w);
+        }
+        let (plain, exact) = (net.map(true, None), net.map(true, Some(found.back)));
+        for _ in 0..5 {
+            let (x, y) = (0.5 + 0.5 * random(), 0.5 + 0.5 * random());
+            let u = if x + y > 1.0 { [x + y - 1.0, 1.0 - x, 1.0 - y] } else { [1.0 - x - y, x, y] };
+            let q = six(&points, &weights, u);
+            assert!(exact.point(at(u)).distance(q) < 1e-10);
+            let back = exact.inverse().unwrap();
+            assert!(back.cost().searches.is_none());
+            assert!(back.point(q).distance(at(u)) < 1e-7, "{round}: {u:?}");
+            assert_eq!(exact.preimages(q).unwrap().len(), 1);
+            // The search among all polynomials knows nothing of the weights: it finds this point alone.
+            let all = crate::map::preimages(&plain, &[q], Rect::ZERO).concat();
+            several += usize::from(all.len() > 1);
+            let equal = TriangleNet { weights: vec![1.0; 6], ..net.clone() }.map(true, None);
+            others += usize::from(equal.preimages(six(&points, &[1.0; 6], u)).unwrap().len() > 1);
+        }
+    }
+    assert_eq!(several, 0);
+    assert!(others > 500, "with equal weights most places come from several: {others}");
+}
+
+#[test]
+fn a_net_without_birational_weights_is_named() {
+    let flag = ("birational", "true");
+    let fails = |pairs: &[(&str, &str)]| build(pairs).unwrap_err().to_string();
+    assert!(fails(&[flag, ("degree", "3")]).contains("degree 2"));
+    assert!(fails(&[flag, ("weight", "1,1,0:2")]).contains("corners only"));
+    let far = fails(&[flag, ("reference", "0,0 100,0 0,100"), ("at", "0,1,1:150,-30")]);
+    assert!(far.contains("no positive weights"), "{far}");
+    let flat = fails(&[flag, ("reference", "0,0 100,0 0,100"), ("at", "0,0,2:50,0")]);
+    assert!(flat.contains("on one line"), "{flat}");
+    let local = build(&[flag, ("reference", "0,0 100,0 0,100"), ("move", "0,1,1:9,4")]).unwrap();
+    let (p, back) = (Point::new(30.0, 40.0), local.map.inverse().unwrap());
+    assert!(back.point(local.map.point(p)).distance(p) < 1e-10);
+    assert_eq!(back.point(Point::new(-30.0, 40.0)), Point::new(-30.0, 40.0));
 }

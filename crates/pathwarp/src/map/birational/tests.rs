@@ -27,7 +27,7 @@ fn the_papers_quadrilateral() {
     let (p00, p10, p01, p11) =
         (Point::new(0.0, 0.0), Point::new(12.0, 0.0), Point::new(8.0, 6.0), Point::new(12.0, 4.0));
     // Figure 3.c: A = (20, 0), Q0 = (0, 0) and Q1 = (0, 10) give w01 = 5/3 with the others 1.
-    let row = |a: Point, b: Point| Monoid::with_axis(&[a, b], [20.0, 0.0, 1.0], p00, Point::new(0.0, 10.0)).unwrap();
+    let row = |a: Point, b: Point| Monoid::new(&[a, b], [20.0, 0.0, 1.0], [p00, Point::new(0.0, 10.0)]).unwrap();
     let rows = [row(p00, p01), row(p10, p11)];
     assert!((rows[0].weights[1] - 5.0 / 3.0).abs() < 1e-15 && (rows[1].weights[1] - 1.0).abs() < 1e-15);
     assert!((condition([[p00, p01], [p10, p11]]) - 3.0 / 5.0).abs() < 1e-15, "w00·w11 / (w01·w10)");
@@ -68,7 +68,7 @@ fn the_rows_equations_invert_the_map() {
             let x = map.point(p);
             let (f0, f1) = (a.implicit(x), b.implicit(x));
             assert!((f0 / (f0 - f1) - p.x).abs() < 1e-12, "{p:?}");
-            assert!((a.t(x) - p.y).abs() < 1e-13 && (b.t(x) - p.y).abs() < 1e-13);
+            assert!((a.parameter(x) - p.y).abs() < 1e-13 && (b.parameter(x) - p.y).abs() < 1e-13);
             if i == 0 {
                 assert!(f0.abs() < 1e-14, "{f0}");
             }
@@ -209,4 +209,94 @@ fn spline_rows_share_the_lines_between_their_pieces() {
     let facing: Vec<Point> = regular.iter().map(|p| *p + Vec2::new(1.0, 0.0)).collect();
     let map = Birational::new(UNIT, Rows::LeftRight, [&regular, &facing], Some(2), false, ["", ""]).unwrap();
     assert!(map.point(Point::new(0.3, 0.77)).distance(Point::new(0.3, 0.77)) < 1e-15);
+}
+
+/// The bisection of x(t) = x on a rational Bézier row with given weights, and y there.
+fn graph_by_definition(points: &[Point], weights: &[f64], x: f64) -> f64 {
+    let n = points.len() - 1;
+    let at = |t: f64| {
+        let choose = |i: usize| (0..i).fold(1.0, |c, k| c * (n - k) as f64 / (k + 1) as f64);
+        let b = |i: usize| weights[i] * choose(i) * t.powi(i as i32) * (1.0 - t).powi((n - i) as i32);
+        let w: f64 = (0..=n).map(b).sum();
+        (0..=n).map(|i| points[i].to_vec2() * (b(i) / w)).sum::<Vec2>()
+    };
+    let (mut lo, mut hi) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (lo + hi);
+        if at(middle).x < x { lo = middle } else { hi = middle }
+    }
+    at(lo).y
+}
+
+/// Equation 23: with Q₀ and Q₁ at the ends of parallel lines, x' = x, and each row is the graph of a function.
+#[test]
+fn explicit_rows_are_graphs() {
+    let top = points(&[(0.0, 0.0), (0.2, -0.4), (0.3, 0.1), (1.0, 0.0)]);
+    let bottom = points(&[(0.0, 1.0), (0.8, 1.2), (0.9, 1.0), (1.0, 1.0)]);
+    let map = Birational::new(UNIT, Rows::TopBottom, [&top, &bottom], None, false, ["top", "bottom"]).unwrap();
+    assert_eq!(map.axis()[2], 0.0, "the lines across are parallel");
+    let map = map.along([top[0], top[3]]).unwrap();
+    let graph = Monoid::graph(&top).unwrap();
+    // Equation 12 by hand: w_i = -i·(x_{i-1} - 1)/((4 - i)·x_i)·w_{i-1}.
+    let mut weights = vec![1.0];
+    for i in 1..=3 {
+        weights.push(weights[i - 1] * i as f64 * (1.0 - top[i - 1].x) / ((4 - i) as f64 * top[i].x));
+    }
+    for i in 1..20 {
+        let x = f64::from(i) / 20.0;
+        let y = graph_by_definition(&top, &weights, x);
+        assert!(map.point(Point::new(x, 0.0)).distance(Point::new(x, y)) < 1e-12);
+        assert!(graph.point(graph.parameter(Point::new(x, 7.0))).distance(Point::new(x, y)) < 1e-12);
+    }
+}
+
+/// The fourth weight by equation 7 from three; A of the quadrilateral is (20, 0).
+#[test]
+fn three_weights_make_the_fourth_and_q_sets_the_speed() {
+    let (left, right) = (points(&[(0.0, 0.0), (8.0, 6.0)]), points(&[(12.0, 0.0), (12.0, 4.0)]));
+    let map = build(&left, &right).unwrap();
+    let [x, y, w] = map.axis();
+    assert!((x / w - 20.0).abs() < 1e-12 && (y / w).abs() < 1e-12);
+    let other = map.respaced([3.0, 0.25], 1.7).unwrap();
+    let [a, b] = &other.pieces[0].rows;
+    let ratio = a.weights[0] * b.weights[1] / (a.weights[1] * b.weights[0]);
+    assert!((ratio - condition([[left[0], left[1]], [right[0], right[1]]])).abs() < 1e-14);
+    let p = Point::new(0.3, 0.8);
+    assert!(Map::point(&other.inverted(), other.point(p)).distance(p) < 1e-14);
+    let paper = map.along([left[0], Point::new(0.0, 10.0)]).unwrap();
+    for (x, y) in [(8.0, 4.0), (3.0, 1.0), (11.0, 2.5), (6.0, 5.0)] {
+        let by_hand = Point::new((3.0 * x - 4.0 * y) / (36.0 - 4.0 * y), 2.0 * y / (20.0 - x));
+        assert!(Map::point(&paper.inverted(), Point::new(x, y)).distance(by_hand) < 1e-14);
+        assert_eq!(map.preimages(Point::new(x, y)).unwrap().len(), 1);
+    }
+    assert!(map.respaced([1.0, 0.0], 1.0).is_none() && map.respaced([1.0; 2], -1.0).is_none());
+    let off = map.along([Point::new(0.0, 1.0), Point::new(0.0, 10.0)]).unwrap_err();
+    assert!(matches!(off, GeometryError::WrongSide { path, .. } if path == "Q0"));
+}
+
+#[test]
+fn faults_of_monoids_are_named() {
+    let p = points(&[(0.0, 2.0), (0.0, 3.0), (2.0, 4.0), (5.0, 2.0)]);
+    let a = [3.0, 0.0, 1.0];
+    assert!(matches!(Monoid::new(&p[..1], a, [p[0], p[0]]), Err(GeometryError::AnchorCount { .. })));
+    assert!(matches!(Monoid::new(&p, [0.0, 2.0, 1.0], [p[0], p[3]]), Err(GeometryError::Coincident { .. })));
+    let on_line = points(&[(0.0, 2.0), (1.5, 1.0), (2.0, 4.0), (5.0, 2.0)]);
+    let e = Monoid::new(&on_line, a, [p[0], p[3]]).unwrap_err();
+    assert!(matches!(e, GeometryError::WrongSide { which: 2, on: true, .. }), "{e}");
+    assert!(Monoid::graph(&points(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)])).is_err());
+}
+
+/// Curves along the rows are smooth where the lines between all pieces meet in one point, and kink where they do not.
+#[test]
+fn spline_rows_kink_unless_all_lines_between_pieces_meet_in_one_point() {
+    let left = points(&[(0.0, 0.0), (-20.0, 25.0), (15.0, 50.0), (-10.0, 80.0), (5.0, 95.0), (0.0, 130.0)]);
+    let kink = |right: &[Point]| {
+        let map = Birational::new(UNIT, Rows::LeftRight, [&left, right], Some(3), false, ["", ""]).unwrap();
+        map.kink().unwrap().0
+    };
+    let a = Point::new(300.0, 60.0);
+    assert!(kink(&left.iter().map(|p| p.lerp(a, 0.3)).collect::<Vec<_>>()) < 1e-6);
+    assert!(kink(&left.iter().map(|p| *p + Vec2::new(90.0, 0.0)).collect::<Vec<_>>()) < 1e-6);
+    let slipped: Vec<Point> = left.iter().map(|p| Point::new(p.x + 90.0, p.y * p.y / 130.0)).collect();
+    assert!(kink(&slipped) > 1.0, "{}", kink(&slipped));
 }

@@ -1,0 +1,76 @@
+//! Weights that make a Bézier triangle of degree two birational.
+//!
+//! With weights 1 in the corners, F(u) = Σ uᵢ²·Pᵢᵢ + Σ uᵢuⱼ·cᵢⱼ·Pᵢⱼ, cᵢⱼ twice the weight of the point between corners i and j. F is
+//! birational if its three conics share three points; then two moving lines Σ uₖ·ℓₖ follow it, and X = F(u) gives u as the intersection of
+//! two lines: u ~ (ℓ·X) × (ℓ'·X). A moving line follows F if ℓᵢ·Pᵢᵢ = 0, ℓⱼ·Pᵢᵢ = −cᵢⱼ·ℓᵢ·Pᵢⱼ for i ≠ j, and the terms in u₀u₁u₂ cancel.
+//! These equations have two independent solutions ℓ for two choices of weights. With p, q, r the barycentric coordinates of P₀₁, P₀₂, P₁₂
+//! in the triangle of the corners, g = q₀r₁ − q₁r₀ and h = p₀r₂ − p₂r₀, they are, for the two roots σ of
+//!
+//! > (q₁ + σg)(p₂ + σh) = p₁q₂(1 − σr₀)
+//!
+//! > c₁₂² = (1 − σr₀)/(r₁r₂),  c₀₂/c₀₁ = c₁₂p₁r₁/(q₁ + σg),  c₀₁² = r₂(q₁ + σg)/(p₁(p₀q₁r₂ + g(p₂ + σh)))
+//!
+//! A regular net has σ = 2 and the weights 1. The weight of a corner is free: λᵢ² there multiplies cᵢⱼ by λᵢλⱼ.
+
+use super::{coordinates, index};
+use crate::map::{Plane, Quotient};
+use kurbo::{Point, Rect};
+
+/// The weights of the three points between the corners 0 1, 0 2 and 1 2, and the inverse.
+pub(super) struct Birational {
+    pub(super) weights: [f64; 3],
+    pub(super) back: Quotient,
+}
+
+/// The weights for a net of six points, by [`index`], over a reference triangle, with the roots `lambda` of the weights of its corners.
+/// `None` if the corners lie on a line, or if no positive weights make the map birational.
+pub(super) fn birational(points: &[Point], lambda: [f64; 3], reference: [Point; 3]) -> Option<Birational> {
+    let corner = [[2, 0, 0], [0, 2, 0], [0, 0, 2]].map(|k| points[index(k)]);
+    let pre = coordinates(corner);
+    let barycentric = |ijk: [usize; 3]| {
+        let at = pre * points[index(ijk)];
+        let (b1, b2) = (at.x + 1.0 / 3.0, at.y + 1.0 / 3.0);
+        [1.0 - b1 - b2, b1, b2]
+    };
+    let [[p0, p1, p2], [q0, q1, q2], [r0, r1, r2]] = [[1, 1, 0], [1, 0, 1], [0, 1, 1]].map(barycentric);
+    let (g, h) = (q0 * r1 - q1 * r0, p0 * r2 - p2 * r0);
+    let (a, b, c) = (g * h, q1 * h + p2 * g + p1 * q2 * r0, q1 * p2 - p1 * q2);
+    let larger = -0.5 * (b + (b * b - 4.0 * a * c).sqrt().copysign(b));
+    let positive = |v: f64| (v > 0.0 && v.is_finite()).then_some(v);
+    let solve = |sigma: f64| {
+        let (m, d) = (q1 + sigma * g, (1.0 - sigma * r0) / (r1 * r2));
+        let z = positive(d)?.sqrt();
+        let k = positive(z * p1 * r1 / m)?;
+        let x = positive(r2 * m / (p1 * (p0 * q1 * r2 + g * (p2 + sigma * h))))?.sqrt();
+        let y = k * x;
+        // ℓᵢ at the corners, for ℓ₀ = 1 at corner 1 and 0 at corner 2, or the reverse.
+        let line = |a01: f64, a02: f64| {
+            let (a10, a20) = (-x * (p1 * a01 + p2 * a02), -y * (q2 * a02 + q1 * a01));
+            let (a12, a21) = ((d * r1 * a10 - z * a20) / sigma, (d * r2 * a20 - z * a10) / sigma);
+            [[0.0, a01, a02], [a10, 0.0, a12], [a20, a21, 0.0]]
+        };
+        Some(([x, y, z].map(|c| 0.5 * c), [line(1.0, 0.0), line(0.0, 1.0)]))
+    };
+    let near_one = |w: &[f64; 3]| w.iter().map(|w| w.ln().powi(2)).sum::<f64>();
+    let found = [larger / a, c / larger].into_iter().filter_map(solve);
+    let (weights, lines) = found.min_by(|a, b| near_one(&a.0).total_cmp(&near_one(&b.0)))?;
+    let form = |[b0, b1, b2]: [f64; 3]| [(b0 + b1 + b2) / 3.0, b1 - b0, b2 - b0];
+    let [l, m] = lines.map(|l| l.map(form));
+    let u = [(1, 2), (2, 0), (0, 1)]
+        .map(|(j, k)| Plane::linear(l[j]).times_linear(m[k]).plus(-1.0, &Plane::linear(l[k]).times_linear(m[j])));
+    let sum = |f: &dyn Fn(Point) -> f64| {
+        let terms = u.iter().zip(reference).zip(lambda);
+        terms.fold(Plane::default(), |sum, ((u, corner), lambda)| sum.plus(f(corner) / lambda, u))
+    };
+    // The image of the middle of the triangle: W is positive there.
+    let w = [1.0, 2.0 * weights[0], 2.0 * weights[1], 1.0, 2.0 * weights[2], 1.0];
+    let middle = points.iter().zip(w).map(|(p, w)| p.to_vec2() * w).sum::<kurbo::Vec2>() / w.iter().sum::<f64>();
+    let at = pre * middle.to_point();
+    let sign = sum(&|_| 1.0).at(at.x, at.y).signum();
+    let origin = reference[0];
+    let domain = points.iter().fold(Rect::from_points(points[0], points[0]), |b, p| b.union_pt(*p));
+    let [x, y, w] = [sum(&|p| sign * (p.x - origin.x)), sum(&|p| sign * (p.y - origin.y)), sum(&|_| sign)];
+    let [l0, l1, l2] = lambda;
+    let weights = [weights[0] * l0 * l1, weights[1] * l0 * l2, weights[2] * l1 * l2];
+    Some(Birational { weights, back: Quotient::rational(pre, origin, x, y, w, domain) })
+}

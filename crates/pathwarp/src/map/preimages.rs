@@ -1,0 +1,339 @@
+//! All preimages of a point under maps whose coordinates are quotients of polynomials.
+//!
+//! With F = (X, Y)/W, the preimages of q are the common zeros of g₁ = X − qₓ·W and g₂ = Y − q_y·W (Sederberg, Goldman and Wang,
+//! equations 3 and 4), at most 2mn of them for degree m×n. Substituting 1/u for u takes |u| ≥ 1 to |u| ≤ 1, so four squares hold the
+//! plane. In each, both polynomials are subdivided in Bernstein form, whose coefficients bound them: a square on which one of them, or of
+//! their combinations by the inverse Jacobian, has coefficients of one sign has no zero; one on which the Jacobian of these combinations
+//! is diagonally dominant has at most one, which Newton's method finds (E. Sherbrooke, N. Patrikalakis, *Computation of the solutions of
+//! nonlinear polynomial systems*, CAGD 10, 1993). Nothing is missed but for rounding.
+
+use super::{Creases, Map, NewtonInverse};
+use kurbo::{Affine, Point, Rect, Vec2};
+use std::cell::LazyCell;
+use std::sync::Arc;
+
+/// Preimages closer than this share of their coordinates are one.
+const SAME: f64 = 1e-7;
+/// Zeros further than this from the center, in units of the polynomials' variables, count as lying at infinity.
+const FAR: f64 = 1e6;
+/// The width of squares that are not divided further: their zero is a point on a fold.
+const NARROW: f64 = 1e-8;
+/// The number of squares, far above what finitely many zeros need, after which the zeros count as infinitely many.
+const MAX_SQUARES: usize = 20_000;
+
+/// A map as X, Y and W in powers of u and v.
+pub(crate) struct Polynomials {
+    /// (u, v) from the source point.
+    pub(crate) pre: Affine,
+    /// Added to (X, Y)/W.
+    pub(crate) origin: Point,
+    /// The coefficients of uⁱvʲ as (i, j, [X, Y, W]).
+    pub(crate) terms: Vec<(usize, usize, [f64; 3])>,
+}
+
+/// Two polynomials on a square, as Bernstein coefficients: rows along v of columns along u.
+#[derive(Clone)]
+struct Square {
+    at: [[f64; 2]; 2],
+    g: Vec<Vec<Vec2>>,
+}
+
+impl Polynomials {
+    /// The points that `map`, which these polynomials describe, takes to `q`. `None` if there are infinitely many.
+    pub(crate) fn preimages(&self, map: &dyn Map, q: Point) -> Option<Vec<Point>> {
+        let (m, n) = self.terms.iter().fold((0, 0), |(m, n), t| (m.max(t.0), n.max(t.1)));
+        let mut g = vec![vec![Vec2::ZERO; m + 1]; n + 1];
+        for (i, j, [x, y, w]) in &self.terms {
+            g[*j][*i] += Vec2::new(*x, *y) - (q - self.origin) * *w;
+        }
+        let (mut found, mut count) = (Vec::new(), 0);
+        for far in [[false, false], [true, false], [false, true], [true, true]] {
+            let mut g = g.clone();
+            if far[0] {
+                g.iter_mut().for_each(|row| row.reverse());
+            }
+            if far[1] {
+                g.reverse();
+            }
+            let rows = g.iter().map(|row| bernstein(row)).collect::<Vec<_>>();
+            let mut squares = vec![Square {
+                at: [[-1.0, 1.0]; 2],
+                g: transposed(&transposed(&rows).iter().map(|c| bernstein(c)).collect::<Vec<_>>()),
+            }];
+            while let Some(square) = squares.pop() {
+                count += 1;
+                if count > MAX_SQUARES {
+                    return None;
+                }
+                let beyond = |k: usize| far[k] && square.at[k].iter().all(|c| c.abs() <= 1.0 / FAR);
+                if beyond(0) || beyond(1) || square.has_no_zero() {
+                    continue;
+                }
+                match square.only_zero(&Chart { of: self, far }, map, q) {
+                    Some(p) => found.push(p),
+                    None if square.is_narrow() => {}
+                    None => squares.extend(square.halves()),
+                }
+            }
+        }
+        let back = self.pre.inverse();
+        Some(distinct(found, back * Point::ORIGIN, back.determinant().abs().sqrt()))
+    }
+}
+
+/// Sorts points and drops those that repeat, by their distances from the center of an area and by its size.
+fn distinct(mut points: Vec<Point>, center: Point, size: f64) -> Vec<Point> {
+    let mut out: Vec<Point> = Vec::new();
+    points.retain(|p| p.is_finite());
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    for p in points {
+        if out.iter().all(|o| o.distance(p) > SAME * (size + p.distance(center))) {
+            out.push(p);
+        }
+    }
+    out
+}
+
+/// For each point, all points that `map` takes to it ([`Map::preimages`]) or, if it cannot tell, those that its inverse and Newton's method
+/// find over `area` and half its size around it. In the order of their abscissae, without those at which the map is not defined.
+#[must_use]
+pub fn preimages(map: &Arc<dyn Map>, qs: &[Point], area: Rect) -> Vec<Vec<Point>> {
+    let mut creases = Creases::default();
+    map.creases(&mut creases);
+    let size = area.width() + area.height();
+    let search = LazyCell::new(|| {
+        let area = area.inflate(0.5 * area.width(), 0.5 * area.height());
+        (NewtonInverse::over(Arc::clone(map), area, 0.0), SAME * size)
+    });
+    let searched = |q: Point| {
+        let mut found: Vec<Point> =
+            map.inverse().map(|back| back.point(q)).filter(|p| p.is_finite()).into_iter().collect();
+        let (inverse, near) = &*search;
+        while let Some(next) = inverse.solve_where(q, |p| found.iter().all(|f| f.distance(p) > *near)) {
+            found.push(next.p);
+        }
+        found
+    };
+    let all = |q: &Point| {
+        let found = distinct(map.preimages(*q).unwrap_or_else(|| searched(*q)), area.center(), size);
+        found.into_iter().filter(|p| creases.defined_at(*p)).collect()
+    };
+    qs.iter().map(all).collect()
+}
+
+/// Returns the Bernstein coefficients over [−1, 1] of a polynomial in powers: cₖ counts [xᵏ](1 − x)ⁿ⁻ⁱ(1 + x)ⁱ / C(n, k) times in the ith.
+fn bernstein(powers: &[Vec2]) -> Vec<Vec2> {
+    let n = powers.len() - 1;
+    let product = |ones: usize| {
+        let mut c = vec![1.0];
+        for step in 0..n {
+            let sign = if step < ones { 1.0 } else { -1.0 };
+            c.push(0.0);
+            (1..c.len()).rev().for_each(|k| c[k] += sign * c[k - 1]);
+        }
+        c
+    };
+    let binomials = product(n);
+    let coefficient = |i: usize| {
+        let terms = product(i).into_iter().zip(&binomials).zip(powers);
+        terms.fold(Vec2::ZERO, |sum, ((t, b), c)| sum + *c * (t / b))
+    };
+    (0..=n).map(coefficient).collect()
+}
+
+fn transposed(rows: &[Vec<Vec2>]) -> Vec<Vec<Vec2>> {
+    (0..rows[0].len()).map(|i| rows.iter().map(|r| r[i]).collect()).collect()
+}
+
+/// A square of the plane of (u, v), with 1/u or 1/v for those that are `far`.
+struct Chart<'a> {
+    of: &'a Polynomials,
+    far: [bool; 2],
+}
+
+impl Chart<'_> {
+    fn turned(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [if self.far[0] { 1.0 / u } else { u }, if self.far[1] { 1.0 / v } else { v }]
+    }
+
+    fn source(&self, at: [f64; 2]) -> Point {
+        self.of.pre.inverse() * Point::from(<(f64, f64)>::from(self.turned(at)))
+    }
+
+    /// Returns `true` if W is more than rounding: at a base point, which is nobody's preimage, all three polynomials vanish.
+    fn is_regular(&self, at: [f64; 2]) -> bool {
+        let [u, v] = self.turned(at);
+        let terms = self.of.terms.iter().map(|(i, j, c)| c[2] * u.powi(*i as i32) * v.powi(*j as i32));
+        let (w, size) = terms.fold((0.0, 0.0), |(w, size), t| (w + t, size + f64::abs(t)));
+        f64::abs(w) > 1e-6 * size
+    }
+
+    fn place(&self, p: Point) -> [f64; 2] {
+        let at = self.of.pre * p;
+        self.turned([at.x, at.y])
+    }
+}
+
+impl Square {
+    fn all(&self) -> impl Iterator<Item = Vec2> {
+        self.g.iter().flatten().copied()
+    }
+
+    /// The inverse of the mean Jacobian, as two rows, and the smallest and largest of ∂/∂u and ∂/∂v of the two combinations with it.
+    fn straightened(&self) -> Option<([Vec2; 2], [[[f64; 2]; 2]; 2])> {
+        let (m, n) = ((self.g[0].len() - 1) as f64, (self.g.len() - 1) as f64);
+        let across = |k: f64, g: &[Vec<Vec2>]| {
+            g.iter().flat_map(|r| r.windows(2)).map(|w| (w[1] - w[0]) * k).collect::<Vec<Vec2>>()
+        };
+        let slopes = [across(m, &self.g), across(n, &transposed(&self.g))];
+        let [du, dv] = slopes.each_ref().map(|s| s.iter().fold(Vec2::ZERO, |a, b| a + *b) / s.len() as f64);
+        let det = du.cross(dv);
+        let rows = [Vec2::new(dv.y, -dv.x) / det, Vec2::new(-du.y, du.x) / det];
+        let range = |row: Vec2, slopes: &[Vec2]| {
+            slopes
+                .iter()
+                .map(|s| row.dot(*s))
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
+        };
+        let ranges = rows.map(|row| [range(row, &slopes[0]), range(row, &slopes[1])]);
+        (rows[0].is_finite() && rows[1].is_finite()).then_some((rows, ranges))
+    }
+
+    fn has_no_zero(&self) -> bool {
+        /// Rounding of the coefficients, as a share of the largest.
+        const NOISE: f64 = 1e-14;
+        let one_sign = |row: Vec2| {
+            let noise = NOISE * self.all().map(|g| (row.x * g.x).abs() + (row.y * g.y).abs()).fold(0.0, f64::max);
+            self.all().all(|g| row.dot(g) > noise) || self.all().all(|g| row.dot(g) < -noise)
+        };
+        one_sign(Vec2::new(1.0, 0.0))
+            || one_sign(Vec2::new(0.0, 1.0))
+            || self.straightened().is_some_and(|(rows, _)| rows.into_iter().any(one_sign))
+    }
+
+    /// The zero in the square, if it can have only one and Newton's method finds it, or if it is too narrow to be divided.
+    fn only_zero(&self, chart: &Chart<'_>, map: &dyn Map, q: Point) -> Option<Point> {
+        let center = self.at.map(|[a, b]| 0.5 * (a + b));
+        if self.is_narrow() {
+            return Some(chart.source(center)).filter(|_| chart.is_regular(center));
+        }
+        let (_, [[uu, uv], [vu, vv]]) = self.straightened()?;
+        let dominant = |own: [f64; 2], other: [f64; 2]| own[0] > other[0].abs().max(other[1].abs());
+        if !dominant(uu, uv) || !dominant(vv, vu) {
+            return None;
+        }
+        let (mut p, mut last) = (chart.source(center), f64::INFINITY);
+        for _ in 0..40 {
+            let jet = map.jet(p);
+            let off = jet.inverted(p).push(q - jet.p);
+            if !(off.is_finite() && (off.hypot() < last || last == f64::INFINITY)) {
+                break;
+            }
+            (p, last) = (p + off, off.hypot());
+        }
+        let at = chart.place(p);
+        let near = |k: usize| at[k] >= self.at[k][0] - 1e-9 && at[k] <= self.at[k][1] + 1e-9;
+        (last <= 1e-9 * (p.to_vec2().hypot() + 1.0) && near(0) && near(1)).then_some(p)
+    }
+
+    fn is_narrow(&self) -> bool {
+        self.at.iter().all(|[a, b]| b - a < NARROW)
+    }
+
+    /// The two halves across the longer side.
+    fn halves(self) -> [Self; 2] {
+        let [w, h] = self.at.map(|[a, b]| b - a);
+        let k = usize::from(h > w);
+        let [a, b] = self.at[k];
+        let middle = 0.5 * (a + b);
+        let rows = if k == 0 { self.g } else { transposed(&self.g) };
+        let (mut first, mut second) = (Vec::new(), Vec::new());
+        for mut row in rows {
+            // De Casteljau's algorithm: its left side is the first half, its right side the second.
+            let mut left = vec![row[0]];
+            for n in (1..row.len()).rev() {
+                (0..n).for_each(|i| row[i] = (row[i] + row[i + 1]) * 0.5);
+                left.push(row[0]);
+            }
+            first.push(left);
+            second.push(row);
+        }
+        [(first, [a, middle]), (second, [middle, b])].map(|(rows, range)| {
+            let mut at = self.at;
+            at[k] = range;
+            Self { at, g: if k == 0 { rows } else { transposed(&rows) } }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Lattice, LatticeMap};
+
+    /// Pseudo-random numbers in [-1, 1).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// Equation 2, by de Casteljau's algorithm over the control points in rows.
+    fn by_definition(points: &[Vec<Point>], s: f64, t: f64) -> Point {
+        fn casteljau(mut row: Vec<Point>, t: f64) -> Point {
+            while row.len() > 1 {
+                row = row.windows(2).map(|w| w[0].lerp(w[1], t)).collect();
+            }
+            row[0]
+        }
+        casteljau(points.iter().map(|row| casteljau(row.clone(), s)).collect(), t)
+    }
+
+    /// A polynomial map of degree m×n takes 2mn complex points to one, and complex ones come in pairs.
+    #[test]
+    fn every_preimage_is_one_the_known_one_is_among_them_and_their_number_is_even() {
+        let mut state = 5;
+        for k in 0..400 {
+            let (m, n) = (1 + k % 3, 1 + k / 3 % 3);
+            let mut lattice = Lattice::regular(Rect::new(0.0, 0.0, 1.0, 1.0), [m, n], [1, 1]);
+            let mut points = vec![vec![Point::ZERO; m + 1]; n + 1];
+            for (j, row) in points.iter_mut().enumerate() {
+                for (i, p) in row.iter_mut().enumerate() {
+                    *p = Point::new(2.0 * random(&mut state), 2.0 * random(&mut state));
+                    lattice.place(i, j, *p);
+                }
+            }
+            let p = Point::new(2.0 * random(&mut state), 2.0 * random(&mut state));
+            let q = by_definition(&points, p.x, p.y);
+            let found = LatticeMap::new(&lattice, true).preimages(q).unwrap();
+            assert!(found.iter().any(|f| f.distance(p) < 1e-8), "{k}: {p:?} {found:?}");
+            assert_eq!(found.len() % 2, 0, "{k}: {m}x{n} {p:?} {found:?}");
+            assert!(found.len() <= 2 * m * n);
+            for f in found {
+                let size = 1.0 + f.to_vec2().hypot().powi((m + n) as i32);
+                assert!(by_definition(&points, f.x, f.y).distance(q) < 1e-9 * size, "{k}: {f:?}");
+            }
+        }
+    }
+
+    /// x² + y² and x·y: the four points with x² + y² = 5, x·y = 2; on the fold x = y two of them meet.
+    #[test]
+    fn folds_and_whole_curves() {
+        let map = super::super::from_fn(|p| Point::new(p.x * p.x + p.y * p.y, p.x * p.y));
+        let terms =
+            vec![(2, 0, [1.0, 0.0, 0.0]), (0, 2, [1.0, 0.0, 0.0]), (1, 1, [0.0, 1.0, 0.0]), (0, 0, [0.0, 0.0, 1.0])];
+        let squares = Polynomials { pre: Affine::IDENTITY, origin: Point::ZERO, terms };
+        let found = squares.preimages(&map, Point::new(5.0, 2.0)).unwrap();
+        let expected = [(-2.0, -1.0), (-1.0, -2.0), (1.0, 2.0), (2.0, 1.0)].map(Point::from);
+        assert_eq!(found.len(), 4);
+        assert!(found.iter().zip(expected).all(|(f, e)| f.distance(e) < 1e-9), "{found:?}");
+        let fold = squares.preimages(&map, Point::new(2.0, 1.0)).unwrap();
+        assert_eq!(fold.len(), 2, "{fold:?}");
+        assert!(fold[1].distance(Point::new(1.0, 1.0)) < 1e-6, "{fold:?}");
+        // A line that shrinks to a point: infinitely many.
+        let terms = vec![(1, 0, [1.0, 0.0, 0.0]), (1, 1, [0.0, 1.0, 0.0]), (0, 0, [0.0, 0.0, 1.0])];
+        let pinch = Polynomials { pre: Affine::IDENTITY, origin: Point::ZERO, terms };
+        let map = super::super::from_fn(|p| Point::new(p.x, p.x * p.y));
+        assert_eq!(pinch.preimages(&map, Point::ZERO), None);
+        assert_eq!(pinch.preimages(&map, Point::new(2.0, 1.0)).unwrap(), [Point::new(2.0, 0.5)]);
+    }
+}
