@@ -128,7 +128,8 @@ fn the_polynomial_mode_has_exact_images() {
         .map;
     let source = RationalBezier::from_seg(&Seg::Line(kurbo::Line::new((5.0, 10.0), (40.0, 90.0)))).unwrap();
     let image = m.branch(Point::new(20.0, 50.0)).unwrap().image(&source).unwrap();
-    assert_eq!(image.degree(), 3);
+    // Handles at the points of cubic pieces: C has degree 3, v·S one more.
+    assert_eq!(image.degree(), 4);
     for i in 0..=10 {
         let t = f64::from(i) / 10.0;
         assert!(image.eval(t).distance(m.point(source.eval(t))) < 1e-10);
@@ -414,4 +415,86 @@ fn artwork_longer_than_the_path_is_named() {
     assert_eq!(said("0,0 100,0 100,200"), [""; 0]);
     let [warning] = &said("0,50 80,50")[..] else { panic!() };
     assert!(warning.contains("longer than the path by 20.000 (25 % of the path)"), "{warning}");
+}
+
+/// The value of a B-spline's basis function over uniform knots: clamped with `cells` cells, or, without, on all whole numbers.
+fn basis(cells: Option<usize>, i: isize, d: usize, degree: usize, x: f64) -> f64 {
+    let knot = |k: isize| cells.map_or(k as f64, |c| (k - degree as isize).clamp(0, c as isize) as f64);
+    let (t, n) = (knot(i), knot(i + d as isize + 1));
+    if d == 0 {
+        return f64::from(u8::from(t <= x && x < n));
+    }
+    let part = |num: f64, den: f64, b: f64| if den > 0.0 { num / den * b } else { 0.0 };
+    part(x - t, knot(i + d as isize) - t, basis(cells, i, d - 1, degree, x))
+        + part(n - x, n - knot(i + 1), basis(cells, i + 1, d - 1, degree, x))
+}
+
+/// Points and handles of a spline of any degree are blended by the same B-splines (the recursion of Cox and de Boor, written again), and lines
+/// along the skeleton are as smooth at the joints as the formula.
+#[test]
+fn handles_at_the_points_of_a_spline_are_control_points_too() {
+    let points = [(0., 50.), (20., 10.), (60., 20.), (80., 90.), (130., 70.), (150., 20.), (170., 60.), (190., 50.), (230., 0.)];
+    let sides = [(0., -60.), (20., -50.), (-9., -70.), (5., -40.), (0., -55.), (-20., -60.), (8., -45.), (10., -50.), (0., -66.)];
+    let text = |v: &[(f64, f64)], by: &str| v.iter().map(|(x, y)| format!("{x},{y}")).collect::<Vec<_>>().join(by);
+    let json = format!(r#"{{"points":[[{}]]}}"#, text(&sides, "],["));
+    let along = text(&points, " ");
+    for degree in 1..=8 {
+        let cells = points.len() - degree;
+        let number = degree.to_string();
+        let args = [("along", &*along), ("spline", &*number), ("by", "parameter"), ("stretch", "fit")];
+        let m = with_handles(&args, &json).unwrap().map;
+        for k in 0..97 {
+            let (u, y) = ((f64::from(k) + 0.5) / 97.0, 3.0 * f64::from(k % 30));
+            let sum = (0..points.len()).fold(Vec2::ZERO, |sum, i| {
+                let b = basis(Some(cells), i as isize, degree, degree, u * cells as f64);
+                sum + (Vec2::from(points[i]) + Vec2::from(sides[i]) * ((50.0 - y) / 100.0)) * b
+            });
+            let got = m.point(Point::new(100.0 * u, y));
+            assert!(got.distance(sum.to_point()) < 1e-10, "{degree} {u}: {got:?} {sum:?}");
+        }
+        for k in 1..cells {
+            let at = |e: f64| m.jet(Point::new(100.0 * k as f64 / cells as f64 + e, 12.0));
+            let (a, b) = (at(-1e-11), at(1e-11));
+            assert!(degree == 1 || (a.dx - b.dx).hypot() < 1e-9 * a.dx.hypot().max(1.0), "{degree}: {a:?} {b:?}");
+        }
+    }
+}
+
+/// The command that once turned lines by 100°, and its relatives: at every joint, both sides of every parallel have the same derivative
+/// where the skeleton is a spline, and the same direction where it is drawn.
+#[test]
+fn default_handles_leave_no_kinks() {
+    let zigzag = "0,100 30,40 60,120 90,50 120,130 150,60 180,100";
+    let ring = "M0,0 L60,-10 100,30 70,90 10,70 Z";
+    let drawn = "M0,100 C20,40 60,40 80,100 S120,160 150,100 Q170,60 210,70 L250,80 Q290,90 250,150 T170,160";
+    let loops = "M0,0 C80,0 60,60 0,60 C-30,60 -40,0 0,0 Z";
+    let scattered: Vec<String> = (1..13).map(|i| format!("{},{}", i * 7919 % 307, i * i * 104_729 % 311)).collect();
+    for along in [zigzag, ring, drawn, loops, &scattered.join(" ")] {
+        for how in [("spline", "2"), ("spline", "3"), ("spline", "4"), ("interpolate", "true"), ("reverse", "true")] {
+            if (how.0 == "reverse") != (along == drawn || along == loops) {
+                continue;
+            }
+            let args = [("along", along), how, ("by", "parameter"), ("stretch", "fit"), ("width", "0.01")];
+            let built = build(&args).unwrap();
+            let warnings = &built.explanation.warnings;
+            assert!(warnings.iter().all(|w| !w.contains("kink")), "{along} {how:?} {warnings:?}");
+            let mut creases = Creases::default();
+            built.map.creases(&mut creases);
+            let mut joints = 0;
+            for c in creases.items() {
+                let Level::Line { a, c, .. } = c.level else { panic!("joints are vertical lines") };
+                if !(1e-6..100.0 - 1e-6).contains(&(-c / a)) {
+                    continue;
+                }
+                joints += 1;
+                for y in [0.0, 20.0, 50.0, 90.0, 100.0] {
+                    let at = |e: f64| built.map.jet(Point::new(-c / a + e, y)).dx;
+                    let (p, q) = (at(-1e-12), at(1e-12));
+                    let off = if how.0 == "reverse" { p.cross(q).atan2(p.dot(q)).abs() * 1e-3 } else { (p - q).hypot() / p.hypot().max(1.0) };
+                    assert!(off < 1e-9, "{along} {how:?} {y}: {p:?} {q:?}");
+                }
+            }
+            assert!(joints > 0);
+        }
+    }
 }
