@@ -23,8 +23,9 @@ pub(super) fn read(name: &str, text: &str) -> Result<Handles, Error> {
     let wrong = |problem: String| Error::input(name, problem);
     let file: HandlesFile = serde_json::from_str(text).map_err(|e| wrong(format!("is not a file of handles: {e}")))?;
     let vector = |[x, y]: [f64; 2]| Vec2::new(x, y);
-    let vanishes =
-        |what: String| wrong(format!("{what} vanishes: the artwork would collapse onto the skeleton there; make it longer"));
+    let vanishes = |what: String| {
+        wrong(format!("{what} vanishes: the artwork would collapse onto the skeleton there; make it longer"))
+    };
     match (file.pieces, file.points) {
         (Some(pieces), None) => {
             for (i, piece) in pieces.iter().enumerate() {

@@ -567,7 +567,8 @@ impl Ribbon {
     /// the paper's figure 1c: the polygon, and the quadrangles between the handles of both ends.
     pub(super) fn first_level(&self, heights: [f64; 2]) -> Vec<BezPath> {
         let handle = |leg: usize, end: usize| {
-            let [x, y] = self.at_points.get(leg + end).or(self.levels.first().and_then(|l| l.get(leg))).unwrap_or(&[0.0; 2]);
+            let [x, y] =
+                self.at_points.get(leg + end).or(self.levels.first().and_then(|l| l.get(leg))).unwrap_or(&[0.0; 2]);
             Vec2::new(*x, *y)
         };
         let quad = |(i, p): (usize, &[Point])| {

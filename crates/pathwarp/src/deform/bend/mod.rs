@@ -23,8 +23,8 @@ mod spline;
 #[cfg(test)]
 mod tests;
 
-use crate::anchors;
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
+use crate::anchors;
 use crate::error::{Error, show};
 use crate::outline::Outline;
 use crate::param::{Axis, Choice as _, Kind, Letter, NamedPath, NamedText, Settings, choice, is_spiral, parameters};
@@ -248,7 +248,10 @@ impl Bend {
         }
         built.overlay(Role::Cage, cage);
         let heights = self.heights(1.0).map(|d| d / self.unit());
-        let ribbons = map.pieces.iter().filter_map(|p| if let Strip::Ribbon { ribbon, .. } = &p.strip { Some(ribbon) } else { None });
+        let ribbons = map
+            .pieces
+            .iter()
+            .filter_map(|p| if let Strip::Ribbon { ribbon, .. } = &p.strip { Some(ribbon) } else { None });
         let tool: BezPath = ribbons.flat_map(|r| r.first_level(heights)).flatten().collect();
         if !tool.elements().is_empty() {
             built.overlay(Role::Cage, tool);
@@ -348,7 +351,8 @@ impl Bend {
 
     /// Returns the pieces with their sides.
     fn joined(&self, skeleton: Skeleton) -> Result<Joined, Error> {
-        let heights = self.heights(if self.stretch == Stretch::Scale { skeleton.length / self.frame.width() } else { 1.0 });
+        let heights =
+            self.heights(if self.stretch == Stretch::Scale { skeleton.length / self.frame.width() } else { 1.0 });
         let given = match &self.handles {
             None if !self.by_parameter => return skeleton.with_normals(heights[0].abs().max(heights[1].abs())),
             Some(Handles::Pieces(given)) => Some(&given[..]),
@@ -529,7 +533,8 @@ fn preset(s: &Settings<'_>) -> Result<Option<Bend>, Error> {
             None => Ok(None),
         };
     }
-    if let Some(name) = ["along", "stretch", "by", "handles", "spline", "interpolate"].into_iter().find(|n| s.given(n)) {
+    if let Some(name) = ["along", "stretch", "by", "handles", "spline", "interpolate"].into_iter().find(|n| s.given(n))
+    {
         let problem = "cannot go with `preset`, which has its own skeleton";
         return Err(Error::usage(name, s.texts(name).join(" "), problem));
     }

@@ -135,7 +135,9 @@ artwork's height; a smaller `width` helps too",
         let several = self.frames.is_empty() && (self.closed || self.spines.len() > 1);
         for (spine, table) in std::mem::take(&mut self.spines) {
             match spine.curve {
-                Curve::Seg(Seg::Arc(a)) => self.spines.extend(a.to_cubics(tolerance).map(|c| measured(Curve::Seg(Seg::Cubic(c))))),
+                Curve::Seg(Seg::Arc(a)) => {
+                    self.spines.extend(a.to_cubics(tolerance).map(|c| measured(Curve::Seg(Seg::Cubic(c)))))
+                }
                 Curve::Seg(Seg::Quad(q)) if several && (q.p1 - q.p0).dot(q.p2 - q.p1) < 0.0 => {
                     self.spines.push((Spine::new(Curve::Seg(Seg::Cubic(q.raise()))), table));
                 }
@@ -207,8 +209,13 @@ artwork's height; a smaller `width` helps too",
             match spine.curve {
                 Curve::Seg(Seg::Line(line)) => strips.extend(on_a_line(line, mitres, height)),
                 _ => {
-                    let curved =
-                        Strip::Normals { spine: spine.clone(), table: table.clone(), mitres, even: self.even, smooth: false };
+                    let curved = Strip::Normals {
+                        spine: spine.clone(),
+                        table: table.clone(),
+                        mitres,
+                        even: self.even,
+                        smooth: false,
+                    };
                     strips.push((curved, table.length()));
                 }
             }

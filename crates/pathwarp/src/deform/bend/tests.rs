@@ -433,8 +433,19 @@ fn basis(cells: Option<usize>, i: isize, d: usize, degree: usize, x: f64) -> f64
 /// along the skeleton are as smooth at the joints as the formula.
 #[test]
 fn handles_at_the_points_of_a_spline_are_control_points_too() {
-    let points = [(0., 50.), (20., 10.), (60., 20.), (80., 90.), (130., 70.), (150., 20.), (170., 60.), (190., 50.), (230., 0.)];
-    let sides = [(0., -60.), (20., -50.), (-9., -70.), (5., -40.), (0., -55.), (-20., -60.), (8., -45.), (10., -50.), (0., -66.)];
+    let points =
+        [(0., 50.), (20., 10.), (60., 20.), (80., 90.), (130., 70.), (150., 20.), (170., 60.), (190., 50.), (230., 0.)];
+    let sides = [
+        (0., -60.),
+        (20., -50.),
+        (-9., -70.),
+        (5., -40.),
+        (0., -55.),
+        (-20., -60.),
+        (8., -45.),
+        (10., -50.),
+        (0., -66.),
+    ];
     let text = |v: &[(f64, f64)], by: &str| v.iter().map(|(x, y)| format!("{x},{y}")).collect::<Vec<_>>().join(by);
     let json = format!(r#"{{"points":[[{}]]}}"#, text(&sides, "],["));
     let along = text(&points, " ");
@@ -490,7 +501,11 @@ fn default_handles_leave_no_kinks() {
                 for y in [0.0, 20.0, 50.0, 90.0, 100.0] {
                     let at = |e: f64| built.map.jet(Point::new(-c / a + e, y)).dx;
                     let (p, q) = (at(-1e-12), at(1e-12));
-                    let off = if how.0 == "reverse" { p.cross(q).atan2(p.dot(q)).abs() * 1e-3 } else { (p - q).hypot() / p.hypot().max(1.0) };
+                    let off = if how.0 == "reverse" {
+                        p.cross(q).atan2(p.dot(q)).abs() * 1e-3
+                    } else {
+                        (p - q).hypot() / p.hypot().max(1.0)
+                    };
                     assert!(off < 1e-9, "{along} {how:?} {y}: {p:?} {q:?}");
                 }
             }
