@@ -16,7 +16,7 @@ use crate::settings::{Box3, Settings3};
 use glam::{DMat3, DQuat, DVec3};
 use pathwarp::Error;
 use pathwarp::deform::{Example, Info};
-use pathwarp::map::bspline;
+use pathwarp::map::{Joint, bspline};
 use pathwarp::param::{Kind, Param};
 use pathwarp::setters;
 use std::sync::Arc;
@@ -124,23 +124,30 @@ impl Bend3 {
         let (b, c) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
         let corners = [(from[b], from[c]), (to[b], from[c]), (to[b], to[c]), (from[b], to[c])];
         let first_level: Vec<_> = pieces.iter().flat_map(|p| p.first_level(corners)).collect();
-        let joints: Vec<Joint> =
-            (1..count).map(|i| Joint::new(&pieces[i - 1..=i], &knots[i - 1..=i + 1], corners)).collect();
+        let joint = |i: usize| {
+            let ends =
+                [(pieces[i - 1].stand(1.0), knots[i] - knots[i - 1]), (pieces[i].stand(0.0), knots[i + 1] - knots[i])];
+            let line = |(v, w)| ends.map(|(s, width)| (s.along(v, w) / width).to_array());
+            let DVec3 { x, y, z } = ends[1].0.at[0];
+            Joint::new(
+                format!("{x:.6},{y:.6},{z:.6}"),
+                &[(0.0, 0.0)].into_iter().chain(corners).map(line).collect::<Vec<_>>(),
+            )
+        };
+        let joints: Vec<Joint> = (1..count).map(joint).collect();
         let (axis, start) = (self.axis, self.bounds.min[self.axis]);
-        let mut built = Built3::new(Arc::new(BendMap3::new(pieces.into(), knots.into(), axis, start, size, through)));
+        let mut built = Built3::new(Arc::new(BendMap3 {
+            pieces: pieces.into(),
+            knots: knots.into(),
+            axis,
+            start,
+            length: size,
+            through,
+        }));
         let length: f64 = skeleton.windows(2).map(|w| w[0].distance(w[1])).sum();
         built.note(format!("skeleton: {count} pieces, {length:.6} long; the model is {size:.6} long along it"));
-        joints.iter().for_each(|j| built.note(j.described()));
-        let kinks: Vec<&Joint> = joints.iter().filter(|j| j.kinks()).collect();
-        if let Some(worst) = kinks.iter().copied().reduce(|a, b| if b.beside > a.beside { b } else { a }) {
-            let DVec3 { x, y, z } = worst.at;
-            built.warn(format!(
-                "bend: beside the skeleton, lines along it have kinks at {} joint(s), the worst of {:.1}° at {x:.6},{y:.6},{z:.6}: the handles \
-on both sides of a smooth joint must change alike (equations 4 and 5 of the paper), or let the program choose them",
-                kinks.len(),
-                worst.beside.to_degrees()
-            ));
-        }
+        built.notes.extend(joints.iter().map(Joint::described));
+        built.warnings.extend(Joint::warning(&joints));
         built.guides.push(skeleton);
         built.guides.extend(first_level);
         Ok(built)
@@ -155,7 +162,7 @@ on both sides of a smooth joint must change alike (equations 4 and 5 of the pape
         let straight = |length: f64, sizes: &[f64]| {
             let n = sizes.len() - 1;
             let points = (0..=n).map(|i| from + along * (length * i as f64 / n as f64)).collect();
-            Strip::Ribbon { points, levels: vec![sizes.iter().map(|k| sides.map(|s| s * *k)).collect()] }
+            Strip::ribbon(points, vec![sizes.iter().map(|k| sides.map(|s| s * *k)).collect()])
         };
         let preset = match &self.spine {
             Spine3::Twist(angle) => Strip::Twist { from, along, sides, angle: *angle },
@@ -171,8 +178,8 @@ on both sides of a smooth joint must change alike (equations 4 and 5 of the pape
                 let knots = (0..=pieces.len()).map(|i| i as f64 / pieces.len() as f64).collect();
                 return Ok((pieces, knots));
             }
-            Spine3::Spline(points, degree) => return self.spline(points, Some(*degree)),
-            Spine3::Through(points) => return self.spline(points, None),
+            Spine3::Spline(points, degree) => return self.spline(points, *degree),
+            Spine3::Through(points) => return self.interpolated(points),
         };
         match self.handles.first() {
             Some(h) => Err(Error::usage(
@@ -184,59 +191,73 @@ on both sides of a smooth joint must change alike (equations 4 and 5 of the pape
         }
     }
 
-    /// Makes the pieces of a B-spline of this degree, or of a cubic spline through the points. Points and handles together are the control
-    /// points of a spline in nine dimensions.
-    fn spline(&self, points: &[DVec3], degree: Option<usize>) -> Result<(Vec<Strip>, Vec<f64>), Error> {
-        let (n, d) = (points.len(), degree.unwrap_or(1));
-        if n <= d || !(1..=MAX_DEGREE).contains(&d) {
-            let problem =
-                format!("has too few points: a spline of degree {d}, 1 to {MAX_DEGREE}, needs {} or more", d + 1);
+    /// Makes the pieces of a B-spline of this degree, whose points and handles together are control points in nine dimensions.
+    fn spline(&self, points: &[DVec3], degree: usize) -> Result<(Vec<Strip>, Vec<f64>), Error> {
+        let n = points.len();
+        if n <= degree || !(1..=MAX_DEGREE).contains(&degree) {
+            let problem = format!(
+                "has too few points: a spline of degree {degree}, 1 to {MAX_DEGREE}, needs {} or more",
+                degree + 1
+            );
             return Err(Error::usage("skeleton", "", problem));
         }
-        let legs = self.turning_least(&directions(points)?);
-        let distances: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1])).collect();
-        let (mut handles, widths) = match degree {
-            Some(d) => (mitres(&legs), vec![1.0 / (n - d) as f64; n - d]),
-            None => {
-                let widths = bspline::centripetal(&distances);
-                let pieces = bspline::through(&points.iter().map(DVec3::to_array).collect::<Vec<_>>(), &widths, false);
-                let tangent = |i: usize| {
-                    let (piece, a) = if i < pieces.len() { (&pieces[i], 0) } else { (&pieces[i - 1], 2) };
-                    let tangent = DVec3::from(piece[a + 1]) - DVec3::from(piece[a]);
-                    tangent.try_normalize().unwrap_or(legs[i.min(n - 2)].0)
-                };
-                let frames = self.turning_least(&(0..n).map(tangent).collect::<Vec<_>>());
-                (frames.into_iter().map(|(_, pair)| pair).collect(), widths)
-            }
-        };
-        for h in &self.handles {
-            let Some(pair) = handles.get_mut(h.index).filter(|_| h.level == 1) else {
-                let problem =
-                    format!("is not a handle: a spline has them at its points, 0 to {}, and no deeper level", n - 1);
-                return Err(Error::usage(param_of(h), format!("{},{}", h.level, h.index), problem));
-            };
-            *pair = [h.side.unwrap_or(pair[0]), h.up.unwrap_or(pair[1])];
-        }
+        let handles = self.at_points(mitres(&self.turning_least(&directions(points)?)))?;
         let frame = |(p, [s, t]): (&DVec3, &[DVec3; 2])| {
             let all = [p, s, t].map(DVec3::to_array);
             std::array::from_fn(|k| all[k / 3][k % 3])
         };
         let frames: Vec<[f64; 9]> = points.iter().zip(&handles).map(frame).collect();
-        let pieces = match degree {
-            Some(d) => bspline::pieces(d, &frames, false),
-            None => bspline::through(&frames, &widths, false),
-        };
         let part = |f: &[f64; 9], k: usize| DVec3::new(f[3 * k], f[3 * k + 1], f[3 * k + 2]);
-        let ribbon = |piece: &Vec<[f64; 9]>| Strip::Ribbon {
-            points: piece.iter().map(|f| part(f, 0)).collect(),
-            levels: vec![piece.iter().map(|f| [part(f, 1), part(f, 2)]).collect()],
+        let ribbon = |f: Vec<[f64; 9]>| {
+            let sides = f.iter().map(|f| [part(f, 1), part(f, 2)]).collect();
+            Strip::ribbon(f.iter().map(|f| part(f, 0)).collect(), vec![sides])
+        };
+        let pieces: Vec<Strip> = bspline::pieces(degree, &frames, false).into_iter().map(ribbon).collect();
+        let knots = (0..=pieces.len()).map(|i| i as f64 / pieces.len() as f64).collect();
+        Ok((pieces, knots))
+    }
+
+    /// Makes the pieces of a cubic spline through points. Between them, S is the C¹ cubic with S' = −(S·C″)/|C'|²·C' at the points, where the
+    /// sides of a tube change so; T is alike.
+    fn interpolated(&self, points: &[DVec3]) -> Result<(Vec<Strip>, Vec<f64>), Error> {
+        directions(points)?;
+        let distances: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1])).collect();
+        let widths = bspline::centripetal(&distances);
+        let flat: Vec<[f64; 3]> = points.iter().map(DVec3::to_array).collect();
+        let pieces: Vec<Vec<DVec3>> = bspline::through(&flat, &widths, false)
+            .into_iter()
+            .map(|p| p.into_iter().map(DVec3::from).collect())
+            .collect();
+        let tangent =
+            |p: &[DVec3], end: usize| (p[end + 1] - p[end]).try_normalize().unwrap_or((p[3] - p[0]).normalize());
+        let mut tangents: Vec<DVec3> = pieces.iter().map(|p| tangent(p, 0)).collect();
+        tangents.extend(pieces.last().map(|p| tangent(p, 2)));
+        let handles = self.at_points(self.turning_least(&tangents).into_iter().map(|(_, pair)| pair).collect())?;
+        let ribbon = |(i, p): (usize, Vec<DVec3>)| {
+            let [a, b, c] = [p[1] - p[0], p[2] - p[1], p[3] - p[2]];
+            let eased = |pair: [DVec3; 2], a: DVec3| {
+                pair.map(|h| h - a * (h.dot(b - a) / (1.5 * a.length_squared()).max(1e-18 * b.length_squared())))
+            };
+            let (g, h) = (handles[i], handles[i + 1]);
+            Strip::ribbon(p, vec![vec![g, eased(g, a), eased(h, c), h]])
         };
         let mut knots = vec![0.0];
-        knots.extend(widths.iter().scan(0.0, |sum, w| {
-            *sum += w;
-            Some(*sum)
-        }));
-        Ok((pieces.iter().map(ribbon).collect(), knots))
+        widths.iter().for_each(|w| knots.push(knots[knots.len() - 1] + w));
+        Ok((pieces.into_iter().enumerate().map(ribbon).collect(), knots))
+    }
+
+    /// Returns the handles at the points of a spline: those that are set, or else their own.
+    fn at_points(&self, mut own: Vec<[DVec3; 2]>) -> Result<Vec<[DVec3; 2]>, Error> {
+        let last = own.len() - 1;
+        for h in &self.handles {
+            let Some(pair) = own.get_mut(h.index).filter(|_| h.level == 1) else {
+                let problem =
+                    format!("is not a handle: a spline has them at its points, 0 to {last}, and no deeper level");
+                return Err(Error::usage(param_of(h), format!("{},{}", h.level, h.index), problem));
+            };
+            *pair = [h.side.unwrap_or(pair[0]), h.up.unwrap_or(pair[1])];
+        }
+        Ok(own)
     }
 
     /// Makes Bézier pieces: with handles on their legs if any are set or there is one piece, or else at their points.
@@ -257,7 +278,8 @@ on both sides of a smooth joint must change alike (equations 4 and 5 of the pape
             // One point cannot have the mitres of both ends of a quadratic that turns by more than a right angle.
             if degree == 2 && legs.chunks(2).any(|l| l[0].0.dot(l[1].0) < 0.0) {
                 let mut raised = vec![points[0]];
-                raised.extend(points.windows(3).step_by(2).flat_map(|p| elevated(p.to_vec(), 4).split_off(1)));
+                let raise = |p: &[DVec3]| [p[0].lerp(p[1], 2.0 / 3.0), p[2].lerp(p[1], 2.0 / 3.0), p[2]];
+                raised.extend(points.windows(3).step_by(2).flat_map(raise));
                 return self.ribbons(&raised, 3);
             }
             let mut all = mitres(&legs);
@@ -268,10 +290,8 @@ on both sides of a smooth joint must change alike (equations 4 and 5 of the pape
                     all[inner] = std::array::from_fn(|k| all[end][k] + d * d.dot(all[inner][k] - all[end][k]));
                 }
             }
-            let piece = |i: usize| Strip::Ribbon {
-                points: points[i * degree..=(i + 1) * degree].to_vec(),
-                levels: vec![all[i * degree..=(i + 1) * degree].to_vec()],
-            };
+            let part = |i: usize| i * degree..=(i + 1) * degree;
+            let piece = |i: usize| Strip::ribbon(points[part(i)].to_vec(), vec![all[part(i)].to_vec()]);
             return Ok((0..pieces).map(piece).collect());
         }
         let mut levels: Vec<Vec<[Option<DVec3>; 2]>> =
@@ -301,11 +321,9 @@ on both sides of a smooth joint must change alike (equations 4 and 5 of the pape
             let own = if j == 0 { legs[i].1 } else { [DVec3::ZERO; 2] };
             std::array::from_fn(|k| levels[j][i][k].unwrap_or(own[k]))
         };
-        let piece = |i: usize| Strip::Ribbon {
-            points: points[i * degree..=(i + 1) * degree].to_vec(),
-            levels: (0..deepest)
-                .map(|j| (i * (degree - j)..(i + 1) * (degree - j)).map(|n| handle(j, n)).collect())
-                .collect(),
+        let piece = |i: usize| {
+            let level = |j: usize| (i * (degree - j)..(i + 1) * (degree - j)).map(|n| handle(j, n)).collect();
+            Strip::ribbon(points[i * degree..=(i + 1) * degree].to_vec(), (0..deepest).map(level).collect())
         };
         let out: Vec<Strip> = (0..pieces).map(piece).collect();
         for (i, p) in out.windows(2).enumerate() {
@@ -362,55 +380,6 @@ fn mitres(legs: &[(DVec3, [DVec3; 2])]) -> Vec<[DVec3; 2]> {
     std::iter::once(legs[0].1).chain(inner).chain([legs[legs.len() - 1].1]).collect()
 }
 
-/// A joint of two pieces.
-#[derive(Debug, Clone, Copy)]
-struct Joint {
-    at: DVec3,
-    /// The angles (radians) at which lines have a kink: the skeleton itself, and the worst beside it.
-    on: f64,
-    beside: f64,
-    /// Lengths along it are continuous too.
-    even: bool,
-}
-
-impl Joint {
-    /// Below this angle a kink is invisible.
-    const UNSEEN: f64 = 5e-3;
-
-    /// Looks at lines in the corners of the model's box.
-    fn new(pieces: &[Strip], knots: &[f64], corners: [(f64, f64); 4]) -> Self {
-        let (a, b) = (pieces[0].stand(1.0), pieces[1].stand(0.0));
-        let along = |(v, w): (f64, f64)| {
-            [(a, knots[1] - knots[0]), (b, knots[2] - knots[1])]
-                .map(|(s, width)| (s.slope[0] + s.slope[1] * v + s.slope[2] * w) / width)
-        };
-        let kink = |[p, q]: [DVec3; 2]| p.cross(q).length().atan2(p.dot(q));
-        let on = along((0.0, 0.0));
-        // Where the model is folded, lines have another fault.
-        let unfolded = |l: &[DVec3; 2]| l[0].dot(on[0]) > 0.0 && l[1].dot(on[0]) > 0.0;
-        let beside = corners.map(along).into_iter().filter(unfolded).map(kink).fold(0.0, f64::max);
-        let same = |[p, q]: [DVec3; 2]| (p - q).length() <= 1e-6 * (p.length() + q.length());
-        Self { at: b.at[0], on: kink(on), beside, even: same(on) && corners.map(along).into_iter().all(same) }
-    }
-
-    fn kinks(&self) -> bool {
-        self.on <= Self::UNSEEN && self.beside > Self::UNSEEN
-    }
-
-    fn described(&self) -> String {
-        let what = match self {
-            _ if self.even => "C¹: smooth",
-            _ if self.kinks() => "G¹ on the skeleton only: beside it, lines along the skeleton have a kink",
-            _ if self.on <= Self::UNSEEN => {
-                "G¹: directions are continuous, but lengths are stretched differently on both sides"
-            }
-            _ => "C⁰: a corner",
-        };
-        let DVec3 { x, y, z } = self.at;
-        format!("joint at {x:.6},{y:.6},{z:.6} is {what}")
-    }
-}
-
 fn param_of(h: &Handle3) -> &'static str {
     match (h.level, h.side) {
         (1, Some(_)) => "side",
@@ -429,17 +398,9 @@ struct BendMap3 {
     start: f64,
     length: f64,
     through: DVec3,
-    /// The curves of a single piece, if they are polynomials.
-    swept: Option<Tensor<9>>,
 }
 
 impl BendMap3 {
-    fn new(pieces: Arc<[Strip]>, knots: Arc<[f64]>, axis: usize, start: f64, length: f64, through: DVec3) -> Self {
-        let only = if let [only] = &*pieces { only.bernstein() } else { None };
-        let swept = only.map(|c| Tensor::bernstein([c.len(), 1, 1], c));
-        Self { pieces, knots, axis, start, length, through, swept }
-    }
-
     /// The other two axes.
     fn sides(&self) -> [usize; 2] {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
@@ -474,16 +435,16 @@ impl BendMap3 {
 
 impl Map3 for BendMap3 {
     fn jet(&self, p: DVec3) -> Jet3 {
-        let (Stand { at, slope }, v, w, rate) = self.stand(p);
-        let mut columns = [DVec3::ZERO; 3];
+        let (stand, v, w, rate) = self.stand(p);
+        let (at, mut columns) = (stand.at, [DVec3::ZERO; 3]);
         let [b, c] = self.sides();
-        columns[self.axis] = (slope[0] + slope[1] * v + slope[2] * w) * rate;
+        columns[self.axis] = stand.along(v, w) * rate;
         (columns[b], columns[c]) = (at[1], at[2]);
         Jet3 { p: at[0] + at[1] * v + at[2] * w, d: DMat3::from_cols(columns[0], columns[1], columns[2]) }
     }
 
     fn points(&self, ps: &mut [DVec3]) {
-        let Some(tensor) = &self.swept else {
+        let [Strip::Ribbon { curves: tensor, .. }] = &*self.pieces else {
             ps.iter_mut().for_each(|p| *p = self.point(*p));
             return;
         };
@@ -501,12 +462,16 @@ impl Map3 for BendMap3 {
 
     fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
         let (chart, from) = (Chart::on(on), self.piece_on(on)?);
-        let width = self.knots[from + 1] - self.knots[from];
-        let axis = DVec3::AXES[self.axis] / (self.length * width);
-        let u = chart.linear(axis.extend((-self.start / self.length - self.knots[from]) / width));
+        let Strip::Ribbon { points, first, curves } = &self.pieces[from] else { return None };
+        if first.len().max(points.len() - 1) > most {
+            return None;
+        }
+        let (knot, width) = (self.knots[from], self.knots[from + 1] - self.knots[from]);
+        let axis = DVec3::AXES[self.axis] * (2.0 / (self.length * width));
+        let x = chart.linear(axis.extend(-2.0 * (self.start / self.length + knot) / width - 1.0));
         let [v, w] = self.sides().map(|a| chart.linear(DVec3::AXES[a].extend(-self.through[a])));
-        let curves = self.pieces[from].polynomials(&u, most)?;
-        let part = |k: usize| curves[0][k].plus(1.0, &curves[1][k].times(&v)).plus(1.0, &curves[2][k].times(&w));
+        let curves = curves.in_terms_of(&[x, Poly3::default(), Poly3::default()]);
+        let part = |k: usize| curves[k].plus(1.0, &curves[k + 3].times(&v)).plus(1.0, &curves[k + 6].times(&w));
         Some(Fraction3 { chart, parts: [part(0), part(1), part(2), Poly3::constant(1.0)] })
     }
 
@@ -514,8 +479,8 @@ impl Map3 for BendMap3 {
         let piece = self.piece_on(on)?;
         let [from, to] = [self.knots[piece], self.knots[piece + 1]];
         let (start, length) = (self.start + self.length * from, self.length * (to - from));
-        let pieces = [self.pieces[piece].clone()].into();
-        Some(Arc::new(Self::new(pieces, [0.0, 1.0].into(), self.axis, start, length, self.through)))
+        let (pieces, knots) = ([self.pieces[piece].clone()].into(), [0.0, 1.0].into());
+        Some(Arc::new(Self { pieces, knots, start, length, ..*self }))
     }
 
     fn creases(&self, out: &mut Creases3) {
@@ -529,14 +494,14 @@ impl Map3 for BendMap3 {
 /// A piece of a bend, F(u, v, w) = C(u) + v·S(u) + w·T(u), with u from 0 to 1.
 #[derive(Debug, Clone, PartialEq)]
 enum Strip {
-    /// Evaluated by the generalised algorithm of de Casteljau, each step of which is an affine map with the handles s and t of its
-    /// level.
+    /// The generalised algorithm of de Casteljau, each step of which is an affine map with the handles s and t of its level.
     Ribbon {
         /// Control points.
         points: Vec<DVec3>,
-        /// Pairs s, t of handles by level: n on the first, n − 1 on the second, and so on. The last levels may be omitted. Or one level
-        /// with a pair at every point.
-        levels: Vec<Vec<[DVec3; 2]>>,
+        /// Pairs s, t of handles: those of the first level, one on each leg, or of all points.
+        first: Vec<[DVec3; 2]>,
+        /// C, S and T, in x = 2u − 1.
+        curves: Tensor<9>,
     },
     /// A straight line `from` + u·`along` whose sides turn by `angle` (radians).
     Twist { from: DVec3, along: DVec3, sides: [DVec3; 2], angle: f64 },
@@ -553,50 +518,38 @@ struct Stand {
     slope: [DVec3; 3],
 }
 
-impl Strip {
-    /// Bernstein coefficients of C, S and T, all of the same degree; `None` if they are not polynomials.
-    fn bernstein(&self) -> Option<Vec<[f64; 9]>> {
-        let Self::Ribbon { points, levels } = self else { return None };
-        let side = |k: usize| levels.iter().map(|l| l.iter().map(|h| h[k]).collect()).collect();
-        let curves: [Vec<Vec<DVec3>>; 3] = [vec![points.clone()], side(0), side(1)];
-        let n = curves[0][0].len();
-        let mut out = vec![[0.0; 9]; n];
-        for (k, all) in curves.into_iter().enumerate() {
-            for curve in all.into_iter().map(|c| elevated(c, n)) {
-                for (o, p) in out.iter_mut().zip(curve) {
-                    (0..3).for_each(|a| o[3 * k + a] += p[a]);
-                }
-            }
-        }
-        Some(out)
+impl Stand {
+    /// ∂F/∂u.
+    fn along(&self, v: f64, w: f64) -> DVec3 {
+        self.slope[0] + self.slope[1] * v + self.slope[2] * w
     }
+}
 
-    /// C, S and T with a polynomial in place of u; `None` if they, or the map with them, are no polynomials of at most this degree.
-    fn polynomials(&self, u: &Poly3, most: usize) -> Option<[[Poly3; 3]; 3]> {
-        let Self::Ribbon { points, levels } = self else { return None };
-        if levels.iter().map(Vec::len).fold(points.len() - 1, usize::max) > most {
-            return None;
+impl Strip {
+    /// Creates a piece with pairs of handles by level: n on the first, n − 1 on the second, and so on; the last levels may be omitted. Or with
+    /// one level, a pair at every point.
+    fn ribbon(points: Vec<DVec3>, levels: Vec<Vec<[DVec3; 2]>>) -> Self {
+        let flat = |v: [DVec3; 3]| std::array::from_fn(|k| v[k / 3][k % 3]);
+        let n = points.len();
+        let mut sum: Vec<[f64; 9]> = points.iter().map(|p| flat([*p, DVec3::ZERO, DVec3::ZERO])).collect();
+        for level in &levels {
+            let curve = level.iter().map(|[s, t]| flat([DVec3::ZERO, *s, *t])).collect();
+            sum.iter_mut().zip(elevated(curve, n)).for_each(|(o, p)| *o = std::array::from_fn(|k| o[k] + p[k]));
         }
-        let side = |k: usize| {
-            let mut sum = [(); 3].map(|()| Poly3::default());
-            for handles in levels {
-                let part = bezier_polynomial(&handles.iter().map(|h| h[k]).collect::<Vec<_>>(), u);
-                sum = std::array::from_fn(|a| sum[a].plus(1.0, &part[a]));
-            }
-            sum
-        };
-        Some([bezier_polynomial(points, u), side(0), side(1)])
+        let degree = levels[0].len() - 1;
+        let curves = Tensor::bernstein([n, 1, 1], sum).without(degree, 3);
+        Self::Ribbon { points, first: levels.into_iter().next().unwrap_or_default(), curves }
     }
 
     /// Polylines of the first level of the algorithm, which takes the model's box to every leg as in the paper's figure 1c; `corners` are those
     /// of the box across the skeleton.
     fn first_level(&self, corners: [(f64, f64); 4]) -> Vec<Vec<DVec3>> {
-        let Self::Ribbon { points, levels } = self else { return Vec::new() };
-        let at_points = usize::from(levels[0].len() == points.len());
+        let Self::Ribbon { points, first, .. } = self else { return Vec::new() };
+        let at_points = usize::from(first.len() == points.len());
         let mut out = vec![points.clone()];
         for leg in 0..points.len() - 1 {
             let ends = [0, 1].map(|end| {
-                let [s, t] = levels[0][leg + end * at_points];
+                let [s, t] = first[leg + end * at_points];
                 corners.map(|(v, w)| points[leg + end] + s * v + t * w)
             });
             out.extend(ends.map(|[a, b, c, d]| vec![a, b, c, d, a]));
@@ -608,17 +561,10 @@ impl Strip {
     /// The curves at `u`.
     fn stand(&self, u: f64) -> Stand {
         match self {
-            Self::Ribbon { points, levels } => {
-                let (c, dc) = bezier(points.iter().copied(), u);
-                let mut out = Stand { at: [c, DVec3::ZERO, DVec3::ZERO], slope: [dc, DVec3::ZERO, DVec3::ZERO] };
-                for handles in levels {
-                    for k in 0..2 {
-                        let (s, ds) = bezier(handles.iter().map(|h| h[k]), u);
-                        out.at[k + 1] += s;
-                        out.slope[k + 1] += ds;
-                    }
-                }
-                out
+            Self::Ribbon { curves, .. } => {
+                let jets = curves.jet(DVec3::new(2.0 * u - 1.0, 0.0, 0.0));
+                let part = |k: usize, d: usize| DVec3::from_array(std::array::from_fn(|a| jets[3 * k + a][d]));
+                Stand { at: [0, 1, 2].map(|k| part(k, 0)), slope: [0, 1, 2].map(|k| part(k, 1) * 2.0) }
             }
             Self::Twist { from, along, sides: [s, t], angle } => {
                 let (sin, cos) = (angle * u).sin_cos();
@@ -639,44 +585,14 @@ impl Strip {
 }
 
 /// Raises the degree of a curve until it has `n` control points.
-fn elevated(mut curve: Vec<DVec3>, n: usize) -> Vec<DVec3> {
+fn elevated(mut curve: Vec<[f64; 9]>, n: usize) -> Vec<[f64; 9]> {
     while curve.len() < n {
         let k = curve.len() as f64;
-        let inner = (1..curve.len()).map(|i| curve[i - 1].lerp(curve[i], (k - i as f64) / k));
+        let between = |i: usize, a: f64| std::array::from_fn(|c| a * curve[i - 1][c] + (1.0 - a) * curve[i][c]);
+        let inner = (1..curve.len()).map(|i| between(i, i as f64 / k));
         curve = std::iter::once(curve[0]).chain(inner).chain(curve.last().copied()).collect();
     }
     curve
-}
-
-/// Evaluates a Bézier curve at a polynomial, by de Casteljau's algorithm.
-fn bezier_polynomial(points: &[DVec3], u: &Poly3) -> [Poly3; 3] {
-    [0, 1, 2].map(|a| {
-        let mut row: Vec<Poly3> = points.iter().map(|p| Poly3::constant(p[a])).collect();
-        for level in (1..row.len()).rev() {
-            for i in 0..level {
-                row[i] = row[i].plus(1.0, &row[i + 1].plus(-1.0, &row[i]).times(u));
-            }
-        }
-        row.swap_remove(0)
-    })
-}
-
-/// Evaluates a Bézier curve of degree up to [`MAX_DEGREE`] and its derivative, by de Casteljau's algorithm.
-fn bezier(points: impl Iterator<Item = DVec3>, u: f64) -> (DVec3, DVec3) {
-    let mut row = [DVec3::ZERO; MAX_DEGREE + 1];
-    let mut n = 0;
-    for (slot, p) in row.iter_mut().zip(points) {
-        *slot = p;
-        n += 1;
-    }
-    let mut slope = DVec3::ZERO;
-    for level in (1..n).rev() {
-        slope = (row[1] - row[0]) * (n - 1) as f64;
-        for i in 0..level {
-            row[i] = row[i] + (row[i + 1] - row[i]) * u;
-        }
-    }
-    (row[0], slope)
 }
 
 /// The presets: Barr's deformations, and two of the same kind.
@@ -875,7 +791,6 @@ fn handles(s: &Settings3<'_>) -> Result<Vec<Handle3>, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::Tensor;
     use pathwarp::check::{Counted, operations};
 
     /// The 9, 27 and 54 products and sums of the paper's table 1, with the legs q − p given as the paper takes them, and those of the
@@ -895,33 +810,15 @@ mod tests {
             });
             assert_eq!(counts, [published, published, 0], "degree {n}");
             let points = (0..=n).map(|i| DVec3::new(i as f64, 1.0, 0.0)).collect();
-            let ribbon = Strip::Ribbon { points, levels: vec![vec![[DVec3::Y, DVec3::Z]; n]] };
-            let tensor = Tensor::bernstein([n + 1, 1, 1], ribbon.bernstein().unwrap());
+            let Strip::Ribbon { curves: tensor, .. } = Strip::ribbon(points, vec![vec![[DVec3::Y, DVec3::Z]; n]])
+            else {
+                panic!()
+            };
             let ours = operations(|| {
                 let c = tensor.value([0.3, 0.0, 0.0].map(Counted));
                 let _: [Counted; 3] = std::array::from_fn(|k| c[k] + c[k + 3] * 0.4 + c[k + 6] * 0.5);
             });
             assert_eq!(ours, [9 * n + 6, 9 * n + 6, 0], "degree {n}");
-        }
-    }
-
-    #[test]
-    fn bezier_curves_have_their_derivatives() {
-        let p = [DVec3::ZERO, DVec3::new(1.0, 2.0, 0.0), DVec3::new(3.0, -1.0, 1.0), DVec3::new(4.0, 0.0, 5.0)];
-        for n in 1..=4 {
-            for u in [-0.2, 0.0, 0.3, 1.0] {
-                let (at, slope) = bezier(p[..n].iter().copied(), u);
-                let truth: DVec3 = (0..n)
-                    .map(|i| {
-                        let binomial = [[1, 0, 0, 0], [1, 1, 0, 0], [1, 2, 1, 0], [1, 3, 3, 1]][n - 1][i];
-                        p[i] * (f64::from(binomial) * f64::powi(u, i as i32) * f64::powi(1.0 - u, (n - 1 - i) as i32))
-                    })
-                    .sum();
-                let h = 1e-6;
-                let difference =
-                    (bezier(p[..n].iter().copied(), u + h).0 - bezier(p[..n].iter().copied(), u - h).0) / (2.0 * h);
-                assert!((at - truth).length() < 1e-14 && (slope - difference).length() < 1e-8, "{n} {u}");
-            }
         }
     }
 }

@@ -371,7 +371,12 @@ impl Curve {
                 let (sin, cos) = (a.start + a.sweep * u).sin_cos();
                 (a.a * cos + a.b * sin) * -(a.sweep * a.sweep)
             }
-            _ => derivatives(&self.points(), u)[2],
+            Self::Seg(Seg::Quad(q)) => ((q.p2 - q.p1) - (q.p1 - q.p0)) * 2.0,
+            Self::Seg(Seg::Cubic(c)) => {
+                let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
+                ((d1 - d0) * (1.0 - u) + (d2 - d1) * u) * 6.0
+            }
+            Self::Bezier(points) => derivatives(points, u)[2],
         }
     }
 
@@ -382,18 +387,14 @@ impl Curve {
         }
     }
 
-    /// Returns the curve as a path for a preview.
-    pub(super) fn path(&self, tolerance: f64) -> BezPath {
-        match self {
-            Self::Seg(Seg::Arc(a)) => {
-                let mut out = BezPath::new();
-                out.move_to(a.p0);
-                a.to_cubics(tolerance).for_each(|c| out.curve_to(c.p1, c.p2, c.p3));
-                out
-            }
-            Self::Seg(s) => BezPath::from_path_segments(std::iter::once(s.to_cubic().into())),
-            Self::Bezier(_) => polyline((0..=64).map(|i| self.eval(f64::from(i) / 64.0))),
+    /// Returns segments for a preview: of a curve of higher degree, cubics near it.
+    pub(super) fn segs(&self) -> Vec<Seg> {
+        if let Self::Seg(s) = self {
+            return vec![*s];
         }
+        let end = |i: u32| (self.eval(f64::from(i) / 8.0), self.deriv(f64::from(i) / 8.0) / 24.0);
+        let cubic = |((a, da), (b, db))| Seg::Cubic(CubicBez::new(a, a + da, b - db, b));
+        (0..8).map(|i| cubic((end(i), end(i + 1)))).collect()
     }
 }
 
@@ -409,18 +410,13 @@ fn derivatives(points: &[Point], u: f64) -> [Vec2; 3] {
     let n = points.len() - 1;
     let mut row = [Vec2::ZERO; MAX_DEGREE + 1];
     row.iter_mut().zip(points).for_each(|(r, p)| *r = p.to_vec2());
-    let mut second = Vec2::ZERO;
-    for level in (1..=n).rev() {
-        if level == 2 {
-            second = row[2] - row[1] - (row[1] - row[0]);
-        }
-        if level == 1 {
-            break;
-        }
+    let degree = n as f64;
+    for level in (3..=n).rev() {
         (0..level).for_each(|i| row[i] = row[i].lerp(row[i + 1], u));
     }
-    let degree = n as f64;
-    [row[0].lerp(row[1], u), (row[1] - row[0]) * degree, second * (degree * (degree - 1.0))]
+    let second = (row[2] - row[1] - (row[1] - row[0])) * (degree * (degree - 1.0));
+    let (a, b) = (row[0].lerp(row[1], u), row[1].lerp(row[2], u));
+    [a.lerp(b, u), (b - a) * degree, second]
 }
 
 /// A piece of the skeleton's curve.

@@ -188,7 +188,7 @@ impl Bend {
         let skeleton = self.measured(skeleton, size)?;
         let (length, cage) = (skeleton.length, skeleton.path(1e-4 * size));
         let middle = if closed && !self.is_as_drawn() { skeleton.extreme(self.reverse) } else { 0.5 * length };
-        let Joined { pieces, corners, notes, warnings } = self.joined(skeleton)?;
+        let Joined { pieces, corners, notes, warning } = self.joined(skeleton)?;
 
         let spreads = self.spreads_letters(closed);
         let k = match self.stretch {
@@ -220,7 +220,7 @@ impl Bend {
         let map = BendMap { pieces, length, closed, to_strip, reach };
 
         let mut built = Built::new(map.simplest());
-        (built.explanation.notes, built.explanation.warnings) = (notes, warnings);
+        (built.explanation.notes, built.explanation.warnings) = (notes, warning.into_iter().collect());
         let spread = placed && (copies.is_some() || self.stretch == Stretch::Fit);
         explain(&mut built, &map, &corners, if spread { [rect.x0; 2] } else { self.seen(rect, shift) });
         if copies.is_some() {

@@ -3,8 +3,9 @@
 use super::map::{Curve, MovingFrame, Ribbon, SkeletonPiece, Spine, Strip, normal};
 use super::spline::{Part, directions, mitre};
 use crate::error::{Error, show};
+use crate::map::Joint;
 use crate::map::curves::ArcLength;
-use crate::outline::{Seg, Subpath};
+use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{BezPath, Line, Point, Vec2};
 
 /// Below this angle (radians) a joint is smooth.
@@ -38,7 +39,7 @@ pub(super) struct Joined {
     pub(super) pieces: Vec<SkeletonPiece>,
     pub(super) corners: Vec<Corner>,
     pub(super) notes: Vec<String>,
-    pub(super) warnings: Vec<String>,
+    pub(super) warning: Option<String>,
 }
 
 /// The only connected run of a path, as pieces.
@@ -77,7 +78,9 @@ impl Skeleton {
 
     /// Returns the curve, for a preview.
     pub(super) fn path(&self, tolerance: f64) -> BezPath {
-        self.spines.iter().flat_map(|(s, _)| s.curve.path(tolerance)).collect()
+        let segs: Vec<Seg> = self.spines.iter().flat_map(|(s, _)| s.curve.segs()).collect();
+        let run = Subpath { start: self.spines[0].0.curve.eval(0.0), segs, closed: self.closed };
+        Outline { subpaths: vec![run] }.to_bez_path(tolerance)
     }
 
     pub(super) fn has_arcs(&self) -> bool {
@@ -221,7 +224,7 @@ artwork's height; a smaller `width` helps too",
             }
         }
         let pieces = self.in_a_row(strips);
-        Ok(Joined { pieces, corners, notes: Vec::new(), warnings: Vec::new() })
+        Ok(Joined { pieces, corners, notes: Vec::new(), warning: None })
     }
 
     /// Joins pieces whose sides are the paper's handles, for artwork `unit` high between these `heights`: `given` for every piece, those of a
@@ -292,21 +295,14 @@ artwork's height; a smaller `width` helps too",
         let pieces = self.in_a_row(strips);
         // The straight continuations of open ends are pieces too.
         let first = usize::from(!self.closed);
-        let (mut notes, mut kinks) = (Vec::new(), Vec::new());
-        for (i, j) in joints {
-            let (a, b) = (&pieces[first + i], &pieces[first + j]);
-            notes.push(continuity(a, b, unit));
-            kinks.extend(kink(a, b, heights));
-        }
-        let warnings = kinks.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(at, turn)| {
-            format!(
-                "bend: beside the skeleton, lines along it have kinks at {} joint(s), the worst of {turn:.1}° at {}: the handles \
-on both sides of a smooth joint must change alike (equations 4 and 5 of the paper), or let the program choose them",
-                kinks.len(),
-                show(at)
-            )
-        });
-        Ok(Joined { pieces, corners, notes, warnings: warnings.into_iter().collect() })
+        let joints: Vec<Joint> =
+            joints.into_iter().map(|(i, j)| joint(&pieces[first + i], &pieces[first + j], heights)).collect();
+        Ok(Joined {
+            pieces,
+            corners,
+            notes: joints.iter().map(Joint::described).collect(),
+            warning: Joint::warning(&joints),
+        })
     }
 
     /// Lines up the pieces; an open skeleton continues straight at both ends.
@@ -424,31 +420,8 @@ fn mitres(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
     out
 }
 
-/// Returns the angle (degrees) at which lines beside a smooth joint have a kink at one of these heights, and the joint. Where the artwork is
-/// folded they have another fault.
-fn kink(a: &SkeletonPiece, b: &SkeletonPiece, heights: [f64; 2]) -> Option<(Point, f64)> {
-    let ends = |d: f64| (a.jet(a.length, d).1, b.jet(0.0, d).1);
-    let turn = |(a, b): (Vec2, Vec2)| a.cross(b).atan2(a.dot(b)).abs();
-    let (at, along, _) = a.jet(a.length, 0.0);
-    let folded = |(a, b): &(Vec2, Vec2)| a.dot(along) <= 0.0 || b.dot(along) <= 0.0;
-    let worst = heights.into_iter().map(ends).filter(|e| !folded(e)).map(turn).fold(0.0, f64::max);
-    (turn(ends(0.0)) <= UNSEEN && worst > UNSEEN).then_some((at, worst.to_degrees()))
-}
-
-/// Describes the joint of two pieces by the paper's conditions (4) and (5), in distances instead of parameters.
-fn continuity(a: &SkeletonPiece, b: &SkeletonPiece, unit: f64) -> String {
-    let ((p, a0, _), (_, a1, _)) = (a.jet(a.length, 0.0), a.jet(a.length, unit));
-    let ((_, b0, _), (_, b1, _)) = (b.jet(0.0, 0.0), b.jet(0.0, unit));
-    let same = |a: Vec2, b: Vec2| (a - b).hypot() <= 1e-6 * (a.hypot() + b.hypot());
-    let along = |a: Vec2, b: Vec2| a.cross(b).abs() <= SMOOTH * a.hypot() * b.hypot() && a.dot(b) > 0.0;
-    let what = if same(a0, b0) && same(a1, b1) {
-        "C¹: smooth"
-    } else if along(a0, b0) && along(a1, b1) {
-        "G¹: directions are continuous, but lengths are stretched differently on both sides"
-    } else if along(a0, b0) {
-        "G¹ on the skeleton only: beside it, lines along the skeleton have a kink (handles condition)"
-    } else {
-        "C⁰: a corner"
-    };
-    format!("joint at {} is {what}", show(p))
+/// Compares lines along the skeleton on both sides of a joint, by distances instead of parameters.
+fn joint(a: &SkeletonPiece, b: &SkeletonPiece, [low, high]: [f64; 2]) -> Joint {
+    let line = |d: f64| [a.jet(a.length, d).1, b.jet(0.0, d).1].map(|v| [v.x, v.y]);
+    Joint::new(show(b.point(0.0, 0.0)), &[0.0, low, high].map(line))
 }

@@ -7,7 +7,7 @@
 //!
 //! Unless it is given, the handle of a B-spline's point is the mitre of the polygon's sides, so that the control points of a parallel are
 //! the corners of the polygon's offset (W. Tiller and E. G. Hanson, *Offsets of two-dimensional profiles*, IEEE CG&A 4, 1984). On an
-//! interpolated skeleton it is the unit normal.
+//! interpolated skeleton it is the unit normal, and S is the C¹ cubic with S' = −(S·C″)/|C'|²·C' at the points, where normals change so.
 
 use super::map::{Curve, normal};
 use crate::error::{Error, show};
@@ -72,25 +72,37 @@ impl Spline {
             let problem = format!("has two equal points in a row, {i} and {}, at {}", (i + 1) % n, show(points[i]));
             return Err(Error::usage("along", "", problem));
         }
-        let own = match self {
-            Self::Near(_) => mitres(&points, closed),
-            Self::Through => normals(&points, &widths, closed),
+        let place = |p: &Point| [p.x, p.y];
+        let handle = |i: usize, own: Vec2| given.get(i).copied().flatten().unwrap_or(own * unit);
+        let piece = |points: Vec<Point>, handles: Vec<Vec2>, width: &f64| Part {
+            curve: Curve::bezier(points),
+            handles,
+            width: *width,
         };
-        let frame = |i: usize| {
-            let handle = given.get(i).copied().flatten().unwrap_or(own[i] * unit);
-            [points[i].x, points[i].y, handle.x, handle.y]
+        let point = |f: &[f64]| Point::new(f[0], f[1]);
+        if let Self::Near(degree) = self {
+            let own = mitres(&points, closed);
+            let frame = |i: usize| [points[i].to_vec2(), handle(i, own[i])];
+            let frames: Vec<[f64; 4]> = (0..n).map(frame).map(|[p, h]| [p.x, p.y, h.x, h.y]).collect();
+            let part = |(f, w): (Vec<[f64; 4]>, &f64)| {
+                piece(
+                    f.iter().map(|f| point(&f[..2])).collect(),
+                    f.iter().map(|f| point(&f[2..]).to_vec2()).collect(),
+                    w,
+                )
+            };
+            return Ok(bspline::pieces(degree, &frames, closed).into_iter().zip(&widths).map(part).collect());
+        }
+        let pieces = bspline::through(&points.iter().map(place).collect::<Vec<_>>(), &widths, closed);
+        let part = |(i, (f, w)): (usize, (Vec<[f64; 2]>, &f64))| {
+            let p: Vec<Point> = f.iter().map(|f| point(f)).collect();
+            let [a, b, c] = [p[1] - p[0], p[2] - p[1], p[3] - p[2]];
+            let own = |t: Vec2| if t.hypot() > 0.0 { normal(t / t.hypot()) } else { normal((p[3] - p[0]).normalize()) };
+            let (g, h) = (handle(i, own(a)), handle((i + 1) % n, own(c)));
+            let eased = |h: Vec2, a: Vec2| h - a * (h.dot(b - a) / (1.5 * a.hypot2()).max(1e-18 * b.hypot2()));
+            piece(p.clone(), vec![g, eased(g, a), eased(h, c), h], w)
         };
-        let frames: Vec<[f64; 4]> = (0..n).map(frame).collect();
-        let pieces = match self {
-            Self::Near(degree) => bspline::pieces(degree, &frames, closed),
-            Self::Through => bspline::through(&frames, &widths, closed),
-        };
-        let part = |(piece, width): (&Vec<[f64; 4]>, f64)| Part {
-            curve: Curve::bezier(piece.iter().map(|f| Point::new(f[0], f[1])).collect()),
-            handles: piece.iter().map(|f| Vec2::new(f[2], f[3])).collect(),
-            width,
-        };
-        Ok(pieces.iter().zip(widths).map(part).collect())
+        Ok(pieces.into_iter().zip(&widths).enumerate().map(part).collect())
     }
 }
 
@@ -120,20 +132,6 @@ fn mitres(points: &[Point], closed: bool) -> Vec<Vec2> {
     let (n, last) = (points.len(), sides.len() - 1);
     let at = |i: usize| if closed { sides[(i + n - 1) % n] } else { sides[i.saturating_sub(1)] };
     (0..n).map(|i| mitre(at(i), sides[i.min(last)])).collect()
-}
-
-/// Returns the unit normals of the spline through points.
-fn normals(points: &[Point], widths: &[f64], closed: bool) -> Vec<Vec2> {
-    let flat: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
-    let pieces = bspline::through(&flat, widths, closed);
-    let at = |i: usize| {
-        let (piece, [a, b]) = if i < pieces.len() { (&pieces[i], [0, 1]) } else { (&pieces[i - 1], [2, 3]) };
-        let tangent = Vec2::new(piece[b][0] - piece[a][0], piece[b][1] - piece[a][1]);
-        let chord = Vec2::new(piece[3][0] - piece[0][0], piece[3][1] - piece[0][1]);
-        let t = if tangent.hypot() > 1e-9 * chord.hypot() { tangent } else { chord };
-        normal(t / t.hypot())
-    };
-    (0..points.len()).map(at).collect()
 }
 
 #[cfg(test)]
