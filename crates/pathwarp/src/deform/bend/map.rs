@@ -1,6 +1,7 @@
 //! The map: pieces of the skeleton side by side, and the artwork's position on them.
 
 use crate::error::show;
+use crate::map::bspline::bernstein;
 use crate::map::curves::ArcLength;
 use crate::map::rational_bezier::Scaled;
 use crate::map::{AffineMap, Class, Cost, Crease, Creases, Dual, Jet, Level, Map, RationalBezier, Real};
@@ -352,14 +353,14 @@ impl Curve {
     pub(super) fn eval(&self, u: f64) -> Point {
         match self {
             Self::Seg(s) => s.eval(u),
-            Self::Bezier(points) => derivatives(points, u)[0].to_point(),
+            Self::Bezier(points) => derivative(points, u, 0).to_point(),
         }
     }
 
     pub(super) fn deriv(&self, u: f64) -> Vec2 {
         match self {
             Self::Seg(s) => s.deriv(u),
-            Self::Bezier(points) => derivatives(points, u)[1],
+            Self::Bezier(points) => derivative(points, u, 1),
         }
     }
 
@@ -376,7 +377,7 @@ impl Curve {
                 let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
                 ((d1 - d0) * (1.0 - u) + (d2 - d1) * u) * 6.0
             }
-            Self::Bezier(points) => derivatives(points, u)[2],
+            Self::Bezier(points) => derivative(points, u, 2),
         }
     }
 
@@ -405,18 +406,14 @@ pub(super) fn polyline(points: impl Iterator<Item = Point>) -> BezPath {
     out
 }
 
-/// Returns a Bézier curve of degree 2 to [`MAX_DEGREE`] at a parameter, with its first two derivatives, by de Casteljau's algorithm.
-fn derivatives(points: &[Point], u: f64) -> [Vec2; 3] {
-    let n = points.len() - 1;
-    let mut row = [Vec2::ZERO; MAX_DEGREE + 1];
-    row.iter_mut().zip(points).for_each(|(r, p)| *r = p.to_vec2());
-    let degree = n as f64;
-    for level in (3..=n).rev() {
-        (0..level).for_each(|i| row[i] = row[i].lerp(row[i + 1], u));
+/// Returns a derivative of this order of a Bézier curve.
+fn derivative(points: &[Point], u: f64, order: usize) -> Vec2 {
+    let (mut row, mut factor) = (points.iter().map(|p| p.to_vec2()).collect::<Vec<_>>(), 1.0);
+    for _ in 0..order {
+        factor *= (row.len() - 1) as f64;
+        row = row.windows(2).map(|p| p[1] - p[0]).collect();
     }
-    let second = (row[2] - row[1] - (row[1] - row[0])) * (degree * (degree - 1.0));
-    let (a, b) = (row[0].lerp(row[1], u), row[1].lerp(row[2], u));
-    [a.lerp(b, u), (b - a) * degree, second]
+    row.iter().zip(bernstein(row.len() - 1, u)).fold(Vec2::ZERO, |sum, (p, b)| sum + *p * (b * factor))
 }
 
 /// A piece of the skeleton's curve.

@@ -48,61 +48,44 @@ impl Spline {
     pub(super) fn parts(self, sub: &Subpath, given: &[Option<Vec2>], unit: f64) -> Result<Vec<Part>, Error> {
         let (points, closed) = (sub.anchors(), sub.closed);
         let n = points.len();
-        let (name, degree) = match self {
-            Self::Near(degree) => ("spline", degree),
-            Self::Through => ("interpolate", 1),
-        };
+        let degree = if let Self::Near(degree) = self { degree } else { 1 };
         let min = if closed { 3 } else { degree + 1 };
         if n < min {
-            let problem = format!("needs at least {min} anchors; the skeleton has {n}");
-            let value = if self == Self::Through { String::new() } else { degree.to_string() };
-            return Err(Error::usage(name, value, problem));
+            let problem = format!("has {n} anchors; such a spline needs at least {min} anchors");
+            return Err(Error::usage("along", "", problem));
         }
         if !given.is_empty() && given.len() != n {
             let problem = format!("has handles for {} points; the skeleton has {n}", given.len());
             return Err(Error::input("handles", problem));
         }
+        let handle = |i: usize, own: Vec2| given.get(i).copied().flatten().unwrap_or(own * unit);
+        if let Self::Near(degree) = self {
+            let frame = |(i, own): (usize, Vec2)| [points[i].to_vec2(), handle(i, own)];
+            let frames = mitres(&points, closed).into_iter().enumerate().map(frame).map(|[p, h]| [p.x, p.y, h.x, h.y]);
+            let part = |f: Vec<[f64; 4]>| {
+                let (points, handles) = f.iter().map(|f| (Point::new(f[0], f[1]), Vec2::new(f[2], f[3]))).unzip();
+                Part { curve: Curve::bezier(points), handles, width: 1.0 }
+            };
+            return Ok(bspline::pieces(degree, &frames.collect::<Vec<_>>(), closed).into_iter().map(part).collect());
+        }
         let legs = if closed { n } else { n - 1 };
         let distances: Vec<f64> = (0..legs).map(|i| points[i].distance(points[(i + 1) % n])).collect();
-        let widths = match self {
-            Self::Near(_) => vec![1.0; if closed { n } else { n - degree }],
-            Self::Through => bspline::centripetal(&distances),
-        };
-        if let Some(i) = distances.iter().position(|d| *d <= 0.0).filter(|_| self == Self::Through) {
-            let problem = format!("has two equal points in a row, {i} and {}, at {}", (i + 1) % n, show(points[i]));
+        if let Some(i) = distances.iter().position(|d| *d <= 0.0) {
+            let problem = format!("has two equal points in a row at {}; remove one", show(points[i]));
             return Err(Error::usage("along", "", problem));
         }
-        let place = |p: &Point| [p.x, p.y];
-        let handle = |i: usize, own: Vec2| given.get(i).copied().flatten().unwrap_or(own * unit);
-        let piece = |points: Vec<Point>, handles: Vec<Vec2>, width: &f64| Part {
-            curve: Curve::bezier(points),
-            handles,
-            width: *width,
-        };
-        let point = |f: &[f64]| Point::new(f[0], f[1]);
-        if let Self::Near(degree) = self {
-            let own = mitres(&points, closed);
-            let frame = |i: usize| [points[i].to_vec2(), handle(i, own[i])];
-            let frames: Vec<[f64; 4]> = (0..n).map(frame).map(|[p, h]| [p.x, p.y, h.x, h.y]).collect();
-            let part = |(f, w): (Vec<[f64; 4]>, &f64)| {
-                piece(
-                    f.iter().map(|f| point(&f[..2])).collect(),
-                    f.iter().map(|f| point(&f[2..]).to_vec2()).collect(),
-                    w,
-                )
-            };
-            return Ok(bspline::pieces(degree, &frames, closed).into_iter().zip(&widths).map(part).collect());
-        }
-        let pieces = bspline::through(&points.iter().map(place).collect::<Vec<_>>(), &widths, closed);
-        let part = |(i, (f, w)): (usize, (Vec<[f64; 2]>, &f64))| {
-            let p: Vec<Point> = f.iter().map(|f| point(f)).collect();
+        let widths = bspline::centripetal(&distances);
+        let flat: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+        let part = |(i, (f, width)): (usize, (Vec<[f64; 2]>, f64))| {
+            let p: Vec<Point> = f.into_iter().map(|p| Point::new(p[0], p[1])).collect();
             let [a, b, c] = [p[1] - p[0], p[2] - p[1], p[3] - p[2]];
-            let own = |t: Vec2| if t.hypot() > 0.0 { normal(t / t.hypot()) } else { normal((p[3] - p[0]).normalize()) };
+            let own = |t: Vec2| normal(if t.hypot() > 0.0 { t / t.hypot() } else { (p[3] - p[0]).normalize() });
             let (g, h) = (handle(i, own(a)), handle((i + 1) % n, own(c)));
             let eased = |h: Vec2, a: Vec2| h - a * (h.dot(b - a) / (1.5 * a.hypot2()).max(1e-18 * b.hypot2()));
-            piece(p.clone(), vec![g, eased(g, a), eased(h, c), h], w)
+            Part { curve: Curve::bezier(p), handles: vec![g, eased(g, a), eased(h, c), h], width }
         };
-        Ok(pieces.into_iter().zip(&widths).enumerate().map(part).collect())
+        let pieces = bspline::through(&flat, &widths, closed);
+        Ok(pieces.into_iter().zip(widths).enumerate().map(part).collect())
     }
 }
 

@@ -471,6 +471,94 @@ fn handles_at_the_points_of_a_spline_are_control_points_too() {
     }
 }
 
+/// Of any degree, by arc length: true to size, with the derivatives of the map.
+#[test]
+fn splines_of_high_degree_are_measured() {
+    let points = "0,50 20,10 60,20 80,90 130,70 150,20 170,60 190,50 230,0 250,40";
+    for how in [("spline", "4"), ("spline", "9"), ("interpolate", "true")] {
+        let m = build(&[("along", points), how, ("align", "start"), ("width", "0.1")]).unwrap().map;
+        for k in 1..40 {
+            for y in [50.0, 10.0] {
+                let (p, h) = (Point::new(2.5 * f64::from(k) + 0.01, y), 1e-5);
+                let dx = (m.point(p + Vec2::new(h, 0.0)) - m.point(p - Vec2::new(h, 0.0))) / (2.0 * h);
+                assert!((dx - m.jet(p).dx).hypot() < 1e-5, "{how:?} {p:?}");
+                assert!(y < 50.0 || (m.jet(p).dx.hypot() - 1.0).abs() < 1e-9, "{how:?} {p:?}");
+            }
+        }
+    }
+}
+
+/// A curve runs through its points with a continuous second derivative, and its default handles stand square on it.
+#[test]
+fn skeletons_run_through_points() {
+    let points = [(0., 50.), (20., 10.), (60., 20.), (80., 90.), (130., 70.), (150., 20.)];
+    let text: Vec<String> = points.iter().map(|(x, y)| format!("{x},{y}")).collect();
+    let args = [("along", &*text.join(" ")), ("interpolate", "true"), ("by", "parameter"), ("stretch", "fit")];
+    let widths: Vec<f64> = points.windows(2).map(|p| Point::from(p[0]).distance(p[1].into()).sqrt()).collect();
+    let knots: Vec<f64> =
+        (0..6).map(|i| 100.0 * widths[..i].iter().sum::<f64>() / widths.iter().sum::<f64>()).collect();
+    let m = build(&args).unwrap().map;
+    let at = |x: f64| m.jet(Point::new(x, 50.0));
+    for (x, p) in knots.iter().zip(points) {
+        let j = at(*x);
+        assert!(j.p.distance(p.into()) < 1e-10 && j.dx.dot(j.dy).abs() < 1e-9 * j.dx.hypot(), "{j:?}");
+        assert!((j.dy.hypot() - 1.0).abs() < 1e-12 && j.dx.cross(j.dy) > 0.0, "{j:?}");
+    }
+    let second = |x: f64, h: f64| (at(x + h).dx - at(x).dx) / h;
+    for x in &knots[1..5] {
+        let (before, after) = (second(x - 1e-9, -1e-4), second(*x + 1e-9, 1e-4));
+        assert!((before - after).hypot() < 1e-2 * (1.0 + before.hypot()), "{before:?} {after:?}");
+    }
+    assert!(second(1e-9, 1e-4).hypot() < 1e-3, "no curvature at the ends");
+}
+
+/// Stretch, swell and taper from their definitions.
+#[test]
+fn presets_are_polynomial_profiles() {
+    let m = |pairs: &[(&str, &str)]| build(pairs).unwrap().map;
+    let (stretch, taper) = (m(&[("preset", "stretch"), ("factor", "3")]), m(&[("preset", "taper")]));
+    let swell = m(&[("preset", "swell"), ("factor", "0.2")]);
+    for i in 0..50 {
+        let (x, y) = (2.0 * f64::from(i) + 1.0, 97.0 - 1.7 * f64::from(i));
+        let (u, d) = (x / 100.0, y - 50.0);
+        let near = |m: &Arc<dyn crate::map::Map>, x: f64, y: f64| {
+            m.point(Point::new(100.0 * u, 50.0 + d)).distance(Point::new(x, y)) < 1e-11
+        };
+        assert!(near(&stretch, 3.0 * x, y) && near(&taper, x, 50.0 + d * (1.0 - 0.5 * u)), "{x} {y}");
+        // A parabola through 1, 0.2 and 1.
+        assert!(near(&swell, x, 50.0 + d * (1.0 - 3.2 * u * (1.0 - u))), "{x} {y}");
+    }
+}
+
+#[test]
+fn bad_skeletons_and_handles_are_named() {
+    let spline = [("along", "0,0 50,20 100,0"), ("spline", "2")];
+    let none = r#"{"points":[null,null,null]}"#;
+    for (args, json, problem) in [
+        (&spline[..], r#"{"points":[[0,-9],[0,0],null]}"#, "vanishes, of point 2"),
+        (&spline, r#"{"points":[null]}"#, "for 1 points"),
+        (&spline, r#"{"points":[null,null,null],"pieces":[]}"#, "either `pieces` or"),
+        (&spline[..1], none, "needs `spline` or `interpolate`"),
+        (&[spline[0], spline[1], ("reverse", "true")], none, "the other way"),
+        (&[("along", "M0,0 Q50,20 100,0")], r#"{"pieces":[{"levels":[[[0,0],[1,1]]]}]}"#, "vanishes, of piece 1"),
+    ] {
+        let e = with_handles(args, json).err().unwrap().to_string();
+        assert!(e.contains(problem), "{e}");
+    }
+    for (args, problem) in [
+        (&[("along", "0,0 50,20 50,20 100,0"), ("interpolate", "true")][..], "two equal points in a row at 50,20"),
+        (&[("along", "0,0 50,20"), ("spline", "11")], "10"),
+        (&[("along", "0,0 50,20"), ("spline", "0")], "10"),
+        (&[("along", "0,0 50,20"), ("spline", "1"), ("interpolate", "true")], "cannot go with `interpolate`"),
+        (&[("along", "0,0 50,20"), ("preset", "taper")], "has its own skeleton"),
+        (&[("along", "0,0 50,20"), ("factor", "2")], "is for a `preset`"),
+        (&[("preset", "twist")], "stretch, swell"),
+    ] {
+        let e = build(args).err().unwrap().to_string();
+        assert!(e.contains(problem), "{e}");
+    }
+}
+
 /// The command that once turned lines by 100°, and its relatives: at every joint, both sides of every parallel have the same derivative
 /// where the skeleton is a spline, and the same direction where it is drawn.
 #[test]
@@ -485,7 +573,7 @@ fn default_handles_leave_no_kinks() {
             if (how.0 == "reverse") != (along == drawn || along == loops) {
                 continue;
             }
-            let args = [("along", along), how, ("by", "parameter"), ("stretch", "fit"), ("width", "0.01")];
+            let args = [("along", along), how, ("by", "parameter"), ("stretch", "fit"), ("width", "0.05")];
             let built = build(&args).unwrap();
             let warnings = &built.explanation.warnings;
             assert!(warnings.iter().all(|w| !w.contains("kink")), "{along} {how:?} {warnings:?}");
