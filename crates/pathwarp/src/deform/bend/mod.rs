@@ -428,8 +428,10 @@ to the skeleton, fit stretches it lengthwise only. --copies 12 sets so many copi
 fit on the skeleton with --gap between them, spread evenly: a border closes on a ring.\n\nAn open skeleton is run left to right and a closed one clockwise, so that the artwork \
 stands on its upper or outer side, with its middle on the highest point of a closed one. --reverse runs a skeleton the other way: artwork on a closed \
 one then stands upright on its lowest point, inside. --as-drawn takes it as it was drawn, as is always done with spirals and \
-with open paths that go around more than once. Beyond the ends of an open one everything continues straight. --spline 3 makes a smooth skeleton of a \
-few points: it is pulled towards them and has no corners; an open one begins at the first and ends at the last.\n\n\
+with open paths that go around more than once. Beyond the ends of an open one everything continues straight. --interpolate lays a smooth \
+skeleton through a few points: a cubic spline whose curvature is continuous, with centripetal parameters (square roots of the distances), which \
+keep it from overshooting where points are close. --spline 3 pulls it towards them instead, and it waves less; an open one begins at the first \
+and ends at the last.\n\n\
 Lettering (text, or made by `pathwarp text`) stands on the skeleton with its baseline. With --glyphs its letters are set one by \
 one instead of bent: rotate turns them, skew keeps their verticals vertical, ribbon keeps their horizontals horizontal, stair only moves them. \
 They keep their own size, times --width; --stretch fit spreads them out from end to end, scale sizes them. Text around a whole ring is spread out by \
@@ -438,7 +440,13 @@ group of several, of which those that overlap are one. With --copies, gaps betwe
 half the height of the artwork instead of on the skeleton, so that letters neither crowd inside a bend nor drift apart outside it.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
 its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
 …]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
-omitted). A handle is the image of the artwork's height.")
+omitted). A handle is the image of the artwork's height. With --spline or --interpolate it may hold {\"points\": [[dx,dy], null, …]} \
+instead, a handle for each point or null for its own: they are blended as the points are, so that every line along the skeleton is as smooth as \
+it is. Without a file, such handles are mitres (--spline) or normals (--interpolate); on several curves in a row handles stand at their control \
+points too, and lines are smooth wherever the skeleton is. What still has kinks is a warning, and --explain names every joint. --preview shows the \
+control polygon with its handles and the artwork's frame on each of its sides, the first level of the algorithm.\n\n--preset needs no skeleton: \
+stretch makes the artwork longer by --factor, swell scales its height in the middle, taper at its right end. (A twist needs space: \
+`pathwarp solid bend --preset twist`.)")
     .source("Y.-K. Chang and A. Rockwood, A generalized de Casteljau approach to 3D free-form deformation, SIGGRAPH 1994")
     .params(Bend::PARAMS)
     .demo(&[("along", "M-10,60 Q25,35 50,45 T110,50")])
@@ -468,6 +476,14 @@ omitted). A handle is the image of the artwork's height.")
             command: "bend samples/headline.svg --along 'M120,220 A120,120 0 0 1 360,220' --glyphs rotate --spacing even --stretch fit -o out.svg",
         },
         Example {
+            what: "On a smooth curve through five points",
+            command: "bend samples/lettering.svg --along '20,170 140,110 270,165 390,90 516,130' --interpolate -o out.svg",
+        },
+        Example {
+            what: "Higher in its middle",
+            command: "bend samples/logo.svg --preset swell --factor 140% -o out.svg",
+        },
+        Example {
             what: "A grid along a winding path, by the paper's polynomial map",
             command: "bend samples/grid.svg --along 'M10,120 C60,20 90,20 120,120 S180,220 230,120' --by parameter --stretch fit --width 40% -o out.svg",
         },
@@ -483,6 +499,15 @@ omitted). A handle is the image of the artwork's height.")
         Law::Same(
             &[("along", "M0,60 Q50,20 100,60"), ("reverse", "true")],
             &[("along", "M100,60 Q50,20 0,60"), ("as-drawn", "true")],
+        ),
+        Law::Identity(&[("along", "0,50 25,50 50,50 75,50 100,50"), ("interpolate", "true"), ("by", "parameter")]),
+        Law::Identity(&[("along", "0,50 50,50 100,50"), ("spline", "2"), ("by", "parameter"), ("stretch", "fit")]),
+        Law::Area(&[("preset", "stretch"), ("factor", "1.5")], 1.5),
+        Law::KeepsLinesAlong(&[("preset", "taper"), ("factor", "2")], (1.0, 0.0)),
+        Law::KeepsLinesAlong(&[("preset", "swell")], (0.0, 1.0)),
+        Law::Same(
+            &[("along", "0,60 30,20 70,90 100,50"), ("spline", "3"), ("by", "parameter"), ("reverse", "true")],
+            &[("along", "100,50 70,90 30,20 0,60"), ("spline", "3"), ("by", "parameter"), ("as-drawn", "true")],
         ),
         // A B-spline with as many points as its degree asks for is a Bézier curve; points in a row make a line.
         Law::Same(&[("along", "0,60 30,20 70,90 100,50"), ("spline", "3")], &[("along", "M0,60 C30,20 70,90 100,50")]),
@@ -501,6 +526,9 @@ omitted). A handle is the image of the artwork's height.")
         // The polynomial map: C(1/2) + S(1/2)/2 of a quadratic with legs (30,-40) and (30,40), their normals (-.8,-.6), (.8,-.6).
         Case { args: PARAMETER, at: (50.0, 50.0), to: (30.0, -20.0), tolerance: 1e-12 },
         Case { args: PARAMETER, at: (50.0, 0.0), to: (30.0, -50.0), tolerance: 1e-12 },
+        // A quadratic B-spline at its only inner knot: the mean of the middle points, and of their mitres (0.5, -1) and (-0.5, -1).
+        Case { args: SPLINE, at: (50.0, 50.0), to: (20.0, 0.0), tolerance: 1e-12 },
+        Case { args: SPLINE, at: (50.0, 0.0), to: (20.0, -50.0), tolerance: 1e-12 },
     ]);
 
 const ARC: &str = "M0,50 A50,50 0 0 1 100,50";
@@ -508,6 +536,13 @@ const CIRCLE: &str = "M100,50 A50,50 0 1 1 0,50 A50,50 0 1 1 100,50 Z";
 const ON_ARC: Pairs = &[("along", ARC), ("baseline", "0")];
 const CORNER: Pairs = &[("along", "0,0 50,0 50,50"), ("align", "start")];
 const PARAMETER: Pairs = &[("along", "M0,0 Q30,-40 60,0"), ("by", "parameter"), ("stretch", "fit")];
+const SPLINE: Pairs = &[
+    ("along", "-24,32 0,0 40,0 64,32"),
+    ("spline", "2"),
+    ("by", "parameter"),
+    ("stretch", "fit"),
+    ("as-drawn", "true"),
+];
 const EIGHTH: f64 = 50.0 + 50.0 * std::f64::consts::FRAC_PI_4;
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
